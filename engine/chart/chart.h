@@ -1,0 +1,63 @@
+#pragma once
+#include <optional>
+#include <string_view>
+
+#include <glm/vec3.hpp>
+
+#include "engine/chart/sphere_fit.h"
+
+namespace palp {
+
+/// The equal-area maps between the sphere and the plane of the plate.
+enum class Map {
+    gallPeters,         ///< x = r alpha/sqrt2, z = sqrt2 r sin beta: the paper's; stretched by sqrt2 at the contact
+    lambertCylindrical, ///< x = r alpha, z = r sin beta: undistorted at the contact and along its parallel
+    lambertAzimuthal    ///< equal-area about the contact: undistorted there and isotropic around it
+};
+
+[[nodiscard]] const char*        name(Map map) noexcept;             ///< "gall-peters", ...
+[[nodiscard]] std::optional<Map> mapNamed(std::string_view name);    ///< empty if unknown
+
+/// A position in the plane of the plate; the contact is (0, 0).
+struct ChartPoint {
+    double x = 0; ///< [m]
+    double z = 0; ///< [m]
+};
+
+/// Right-handed axes at the contact: east x north = normal.
+struct Frame {
+    glm::dvec3 normal{0, 0, 1}; ///< [1] outward, towards the hand
+    glm::dvec3 east{1, 0, 0};   ///< [1] direction of chart x
+    glm::dvec3 north{0, 1, 0};  ///< [1] direction of chart z
+
+    /// Axes about a unit normal. Deterministic; continuous except where the normal is near an axis of the world.
+    [[nodiscard]] static Frame about(const glm::dvec3& normal);
+    /// This frame carried to another normal without twisting (parallel transport along the shortest rotation).
+    [[nodiscard]] Frame carriedTo(const glm::dvec3& newNormal) const;
+    /// This frame turned about its normal.  \param angle [rad]
+    [[nodiscard]] Frame turned(double angle) const;
+};
+
+/// An equal-area map of the near hemisphere of a sphere onto a plane, centred at the contact.
+///
+/// All formulas are written in the signed curvature (positive where the surface bulges towards the normal, negative
+/// in a bowl), so that the plane is an ordinary case and no digits are lost for large radii.
+struct Chart {
+    Map        map = Map::lambertAzimuthal;
+    glm::dvec3 origin{};      ///< [m] foot of the contact on the fitted surface
+    Frame      frame;
+    double     curvature = 0; ///< [1/m] signed, see above
+
+    /// Chart about the foot of `contact` on the fitted surface.
+    /// \param outward  roughly towards the hand; chooses the side of the surface (any non-zero vector)
+    /// \param frame    axes to carry over from the neighbouring contact; empty: Frame::about
+    [[nodiscard]] static Chart around(const SphereFit& fit, const glm::dvec3& contact, const glm::dvec3& outward, Map map,
+                                      const std::optional<Frame>& frame = {});
+
+    /// Chart position of the radial projection of a point; empty beyond the hemisphere around the contact.
+    [[nodiscard]] std::optional<ChartPoint> project(const glm::dvec3& point) const;
+    /// The point of the sphere at a chart position [m]; empty outside the image of the hemisphere.
+    [[nodiscard]] std::optional<glm::dvec3> lift(const ChartPoint& position) const;
+};
+
+} // namespace palp

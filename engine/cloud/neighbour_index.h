@@ -1,0 +1,52 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace palp {
+
+struct Neighbour {
+    std::uint32_t point    = 0; ///< index into the positions the index was built from
+    double        distance = 0; ///< [m]
+};
+
+/// Radius and nearest-point search over fixed positions.
+///
+/// Embree bounding volume hierarchy over blocks of 32 Morton-ordered points, each block one user primitive that is
+/// filtered with vector instructions. Answers are those of a brute-force search in double precision, exactly.
+/// \thread const calls from any number of threads at once
+class NeighbourIndex {
+public:
+    /// \param positions  finite [m], at least one; copied, so the caller's array need not live on
+    explicit NeighbourIndex(std::span<const glm::dvec3> positions);
+    ~NeighbourIndex();
+    NeighbourIndex(NeighbourIndex&&) noexcept;
+    NeighbourIndex& operator=(NeighbourIndex&&) noexcept;
+
+    /// Appends nothing, replaces `found` by the points within `radius` [m] of `centre` [m] (distance <= radius).
+    /// The order is fixed for a given cloud, but otherwise unspecified. Reuses the capacity of `found`.
+    void gather(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const;
+
+    /// As above, for callers who do not mind an allocation.
+    [[nodiscard]] std::vector<std::uint32_t> gather(const glm::dvec3& centre, double radius) const;
+
+    /// The k nearest points (fewer if the cloud is smaller), nearest first; equal distances by rising index.
+    [[nodiscard]] std::vector<Neighbour> nearest(const glm::dvec3& centre, std::size_t k) const;
+
+    [[nodiscard]] std::size_t size() const noexcept;
+
+    /// Mean distance between points of the surface, 1/sqrt(points per square metre) [m]: the median over up to 2000
+    /// evenly strided points of d6 sqrt(pi/6), d6 the distance to the sixth neighbour. Computed once, at construction.
+    /// 0 if the cloud has fewer than seven points or most of them coincide.
+    [[nodiscard]] double spacing() const noexcept;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace palp

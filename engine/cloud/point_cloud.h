@@ -1,0 +1,58 @@
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/cloud/material.h"
+
+namespace palp {
+
+/// What the stiffness of a cloud's points is.
+enum class StiffnessKind {
+    modulus, ///< Young's modulus E [Pa]
+    rigidity ///< flexural rigidity D [N m]
+};
+
+/// The unit in which files and reports state a stiffness: "Pa" or "N_m".
+[[nodiscard]] const char* unitOf(StiffnessKind kind) noexcept;
+
+struct Bounds {
+    glm::dvec3 low{};  ///< [m]
+    glm::dvec3 high{}; ///< [m]
+
+    [[nodiscard]] glm::dvec3 centre() const noexcept { return 0.5 * (low + high); } ///< [m]
+    [[nodiscard]] double     diagonal() const noexcept;                             ///< [m]
+};
+
+/// Points at rest and a stiffness for each.
+///
+/// Invariant: at least one point, as many stiffnesses as positions, everything finite, every stiffness > 0.
+/// Never changed after construction: deformation is a field beside the cloud.
+/// \thread immutable, so free to share
+/// \differs the paper's d_i is "stiffness" without a unit; here the cloud says whether it is E [Pa] or D [N m]
+class PointCloud {
+public:
+    /// \param positions  rest positions [m]
+    /// \param stiffness  [Pa] or [N m], as `kind` says
+    /// \throws Error naming the first point that breaks the invariant
+    PointCloud(std::vector<glm::dvec3> positions, std::vector<double> stiffness, StiffnessKind kind);
+
+    [[nodiscard]] std::size_t                 size() const noexcept { return positions_.size(); }
+    [[nodiscard]] std::span<const glm::dvec3> positions() const noexcept { return positions_; } ///< [m]
+    [[nodiscard]] std::span<const double>     stiffness() const noexcept { return stiffness_; } ///< [Pa] or [N m]
+    [[nodiscard]] StiffnessKind               kind() const noexcept { return kind_; }
+    [[nodiscard]] const Bounds&               bounds() const noexcept { return bounds_; }
+
+    [[nodiscard]] double rigidity(std::size_t point, const Material&) const noexcept; ///< [N m]
+    [[nodiscard]] double modulus(std::size_t point, const Material&) const noexcept;  ///< [Pa]
+
+private:
+    std::vector<glm::dvec3> positions_;
+    std::vector<double>     stiffness_;
+    StiffnessKind           kind_;
+    Bounds                  bounds_;
+};
+
+} // namespace palp

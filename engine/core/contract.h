@@ -1,0 +1,29 @@
+#pragma once
+#include <stdexcept>
+#include <string>
+
+namespace palp {
+
+/// Something outside the program is not as it must be: a file, an option, a device. The message is one sentence for
+/// the user: what, where (file, line or byte), expected, found, what to try. The programs print it and exit with 2.
+class Error : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// A precondition was broken: a mistake in the calling code, never in the user's data.
+class ContractViolation : public std::logic_error {
+public:
+    using std::logic_error::logic_error;
+};
+
+namespace detail {
+[[noreturn]] inline void contractBroken(const char* condition, const char* file, int line, const std::string& why)
+{
+    throw ContractViolation(std::string(file) + ":" + std::to_string(line) + ": expected " + condition + ": " + why);
+}
+} // namespace detail
+} // namespace palp
+
+/// Checks a precondition in every build; `why` is a string that names the values found.
+#define PALP_EXPECT(condition, why) ((condition) ? void() : ::palp::detail::contractBroken(#condition, __FILE__, __LINE__, (why)))

@@ -1,0 +1,71 @@
+#include "engine/core/file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include <unistd.h>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+std::string reasonOfErrno() { return errno ? std::strerror(errno) : "unknown reason"; }
+
+/// A name beside `path` that no other process uses, so that two writers cannot spoil each other's draft.
+std::filesystem::path draftOf(const std::filesystem::path& path)
+{
+    return path.string() + "." + std::to_string(::getpid()) + ".part";
+}
+
+} // namespace
+
+std::ifstream openForReading(const std::filesystem::path& path)
+{
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored))
+        throw Error(path.string() + ": cannot be read: it is a folder; name a file in it");
+    errno = 0;
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw Error(path.string() + ": cannot be read: " + reasonOfErrno());
+    return file;
+}
+
+void writeFileWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write)
+{
+    std::error_code status;
+    if (std::filesystem::is_directory(path, status))
+        throw Error(path.string() + ": cannot be written: it is a folder; name a file in it");
+    // A device or a pipe (/dev/stdout, /dev/null) must not be replaced by a file of the same name.
+    const bool replaceable = !std::filesystem::exists(path, status) || std::filesystem::is_regular_file(path, status);
+    const std::filesystem::path target = replaceable ? draftOf(path) : path;
+
+    errno = 0;
+    std::ofstream file(target, std::ios::binary | std::ios::trunc);
+    if (!file) throw Error(path.string() + ": cannot be written: " + reasonOfErrno());
+    try {
+        write(file);
+        errno = 0;
+        file.close();
+        if (!file) throw Error(path.string() + ": cannot be written: " + reasonOfErrno());
+        if (replaceable) std::filesystem::rename(target, path);
+    } catch (const std::filesystem::filesystem_error& failure) {
+        std::filesystem::remove(target, status);
+        throw Error(path.string() + ": cannot be written: " + failure.code().message());
+    } catch (...) {
+        if (replaceable) std::filesystem::remove(target, status);
+        throw;
+    }
+}
+
+void makeFolder(const std::filesystem::path& path)
+{
+    std::error_code failure;
+    std::filesystem::create_directories(path, failure);
+    if (failure || !std::filesystem::is_directory(path))
+        throw Error(path.string() + ": the folder cannot be made: " +
+                    (failure ? failure.message() : "something else has that name"));
+}
+
+} // namespace palp

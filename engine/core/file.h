@@ -1,0 +1,25 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iosfwd>
+#include <string>
+
+namespace palp {
+
+/// Opens a file for binary reading.
+/// \throws Error "PATH: cannot be read: REASON" (missing, a folder, no permission)
+[[nodiscard]] std::ifstream openForReading(const std::filesystem::path& path);
+
+/// Writes a file whole or not at all: `write` fills a temporary file beside `path`, which is then renamed over it.
+/// Whatever goes wrong (an exception in `write`, a full disk), an older file at `path` stays as it was and nothing
+/// half-written remains.
+/// \throws Error naming the path and the reason
+void writeFileWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+
+/// Creates a folder and its parents.
+/// \throws Error naming the path and the reason
+void makeFolder(const std::filesystem::path& path);
+
+} // namespace palp

@@ -1,0 +1,16 @@
+#pragma once
+#include <filesystem>
+
+#include "engine/core/grid.h"
+
+namespace palp {
+
+/// Reads a two-dimensional .npy array (versions 1 to 3; float64 or float32, little endian, C order).
+/// \throws Error naming the file and what was expected and found: another shape, type or order, a short file, or a
+///         value that is not finite (with its index)
+[[nodiscard]] NodeField readNpy(const std::filesystem::path& path);
+
+/// Writes a field as a float64 .npy array of shape (nodesX, nodesZ), whole or not at all.
+void writeNpy(const std::filesystem::path& path, const NodeField& field);
+
+} // namespace palp

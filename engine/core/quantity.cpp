@@ -1,0 +1,123 @@
+#include "engine/core/quantity.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <span>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+struct Unit {
+    std::string_view name;
+    double           inSi; ///< SI units in one of these
+};
+
+constexpr double kPi = 3.14159265358979323846;
+
+constexpr std::array kLengths     = {Unit{"m", 1},     Unit{"mm", 1e-3},   Unit{"cm", 1e-2},  Unit{"um", 1e-6},
+                                     Unit{"km", 1e3},  Unit{"in", 0.0254}, Unit{"ft", 0.3048}};
+constexpr std::array kForces      = {Unit{"N", 1}, Unit{"mN", 1e-3}, Unit{"kN", 1e3}};
+constexpr std::array kPressures   = {Unit{"Pa", 1}, Unit{"kPa", 1e3}, Unit{"MPa", 1e6}, Unit{"GPa", 1e9}};
+constexpr std::array kRigidities  = {Unit{"N_m", 1}, Unit{"Nm", 1}, Unit{"N*m", 1}, Unit{"mN_m", 1e-3}, Unit{"mNm", 1e-3}};
+constexpr std::array kFoundations = {Unit{"Pa/m", 1}, Unit{"kPa/m", 1e3}, Unit{"MPa/m", 1e6}, Unit{"GPa/m", 1e9}};
+constexpr std::array kAngles      = {Unit{"rad", 1}, Unit{"deg", kPi / 180}};
+
+std::span<const Unit> unitsOf(Dimension dimension)
+{
+    switch (dimension) {
+    case Dimension::length: return kLengths;
+    case Dimension::force: return kForces;
+    case Dimension::pressure: return kPressures;
+    case Dimension::rigidity: return kRigidities;
+    case Dimension::foundation: return kFoundations;
+    case Dimension::angle: return kAngles;
+    case Dimension::none: return {};
+    }
+    return {};
+}
+
+std::string listed(std::span<const Unit> units)
+{
+    std::string text;
+    for (const Unit& unit : units) text += (text.empty() ? "" : ", ") + std::string(unit.name);
+    return text.empty() ? "none: a plain number" : text;
+}
+
+std::string_view trimmed(std::string_view text)
+{
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    return text;
+}
+
+struct NumberAndUnit {
+    double           number;
+    std::string_view unit;
+};
+
+NumberAndUnit split(std::string_view text, std::string_view what)
+{
+    const std::string_view body  = trimmed(text);
+    const char*            begin = body.data() + (body.starts_with('+') ? 1 : 0);
+    double                 number{};
+    const auto [end, error] = std::from_chars(begin, body.data() + body.size(), number);
+    if (error != std::errc() || !std::isfinite(number))
+        throw Error(std::string(what) + ": expected a finite number, found \"" + std::string(text) + "\"");
+    return {number, trimmed(body.substr(std::size_t(end - body.data())))};
+}
+
+} // namespace
+
+double parseQuantity(std::string_view text, Dimension dimension, std::string_view what)
+{
+    const auto [number, unit] = split(text, what);
+    if (unit.empty()) return number;
+    for (const Unit& known : unitsOf(dimension))
+        if (known.name == unit) return number * known.inSi;
+    throw Error(std::string(what) + ": unknown unit \"" + std::string(unit) + "\" in \"" + std::string(text) +
+                "\"; known units: " + listed(unitsOf(dimension)));
+}
+
+double metresPer(std::string_view lengthUnit)
+{
+    for (const Unit& known : kLengths)
+        if (known.name == lengthUnit) return known.inSi;
+    throw Error("unknown length unit \"" + std::string(lengthUnit) + "\"; known units: " + listed(kLengths));
+}
+
+glm::dvec3 parsePoint(std::string_view text, std::string_view what, double metresPerPlainNumber)
+{
+    glm::dvec3       point{};
+    std::string_view rest = text;
+    for (int k = 0; k < 3; ++k) {
+        const std::size_t comma = rest.find(',');
+        if ((comma == std::string_view::npos) != (k == 2))
+            throw Error(std::string(what) + ": expected three numbers x,y,z, found \"" + std::string(text) + "\"");
+        const std::string_view part = rest.substr(0, comma);
+        const auto [number, unit]   = split(part, what);
+        point[k] = unit.empty() ? number * metresPerPlainNumber : parseQuantity(part, Dimension::length, what);
+        if (k < 2) rest.remove_prefix(comma + 1);
+    }
+    return point;
+}
+
+std::string formatQuantity(double value, std::string_view siUnit)
+{
+    if (!std::isfinite(value)) return std::isnan(value) ? "undefined" : "infinite";
+    constexpr std::array<const char*, 9> kPrefixes = {"p", "n", "u", "m", "", "k", "M", "G", "T"};
+    int    step   = value == 0 ? 0 : int(std::floor(std::log10(std::abs(value)) / 3 + 1e-12));
+    step          = std::max(-4, std::min(4, step));
+    const double scaled = value / std::pow(10.0, 3 * step);
+    char         text[64];
+    const double size   = std::abs(scaled);
+    const int    digits = size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2;
+    std::snprintf(text, sizeof text, "%.*f %s%.*s", digits, scaled, kPrefixes[std::size_t(step + 4)],
+                  int(siUnit.size()), siUnit.data());
+    return text;
+}
+
+} // namespace palp

@@ -1,0 +1,32 @@
+#pragma once
+#include "engine/core/grid.h"
+
+namespace palp {
+
+/// Loads as forces at the nodes [N], the energy's own gradient, so that they need no further weights.
+/// Positions are measured from the corner node (0, 0) of the grid.
+
+/// Area that a node stands for: a cell's inside, half on an edge, a quarter in a corner [m^2].
+[[nodiscard]] double nodeArea(const PlateGrid& grid, int i, int j) noexcept;
+
+/// A uniform pressure [Pa].
+[[nodiscard]] NodeField uniformLoad(const PlateGrid& grid, double pressure);
+
+/// A pressure given at the nodes [Pa].
+[[nodiscard]] NodeField gridLoad(const PlateGrid& grid, const NodeField& pressure);
+
+/// A point force [N] at (x, z) [m], shared bilinearly by the four nodes around it: force and moments are kept.
+[[nodiscard]] NodeField pointLoad(const PlateGrid& grid, double force, double x, double z);
+
+/// A Gaussian pressure of total force [N] on the infinite plane: force exp(-r^2/(2 sigma^2)) / (2 pi sigma^2).
+[[nodiscard]] NodeField gaussianLoad(const PlateGrid& grid, double force, double x, double z, double sigma);
+
+/// The fingertip: pressure proportional to (1 - (r/radius)^2)^2 within `radius` [m] of (x, z), integrated on
+/// sub-cells, shared bilinearly and divided by its own sum, so that the total is exactly `force` [N].
+/// \throws Error if the footprint does not lie wholly on the plate or is smaller than one spacing
+[[nodiscard]] NodeField footprintLoad(const PlateGrid& grid, double force, double x, double z, double radius);
+
+/// Bilinear interpolation of a node field at (x, z) [m], which must lie on the plate.
+[[nodiscard]] double interpolate(const PlateGrid& grid, const NodeField& field, double x, double z);
+
+} // namespace palp

@@ -1,0 +1,56 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "engine/core/grid.h"
+
+namespace palp {
+
+/// How one side of the plate is held.
+enum class Edge {
+    clamped,   ///< no deflection, no slope (the paper's only edge)
+    supported, ///< no deflection, free to turn
+    free       ///< nothing holds it
+};
+
+struct PlateEdges {
+    Edge x0 = Edge::clamped; ///< side x = 0
+    Edge x1 = Edge::clamped; ///< side x = sizeX
+    Edge z0 = Edge::clamped; ///< side z = 0
+    Edge z1 = Edge::clamped; ///< side z = sizeZ
+
+    bool operator==(const PlateEdges&) const = default;
+};
+
+/// A Kirchhoff plate of varying flexural rigidity on an elastic foundation: everything but the load.
+///
+///     E(w) = 1/2 int D [ (w_xx + w_zz)^2 - 2 (1-nu)(w_xx w_zz - w_xz^2) ] + 1/2 int k w^2 - int q w
+///
+/// Deflection w [m] is positive along the load.
+struct Plate {
+    PlateGrid  grid;
+    PlateEdges edges;
+    double     poissonRatio = 0.3; ///< nu [1], -1 < nu <= 0.5
+    double     foundation   = 0;   ///< k [Pa/m], >= 0; 0 is the paper
+    NodeField  rigidity;           ///< D [N m] at the nodes, > 0
+};
+
+/// Why a plate cannot be solved, in one sentence: wrong shape, rigidity not positive, Poisson's ratio out of range,
+/// or edges that leave it free to move as a rigid body. Empty if it can.
+[[nodiscard]] std::optional<std::string> whyUnsolvable(const Plate& plate);
+
+/// What a solver says about one answer; a number that a solver does not have is empty.
+struct SolveReport {
+    std::string           device;        ///< "reference", ...
+    std::optional<int>    iterations;    ///< [1]
+    std::optional<double> errorEstimate; ///< [1] relative, in the norm the solver documents
+    std::optional<double> workUnits;     ///< [1] applications of the operator on the finest grid
+    double                milliseconds = 0; ///< wall time of this solve
+};
+
+struct PlateSolution {
+    NodeField   deflection; ///< w [m]
+    SolveReport report;
+};
+
+} // namespace palp

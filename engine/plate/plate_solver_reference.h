@@ -1,0 +1,32 @@
+#pragma once
+#include <memory>
+
+#include "engine/plate/plate.h"
+
+namespace palp {
+
+/// The oracle: the discrete energy assembled in double precision and factorised by sparse Cholesky.
+/// Obvious rather than fast; shares no stencil with any other solver.
+/// \thread one at a time
+class ReferencePlateSolver {
+public:
+    /// Assembles and factorises. \throws Error if whyUnsolvable(plate)
+    explicit ReferencePlateSolver(const Plate& plate);
+    ~ReferencePlateSolver();
+    ReferencePlateSolver(ReferencePlateSolver&&) noexcept;
+    ReferencePlateSolver& operator=(ReferencePlateSolver&&) noexcept;
+
+    /// Deflection under forces at the nodes [N] (a pressure q is q times the node's area: half a cell's on an edge, a
+    /// quarter in a corner). Forces on held nodes have no effect.
+    /// report.errorEstimate: max |correction of one step of iterative refinement| / max |w|, an estimate of what
+    /// rounding did; it says nothing about the discretisation.
+    [[nodiscard]] PlateSolution solve(const NodeField& nodalForce) const;
+
+    [[nodiscard]] double factoriseMilliseconds() const noexcept; ///< wall time of the constructor
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace palp
