@@ -15,8 +15,8 @@ enum class Map {
     lambertAzimuthal    ///< equal-area about the contact: undistorted there and isotropic around it
 };
 
-[[nodiscard]] const char*        name(Map map) noexcept;             ///< "gall-peters", ...
-[[nodiscard]] std::optional<Map> mapNamed(std::string_view name);    ///< empty if unknown
+[[nodiscard]] const char*        name(Map map) noexcept;          ///< "gall-peters", ...
+[[nodiscard]] std::optional<Map> mapNamed(std::string_view name); ///< empty if unknown
 
 /// A position in the plane of the plate; the contact is (0, 0).
 struct ChartPoint {
@@ -30,9 +30,10 @@ struct Frame {
     glm::dvec3 east{1, 0, 0};   ///< [1] direction of chart x
     glm::dvec3 north{0, 1, 0};  ///< [1] direction of chart z
 
-    /// Axes about a unit normal. Deterministic; continuous except where the normal is near an axis of the world.
+    /// The world's axes carried from its z to a unit normal. Continuous except at the world's -z.
     [[nodiscard]] static Frame about(const glm::dvec3& normal);
-    /// This frame carried to another normal without twisting (parallel transport along the shortest rotation).
+    /// This frame carried to another unit normal without twisting (parallel transport along the shortest arc).
+    /// To the opposite normal, where every arc is shortest, by the half turn about east.
     [[nodiscard]] Frame carriedTo(const glm::dvec3& newNormal) const;
     /// This frame turned about its normal.  \param angle [rad]
     [[nodiscard]] Frame turned(double angle) const;
@@ -41,18 +42,24 @@ struct Frame {
 /// An equal-area map of the near hemisphere of a sphere onto a plane, centred at the contact.
 ///
 /// All formulas are written in the signed curvature (positive where the surface bulges towards the normal, negative
-/// in a bowl), so that the plane is an ordinary case and no digits are lost for large radii.
+/// in a bowl), so that the plane is an ordinary case and no digits are lost for large radii. With longitude alpha
+/// (towards east) and latitude beta (towards north) about the contact, the direction from the centre is
+/// cos beta cos alpha normal + cos beta sin alpha east + sin beta north.
+/// \thread  pure value
+/// \source  Kumari & Chaudhuri, eq. 4 (gall-peters); Snyder 1987, "Map Projections: A Working Manual" (the others)
+/// \differs the paper's map stretches z by sqrt2 and shrinks x by sqrt2 right at the contact, so that an isotropic
+///          plate answers a round load with a dip twice as long as wide; it is kept, but not the default
 struct Chart {
     Map        map = Map::lambertAzimuthal;
-    glm::dvec3 origin{};      ///< [m] foot of the contact on the fitted surface
+    glm::dvec3 origin{}; ///< [m] foot of the contact on the fitted surface
     Frame      frame;
     double     curvature = 0; ///< [1/m] signed, see above
 
     /// Chart about the foot of `contact` on the fitted surface.
     /// \param outward  roughly towards the hand; chooses the side of the surface (any non-zero vector)
     /// \param frame    axes to carry over from the neighbouring contact; empty: Frame::about
-    [[nodiscard]] static Chart around(const SphereFit& fit, const glm::dvec3& contact, const glm::dvec3& outward, Map map,
-                                      const std::optional<Frame>& frame = {});
+    [[nodiscard]] static Chart around(const SphereFit& fit, const glm::dvec3& contact, const glm::dvec3& outward,
+                                      Map map, const std::optional<Frame>& frame = {});
 
     /// Chart position of the radial projection of a point; empty beyond the hemisphere around the contact.
     [[nodiscard]] std::optional<ChartPoint> project(const glm::dvec3& point) const;

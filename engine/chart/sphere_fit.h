@@ -20,8 +20,9 @@ struct SphereFit {
     [[nodiscard]] double     radius() const noexcept;                                ///< [m] infinity for a plane
     [[nodiscard]] glm::dvec3 centre() const noexcept;                                ///< [m] not finite for a plane
     [[nodiscard]] double     signedDistance(const glm::dvec3& point) const noexcept; ///< [m] > 0 outside
-    [[nodiscard]] glm::dvec3 normal(const glm::dvec3& point) const noexcept;         ///< [1] away from the centre
-    [[nodiscard]] glm::dvec3 foot(const glm::dvec3& point) const noexcept;           ///< [m] nearest surface point
+    /// Unit direction away from the centre [1]; at the centre itself, where none is better, a fixed arbitrary one.
+    [[nodiscard]] glm::dvec3 normal(const glm::dvec3& point) const noexcept;
+    [[nodiscard]] glm::dvec3 foot(const glm::dvec3& point) const noexcept; ///< [m] nearest surface point
 };
 
 /// What a set of points determines.
@@ -30,7 +31,7 @@ enum class FitOutcome {
     plane,        ///< curvature is zero within rounding; the fit holds the least-squares plane
     tooFewPoints, ///< fewer than four distinct points
     ring,         ///< the points lie on one circle: infinitely many spheres pass through it
-    line          ///< the points lie on one line (or coincide): not even a plane is determined
+    line          ///< the points lie on one line: not even a plane is determined
 };
 
 /// "sphere", "plane", ... for reports.
@@ -38,11 +39,32 @@ enum class FitOutcome {
 
 struct SphereFitResult {
     FitOutcome outcome = FitOutcome::tooFewPoints;
-    SphereFit  fit;
+    SphereFit  fit; ///< meaningful if usable()
 
     [[nodiscard]] bool usable() const noexcept { return outcome == FitOutcome::sphere || outcome == FitOutcome::plane; }
 };
 
+/// Fits a sphere to points by Pratt's normalised algebraic distance.
+///
+/// With rows design_i = (|x_i|^2, x_i, 1) it minimises |design u|^2 subject to u1^2 + u2^2 + u3^2 - 4 u0 u4 = 1 for
+/// u0 |x|^2 + (u1,u2,u3) . x + u4 = 0: the eigenvector of  (design^T design) u = eta C u  with the smallest eta >= 0
+/// and u^T C u > 0. Centre -(u1,u2,u3) / (2 u0), radius 1 / (2 |u0|); u0 -> 0 is a plane, not a failure.
+/// The answer is the same for points moved, turned or scaled. Only rounding separates a plane from a sphere, and a
+/// ring from a narrow band: noise on a plane gives a sphere of large radius, which callers need not tell apart.
+///
+/// \param  points   positions [m], finite, any number and order, repeats allowed (each counts)
+/// \return          what the points determine, and the fit if they determine a sphere or a plane
+/// \throws          ContractViolation naming the first point that is not finite
+/// \thread          pure; memory is constant, time linear in the number of points
+/// \source          Pratt 1987, "Direct least-squares fitting of algebraic surfaces"; Kumari & Chaudhuri, eqs 1-3
+/// \differs         Eq. 3 divides by u4; with eq. 1 as written the divisor is u0.
+///                  The points are centred and scaled to unit rms first: uncentred, single precision finds a radius
+///                  of 37 for a cap of radius 5 some 27 away, and double loses half its digits.
+///                  The paper runs the QZ algorithm on (design^T design, C). Here design = Q R, R = W S V^T, and with
+///                  u = V S^-1 v the same problem reads  (S^-1 V^T C V S^-1) v = v / eta: symmetric, so eta is real,
+///                  ordered, and positive exactly when u^T C u is; there is nothing to choose among eigenvalues that
+///                  rounding makes +1e-17 or -1e-17, and no product design^T design that halves the digits when the
+///                  points fill a narrow band. The tests run QZ beside it.
 [[nodiscard]] SphereFitResult fitSphere(std::span<const glm::dvec3> points);
 
 } // namespace palp

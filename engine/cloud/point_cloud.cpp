@@ -11,19 +11,28 @@
 namespace palp {
 namespace {
 
-bool finite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+bool finite(const glm::dvec3& p)
+{
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
 
 } // namespace
 
-const char* unitOf(StiffnessKind kind) noexcept { return kind == StiffnessKind::modulus ? "Pa" : "N_m"; }
+const char* unitOf(StiffnessKind kind) noexcept
+{
+    return kind == StiffnessKind::modulus ? "Pa" : "N_m";
+}
 
-double Bounds::diagonal() const noexcept { return glm::length(high - low); }
+double Bounds::diagonal() const noexcept
+{
+    return glm::length(high - low);
+}
 
 PointCloud::PointCloud(std::vector<glm::dvec3> positions, std::vector<double> stiffness, StiffnessKind kind)
     : positions_(std::move(positions)), stiffness_(std::move(stiffness)), kind_(kind)
 {
-    PALP_EXPECT(positions_.size() == stiffness_.size(),
-                std::to_string(positions_.size()) + " positions, " + std::to_string(stiffness_.size()) + " stiffnesses");
+    PALP_EXPECT(positions_.size() == stiffness_.size(), std::to_string(positions_.size()) + " positions, " +
+                                                            std::to_string(stiffness_.size()) + " stiffnesses");
     if (positions_.empty()) throw Error("the cloud is empty: expected at least one point");
     bounds_ = {positions_.front(), positions_.front()};
     for (std::size_t i = 0; i < positions_.size(); ++i) {

@@ -26,4 +26,5 @@ namespace detail {
 } // namespace palp
 
 /// Checks a precondition in every build; `why` is a string that names the values found.
-#define PALP_EXPECT(condition, why) ((condition) ? void() : ::palp::detail::contractBroken(#condition, __FILE__, __LINE__, (why)))
+#define PALP_EXPECT(condition, why)                                                                                    \
+    ((condition) ? void() : ::palp::detail::contractBroken(#condition, __FILE__, __LINE__, (why)))

@@ -11,7 +11,10 @@
 namespace palp {
 namespace {
 
-std::string reasonOfErrno() { return errno ? std::strerror(errno) : "unknown reason"; }
+std::string reasonOfErrno()
+{
+    return errno ? std::strerror(errno) : "unknown reason";
+}
 
 /// A name beside `path` that no other process uses, so that two writers cannot spoil each other's draft.
 std::filesystem::path draftOf(const std::filesystem::path& path)
@@ -64,8 +67,8 @@ void makeFolder(const std::filesystem::path& path)
     std::error_code failure;
     std::filesystem::create_directories(path, failure);
     if (failure || !std::filesystem::is_directory(path))
-        throw Error(path.string() + ": the folder cannot be made: " +
-                    (failure ? failure.message() : "something else has that name"));
+        throw Error(path.string() +
+                    ": the folder cannot be made: " + (failure ? failure.message() : "something else has that name"));
 }
 
 } // namespace palp

@@ -31,7 +31,8 @@ public:
     explicit NodeField(const PlateGrid& grid, double value = 0) : NodeField(grid.nodesX(), grid.nodesZ(), value) {}
     NodeField(int nodesX, int nodesZ, double value = 0)
         : nodesX_(nodesX), nodesZ_(nodesZ), values_(std::size_t(nodesX) * std::size_t(nodesZ), value)
-    {}
+    {
+    }
 
     [[nodiscard]] int  nodesX() const noexcept { return nodesX_; }
     [[nodiscard]] int  nodesZ() const noexcept { return nodesZ_; }

@@ -8,7 +8,8 @@ namespace palp {
 
 Progress::Progress(std::string what)
     : what_(std::move(what)), onTerminal_(::isatty(STDERR_FILENO) == 1), next_(Clock::now() + std::chrono::seconds(2))
-{}
+{
+}
 
 Progress::~Progress()
 {

@@ -18,24 +18,32 @@ struct Unit {
 
 constexpr double kPi = 3.14159265358979323846;
 
-constexpr std::array kLengths     = {Unit{"m", 1},     Unit{"mm", 1e-3},   Unit{"cm", 1e-2},  Unit{"um", 1e-6},
-                                     Unit{"km", 1e3},  Unit{"in", 0.0254}, Unit{"ft", 0.3048}};
+constexpr std::array kLengths     = {Unit{"m", 1},    Unit{"mm", 1e-3},   Unit{"cm", 1e-2},  Unit{"um", 1e-6},
+                                     Unit{"km", 1e3}, Unit{"in", 0.0254}, Unit{"ft", 0.3048}};
 constexpr std::array kForces      = {Unit{"N", 1}, Unit{"mN", 1e-3}, Unit{"kN", 1e3}};
 constexpr std::array kPressures   = {Unit{"Pa", 1}, Unit{"kPa", 1e3}, Unit{"MPa", 1e6}, Unit{"GPa", 1e9}};
-constexpr std::array kRigidities  = {Unit{"N_m", 1}, Unit{"Nm", 1}, Unit{"N*m", 1}, Unit{"mN_m", 1e-3}, Unit{"mNm", 1e-3}};
+constexpr std::array kRigidities  = {Unit{"N_m", 1}, Unit{"Nm", 1}, Unit{"N*m", 1}, Unit{"mN_m", 1e-3},
+                                     Unit{"mNm", 1e-3}};
 constexpr std::array kFoundations = {Unit{"Pa/m", 1}, Unit{"kPa/m", 1e3}, Unit{"MPa/m", 1e6}, Unit{"GPa/m", 1e9}};
 constexpr std::array kAngles      = {Unit{"rad", 1}, Unit{"deg", kPi / 180}};
 
 std::span<const Unit> unitsOf(Dimension dimension)
 {
     switch (dimension) {
-    case Dimension::length: return kLengths;
-    case Dimension::force: return kForces;
-    case Dimension::pressure: return kPressures;
-    case Dimension::rigidity: return kRigidities;
-    case Dimension::foundation: return kFoundations;
-    case Dimension::angle: return kAngles;
-    case Dimension::none: return {};
+    case Dimension::length:
+        return kLengths;
+    case Dimension::force:
+        return kForces;
+    case Dimension::pressure:
+        return kPressures;
+    case Dimension::rigidity:
+        return kRigidities;
+    case Dimension::foundation:
+        return kFoundations;
+    case Dimension::angle:
+        return kAngles;
+    case Dimension::none:
+        return {};
     }
     return {};
 }
@@ -109,8 +117,8 @@ std::string formatQuantity(double value, std::string_view siUnit)
 {
     if (!std::isfinite(value)) return std::isnan(value) ? "undefined" : "infinite";
     constexpr std::array<const char*, 9> kPrefixes = {"p", "n", "u", "m", "", "k", "M", "G", "T"};
-    int    step   = value == 0 ? 0 : int(std::floor(std::log10(std::abs(value)) / 3 + 1e-12));
-    step          = std::max(-4, std::min(4, step));
+    int step            = value == 0 ? 0 : int(std::floor(std::log10(std::abs(value)) / 3 + 1e-12));
+    step                = std::max(-4, std::min(4, step));
     const double scaled = value / std::pow(10.0, 3 * step);
     char         text[64];
     const double size   = std::abs(scaled);

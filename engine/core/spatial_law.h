@@ -26,15 +26,15 @@ struct SpatialLaw {
     enum class Space { plane, volume }; ///< points given as [x, z] (a plate) or [x, y, z] (a cloud)
     enum class Kind { constant, linear, hyperbolic, exponential, gaussian, disc, box, checker };
 
-    Kind                    kind = Kind::constant;
-    double                  from = 1; ///< [Pa] or [N m]
-    double                  to   = 1; ///< [Pa] or [N m]
-    glm::dvec3              start{};  ///< [m]
-    glm::dvec3              end{1, 0, 0}; ///< [m]
-    std::vector<glm::dvec3> centres;  ///< [m]
-    double                  width = 0; ///< [m] standard deviation, radius or edge
-    glm::dvec3              low{};    ///< [m] corner of the box
-    glm::dvec3              high{};   ///< [m] opposite corner of the box
+    Kind kind = Kind::constant;
+    double from = 1;                 ///< [Pa] or [N m]
+    double to = 1;                   ///< [Pa] or [N m]
+    glm::dvec3 start{};              ///< [m]
+    glm::dvec3 end{1, 0, 0};         ///< [m]
+    std::vector<glm::dvec3> centres{}; ///< [m]
+    double width = 0;                ///< [m] standard deviation, radius or edge
+    glm::dvec3 low{};                ///< [m] corner of the box
+    glm::dvec3 high{};               ///< [m] opposite corner of the box
 
     [[nodiscard]] double operator()(const glm::dvec3& p) const noexcept;
 };

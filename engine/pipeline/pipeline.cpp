@@ -1,0 +1,256 @@
+#include "engine/pipeline/pipeline.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "engine/core/quantity.h"
+#include "engine/plate/load.h"
+#include "engine/plate/plate_solver_reference.h"
+
+namespace palp {
+namespace {
+
+class Stopwatch {
+public:
+    /// Milliseconds since construction or the last call.
+    double lap()
+    {
+        const auto   now  = std::chrono::steady_clock::now();
+        const double past = std::chrono::duration<double, std::milli>(now - last_).count();
+        last_             = now;
+        return past;
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// Radius of the ball that holds every point which can matter to the window [m].
+///
+/// Chord and chart distance agree in the azimuthal map. In the cylindrical ones
+/// chord^2 = 2 r^2 (1 - cos a cos b) <= r^2 (a^2 + 2 sin^2 b), which is x^2 + 2 z^2 (Lambert) or 2 x^2 + z^2
+/// (Gall-Peters). The kernel reaches four spacings beyond the edge.
+double gatherRadius(const PatchSettings& settings, double spacing)
+{
+    constexpr double kKernelReach = 4;
+    const double     half         = settings.window / 2;
+    const double     chord = settings.map == Map::lambertAzimuthal ? std::sqrt(2.0) * half : std::sqrt(3.0) * half;
+    return chord + kKernelReach * std::max(spacing, settings.window / settings.cells / 2);
+}
+
+SphereFitResult fitTo(const PointCloud& cloud, const std::vector<std::uint32_t>& gathered)
+{
+    std::vector<glm::dvec3> points;
+    points.reserve(gathered.size());
+    for (std::uint32_t point : gathered) points.push_back(cloud.positions()[point]);
+    return fitSphere(points);
+}
+
+/// Fills in the points of the near side and their places in the chart.
+void project(const PointCloud& cloud, Patch& patch)
+{
+    for (std::uint32_t point : patch.gathered)
+        if (const auto position = patch.chart.project(cloud.positions()[point])) {
+            patch.points.push_back(point);
+            patch.positions.push_back(*position);
+        }
+}
+
+Resampled resample(const PointCloud& cloud, const Patch& patch, const PatchSettings& settings, double spacing)
+{
+    std::vector<double> rigidities;
+    rigidities.reserve(patch.points.size());
+    for (std::uint32_t point : patch.points) rigidities.push_back(cloud.rigidity(point, settings.material));
+    return resampleRigidity(patch.window, patch.positions, rigidities, settings.sampling, spacing);
+}
+
+/// Force of 1 N on the footprint about the middle node.
+NodeField unitLoad(const PlateGrid& grid, const PatchSettings& settings)
+{
+    return footprintLoad(grid, 1, grid.sizeX() / 2, grid.sizeZ() / 2, settings.footprintRadius);
+}
+
+/// Work of the load on the response; with a unit load, the compliance that the load itself feels [m/N].
+double work(const NodeField& load, const NodeField& response)
+{
+    double sum = 0;
+    for (std::size_t n = 0; n < load.values().size(); ++n) sum += load.values()[n] * response.values()[n];
+    return sum;
+}
+
+/// Width beyond which the edges of a window on a foundation are not felt [m]; empty without a foundation.
+///
+/// 10 characteristic lengths l = (D/k)^(1/4) hold the compliance to 0.1 %, and 12 where D varies by more than 10;
+/// measured against windows of 24 l for warts. D is the geometric mean over the window.
+std::optional<double> windowWanted(const Plate& plate)
+{
+    if (plate.foundation <= 0) return {};
+    double logarithm = 0;
+    for (double d : plate.rigidity.values()) logarithm += std::log(d);
+    const double mean        = std::exp(logarithm / double(plate.rigidity.values().size()));
+    const auto [least, most] = std::minmax_element(plate.rigidity.values().begin(), plate.rigidity.values().end());
+    return (*most > 10 * *least ? 12 : 10) * std::pow(mean / plate.foundation, 0.25);
+}
+
+/// Response of the points by bilinear interpolation; outside the window nothing moves.
+std::vector<double> lift(const Patch& patch)
+{
+    std::vector<double> response;
+    response.reserve(patch.positions.size());
+    for (const ChartPoint& p : patch.positions)
+        response.push_back(patch.window.holds(p) ? interpolate(patch.window.grid, patch.response,
+                                                               p.x - patch.window.corner.x, p.z - patch.window.corner.z)
+                                                 : 0.0);
+    return response;
+}
+
+} // namespace
+
+Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
+             const PatchSettings& settings)
+{
+    Patch        patch;
+    Stopwatch    watch;
+    const double spacing = index.spacing();
+
+    // The neighbourhood (the paper's section 2.1) ...
+    patch.contact = contact;
+    index.gather(contact.point, gatherRadius(settings, spacing), patch.gathered);
+    patch.times.gather = watch.lap();
+
+    // ... is close to a sphere (2.2, equations 1 to 3), ...
+    patch.sphere    = fitTo(cloud, patch.gathered);
+    patch.times.fit = watch.lap();
+    if (!patch.sphere.usable()) return patch;
+
+    // ... which an equal-area map lays flat about the contact (2.3, equation 4), ...
+    patch.chart = Chart::around(patch.sphere.fit, contact.point, contact.outward, settings.map, settings.frame);
+    project(cloud, patch);
+    patch.times.project = watch.lap();
+
+    // ... where a grid takes over the rigidity of the points (2.4) ...
+    patch.window              = Window::square(settings.window, settings.cells);
+    const Resampled resampled = resample(cloud, patch, settings, spacing);
+    patch.nodesWithoutPoint   = resampled.nodesWithoutPoint;
+    patch.plate               = {patch.window.grid, settings.edges, settings.material.poissonRatio, settings.foundation,
+                                 resampled.rigidity};
+    patch.times.resample      = watch.lap();
+
+    // ... and bends as a plate under a unit force (2.5, equations 6 to 8).
+    const ReferencePlateSolver solver(patch.plate);
+    patch.times.factorise    = watch.lap();
+    const NodeField load     = unitLoad(patch.plate.grid, settings);
+    PlateSolution   solution = solver.solve(load);
+    patch.response           = std::move(solution.deflection);
+    patch.report             = std::move(solution.report);
+    patch.compliance         = work(load, patch.response);
+    patch.times.solve        = watch.lap();
+
+    // The bent plate moves the points (2.6, equation 9), and plate and contact together are what the hand feels.
+    patch.pointResponse    = lift(patch);
+    const int    middle    = settings.cells / 2;
+    const double modulus   = settings.material.modulus(patch.plate.rigidity(middle, middle));
+    patch.contactStiffness = contactStiffness(modulus, settings.footprintRadius, settings.material.thickness);
+    patch.feltStiffness    = feltStiffness(settings.forceLaw, patch.contactStiffness, patch.compliance);
+    patch.times.lift       = watch.lap();
+    return patch;
+}
+
+std::vector<double> deflections(const PointCloud& cloud, const Patch& patch, double force)
+{
+    std::vector<double> result(cloud.size(), 0.0);
+    for (std::size_t n = 0; n < patch.points.size(); ++n) result[patch.points[n]] = force * patch.pointResponse[n];
+    return result;
+}
+
+std::vector<glm::dvec3> displaced(const PointCloud& cloud, const Patch& patch, double force)
+{
+    std::vector<glm::dvec3> result(cloud.positions().begin(), cloud.positions().end());
+    for (std::size_t n = 0; n < patch.points.size(); ++n)
+        result[patch.points[n]] += force * patch.pointResponse[n] * patch.forceDirection();
+    return result;
+}
+
+std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings)
+{
+    const PlateGrid& fine = patch.plate.grid;
+    if (!patch.deformed() || settings.cells % 4 != 0 || settings.footprintRadius < 2 * fine.spacingX) return {};
+    Plate coarse    = patch.plate;
+    coarse.grid     = {fine.cellsX / 2, fine.cellsZ / 2, 2 * fine.spacingX, 2 * fine.spacingZ};
+    coarse.rigidity = NodeField(coarse.grid);
+    for (int i = 0; i < coarse.grid.nodesX(); ++i)
+        for (int j = 0; j < coarse.grid.nodesZ(); ++j) coarse.rigidity(i, j) = patch.plate.rigidity(2 * i, 2 * j);
+    if (whyUnsolvable(coarse)) return {};
+    const NodeField load       = unitLoad(coarse.grid, settings);
+    const double    compliance = work(load, ReferencePlateSolver(coarse).solve(load).deflection);
+    return std::abs(compliance - patch.compliance) / 3 / patch.compliance;
+}
+
+std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force)
+{
+    std::vector<std::string> result;
+    if (!patch.deformed()) return result;
+    const double deepest =
+        std::abs(force) * *std::max_element(patch.response.values().begin(), patch.response.values().end());
+    const double half = settings.material.thickness / 2;
+    if (deepest > half)
+        result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
+                         formatQuantity(half, "m") +
+                         "): Kirchhoff plate theory does not hold here; press with less than " +
+                         formatQuantity(std::abs(force) * half / deepest, "N"));
+    if (patch.nodesWithoutPoint > 0)
+        result.push_back(
+            std::to_string(patch.nodesWithoutPoint) + " of " + std::to_string(patch.plate.grid.nodes()) +
+            " grid nodes have no point nearby (a hole, a border or the far side): they carry the rigidity of "
+            "the nearest point");
+    if (const auto width = windowWanted(patch.plate); width && settings.window < *width)
+        result.push_back("the window of " + formatQuantity(settings.window, "m") + " is narrower than the " +
+                         formatQuantity(*width, "m") +
+                         " that this rigidity and foundation ask for: its edges are felt");
+    return result;
+}
+
+const char* name(Preset preset) noexcept
+{
+    return preset == Preset::palpate ? "palpate" : "paper";
+}
+
+std::optional<Preset> presetNamed(std::string_view text)
+{
+    for (Preset preset : {Preset::palpate, Preset::paper})
+        if (name(preset) == text) return preset;
+    return {};
+}
+
+PatchSettings withPreset(PatchSettings settings, Preset preset)
+{
+    const bool paper  = preset == Preset::paper;
+    settings.map      = paper ? Map::gallPeters : Map::lambertAzimuthal;
+    settings.sampling = paper ? Sampling::nearest : Sampling::logMean;
+    settings.forceLaw = paper ? ForceLaw::paper : ForceLaw::series;
+    settings.edges    = {};
+    if (paper) settings.foundation = 0;
+    return settings;
+}
+
+std::vector<std::string> differencesFromPaper(const PatchSettings& settings)
+{
+    std::vector<std::string> lines;
+    if (settings.map != Map::gallPeters)
+        lines.push_back(std::string("map ") + name(settings.map) +
+                        ", the paper's is gall-peters: it stretches by sqrt 2 at the contact");
+    if (settings.sampling != Sampling::nearest)
+        lines.push_back(std::string("rigidity by ") + name(settings.sampling) +
+                        ", the paper's by nearest: it jitters while the grid slides");
+    if (settings.edges != PlateEdges{}) lines.push_back("edges other than clamped, the paper's are clamped");
+    if (settings.foundation != 0)
+        lines.push_back("elastic foundation of " + formatQuantity(settings.foundation, "Pa/m") +
+                        ", the paper has none: its window is felt");
+    if (settings.forceLaw != ForceLaw::paper)
+        lines.push_back(std::string("force law ") + name(settings.forceLaw) +
+                        ", the paper's is E A/h: the plate is not felt");
+    return lines;
+}
+
+} // namespace palp

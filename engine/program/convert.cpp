@@ -1,0 +1,60 @@
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/program/cloud_source.h"
+#include "engine/program/commands.h"
+
+namespace palp {
+namespace {
+
+struct ConvertOptions {
+    CloudSource source;
+    std::string target, encoding = "binary";
+    bool        json = false;
+};
+
+CloudEncoding encodingNamed(const std::string& name)
+{
+    if (name == "binary") return CloudEncoding::binaryLittleEndian;
+    if (name == "binary-big-endian") return CloudEncoding::binaryBigEndian;
+    if (name == "ascii") return CloudEncoding::ascii;
+    throw Error("--encoding: unknown encoding \"" + name + "\"; known: binary, binary-big-endian, ascii");
+}
+
+void convert(const ConvertOptions& options)
+{
+    const CloudWriteSettings settings{encodingNamed(options.encoding)};
+    const LoadedCloud        loaded = options.source.load();
+    writeCloud(options.target, loaded.cloud, {}, settings);
+    if (options.json) {
+        nlohmann::json report = cloudJson(options.source, loaded);
+        report["written"]     = options.target;
+        std::cout << report.dump(2) << "\n";
+    } else {
+        std::cout << options.target << ": " << loaded.cloud.size() << " points, metres, stiffness in "
+                  << unitOf(loaded.cloud.kind()) << " (" << loaded.report.stiffnessSource << ")\n";
+    }
+}
+
+} // namespace
+
+void addConvertCommand(CLI::App& app)
+{
+    CLI::App* command = app.add_subcommand("convert", "reads a cloud and writes it in metres, with its stiffness");
+    const auto options = std::make_shared<ConvertOptions>();
+    options->source.addTo(*command);
+    command->add_option("TARGET", options->target, "a .ply, .pcd, .xyz, .txt or .csv file")->required();
+    command->add_option("--encoding", options->encoding, "of PLY and PCD: binary, binary-big-endian, ascii")
+        ->capture_default_str();
+    command->add_flag("--json", options->json, "machine-readable report");
+    command->footer("Examples:\n"
+                    "  palpate convert sample:ear-lobe lobe.ply\n"
+                    "  palpate convert scan.pcd scan.ply --unit mm --stiffness-property intensity --range 20kPa,2MPa\n"
+                    "  palpate convert scan.ply ramp.csv --stiffness linear:from=2e4,to=2e6,axis=z");
+    command->callback([options] { convert(*options); });
+}
+
+} // namespace palp

@@ -1,0 +1,84 @@
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/cloud/neighbour_index.h"
+#include "engine/core/quantity.h"
+#include "engine/program/cloud_source.h"
+#include "engine/program/commands.h"
+
+namespace palp {
+namespace {
+
+struct InfoOptions {
+    CloudSource source;
+    bool        json = false;
+};
+
+std::string span3(const nlohmann::json& low, const nlohmann::json& high)
+{
+    std::string text;
+    for (int k = 0; k < 3; ++k)
+        text += std::string(k ? ", " : "") + "xyz"[k] + " " + formatQuantity(low[std::size_t(k)], "m") + " to " +
+                formatQuantity(high[std::size_t(k)], "m");
+    return text;
+}
+
+void printInfo(const InfoOptions& options)
+{
+    const LoadedCloud    loaded = options.source.load();
+    const NeighbourIndex index(loaded.cloud.positions());
+    nlohmann::json       report = cloudJson(options.source, loaded);
+    report["point_spacing"]     = index.spacing();
+    if (options.json) {
+        std::cout << report.dump(2) << "\n";
+        return;
+    }
+    const std::string unit = report["stiffness_unit"] == "Pa" ? "Pa" : "N m";
+    std::string       properties;
+    for (const std::string& property : loaded.report.properties) properties += (properties.empty() ? "" : ", ") + property;
+    std::cout << options.source.name << ": " << loaded.report.format << ", " << loaded.cloud.size() << " points";
+    if (loaded.report.droppedPoints) std::cout << " (" << loaded.report.droppedPoints << " dropped: NaN or infinity)";
+    std::cout << "\n  extent      " << span3(report["low"], report["high"]) << "\n  length unit "
+              << loaded.report.lengthUnitSource << "\n  spacing     " << formatQuantity(index.spacing(), "m")
+              << " between points, " << loaded.report.duplicatePositions << " exact duplicates\n  stiffness   "
+              << formatQuantity(report["stiffness_min"], unit) << " to " << formatQuantity(report["stiffness_max"], unit)
+              << ": " << loaded.report.stiffnessSource << "\n";
+    if (!properties.empty()) std::cout << "  properties  " << properties << "\n";
+}
+
+void printSamples(bool json)
+{
+    nlohmann::json list = nlohmann::json::array();
+    for (const Sample& sample : samples()) {
+        list.push_back({{"name", sample.name}, {"description", sample.description}, {"points", sample.points}});
+        if (!json) std::printf("sample:%-11s %s\n", sample.name.data(), sample.description.data());
+    }
+    if (json) std::cout << list.dump(2) << "\n";
+}
+
+} // namespace
+
+void addInfoCommand(CLI::App& app)
+{
+    CLI::App* command = app.add_subcommand("info", "what a cloud holds and how it is understood");
+    const auto options = std::make_shared<InfoOptions>();
+    options->source.addTo(*command);
+    command->get_option("CLOUD")->required(false);
+    const auto list = std::make_shared<bool>(false);
+    command->add_flag("--samples", *list, "lists the procedural samples");
+    command->add_flag("--json", options->json, "machine-readable");
+    command->footer("Examples:\n"
+                    "  palpate info scan.ply --unit mm\n"
+                    "  palpate info painted.ply --stiffness-property quality --range 20kPa,2MPa\n"
+                    "  palpate info --samples");
+    command->callback([options, list] {
+        if (*list) return printSamples(options->json);
+        if (options->source.name.empty()) throw CLI::RequiredError("CLOUD");
+        printInfo(*options);
+    });
+}
+
+} // namespace palp

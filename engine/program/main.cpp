@@ -1,1 +1,53 @@
-int main() {}
+// palpate: the command line. Exit codes: 0 good, 1 a fault of ours, 2 bad usage or input.
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include "engine/core/contract.h"
+#include "engine/program/commands.h"
+
+namespace {
+
+constexpr int kBadInput = 2;
+constexpr int kOurFault = 1;
+
+int complain(const std::string& sentence, int code)
+{
+    std::cout.flush();
+    std::cerr << "palpate: " << sentence << "\n";
+    return code;
+}
+
+} // namespace
+
+int main(int argumentCount, char** arguments)
+{
+    CLI::App app("Palpate: feel a thin, soft object whose stiffness varies from place to place.");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "palpate " PALPATE_VERSION);
+    app.footer("Examples:\n"
+               "  palpate touch sample:skin --out touch          a poke into a wart, with pictures\n"
+               "  palpate info scan.ply --unit mm                what a file holds and how it is understood\n"
+               "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
+               "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
+               "Each command explains itself with --help.");
+    palp::addTouchCommand(app);
+    palp::addSolveCommand(app);
+    palp::addInfoCommand(app);
+    palp::addConvertCommand(app);
+    try {
+        app.parse(argumentCount, arguments);
+        std::cout.flush();
+        if (!std::cout) return complain("standard output cannot be written", kBadInput);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : kBadInput;
+    } catch (const palp::Error& error) {
+        return complain(error.what(), kBadInput);
+    } catch (const std::bad_alloc&) {
+        return complain("out of memory; try fewer cells or points", kBadInput);
+    } catch (const std::exception& error) {
+        return complain(std::string("internal error, please report it: ") + error.what(), kOurFault);
+    }
+    return 0;
+}

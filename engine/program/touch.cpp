@@ -1,0 +1,235 @@
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/file.h"
+#include "engine/core/npy.h"
+#include "engine/core/quantity.h"
+#include "engine/program/cloud_source.h"
+#include "engine/program/commands.h"
+#include "engine/program/patch_json.h"
+#include "engine/program/touch_pictures.h"
+
+namespace palp {
+namespace {
+
+struct TouchOptions {
+    CloudSource source;
+    std::string at, from, force = "0.5N", preset = "palpate";
+    std::string map, sampling, edges, forceLaw, foundation, thickness, poisson, window, footprint; // empty: the preset's
+    int         cells = 0; ///< 0: the default
+    std::string out;
+    bool        json = false;
+};
+
+/// The value of an option with a fixed set of names, or a sentence that lists them.
+template <class T>
+T named(const std::optional<T>& value, const std::string& option, const std::string& text, const char* known)
+{
+    if (value) return *value;
+    throw Error(option + ": unknown name \"" + text + "\"; known: " + known);
+}
+
+double positive(const std::string& text, Dimension dimension, const std::string& option)
+{
+    const double value = parseQuantity(text, dimension, option);
+    if (!(value > 0)) throw Error(option + ": expected a value above zero, found \"" + text + "\"");
+    return value;
+}
+
+Edge edgeNamed(const std::string& text)
+{
+    for (Edge edge : {Edge::clamped, Edge::supported, Edge::free})
+        if (name(edge) == text) return edge;
+    throw Error("--edges: unknown edge \"" + text + "\"; known: clamped, supported, free");
+}
+
+/// "free", or "x0=free,z1=supported" with the others clamped.
+PlateEdges edgesOf(const std::string& text)
+{
+    if (text.find('=') == std::string::npos) {
+        const Edge all = edgeNamed(text);
+        return {all, all, all, all};
+    }
+    PlateEdges edges;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end  = std::min(text.find(',', begin), text.size());
+        const std::string part = text.substr(begin, end - begin), side = part.substr(0, 2);
+        if (part.size() < 4 || part[2] != '=' || (side != "x0" && side != "x1" && side != "z0" && side != "z1"))
+            throw Error("--edges: expected SIDE=EDGE with side x0, x1, z0 or z1, found \"" + part + "\"");
+        (side == "x0" ? edges.x0 : side == "x1" ? edges.x1 : side == "z0" ? edges.z0 : edges.z1) = edgeNamed(part.substr(3));
+        begin = end + 1;
+    }
+    return edges;
+}
+
+/// Settings in order of precedence: defaults, the sample's constants, the preset, the options.
+PatchSettings settingsOf(const TouchOptions& options)
+{
+    PatchSettings settings;
+    if (const Sample* sample = options.source.sample()) {
+        settings.material        = sample->material;
+        settings.foundation      = sample->foundation;
+        settings.window          = sample->window;
+        settings.footprintRadius = sample->footprintRadius;
+    }
+    settings = withPreset(settings, named(presetNamed(options.preset), "--preset", options.preset, "palpate, paper"));
+    if (!options.thickness.empty()) settings.material.thickness = positive(options.thickness, Dimension::length, "--thickness");
+    if (!options.poisson.empty()) settings.material.poissonRatio = parseQuantity(options.poisson, Dimension::none, "--poisson");
+    if (!options.foundation.empty()) settings.foundation = parseQuantity(options.foundation, Dimension::foundation, "--foundation");
+    if (!options.window.empty()) settings.window = positive(options.window, Dimension::length, "--window");
+    if (!options.footprint.empty()) settings.footprintRadius = positive(options.footprint, Dimension::length, "--footprint");
+    if (!options.edges.empty()) settings.edges = edgesOf(options.edges);
+    if (!options.map.empty())
+        settings.map = named(mapNamed(options.map), "--map", options.map, "lambert-azimuthal, lambert-cylindrical, gall-peters");
+    if (!options.sampling.empty())
+        settings.sampling = named(samplingNamed(options.sampling), "--sampling", options.sampling, "log-mean, nearest");
+    if (!options.forceLaw.empty())
+        settings.forceLaw = named(forceLawNamed(options.forceLaw), "--force-law", options.forceLaw, "series, paper");
+    if (options.cells) settings.cells = options.cells;
+    constexpr int kMostCells = 1024; // the reference solver's factor then takes about 4 GB
+    if (settings.cells < 8 || settings.cells > kMostCells || settings.cells % 2)
+        throw Error("--cells: expected an even number from 8 to " + std::to_string(kMostCells) + ", found " +
+                    std::to_string(settings.cells));
+    if (!(settings.material.poissonRatio > -1 && settings.material.poissonRatio <= 0.5))
+        throw Error("--poisson: expected a number above -1 and at most 0.5, found " + options.poisson);
+    if (settings.foundation < 0) throw Error("--foundation: expected at least 0, found " + options.foundation);
+    return settings;
+}
+
+Contact contactOf(const TouchOptions& options, const PointCloud& cloud, const NeighbourIndex& index, double window)
+{
+    const Sample*             sample = options.source.sample();
+    std::optional<glm::dvec3> from;
+    if (sample && options.at.empty()) from = sample->from;
+    if (!options.from.empty()) from = parsePoint(options.from, "--from");
+    if (!sample && options.at.empty())
+        throw Error("--at: expected a place x,y,z for a cloud from a file; its middle is (" +
+                    std::to_string(cloud.bounds().centre().x) + ", " + std::to_string(cloud.bounds().centre().y) + ", " +
+                    std::to_string(cloud.bounds().centre().z) + ") m");
+    const glm::dvec3 place =
+        options.at.empty() ? sample->place : parsePoint(options.at, "--at", options.source.metresPerPlainNumber());
+    return touchAt(cloud, index, place, from, window / 4);
+}
+
+void printTouch(const TouchOptions& options, const PatchSettings& settings, const nlohmann::json& r)
+{
+    const auto  quantity = [&](const char* key, const char* unit) { return formatQuantity(r[key], unit); };
+    const auto& window   = r["window"];
+    const auto& error    = r["error"];
+    std::printf("%s, preset %s, %s at (%.4g, %.4g, %.4g) m\n", options.source.name.c_str(), options.preset.c_str(),
+                formatQuantity(r["force"], "N").c_str(), r["contact"]["point"][0].get<double>(),
+                r["contact"]["point"][1].get<double>(), r["contact"]["point"][2].get<double>());
+    std::printf("  scene              thickness %s, poisson %.3g, foundation %s, footprint radius %s\n",
+                formatQuantity(settings.material.thickness, "m").c_str(), settings.material.poissonRatio,
+                formatQuantity(settings.foundation, "Pa/m").c_str(), formatQuantity(settings.footprintRadius, "m").c_str());
+    std::printf("  sphere             %s, radius %s, misfit %s\n", r["sphere"]["outcome"].get<std::string>().c_str(),
+                r["sphere"]["radius"].is_null() ? "infinite" : formatQuantity(r["sphere"]["radius"], "m").c_str(),
+                formatQuantity(r["sphere"]["misfit"], "m").c_str());
+    std::printf("  window             %s, %d x %d cells, %zu points, %zu nodes without a point nearby\n",
+                formatQuantity(settings.window, "m").c_str(), settings.cells, settings.cells,
+                window["points_near_side"].get<std::size_t>(), window["nodes_without_point"].get<std::size_t>());
+    std::printf("  rigidity           %s at the contact, %s to %s in the window\n", quantity("rigidity_at_contact", "N m").c_str(),
+                formatQuantity(window["rigidity_min"], "N m").c_str(), formatQuantity(window["rigidity_max"], "N m").c_str());
+    std::printf("  deflection         %s at the contact, %s at most\n", quantity("deflection_at_contact", "m").c_str(),
+                quantity("max_deflection", "m").c_str());
+    std::printf("  compliance         %s\n", quantity("compliance", "m/N").c_str());
+    std::printf("  contact stiffness  %s\n", quantity("contact_stiffness", "N/m").c_str());
+    std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(), name(settings.forceLaw));
+    std::printf("  error              discretisation %s, rounding %.1e\n",
+                error["discretisation"].is_null() ? "unknown"
+                                                  : (formatQuantity(100 * error["discretisation"].get<double>(), "") + "%").c_str(),
+                error["solver"].get<double>());
+    std::printf("  time               %.1f ms:", r["milliseconds"]["total"].get<double>());
+    for (const char* stage : {"gather", "fit", "project", "resample", "factorise", "solve", "lift"})
+        std::printf(" %s %.2f", stage, r["milliseconds"][stage].get<double>());
+    std::printf("\n");
+    for (const std::string& line : differencesFromPaper(settings)) std::printf("  unlike the paper   %s\n", line.c_str());
+    for (const auto& line : r["warnings"]) std::printf("  warning            %s\n", line.get<std::string>().c_str());
+    if (r.contains("files"))
+        for (const auto& file : r["files"]) std::printf("  wrote              %s\n", (options.out + "/" + file.get<std::string>()).c_str());
+}
+
+/// The deformed cloud, the grids and the pictures.
+std::vector<std::string> writeFiles(const TouchOptions& options, const PointCloud& cloud, const Patch& patch,
+                                    const PatchSettings& settings, double force)
+{
+    const std::filesystem::path folder = options.out;
+    makeFolder(folder);
+    const std::vector<double> deflection = deflections(cloud, patch, force);
+    const std::span<const double> stiffness = cloud.stiffness();
+    const PointCloud          bent(displaced(cloud, patch, force), {stiffness.begin(), stiffness.end()}, cloud.kind());
+    const NamedField          field{"deflection", "m", deflection};
+    writeCloud(folder / "deformed.ply", bent, {&field, 1});
+
+    NodeField w = patch.response;
+    for (double& value : w.values()) value *= force;
+    writeNpy(folder / "deflection.npy", w);
+    writeNpy(folder / "rigidity.npy", patch.plate.rigidity);
+
+    std::vector<std::string> files = {"deformed.ply", "deflection.npy", "rigidity.npy"};
+    for (std::string& picture : writeTouchPictures(folder, cloud, patch, settings, force)) files.push_back(std::move(picture));
+    return files;
+}
+
+void touch(const TouchOptions& options)
+{
+    const PatchSettings  settings = settingsOf(options);
+    const double         force    = parseQuantity(options.force, Dimension::force, "--force");
+    const LoadedCloud    loaded   = options.source.load();
+    const NeighbourIndex index(loaded.cloud.positions());
+    const Contact        contact = contactOf(options, loaded.cloud, index, settings.window);
+    const Patch          patch   = deform(loaded.cloud, index, contact, settings);
+    if (!patch.deformed())
+        throw Error("touch: the " + std::to_string(patch.gathered.size()) + " points around the contact do not determine a "
+                    "surface (" + name(patch.sphere.outcome) + "); try a larger --window, or check --unit");
+
+    nlohmann::json report = patchJson(patch, settings, force);
+    report["cloud"]       = cloudJson(options.source, loaded);
+    report["preset"]      = options.preset;
+    if (!options.out.empty()) {
+        std::vector<std::string> files = writeFiles(options, loaded.cloud, patch, settings, force);
+        files.emplace_back("touch.json");
+        report["files"] = files;
+        writeFileWhole(std::filesystem::path(options.out) / "touch.json",
+                       [&](std::ostream& file) { file << report.dump(2) << "\n"; });
+    }
+    if (options.json) std::cout << report.dump(2) << "\n";
+    else printTouch(options, settings, report);
+}
+
+} // namespace
+
+void addTouchCommand(CLI::App& app)
+{
+    CLI::App*  command = app.add_subcommand("touch", "presses a scripted finger on a cloud: how far it gives, how it feels");
+    const auto o       = std::make_shared<TouchOptions>();
+    o->source.addTo(*command);
+    command->add_option("--at", o->at, "place X,Y,Z, in the unit of --unit or with units, such as 10mm,0,35mm");
+    command->add_option("--from", o->from, "direction X,Y,Z from which the finger comes (else from outside)");
+    command->add_option("--force", o->force, "that presses, such as 0.5N")->capture_default_str();
+    command->add_option("--preset", o->preset, "palpate, or paper: as Kumari and Chaudhuri published it")->capture_default_str();
+    command->add_option("--thickness", o->thickness, "of the sheet, such as 4mm");
+    command->add_option("--poisson", o->poisson, "Poisson's ratio");
+    command->add_option("--foundation", o->foundation, "stiffness of what lies below, such as 1.74MPa/m; 0 is nothing");
+    command->add_option("--window", o->window, "edge of the square that bends, such as 40mm");
+    command->add_option("--cells", o->cells, "of the grid along the window's edge, even (default 64)");
+    command->add_option("--footprint", o->footprint, "radius of the fingertip, such as 4mm");
+    command->add_option("--map", o->map, "lambert-azimuthal, lambert-cylindrical or gall-peters");
+    command->add_option("--sampling", o->sampling, "rigidity of a node: log-mean or nearest");
+    command->add_option("--edges", o->edges, "of the window: clamped, supported, free, or such as x0=free,z1=supported");
+    command->add_option("--force-law", o->forceLaw, "series (plate and contact) or paper (contact alone)");
+    command->add_option("--out", o->out, "folder for the deformed cloud, grids, pictures and touch.json");
+    command->add_flag("--json", o->json, "machine-readable, SI units");
+    command->footer("Examples:\n"
+                    "  palpate touch sample:skin --out touch\n"
+                    "  palpate touch sample:ellipsoid --at 30mm,0,30mm --force 0.3N --preset paper --json\n"
+                    "  palpate touch scan.ply --unit mm --at 12,0,30 --uniform 300kPa --thickness 3mm --window 30mm");
+    command->callback([o] { touch(*o); });
+}
+
+} // namespace palp

@@ -1,0 +1,145 @@
+#include "engine/chart/resample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace palp {
+namespace {
+
+struct Scatter {
+    std::vector<ChartPoint> positions;
+    std::vector<double>     rigidities;
+    double                  spacing; ///< [m]
+};
+
+/// Random points over a square somewhat larger than the window.
+template <class Rigidity>
+Scatter scatter(double size, std::size_t points, unsigned seed, Rigidity rigidity)
+{
+    std::mt19937_64                        bits(seed);
+    std::uniform_real_distribution<double> place(-0.6 * size, 0.6 * size);
+    Scatter                                s{{}, {}, 1.2 * size / std::sqrt(double(points))};
+    for (std::size_t n = 0; n < points; ++n) {
+        s.positions.push_back({place(bits), place(bits)});
+        s.rigidities.push_back(rigidity(s.positions.back()));
+    }
+    return s;
+}
+
+ChartPoint nodeOf(const Window& window, int i, int j)
+{
+    return {window.corner.x + i * window.grid.spacingX, window.corner.z + j * window.grid.spacingZ};
+}
+
+TEST(Resample, ContactIsTheMiddleNode)
+{
+    const Window     window = Window::square(0.03, 48);
+    const ChartPoint middle = nodeOf(window, 24, 24);
+    EXPECT_NEAR(middle.x, 0, 1e-17) << "rounding of 0.03 / 48 * 24";
+    EXPECT_NEAR(middle.z, 0, 1e-17);
+    EXPECT_THROW((void)Window::square(0.03, 47), ContractViolation);
+}
+
+TEST(Resample, HomogeneousCloudGivesTheSameRigidityEverywhereUnderBothRules)
+{
+    const Window  window = Window::square(0.03, 48);
+    const Scatter s      = scatter(0.03, 900, 1, [](const ChartPoint&) { return 2.7e-3; });
+    for (Sampling rule : {Sampling::logMean, Sampling::nearest}) {
+        const Resampled r = resampleRigidity(window, s.positions, s.rigidities, rule, s.spacing);
+        for (double d : r.rigidity.values()) EXPECT_NEAR(d / 2.7e-3, 1, 1e-13) << "exp and log of one number, ln D ~ 6";
+    }
+}
+
+TEST(Resample, NearestTakesTheValueOfTheNearestPoint)
+{
+    const Window    window = Window::square(1, 10);
+    const Scatter   s      = scatter(1, 57, 2, [](const ChartPoint& p) { return 2 + p.x + p.z * p.z; });
+    const Resampled r      = resampleRigidity(window, s.positions, s.rigidities, Sampling::nearest, s.spacing);
+    for (int i = 0; i <= 10; ++i)
+        for (int j = 0; j <= 10; ++j) {
+            const ChartPoint node = nodeOf(window, i, j);
+            std::size_t      best = 0;
+            for (std::size_t n = 1; n < s.positions.size(); ++n)
+                if (std::hypot(s.positions[n].x - node.x, s.positions[n].z - node.z) <
+                    std::hypot(s.positions[best].x - node.x, s.positions[best].z - node.z))
+                    best = n;
+            EXPECT_EQ(r.rigidity(i, j), s.rigidities[best]);
+        }
+}
+
+/// The formula of the docstring, summed node by node instead of point by point.
+TEST(Resample, LogMeanIsTheGaussianMeanOfTheLogarithm)
+{
+    const Window    window = Window::square(1, 12);
+    const Scatter   s      = scatter(1, 400, 3, [](const ChartPoint& p) { return p.x > 0.1 ? 50.0 : 0.5; });
+    const Resampled r      = resampleRigidity(window, s.positions, s.rigidities, Sampling::logMean, s.spacing);
+    const double    width  = std::max(s.spacing, 0.5 / 12);
+    for (int i = 0; i <= 12; ++i)
+        for (int j = 0; j <= 12; ++j) {
+            const ChartPoint node = nodeOf(window, i, j);
+            double           weights = 0, logs = 0;
+            for (std::size_t n = 0; n < s.positions.size(); ++n) {
+                const double dx = s.positions[n].x - node.x, dz = s.positions[n].z - node.z;
+                if (std::max(std::abs(dx), std::abs(dz)) > 4 * width) continue;
+                const double w = std::exp(-(dx * dx + dz * dz) / (2 * width * width));
+                weights += w;
+                logs += w * std::log(s.rigidities[n]);
+            }
+            EXPECT_NEAR(r.rigidity(i, j) / std::exp(logs / weights), 1, 1e-12) << "another order of the same sum";
+        }
+}
+
+/// Why the kernel is the default: move the window over the same points and watch one place of the object.
+TEST(Resample, LogMeanJittersLessThanNearestWhileTheGridSlides)
+{
+    const Scatter s      = scatter(1, 2000, 4, [](const ChartPoint& p) { return std::exp(2.3 * std::tanh(8 * p.x)); });
+    const auto    jitter = [&](Sampling rule) {
+        double largest = 0, last = 0;
+        for (int step = 0; step <= 40; ++step) {
+            Window window   = Window::square(0.8, 24);
+            window.corner.z += 1e-3 * step; // along the level lines of D: the object itself stays the same
+            const double d = resampleRigidity(window, s.positions, s.rigidities, rule, s.spacing).rigidity(14, 12);
+            if (step) largest = std::max(largest, std::abs(std::log(d / last)));
+            last = d;
+        }
+        return largest;
+    };
+    EXPECT_LT(jitter(Sampling::logMean), 0.02) << "a kernel of one spacing is smooth: 1 mm of 27 changes little";
+    EXPECT_GT(jitter(Sampling::nearest), 0.05) << "else the fixture has no step to feel";
+}
+
+TEST(Resample, HolesAndBordersAreCountedAndFilledFromTheNearestPoint)
+{
+    const Window window = Window::square(1, 20);
+    const auto   law    = [](const ChartPoint& p) { return p.x < 0 ? 1.0 : 2.0; };
+    Scatter      s      = scatter(1, 3000, 5, law);
+    const auto   count  = [&] {
+        return resampleRigidity(window, s.positions, s.rigidities, Sampling::logMean, s.spacing).nodesWithoutPoint;
+    };
+    EXPECT_EQ(count(), 0u) << "the cloud covers the window";
+
+    const auto removeWhere = [&](auto inside) {
+        Scatter kept{{}, {}, s.spacing};
+        for (std::size_t n = 0; n < s.positions.size(); ++n)
+            if (!inside(s.positions[n])) {
+                kept.positions.push_back(s.positions[n]);
+                kept.rigidities.push_back(s.rigidities[n]);
+            }
+        s = kept;
+    };
+    removeWhere([](const ChartPoint& p) { return std::hypot(p.x + 0.2, p.z) < 0.15; });
+    const std::size_t hole = count();
+    EXPECT_GT(hole, 5u);
+    EXPECT_LT(hole, 29u) << "29 nodes lie within 0.15 of the hole's middle";
+
+    removeWhere([](const ChartPoint& p) { return p.x > 0.2; });
+    const Resampled r = resampleRigidity(window, s.positions, s.rigidities, Sampling::logMean, s.spacing);
+    EXPECT_GT(r.nodesWithoutPoint, hole + 20 * 4) << "at least four rows of 21 nodes lie beyond the border";
+    EXPECT_NEAR(r.rigidity(20, 10), 2, 1e-12) << "filled from the border, where D is 2";
+}
+
+} // namespace
+} // namespace palp

@@ -1,0 +1,53 @@
+#include "engine/core/quantity.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+TEST(Quantity, UnitsScaleToSi)
+{
+    EXPECT_DOUBLE_EQ(parseQuantity("4mm", Dimension::length, "x"), 4e-3);
+    EXPECT_DOUBLE_EQ(parseQuantity(" 1.5 N ", Dimension::force, "x"), 1.5);
+    EXPECT_DOUBLE_EQ(parseQuantity("0.3MPa", Dimension::pressure, "x"), 0.3e6);
+    EXPECT_DOUBLE_EQ(parseQuantity("+2e-3", Dimension::rigidity, "x"), 2e-3);
+    EXPECT_DOUBLE_EQ(parseQuantity("1.74MPa/m", Dimension::foundation, "x"), 1.74e6);
+    EXPECT_DOUBLE_EQ(metresPer("in"), 0.0254);
+}
+
+TEST(Quantity, AnythingElseIsRefusedWithTheKnownUnits)
+{
+    for (const char* text : {"", "mm", "nan", "inf", "1e999", "4 parsec", "4mmm", "0x10", "4,5"})
+        EXPECT_THROW((void)parseQuantity(text, Dimension::length, "--window"), Error) << text;
+    try {
+        (void)parseQuantity("4 parsec", Dimension::length, "--window");
+        FAIL() << "an unknown unit was accepted";
+    } catch (const Error& error) {
+        const std::string message = error.what();
+        for (const char* part : {"--window", "parsec", "mm", "km"})
+            EXPECT_NE(message.find(part), std::string::npos) << message;
+    }
+}
+
+TEST(Quantity, PointComponentsMayCarryUnits)
+{
+    const glm::dvec3 point = parsePoint("10,0.02m,-3cm", "--at", 1e-3);
+    EXPECT_DOUBLE_EQ(point.x, 10e-3);
+    EXPECT_DOUBLE_EQ(point.y, 0.02);
+    EXPECT_DOUBLE_EQ(point.z, -0.03);
+    for (const char* text : {"1,2", "1,2,3,4", "1,,3", "a,b,c", ""}) EXPECT_THROW((void)parsePoint(text, "--at"), Error) << text;
+}
+
+TEST(Quantity, PeopleReadThreeDigitsAndAPrefix)
+{
+    EXPECT_EQ(formatQuantity(0.0042, "m"), "4.20 mm");
+    EXPECT_EQ(formatQuantity(1.74e6, "Pa/m"), "1.74 MPa/m");
+    EXPECT_EQ(formatQuantity(0, "N"), "0.00 N");
+    EXPECT_EQ(formatQuantity(-35e-6, "m"), "-35.0 um");
+    EXPECT_EQ(formatQuantity(999.96, "N"), "1.00 kN");
+}
+
+} // namespace
+} // namespace palp

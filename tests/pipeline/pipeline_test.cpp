@@ -1,0 +1,245 @@
+#include "engine/pipeline/pipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "engine/cloud/samples.h"
+#include "engine/core/contract.h"
+#include "engine/plate/load.h"
+
+namespace palp {
+namespace {
+
+struct Object {
+    explicit Object(PointCloud points) : cloud(std::move(points)), index(cloud.positions()) {}
+
+    [[nodiscard]] Patch touch(const glm::dvec3& place, const glm::dvec3& from, const PatchSettings& settings) const
+    {
+        return deform(cloud, index, touchAt(cloud, index, place, from, 10e-3), settings);
+    }
+
+    PointCloud     cloud;
+    NeighbourIndex index;
+};
+
+Object homogeneous(const char* name, unsigned seed)
+{
+    const SpatialLaw constant{.kind = SpatialLaw::Kind::constant, .from = 1e6};
+    return Object(makeSample(sampleNamed(name), 20'000, seed, constant));
+}
+
+/// A bowl seen from inside: radius of curvature 80 mm, noise of 0.1 mm along the normal.
+Object noisyBowl(unsigned seed)
+{
+    std::mt19937_64                        bits(seed);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    std::normal_distribution<double>       noise(0, 1e-4);
+    std::vector<glm::dvec3>                points;
+    while (points.size() < 15'000) {
+        const glm::dvec3 d = glm::normalize(glm::dvec3(0.7 * unit(bits), 0.7 * unit(bits), -1));
+        points.push_back((80e-3 + noise(bits)) * d);
+    }
+    return Object(PointCloud(points, std::vector<double>(points.size(), 1e6), StiffnessKind::modulus));
+}
+
+const PatchSettings kCoarse{.window = 24e-3, .cells = 32, .footprintRadius = 3e-3};
+
+/// The floor of every perception measurement: on a homogeneous object nothing that sets compliance comes from points.
+TEST(Pipeline, ComplianceIsConstantAlongAPathOnHomogeneousObjects)
+{
+    struct Path {
+        Object     object;
+        glm::dvec3 start, step, from;
+    };
+    const Path paths[] = {{homogeneous("ellipsoid", 1), {-10e-3, 3e-3, 35e-3}, {2e-3, 0, 0}, {0, 0, 1}},
+                          {homogeneous("sheet", 2), {-10e-3, 3e-3, 0}, {2e-3, 0, 0}, {0, 0, 1}},
+                          {noisyBowl(3), {-10e-3, 3e-3, -79e-3}, {2e-3, 0, 0}, {0, 0, 1}}};
+    for (Preset preset : {Preset::palpate, Preset::paper})
+        for (const Path& path : paths) {
+            std::vector<double> compliances;
+            for (int n = 0; n <= 10; ++n) {
+                const Patch patch = path.object.touch(path.start + double(n) * path.step, path.from, withPreset(kCoarse, preset));
+                ASSERT_TRUE(patch.deformed());
+                compliances.push_back(patch.compliance);
+            }
+            const auto [least, most] = std::minmax_element(compliances.begin(), compliances.end());
+            EXPECT_LT(*most / *least - 1, 1e-6) << "exact up to the rounding of the factorisation, preset " << name(preset);
+        }
+}
+
+/// Square plate, clamped, point load: w = 0.0056 F a^2/D at the load (Timoshenko); a footprint of finite radius a little less.
+TEST(Pipeline, ComplianceOfAFlatSheetIsThatOfAClampedPlate)
+{
+    const Object        sheet    = homogeneous("sheet", 4);
+    const PatchSettings settings{.window = 40e-3, .cells = 64, .footprintRadius = 1.3e-3};
+    const Patch         patch    = sheet.touch({0, 0, 0}, {0, 0, 1}, settings);
+    const double        rigidity = settings.material.rigidity(1e6);
+
+    EXPECT_EQ(patch.sphere.outcome, FitOutcome::plane);
+    EXPECT_NEAR(patch.plate.rigidity(32, 32) / rigidity, 1, 1e-12);
+    // 1/178.19 is the exact factor of a point load. The footprint's second moment is R^2/8 = (0.011 a)^2, and
+    // w falls as r^2 ln r: the loss is (R^2/8)/(8 pi) ln(a/R) / (a^2/178) ~ 1 %. The grid adds 0.4 % at 64 cells.
+    EXPECT_NEAR(patch.compliance * rigidity / (40e-3 * 40e-3) * 178.19, 1, 0.03);
+    EXPECT_LT(patch.compliance * rigidity / (40e-3 * 40e-3) * 178.19, 1.005) << "a footprint gives less than a point";
+}
+
+TEST(Pipeline, TheFootprintCarriesExactlyOneNewtonInTheMiddle)
+{
+    const Window     window = Window::square(24e-3, 32);
+    const NodeField  load   = footprintLoad(window.grid, 1, 12e-3, 12e-3, 3e-3);
+    double           sum    = 0;
+    for (double f : load.values()) sum += f;
+    EXPECT_NEAR(sum, 1, 1e-14) << "a sum of some hundred terms";
+    EXPECT_GT(load(16, 16), 0);
+}
+
+/// What the paper's figure 4 shows.
+TEST(Pipeline, DeflectionFallsWhereRigidityRises)
+{
+    for (SpatialLaw::Kind kind : {SpatialLaw::Kind::linear, SpatialLaw::Kind::hyperbolic}) {
+        const SpatialLaw law{.kind = kind, .from = 0.3e6, .to = 3e6, .start = {-60e-3, 0, 0}, .end = {60e-3, 0, 0}};
+        const Object     ellipsoid(makeSample(sampleNamed("ellipsoid"), 40'000, 5, law));
+        for (Preset preset : {Preset::palpate, Preset::paper}) {
+            double last = 1e9;
+            for (double x : {-40e-3, -20e-3, 0.0, 20e-3, 40e-3}) {
+                const glm::dvec3 place{x, 0, 35e-3 * std::sqrt(1 - x * x / (60e-3 * 60e-3))};
+                const Patch      patch = ellipsoid.touch(place, {0, 0, 1}, withPreset({.window = 30e-3, .cells = 48}, preset));
+                EXPECT_LT(patch.compliance, 0.9 * last) << "rigidity rises by at least a third from place to place, x = " << x;
+                last = patch.compliance;
+            }
+        }
+    }
+}
+
+TEST(Pipeline, PointsMoveIntoTheSurfaceByTheFieldAndOnlyInTheWindow)
+{
+    const Object ellipsoid = homogeneous("ellipsoid", 6);
+    const Patch  patch     = ellipsoid.touch({0, 0, 35e-3}, {0, 0, 1}, kCoarse);
+    const auto   moved     = displaced(ellipsoid.cloud, patch, 0.5);
+    const auto   depth     = deflections(ellipsoid.cloud, patch, 0.5);
+
+    std::size_t dented = 0;
+    double      deepest = 0;
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+        const glm::dvec3 move = moved[i] - ellipsoid.cloud.positions()[i];
+        EXPECT_NEAR(glm::dot(move, patch.forceDirection()), depth[i], 1e-15) << "rounding of 35 mm";
+        EXPECT_NEAR(glm::length(glm::cross(move, patch.forceDirection())), 0, 1e-15);
+        dented += depth[i] != 0;
+        deepest = std::max(deepest, depth[i]);
+        if (glm::length(ellipsoid.cloud.positions()[i] - patch.contact.point) > 0.75 * kCoarse.window) {
+            EXPECT_EQ(depth[i], 0) << "outside the window";
+        }
+    }
+    EXPECT_GT(patch.forceDirection().z, -1.01);
+    EXPECT_LT(patch.forceDirection().z, -0.99) << "down, at the top of the ellipsoid";
+    EXPECT_GT(dented, 300u);
+    EXPECT_NEAR(deepest / (0.5 * patch.response(16, 16)), 1, 0.03) << "the nearest point is a fraction of a spacing off";
+}
+
+TEST(Pipeline, ABowlIsPushedAwayFromTheHand)
+{
+    const Object bowl  = noisyBowl(7);
+    const Patch  patch = bowl.touch({0, 0, -79e-3}, {0, 0, 1}, kCoarse);
+    EXPECT_LT(patch.chart.curvature, 0) << "hollow towards the hand";
+    EXPECT_NEAR(1 / patch.chart.curvature, -80e-3, 2e-3) << "noise of 0.1 mm on a cap of 17 mm half width";
+    EXPECT_LT(patch.forceDirection().z, -0.99);
+}
+
+/// Under the finger Gall-Peters stretches by sqrt2: 36 % less deep on the 10-degree cap of an independent solution.
+TEST(Pipeline, PaperPresetDentsAShallowerElongatedPit)
+{
+    const Object ellipsoid = homogeneous("hemisphere", 8);
+    const Patch  ours      = ellipsoid.touch({0, 0, 50e-3}, {0, 0, 1}, withPreset(kCoarse, Preset::palpate));
+    const Patch  paper     = ellipsoid.touch({0, 0, 50e-3}, {0, 0, 1}, withPreset(kCoarse, Preset::paper));
+    EXPECT_NEAR(paper.compliance / ours.compliance, 1, 1e-9) << "the same plate in the chart, but on the object ...";
+
+    const auto halfWidth = [&](const Patch& patch, const glm::dvec3& along) {
+        double widest = 0;
+        for (std::size_t n = 0; n < patch.points.size(); ++n)
+            if (patch.pointResponse[n] > 0.5 * patch.response(16, 16)) {
+                const glm::dvec3 d = ellipsoid.cloud.positions()[patch.points[n]] - patch.chart.origin;
+                widest             = std::max(widest, std::abs(glm::dot(d, along)));
+            }
+        return widest;
+    };
+    EXPECT_NEAR(halfWidth(ours, ours.chart.frame.east) / halfWidth(ours, ours.chart.frame.north), 1, 0.1) << "point spacing 0.8 of 5 mm";
+    EXPECT_NEAR(halfWidth(paper, paper.chart.frame.east) / halfWidth(paper, paper.chart.frame.north), 2, 0.3)
+        << "sqrt2 one way and 1/sqrt2 the other, in the limit of small patches";
+}
+
+TEST(Pipeline, BordersAreReportedAndBend)
+{
+    const Object sheet = homogeneous("sheet", 9);
+    const Patch  patch = sheet.touch({74e-3, 0, 0}, {0, 0, 1}, kCoarse);
+    ASSERT_TRUE(patch.deformed());
+    EXPECT_GT(patch.nodesWithoutPoint, 300u) << "almost half of 33 x 33 nodes lie beyond the border";
+    const auto sentences = warnings(patch, kCoarse, 0.1);
+    EXPECT_TRUE(std::any_of(sentences.begin(), sentences.end(),
+                            [](const std::string& s) { return s.find("no point nearby") != std::string::npos; }));
+}
+
+TEST(Pipeline, TwoThinSheetsBendTogether)
+{
+    const Sample& sample = sampleNamed("ear-lobe");
+    const Object  lobe(makeSample(sample, sample.points, 1));
+    PatchSettings settings{.material = sample.material, .window = sample.window, .cells = 32, .footprintRadius = sample.footprintRadius};
+    const Patch   patch = lobe.touch(sample.place, sample.from, settings);
+    ASSERT_TRUE(patch.deformed());
+    std::size_t front = 0, back = 0;
+    for (std::size_t n = 0; n < patch.points.size(); ++n)
+        if (patch.pointResponse[n] > 0.5 * patch.response(16, 16)) ++(lobe.cloud.positions()[patch.points[n]].z > 0 ? front : back);
+    EXPECT_GT(front, 100u);
+    EXPECT_GT(back, 100u) << "a lobe is thin: both skins move";
+}
+
+TEST(Pipeline, WhatIsNoSurfaceIsAnOutcomeAndNotACrash)
+{
+    std::vector<glm::dvec3> line;
+    for (int n = 0; n < 100; ++n) line.push_back({n * 1e-4, 0, 0});
+    const Object wire(PointCloud(line, std::vector<double>(100, 1e6), StiffnessKind::modulus));
+    const Patch  patch = wire.touch({5e-3, 0, 0}, {0, 0, 1}, kCoarse);
+    EXPECT_FALSE(patch.deformed());
+    EXPECT_EQ(displaced(wire.cloud, patch, 1)[3], line[3]);
+
+    EXPECT_THROW((void)wire.touch({1, 0, 0}, {0, 0, 1}, kCoarse), Error) << "a contact far from the cloud";
+}
+
+TEST(Pipeline, DiscretisationErrorBoundsTheTrueErrorWithinAFactorOfThree)
+{
+    const Object  skin(makeSample(sampleNamed("skin"), 40'000, 1));
+    PatchSettings settings{.foundation = 1.74e6, .window = 70e-3, .footprintRadius = 3.6e-3};
+    settings.cells     = 128;
+    const Patch fine   = skin.touch({0, 0, 1.5e-3}, {0, 0, 1}, settings);
+    settings.cells     = 64;
+    const Patch coarse = skin.touch({0, 0, 1.5e-3}, {0, 0, 1}, settings);
+
+    const double truth    = std::abs(coarse.compliance / fine.compliance - 1) * 4 / 3; // Richardson, second order
+    const auto   estimate = discretisationError(coarse, settings);
+    ASSERT_TRUE(estimate.has_value());
+    EXPECT_GT(*estimate, truth / 3) << "an estimate may be off, but not by more than a factor of three";
+    EXPECT_LT(*estimate, truth * 3);
+}
+
+TEST(Pipeline, PaperPresetHasNoDifferencesAndOursNamesEachOfThem)
+{
+    const PatchSettings skin{.foundation = 1e6};
+    EXPECT_TRUE(differencesFromPaper(withPreset(skin, Preset::paper)).empty());
+    EXPECT_EQ(differencesFromPaper(withPreset(skin, Preset::palpate)).size(), 4u) << "map, sampling, foundation, force law";
+}
+
+TEST(Pipeline, DeepDentsAreCalledOutOfTheory)
+{
+    const Object sheet = homogeneous("sheet", 10);
+    const Patch  patch = sheet.touch({0, 0, 0}, {0, 0, 1}, kCoarse);
+    const double limit = 0.5 * kCoarse.material.thickness / patch.response(16, 16);
+    EXPECT_TRUE(warnings(patch, kCoarse, 0.9 * limit).empty());
+    EXPECT_EQ(warnings(patch, kCoarse, 1.1 * limit).size(), 1u);
+}
+
+} // namespace
+} // namespace palp

@@ -1,0 +1,113 @@
+#pragma once
+#include <cstddef>
+#include <exception>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include "engine/core/contract.h"
+
+namespace palp {
+
+/// Point queries over boxes, by Embree 3 or 4. Internal to the cloud layer: the only file that names Embree.
+///
+/// The boxes are primitives of one user geometry, because point queries never visit Embree's own point primitives.
+/// Embree orders its leaves by primitive number, so the tree, and with it the order of the visits, does not depend
+/// on the number of threads that built it.
+/// \thread const calls from any number of threads at once
+class BoxTree {
+public:
+    struct Box {
+        glm::vec3 low{};
+        glm::vec3 high{};
+    };
+
+    /// \throws Error if Embree does not start or runs out of memory
+    explicit BoxTree(const std::vector<Box>& boxes) : device_(rtcNewDevice("verbose=0"))
+    {
+        if (!device_) throw Error("Embree does not start (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
+        scene_.reset(rtcNewScene(device_.get()));
+        const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
+        rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(boxes.size()));
+        rtcSetGeometryUserData(geometry.get(), const_cast<Box*>(boxes.data())); // only `bounds` reads it, while committing
+        rtcSetGeometryBoundsFunction(geometry.get(), bounds, nullptr);
+        rtcCommitGeometry(geometry.get());
+        rtcAttachGeometry(scene_.get(), geometry.get());
+        rtcCommitScene(scene_.get());
+        if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
+            throw Error("Embree cannot build a tree of " + std::to_string(boxes.size()) + " boxes (error " +
+                        std::to_string(error) + "); is there enough memory?");
+    }
+
+    /// Calls visit(box number, radius) for every box within `radius` of `centre`, near ones first, and for some that
+    /// are further away. `visit` may shrink the radius.
+    template <class Visit>
+    void query(const glm::vec3& centre, float radius, Visit&& visit) const
+    {
+        RTCPointQuery query{}; // the type is declared with the 16-byte alignment that Embree demands
+        query.x      = centre.x;
+        query.y      = centre.y;
+        query.z      = centre.z;
+        query.radius = radius;
+        RTCPointQueryContext context;
+        rtcInitPointQueryContext(&context);
+        Call<std::remove_reference_t<Visit>> call{visit, {}};
+        // The function is given here and not to the geometry as well: every hit would come twice.
+        rtcPointQuery(scene_.get(), &query, &context, call.visited, &call);
+        if (call.failure) std::rethrow_exception(call.failure);
+    }
+
+private:
+    /// No exception may pass through Embree, which would swallow it: it waits here until the query has returned.
+    template <class Visit>
+    struct Call {
+        Visit&             visit;
+        std::exception_ptr failure;
+
+        static bool visited(RTCPointQueryFunctionArguments* args) noexcept
+        {
+            auto&       self   = *static_cast<Call*>(args->userPtr);
+            const float before = args->query->radius;
+            try {
+                if (!self.failure) self.visit(args->primID, args->query->radius);
+            } catch (...) {
+                self.failure = std::current_exception();
+            }
+            return args->query->radius != before;
+        }
+    };
+
+    // TBB's workers call this. ThreadSanitizer does not see how TBB hands them the boxes and would cry wolf.
+    __attribute__((no_sanitize("thread"))) static void bounds(const RTCBoundsFunctionArguments* args)
+    {
+        const Box& box         = static_cast<const Box*>(args->geometryUserPtr)[args->primID];
+        args->bounds_o->lower_x = box.low.x;
+        args->bounds_o->lower_y = box.low.y;
+        args->bounds_o->lower_z = box.low.z;
+        args->bounds_o->upper_x = box.high.x;
+        args->bounds_o->upper_y = box.high.y;
+        args->bounds_o->upper_z = box.high.z;
+    }
+
+    struct Release {
+        void operator()(RTCDevice device) const noexcept { rtcReleaseDevice(device); }
+        void operator()(RTCScene scene) const noexcept { rtcReleaseScene(scene); }
+        void operator()(RTCGeometry geometry) const noexcept { rtcReleaseGeometry(geometry); }
+    };
+    using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, Release>;
+
+    std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
+    std::unique_ptr<std::remove_pointer_t<RTCScene>, Release>  scene_;
+};
+
+} // namespace palp

@@ -1,0 +1,22 @@
+#pragma once
+#include <cstdint>
+#include <iosfwd>
+#include <span>
+#include <string>
+
+#include "engine/cloud/point_cloud_io.h"
+
+namespace palp {
+
+/// Reads a PLY file; see parseCloud. Every element is walked to the end of the file, so that a file which was cut short
+/// or has bytes too many is refused even if its points are whole. Numbers that are not used are not looked at.
+/// \source Turk 1994, "The PLY Polygon File Format"
+/// \differs an element's row in an ascii file must stand on one line, and blank lines are passed over
+[[nodiscard]] LoadedCloud parsePly(std::istream& stream, std::uint64_t size, const std::string& name,
+                                   const CloudReadSettings& settings);
+
+/// Writes a PLY file of doubles; see formatCloud. Extra fields state their unit in `comment unit NAME UNIT`.
+void formatPly(std::ostream& stream, const PointCloud& cloud, std::span<const NamedField> extraFields,
+               CloudEncoding encoding);
+
+} // namespace palp

@@ -1,0 +1,110 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/cloud/point_cloud.h"
+
+namespace palp {
+
+enum class CloudFormat {
+    ply, ///< .ply
+    pcd, ///< .pcd
+    text ///< .xyz .txt .csv
+};
+
+/// How numbers stand in a written PLY or PCD file; text files are always text.
+enum class CloudEncoding { binaryLittleEndian, binaryBigEndian, ascii };
+
+enum class RangeScale { linear, logarithmic };
+
+/// Maps a property without a physical unit (a painted quality, say) onto stiffness: the smallest value in the file
+/// becomes `from`, the largest `to`, and t = (value - smallest) / (largest - smallest) in between becomes
+/// from + t (to - from), or from (to / from)^t on the logarithmic scale. `from` may exceed `to`.
+struct StiffnessRange {
+    double     from  = 0; ///< [Pa] or [N m], > 0
+    double     to    = 0; ///< [Pa] or [N m], > 0
+    RangeScale scale = RangeScale::linear;
+};
+
+/// Young's modulus where neither the file nor the user gives a stiffness: soft skin over a palm, 4 mm thick, dents by
+/// about 2 mm at 1 N with it [Pa].
+inline constexpr double kDefaultModulus = 0.3e6;
+
+/// What the user says about a file; what is left empty is taken from the file, and else as said here.
+struct CloudReadSettings {
+    std::string lengthUnit;              ///< of the coordinates: m, mm, cm, ...; empty: the file's comment, else metres
+    std::string stiffnessProperty;       ///< empty: the first of kStiffnessProperties that the file has
+    std::optional<StiffnessRange> range; ///< empty: the property's values are already in Pa or N m
+    std::optional<StiffnessKind>  stiffnessKind; ///< empty: the file's comment, else the property's name, else modulus
+    std::optional<double>         uniformStiffness; ///< where the file has none [Pa] or [N m]; empty: kDefaultModulus
+    std::string                   columns; ///< of a text file, such as "x,y,z,-,stiffness"; empty: its header line
+    bool dropInvalid = false; ///< drops points with NaN or infinity in a used property, instead of refusing the file
+};
+
+/// The smallest and the largest value of a property as it stands in the file, in the file's unit.
+struct PropertyRange {
+    double smallest = 0;
+    double largest  = 0;
+};
+
+/// What was found in a file and how it was understood, for the user to check.
+struct CloudFileReport {
+    std::string                  format;                 ///< such as "PLY, binary little-endian"
+    std::size_t                  points             = 0; ///< in the cloud
+    std::size_t                  droppedPoints      = 0; ///< left out because of NaN or infinity
+    std::size_t                  duplicatePositions = 0; ///< points that lie exactly where an earlier one lies
+    std::vector<std::string>     properties;             ///< scalar properties of a point, in file order
+    std::string                  lengthUnitSource;       ///< such as "mm, from the file's comment"
+    std::string                  stiffnessSource;        ///< which property, its unit, and why
+    std::optional<PropertyRange> stiffnessProperty;      ///< of the values before a range; empty if uniform
+};
+
+struct LoadedCloud {
+    PointCloud      cloud;
+    CloudFileReport report;
+};
+
+/// Reads a cloud; the format is that of the file's extension.
+///
+/// PLY: ascii and both binary orders, every scalar type; other elements and lists are checked and skipped.
+/// PCD: ascii and binary; fields with COUNT > 1 are skipped. Text: one point per line, `x y z [stiffness]` or named by
+/// a header line or by `columns`. Quality, confidence and intensity never become stiffness unless the user names them.
+/// The same position may occur often, but not be the only one.
+/// \throws Error naming the file, the line or byte, what was expected and what was found
+[[nodiscard]] LoadedCloud readCloud(const std::filesystem::path& path, const CloudReadSettings& settings = {});
+
+/// As readCloud, from a stream of `size` bytes whose first byte is the file's first; `name` stands in messages.
+[[nodiscard]] LoadedCloud parseCloud(std::istream& stream, std::uint64_t size, const std::string& name,
+                                     CloudFormat format, const CloudReadSettings& settings = {});
+
+/// A value per point that is written beside the cloud.
+struct NamedField {
+    std::string             name;   ///< without white space, commas or semicolons, such as "deflection"
+    std::string             unit;   ///< such as "m"; empty if dimensionless
+    std::span<const double> values; ///< one per point, in `unit`
+};
+
+struct CloudWriteSettings {
+    CloudEncoding encoding = CloudEncoding::binaryLittleEndian; ///< of PLY and PCD
+};
+
+/// Writes a cloud, whole or not at all; the format is that of the extension. Numbers are doubles (or as many digits as
+/// bring the same double back), lengths metres, and comments state both units, so that reading gives the same cloud.
+/// Stiffness is called "stiffness" if it is a modulus and "flexural_rigidity" if it is a rigidity, because other
+/// programs drop comments.
+/// \throws Error naming the path and the reason
+void writeCloud(const std::filesystem::path& path, const PointCloud& cloud,
+                std::span<const NamedField> extraFields = {}, const CloudWriteSettings& settings = {});
+
+/// As writeCloud, to a stream; `separator` stands between the numbers of a text file.
+void formatCloud(std::ostream& stream, CloudFormat format, const PointCloud& cloud,
+                 std::span<const NamedField> extraFields = {}, const CloudWriteSettings& settings = {},
+                 char separator = ' ');
+
+} // namespace palp

@@ -1,0 +1,27 @@
+#pragma once
+#include <optional>
+
+#include <glm/vec3.hpp>
+
+#include "engine/cloud/neighbour_index.h"
+#include "engine/cloud/point_cloud.h"
+
+namespace palp {
+
+/// What the later stages need to know of a touch.
+struct Contact {
+    glm::dvec3 point{};          ///< [m] a place on the cloud
+    glm::dvec3 outward{0, 0, 1}; ///< [1] unit vector roughly from the surface to the hand; only its side counts
+};
+
+/// The touch of a scripted finger: the point of the cloud nearest to `place`.
+///
+/// \param place  [m] where the finger goes; at most `reach` from the nearest point
+/// \param from   [1] from which side the finger comes; empty: away from the middle of the cloud's bounds, which is
+///               right for closed objects, and +z where that says nothing (a flat sheet)
+/// \param reach  [m]
+/// \throws Error naming the place, the distance and the nearest point, if it is farther than `reach`
+[[nodiscard]] Contact touchAt(const PointCloud& cloud, const NeighbourIndex& index, const glm::dvec3& place,
+                              const std::optional<glm::dvec3>& from, double reach);
+
+} // namespace palp

@@ -1,0 +1,20 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "engine/picture/cloud_surface.h"
+#include "engine/picture/colour_map.h"
+#include "engine/picture/png.h"
+
+namespace palp {
+
+/// How bright a surface looks per pixel, 1 where it faces the light [1]: diffuse light from the upper left, darker in
+/// hollows and behind edges, so that a dent shows although its slope is slight.
+/// \source the second part after Luft et al. 2006, "Image enhancement by unsharp masking the depth buffer"
+[[nodiscard]] std::vector<float> cloudShading(const CloudSurface& surface);
+
+/// The shaded surface in the colours of its values, on white.
+/// \param map  turns values from 0 to 1 into colours; nullopt draws everything in one neutral colour
+[[nodiscard]] Image cloudImage(const CloudSurface& surface, std::optional<ColourMap> map);
+
+} // namespace palp

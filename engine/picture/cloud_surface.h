@@ -1,0 +1,62 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace palp {
+
+/// Maps the world to a picture: orthographic, or perspective with the eye on the axis through the centre.
+struct CloudCamera {
+    int        width  = 0;         ///< [px]
+    int        height = 0;         ///< [px]
+    glm::dvec3 centre{0};          ///< shown in the middle [m, world]
+    glm::dvec3 right{1, 0, 0};     ///< unit, to the right of the picture
+    glm::dvec3 up{0, 1, 0};        ///< unit, up in the picture
+    glm::dvec3 toEye{0, 0, 1};     ///< unit, out of the picture
+    double     pixelsPerMetre = 1; ///< at the depth of the centre [px/m]
+    double     eyeDistance    = 0; ///< from the centre [m]; 0 is orthographic
+
+    struct Pixel {
+        double x = 0, y = 0;  ///< y down [px]
+        double depth     = 0; ///< away from the eye, 0 at the centre [px]
+        double magnified = 1; ///< size on the picture relative to the depth of the centre [1]
+    };
+    /// \return nullopt for a point that is not finite, or (nearly) at the eye or behind it
+    [[nodiscard]] std::optional<Pixel> project(const glm::dvec3& point) const;
+};
+
+/// What the camera sees of a cloud, one record per pixel.
+struct CloudSurface {
+    struct Sample {
+        float     coverage = 0;    ///< 0 nothing to 1 surface [1]
+        float     depth    = 0;    ///< as CloudCamera::Pixel [px]
+        glm::vec3 normal{0, 0, 1}; ///< unit, in axes right, up, toEye
+        float     value   = 0;     ///< mean of the points around that have a value
+        bool      defined = false; ///< most points around have a value
+    };
+    int                 width   = 0; ///< [px]
+    int                 height  = 0; ///< [px]
+    double              spacing = 0; ///< typical distance of neighbouring points [px]
+    std::vector<Sample> samples;     ///< row by row
+
+    [[nodiscard]] const Sample& at(int x, int y) const
+    {
+        return samples[std::size_t(y) * std::size_t(width) + std::size_t(x)];
+    }
+};
+
+/// Draws a cloud as a closed surface. Every point is a round splat as wide as a few times the spacing around it (which
+/// is estimated on the screen); where splats of the front layer overlap, a plane is fitted to their depths by weighted
+/// least squares, so that the surface is smooth, has a normal, and ends where the points end rather than a splat's
+/// radius beyond.
+///
+/// Memory is bounded by the picture, time by the picture and the number of points.
+/// \param values   empty, or one per point; NaN is "no value"
+/// \param normals  empty (then from the fitted planes), or one per point, any length, either sign [1, world]
+/// \source the idea of averaging overlapping splats: Zwicker et al. 2001, "Surface splatting"
+[[nodiscard]] CloudSurface cloudSurface(std::span<const glm::dvec3> positions, std::span<const double> values,
+                                        std::span<const glm::dvec3> normals, const CloudCamera& camera);
+
+} // namespace palp

@@ -1,0 +1,48 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/core/grid.h"
+#include "engine/picture/axis.h"
+#include "engine/picture/colour_map.h"
+
+namespace palp {
+
+/// A point of the plane of a heat map, in the coordinates of the chart.
+struct MapPoint {
+    double x = 0; ///< to the right [m]
+    double z = 0; ///< up [m]
+};
+
+/// How the field looks between its nodes.
+enum class NodeStyle {
+    cells,  ///< a flat cell around every node: shows the grid as it is
+    smooth, ///< values interpolated linearly between nodes
+};
+
+struct HeatMapSettings {
+    std::string               title;
+    std::string               quantity = "deflection"; ///< label of the colour bar
+    std::string               unit     = "m";          ///< SI unit of the values; the prefix is chosen
+    Scale                     scale    = Scale::linear;
+    std::optional<ValueRange> range; ///< ends of the colours [unit]; absent: the smallest and largest drawable value
+    ColourMap                 map       = ColourMap::viridis;
+    NodeStyle                 nodeStyle = NodeStyle::cells;
+    PlateGrid                 grid;                ///< where the nodes lie
+    MapPoint                  corner;              ///< position of node (0, 0)
+    bool                      markExtremes = true; ///< triangles at the smallest and the largest value
+    std::optional<MapPoint>   contact;             ///< a cross
+    double                    footprintRadius = 0; ///< of a circle around the contact [m]; 0 is none
+    std::vector<MapPoint>     points;              ///< dots, such as the projected points of the cloud
+};
+
+/// Draws a field as a self-contained SVG picture: colours, axes of equal scale, colour bar, overlays and legend.
+///
+/// Nodes whose value is NaN or infinite, or not positive on a logarithmic scale, are hatched grey, and the legend says
+/// how many they are. A constant field is drawn in the middle colour and the legend gives its value. Values beyond an
+/// explicit range take the end colour, and the colour bar ends in an arrow head.
+/// \pre the field lies on settings.grid, which has positive spacings; an explicit range is drawable and not reversed
+[[nodiscard]] std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings);
+
+} // namespace palp

@@ -1,0 +1,111 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/chart/chart.h"
+#include "engine/chart/resample.h"
+#include "engine/chart/sphere_fit.h"
+#include "engine/cloud/neighbour_index.h"
+#include "engine/cloud/point_cloud.h"
+#include "engine/contact/contact.h"
+#include "engine/force/force_law.h"
+#include "engine/plate/plate.h"
+
+namespace palp {
+
+/// Scene constants: everything that decides what a touch feels like, apart from the cloud itself.
+///
+/// Window, footprint and area of contact are lengths, never derived from the points at the contact: on a homogeneous
+/// object compliance is then exactly constant, and whatever the hand feels is in the object.
+struct PatchSettings {
+    Material             material{};
+    double               foundation      = 0;     ///< k [Pa/m] of what lies below; 0: nothing (the paper)
+    double               window          = 40e-3; ///< edge of the square of chart that bends [m]
+    int                  cells           = 64;    ///< of the grid along that edge, even [1]
+    double               footprintRadius = 4e-3;  ///< of the fingertip [m]
+    Map                  map             = Map::lambertAzimuthal;
+    Sampling             sampling        = Sampling::logMean;
+    PlateEdges           edges{}; ///< of the window
+    ForceLaw             forceLaw = ForceLaw::series;
+    std::optional<Frame> frame{}; ///< chart axes carried from the neighbouring contact
+};
+
+/// The two ways to run the pipeline; see design notes in engine/README.md.
+enum class Preset {
+    palpate, ///< what we hold to be right
+    paper    ///< as Kumari & Chaudhuri published it
+};
+
+[[nodiscard]] const char*           name(Preset preset) noexcept;
+[[nodiscard]] std::optional<Preset> presetNamed(std::string_view name);
+
+/// These settings with the preset's map, sampling, edges, foundation and force law.
+/// `palpate` leaves the foundation as it is, `paper` removes it.
+[[nodiscard]] PatchSettings withPreset(PatchSettings settings, Preset preset);
+
+/// One line per respect in which the settings differ from the paper's method; empty for the preset `paper`.
+[[nodiscard]] std::vector<std::string> differencesFromPaper(const PatchSettings& settings);
+
+/// Milliseconds that each stage of deform() took.
+struct StageTimes {
+    double gather = 0, fit = 0, project = 0, resample = 0, factorise = 0, solve = 0, lift = 0;
+
+    [[nodiscard]] double total() const noexcept { return gather + fit + project + resample + factorise + solve + lift; }
+};
+
+/// What a unit force at the contact does to the neighbourhood.
+struct Patch {
+    Contact         contact;
+    SphereFitResult sphere;
+    Chart           chart;
+    Window          window;
+    Plate           plate;                 ///< rigidity at the nodes, edges, foundation
+    std::size_t     nodesWithoutPoint = 0; ///< see Resampled [1]
+    NodeField       response;              ///< deflection per force at the nodes [m/N]
+    double          compliance       = 0;  ///< c: response averaged over the footprint, work-conjugate [m/N]
+    double          contactStiffness = 0;  ///< k_c [N/m]
+    double          feltStiffness    = 0;  ///< [N/m]
+
+    std::vector<std::uint32_t> gathered;      ///< points of the cloud around the contact
+    std::vector<std::uint32_t> points;        ///< those on the near side, in the same order as the next two
+    std::vector<ChartPoint>    positions;     ///< of `points` in the chart [m]
+    std::vector<double>        pointResponse; ///< deflection per force of `points` [m/N]; 0 outside the window
+
+    SolveReport report;
+    StageTimes  times; ///< [ms]
+
+    /// False if the points do not determine a surface; then nothing below `sphere` is filled in.
+    [[nodiscard]] bool deformed() const noexcept { return sphere.usable(); }
+
+    /// Unit vector along which a force presses [1]: into the surface.
+    [[nodiscard]] glm::dvec3 forceDirection() const noexcept { return -chart.frame.normal; }
+};
+
+/// Section 2 of the paper on one clock: contact, neighbourhood, sphere, chart, rigidity, plate, points.
+///
+/// Solves for a force of 1 N on a smooth footprint about the contact; the plate is linear, so any force follows.
+/// \throws Error if the plate cannot be solved (for example free on all sides)
+/// \thread pure, except for the allocations
+/// \source Kumari & Chaudhuri 2016, sections 2.1 to 2.6
+/// \differs see differencesFromPaper() and engine/README.md
+[[nodiscard]] Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
+                           const PatchSettings& settings);
+
+/// The whole cloud under `force` [N] at the patch's contact: p_i + force * response_i * forceDirection.
+/// \source the back projection that the paper's equation 9 leaves empty
+[[nodiscard]] std::vector<glm::dvec3> displaced(const PointCloud& cloud, const Patch& patch, double force);
+
+/// Deflection of every point of the cloud under `force` [N], positive into the surface [m].
+[[nodiscard]] std::vector<double> deflections(const PointCloud& cloud, const Patch& patch, double force);
+
+/// How far the compliance is from its limit of fine grids, relative [1]: the change of c from a grid twice as coarse,
+/// divided by 3 (Richardson, second order). Empty if the cells are not a multiple of 4 or the footprint is too small.
+[[nodiscard]] std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings);
+
+/// What a user must know about a result, in sentences: where theory or data end. Empty is good.
+[[nodiscard]] std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force);
+
+} // namespace palp

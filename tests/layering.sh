@@ -1,0 +1,54 @@
+#!/bin/sh
+# Includes point downward, and each outside library stays behind its wall. Argument: the checkout.
+set -u
+cd "$1" || exit 1
+
+# From the bottom up; a file may include its own layer and those before it.
+layers='core cloud contact chart force plate pipeline picture program'
+level_of() {
+    n=0
+    for layer in $layers; do
+        [ "$layer" = "$1" ] && { echo $n; return; }
+        n=$((n + 1))
+    done
+    echo none
+}
+
+bad=0
+complain() { echo "$*"; bad=1; }
+
+for folder in engine/*/; do
+    layer=$(basename "$folder")
+    level=$(level_of "$layer")
+    [ "$level" = none ] && { complain "$folder is not a known layer: add it to tests/layering.sh"; continue; }
+    for file in "$folder"*.h "$folder"*.cpp; do
+        [ -f "$file" ] || continue
+        for target in $(sed -n 's|^ *# *include *"engine/\([a-z_]*\)/.*|\1|p' "$file"); do
+            other=$(level_of "$target")
+            [ "$other" != none ] && [ "$other" -le "$level" ] || complain "$file includes engine/$target, which is above it"
+        done
+        sed -n 's|^ *# *include *"\([^"]*\)".*|\1|p' "$file" | while read -r name; do
+            case $name in
+            engine/* | compute_shaders/shared/* | stb/*) ;;
+            *) echo "$file includes \"$name\": write project includes from the root" ;;
+            esac
+        done | grep . && bad=1
+    done
+done
+
+# library: pattern of its includes: folders that may hold them
+wall() {
+    found=$(grep -rlE "^ *# *include *[<\"]$2" engine --include='*.h' --include='*.cpp' | grep -vE "^engine/($3)$")
+    [ -z "$found" ] || complain "$1 is included outside its wall: $found"
+}
+wall Embree 'embree[34]/' 'cloud/(embree\.h|neighbour_index\.cpp)'
+wall Eigen 'Eigen/' '(chart|plate)/[a-z_]*\.cpp'
+wall nlohmann-json 'nlohmann/' '[a-z]*/[a-z_]*\.cpp'
+wall CLI11 'CLI/' 'program/[a-z_]*\.(h|cpp)'
+wall stb 'stb' 'picture/png\.cpp'
+
+# Public headers name no type of a wrapped library.
+grep -rnE 'RTC[A-Z]|Eigen::|nlohmann::|stbi_' engine --include='*.h' | grep -v '^engine/cloud/embree\.h' | grep -vE ':[0-9]+: *//' && complain 'a header names a type of a wrapped library'
+
+[ $bad -eq 0 ] && echo 'every include points downward'
+exit $bad

@@ -1,0 +1,18 @@
+#!/bin/sh
+# Every dependency has a row in third_party_notes.md. Argument: the checkout.
+set -u
+cd "$1" || exit 1
+. engine/prepare.sh
+
+bad=0
+row() { # a table row that holds the word in backticks
+    grep -qE "^\|.*\`$1\`.*\|" third_party_notes.md || { echo "third_party_notes.md has no row with \`$1\` ($2)"; bad=1; }
+}
+for name in $(cat CMakeLists.txt engine/CMakeLists.txt engine/*/CMakeLists.txt tests/CMakeLists.txt tests/*/CMakeLists.txt samples/CMakeLists.txt |
+    sed -n 's/.*find_package(\([A-Za-z0-9_]*\).*/\1/p' | sort -u); do
+    [ "$name" = Threads ] || row "$name" 'find_package'
+done
+for package in $packages_build $packages_tests; do row "$package" 'package list in engine/prepare.sh'; done
+
+[ $bad -eq 0 ] && echo 'every dependency has a row'
+exit $bad
