@@ -6,10 +6,10 @@ cd "$1" || exit 1
 
 bad=0
 row() { # a table row that holds the word in backticks
-    grep -qE "^\|.*\`$1\`.*\|" third_party_notes.md || { echo "third_party_notes.md has no row with \`$1\` ($2)"; bad=1; }
+    grep '^|' third_party_notes.md | grep -qF "\`$1\`" || { echo "third_party_notes.md has no row with \`$1\` ($2)"; bad=1; }
 }
 for name in $(cat CMakeLists.txt engine/CMakeLists.txt engine/*/CMakeLists.txt tests/CMakeLists.txt tests/*/CMakeLists.txt samples/CMakeLists.txt |
-    sed -n 's/.*find_package(\([A-Za-z0-9_]*\).*/\1/p' | sort -u); do
+    sed -n 's/#.*//; s/.*find_package(\([A-Za-z0-9_]*\).*/\1/p' | sort -u); do
     [ "$name" = Threads ] || row "$name" 'find_package'
 done
 for package in $packages_build $packages_tests; do row "$package" 'package list in engine/prepare.sh'; done

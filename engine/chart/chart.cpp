@@ -115,7 +115,7 @@ std::optional<ChartPoint> Chart::project(const glm::dvec3& point) const
     const double     north   = glm::dot(q, frame.north);
     const double     up      = 1 + curvature * glm::dot(q, frame.normal);
     const double     stretch = std::sqrt(up * up + curvature * curvature * (east * east + north * north));
-    if (up < -kRim * stretch || stretch == 0) return {}; // the centre itself has no direction
+    if (!(up >= -kRim * stretch) || stretch == 0) return {}; // the centre itself has no direction
 
     if (map == Map::lambertAzimuthal) {
         // (east, north) / stretch has length r sin theta; the map wants 2 r sin(theta/2) = r sin theta / cos(theta/2).
@@ -131,10 +131,10 @@ std::optional<glm::dvec3> Chart::lift(const ChartPoint& position) const
 {
     double x = position.x, z = position.z;
     if (map == Map::lambertAzimuthal) {
-        const double squared    = x * x + z * z;
-        const double halfSine2  = curvature * curvature * squared / 4; // sin^2(theta/2)
-        const double halfCosine = std::sqrt(1 - halfSine2);
+        const double squared   = x * x + z * z;
+        const double halfSine2 = curvature * curvature * squared / 4; // sin^2(theta/2)
         if (!(halfSine2 <= 0.5 + kRim)) return {};
+        const double halfCosine = std::sqrt(1 - halfSine2);
         return origin + halfCosine * (x * frame.east + z * frame.north) - 0.5 * curvature * squared * frame.normal;
     }
     if (map == Map::gallPeters) {

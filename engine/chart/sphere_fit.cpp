@@ -84,7 +84,8 @@ struct Placement {
 };
 
 /// R of design = Q R, divided by the square root of the number of points so that it does not grow with it.
-/// Householder on a fixed block of rows below the R so far: constant memory.
+/// Householder on a fixed block of rows below the R so far: constant memory. R stays triangular by itself, because a
+/// reflection leaves alone the rows that are zero in its column.
 Matrix5 factorOfDesign(std::span<const glm::dvec3> points, const Placement& placement)
 {
     constexpr int kBlock = 64; // rows [1]: long enough to hide the five rows carried along, short enough for the stack
@@ -99,7 +100,6 @@ Matrix5 factorOfDesign(std::span<const glm::dvec3> points, const Placement& plac
             stack.row(5 + int(i)) << weight * x.x, weight * x.y, weight * x.z, weight * glm::dot(x, x), weight;
         }
         Eigen::HouseholderQR<Eigen::Ref<Stack>> inPlace(stack);
-        stack.topRows<5>().triangularView<Eigen::StrictlyLower>().setZero();
     }
     return stack.topRows<5>();
 }

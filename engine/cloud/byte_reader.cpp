@@ -79,7 +79,7 @@ std::optional<std::string_view> ByteReader::line()
         const std::size_t held = end_ - begin_;
         const auto* const lineEnd =
             held > searched ? static_cast<const char*>(std::memchr(from + searched, '\n', held - searched)) : nullptr;
-        if (lineEnd || held > kLongestLine || !readMore()) {
+        if (lineEnd || !readMore()) { // a full block without a line end counts as the end
             const std::size_t length = lineEnd ? std::size_t(lineEnd - from) : end_ - begin_;
             if (!lineEnd && length == 0) return std::nullopt;
             ++lineNumber_;

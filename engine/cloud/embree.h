@@ -39,7 +39,8 @@ public:
         scene_.reset(rtcNewScene(device_.get()));
         const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
         rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(boxes.size()));
-        rtcSetGeometryUserData(geometry.get(), const_cast<Box*>(boxes.data())); // only `bounds` reads it, while committing
+        rtcSetGeometryUserData(geometry.get(),
+                               const_cast<Box*>(boxes.data())); // only `bounds` reads it, while committing
         rtcSetGeometryBoundsFunction(geometry.get(), bounds, nullptr);
         rtcCommitGeometry(geometry.get());
         rtcAttachGeometry(scene_.get(), geometry.get());
@@ -90,7 +91,7 @@ private:
     // TBB's workers call this. ThreadSanitizer does not see how TBB hands them the boxes and would cry wolf.
     __attribute__((no_sanitize("thread"))) static void bounds(const RTCBoundsFunctionArguments* args)
     {
-        const Box& box         = static_cast<const Box*>(args->geometryUserPtr)[args->primID];
+        const Box& box          = static_cast<const Box*>(args->geometryUserPtr)[args->primID];
         args->bounds_o->lower_x = box.low.x;
         args->bounds_o->lower_y = box.low.y;
         args->bounds_o->lower_z = box.low.z;

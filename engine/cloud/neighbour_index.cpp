@@ -14,15 +14,15 @@
 
 // How floats give the answers of doubles
 // --------------------------------------
-// Positions are stored as floats in index units: relative to the cloud's centre and scaled by a power of two to at most
-// 1 along each axis. Subtracting and scaling in doubles is exact but for one rounding, so the offset of a cloud does not
-// matter; only its size against its spacing does. For a centre c (largest coordinate |c|, index units) every rounding to
-// float, of c, of the point and of their difference, is at most 2^-24 of its size, together below
-// 2^-23 (|c| + 1) along an axis and below
+// Positions are stored as floats in index units: relative to the middle of the cloud and scaled by a power of two.
+// Subtracting and scaling in doubles costs one rounding of the result, so the cloud's distance from the origin does not
+// matter. With u = 2^-24, the error of a float, a centre c and a point p at distance d, the error of the difference
+// along an axis is at most u |c| from rounding c, u |p| <= u (|c| + |d|) from rounding p, and u |d| from subtracting;
+// over three axes, with |c| the largest coordinate,
 //
-//     slack = 2^-22 (|c| + 1)
+//     2 u (sqrt(3) |c| + d)  <  slack + 2^-23 d,    slack = 2^-22 |c|,
 //
-// for a distance; squaring and adding the floats brings a relative error below 2^-21. So with radius r the points
+// and squaring and adding the floats adds 2^-22 d^2. So with radius r the points
 //
 //     float d^2 <= (r - slack)^2 (1 - 2^-20)   are certainly inside,
 //     float d^2 >  (r + slack)^2 (1 + 2^-20)   are certainly outside,
@@ -34,11 +34,17 @@ namespace {
 
 constexpr double kRounding = 0x1p-20; ///< [1] relative error of a squared distance in floats, with a reserve of two
 
-/// Beyond this [index units] floats cannot tell the points of a cloud apart any more, or squares might overflow.
+/// Coordinates up to here are searched by floats [index units]. Further out floats could not tell the points of a cloud
+/// apart any more; and squares stay far from overflow.
 constexpr double kFloatReach = 0x1p20;
 
-/// Scaling stops here: below it, slack alone exceeds every distance whose square a double can hold.
-constexpr int kMostScaling = 400;
+/// Least slack [index units]: keeps squares of floats far from underflow.
+constexpr double kLeastSlack = 0x1p-60;
+
+/// Scaling stops here: in clouds of 1e-120 m even kLeastSlack must be a length whose square a double can hold, and in
+/// clouds of 1e150 m, which kFloatReach then leaves to doubles alone, the whole extent.
+constexpr int kMostScaling  = 400;
+constexpr int kLeastScaling = -480;
 
 /// Coordinate [index units] of the lanes that fill up the last block: outside every sphere, its square no overflow.
 constexpr float kNowhere = 1e18F;
@@ -64,26 +70,57 @@ constexpr float kNowhere = 1e18F;
     return std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z);
 }
 
-/// Index units: (position - centre) scale, a power of two [1/m], within [-1, 1].
+/// Index units: (position - centre) scale, a power of two [1/m]. Nearly all points come to lie within [-1, 1], and all
+/// within kFloatReach: a few strays, as scanners make them, must not cost the others their digits.
 struct IndexFrame {
-    glm::dvec3 centre{};  ///< [m]
+    glm::dvec3 centre{};  ///< [m] median of the points along each axis
     double     scale = 1; ///< [1/m]
+    double     reach = 0; ///< [index units] largest coordinate of all points
 
     explicit IndexFrame(std::span<const glm::dvec3> positions)
     {
-        glm::dvec3 low  = positions.front();
-        glm::dvec3 high = positions.front();
-        for (const glm::dvec3& p : positions) {
-            low  = glm::dvec3(std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z));
-            high = glm::dvec3(std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z));
+        constexpr std::size_t kSamples = 1000; // the quantiles below need no more
+        constexpr double      kMost    = 0.9;  // quantile that strays do not reach
+        const std::size_t     stride   = (positions.size() + kSamples - 1) / kSamples;
+
+        double size = 0; // [m] twice the distance from the centre that most points keep
+        for (int axis = 0; axis < 3; ++axis) {
+            std::vector<double> along;
+            for (std::size_t i = 0; i < positions.size(); i += stride) along.push_back(positions[i][axis]);
+            centre[axis] = quantile(along, 0.5);
+            for (double& x : along) x = std::abs(x - centre[axis]);
+            size = std::max(size, 2 * quantile(along, kMost));
         }
-        centre            = 0.5 * low + 0.5 * high;
-        const double half = std::max(largest(high - centre), largest(low - centre));
-        if (half > 0) scale = std::ldexp(1.0, std::min(-std::ilogb(half) - 1, kMostScaling));
+        double all = 0; // [m]
+        for (const glm::dvec3& p : positions) all = std::max(all, largest(p - centre));
+        size = std::max(size, 2 * all / kFloatReach);
+        if (all > 0) scale = std::ldexp(1.0, std::clamp(-std::ilogb(size) - 1, kLeastScaling, kMostScaling));
+        reach = all * scale;
+    }
+
+    /// Whether floats serve to search around a place [index units].
+    [[nodiscard]] bool searchable(const glm::dvec3& place) const noexcept
+    {
+        return reach <= kFloatReach && largest(place) <= kFloatReach;
+    }
+
+    [[nodiscard]] static double quantile(std::vector<double>& values, double share)
+    {
+        const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
+        std::nth_element(values.begin(), at, values.end());
+        return *at;
     }
 
     [[nodiscard]] glm::dvec3 to(const glm::dvec3& position) const noexcept { return (position - centre) * scale; }
 };
+
+/// Radius [m] that holds k points of a surface nearly always: k and twice the square root of k, the standard deviation
+/// if the points are random. A first guess; whether it holds is checked.
+[[nodiscard]] double likelyRadius(std::size_t k, double spacing) noexcept
+{
+    const double points = double(k) + 2 * std::sqrt(double(k)) + 2;
+    return spacing * std::sqrt(points / std::numbers::pi);
+}
 
 /// Order of the points along the Morton curve; equal codes by rising index.
 [[nodiscard]] std::vector<std::uint32_t> mortonOrder(std::span<const glm::dvec3> positions, const IndexFrame& frame)
@@ -91,10 +128,7 @@ struct IndexFrame {
     struct Key {
         std::uint64_t code;
         std::uint32_t point;
-        bool          operator<(const Key& b) const noexcept
-        {
-            return code != b.code ? code < b.code : point < b.point;
-        }
+        bool operator<(const Key& b) const noexcept { return code != b.code ? code < b.code : point < b.point; }
     };
     const auto cell = [](double x) {
         return static_cast<std::uint32_t>(std::clamp((x + 1) * (0.5 * kMortonCells), 0.0, kMortonCells - 1.0));
@@ -110,7 +144,7 @@ struct IndexFrame {
     return order;
 }
 
-[[nodiscard]] std::vector<PointBlock> blocksOf(std::span<const glm::dvec3> positions,
+[[nodiscard]] std::vector<PointBlock> blocksOf(std::span<const glm::dvec3>    positions,
                                                std::span<const std::uint32_t> order, const IndexFrame& frame)
 {
     std::vector<PointBlock> blocks((order.size() + kBlockPoints - 1) / kBlockPoints);
@@ -147,7 +181,7 @@ struct IndexFrame {
 /// The sphere about a centre in index units, as floats see it.
 class FloatSphere {
 public:
-    explicit FloatSphere(const glm::dvec3& centre) : centre_(centre), slack_(0x1p-22 * (largest(centre) + 1)) {}
+    explicit FloatSphere(const glm::dvec3& centre) : centre_(centre), slack_(0x1p-22 * largest(centre) + kLeastSlack) {}
 
     [[nodiscard]] Shell shell(double radius) const noexcept
     {
@@ -163,6 +197,12 @@ public:
         return float((radius + 2 * slack_) * (1 + kRounding));
     }
 
+    /// No point whose squared distance came out as this is further away.
+    [[nodiscard]] double largestDistance(float distance2) const noexcept
+    {
+        return std::sqrt(double(distance2)) * (1 + kRounding) + slack_;
+    }
+
     [[nodiscard]] glm::vec3 centre() const noexcept { return glm::vec3(centre_); }
 
 private:
@@ -170,54 +210,71 @@ private:
     double     slack_;
 };
 
-/// The k best of all points offered, in amortised constant time for each: twice k wait before the worse half goes.
-class BestSoFar {
+/// The slots that may be among the k nearest, by distances of floats. Twice as many wait as are needed before the
+/// further half goes, so that each costs constant time on average.
+class Candidates {
 public:
-    explicit BestSoFar(std::size_t k) : k_(k) { candidates_.reserve(2 * k + kBlockPoints); }
+    explicit Candidates(std::size_t k) : k_(k) { keys_.reserve(kWaiting * k); }
 
-    /// Nothing further away than this [m^2] can be among the k best.
-    [[nodiscard]] double bound2() const noexcept { return bound2_; }
-
-    void offer(double distance2, std::uint32_t point)
+    void add(float distance2, std::uint32_t slot)
     {
-        if (distance2 <= bound2_) candidates_.push_back({distance2, point});
+        // Bits of floats that are not negative sort as the floats do.
+        keys_.push_back(std::uint64_t(std::bit_cast<std::uint32_t>(distance2)) << 32 | slot);
     }
 
-    /// \return whether the bound has shrunk
-    bool prune()
+    [[nodiscard]] std::size_t size() const noexcept { return keys_.size(); }
+    [[nodiscard]] bool        full() const noexcept { return keys_.size() >= full_; }
+
+    void clear() noexcept { keys_.clear(); }
+
+    /// Drops what is certainly not among the k nearest of at least k candidates.
+    /// \return  radius [index units] that holds the k nearest candidates
+    double prune(const FloatSphere& sphere)
     {
-        if (candidates_.size() < 2 * k_) return false;
-        const auto worst = candidates_.begin() + std::ptrdiff_t(k_ - 1);
-        std::nth_element(candidates_.begin(), worst, candidates_.end());
-        const bool shrunk = worst->distance2 < bound2_;
-        bound2_           = worst->distance2;
-        candidates_.resize(k_);
-        return shrunk;
+        const auto kth = keys_.begin() + std::ptrdiff_t(k_ - 1);
+        std::nth_element(keys_.begin(), kth, keys_.end());
+        const double radius = sphere.largestDistance(distance2(*kth));
+        const float  outer2 = sphere.shell(radius).outer2;
+        keys_.erase(std::partition(kth, keys_.end(), [&](std::uint64_t key) { return distance2(key) <= outer2; }),
+                    keys_.end());
+        full_ = std::max(full_, kWaiting * keys_.size()); // grows if many points are equally far
+        return radius;
     }
 
-    [[nodiscard]] std::vector<Neighbour> sorted()
+    /// Near ones first, which is nearly their order by doubles, unless too many are equally far.
+    template <class Visit>
+    void each(Visit&& visit)
     {
-        const std::size_t count = std::min(k_, candidates_.size());
-        std::partial_sort(candidates_.begin(), candidates_.begin() + std::ptrdiff_t(count), candidates_.end());
-        std::vector<Neighbour> best(count);
-        for (std::size_t i = 0; i < count; ++i) best[i] = {candidates_[i].point, std::sqrt(candidates_[i].distance2)};
-        return best;
+        if (keys_.size() <= kWaiting * k_) std::sort(keys_.begin(), keys_.end());
+        for (const std::uint64_t key : keys_) visit(static_cast<std::uint32_t>(key));
     }
 
 private:
-    struct Candidate {
-        double        distance2; ///< [m^2]
-        std::uint32_t point;
-        bool          operator<(const Candidate& b) const noexcept
-        {
-            return distance2 != b.distance2 ? distance2 < b.distance2 : point < b.point;
-        }
-    };
+    static constexpr std::size_t kWaiting = 2; ///< [1] candidates that wait for pruning, per neighbour wanted
 
-    std::size_t            k_;
-    double                 bound2_ = std::numeric_limits<double>::infinity();
-    std::vector<Candidate> candidates_;
+    [[nodiscard]] static float distance2(std::uint64_t key) noexcept
+    {
+        return std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32));
+    }
+
+    std::size_t                k_;
+    std::size_t                full_ = kWaiting * k_;
+    std::vector<std::uint64_t> keys_; ///< distance before slot
 };
+
+/// \param found  any order; the k best stay, nearest first, equal distances by rising index
+void keepNearest(std::vector<Neighbour>& found, std::size_t k)
+{
+    const auto nearer = [](const Neighbour& a, const Neighbour& b) {
+        return a.distance != b.distance ? a.distance < b.distance : a.point < b.point;
+    };
+    if (found.size() > 2 * k) {
+        std::nth_element(found.begin(), found.begin() + std::ptrdiff_t(k), found.end(), nearer);
+        found.resize(k);
+    }
+    if (!std::is_sorted(found.begin(), found.end(), nearer)) std::sort(found.begin(), found.end(), nearer);
+    found.resize(k);
+}
 
 } // namespace
 
@@ -226,7 +283,7 @@ struct NeighbourIndex::Impl {
     std::vector<PointBlock> blocks;
     std::vector<glm::dvec3> exact; ///< [m] the caller's positions in the order of the blocks
     BoxTree                 tree;
-    BlockFilter             filter  = fastestBlockFilter();
+    BlockFilter             filter  = blockFilters().front();
     double                  spacing = 0; ///< [m]
 
     Impl(std::span<const glm::dvec3> positions, const IndexFrame& indexFrame, std::span<const std::uint32_t> order)
@@ -241,80 +298,82 @@ struct NeighbourIndex::Impl {
         return blocks[slot / kBlockPoints].point[slot % kBlockPoints];
     }
 
-    /// Calls decide(slot) for every lane whose bit is set.
-    template <class Decide>
-    static void eachDoubtful(std::uint32_t block, std::uint32_t lanes, Decide&& decide)
+    /// Calls process(block numbers, search radius) for the blocks that reach into the sphere, a batch at a time, so
+    /// that their way from memory overlaps with the walk through the tree. `process` may shrink the search radius.
+    template <class Process>
+    void eachBatch(const FloatSphere& sphere, double radius, Process&& process) const
     {
-        for (; lanes != 0; lanes &= lanes - 1) decide(std::size_t(block) * kBlockPoints + std::size_t(std::countr_zero(lanes)));
+        constexpr std::size_t             kBatch     = 16; // measured: 8 to 32 make no difference
+        constexpr std::size_t             kCacheLine = 64; // [B]
+        std::array<std::uint32_t, kBatch> batch;           // each entry is written before it is read
+        std::size_t                       count  = 0;
+        float                             search = sphere.searchRadius(radius);
+        tree.query(sphere.centre(), search, [&](std::uint32_t block, float& shrinking) {
+            const auto* bytes = reinterpret_cast<const char*>(&blocks[block]);
+            for (std::size_t line = 0; line < sizeof(PointBlock); line += kCacheLine) __builtin_prefetch(bytes + line);
+            batch[count++] = block;
+            if (count < kBatch) return;
+            process(std::span<const std::uint32_t>(batch), shrinking);
+            count = 0;
+        });
+        process(std::span<const std::uint32_t>(batch.data(), count), search);
     }
+
+    void gather(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
+                std::vector<std::uint32_t>& found) const;
+
+    /// Fills `candidates` with at least the k nearest, if all of them are within `start` [index units]; else says no.
+    [[nodiscard]] bool findCandidates(const FloatSphere& sphere, double start, std::size_t k,
+                                      Candidates& candidates) const;
 };
 
-namespace {
-
-/// Collects blocks while the tree is walked and filters them a batch at a time, so that a block's way from memory
-/// overlaps with the walk; hands points over a batch at a time too, so that a vector need not grow for every block.
-class GatherRun {
-public:
-    GatherRun(std::span<const PointBlock> blocks, std::span<const glm::dvec3> exact, BlockFilter filter,
-              const glm::dvec3& centre, double radius, const Shell& shell, std::vector<std::uint32_t>& found)
-        : blocks_(blocks), exact_(exact), filter_(filter), centre_(centre), radius2_(radius * radius), shell_(shell),
-          found_(found)
-    {}
-
-    void add(std::uint32_t block)
-    {
-        const auto* lines = reinterpret_cast<const char*>(&blocks_[block]);
-        for (std::size_t byte = 0; byte < sizeof(PointBlock); byte += kCacheLine) __builtin_prefetch(lines + byte);
-        waiting_[waitingCount_++] = block;
-        if (waitingCount_ == waiting_.size()) filterWaiting();
-    }
-
-    void finish()
-    {
-        filterWaiting();
-        handOver();
-    }
-
-private:
-    static constexpr std::size_t kCacheLine = 64; ///< [B]
-
-    void filterWaiting()
-    {
-        for (std::size_t i = 0; i < waitingCount_; ++i) {
-            const std::uint32_t number   = waiting_[i];
-            const PointBlock&   block    = blocks_[number];
-            std::uint32_t       doubtful = 0;
-            count_ += filter_(block, shell_, points_.data() + count_, doubtful);
+void NeighbourIndex::Impl::gather(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
+                                  std::vector<std::uint32_t>& found) const
+{
+    // Points are handed over some hundred at a time: growing a vector costs as much as filtering a block.
+    std::array<std::uint32_t, 1024> points; // each entry is written before it is read
+    std::size_t                     count    = 0;
+    const auto                      handOver = [&] {
+        found.insert(found.end(), points.begin(), points.begin() + std::ptrdiff_t(count));
+        count = 0;
+    };
+    const Shell  shell   = sphere.shell(radius * frame.scale);
+    const double radius2 = radius * radius;
+    eachBatch(sphere, radius * frame.scale, [&](std::span<const std::uint32_t> numbers, float&) {
+        for (const std::uint32_t number : numbers) {
+            if (count + kBlockPoints > points.size()) handOver();
+            std::uint32_t doubtful = 0;
+            count += filter.gather(blocks[number], shell, points.data() + count, doubtful);
             for (; doubtful != 0; doubtful &= doubtful - 1) {
-                const auto lane = static_cast<std::size_t>(std::countr_zero(doubtful));
-                if (squaredDistance(exact_[std::size_t(number) * kBlockPoints + lane], centre_) <= radius2_)
-                    points_[count_++] = block.point[lane];
+                const std::size_t slot = std::size_t(number) * kBlockPoints + std::size_t(std::countr_zero(doubtful));
+                if (squaredDistance(exact[slot], centre) <= radius2) points[count++] = pointAt(slot);
             }
-            if (count_ + kBlockPoints > points_.size()) handOver();
         }
-        waitingCount_ = 0;
-    }
+    });
+    handOver();
+}
 
-    void handOver()
-    {
-        found_.insert(found_.end(), points_.begin(), points_.begin() + std::ptrdiff_t(count_));
-        count_ = 0;
-    }
-
-    std::span<const PointBlock>         blocks_;
-    std::span<const glm::dvec3>         exact_;
-    BlockFilter                         filter_;
-    glm::dvec3                          centre_;
-    double                              radius2_;
-    Shell                               shell_;
-    std::vector<std::uint32_t>&         found_;
-    std::array<std::uint32_t, 16>       waiting_; // left uninitialised, as points_: each entry is written before it is read
-    std::size_t                         waitingCount_ = 0;
-    std::array<std::uint32_t, 1024>     points_;
-    std::size_t                         count_ = 0;
-};
-
-} // namespace
+bool NeighbourIndex::Impl::findCandidates(const FloatSphere& sphere, double start, std::size_t k,
+                                          Candidates& candidates) const
+{
+    candidates.clear();
+    Shell  shell = sphere.shell(start);
+    double bound = start;
+    eachBatch(sphere, start, [&](std::span<const std::uint32_t> numbers, float& search) {
+        for (const std::uint32_t number : numbers) {
+            float distance2[kBlockPoints];
+            for (auto near = filter.measure(blocks[number], shell, distance2); near != 0; near &= near - 1) {
+                const auto lane = std::uint32_t(std::countr_zero(near));
+                candidates.add(distance2[lane], number * kBlockPoints + lane);
+            }
+        }
+        if (!candidates.full()) return;
+        bound  = std::min(bound, candidates.prune(sphere));
+        shell  = sphere.shell(bound);
+        search = std::min(search, sphere.searchRadius(bound));
+    });
+    return candidates.size() >= k && candidates.prune(sphere) <= start;
+}
 
 NeighbourIndex::NeighbourIndex(std::span<const glm::dvec3> positions)
 {
@@ -327,16 +386,28 @@ NeighbourIndex::NeighbourIndex(std::span<const glm::dvec3> positions)
     const IndexFrame frame(positions);
     impl_ = std::make_unique<Impl>(positions, frame, mortonOrder(positions, frame));
 
+    impl_->spacing = medianSixthDistance() * std::sqrt(std::numbers::pi / 6);
+}
+
+double NeighbourIndex::medianSixthDistance() const
+{
     constexpr std::size_t kSamples    = 2000;
     constexpr std::size_t kNeighbours = 6;
-    if (positions.size() <= kNeighbours) return;
-    const std::size_t   samples = std::min(kSamples, positions.size());
-    std::vector<double> sixth(samples);
-    for (std::size_t s = 0; s < samples; ++s)
-        sixth[s] = nearest(positions[s * positions.size() / samples], kNeighbours + 1).back().distance; // itself is first
+    const auto&           points      = impl_->exact;
+    if (points.size() <= kNeighbours) return 0;
+    const std::size_t   samples = std::min(kSamples, points.size());
+    std::vector<double> sixth;
+    for (std::size_t s = 0; s < samples; ++s) {
+        const std::size_t slot = s * points.size() / samples;
+        // Equal points follow each other here. A search among very many of them would sort them all by index.
+        const auto from = points.begin() + std::ptrdiff_t(std::min(slot, points.size() - 1 - kNeighbours));
+        const bool coincide =
+            std::all_of(from, from + kNeighbours + 1, [&](const auto& p) { return p == points[slot]; });
+        sixth.push_back(coincide ? 0 : nearest(points[slot], kNeighbours + 1).back().distance); // itself is the first
+    }
     const auto median = sixth.begin() + std::ptrdiff_t(samples / 2);
     std::nth_element(sixth.begin(), median, sixth.end());
-    impl_->spacing = *median * std::sqrt(std::numbers::pi / double(kNeighbours));
+    return *median;
 }
 
 NeighbourIndex::~NeighbourIndex()                                    = default;
@@ -352,15 +423,12 @@ void NeighbourIndex::gather(const glm::dvec3& centre, double radius, std::vector
     const Impl&      index       = *impl_;
     const glm::dvec3 place       = index.frame.to(centre);
     const double     indexRadius = radius * index.frame.scale;
-    if (!(largest(place) <= kFloatReach && indexRadius <= kFloatReach)) {
+    if (!(index.frame.searchable(place) && indexRadius <= kFloatReach)) {
         for (std::size_t slot = 0; slot < index.exact.size(); ++slot)
             if (squaredDistance(index.exact[slot], centre) <= radius * radius) found.push_back(index.pointAt(slot));
         return;
     }
-    const FloatSphere sphere(place);
-    GatherRun run(index.blocks, index.exact, index.filter, centre, radius, sphere.shell(indexRadius), found);
-    index.tree.query(sphere.centre(), sphere.searchRadius(indexRadius), [&run](std::uint32_t block, float&) { run.add(block); });
-    run.finish();
+    index.gather(FloatSphere(place), centre, radius, found);
 }
 
 std::vector<std::uint32_t> NeighbourIndex::gather(const glm::dvec3& centre, double radius) const
@@ -376,37 +444,38 @@ std::vector<Neighbour> NeighbourIndex::nearest(const glm::dvec3& centre, std::si
     const Impl& index = *impl_;
     if (k == 0) return {};
 
-    BestSoFar         best(std::min(k, index.exact.size()));
-    const auto        offer = [&](std::size_t slot) {
-        best.offer(squaredDistance(index.exact[slot], centre), index.pointAt(slot));
+    k = std::min(k, index.exact.size());
+    std::vector<Neighbour> found;
+    const auto             measure = [&](std::size_t slot) {
+        found.push_back({index.pointAt(slot), squaredDistance(index.exact[slot], centre)}); // squared until sorted
     };
     const glm::dvec3 place = index.frame.to(centre);
-    if (!(largest(place) <= kFloatReach)) {
-        for (std::size_t slot = 0; slot < index.exact.size(); ++slot) {
-            offer(slot);
-            best.prune();
-        }
-        return best.sorted();
+    if (index.frame.searchable(place)) {
+        const FloatSphere sphere(place);
+        Candidates        candidates(k);
+        const double      everything = 2 * (largest(place) + index.frame.reach); // sqrt(3) would do
+        const double      guess      = likelyRadius(k, spacing()) * index.frame.scale;
+        if (!(guess > 0 && guess < everything && index.findCandidates(sphere, guess, k, candidates)))
+            (void)index.findCandidates(sphere, everything, k, candidates);
+        found.reserve(candidates.size());
+        candidates.each(measure);
+    } else {
+        found.reserve(index.exact.size());
+        for (std::size_t slot = 0; slot < index.exact.size(); ++slot) measure(slot);
     }
-    const FloatSphere sphere(place);
-    const double      everything = 2 * (largest(place) + 1); // sqrt(3) would do
-    Shell             shell      = sphere.shell(everything);
-    shell.inner2                 = -1; // every candidate's distance is wanted in doubles
-    index.tree.query(sphere.centre(), sphere.searchRadius(everything), [&](std::uint32_t block, float& radius) {
-        std::uint32_t certain[kBlockPoints];
-        std::uint32_t doubtful = 0;
-        index.filter(index.blocks[block], shell, certain, doubtful);
-        Impl::eachDoubtful(block, doubtful, offer);
-        if (!best.prune()) return;
-        const double bound = std::sqrt(best.bound2()) * index.frame.scale;
-        shell.outer2       = sphere.shell(bound).outer2;
-        radius             = std::min(radius, sphere.searchRadius(bound));
-    });
-    return best.sorted();
+    keepNearest(found, k);
+    for (Neighbour& neighbour : found) neighbour.distance = std::sqrt(neighbour.distance);
+    return found;
 }
 
-std::size_t NeighbourIndex::size() const noexcept { return impl_->exact.size(); }
+std::size_t NeighbourIndex::size() const noexcept
+{
+    return impl_->exact.size();
+}
 
-double NeighbourIndex::spacing() const noexcept { return impl_->spacing; }
+double NeighbourIndex::spacing() const noexcept
+{
+    return impl_->spacing;
+}
 
 } // namespace palp

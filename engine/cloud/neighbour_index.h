@@ -17,8 +17,9 @@ struct Neighbour {
 /// Radius and nearest-point search over fixed positions.
 ///
 /// Embree bounding volume hierarchy over blocks of 32 Morton-ordered points, each block one user primitive that is
-/// filtered with vector instructions. Answers are those of a brute-force search in double precision, exactly.
-/// \thread const calls from any number of threads at once
+/// filtered with vector instructions. Answers are those of a brute-force search in double precision, exactly: a point
+/// is within the radius if the squared distance, in doubles, is at most the squared radius. \thread const calls from
+/// any number of threads at once
 class NeighbourIndex {
 public:
     /// \param positions  finite [m], at least one; copied, so the caller's array need not live on
@@ -27,8 +28,9 @@ public:
     NeighbourIndex(NeighbourIndex&&) noexcept;
     NeighbourIndex& operator=(NeighbourIndex&&) noexcept;
 
-    /// Appends nothing, replaces `found` by the points within `radius` [m] of `centre` [m] (distance <= radius).
-    /// The order is fixed for a given cloud, but otherwise unspecified. Reuses the capacity of `found`.
+    /// Replaces `found` by the points within `radius` [m] of `centre` [m], distance <= radius; infinity is legal.
+    /// The order is fixed for a given cloud and kind of processor, but otherwise unspecified: near points do not come
+    /// first. Allocates only if the capacity of `found` does not suffice.
     void gather(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const;
 
     /// As above, for callers who do not mind an allocation.
@@ -40,11 +42,13 @@ public:
     [[nodiscard]] std::size_t size() const noexcept;
 
     /// Mean distance between points of the surface, 1/sqrt(points per square metre) [m]: the median over up to 2000
-    /// evenly strided points of d6 sqrt(pi/6), d6 the distance to the sixth neighbour. Computed once, at construction.
+    /// points, spread evenly, of d6 sqrt(pi/6), d6 the distance to the sixth neighbour. Computed once, at construction.
     /// 0 if the cloud has fewer than seven points or most of them coincide.
     [[nodiscard]] double spacing() const noexcept;
 
 private:
+    [[nodiscard]] double medianSixthDistance() const; ///< [m]
+
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

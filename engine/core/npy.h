@@ -1,5 +1,8 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
+#include <iosfwd>
+#include <string>
 
 #include "engine/core/grid.h"
 
@@ -9,6 +12,10 @@ namespace palp {
 /// \throws Error naming the file and what was expected and found: another shape, type or order, a short file, or a
 ///         value that is not finite (with its index)
 [[nodiscard]] NodeField readNpy(const std::filesystem::path& path);
+
+/// The same from a stream that holds exactly `size` bytes. Allocates no more than the bytes that are there ask for.
+/// \param name  what to call the stream in complaints
+[[nodiscard]] NodeField parseNpy(std::istream& in, std::uint64_t size, const std::string& name);
 
 /// Writes a field as a float64 .npy array of shape (nodesX, nodesZ), whole or not at all.
 void writeNpy(const std::filesystem::path& path, const NodeField& field);

@@ -6,6 +6,8 @@
 
 namespace palp {
 
+class JsonObject;
+
 /// A positive number that varies over space by a named law: the rigidity of a plate (at (x, 0, z)) or the stiffness
 /// of a cloud's points.
 ///
@@ -26,21 +28,22 @@ struct SpatialLaw {
     enum class Space { plane, volume }; ///< points given as [x, z] (a plate) or [x, y, z] (a cloud)
     enum class Kind { constant, linear, hyperbolic, exponential, gaussian, disc, box, checker };
 
-    Kind kind = Kind::constant;
-    double from = 1;                 ///< [Pa] or [N m]
-    double to = 1;                   ///< [Pa] or [N m]
-    glm::dvec3 start{};              ///< [m]
-    glm::dvec3 end{1, 0, 0};         ///< [m]
-    std::vector<glm::dvec3> centres{}; ///< [m]
-    double width = 0;                ///< [m] standard deviation, radius or edge
-    glm::dvec3 low{};                ///< [m] corner of the box
-    glm::dvec3 high{};               ///< [m] opposite corner of the box
+    Kind                    kind = Kind::constant;
+    double                  from = 1;     ///< [Pa] or [N m]
+    double                  to   = 1;     ///< [Pa] or [N m]
+    glm::dvec3              start{};      ///< [m]
+    glm::dvec3              end{1, 0, 0}; ///< [m]
+    std::vector<glm::dvec3> centres{};    ///< [m]
+    double                  width = 0;    ///< [m] standard deviation, radius or edge
+    glm::dvec3              low{};        ///< [m] corner of the box
+    glm::dvec3              high{};       ///< [m] opposite corner of the box
 
     [[nodiscard]] double operator()(const glm::dvec3& p) const noexcept;
 };
 
 /// Reads a law from a JSON object, {"law":"linear","from":1,"to":10,"axis":"x"}, or from its short form,
-/// linear:from=1,to=10,axis=x (vectors in the short form: centre=0.1;0;0.2).
+/// linear:from=1,to=10,axis=x (vectors in the short form: centre=0.1;0;0.2, lists of them:
+/// centres=0.1;0;0.2/0.3;0;0.2).
 ///
 /// | key | used by | means |
 /// |-----|---------|-------|
@@ -52,10 +55,13 @@ struct SpatialLaw {
 /// | sigma / radius / edge | gaussian / disc / checker | SpatialLaw::width |
 /// | low, high | box | corners |
 ///
-/// Points have as many coordinates as `space` says.
+/// Points have as many coordinates as `space` says. A checker is counted from `low`. A point on the rim of a disc or a
+/// box, or between two cubes, up to rounding, lies inside, or in the cube that begins there.
 /// \param low,high  corners of the region that the law covers [m]: the plate, or the bounds of the cloud
 /// \throws Error naming the key, what was expected and found, and for an unknown law or key the known ones
 [[nodiscard]] SpatialLaw parseSpatialLaw(std::string_view text, const glm::dvec3& low, const glm::dvec3& high,
+                                         SpatialLaw::Space space);
+[[nodiscard]] SpatialLaw parseSpatialLaw(const JsonObject& object, const glm::dvec3& low, const glm::dvec3& high,
                                          SpatialLaw::Space space);
 
 } // namespace palp

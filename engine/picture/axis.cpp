@@ -13,8 +13,9 @@ namespace {
 constexpr double           kLargest   = 1e100; // beyond it, spans and their squares overflow [any unit]
 constexpr double           kNarrowest = 1e-9; // span per value below which labels would differ past the ninth digit [1]
 constexpr int              kPlainDecades = 6; // more than these read better as powers of ten [1]
-constexpr double           kOnTick       = 1e-9; // an end of the range this close to a tick, in steps, is on it [1]
-constexpr std::string_view kMinus        = "\u2212";
+constexpr int              kLeastPlain = -3, kMostPlain = 4; // decades that read well without a power of ten [1]
+constexpr double           kOnTick = 1e-9; // an end of the range this close to a tick, in steps, is on it [1]
+constexpr std::string_view kMinus  = "\u2212";
 
 std::string fixed(double value, int decimals)
 {
@@ -141,7 +142,7 @@ void Axis::placeLogarithmicTicks(int mostTicks)
 
 void Axis::placeDecadeTicks(int mostTicks, int firstDecade, int lastDecade)
 {
-    const bool plain = lastDecade - firstDecade <= kPlainDecades;
+    const bool plain = firstDecade - exponent_ >= kLeastPlain && lastDecade - exponent_ <= kMostPlain;
     const int  every = (lastDecade - firstDecade) / mostTicks + 1;
     for (int decade = firstDecade; decade <= lastDecade; decade += every) {
         const int shown = decade - exponent_;
@@ -170,9 +171,9 @@ std::string Axis::text(double value) const
 {
     const double number = value / std::pow(10.0, exponent_);
     std::string  text;
-    if (number == 0) {
+    if (std::abs(value) <= kNarrowest * size(range_)) { // such as the rounding error of a place
         text = "0";
-    } else if (const int decade = decadeOf(std::abs(number)); decade < -4 || decade > 6) {
+    } else if (const int decade = decadeOf(std::abs(number)); decade < kLeastPlain || decade > 6) {
         text = fixed(number / std::pow(10.0, decade), 2) + "\u00b7" + powerOfTen(decade);
     } else {
         text = fixed(number, std::max(0, 2 - decade));

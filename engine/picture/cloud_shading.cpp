@@ -10,15 +10,20 @@ namespace {
 
 constexpr Rgb8 kClay = {196, 178, 160}; // of a surface without values
 
-// Running mean over 2 radius + 1 entries of a line, outside counts as zero.
-void boxMean(const float* from, float* to, int count, std::ptrdiff_t stride, int radius)
+// Running mean over 2 radius + 1 entries; outside counts as zero. Works on `lanes` neighbouring lines at once, so that
+// memory is read in order along both directions of a picture.
+void boxMean(const float* from, float* to, int count, std::size_t stride, std::size_t lanes, int radius)
 {
-    double       sum   = 0;
-    const double share = 1.0 / (2 * radius + 1);
+    std::vector<double> sums(lanes, 0.0);
+    const double        share = 1.0 / (2 * radius + 1);
     for (int n = -radius; n < count; ++n) {
-        if (n + radius < count) sum += double(from[(n + radius) * stride]);
-        if (n - radius - 1 >= 0) sum -= double(from[(n - radius - 1) * stride]);
-        if (n >= 0) to[n * stride] = float(share * sum);
+        const int entering = n + radius, leaving = n - radius - 1;
+        if (entering < count)
+            for (std::size_t k = 0; k < lanes; ++k) sums[k] += double(from[std::size_t(entering) * stride + k]);
+        if (leaving >= 0)
+            for (std::size_t k = 0; k < lanes; ++k) sums[k] -= double(from[std::size_t(leaving) * stride + k]);
+        if (n >= 0)
+            for (std::size_t k = 0; k < lanes; ++k) to[std::size_t(n) * stride + k] = float(share * sums[k]);
     }
 }
 
@@ -26,32 +31,40 @@ void boxMean(const float* from, float* to, int count, std::ptrdiff_t stride, int
 void blur(std::vector<float>& field, int width, int height, int radius)
 {
     std::vector<float> other(field.size());
+    const std::size_t  row = std::size_t(width);
     for (int pass = 0; pass < 3; ++pass) {
-        for (int y = 0; y < height; ++y)
-            boxMean(&field[std::size_t(y) * std::size_t(width)], &other[std::size_t(y) * std::size_t(width)], width, 1,
-                    radius);
-        for (int x = 0; x < width; ++x) boxMean(&other[std::size_t(x)], &field[std::size_t(x)], height, width, radius);
+        for (std::size_t y = 0; y < std::size_t(height); ++y)
+            boxMean(&field[y * row], &other[y * row], width, 1, 1, radius);
+        boxMean(other.data(), field.data(), height, row, row, radius);
     }
 }
 
-// How far the surface lies behind the mean of its surroundings, per width of the surroundings: hollows are positive.
+// How far the surface lies behind the mean of its surroundings, per radius of the surroundings: hollows are positive.
 // [1]
-std::vector<float> hollowness(const CloudSurface& surface)
+std::vector<float> hollowness(const CloudSurface& surface, int radius)
 {
-    constexpr double kSurroundings =
-        0.012; // radius of the box mean per side of the picture: a dent of some hundredths [1]
-    const int radius =
-        std::max({3, int(std::lround(kSurroundings * std::max(surface.width, surface.height))), int(surface.spacing)});
-    std::vector<float> depth(surface.samples.size()), weight(surface.samples.size());
-    for (std::size_t n = 0; n < depth.size(); ++n) {
+    constexpr float kSteepest = 0.2F; // facing ratio below which a slope is noise [1]
+    // Mean of depth and of place; the place, because at a border the surroundings lie to one side, and a slope is no
+    // hollow.
+    std::vector<float> weight(surface.samples.size()), depth(weight), x(weight), y(weight);
+    for (std::size_t n = 0; n < weight.size(); ++n) {
         weight[n] = surface.samples[n].coverage;
         depth[n]  = weight[n] * surface.samples[n].depth;
+        x[n]      = weight[n] * float(n % std::size_t(surface.width));
+        y[n]      = weight[n] * float(n / std::size_t(surface.width));
     }
-    blur(depth, surface.width, surface.height, radius);
-    blur(weight, surface.width, surface.height, radius);
-    for (std::size_t n = 0; n < depth.size(); ++n)
-        depth[n] =
-            surface.samples[n].coverage > 0 ? (surface.samples[n].depth - depth[n] / weight[n]) / float(radius) : 0;
+    for (std::vector<float>* field : {&weight, &depth, &x, &y}) blur(*field, surface.width, surface.height, radius);
+    for (std::size_t n = 0; n < depth.size(); ++n) {
+        const CloudSurface::Sample& sample = surface.samples[n];
+        if (sample.coverage <= 0) {
+            depth[n] = 0;
+            continue;
+        }
+        const float aside = x[n] / weight[n] - float(n % std::size_t(surface.width));
+        const float below = y[n] / weight[n] - float(n / std::size_t(surface.width));
+        const float slope = (sample.normal.x * aside - sample.normal.y * below) / std::max(kSteepest, sample.normal.z);
+        depth[n]          = (sample.depth + slope - depth[n] / weight[n]) / float(radius);
+    }
     return depth;
 }
 
@@ -63,19 +76,38 @@ std::uint8_t mixed(std::uint8_t colour, float brightness, float coverage)
 
 } // namespace
 
+Rgb8 surfaceColour(ColourMap map, double position)
+{
+    constexpr double kWhite = 0.35; // share of white: the dark end of a map would swallow the shading [1]
+    const Rgb8       colour = colourAt(map, position);
+    const auto lightened    = [](std::uint8_t c) { return std::uint8_t(std::lround((1 - kWhite) * c + kWhite * 255)); };
+    return {lightened(colour.red), lightened(colour.green), lightened(colour.blue)};
+}
+
 std::vector<float> cloudShading(const CloudSurface& surface)
 {
     const glm::vec3 light =
-        glm::normalize(glm::vec3(-0.50F, 0.60F, 0.72F));                  // from the upper left, as in printed relief
-    constexpr float kAmbient = 0.42F, kDiffuse = 0.63F;                   // of the light [1]
-    constexpr float kHollow = 1.1F, kDarkest = -0.45F, kLightest = 0.12F; // gain and bounds of the depth cue [1]
+        glm::normalize(glm::vec3(-0.55F, 0.60F, 0.62F)); // from the upper left, as in printed relief
+    constexpr float kAmbient = 0.50F, kDiffuse = 0.58F;  // of the light [1]
+    constexpr float kWrap   = 0.3F; // how far light reaches around the object, so that its far side is not flat [1]
+    constexpr float kHollow = 1.3F, kDarkest = -0.32F, kLightest = 0.15F; // gain and bounds of the depth cue [1]
+    constexpr float kScales[] = {0.012F,
+                                 0.045F}; // radii of the surroundings per side of the picture: small dents, large [1]
 
-    std::vector<float> brightness = hollowness(surface);
+    std::vector<float> hollow(surface.samples.size());
+    for (float scale : kScales) {
+        const int radius =
+            std::max({3, int(scale * float(std::max(surface.width, surface.height))), int(surface.spacing)});
+        const auto part = hollowness(surface, radius);
+        for (std::size_t n = 0; n < hollow.size(); ++n) hollow[n] += part[n];
+    }
+    std::vector<float> brightness(surface.samples.size());
     for (std::size_t n = 0; n < brightness.size(); ++n) {
         const glm::vec3& normal = surface.samples[n].normal;
         // Facing ratio squared: at grazing slopes the depth differs for other reasons than a hollow.
-        const float cue = std::clamp(-kHollow * normal.z * normal.z * brightness[n], kDarkest, kLightest);
-        brightness[n]   = (kAmbient + kDiffuse * std::max(0.0F, glm::dot(normal, light))) * (1 + cue);
+        const float cue = std::clamp(-kHollow * normal.z * normal.z * hollow[n], kDarkest, kLightest);
+        const float lit = std::max(0.0F, (glm::dot(normal, light) + kWrap) / (1 + kWrap));
+        brightness[n]   = (kAmbient + kDiffuse * lit * lit) * (1 + cue);
     }
     return brightness;
 }
@@ -88,7 +120,7 @@ Image cloudImage(const CloudSurface& surface, std::optional<ColourMap> map)
         const CloudSurface::Sample& sample = surface.samples[n];
         if (sample.coverage <= 0) continue;
         Rgb8 colour = map ? kUndefinedColour : kClay;
-        if (map && sample.defined) colour = colourAt(*map, double(sample.value));
+        if (map && sample.defined) colour = surfaceColour(*map, double(sample.value));
         image.pixels[n] = {mixed(colour.red, brightness[n], sample.coverage),
                            mixed(colour.green, brightness[n], sample.coverage),
                            mixed(colour.blue, brightness[n], sample.coverage)};

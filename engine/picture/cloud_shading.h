@@ -13,8 +13,12 @@ namespace palp {
 /// \source the second part after Luft et al. 2006, "Image enhancement by unsharp masking the depth buffer"
 [[nodiscard]] std::vector<float> cloudShading(const CloudSurface& surface);
 
+/// The colour of a value on a surface that faces the light: that of the map, lightened so that shading shows on it.
+/// \param position  along the map, 0 to 1 [1]
+[[nodiscard]] Rgb8 surfaceColour(ColourMap map, double position);
+
 /// The shaded surface in the colours of its values, on white.
-/// \param map  turns values from 0 to 1 into colours; nullopt draws everything in one neutral colour
+/// \param map  turns values from 0 to 1 into surfaceColour(); nullopt draws everything in one neutral colour
 [[nodiscard]] Image cloudImage(const CloudSurface& surface, std::optional<ColourMap> map);
 
 } // namespace palp

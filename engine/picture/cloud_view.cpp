@@ -52,27 +52,35 @@ CloudCamera cameraOf(std::span<const glm::dvec3> positions, const CloudViewSetti
     camera.right     = glm::normalize(glm::cross(s.up, camera.toEye));
     camera.up        = glm::cross(camera.toEye, camera.right);
     double halfWidth = kDegenerateWidth; // [m]
+    // Distance of the eye from the centre per half width of the picture; infinite when orthographic. [1]
+    const double reach =
+        s.fieldOfView > 0 ? std::max(1.0, double(s.height) / s.width) / std::tan(s.fieldOfView / 2) : INFINITY;
     if (s.window) {
         camera.centre = s.window->centre;
         halfWidth     = s.window->halfWidth;
     } else {
-        glm::dvec3 low(INFINITY), high(-INFINITY); // in axes of the camera
+        const auto inAxes = [&](const glm::dvec3& p) {
+            return glm::dvec3(glm::dot(p, camera.right), glm::dot(p, camera.up), glm::dot(p, camera.toEye));
+        };
+        glm::dvec3 low(INFINITY), high(-INFINITY);
+        for (const glm::dvec3& p : positions)
+            if (finitePoint(p)) low = glm::min(low, inAxes(p)), high = glm::max(high, inAxes(p));
+        const glm::dvec3 middle = 0.5 * (low + high);
+        camera.centre           = middle.x * camera.right + middle.y * camera.up + middle.z * camera.toEye;
+        // A point at (x, z) is drawn at x reach H / (reach H - z) of the half width H, which is to be at most H
+        // kFilled.
+        double needed = 0;
         for (const glm::dvec3& p : positions) {
             if (!finitePoint(p)) continue;
-            const glm::dvec3 q(glm::dot(p, camera.right), glm::dot(p, camera.up), glm::dot(p, camera.toEye));
-            low = glm::min(low, q), high = glm::max(high, q);
+            const glm::dvec3 q = inAxes(p) - middle;
+            needed =
+                std::max(needed, std::max(std::abs(q.x), std::abs(q.y) * s.width / s.height) / kFilled + q.z / reach);
         }
-        const glm::dvec3 middle = 0.5 * (low + high), half = 0.5 * (high - low);
-        camera.centre       = middle.x * camera.right + middle.y * camera.up + middle.z * camera.toEye;
-        const double needed = std::max(half.x, half.y * s.width / s.height) / kFilled;
         // The extents of coinciding points are rounding errors of their coordinates.
-        if (needed > 1e-12 * (glm::length(middle) + glm::length(half))) halfWidth = needed;
-        // In perspective the near half is magnified; the depth of the cloud is added to its width on the safe side.
-        if (s.fieldOfView > 0) halfWidth += half.z * std::tan(s.fieldOfView / 2);
+        if (needed > 1e-12 * glm::length(middle)) halfWidth = needed;
     }
     camera.pixelsPerMetre = 0.5 * s.width / halfWidth;
-    if (s.fieldOfView > 0)
-        camera.eyeDistance = halfWidth * std::max(1.0, double(s.height) / s.width) / std::tan(s.fieldOfView / 2);
+    if (s.fieldOfView > 0) camera.eyeDistance = halfWidth * reach;
     return camera;
 }
 
@@ -130,9 +138,7 @@ void drawArrow(SvgDrawing& svg, glm::dvec2 from, glm::dvec2 to, const std::strin
     const glm::dvec2 neck  = to - kHead * along;
     svg.line(from, neck, {"#ffffff", 5});
     svg.line(from, neck, {colour, 2.5});
-    svg.path("M" + svgPoint(to) + "L" + svgPoint(neck + 0.45 * kHead * across) + "L" +
-                 svgPoint(neck - 0.45 * kHead * across) + "Z",
-             colour, {"#ffffff", 1});
+    svg.path(SvgPath({to, neck + 0.45 * kHead * across, neck - 0.45 * kHead * across}).close(), colour, {"#ffffff", 1});
 }
 
 void drawMarkers(SvgDrawing& svg, const CloudViewSettings& s, const CloudCamera& camera, const CloudSurface& surface,
@@ -243,7 +249,8 @@ std::string cloudViewSvg(std::span<const glm::dvec3> positions, std::span<const 
         drawWorldAxes(svg, camera, corner + glm::dvec2(48, size.y - 48));
         svg.endClip();
         if (shown) {
-            drawColourBar(svg, axis, settings.map, settings.quantity, found,
+            const auto colour = [&](double position) { return surfaceColour(settings.map, position); };
+            drawColourBar(svg, {&axis, colour, settings.quantity, found},
                           corner + glm::dvec2(size.x + 10, 0.5 * (size.y - height)), height);
             width = kSide + size.x + 10 + kColourBarWidth;
         }

@@ -1,18 +1,24 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <string_view>
 
 #include "engine/picture/axis.h"
-#include "engine/picture/colour_map.h"
 #include "engine/picture/svg.h"
 
 namespace palp {
 
 inline constexpr double kColourBarWidth = 100; ///< with its labels [px]
 
-/// An upright colour bar with ticks and title. An arrow head at an end says that values go beyond it.
-/// \param values  the values shown, nullopt for none
-void drawColourBar(SvgDrawing& svg, const Axis& axis, ColourMap map, std::string_view quantity,
-                   std::optional<ValueRange> values, glm::dvec2 corner, double height);
+/// What a colour bar explains.
+struct ColourBar {
+    const Axis*                 axis = nullptr;
+    std::function<Rgb8(double)> colour;   ///< of a position along the axis, 0 to 1 [1]
+    std::string_view            quantity; ///< title, without the unit
+    std::optional<ValueRange>   values;   ///< found in the data; beyond the axis they get an arrow head
+};
+
+/// Draws an upright colour bar with ticks and title.
+void drawColourBar(SvgDrawing& svg, const ColourBar& bar, glm::dvec2 corner, double height);
 
 } // namespace palp

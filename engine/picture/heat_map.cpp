@@ -5,8 +5,8 @@
 
 #include "engine/core/contract.h"
 #include "engine/picture/colour_bar.h"
-#include "engine/picture/frame.h"
 #include "engine/picture/legend.h"
+#include "engine/picture/plot_frame.h"
 
 namespace palp {
 namespace {
@@ -91,7 +91,7 @@ Image smoothImage(const NodeField& field, const Axis& axis, ColourMap map)
     return image;
 }
 
-Frame frameOf(const HeatMapSettings& s, double top)
+PlotFrame frameOf(const HeatMapSettings& s, double top)
 {
     const PlateGrid& g = s.grid;
     const double     border =
@@ -107,15 +107,14 @@ Frame frameOf(const HeatMapSettings& s, double top)
             Axis(z, Scale::linear, "m", mostTicks(size.y))};
 }
 
-std::string placeText(const Frame& frame, MapPoint p)
+std::string placeText(const PlotFrame& frame, MapPoint p)
 {
-    const std::string x = frame.x.text(p.x), z = frame.y.text(p.z);
-    return "(" + x + ", " + z + ")";
+    return "x = " + frame.x.text(p.x) + ", z = " + frame.y.text(p.z);
 }
 
 void drawContactCross(SvgDrawing& svg, glm::dvec2 at)
 {
-    drawSymbol(svg, Symbol::plus, at, 8, "#000000");
+    drawSymbol(svg, Symbol::plus, at, 6.5, "#000000");
 }
 
 void drawRing(SvgDrawing& svg, glm::dvec2 at, double radius)
@@ -124,28 +123,35 @@ void drawRing(SvgDrawing& svg, glm::dvec2 at, double radius)
     svg.circle(at, radius, "none", {"#000000", 1.5, "5 3"});
 }
 
-void drawDots(SvgDrawing& svg, const std::string& moves)
+void drawDots(SvgDrawing& svg, const SvgPath& dots)
 {
-    svg.path(moves, "none", {"#ffffff", 3});
-    svg.path(moves, "none", {"#000000", 1.6});
+    svg.path(dots, "none", {"#ffffff", 3});
+    svg.path(dots, "none", {"#000000", 1.6});
 }
 
-void drawOverlays(SvgDrawing& svg, const Frame& frame, const HeatMapSettings& s, std::vector<LegendEntry>& legend)
+bool shows(const PlotFrame& frame, MapPoint p)
+{
+    const auto within = [](const Axis& axis, double v) { return v >= axis.range().low && v <= axis.range().high; };
+    return within(frame.x, p.x) && within(frame.y, p.z); // false for NaN
+}
+
+void drawOverlays(SvgDrawing& svg, const PlotFrame& frame, const HeatMapSettings& s, std::vector<LegendEntry>& legend)
 {
     if (!s.points.empty()) {
-        std::string moves;
+        SvgPath dots;
         for (MapPoint p : s.points) {
-            if (!std::isfinite(p.x) || !std::isfinite(p.z)) continue;
-            const glm::dvec2 at = frame.pixel(p.x, p.z);
-            if (glm::any(glm::lessThan(at, frame.corner)) || glm::any(glm::greaterThan(at, frame.corner + frame.size)))
-                continue;
-            moves += "M" + svgPoint(at) + "h0";
+            if (!shows(frame, p)) continue;
+            dots.dotAt(frame.pixel(p.x, p.z));
         }
-        if (!moves.empty()) drawDots(svg, moves);
+        drawDots(svg, dots);
         legend.push_back({std::to_string(s.points.size()) + " points",
-                          [](SvgDrawing& to, glm::dvec2 at) { drawDots(to, "M" + svgPoint(at) + "h0"); }});
+                          [](SvgDrawing& to, glm::dvec2 at) { drawDots(to, SvgPath().dotAt(at)); }});
     }
     if (!s.contact) return;
+    if (!shows(frame, *s.contact)) {
+        legend.push_back({"contact: outside", drawContactCross});
+        return;
+    }
     const glm::dvec2 at = frame.pixel(s.contact->x, s.contact->z);
     if (s.footprintRadius > 0) {
         drawRing(svg, at, s.footprintRadius * frame.size.x / (frame.x.range().high - frame.x.range().low));
@@ -156,17 +162,22 @@ void drawOverlays(SvgDrawing& svg, const Frame& frame, const HeatMapSettings& s,
     legend.push_back({"contact", drawContactCross});
 }
 
-void drawExtremes(SvgDrawing& svg, const Frame& frame, const HeatMapSettings& s, const FieldFacts& facts,
+void drawExtremes(SvgDrawing& svg, const PlotFrame& frame, const HeatMapSettings& s, const FieldFacts& facts,
                   const Axis& values, std::vector<LegendEntry>& legend)
 {
-    const auto mark = [&](const Extreme& e, Symbol symbol, const std::string& name) {
-        const MapPoint p = {s.corner.x + e.i * s.grid.spacingX, s.corner.z + e.j * s.grid.spacingZ};
-        drawSymbol(svg, symbol, frame.pixel(p.x, p.z), 6, "#000000");
-        legend.push_back({name + " " + values.text(e.value) + " at " + placeText(frame, p),
-                          [symbol](SvgDrawing& to, glm::dvec2 at) { drawSymbol(to, symbol, at, 5.5, "#000000"); }});
+    constexpr double kAbove =
+        14; // the greatest value is often at the contact: its triangle points there from outside [px]
+    const auto mark = [&](const Extreme& e, Symbol symbol, double above, const std::string& name) {
+        const MapPoint   p    = {s.corner.x + e.i * s.grid.spacingX, s.corner.z + e.j * s.grid.spacingZ};
+        const glm::dvec2 at   = frame.pixel(p.x, p.z);
+        const bool       flip = above > 0 && at.y - above < frame.corner.y;
+        drawSymbol(svg, flip ? Symbol::triangleUp : symbol, at + glm::dvec2(0, flip ? above : -above), 5.5, "#000000");
+        legend.push_back(
+            {name + " " + values.text(e.value) + " at " + placeText(frame, p),
+             [symbol](SvgDrawing& to, glm::dvec2 centre) { drawSymbol(to, symbol, centre, 5, "#000000"); }});
     };
-    mark(facts.most, Symbol::triangleUp, "max");
-    mark(facts.least, Symbol::triangleDown, "min");
+    mark(facts.most, Symbol::triangleDown, kAbove, "max");
+    mark(facts.least, Symbol::diamond, 0, "min");
 }
 
 void addSwatch(std::vector<LegendEntry>& legend, const std::string& text, Rgb8 colour, bool hatched)
@@ -191,11 +202,11 @@ std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings)
     const FieldFacts                facts = factsOf(field, settings.scale);
     const std::optional<ValueRange> found =
         facts.any() ? std::optional(ValueRange{facts.least.value, facts.most.value}) : std::nullopt;
-    const double top       = settings.title.empty() ? 18 : 42;
-    const Frame  frame     = frameOf(settings, top);
-    const double barHeight = std::max(frame.size.y, kShortest);
-    const Axis   values(settings.range.value_or(found.value_or(ValueRange{1, 2})), settings.scale, settings.unit,
-                        std::clamp(int(barHeight / 45), 2, 9));
+    const double    top       = settings.title.empty() ? 18 : 42;
+    const PlotFrame frame     = frameOf(settings, top);
+    const double    barHeight = std::max(frame.size.y, kShortest);
+    const Axis      values(settings.range.value_or(found.value_or(ValueRange{1, 2})), settings.scale, settings.unit,
+                           std::clamp(int(barHeight / 45), 2, 9));
     std::vector<LegendEntry> legend;
     SvgDrawing               svg;
     if (!settings.title.empty()) svg.text({kFrameLeft, 25}, settings.title, {.size = 15, .bold = true});
@@ -204,14 +215,14 @@ std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings)
               settings.nodeStyle == NodeStyle::cells ? cellsImage(field, values, settings.map)
                                                      : smoothImage(field, values, settings.map));
     svg.beginClip(frame.corner, frame.size);
+    drawOverlays(svg, frame, settings, legend);
+    svg.endClip();
+    drawFrame(svg, frame, "x", "z");
     if (facts.constant())
         addSwatch(legend, "constant " + values.text(facts.most.value),
                   colourAt(settings.map, values.position(facts.most.value)), false);
     else if (facts.any() && settings.markExtremes)
         drawExtremes(svg, frame, settings, facts, values, legend);
-    drawOverlays(svg, frame, settings, legend);
-    svg.endClip();
-    drawFrame(svg, frame, "x", "z");
     if (facts.undrawable > 0)
         addSwatch(legend,
                   std::to_string(facts.undrawable) +
@@ -219,7 +230,8 @@ std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings)
                   {}, true);
 
     const double barLeft = frame.corner.x + frame.size.x + 24;
-    drawColourBar(svg, values, settings.map, settings.quantity, found, {barLeft, top}, barHeight);
+    const auto   colour  = [&](double position) { return colourAt(settings.map, position); };
+    drawColourBar(svg, {&values, colour, settings.quantity, found}, {barLeft, top}, barHeight);
     const double width  = std::max(barLeft + kColourBarWidth, kFrameLeft + textWidth(settings.title, 16) + 10);
     double       bottom = top + std::max(frame.size.y + kFrameBelow, barHeight) + 6;
     bottom += drawLegend(svg, legend, {kFrameLeft - kLegendSampleWidth / 2, bottom}, width - kFrameLeft);

@@ -31,7 +31,7 @@ struct HeatMapSettings {
     NodeStyle                 nodeStyle = NodeStyle::cells;
     PlateGrid                 grid;                ///< where the nodes lie
     MapPoint                  corner;              ///< position of node (0, 0)
-    bool                      markExtremes = true; ///< triangles at the smallest and the largest value
+    bool                      markExtremes = true; ///< a triangle at the largest value, a diamond at the smallest
     std::optional<MapPoint>   contact;             ///< a cross
     double                    footprintRadius = 0; ///< of a circle around the contact [m]; 0 is none
     std::vector<MapPoint>     points;              ///< dots, such as the projected points of the cloud

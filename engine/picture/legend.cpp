@@ -7,18 +7,18 @@ namespace palp {
 void drawSymbol(SvgDrawing& svg, Symbol symbol, glm::dvec2 at, double radius, std::string_view colour)
 {
     const auto corners = [&](std::initializer_list<glm::dvec2> points) {
-        std::string commands;
-        for (glm::dvec2 p : points) commands += (commands.empty() ? "M" : "L") + svgPoint(at + radius * p);
-        return commands + "Z";
+        SvgPath outline;
+        for (glm::dvec2 p : points) outline.lineTo(at + radius * p);
+        return outline.close();
     };
-    const auto strokes = [&](const std::string& commands) {
-        svg.path(commands, "none", {"#ffffff", 0.45 * radius + 2});
-        svg.path(commands, "none", {std::string(colour), 0.45 * radius});
+    const auto strokes = [&](glm::dvec2 a, glm::dvec2 b) {
+        const SvgPath bars =
+            SvgPath().moveTo(at - radius * a).lineTo(at + radius * a).moveTo(at - radius * b).lineTo(at + radius * b);
+        svg.path(bars, "none", {"#ffffff", 0.45 * radius + 2});
+        svg.path(bars, "none", {std::string(colour), 0.45 * radius});
     };
-    const auto shape = [&](const std::string& commands) { svg.path(commands, colour, {"#ffffff", 1}); };
-    const auto bar   = [&](glm::dvec2 end) {
-        return "M" + svgPoint(at - radius * end) + "L" + svgPoint(at + radius * end);
-    };
+    const auto shape = [&](const SvgPath& outline) { svg.path(outline, colour, {"#ffffff", 1}); };
+
     switch (symbol) {
     case Symbol::circle:
         return svg.circle(at, radius, colour, {"#ffffff", 1});
@@ -31,9 +31,9 @@ void drawSymbol(SvgDrawing& svg, Symbol symbol, glm::dvec2 at, double radius, st
     case Symbol::diamond:
         return shape(corners({{0, -1.25}, {1.25, 0}, {0, 1.25}, {-1.25, 0}}));
     case Symbol::cross:
-        return strokes(bar({0.85, 0.85}) + bar({0.85, -0.85}));
+        return strokes({0.85, 0.85}, {0.85, -0.85});
     case Symbol::plus:
-        return strokes(bar({1.1, 0}) + bar({0, 1.1}));
+        return strokes({1.1, 0}, {0, 1.1});
     }
 }
 

@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include "engine/core/contract.h"
 #include "engine/picture/colour_map.h"
-#include "engine/picture/frame.h"
 #include "engine/picture/legend.h"
+#include "engine/picture/plot_frame.h"
 
 namespace palp {
 namespace {
@@ -56,7 +59,7 @@ ValueRange rangeOfAll(std::span<const PlotSeries> series, const PlotAxis& axis, 
 }
 
 // The pixels of a series in pieces, parted at points that cannot be drawn.
-std::vector<std::vector<glm::dvec2>> piecesOf(const PlotSeries& s, const Frame& frame)
+std::vector<std::vector<glm::dvec2>> piecesOf(const PlotSeries& s, const PlotFrame& frame)
 {
     constexpr double                     kFar = 1e6; // far outside any picture, near enough to be a coordinate [px]
     std::vector<std::vector<glm::dvec2>> pieces(1);
@@ -69,7 +72,7 @@ std::vector<std::vector<glm::dvec2>> piecesOf(const PlotSeries& s, const Frame& 
     return pieces;
 }
 
-std::size_t undrawableIn(const PlotSeries& s, const Frame& frame)
+std::size_t undrawableIn(const PlotSeries& s, const PlotFrame& frame)
 {
     std::size_t count = 0;
     for (std::size_t n = 0; n < s.x.size(); ++n)
@@ -96,10 +99,10 @@ std::vector<glm::dvec2> thinned(const std::vector<glm::dvec2>& points)
 
 void drawLine(SvgDrawing& svg, const std::vector<glm::dvec2>& points, const Look& look)
 {
-    std::string commands;
-    for (glm::dvec2 p : thinned(points)) commands += (commands.empty() ? "M" : "L") + svgPoint(p);
-    if (points.size() == 1) commands += "h0"; // a lone point between gaps shows as a dot
-    if (!commands.empty()) svg.path(commands, "none", {look.colour, look.width, look.dash});
+    SvgPath path;
+    for (glm::dvec2 p : thinned(points)) path.lineTo(p);
+    if (points.size() == 1) path.dotAt(points.front()); // a lone point between gaps shows as a dot
+    if (!points.empty()) svg.path(path, "none", {look.colour, look.width, look.dash});
 }
 
 void drawMarkers(SvgDrawing& svg, const std::vector<glm::dvec2>& points, const Look& look, double spacing,
@@ -114,7 +117,7 @@ void drawMarkers(SvgDrawing& svg, const std::vector<glm::dvec2>& points, const L
     }
 }
 
-void drawSeries(SvgDrawing& svg, const PlotSeries& s, const Look& look, const Frame& frame, std::size_t number)
+void drawSeries(SvgDrawing& svg, const PlotSeries& s, const Look& look, const PlotFrame& frame, std::size_t number)
 {
     constexpr std::size_t kFew    = 40; // markers of one line that are still told apart [1]
     const bool            dense   = s.style == SeriesStyle::lineAndMarkers && s.x.size() > kFew;
@@ -149,11 +152,11 @@ std::string linePlotSvg(std::span<const PlotSeries> series, const LinePlotSettin
                                                   std::to_string(s.y.size()) + " y");
     PALP_EXPECT(settings.width >= 100 && settings.height >= 100, "a plot needs 100 px for its labels");
 
-    Frame                    frame{{kFrameLeft, 0},
-                {settings.width, settings.height},
-                Axis(rangeOfAll(series, settings.x, &PlotSeries::x), settings.x.scale, settings.x.unit,
+    PlotFrame                frame{{kFrameLeft, 0},
+                    {settings.width, settings.height},
+                    Axis(rangeOfAll(series, settings.x, &PlotSeries::x), settings.x.scale, settings.x.unit,
                                         int(settings.width / 70)),
-                Axis(rangeOfAll(series, settings.y, &PlotSeries::y), settings.y.scale, settings.y.unit,
+                    Axis(rangeOfAll(series, settings.y, &PlotSeries::y), settings.y.scale, settings.y.unit,
                                         int(settings.height / 45) + 1)};
     std::vector<Look>        looks;
     std::vector<LegendEntry> legend;

@@ -1,5 +1,7 @@
 #pragma once
+#include <initializer_list>
 #include <string>
+
 #include <string_view>
 
 #include <glm/vec2.hpp>
@@ -26,6 +28,23 @@ struct TextStyle {
     bool        halo    = false; ///< white edge, for text on top of a picture
 };
 
+/// A line from point to point, perhaps in several pieces.
+class SvgPath {
+public:
+    SvgPath() = default;
+    explicit SvgPath(std::initializer_list<glm::dvec2> corners);
+    SvgPath& moveTo(glm::dvec2 point);
+    /// Starts the path when it is empty.
+    SvgPath& lineTo(glm::dvec2 point);
+    SvgPath& dotAt(glm::dvec2 point);
+    SvgPath& close();
+
+    [[nodiscard]] const std::string& commands() const noexcept { return commands_; }
+
+private:
+    std::string commands_; ///< as of the attribute "d"
+};
+
 /// Builds an SVG picture from top to bottom. Coordinates are pixels, y down. Every text is escaped, every number is
 /// written without the locale, and no element has an id, so that many pictures fit on one HTML page.
 class SvgDrawing {
@@ -33,8 +52,7 @@ public:
     void line(glm::dvec2 from, glm::dvec2 to, const Stroke& stroke);
     void rectangle(glm::dvec2 corner, glm::dvec2 size, std::string_view fill, const Stroke& stroke = {});
     void circle(glm::dvec2 centre, double radius, std::string_view fill, const Stroke& stroke = {});
-    /// \param commands  as of the attribute "d"
-    void path(std::string_view commands, std::string_view fill, const Stroke& stroke);
+    void path(const SvgPath& path, std::string_view fill, const Stroke& stroke);
     void text(glm::dvec2 at, std::string_view content, const TextStyle& style = {});
     /// The picture, stretched to `size`; its pixels stay sharp when it is enlarged.
     void image(glm::dvec2 corner, glm::dvec2 size, const Image& image);
@@ -52,8 +70,6 @@ private:
 
 /// A number for SVG with at most two decimals: "12.5".
 [[nodiscard]] std::string svgNumber(double value);
-/// "x y" for a path.
-[[nodiscard]] std::string svgPoint(glm::dvec2 point);
 
 /// How wide a text comes out, roughly: the font is the viewer's. [px]
 [[nodiscard]] double textWidth(std::string_view text, double size);

@@ -1,0 +1,226 @@
+#include "engine/plate/problem_file.h"
+
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <sstream>
+#include <string>
+
+#include "engine/core/file.h"
+#include "engine/core/json_object.h"
+#include "engine/core/npy.h"
+#include "engine/core/spatial_law.h"
+#include "engine/plate/load.h"
+
+namespace palp {
+namespace {
+
+constexpr int kFewestCells = 4;    // [1] a side, what whyUnsolvable asks for
+constexpr int kMostCells   = 4096; // [1] a side: one field of nodes is then 134 MB
+
+/// The largest problem file that is read [bytes]: some 400 000 probes.
+constexpr std::size_t kLargestFile = std::size_t(16) << 20;
+
+std::string textOf(const std::filesystem::path& path)
+{
+    std::ifstream in = openForReading(path);
+    std::string   text(kLargestFile + 1, '\0');
+    in.read(text.data(), std::streamsize(text.size()));
+    text.resize(std::size_t(in.gcount()));
+    if (text.size() > kLargestFile)
+        throw Error(path.string() + ": longer than " + std::to_string(kLargestFile) +
+                    " bytes; expected a problem file, with grids in .npy files beside it");
+    return text;
+}
+
+PlateGrid gridOf(double sizeX, double sizeZ, int cellsX, int cellsZ)
+{
+    return {cellsX, cellsZ, sizeX / cellsX, sizeZ / cellsZ};
+}
+
+PlateGrid readGrid(const JsonObject& problem)
+{
+    const std::vector<double> size = problem.numbers("size", 2);
+    if (!(size[0] > 0 && size[1] > 0)) problem.refuse("size", "two positive lengths [m]");
+    const std::vector<int> cells = problem.wholeNumbers("cells", 2, kFewestCells, kMostCells);
+    return gridOf(size[0], size[1], cells[0], cells[1]);
+}
+
+PlateGrid refined(const PlateGrid& grid, int cells, const std::string& name)
+{
+    const auto refuse = [&](const std::string& side, double found) {
+        std::ostringstream text;
+        text << name << ": --cells: expected " << kFewestCells << " to " << kMostCells << " cells along " << side
+             << ", found " << found << " (" << cells << " along x, in proportion to the file's " << grid.cellsX << " x "
+             << grid.cellsZ << ")";
+        throw Error(text.str());
+    };
+    const double cellsZ = std::round(double(grid.cellsZ) * cells / grid.cellsX);
+    if (cells < kFewestCells || cells > kMostCells) refuse("x", cells);
+    if (cellsZ < kFewestCells || cellsZ > kMostCells) refuse("z", cellsZ);
+    return gridOf(grid.sizeX(), grid.sizeZ(), cells, int(cellsZ));
+}
+
+Edge readEdge(const JsonObject& edges, std::string_view side)
+{
+    if (!edges.has(side)) return Edge::clamped;
+    const std::string name = edges.text(side);
+    if (name == "clamped") return Edge::clamped;
+    if (name == "supported") return Edge::supported;
+    if (name == "free") return Edge::free;
+    edges.refuse(side, "\"clamped\", \"supported\" or \"free\"");
+}
+
+PlateEdges readEdges(const JsonObject& problem)
+{
+    if (!problem.has("edges")) return {};
+    const JsonObject edges = problem.object("edges");
+    edges.allowOnly({"x0", "x1", "z0", "z1"});
+    return {readEdge(edges, "x0"), readEdge(edges, "x1"), readEdge(edges, "z0"), readEdge(edges, "z1")};
+}
+
+/// What laws of a file need to become values at nodes.
+struct Setting {
+    std::filesystem::path folder;    ///< where paths in the file start
+    PlateGrid             fileGrid;  ///< of the grids the file names
+    PlateGrid             solveGrid; ///< the one that is solved on
+};
+
+/// The node values that {"law": "grid", "file": ...} names, on the file's own grid.
+NodeField readField(const JsonObject& law, const Setting& setting)
+{
+    law.allowOnly({"law", "file"});
+    const std::filesystem::path path  = setting.folder / law.text("file");
+    NodeField                   field = readNpy(path);
+    if (field.on(setting.fileGrid)) return field;
+    std::ostringstream text;
+    text << law.where() << ": " << path.string() << ": expected shape (" << setting.fileGrid.nodesX() << ", "
+         << setting.fileGrid.nodesZ() << "), one value per node (cells + 1), found (" << field.nodesX() << ", "
+         << field.nodesZ() << ")";
+    throw Error(text.str());
+}
+
+NodeField resampled(const NodeField& given, const Setting& setting)
+{
+    if (setting.solveGrid == setting.fileGrid) return given;
+    const double stepX = setting.solveGrid.spacingX, stepZ = setting.solveGrid.spacingZ;
+    NodeField    field(setting.solveGrid);
+    for (int i = 0; i < field.nodesX(); ++i)
+        for (int j = 0; j < field.nodesZ(); ++j)
+            field(i, j) = interpolate(setting.fileGrid, given, i * stepX, j * stepZ);
+    return field;
+}
+
+/// Before interpolation, which could hide a bad node.
+void expectPositive(const NodeField& rigidity, const std::string& where)
+{
+    for (int i = 0; i < rigidity.nodesX(); ++i)
+        for (int j = 0; j < rigidity.nodesZ(); ++j)
+            if (!(rigidity(i, j) > 0 && std::isfinite(rigidity(i, j)))) {
+                std::ostringstream text;
+                text << where << ": expected positive, finite values, found " << rigidity(i, j) << " N m at node [" << i
+                     << ", " << j << "]";
+                throw Error(text.str());
+            }
+}
+
+NodeField readRigidity(const JsonObject& law, const Setting& setting)
+{
+    if (law.text("law") == "grid") {
+        const NodeField given = readField(law, setting);
+        expectPositive(given, law.where());
+        return resampled(given, setting);
+    }
+    const PlateGrid& grid = setting.solveGrid;
+    const SpatialLaw rule = parseSpatialLaw(law, {}, {grid.sizeX(), 0, grid.sizeZ()}, SpatialLaw::Space::plane);
+    NodeField        rigidity(grid);
+    for (int i = 0; i < grid.nodesX(); ++i)
+        for (int j = 0; j < grid.nodesZ(); ++j) rigidity(i, j) = rule({i * grid.spacingX, 0, j * grid.spacingZ});
+    expectPositive(rigidity, law.where());
+    return rigidity;
+}
+
+bool isOnPlate(const PlateGrid& grid, const std::vector<double>& place)
+{
+    return place[0] >= 0 && place[0] <= grid.sizeX() && place[1] >= 0 && place[1] <= grid.sizeZ();
+}
+
+std::string sizeText(const PlateGrid& grid)
+{
+    std::ostringstream text;
+    text << "a place [x, z] on the plate, x in [0, " << grid.sizeX() << "], z in [0, " << grid.sizeZ() << "] m";
+    return text.str();
+}
+
+/// A place on the plate.
+std::vector<double> readPlace(const JsonObject& object, std::string_view key, const PlateGrid& grid)
+{
+    std::vector<double> place = object.numbers(key, 2);
+    if (!isOnPlate(grid, place)) object.refuse(key, sizeText(grid));
+    return place;
+}
+
+NodeField readLoad(const JsonObject& load, const Setting& setting)
+{
+    const PlateGrid&  grid = setting.solveGrid;
+    const std::string law  = load.text("law");
+    if (law == "uniform") {
+        load.allowOnly({"law", "pressure"});
+        return uniformLoad(grid, load.number("pressure"));
+    }
+    if (law == "point") {
+        load.allowOnly({"law", "force", "at"});
+        const std::vector<double> at = readPlace(load, "at", grid);
+        return pointLoad(grid, load.number("force"), at[0], at[1]);
+    }
+    if (law == "gaussian") {
+        load.allowOnly({"law", "force", "centre", "sigma"});
+        const std::vector<double> centre = readPlace(load, "centre", grid);
+        return gaussianLoad(grid, load.number("force"), centre[0], centre[1], load.positiveNumber("sigma"));
+    }
+    if (law == "grid") return gridLoad(grid, resampled(readField(load, setting), setting));
+    load.refuse("law", "point, uniform, gaussian or grid");
+}
+
+std::vector<Probe> readProbes(const JsonObject& problem, const PlateGrid& grid)
+{
+    std::vector<Probe> probes;
+    if (!problem.has("probes")) return probes;
+    for (const std::vector<double>& place : problem.rows("probes", 2)) {
+        if (!isOnPlate(grid, place)) {
+            std::ostringstream text;
+            text << problem.where() << ": key \"probes\": entry " << probes.size() << ": expected " << sizeText(grid)
+                 << ", found [" << place[0] << ", " << place[1] << "]";
+            throw Error(text.str());
+        }
+        probes.push_back({place[0], place[1]});
+    }
+    return probes;
+}
+
+} // namespace
+
+PlateProblem readProblem(const std::filesystem::path& path, std::optional<int> cells)
+{
+    const JsonObject file = JsonObject::parse(textOf(path), path.string());
+    file.allowOnly({"size", "cells", "poisson", "edges", "foundation", "rigidity", "load", "probes"});
+
+    const PlateGrid fileGrid = readGrid(file);
+    const Setting   setting{path.parent_path(), fileGrid, cells ? refined(fileGrid, *cells, path.string()) : fileGrid};
+
+    PlateProblem problem;
+    problem.plate.grid         = setting.solveGrid;
+    problem.plate.edges        = readEdges(file);
+    problem.plate.poissonRatio = file.number("poisson");
+    problem.plate.foundation   = file.has("foundation") ? file.number("foundation") : 0;
+    problem.plate.rigidity     = readRigidity(file.object("rigidity"), setting);
+    if (!(problem.plate.poissonRatio > -1 && problem.plate.poissonRatio <= 0.5))
+        file.refuse("poisson", "a number above -1 and at most 0.5");
+    if (!(problem.plate.foundation >= 0)) file.refuse("foundation", "a number [Pa/m] that is not negative");
+    if (const auto why = whyUnsolvable(problem.plate)) throw Error(path.string() + ": " + *why);
+    problem.nodalForce = readLoad(file.object("load"), setting);
+    problem.probes     = readProbes(file, setting.solveGrid);
+    return problem;
+}
+
+} // namespace palp

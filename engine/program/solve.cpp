@@ -1,0 +1,163 @@
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/npy.h"
+#include "engine/core/quantity.h"
+#include "engine/plate/load.h"
+#include "engine/plate/plate_solver_reference.h"
+#include "engine/plate/problem_file.h"
+#include "engine/program/commands.h"
+#include "engine/program/patch_json.h"
+
+namespace palp {
+namespace {
+
+struct SolveOptions {
+    std::string        problem;
+    std::optional<int> cells;
+    std::string        device = "auto";
+    bool               json   = false;
+    std::string        out;
+};
+
+/// A problem with its answer.
+struct Solved {
+    PlateProblem        problem;
+    PlateSolution       solution;
+    std::vector<double> probeDeflections; ///< [m] one per probe
+    std::size_t         largestNode = 0;  ///< of the deflection of largest magnitude
+};
+
+Solved solved(const SolveOptions& options)
+{
+    if (options.device != "auto" && options.device != "reference")
+        throw Error("--device: unknown device \"" + options.device + "\"; known devices: auto, reference");
+    Solved s{readProblem(options.problem, options.cells), {}, {}, 0};
+
+    const ReferencePlateSolver solver(s.problem.plate);
+    s.solution = solver.solve(s.problem.nodalForce);
+    // One plate, one load: whoever asks for the time of the answer waits for the factorisation too.
+    s.solution.report.milliseconds += solver.factoriseMilliseconds();
+
+    for (const Probe& probe : s.problem.probes)
+        s.probeDeflections.push_back(interpolate(s.problem.plate.grid, s.solution.deflection, probe.x, probe.z));
+    const std::vector<double>& w = s.solution.deflection.values();
+    for (std::size_t node = 0; node < w.size(); ++node)
+        if (std::abs(w[node]) > std::abs(w[s.largestNode])) s.largestNode = node;
+    return s;
+}
+
+template <class T>
+nlohmann::ordered_json orNull(const std::optional<T>& value)
+{
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+void printJson(const Solved& s)
+{
+    const SolveReport&     report = s.solution.report;
+    nlohmann::ordered_json probes = nlohmann::ordered_json::array();
+    for (std::size_t k = 0; k < s.problem.probes.size(); ++k)
+        probes.push_back(
+            {{"x", s.problem.probes[k].x}, {"z", s.problem.probes[k].z}, {"deflection", s.probeDeflections[k]}});
+    const nlohmann::ordered_json answer{{"probes", probes},
+                                        {"max_deflection", s.solution.deflection.values()[s.largestNode]},
+                                        {"report",
+                                         {{"device", report.device},
+                                          {"iterations", orNull(report.iterations)},
+                                          {"error_estimate", orNull(report.errorEstimate)},
+                                          {"work_units", orNull(report.workUnits)},
+                                          {"milliseconds", report.milliseconds}}}};
+    std::cout << answer.dump(2) << "\n";
+}
+
+/// "" where both spacings agree up to rounding.
+std::string spacingNote(const PlateGrid& grid)
+{
+    constexpr double kRounding = 1e-9; // [1] relative: above the rounding of size / cells
+    const bool       square    = std::abs(grid.spacingX - grid.spacingZ) <= kRounding * grid.spacingX;
+    return square ? "" : " (cells are not square)";
+}
+
+void printText(const Solved& s, const std::string& name)
+{
+    const Plate&     plate       = s.problem.plate;
+    const PlateGrid& grid        = plate.grid;
+    const auto& [x0, x1, z0, z1] = plate.edges;
+    const auto [softest, stiffest] =
+        std::minmax_element(plate.rigidity.values().begin(), plate.rigidity.values().end());
+    double force = 0; // [N]
+    for (const double share : s.problem.nodalForce.values()) force += share;
+    const int i = int(s.largestNode) / grid.nodesZ(), j = int(s.largestNode) % grid.nodesZ();
+
+    std::printf("%s\n", name.c_str());
+    std::printf("  plate       %s x %s, %d x %d cells of %s x %s%s, Poisson's ratio %g\n",
+                formatQuantity(grid.sizeX(), "m").c_str(), formatQuantity(grid.sizeZ(), "m").c_str(), grid.cellsX,
+                grid.cellsZ, formatQuantity(grid.spacingX, "m").c_str(), formatQuantity(grid.spacingZ, "m").c_str(),
+                spacingNote(grid).c_str(), plate.poissonRatio);
+    std::printf("  edges       x0 %s, x1 %s, z0 %s, z1 %s\n", palp::name(x0), palp::name(x1), palp::name(z0),
+                palp::name(z1));
+    std::printf("  rigidity    %s to %s\n", formatQuantity(*softest, "N m").c_str(),
+                formatQuantity(*stiffest, "N m").c_str());
+    if (plate.foundation > 0) std::printf("  foundation  %s\n", formatQuantity(plate.foundation, "Pa/m").c_str());
+    std::printf("  load        %s in all\n", formatQuantity(force, "N").c_str());
+    std::printf("  deflection  at most %s, at x %s, z %s\n",
+                formatQuantity(s.solution.deflection.values()[s.largestNode], "m").c_str(),
+                formatQuantity(i * grid.spacingX, "m").c_str(), formatQuantity(j * grid.spacingZ, "m").c_str());
+    std::printf("  solver      %s, %.0f ms", s.solution.report.device.c_str(), s.solution.report.milliseconds);
+    if (s.solution.report.errorEstimate)
+        std::printf(", error %.1e of the largest deflection before the last step", *s.solution.report.errorEstimate);
+    std::printf("\n");
+    if (!s.problem.probes.empty()) std::printf("\n  %12s %12s %16s\n", "x [m]", "z [m]", "deflection [m]");
+    for (std::size_t k = 0; k < s.problem.probes.size(); ++k)
+        std::printf("  %12.6g %12.6g %16.8e\n", s.problem.probes[k].x, s.problem.probes[k].z, s.probeDeflections[k]);
+    std::fflush(stdout);
+}
+
+void solveAndPrint(const SolveOptions& options)
+{
+    const Solved s = solved(options);
+    if (!options.out.empty()) writeNpy(options.out, s.solution.deflection);
+    if (options.json)
+        printJson(s);
+    else
+        printText(s, options.problem);
+}
+
+} // namespace
+
+void addSolveCommand(CLI::App& app)
+{
+    CLI::App*  command = app.add_subcommand("solve", "deflection of one plate from a problem file");
+    const auto options = std::make_shared<SolveOptions>();
+    command->add_option("PROBLEM", options->problem, "problem file (JSON, SI units)")->required();
+    command->add_option("--cells", options->cells,
+                        "solve on this many cells along x, those along z in proportion (4 to 4096)");
+    command->add_option("--device", options->device, "auto or reference (sparse Cholesky in double precision)")
+        ->capture_default_str();
+    command->add_flag("--json", options->json,
+                      "machine-readable, full precision; max_deflection is the deflection of "
+                      "largest magnitude, with its sign");
+    command->add_option("--out", options->out, "writes the deflection [m] at the nodes as a .npy array");
+    command->footer(
+        "A problem file (rigidity in N m, force in N, pressure in Pa, lengths in m):\n"
+        "  {\"size\": [1, 1.5], \"cells\": [64, 96], \"poisson\": 0.3,\n"
+        "   \"edges\": {\"x0\": \"clamped\", \"x1\": \"free\", \"z0\": \"supported\", \"z1\": \"clamped\"},\n"
+        "   \"rigidity\": {\"law\": \"linear\", \"from\": 1, \"to\": 10, \"axis\": \"z\"},\n"
+        "   \"load\": {\"law\": \"point\", \"force\": 1, \"at\": [0.5, 0.75]},\n"
+        "   \"probes\": [[0.25, 0.25]]}\n"
+        "Rigidity laws: constant, linear, hyperbolic, exponential, gaussian, disc, box, checker, grid.\n"
+        "Load laws: point, uniform, gaussian, grid. A grid names a .npy file of node values.\n\n"
+        "Examples:\n"
+        "  palpate solve plate.json\n"
+        "  palpate solve plate.json --cells 256 --json\n"
+        "  palpate solve plate.json --out deflection.npy");
+    command->callback([options] { solveAndPrint(*options); });
+}
+
+} // namespace palp

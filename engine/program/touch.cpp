@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -9,10 +10,10 @@
 #include "engine/core/file.h"
 #include "engine/core/npy.h"
 #include "engine/core/quantity.h"
+#include "engine/picture/patch_pictures.h"
 #include "engine/program/cloud_source.h"
 #include "engine/program/commands.h"
 #include "engine/program/patch_json.h"
-#include "engine/program/touch_pictures.h"
 
 namespace palp {
 namespace {
@@ -154,13 +155,39 @@ void printTouch(const TouchOptions& options, const PatchSettings& settings, cons
         for (const auto& file : r["files"]) std::printf("  wrote              %s\n", (options.out + "/" + file.get<std::string>()).c_str());
 }
 
+/// What the touch looks like; the names of the files, in the order in which one looks at them.
+std::vector<std::string> writePictures(const std::filesystem::path& folder, const PointCloud& cloud, const Patch& patch,
+                                       const PatchSettings& settings, double force)
+{
+    const std::string  newtons   = formatQuantity(force, "N");
+    const double       deepest   = force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
+    const PressedPatch pressed[] = {{&patch, force, newtons}};
+    const double       far       = roundExaggeration(deepest, cloud.bounds().diagonal());
+    const double       near      = roundExaggeration(deepest, 2 * settings.window);
+    const auto         times     = [](double factor) {
+        return factor == 1 ? std::string() : ", displacement x " + std::to_string(int(factor));
+    };
+    const std::pair<const char*, std::string> pictures[] = {
+        {"surface.svg", surfaceSvg(cloud, pressed, {"Under " + newtons + times(far), far, {}, false})},
+        {"close_up.svg", surfaceSvg(cloud, pressed, {"Around the contact under " + newtons + times(near), near, {}, true})},
+        {"rigidity.svg", rigidityChartSvg(patch, settings, std::string("Rigidity in the ") + name(patch.chart.map) + " chart")},
+        {"deflection.svg", deflectionChartSvg(patch, settings, force, "Deflection under " + newtons)},
+        {"profile.svg", profileSvg(patch, force, "Deflection through the contact under " + newtons)}};
+    std::vector<std::string> files;
+    for (const auto& [file, svg] : pictures) {
+        writeFileWhole(folder / file, [&](std::ostream& stream) { stream << svg; });
+        files.emplace_back(file);
+    }
+    return files;
+}
+
 /// The deformed cloud, the grids and the pictures.
 std::vector<std::string> writeFiles(const TouchOptions& options, const PointCloud& cloud, const Patch& patch,
                                     const PatchSettings& settings, double force)
 {
     const std::filesystem::path folder = options.out;
     makeFolder(folder);
-    const std::vector<double> deflection = deflections(cloud, patch, force);
+    const std::vector<double>     deflection = deflections(cloud, patch, force);
     const std::span<const double> stiffness = cloud.stiffness();
     const PointCloud          bent(displaced(cloud, patch, force), {stiffness.begin(), stiffness.end()}, cloud.kind());
     const NamedField          field{"deflection", "m", deflection};
@@ -172,7 +199,7 @@ std::vector<std::string> writeFiles(const TouchOptions& options, const PointClou
     writeNpy(folder / "rigidity.npy", patch.plate.rigidity);
 
     std::vector<std::string> files = {"deformed.ply", "deflection.npy", "rigidity.npy"};
-    for (std::string& picture : writeTouchPictures(folder, cloud, patch, settings, force)) files.push_back(std::move(picture));
+    for (std::string& picture : writePictures(folder, cloud, patch, settings, force)) files.push_back(std::move(picture));
     return files;
 }
 

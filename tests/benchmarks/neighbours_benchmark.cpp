@@ -60,8 +60,8 @@ struct FloatCloud {
         return false;
     }
 };
-using KdTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, FloatCloud>, FloatCloud, 3,
-                                                   std::uint32_t>;
+using KdTree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, FloatCloud>, FloatCloud, 3, std::uint32_t>;
 
 double secondsSince(std::chrono::steady_clock::time_point start)
 {
@@ -72,21 +72,22 @@ double secondsSince(std::chrono::steady_clock::time_point start)
 struct Scene {
     static constexpr std::size_t kCentres = 4096;
 
-    std::vector<glm::dvec3>         cloud;
-    std::unique_ptr<NeighbourIndex> ours;
-    FloatCloud                      floats;
+    std::vector<glm::dvec3>                        cloud;
+    std::unique_ptr<NeighbourIndex>                ours;
+    FloatCloud                                     floats;
     std::map<std::size_t, std::unique_ptr<KdTree>> trees; ///< by leaf size
-    std::vector<glm::dvec3>         centres; ///< [m] points of the cloud, moved by less than the mean distance
+    std::vector<glm::dvec3> centres; ///< [m] points of the cloud, moved by less than the mean distance
 
     explicit Scene(std::size_t points) : cloud(surfaceCloud(points))
     {
         const auto start = std::chrono::steady_clock::now();
         ours             = std::make_unique<NeighbourIndex>(cloud);
-        std::printf("%zu points: palpate builds in %.3f s, spacing %.3g m;", points, secondsSince(start), ours->spacing());
+        std::printf("%zu points: palpate builds in %.3f s, spacing %.3g m;", points, secondsSince(start),
+                    ours->spacing());
         for (const glm::dvec3& p : cloud) floats.points.push_back({float(p.x), float(p.y), float(p.z)});
         for (const std::size_t leaf : {10, 20, 30, 50}) {
             const auto begin = std::chrono::steady_clock::now();
-            trees[leaf] = std::make_unique<KdTree>(3, floats, nanoflann::KDTreeSingleIndexAdaptorParams(leaf));
+            trees[leaf]      = std::make_unique<KdTree>(3, floats, nanoflann::KDTreeSingleIndexAdaptorParams(leaf));
             std::printf(" nanoflann(%zu) %.3f s", leaf, secondsSince(begin));
         }
         std::printf("\n");
@@ -119,13 +120,15 @@ void addScene(const Scene& scene)
     for (const int neighbours : {30, 300, 1000, 3000}) {
         const std::string work   = size + "gather " + std::to_string(neighbours) + "/";
         const double      radius = scene.radiusFor(neighbours);
-        add(work + "palpate", scene, [&scene, radius, found = std::vector<std::uint32_t>()](const glm::dvec3& c) mutable {
-            scene.ours->gather(c, radius, found);
-            return found.size();
-        });
+        add(work + "palpate", scene,
+            [&scene, radius, found = std::vector<std::uint32_t>()](const glm::dvec3& c) mutable {
+                scene.ours->gather(c, radius, found);
+                return found.size();
+            });
         for (const auto& [leaf, tree] : scene.trees) {
             add(work + "nanoflann leaf " + std::to_string(leaf), scene,
-                [&t = *tree, radius, found = std::vector<std::pair<std::uint32_t, float>>()](const glm::dvec3& c) mutable {
+                [&t    = *tree, radius,
+                 found = std::vector<std::pair<std::uint32_t, float>>()](const glm::dvec3& c) mutable {
                     const float place[]{float(c.x), float(c.y), float(c.z)};
                     const float radius2 = float(radius * radius); // nanoflann's distances are squared
                     return t.radiusSearch(place, radius2, found, nanoflann::SearchParams(0, 0, false));
@@ -134,10 +137,12 @@ void addScene(const Scene& scene)
     }
     for (const std::size_t k : {7, 30, 300}) {
         const std::string work = size + "nearest " + std::to_string(k) + "/";
-        add(work + "palpate", scene, [&scene, k](const glm::dvec3& c) { return scene.ours->nearest(c, k).back().point; });
+        add(work + "palpate", scene,
+            [&scene, k](const glm::dvec3& c) { return scene.ours->nearest(c, k).back().point; });
         for (const auto& [leaf, tree] : scene.trees) {
             add(work + "nanoflann leaf " + std::to_string(leaf), scene,
-                [&t = *tree, k, points = std::vector<std::uint32_t>(k), d2 = std::vector<float>(k)](const glm::dvec3& c) mutable {
+                [&t = *tree, k, points = std::vector<std::uint32_t>(k),
+                 d2 = std::vector<float>(k)](const glm::dvec3& c) mutable {
                     const float place[]{float(c.x), float(c.y), float(c.z)};
                     t.knnSearch(place, k, points.data(), d2.data());
                     return points.back();

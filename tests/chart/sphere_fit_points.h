@@ -3,7 +3,7 @@
 
 #include <glm/vec3.hpp>
 
-// Points measured, with noise, on spheres of known shape, for which a Pratt fit in 60-digit arithmetic is known.
+// Points on spheres of known shape with random noise added, for which Pratt's fit is known in 60-digit arithmetic.
 // Generated once; every digit counts, because the fits are compared to 1e-9 and better.
 namespace palp::testing {
 

@@ -1,0 +1,196 @@
+#include "engine/core/file.h"
+
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+/// A fresh folder that goes with the test.
+class Files : public testing::Test {
+protected:
+    Files()
+    {
+        std::string name = (std::filesystem::temp_directory_path() / "palp_file_XXXXXX").string();
+        if (!::mkdtemp(name.data())) throw Error("no temporary folder");
+        folder_ = name;
+    }
+    ~Files() override { std::filesystem::remove_all(folder_); }
+
+    static std::string contentsOf(const std::filesystem::path& path)
+    {
+        std::ifstream file(path, std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+
+    std::vector<std::string> namesInFolder() const
+    {
+        std::vector<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_))
+            names.push_back(entry.path().filename().string());
+        return names;
+    }
+
+    /// The sentence of the Error that `act` throws; empty if it throws none.
+    template <class Act>
+    static std::string refusalOf(const Act& act)
+    {
+        try {
+            act();
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    }
+
+    std::filesystem::path folder_;
+};
+
+void writeNew(std::ostream& stream)
+{
+    stream << "new";
+}
+
+TEST_F(Files, AWrittenFileHoldsTheBytesAndNothingElseRemains)
+{
+    const std::string bytes("\0\r\n\xff", 4);
+
+    writeFileWhole(folder_ / "a", [&](std::ostream& stream) { stream << bytes; });
+
+    EXPECT_EQ(contentsOf(folder_ / "a"), bytes);
+    EXPECT_EQ(namesInFolder(), std::vector<std::string>{"a"});
+}
+
+TEST_F(Files, AnOlderFileIsReplacedWhole)
+{
+    writeFileWhole(folder_ / "a", [](std::ostream& stream) { stream << "a longer text"; });
+    writeFileWhole(folder_ / "a", writeNew);
+
+    EXPECT_EQ(contentsOf(folder_ / "a"), "new");
+}
+
+TEST_F(Files, TheOlderFileIsThereUntilTheNewOneIsWhole)
+{
+    writeFileWhole(folder_ / "a", [](std::ostream& stream) { stream << "old"; });
+    std::string seen;
+
+    writeFileWhole(folder_ / "a", [&](std::ostream& stream) {
+        stream << "new" << std::flush;
+        seen = contentsOf(folder_ / "a");
+    });
+
+    EXPECT_EQ(seen, "old");
+    EXPECT_EQ(contentsOf(folder_ / "a"), "new");
+}
+
+TEST_F(Files, AnExceptionWhileWritingLeavesTheOlderFileAndNoDraft)
+{
+    writeFileWhole(folder_ / "a", [](std::ostream& stream) { stream << "old"; });
+    const auto interrupted = [](std::ostream& stream) {
+        stream << "half";
+        throw std::runtime_error("stop");
+    };
+
+    EXPECT_THROW(writeFileWhole(folder_ / "a", interrupted), std::runtime_error);
+    EXPECT_THROW(writeFileWhole(folder_ / "b", interrupted), std::runtime_error);
+
+    EXPECT_EQ(contentsOf(folder_ / "a"), "old");
+    EXPECT_EQ(namesInFolder(), std::vector<std::string>{"a"});
+}
+
+TEST_F(Files, AStreamThatFailedLeavesTheOlderFileAndNoDraft)
+{
+    writeFileWhole(folder_ / "a", [](std::ostream& stream) { stream << "old"; });
+
+    const std::string refusal = refusalOf(
+        [&] { writeFileWhole(folder_ / "a", [](std::ostream& stream) { stream.setstate(std::ios::badbit); }); });
+
+    EXPECT_NE(refusal.find((folder_ / "a").string() + ": cannot be written"), std::string::npos) << refusal;
+    EXPECT_EQ(contentsOf(folder_ / "a"), "old");
+    EXPECT_EQ(namesInFolder(), std::vector<std::string>{"a"});
+}
+
+TEST_F(Files, AFullDiskIsReported)
+{
+    if (!std::filesystem::is_character_file("/dev/full")) GTEST_SKIP() << "there is no /dev/full, which is always full";
+    // A name that leads to the device, because a writer with a mistake would replace the device itself.
+    std::filesystem::create_symlink("/dev/full", folder_ / "full");
+
+    const std::string refusal = refusalOf([&] { writeFileWhole(folder_ / "full", writeNew); });
+
+    EXPECT_NE(refusal.find((folder_ / "full").string() + ": cannot be written: No space left"), std::string::npos)
+        << refusal;
+    EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "full"));
+}
+
+TEST_F(Files, ADeviceIsWrittenToAndNotReplaced)
+{
+    // A name that leads to the device, for the same reason.
+    std::filesystem::create_symlink("/dev/null", folder_ / "null");
+
+    writeFileWhole(folder_ / "null", writeNew);
+
+    EXPECT_TRUE(std::filesystem::is_character_file(folder_ / "null"));
+    EXPECT_EQ(namesInFolder(), std::vector<std::string>{"null"});
+}
+
+TEST_F(Files, AFolderOrAMissingFolderCannotBeWritten)
+{
+    const std::string folder  = refusalOf([&] { writeFileWhole(folder_, writeNew); });
+    const std::string missing = refusalOf([&] { writeFileWhole(folder_ / "no" / "a", writeNew); });
+
+    EXPECT_NE(folder.find("it is a folder"), std::string::npos) << folder;
+    EXPECT_NE(missing.find((folder_ / "no" / "a").string()), std::string::npos) << missing;
+    EXPECT_NE(missing.find("No such file"), std::string::npos) << missing;
+    EXPECT_TRUE(namesInFolder().empty());
+}
+
+TEST_F(Files, ReadingGivesTheBytesUnchanged)
+{
+    const std::string bytes("a\r\n\0b", 5);
+    writeFileWhole(folder_ / "a", [&](std::ostream& stream) { stream << bytes; });
+
+    std::ifstream file = openForReading(folder_ / "a");
+
+    EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), bytes);
+}
+
+TEST_F(Files, AMissingFileOrAFolderCannotBeRead)
+{
+    const std::string missing = refusalOf([&] { static_cast<void>(openForReading(folder_ / "a")); });
+    const std::string folder  = refusalOf([&] { static_cast<void>(openForReading(folder_)); });
+
+    EXPECT_NE(missing.find((folder_ / "a").string() + ": cannot be read: No such file"), std::string::npos) << missing;
+    EXPECT_NE(folder.find("it is a folder"), std::string::npos) << folder;
+}
+
+TEST_F(Files, FoldersAreMadeWithTheirParentsAndMayExistAlready)
+{
+    makeFolder(folder_ / "b" / "c");
+    makeFolder(folder_ / "b" / "c");
+
+    EXPECT_TRUE(std::filesystem::is_directory(folder_ / "b" / "c"));
+}
+
+TEST_F(Files, AFolderIsNotMadeWhereAFileIs)
+{
+    writeFileWhole(folder_ / "a", writeNew);
+
+    for (const auto& path : {folder_ / "a", folder_ / "a" / "b"}) {
+        const std::string refusal = refusalOf([&] { makeFolder(path); });
+        EXPECT_NE(refusal.find(path.string() + ": the folder cannot be made"), std::string::npos) << refusal;
+    }
+    EXPECT_EQ(contentsOf(folder_ / "a"), "new");
+}
+
+} // namespace
+} // namespace palp

@@ -1,4 +1,4 @@
-#include "engine/picture/frame.h"
+#include "engine/picture/plot_frame.h"
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@ const Stroke kInk = {"#1a1a1a", 1};
 
 } // namespace
 
-void drawGridLines(SvgDrawing& svg, const Frame& frame)
+void drawGridLines(SvgDrawing& svg, const PlotFrame& frame)
 {
     const Stroke pale = {"#e4e4e4", 1};
     for (const Tick& tick : frame.x.ticks()) {
@@ -22,7 +22,7 @@ void drawGridLines(SvgDrawing& svg, const Frame& frame)
     }
 }
 
-void drawFrame(SvgDrawing& svg, const Frame& frame, std::string_view quantityX, std::string_view quantityY)
+void drawFrame(SvgDrawing& svg, const PlotFrame& frame, std::string_view quantityX, std::string_view quantityY)
 {
     constexpr double kTick = 5, kMinorTick = 3, kLabel = 12, kTitle = 13; // [px]
     const double     left = frame.corner.x, bottom = frame.corner.y + frame.size.y;

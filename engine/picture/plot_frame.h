@@ -7,7 +7,7 @@
 namespace palp {
 
 /// The rectangle of a plot on the page, and what its two axes mean.
-struct Frame {
+struct PlotFrame {
     glm::dvec2 corner; ///< upper left [px]
     glm::dvec2 size;   ///< [px]
     Axis       x;      ///< to the right
@@ -22,9 +22,9 @@ inline constexpr double kFrameLeft  = 74; ///< room for the labels on the left o
 inline constexpr double kFrameBelow = 50; ///< room for the labels below a frame [px]
 
 /// Pale lines at the ticks, to be drawn under the data.
-void drawGridLines(SvgDrawing& svg, const Frame& frame);
+void drawGridLines(SvgDrawing& svg, const PlotFrame& frame);
 
 /// Border, ticks, labels and titles, to be drawn over the data.
-void drawFrame(SvgDrawing& svg, const Frame& frame, std::string_view quantityX, std::string_view quantityY);
+void drawFrame(SvgDrawing& svg, const PlotFrame& frame, std::string_view quantityX, std::string_view quantityY);
 
 } // namespace palp

@@ -1,0 +1,22 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/chart/chart.h"
+#include "engine/core/grid.h"
+
+namespace palp {
+
+/// For every node of a grid the number of the point nearest to it, in the order in which a NodeField stores nodes.
+///
+/// Exact: the squared distances are compared in doubles, and of equally near points the lowest number wins. Fastest
+/// with half to four points per cell of the grid; nodes far from every point cost more.
+///
+/// \param origin  position of node (0, 0) [m]
+/// \param points  at least one, finite [m]; may lie outside the grid
+/// \thread        pure
+[[nodiscard]] std::vector<std::uint32_t> nearestPoint(const PlateGrid& grid, const ChartPoint& origin,
+                                                      std::span<const ChartPoint> points);
+
+} // namespace palp

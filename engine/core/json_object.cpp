@@ -1,0 +1,191 @@
+#include "engine/core/json_object.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string shortened(std::string text)
+{
+    constexpr std::size_t kMost = 200; // [bytes] of a user's own text in a complaint
+    return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
+}
+
+std::string inQuotes(std::string_view text)
+{
+    return "\"" + std::string(text) + "\"";
+}
+
+/// A parser callback that throws at the second use of a key in one object; without it the last one would win silently.
+class RefuseTwins {
+public:
+    explicit RefuseTwins(const std::string& where) : where_(where) {}
+
+    bool operator()(int, Json::parse_event_t event, const Json& value)
+    {
+        if (event == Json::parse_event_t::object_start) open_.emplace_back();
+        if (event == Json::parse_event_t::object_end) open_.pop_back();
+        if (event == Json::parse_event_t::key && !open_.back().insert(value.get<std::string>()).second)
+            throw Error(where_ + ": the key " + shortened(value.dump()) + " is given twice in one object");
+        return true;
+    }
+
+private:
+    const std::string&                 where_;
+    std::vector<std::set<std::string>> open_;
+};
+
+/// The library's own message without its tag: "parse error at line 3, column 5: ..."
+std::string reasonOf(const Json::exception& failure)
+{
+    const std::string text = failure.what();
+    const std::size_t tag  = text.find("] ");
+    return shortened(tag == std::string::npos ? text : text.substr(tag + 2));
+}
+
+std::string listed(std::initializer_list<std::string_view> names)
+{
+    std::string text;
+    for (const std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+    return text;
+}
+
+bool isWholeNumber(const Json& value, int least, int most)
+{
+    return value.is_number() && value.get<double>() == std::floor(value.get<double>()) &&
+           value.get<double>() >= least && value.get<double>() <= most;
+}
+
+bool isNumbers(const Json& value, std::size_t count)
+{
+    return value.is_array() && value.size() == count &&
+           std::ranges::all_of(value, [](const Json& v) { return v.is_number(); });
+}
+
+std::string numbersInWords(std::size_t count)
+{
+    return "a list of " + std::to_string(count) + " numbers";
+}
+
+} // namespace
+
+struct JsonObject::Node {
+    Json value;
+
+    /// The value of a key that must be there.
+    [[nodiscard]] const Json& at(std::string_view key, const std::string& where) const
+    {
+        const auto found = value.find(std::string(key));
+        if (found == value.end()) throw Error(where + ": the key " + inQuotes(key) + " is missing");
+        return *found;
+    }
+};
+
+JsonObject JsonObject::parse(std::string_view text, std::string where)
+{
+    auto node = std::make_shared<Node>();
+    try {
+        constexpr bool kThrow = true, kIgnoreComments = true;
+        node->value = Json::parse(text.begin(), text.end(), RefuseTwins(where), kThrow, kIgnoreComments);
+    } catch (const Json::exception& failure) {
+        throw Error(where + ": not valid JSON: " + reasonOf(failure));
+    }
+    if (!node->value.is_object())
+        throw Error(where + ": expected a JSON object {...}, found " + std::string(node->value.type_name()));
+    return JsonObject(std::move(node), std::move(where));
+}
+
+void JsonObject::allowOnly(std::initializer_list<std::string_view> known) const
+{
+    for (const auto& [key, value] : node_->value.items())
+        if (std::ranges::find(known, key) == known.end())
+            throw Error(where_ + ": unknown key " + shortened(inQuotes(key)) + "; known keys: " + listed(known));
+}
+
+bool JsonObject::has(std::string_view key) const
+{
+    return node_->value.contains(std::string(key));
+}
+
+void JsonObject::refuse(std::string_view key, const std::string& expected) const
+{
+    const std::string found = node_->at(key, where_).dump(-1, ' ', false, Json::error_handler_t::replace);
+    throw Error(where_ + ": key " + inQuotes(key) + ": expected " + expected + ", found " + shortened(found));
+}
+
+JsonObject JsonObject::object(std::string_view key) const
+{
+    const Json& value = node_->at(key, where_);
+    if (!value.is_object()) refuse(key, "an object {...}");
+    return JsonObject(std::make_shared<Node>(Node{value}), where_ + ": " + std::string(key));
+}
+
+std::string JsonObject::text(std::string_view key) const
+{
+    const Json& value = node_->at(key, where_);
+    if (!value.is_string()) refuse(key, "a text in quotes");
+    return value.get<std::string>();
+}
+
+double JsonObject::number(std::string_view key) const
+{
+    const Json& value = node_->at(key, where_);
+    if (!value.is_number()) refuse(key, "a number");
+    return value.get<double>();
+}
+
+double JsonObject::positiveNumber(std::string_view key) const
+{
+    const double value = number(key);
+    if (!(value > 0)) refuse(key, "a positive number");
+    return value;
+}
+
+int JsonObject::wholeNumber(std::string_view key, int least, int most) const
+{
+    const Json& value = node_->at(key, where_);
+    if (!isWholeNumber(value, least, most))
+        refuse(key, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+    return int(value.get<double>());
+}
+
+std::vector<double> JsonObject::numbers(std::string_view key, std::size_t count) const
+{
+    const Json& value = node_->at(key, where_);
+    if (!isNumbers(value, count)) refuse(key, numbersInWords(count));
+    return value.get<std::vector<double>>();
+}
+
+std::vector<std::vector<double>> JsonObject::rows(std::string_view key, std::size_t count) const
+{
+    const Json& value = node_->at(key, where_);
+    if (!value.is_array()) refuse(key, "a list of lists of " + std::to_string(count) + " numbers");
+    for (const Json& row : value)
+        if (!isNumbers(row, count))
+            throw Error(where_ + ": key " + inQuotes(key) + ": expected " + numbersInWords(count) +
+                        " in every entry, found " +
+                        shortened(row.dump(-1, ' ', false, Json::error_handler_t::replace)));
+    return value.get<std::vector<std::vector<double>>>();
+}
+
+std::vector<int> JsonObject::wholeNumbers(std::string_view key, std::size_t count, int least, int most) const
+{
+    const Json& value = node_->at(key, where_);
+    if (!value.is_array() || value.size() != count ||
+        !std::ranges::all_of(value, [&](const Json& v) { return isWholeNumber(v, least, most); }))
+        refuse(key, "a list of " + std::to_string(count) + " whole numbers from " + std::to_string(least) + " to " +
+                        std::to_string(most));
+    std::vector<int> list;
+    for (const Json& entry : value) list.push_back(int(entry.get<double>()));
+    return list;
+}
+
+} // namespace palp

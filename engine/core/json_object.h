@@ -1,0 +1,50 @@
+#pragma once
+#include <cstddef>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palp {
+
+/// One JSON object given by a user, read key by key; every complaint names the place, the key, what was expected and
+/// what was found. Comments are allowed, a key given twice is refused.
+class JsonObject {
+public:
+    /// \param where  what the text is, to open every complaint: a file's path
+    /// \throws Error with line and column if the text is not JSON or not an object
+    static JsonObject parse(std::string_view text, std::string where);
+
+    /// \throws Error naming the first key that is not `known`, and the known ones
+    void allowOnly(std::initializer_list<std::string_view> known) const;
+
+    [[nodiscard]] bool has(std::string_view key) const;
+
+    // All below throw Error if the key is missing or its value has another type.
+    [[nodiscard]] JsonObject          object(std::string_view key) const;
+    [[nodiscard]] std::string         text(std::string_view key) const;
+    [[nodiscard]] double              number(std::string_view key) const;
+    [[nodiscard]] double              positiveNumber(std::string_view key) const;
+    [[nodiscard]] int                 wholeNumber(std::string_view key, int least, int most) const;
+    [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count) const;
+    /// A list of lists of `count` numbers each.
+    [[nodiscard]] std::vector<std::vector<double>> rows(std::string_view key, std::size_t count) const;
+    [[nodiscard]] std::vector<int> wholeNumbers(std::string_view key, std::size_t count, int least, int most) const;
+
+    /// Throws Error "WHERE: key "KEY": expected EXPECTED, found FOUND" for the value of a key that is there.
+    [[noreturn]] void refuse(std::string_view key, const std::string& expected) const;
+
+    [[nodiscard]] const std::string& where() const noexcept { return where_; }
+
+private:
+    struct Node;
+    JsonObject(std::shared_ptr<const Node> node, std::string where) : node_(std::move(node)), where_(std::move(where))
+    {
+    }
+
+    std::shared_ptr<const Node> node_;
+    std::string                 where_;
+};
+
+} // namespace palp

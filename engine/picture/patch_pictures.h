@@ -1,0 +1,46 @@
+#pragma once
+#include <span>
+#include <string>
+
+#include "engine/pipeline/pipeline.h"
+
+namespace palp {
+
+/// A patch under a force, with the words that name it in a legend.
+struct PressedPatch {
+    const Patch* patch = nullptr;
+    double       force = 0; ///< [N]
+    std::string  label;
+};
+
+/// Chart of the rigidity at the nodes, logarithmic, with the points it came from, contact and footprint.
+[[nodiscard]] std::string rigidityChartSvg(const Patch& patch, const PatchSettings& settings, const std::string& title);
+
+/// Chart of the deflection at the nodes under `force` [N].
+/// \param deepest  end of the colours, so that pictures compare [m]; 0: this patch's own
+[[nodiscard]] std::string deflectionChartSvg(const Patch& patch, const PatchSettings& settings, double force,
+                                             const std::string& title, double deepest = 0);
+
+/// Deflection along the chart's x and z axes through the contact.
+[[nodiscard]] std::string profileSvg(const Patch& patch, double force, const std::string& title);
+
+/// Deflection along the chart's x axis for several patches.
+[[nodiscard]] std::string profilesSvg(std::span<const PressedPatch> patches, const std::string& title);
+
+/// Where a view of pressed patches looks from.
+struct SurfaceView {
+    std::string title;
+    double      exaggeration = 1;   ///< factor on every displacement [1]
+    glm::dvec3  direction{0, 0, 0}; ///< in which the eye looks; zero: obliquely onto the first contact
+    bool        closeUp = false;    ///< only the first contact's neighbourhood
+};
+
+/// The object, dented by each of the patches at once (they are solved one by one: where they overlap, displacements
+/// add), coloured by deflection.
+[[nodiscard]] std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> patches,
+                                     const SurfaceView& view);
+
+/// A round factor that makes the deepest displacement about a thirtieth of the object, at least 1.
+[[nodiscard]] double roundExaggeration(double deepest, double size);
+
+} // namespace palp

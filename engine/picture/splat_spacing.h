@@ -1,0 +1,43 @@
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/picture/cloud_surface.h"
+
+namespace palp {
+
+/// Radius of a splat in widths: its weight (1 - r^2)^3 ends there. [1]
+inline constexpr double kSplatReach = 2.5;
+
+/// How far apart the points of the front layer lie on the screen, and so how wide their splats are. Counted on a coarse
+/// grid of cells.
+class SplatSpacing {
+public:
+    SplatSpacing(std::span<const glm::dvec3> positions, const CloudCamera& camera);
+
+    /// Distance of neighbouring points. [px]
+    [[nodiscard]] double typical() const { return typical_; }
+    /// Width of a splat around a place on the screen. [px]
+    [[nodiscard]] double width(double x, double y) const;
+
+private:
+    void count(std::span<const glm::dvec3> positions, const CloudCamera& camera);
+    void measure(double largest);
+    void boundWork(std::span<const glm::dvec3> positions, const CloudCamera& camera);
+
+    [[nodiscard]] std::size_t cell(double x, double y) const
+    {
+        const int column = std::clamp(int(x / side_), 0, columns_ - 1), row = std::clamp(int(y / side_), 0, rows_ - 1);
+        return std::size_t(row) * std::size_t(columns_) + std::size_t(column);
+    }
+
+    int                 side_ = 0, columns_ = 0, rows_ = 0; // of a cell [px], of the grid [1]
+    std::vector<float>  front_;                             // nearest depth per cell [px]
+    std::vector<double> counts_;                            // points of the front layer per cell [1]
+    std::vector<double> widths_;                            // [px]
+    double              typical_ = 1, shrink_ = 1;
+};
+
+} // namespace palp

@@ -1,0 +1,73 @@
+#pragma once
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+
+#include "engine/cloud/point_cloud_io.h"
+#include "engine/core/contract.h"
+
+namespace palp {
+
+/// Stops the fuzzer, which then keeps the input.
+inline void fuzzExpect(bool holds)
+{
+    if (!holds) std::abort();
+}
+
+inline bool sameBits(double a, double b)
+{
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+inline void fuzzExpectSame(const PointCloud& a, const PointCloud& b)
+{
+    fuzzExpect(a.size() == b.size() && a.kind() == b.kind());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        for (int k = 0; k < 3; ++k) fuzzExpect(sameBits(a.positions()[i][k], b.positions()[i][k]));
+        fuzzExpect(sameBits(a.stiffness()[i], b.stiffness()[i]));
+    }
+}
+
+/// What must hold for every file that is accepted: the report agrees with the cloud, and writing it brings it back.
+inline void fuzzCheckAccepted(const LoadedCloud& loaded, CloudFormat format)
+{
+    const auto& [cloud, report] = loaded;
+    fuzzExpect(report.points == cloud.size() && report.duplicatePositions < cloud.size());
+    fuzzExpect(cloud.bounds().diagonal() > 0);
+    for (const CloudEncoding encoding : {CloudEncoding::binaryLittleEndian, CloudEncoding::ascii}) {
+        std::stringstream stream;
+        formatCloud(stream, format, cloud, {}, {encoding});
+        const LoadedCloud again = parseCloud(stream, stream.str().size(), "again", format);
+        fuzzExpectSame(cloud, again.cloud);
+        fuzzExpect(again.report.duplicatePositions == report.duplicatePositions);
+    }
+}
+
+/// Reads the bytes under several settings. Only Error is allowed to come out, and only in one printable line.
+inline void fuzzCloud(const std::uint8_t* data, std::size_t size, CloudFormat format)
+{
+    CloudReadSettings lenient;
+    lenient.dropInvalid = true;
+    lenient.lengthUnit  = "mm";
+    CloudReadSettings mapped;
+    mapped.stiffnessProperty = "z";
+    mapped.range             = StiffnessRange{1e3, 1e5, RangeScale::logarithmic};
+    CloudReadSettings named;
+    named.columns = "x,y,-,z,e";
+
+    const std::string bytes(reinterpret_cast<const char*>(data), size);
+    for (const CloudReadSettings& settings : {CloudReadSettings{}, lenient, mapped, named}) {
+        if (!settings.columns.empty() && format != CloudFormat::text) continue;
+        try {
+            std::istringstream stream(bytes);
+            fuzzCheckAccepted(parseCloud(stream, bytes.size(), "fuzz", format, settings), format);
+        } catch (const Error& error) {
+            for (const char c : std::string(error.what())) fuzzExpect(c >= ' ' && c <= '~');
+        }
+    }
+}
+
+} // namespace palp

@@ -1,0 +1,32 @@
+#!/bin/sh
+# Writes small files that the readers accept, or nearly, for the fuzzers to start from. Argument: the folder.
+set -eu
+mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/npy"
+cd "$1"
+
+# The floats 1 and 2, little and big endian, and the doubles 1 and 2, little endian; printf takes octal.
+f1='\000\000\200\077' f2='\000\000\000\100' F1='\077\200\000\000' F2='\100\000\000\000'
+d1='\000\000\000\000\000\000\360\077' d2='\000\000\000\000\000\000\000\100'
+xyz='property float x\nproperty float y\nproperty float z\n'
+
+printf 'ply\nformat ascii 1.0\ncomment length_unit mm\nelement vertex 2\n'"$xyz"'property double stiffness\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n1 2 3 4e3\n2 3 4 5e3\n3 0 1 0\n' >ply/ascii
+printf 'ply\r\nformat binary_little_endian 1.0\r\nelement vertex 2\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\nproperty uchar quality\r\nend_header\r\n'"$f1$f1$f1"'a'"$f2$f2$f1"'b' >ply/little
+printf 'ply\nformat binary_big_endian 1.0\nelement camera 1\nproperty short s\nelement vertex 2\nproperty list uchar short n\n'"$xyz"'property float D\nend_header\nab\001cd'"$F1$F1$F2$F2"'\000'"$F2$F1$F2$F1" >ply/big
+printf 'ply\nformat ascii 1.0\nelement vertex 3\n'"$xyz"'end_header\nnan 1 2\n1 2 3\n-inf 0 1e-300\n' >ply/invalid
+printf 'ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\n'"$xyz"'end_header\n1234' >ply/liar
+
+head='FIELDS x y z E\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\n'
+printf '# .PCD v.7\n# stiffness_unit N_m\nVERSION .7\n'"$head"'DATA ascii\n1 2 3 4\n5 6 7 8\n' >pcd/ascii
+printf 'VERSION .7\n'"$head"'DATA binary\n'"$f1$f1$f1$f1$f2$f2$f1$f2" >pcd/binary
+printf 'VERSION 0.7\nFIELDS x y z _ n\nSIZE 8 8 8 1 2\nTYPE F F F U I\nCOUNT 1 1 1 3 2\nWIDTH 1\nHEIGHT 2\nDATA binary\n'"$d1$d1$d1"'abcdefg'"$d2$d2$d1"'abcdefg' >pcd/padded
+printf 'VERSION .7\n'"$head"'DATA binary_compressed\nabcd' >pcd/compressed
+
+printf '1 2 3 4\n5 6 7 8\n' >text/plain
+printf '# length_unit mm\nx,y,z,"E"\n1,2,3,4\n5,6,7,8\n\n' >text/header
+printf '//X;Y;Z;D;label\r\n1;2;3;4;a\r\n5;6;7;nan;b\r\n' >text/semicolons
+printf '1 2 a 3 9\n4 5 b 6 9\n' >text/columns
+
+# Version 1.0: a header of 118 bytes after the first ten.
+head="{'descr': '<f8', 'fortran_order': False, 'shape': (1, 2), }"
+printf '\223NUMPY\001\000\166\000%-117s\n'"$d1$d2" "$head" >npy/double
+printf '\223NUMPY\002\000\166\000\000\000%-117s\n'"$f1$f2" "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 1), }" >npy/float

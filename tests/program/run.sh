@@ -1,0 +1,118 @@
+#!/bin/sh
+# The command line as a user meets it: good runs, bad input (exit code 2, one sentence, no half-written file).
+# Argument: the program.
+set -u
+palpate=$1
+place=$(mktemp -d "${TMPDIR:-/tmp}/palpate program XXXXXX") || exit 1
+trap 'chmod -R u+w "$place"; rm -rf "$place"' EXIT
+cd "$place" || exit 1
+
+failed=0 passed=0
+complain() { echo "FAILED: $*"; failed=$((failed + 1)); }
+
+good() { # good DESCRIPTION ARGUMENTS...: exit code 0
+    what=$1; shift
+    if "$palpate" "$@" >out.txt 2>err.txt; then passed=$((passed + 1)); else complain "$what: exit $? $(cat err.txt)"; fi
+}
+holds() { grep -qF -- "$1" out.txt && passed=$((passed + 1)) || complain "output lacks '$1': $(head -c 600 out.txt)"; }
+bad() { # bad DESCRIPTION WORD ARGUMENTS...: exit code 2, one line on stderr that holds WORD, nothing on stdout
+    what=$1 word=$2; shift 2
+    "$palpate" "$@" >out.txt 2>err.txt
+    code=$?
+    [ $code -eq 2 ] || { complain "$what: exit $code, expected 2: $(cat err.txt)"; return; }
+    grep -qF -- "$word" err.txt || { complain "$what: '$word' is not in: $(cat err.txt)"; return; }
+    [ "$(wc -l <err.txt)" -eq 1 ] || { complain "$what: more than one line: $(cat err.txt)"; return; }
+    [ ! -s out.txt ] || { complain "$what: printed something to standard output"; return; }
+    passed=$((passed + 1))
+}
+
+# --- good runs
+good 'version' --version
+holds 'palpate 0.'
+good 'help' --help
+holds 'Examples:'
+for command in touch solve info convert; do good "help of $command" $command --help; holds 'Examples:'; done
+good 'list of samples' info --samples
+for sample in ellipsoid sheet hemisphere saddle skin palm ear-lobe; do holds "sample:$sample"; done
+good 'a sample as a file' convert sample:skin skin.ply --points 5000
+good 'info' info skin.ply --json
+holds '"points": 5000'
+good 'ascii, millimetres, a named property' convert skin.ply skin.csv
+good 'touch a sample' touch sample:ellipsoid --points 8000 --cells 32 --out 'a folder' --json
+holds '"felt_stiffness"'
+for file in deformed.ply touch.json rigidity.npy deflection.npy rigidity.svg deflection.svg profile.svg surface.svg close_up.svg; do
+    [ -s "a folder/$file" ] && passed=$((passed + 1)) || complain "touch --out did not write $file"
+done
+good 'the deformed cloud is a cloud' info 'a folder/deformed.ply'
+holds 'deflection'
+good 'touch a file' touch skin.ply --at 0,0,0.0015 --window 40mm --cells 32
+holds 'felt stiffness'
+good 'touch as the paper' touch skin.ply --at 0,0,0.0015 --preset paper --window 40mm --cells 32 --json
+holds '"differences_from_paper": []'
+cat >plate.json <<'JSON'
+{"size":[1,1.5], "cells":[16,24], "poisson":0.3, "edges":{"x0":"clamped","x1":"free","z0":"supported","z1":"clamped"}, "foundation":0,
+ "rigidity":{"law":"constant","value":1}, "load":{"law":"point","force":1,"at":[0.5,0.75]}, "probes":[[0.25,0.25]]}
+JSON
+good 'solve' solve plate.json --json
+for key in '"probes"' '"deflection"' '"max_deflection"' '"report"' '"device"' '"iterations"' '"error_estimate"' '"work_units"' '"milliseconds"'; do holds "$key"; done
+good 'solve, finer' solve plate.json --cells 32 --out w.npy
+[ -s w.npy ] || complain 'solve --out wrote nothing'
+
+# --- the same numbers every time
+"$palpate" touch sample:palm --points 8000 --cells 32 --out one --json >/dev/null && "$palpate" touch sample:palm --points 8000 --cells 32 --out two --json >/dev/null
+for file in deformed.ply rigidity.npy deflection.npy rigidity.svg surface.svg; do
+    cmp -s one/$file two/$file && passed=$((passed + 1)) || complain "$file differs between two equal runs"
+done
+
+# --- bad usage
+bad 'unknown option' 'frobnicate' touch sample:skin --frobnicate
+bad 'unknown sample' 'palm' touch sample:elbow
+bad 'unknown unit' 'parsec' info skin.ply --unit parsec
+bad 'unknown preset' 'paper' touch sample:skin --preset rabbit
+bad 'unknown map' 'gall-peters' touch sample:skin --map mercator
+bad 'odd cells' 'even' touch sample:skin --cells 33
+bad 'force that is no number' '--force' touch sample:skin --force nan
+bad 'negative window' '--window' touch sample:skin --window -40mm
+bad 'all edges free, nothing below' 'rigid' touch sample:sheet --points 5000 --cells 16 --edges free
+bad 'footprint wider than the window' 'footprint' touch sample:sheet --points 5000 --cells 16 --footprint 50mm
+bad 'contact far from the cloud' 'contact' touch sample:skin --points 5000 --at 1m,0,0
+bad 'no place for a file' '--at' touch skin.ply
+bad 'unknown device' 'reference' solve plate.json --device gpu9000
+
+# --- bad files
+bad 'missing file' 'No such file' info nowhere.ply
+bad 'a folder' 'folder' info .
+bad 'unknown extension' '.ply' info plate.json
+printf 'ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\nabc' >huge.ply
+bad 'a header that lies' 'huge.ply' info huge.ply
+head -c 900 skin.ply >short.ply
+bad 'a short file' 'short.ply' info short.ply
+printf 'x,y,z\n0,0,0\n1,nan,0\n' >nan.csv
+bad 'NaN' 'nan.csv' info nan.csv
+printf 'x,y,z,stiffness\n0,0,0,1\n1,0,0,0\n0,1,0,2\n' >zero.csv
+bad 'zero stiffness' 'zero.csv' info zero.csv
+printf 'x,y,z\n1,2,3\n1,2,3\n1,2,3\n' >same.csv
+bad 'all points equal' 'same.csv' info same.csv
+: >empty.ply
+bad 'empty file' 'empty.ply' info empty.ply
+bad 'missing property' 'quality' info skin.ply --stiffness-property quality
+printf '{"size":[1,1],' >broken.json
+bad 'broken JSON' 'broken.json' solve broken.json
+sed 's/"value":1/"value":-1/' plate.json >negative.json
+bad 'negative rigidity' 'negative.json' solve negative.json
+sed 's/\[\[0.25,0.25\]\]/[[5,5]]/' plate.json >outside.json
+bad 'probe off the plate' 'probes' solve outside.json
+
+# --- unwritable targets, and nothing half-written
+bad 'target in a folder that is not there' 'cannot be written' convert skin.ply nowhere/skin.ply
+bad 'unknown target format' '.ply' convert skin.ply skin.stl
+printf 'precious' >kept.ply
+bad 'bad input keeps the old target' 'short.ply' convert short.ply kept.ply
+[ "$(cat kept.ply)" = precious ] && passed=$((passed + 1)) || complain 'an old file was lost'
+mkdir full && : >full/out
+bad 'a folder that is a file' 'full/out' touch sample:skin --points 5000 --cells 16 --out full/out
+left=$(find . -name '*.part')
+[ -z "$left" ] && passed=$((passed + 1)) || complain "left behind: $left"
+
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
