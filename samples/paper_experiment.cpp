@@ -1,6 +1,6 @@
-// The paper's experiment: an ellipsoid of 40 000 points whose rigidity varies along x, linearly or hyperbolically, pressed with
-// the same force at several places. Shows that deflection falls as rigidity grows, by the paper's recipe and by ours.
-// Usage: paper_experiment FOLDER
+// The paper's experiment: an ellipsoid of 40 000 points whose rigidity varies along x, linearly or hyperbolically,
+// pressed with the same force at several places. Shows that deflection falls as rigidity grows, by the paper's recipe
+// and by ours. Usage: paper_experiment FOLDER
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -29,7 +29,7 @@ constexpr double kSoftest      = 0.3e6; ///< modulus at one end of the x axis [P
 constexpr double kStiffest     = 3e6;   ///< at the other [Pa]
 constexpr double kWindow       = 30e-3; ///< [m] the dents of neighbouring places hardly touch
 constexpr double kPlaces[]     = {-45e-3, -22.5e-3, 0, 22.5e-3, 45e-3}; ///< x of the contacts on the top [m]
-constexpr double kExaggeration = 2;     ///< of the displacement in pictures [1]
+constexpr double kExaggeration = 2;                                     ///< of the displacement in pictures [1]
 
 struct Touch {
     double x = 0; ///< place [m]
@@ -106,7 +106,8 @@ void writeDeformed(const std::filesystem::path& path, const PointCloud& cloud, c
             positions[touch.patch.points[n]] += w * touch.patch.forceDirection();
         }
     const NamedField field{"deflection", "m", depth};
-    writeCloud(path, PointCloud(positions, {cloud.stiffness().begin(), cloud.stiffness().end()}, cloud.kind()), {&field, 1});
+    writeCloud(path, PointCloud(positions, {cloud.stiffness().begin(), cloud.stiffness().end()}, cloud.kind()),
+               {&field, 1});
 }
 
 std::string placeName(double x)
@@ -127,13 +128,16 @@ void writePictures(const std::filesystem::path& folder, const PointCloud& cloud,
     const std::string what = series.law + " rigidity, " + (series.preset == "paper" ? "the paper's recipe" : "ours");
     write(folder / (series.name() + "_surface.svg"),
           surfaceSvg(cloud, pressed,
-                     {what + ": " + formatQuantity(kForce, "N") + " at five places, displacement x 2", kExaggeration,
-                      {0.15, 0.75, -0.65}, false}));
+                     {what + ": " + formatQuantity(kForce, "N") + " at five places, displacement x 2",
+                      kExaggeration,
+                      {0.15, 0.75, -0.65},
+                      false}));
     for (std::size_t n = 0; n < pressed.size(); ++n) pressed[n].label = placeName(series.touches[n].x);
     write(folder / (series.name() + "_profiles.svg"), profilesSvg(pressed, what));
 
     const Touch& middle = series.touches[series.touches.size() / 2];
-    write(folder / (series.name() + "_rigidity.svg"), rigidityChartSvg(middle.patch, series.settings, what + ", " + placeName(middle.x)));
+    write(folder / (series.name() + "_rigidity.svg"),
+          rigidityChartSvg(middle.patch, series.settings, what + ", " + placeName(middle.x)));
     write(folder / (series.name() + "_deflection.svg"),
           deflectionChartSvg(middle.patch, series.settings, kForce, what + ", " + placeName(middle.x)));
 }
@@ -200,7 +204,8 @@ std::vector<std::string> cells(const nlohmann::json& row)
             formatQuantity(row["milliseconds"].get<double>() / 1e3, "s")};
 }
 
-const std::vector<std::string> kHeadings = {"law", "recipe", "place x", "rigidity", "deflection", "compliance", "felt stiffness", "grid error", "time"};
+const std::vector<std::string> kHeadings = {"law",        "recipe",         "place x",    "rigidity", "deflection",
+                                            "compliance", "felt stiffness", "grid error", "time"};
 
 std::string textTable(const nlohmann::json& rows)
 {
@@ -218,18 +223,25 @@ std::string page(const std::vector<Series>& all, const nlohmann::json& rows)
 {
     std::ostringstream html;
     html << "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Palpate: the paper's experiment</title>\n"
-            "<style>body{font:16px/1.5 sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:#1a1a1a;background:#fff}"
-            "table{border-collapse:collapse;font-variant-numeric:tabular-nums}td,th{padding:.15rem .7rem;text-align:right;"
+            "<style>body{font:16px/1.5 sans-serif;max-width:72rem;margin:2rem auto;padding:0 "
+            "1rem;color:#1a1a1a;background:#fff}"
+            "table{border-collapse:collapse;font-variant-numeric:tabular-nums}td,th{padding:.15rem "
+            ".7rem;text-align:right;"
             "border-bottom:1px solid #ddd}td:nth-child(-n+2),th:nth-child(-n+2){text-align:left}"
             ".pair{display:grid;grid-template-columns:1fr 1fr;gap:1rem}img{width:100%;height:auto}</style>\n"
             "<h1>An ellipsoid of 40 000 points, pressed at five places</h1>\n<p>The modulus rises along x from "
          << formatQuantity(kSoftest, "Pa") << " to " << formatQuantity(kStiffest, "Pa")
-         << ", linearly or hyperbolically (so that its inverse falls linearly). The same force of " << formatQuantity(kForce, "N")
-         << " dents it less where it is more rigid. <em>paper</em> is the published recipe (Gall-Peters map, nearest point, "
-            "E A/h as felt stiffness), <em>palpate</em> is ours (azimuthal equal-area map, log-mean, plate and contact in "
-            "series). Under the finger Gall-Peters stretches one way by the square root of 2 and shrinks the other, so a round "
+         << ", linearly or hyperbolically (so that its inverse falls linearly). The same force of "
+         << formatQuantity(kForce, "N")
+         << " dents it less where it is more rigid. <em>paper</em> is the published recipe (Gall-Peters map, nearest "
+            "point, "
+            "E A/h as felt stiffness), <em>palpate</em> is ours (azimuthal equal-area map, log-mean, plate and contact "
+            "in "
+            "series). Under the finger Gall-Peters stretches one way by the square root of 2 and shrinks the other, so "
+            "a round "
             "poke makes an oblong dent; the charts below show it round because they show the map, not the object.</p>\n"
-            "<p><img style=\"max-width:44rem\" src=\"summary.svg\" alt=\"deflection against rigidity\"></p>\n<table><tr>";
+            "<p><img style=\"max-width:44rem\" src=\"summary.svg\" alt=\"deflection against "
+            "rigidity\"></p>\n<table><tr>";
     for (const std::string& heading : kHeadings) html << "<th>" << heading << "</th>";
     html << "</tr>\n";
     for (const auto& row : rows) {
@@ -251,8 +263,8 @@ std::string page(const std::vector<Series>& all, const nlohmann::json& rows)
         }
         for (const Series& series : all)
             if (series.law == law)
-                html << "<p>Deformed cloud, " << series.preset << ": <a href=\"" << series.name() << ".ply\">" << series.name()
-                     << ".ply</a></p>\n";
+                html << "<p>Deformed cloud, " << series.preset << ": <a href=\"" << series.name() << ".ply\">"
+                     << series.name() << ".ply</a></p>\n";
     }
     return html.str();
 }
@@ -262,7 +274,8 @@ void run(const std::filesystem::path& folder)
     makeFolder(folder);
     std::vector<Series> all;
     Progress            progress("pressing");
-    for (const auto& [law, kind] : {std::pair("linear", SpatialLaw::Kind::linear), std::pair("hyperbolic", SpatialLaw::Kind::hyperbolic)}) {
+    for (const auto& [law, kind] :
+         {std::pair("linear", SpatialLaw::Kind::linear), std::pair("hyperbolic", SpatialLaw::Kind::hyperbolic)}) {
         const PointCloud     cloud = ellipsoid(kind);
         const NeighbourIndex index(cloud.positions());
         for (Preset preset : {Preset::paper, Preset::palpate}) {

@@ -21,42 +21,36 @@ constexpr int kLanes     = 4; ///< nodes that one vector of doubles serves; the 
 constexpr int kLeastRows = 2;
 constexpr int kMostRows  = 4;
 
-using Numbers  = double __attribute__((vector_size(kLanes * sizeof(double))));
-using Integers = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
+using Numbers = double __attribute__((vector_size(kLanes * sizeof(double))));
 
 /// The best offers so far, with a margin of nodes that nobody reads, so that points near the edge need no special care.
 struct Offers {
     static constexpr int kMargin = 4; ///< [nodes] on each side
     static_assert(kMargin >= kLanes && kMargin >= kMostRows);
 
-    PlateGrid                 grid;
-    std::size_t               stride;    ///< [nodes] from row to row
-    std::vector<double>       x;         ///< [m] of every row of nodes
-    std::vector<double>       z;         ///< [m] of every column
-    std::vector<double>       distance2; ///< [m^2]
-    std::vector<std::int64_t> point;     ///< as wide as a distance, so that one mask serves both
+    PlateGrid           grid;
+    std::vector<double> x;    ///< [m] of every row of nodes
+    std::vector<double> z;    ///< [m] of every column
+    std::vector<double> best; ///< for each row the squared distances [m^2], then the points' numbers, exact in doubles;
+                              ///< one array, because the C library gives two big ones back to the system each time
 
     Offers(const PlateGrid& g, const ChartPoint& origin)
-        : grid(g), stride(std::size_t(g.nodesZ() + 2 * kMargin)), x(std::size_t(g.nodesX() + 2 * kMargin)), z(stride),
-          distance2(x.size() * stride, std::numeric_limits<double>::infinity()), point(x.size() * stride, -1)
+        : grid(g), x(std::size_t(g.nodesX() + 2 * kMargin)), z(std::size_t(g.nodesZ() + 2 * kMargin)),
+          best(2 * x.size() * z.size())
     {
         for (std::size_t i = 0; i < x.size(); ++i) x[i] = origin.x + (double(i) - kMargin) * grid.spacingX;
         for (std::size_t j = 0; j < z.size(); ++j) z[j] = origin.z + (double(j) - kMargin) * grid.spacingZ;
+        for (std::size_t i = 0; i < x.size(); ++i)
+            std::fill_n(best.begin() + std::ptrdiff_t(2 * i * z.size()), z.size(),
+                        std::numeric_limits<double>::infinity());
     }
 
-    [[nodiscard]] std::size_t at(int i, int j) const noexcept
+    [[nodiscard]] const double* distances2(int i) const noexcept // of the nodes of row i, [m^2]
     {
-        return std::size_t(i + kMargin) * stride + std::size_t(j + kMargin);
+        return &best[2 * std::size_t(i + kMargin) * z.size() + kMargin];
     }
+    [[nodiscard]] const double* points(int i) const noexcept { return distances2(i) + z.size(); }
 };
-
-/// First of `count` nodes around a position, counted from the margin's first; in the margin if the position is far out.
-/// \param u  position in grid steps from node 0
-[[gnu::always_inline]] inline std::size_t firstAround(double u, int count, int nodes)
-{
-    const double first = u - 0.5 * count + (1 + Offers::kMargin);
-    return std::size_t(std::min(std::max(first, 0.0), double(nodes + 2 * Offers::kMargin - count)));
-}
 
 /// Every point offers itself to the kRows x kLanes nodes around it, in the order of their numbers: so the lowest number
 /// wins among equals.
@@ -64,66 +58,80 @@ struct Offers {
 template <int kRows>
 [[gnu::always_inline]] inline bool offerAll(std::span<const ChartPoint> points, Offers& offers)
 {
-    const double perX   = 1 / offers.grid.spacingX;
-    const double perZ   = 1 / offers.grid.spacingZ;
-    const double x0     = offers.x[Offers::kMargin];
-    const double z0     = offers.z[Offers::kMargin];
-    const int    nodesX = offers.grid.nodesX();
-    const int    nodesZ = offers.grid.nodesZ();
+    // The first of kRows nodes around a position of u steps is floor(u - kRows / 2) + 1; kMargin more in the arrays.
+    constexpr double kFirstRow = Offers::kMargin + 1 - 0.5 * kRows;
+    constexpr double kFirstCol = Offers::kMargin + 1 - 0.5 * kLanes;
+    const double     perX      = 1 / offers.grid.spacingX;
+    const double     perZ      = 1 / offers.grid.spacingZ;
+    const auto       rows      = double(offers.x.size() - kRows);
+    const auto       cols      = double(offers.z.size() - kLanes);
+    const auto*      x         = offers.x.data();
+    const auto*      z         = offers.z.data();
+    const double     x0        = x[Offers::kMargin];
+    const double     z0        = z[Offers::kMargin];
+    const auto       stride    = std::int64_t(offers.z.size());
+    double* const    best      = offers.best.data();
+    bool             finite    = true;
     for (std::size_t p = 0; p < points.size(); ++p) {
-        const auto [px, pz]    = points[p];
-        const std::size_t row  = firstAround((px - x0) * perX, kRows, nodesX);
-        const std::size_t col  = firstAround((pz - z0) * perZ, kLanes, nodesZ);
-        const Integers    mine = Integers{} + std::int64_t(p);
-        Numbers           z;
-        std::memcpy(&z, &offers.z[col], sizeof z);
-        const Numbers dz2 = (z - pz) * (z - pz);
-        for (std::size_t r = 0; r < kRows; ++r) {
-            const std::size_t at    = (row + r) * offers.stride + col;
-            const double      dx    = offers.x[row + r] - px;
-            const Numbers     offer = dx * dx + dz2;
-            Numbers           best;
-            Integers          point;
-            std::memcpy(&best, &offers.distance2[at], sizeof best);
-            std::memcpy(&point, &offers.point[at], sizeof point);
-            const Integers better = offer < best;
-            best                  = better ? offer : best;
-            point                 = better ? mine : point;
-            std::memcpy(&offers.distance2[at], &best, sizeof best);
-            std::memcpy(&offers.point[at], &point, sizeof point);
+        const auto [px, pz] = points[p];
+        const double u      = (px - x0) * perX + kFirstRow;
+        const double v      = (pz - z0) * perZ + kFirstCol;
+        if (!(u >= 0 && u <= rows && v >= 0 && v <= cols)) { // near no node
+            finite &= std::isfinite(px) && std::isfinite(pz);
+            continue;
+        }
+        const auto row = std::int64_t(u);
+        const auto col = std::int64_t(v);
+        Numbers    along;
+        std::memcpy(&along, z + col, sizeof along);
+        const Numbers dz2  = (along - pz) * (along - pz);
+        const Numbers mine = Numbers{} + double(p);
+        for (int r = 0; r < kRows; ++r) {
+            double* const distances = best + 2 * (row + r) * stride + col;
+            double* const numbers   = distances + stride;
+            const double  dx        = x[row + r] - px;
+            const Numbers distance2 = dx * dx + dz2;
+            Numbers       least;
+            Numbers       number;
+            std::memcpy(&least, distances, sizeof least);
+            std::memcpy(&number, numbers, sizeof number);
+            const auto better = distance2 < least;
+            least             = better ? distance2 : least;
+            number            = better ? mine : number;
+            std::memcpy(distances, &least, sizeof least);
+            std::memcpy(numbers, &number, sizeof number);
         }
     }
+    return finite;
 }
 
-[[gnu::always_inline]] inline void offerAll(std::span<const ChartPoint> points, int rows, Offers& offers)
+[[gnu::always_inline]] inline bool offerAll(std::span<const ChartPoint> points, int rows, Offers& offers)
 {
-    if (rows == 2)
-        offerAll<2>(points, offers);
-    else if (rows == 3)
-        offerAll<3>(points, offers);
-    else
-        offerAll<4>(points, offers);
+    return rows == 2   ? offerAll<2>(points, offers)
+           : rows == 3 ? offerAll<3>(points, offers)
+                       : offerAll<4>(points, offers);
 }
 
-void offerPortable(std::span<const ChartPoint> points, int rows, Offers& offers)
+bool offerPortable(std::span<const ChartPoint> points, int rows, Offers& offers)
 {
-    offerAll(points, rows, offers);
+    return offerAll(points, rows, offers);
 }
 
 #if defined(__x86_64__)
 // Without FMA, which would round distances differently from processor to processor.
-__attribute__((target("avx2"))) void offerAvx2(std::span<const ChartPoint> points, int rows, Offers& offers)
+__attribute__((target("avx2"))) bool offerAvx2(std::span<const ChartPoint> points, int rows, Offers& offers)
 {
-    offerAll(points, rows, offers);
+    return offerAll(points, rows, offers);
 }
 #endif
 
-void offer(std::span<const ChartPoint> points, int rows, Offers& offers)
+/// \return whether all points are finite
+bool offer(std::span<const ChartPoint> points, int rows, Offers& offers)
 {
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx2")) return offerAvx2(points, rows, offers);
 #endif
-    offerPortable(points, rows, offers);
+    return offerPortable(points, rows, offers);
 }
 
 /// Equal intervals along an axis; the outermost two also take what lies beyond.
@@ -229,23 +237,28 @@ struct Axis {
     double first   = 0; ///< [m] first node
     double last    = 0; ///< [m] last node
     double spacing = 1; ///< [m]
-    double low     = 0; ///< [m] lowest point, but at most half the grid's size beyond it
+    double low     = 0; ///< [m] about the lowest of nodes and points, but at most half the grid's size beyond it
     double high    = 0; ///< [m]
-    double margin  = 0; ///< [m] by which a position in steps or bands may be rounded
 
-    Axis(double origin, double step, int cells, std::span<const ChartPoint> points, double ChartPoint::*coordinate)
-        : first(origin), last(origin + cells * step), spacing(step)
+    Axis(double origin, double step, int cells)
+        : first(origin), last(origin + cells * step), spacing(step), low(first), high(last)
     {
-        double least = first, most = last;
-        for (const ChartPoint& p : points) {
-            least = std::min(least, p.*coordinate);
-            most  = std::max(most, p.*coordinate);
-        }
+    }
+
+    void include(double x)
+    {
         const double beyond = 0.5 * (last - first) + spacing;
-        low                 = std::max(least, first - beyond);
-        high                = std::min(most, last + beyond);
-        // Some 2^-53 of the largest numbers that take part; 32 times as much costs nothing.
-        margin = 0x1p-48 * (std::abs(first) + std::abs(last) + spacing + (high - low));
+        low                 = std::min(low, std::max(x, first - beyond));
+        high                = std::max(high, std::min(x, last + beyond));
+    }
+    [[nodiscard]] bool   holds(double x) const noexcept { return x >= first && x <= last; }
+    [[nodiscard]] double cells() const noexcept { return std::max(1.0, (last - first) / spacing); }
+
+    /// [m] by which rounding may move a position in steps or bands: some 2^-53 of the largest numbers that take part;
+    /// 32 times as much costs nothing.
+    [[nodiscard]] double margin() const noexcept
+    {
+        return 0x1p-48 * (std::abs(first) + std::abs(last) + spacing + (high - low));
     }
 
     /// About `width` [m] wide, but no more than `most` bands.
@@ -253,7 +266,7 @@ struct Axis {
     {
         Bands bands;
         bands.low    = low;
-        bands.margin = margin;
+        bands.margin = margin();
         if (high - low > width) {
             bands.count = int(std::min((high - low) / width, double(most)));
             bands.width = (high - low) / bands.count;
@@ -262,38 +275,42 @@ struct Axis {
     }
 };
 
-/// Points per cell of the grid.
-[[nodiscard]] double densityOf(std::span<const ChartPoint> points, const Axis& x, const Axis& z)
+/// Points per cell of the grid, of a sample of the points; tells the axes where points lie. Only speed hangs on it.
+[[nodiscard]] double survey(std::span<const ChartPoint> points, Axis& x, Axis& z)
 {
-    const auto   inside = std::count_if(points.begin(), points.end(), [&](const ChartPoint& p) {
-        return p.x >= x.first && p.x <= x.last && p.z >= z.first && p.z <= z.last;
-    });
-    const double cells  = std::max(1.0, (x.last - x.first) / x.spacing) * std::max(1.0, (z.last - z.first) / z.spacing);
-    return double(inside) / cells;
+    constexpr std::size_t kSamples = 1000;
+    const std::size_t     stride   = (points.size() + kSamples - 1) / kSamples;
+    std::size_t           inside   = 0;
+    for (std::size_t p = 0; p < points.size(); p += stride) {
+        x.include(points[p].x);
+        z.include(points[p].z);
+        inside += x.holds(points[p].x) && z.holds(points[p].z);
+    }
+    return double(inside * stride) / (x.cells() * z.cells());
 }
 
-/// Rows of nodes to which points offer themselves, so that hardly any node of a random cloud is left without the
-/// nearest point: one in exp(-pi r^2 density) at r = rows / 2 steps; at exp(-5) the search of the rest costs as much as
-/// one more row.
+/// Rows of nodes to which points offer themselves. In a random cloud one node in exp(pi r^2 density) has its nearest
+/// point further away than r = rows / 2 steps. One in exp(11) = 60000 means that most grids need no buckets, which cost
+/// more than one row.
 [[nodiscard]] int rowsFor(double density)
 {
-    const double rows = 2 * std::sqrt(5 / (std::numbers::pi * std::max(density, 1e-9)));
+    const double rows = 2 * std::sqrt(11 / (std::numbers::pi * std::max(density, 1e-9)));
     return int(std::clamp(std::ceil(rows), double(kLeastRows), double(kMostRows)));
 }
 
-/// Searches for the nodes whose best offer is further away than `reach` [m]; every node's answer is the next one's
-/// first guess.
-void searchBeyond(double reach, const Buckets& buckets, const Offers& offers, std::vector<std::uint32_t>& nearest)
+/// Searches for the nodes whose best offer is not within the square root of `settled2` [m^2]; every node's answer is
+/// the next one's first guess.
+void searchBeyond(double settled2, const Buckets& buckets, const Offers& offers, std::vector<std::uint32_t>& nearest)
 {
     const auto  columns = std::size_t(offers.grid.nodesZ());
     std::size_t node    = 0;
     for (int i = 0; i < offers.grid.nodesX(); ++i) {
+        const double* distances2 = offers.distances2(i);
         for (int j = 0; j < offers.grid.nodesZ(); ++j, ++node) {
-            const std::size_t at = offers.at(i, j);
-            if (reach > 0 && offers.distance2[at] <= reach * reach) continue;
+            if (distances2[j] <= settled2) continue;
             const ChartPoint place{offers.x[std::size_t(i + Offers::kMargin)],
                                    offers.z[std::size_t(j + Offers::kMargin)]};
-            std::uint32_t    guess    = offers.point[at] >= 0 ? nearest[node] : 0;
+            std::uint32_t    guess    = nearest[node]; // point 0 if none has offered itself
             const auto       consider = [&](std::uint32_t point) {
                 if (buckets.squaredDistance(place, point) < buckets.squaredDistance(place, guess)) guess = point;
             };
@@ -314,34 +331,32 @@ std::vector<std::uint32_t> nearestPoint(const PlateGrid& grid, const ChartPoint&
                     std::to_string(grid.spacingX) + " m x " + std::to_string(grid.spacingZ) + " m");
     PALP_EXPECT(!points.empty() && points.size() < std::numeric_limits<std::uint32_t>::max(),
                 std::to_string(points.size()) + " points");
-    PALP_EXPECT(std::all_of(points.begin(), points.end(),
-                            [](const ChartPoint& p) { return std::isfinite(p.x) && std::isfinite(p.z); }),
-                "a point is not finite");
-
-    const Axis   x(origin.x, grid.spacingX, grid.cellsX, points, &ChartPoint::x);
-    const Axis   z(origin.z, grid.spacingZ, grid.cellsZ, points, &ChartPoint::z);
-    const double density = densityOf(points, x, z);
-    const int    rows    = rowsFor(density);
-    const double reach   = std::min(0.5 * rows * x.spacing - x.margin, 0.5 * kLanes * z.spacing - z.margin);
+    Axis         x(origin.x, grid.spacingX, grid.cellsX);
+    Axis         z(origin.z, grid.spacingZ, grid.cellsZ);
+    const int    rows  = rowsFor(survey(points, x, z));
+    const double reach = std::min(0.5 * rows * x.spacing - x.margin(), 0.5 * kLanes * z.spacing - z.margin());
     Offers       offers(grid, origin);
-    offer(points, rows, offers);
+    const bool   finite = offer(points, rows, offers);
+    PALP_EXPECT(finite, "a point is not finite");
 
-    std::vector<std::uint32_t> nearest;
-    nearest.reserve(grid.nodes());
-    bool settled = true;
+    std::vector<std::uint32_t> nearest(grid.nodes());
+    std::size_t                node     = 0;
+    const double               settled2 = reach > 0 ? reach * reach : -1; // [m^2]
+    bool                       settled  = true;
     for (int i = 0; i < grid.nodesX(); ++i) {
-        const std::int64_t* point     = &offers.point[offers.at(i, 0)];
-        const double*       distance2 = &offers.distance2[offers.at(i, 0)];
+        const double* distances2 = offers.distances2(i);
+        const double* numbers    = offers.points(i);
         for (int j = 0; j < grid.nodesZ(); ++j) {
-            nearest.push_back(std::uint32_t(point[j]));
-            settled &= reach > 0 && distance2[j] <= reach * reach;
+            nearest[node++] = std::uint32_t(numbers[j]);
+            settled &= distances2[j] <= settled2;
         }
     }
     if (settled) return nearest;
 
     constexpr double kPointsPerBucket = 2; // measured: 1 to 4 make little difference
     const double     width = std::sqrt(kPointsPerBucket * (x.high - x.low) * (z.high - z.low) / double(points.size()));
-    searchBeyond(reach, Buckets(points, x.bands(width, points.size()), z.bands(width, points.size())), offers, nearest);
+    searchBeyond(settled2, Buckets(points, x.bands(width, points.size()), z.bands(width, points.size())), offers,
+                 nearest);
     return nearest;
 }
 

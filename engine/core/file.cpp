@@ -42,7 +42,10 @@ void writeFileWhole(const std::filesystem::path& path, const std::function<void(
         throw Error(path.string() + ": cannot be written: it is a folder; name a file in it");
     // A device or a pipe (/dev/stdout, /dev/null) must not be replaced by a file of the same name.
     const bool replaceable = !std::filesystem::exists(path, status) || std::filesystem::is_regular_file(path, status);
-    const std::filesystem::path target = replaceable ? draftOf(path) : path;
+    // A link stays a link: what it points to is replaced.
+    const std::filesystem::path place =
+        std::filesystem::is_symlink(path, status) ? std::filesystem::weakly_canonical(path, status) : path;
+    const std::filesystem::path target = replaceable ? draftOf(place) : place;
 
     errno = 0;
     std::ofstream file(target, std::ios::binary | std::ios::trunc);
@@ -52,9 +55,9 @@ void writeFileWhole(const std::filesystem::path& path, const std::function<void(
         errno = 0;
         file.close();
         if (!file) throw Error(path.string() + ": cannot be written: " + reasonOfErrno());
-        if (replaceable) std::filesystem::rename(target, path);
+        if (replaceable) std::filesystem::rename(target, place);
     } catch (const std::filesystem::filesystem_error& failure) {
-        std::filesystem::remove(target, status);
+        if (replaceable) std::filesystem::remove(target, status);
         throw Error(path.string() + ": cannot be written: " + failure.code().message());
     } catch (...) {
         if (replaceable) std::filesystem::remove(target, status);

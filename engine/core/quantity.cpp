@@ -1,9 +1,12 @@
 #include "engine/core/quantity.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <span>
 
 #include "engine/core/contract.h"
@@ -116,15 +119,16 @@ glm::dvec3 parsePoint(std::string_view text, std::string_view what, double metre
 std::string formatQuantity(double value, std::string_view siUnit)
 {
     if (!std::isfinite(value)) return std::isnan(value) ? "undefined" : "infinite";
-    constexpr std::array<const char*, 9> kPrefixes = {"p", "n", "u", "m", "", "k", "M", "G", "T"};
-    int step            = value == 0 ? 0 : int(std::floor(std::log10(std::abs(value)) / 3 + 1e-12));
-    step                = std::max(-4, std::min(4, step));
-    const double scaled = value / std::pow(10.0, 3 * step);
-    char         text[64];
-    const double size   = std::abs(scaled);
-    const int    digits = size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2;
-    std::snprintf(text, sizeof text, "%.*f %s%.*s", digits, scaled, kPrefixes[std::size_t(step + 4)],
-                  int(siUnit.size()), siUnit.data());
+    constexpr std::array kPrefixes = {"p", "n", "u", "m", "", "k", "M", "G", "T"};
+    char                 text[64];
+    // Rounded to three digits first: 999.96 is 1.00 k, not 1000.
+    std::snprintf(text, sizeof text, "%.2e", value);
+    const double rounded  = std::strtod(text, nullptr);
+    const int    exponent = rounded == 0 ? 0 : std::atoi(std::strchr(text, 'e') + 1);
+    const int    step     = std::clamp(int(std::floor(exponent / 3.0)), -4, 4);
+    const int    digits   = std::clamp(2 - (exponent - 3 * step), 0, 2);
+    std::snprintf(text, sizeof text, "%.*f %s%.*s", digits, rounded / std::pow(10.0, 3 * step),
+                  kPrefixes[std::size_t(step + 4)], int(siUnit.size()), siUnit.data());
     return text;
 }
 

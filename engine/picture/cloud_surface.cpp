@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -50,46 +51,111 @@ void forDisc(double centreX, double centreY, double radius, const CloudCamera& c
     }
 }
 
-double widthAt(const Pixel& p, const CloudCamera& camera, const SplatSpacing& spacing)
-{
-    return spacing.width(std::clamp(p.x, 0.0, double(camera.width)), std::clamp(p.y, 0.0, double(camera.height)));
-}
+// What lies nearest at every pixel when each point covers a disc.
+struct Cover {
+    float depth = kNothing; // [px]
+    float width = 0;        // of the splat of the point that covers [px]
+};
 
-std::vector<float> coveredFront(std::span<const glm::dvec3> positions, const CloudCamera& camera,
-                                const SplatSpacing& spacing)
-{
-    std::vector<float> front(std::size_t(camera.width) * std::size_t(camera.height), kNothing);
-    for (const glm::dvec3& position : positions)
-        if (const auto p = camera.project(position)) {
-            const double reach = std::max(kLeastReach, kFrontReach * widthAt(*p, camera, spacing));
-            forDisc(p->x, p->y, reach, camera,
-                    [&](std::size_t n, float, float) { front[n] = std::min(front[n], float(p->depth)); });
-        }
-    return front;
-}
+class Front {
+public:
+    Front(std::span<const glm::dvec3> positions, const CloudCamera& camera, const SplatSpacing& spacing)
+        : camera_(camera), covers_(std::size_t(camera.width) * std::size_t(camera.height))
+    {
+        for (const glm::dvec3& position : positions)
+            if (const auto p = camera.project(position)) {
+                const Cover cover = {float(p->depth), float(spacing.width(*p))};
+                forDisc(p->x, p->y, std::max(kLeastReach, kFrontReach * double(cover.width)), camera,
+                        [&](std::size_t n, float, float) {
+                            if (cover.depth < covers_[n].depth) covers_[n] = cover;
+                        });
+            }
+        fillHoles();
+    }
 
-// Pulls what is in front back from every edge, so that what is behind appears, or nothing.
-std::vector<float> closedFront(const std::vector<float>& covered, const CloudCamera& camera,
-                               const SplatSpacing& spacing)
-{
-    std::vector<float> front = covered;
-    const auto pixel = [&](int x, int y) { return std::size_t(y) * std::size_t(camera.width) + std::size_t(x); };
-    for (int y = 0; y < camera.height; ++y)
-        for (int x = 0; x < camera.width; ++x) {
-            const double width = spacing.width(x + 0.5, y + 0.5);
-            const float  here  = covered[pixel(x, y)];
-            const float  near  = here - float(kJump * width); // what is nearer than this is across an edge
-            const bool   edge  = (x > 0 && covered[pixel(x - 1, y)] < near) ||
-                              (y > 0 && covered[pixel(x, y - 1)] < near) ||
-                              (x + 1 < camera.width && covered[pixel(x + 1, y)] < near) ||
-                              (y + 1 < camera.height && covered[pixel(x, y + 1)] < near);
-            if (!edge) continue;
-            forDisc(x + 0.5, y + 0.5, kPullBack * width, camera, [&](std::size_t n, float, float) {
-                if (covered[n] < near) front[n] = std::max(front[n], here);
-            });
+    // Depth of the surface per pixel, pulled back from every edge, so that what is behind appears, or nothing.
+    [[nodiscard]] std::vector<float> closed() const
+    {
+        std::vector<float> front;
+        for (const Cover& cover : covers_) front.push_back(cover.depth);
+        for (int y = 0; y < camera_.height; ++y)
+            for (int x = 0; x < camera_.width; ++x) {
+                const float here = covers_[at(x, y)].depth;
+                double      back = 0; // [px]
+                for (auto [dx, dy] : kCross)
+                    if (const Cover* beside = find(x + dx, y + dy); beside && across(*beside, here))
+                        back = std::max(back, kPullBack * double(beside->width));
+                if (back > 0)
+                    forDisc(x + 0.5, y + 0.5, back, camera_, [&](std::size_t n, float, float) {
+                        if (across(covers_[n], here)) front[n] = std::max(front[n], here);
+                    });
+            }
+        return front;
+    }
+
+private:
+    static constexpr std::pair<int, int> kCross[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    static constexpr std::pair<int, int> kStar[]  = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
+                                                     {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+
+    [[nodiscard]] std::size_t at(int x, int y) const
+    {
+        return std::size_t(y) * std::size_t(camera_.width) + std::size_t(x);
+    }
+
+    [[nodiscard]] const Cover* find(int x, int y) const
+    {
+        return x >= 0 && y >= 0 && x < camera_.width && y < camera_.height ? &covers_[at(x, y)] : nullptr;
+    }
+
+    // Whether a place is so much nearer than `deeper` that an edge lies between.
+    [[nodiscard]] static bool across(const Cover& place, float deeper)
+    {
+        return place.depth < deeper - float(kJump) * place.width;
+    }
+
+    // A pixel that sees the same nearer surface in all but one of eight directions, a splat's reach away, is a gap
+    // between points; a slit or a bay is open in two. Filled from the border inwards.
+    void fillHoles()
+    {
+        std::vector<std::pair<int, int>> waiting;
+        for (int y = 0; y < camera_.height; ++y)
+            for (int x = 0; x < camera_.width; ++x) waiting.emplace_back(x, y);
+        while (!waiting.empty()) {
+            const auto [x, y] = waiting.back();
+            waiting.pop_back();
+            const std::optional<Cover> lid = lidOver(x, y);
+            if (!lid) continue;
+            covers_[at(x, y)] = *lid;
+            for (auto [dx, dy] : kCross)
+                if (find(x + dx, y + dy) != nullptr) waiting.emplace_back(x + dx, y + dy);
         }
-    return front;
-}
+    }
+
+    // The deepest of the nearer places around a pixel, if there are enough of them.
+    [[nodiscard]] std::optional<Cover> lidOver(int x, int y) const
+    {
+        const float here = covers_[at(x, y)].depth;
+        Cover       side;
+        for (auto [dx, dy] : kCross)
+            if (const Cover* beside = find(x + dx, y + dy); beside && across(*beside, here)) side = *beside;
+        if (side.depth == kNothing) return std::nullopt;
+        const int reach = std::max(1, int(kFrontReach * double(side.width)));
+        Cover     lid{-kNothing, 0};
+        int       seen = 0;
+        for (auto [dx, dy] : kStar)
+            for (int step = 1; step <= reach; ++step)
+                if (const Cover* place = find(x + step * dx, y + step * dy); place && across(*place, here)) {
+                    ++seen;
+                    if (place->depth > lid.depth) lid = *place;
+                    break;
+                }
+        return seen >= 7 ? std::optional(lid) : std::nullopt;
+    }
+
+    const CloudCamera& camera_;
+    std::vector<Cover> covers_; // row by row
+};
 
 // The normal in axes of the camera, towards the eye; zero if there is none.
 glm::vec3 seenNormal(const glm::dvec3& normal, const CloudCamera& camera)
@@ -111,7 +177,7 @@ std::vector<Moments> accumulate(std::span<const glm::dvec3> positions, std::span
         const bool      defined = !values.empty() && std::isfinite(values[k]);
         const float     value   = defined ? float(values[k]) : 0;
         const glm::vec3 normal  = normals.empty() ? glm::vec3(0) : seenNormal(normals[k], camera);
-        const double    width   = widthAt(*p, camera, spacing);
+        const double    width   = spacing.width(*p);
         const float     scale   = float(1 / width);
         forDisc(p->x, p->y, std::max(kLeastReach, kSplatReach * width), camera,
                 [&](std::size_t n, float offsetX, float offsetY) {
@@ -157,21 +223,62 @@ CloudSurface::Sample sampleOf(const Moments& m, float front)
     return sample;
 }
 
-// Coverage of a pixel at a silhouette is the share of surface around it, so that the outline is not jagged.
-void softenOutline(CloudSurface& surface)
+// Calls visit(sample) for the pixel itself and its eight neighbours on the picture.
+template <class Visit>
+void forSquare(const std::vector<CloudSurface::Sample>& samples, int width, int height, int x, int y, Visit visit)
 {
-    const std::vector<CloudSurface::Sample> sharp = surface.samples;
-    for (int y = 0; y < surface.height; ++y)
-        for (int x = 0; x < surface.width; ++x) {
-            float sum = 0, count = 0;
-            for (int v = std::max(0, y - 1); v <= std::min(surface.height - 1, y + 1); ++v)
-                for (int u = std::max(0, x - 1); u <= std::min(surface.width - 1, x + 1); ++u) {
-                    sum += sharp[std::size_t(v) * std::size_t(surface.width) + std::size_t(u)].coverage;
-                    ++count;
-                }
-            float& here = surface.samples[std::size_t(y) * std::size_t(surface.width) + std::size_t(x)].coverage;
-            here *= sum / count;
-        }
+    for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
+        for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u)
+            visit(samples[std::size_t(v) * std::size_t(width) + std::size_t(u)]);
+}
+
+// At a silhouette the near and the far side meet and a plane fits neither: depth and normal of the outermost pixels
+// come from further inside. Their coverage is the share of surface around them, so that the outline is not jagged.
+void finishOutline(CloudSurface& surface)
+{
+    constexpr int kRim   = 3; // how far inside both sides mix [px]
+    const auto    forAll = [&](auto visit) {
+        for (int y = 0; y < surface.height; ++y)
+            for (int x = 0; x < surface.width; ++x) {
+                CloudSurface::Sample& sample =
+                    surface.samples[std::size_t(y) * std::size_t(surface.width) + std::size_t(x)];
+                if (sample.coverage > 0) visit(sample, x, y);
+            }
+    };
+    std::vector<CloudSurface::Sample> inside = surface.samples;
+    for (int step = 0; step < kRim; ++step) { // strips one pixel after the other ...
+        const auto before = inside;
+        forAll([&](CloudSurface::Sample&, int x, int y) {
+            float least = 1;
+            forSquare(before, surface.width, surface.height, x, y,
+                      [&](const auto& s) { least = std::min(least, s.coverage); });
+            if (least <= 0) inside[std::size_t(y) * std::size_t(surface.width) + std::size_t(x)].coverage = 0;
+        });
+    }
+    for (int step = 0; step < kRim; ++step) { // ... and grows them back
+        const auto before = inside;
+        forAll([&](const CloudSurface::Sample&, int x, int y) {
+            auto& sample = inside[std::size_t(y) * std::size_t(surface.width) + std::size_t(x)];
+            if (sample.coverage > 0) return;
+            glm::vec3 normal(0);
+            float     depth = 0, count = 0;
+            forSquare(before, surface.width, surface.height, x, y, [&](const auto& s) {
+                if (s.coverage > 0) normal += s.normal, depth += s.depth, ++count;
+            });
+            if (count == 0) return;
+            sample.coverage = 1;
+            sample.depth    = depth / count;
+            sample.normal   = glm::normalize(normal);
+        });
+    }
+    const auto sharp = surface.samples;
+    forAll([&](CloudSurface::Sample& sample, int x, int y) {
+        float sum = 0, count = 0;
+        forSquare(sharp, surface.width, surface.height, x, y, [&](const auto& s) { sum += s.coverage, ++count; });
+        const auto& steady = inside[std::size_t(y) * std::size_t(surface.width) + std::size_t(x)];
+        if (steady.coverage > 0) sample = steady; // else it is too thin to have an inside
+        sample.coverage = sum / count;
+    });
 }
 
 } // namespace
@@ -197,14 +304,23 @@ std::optional<Pixel> CloudCamera::project(const glm::dvec3& point) const
 CloudSurface cloudSurface(std::span<const glm::dvec3> positions, std::span<const double> values,
                           std::span<const glm::dvec3> normals, const CloudCamera& camera)
 {
-    const SplatSpacing         spacing(positions, camera);
-    const std::vector<float>   front   = closedFront(coveredFront(positions, camera, spacing), camera, spacing);
-    const std::vector<Moments> moments = accumulate(positions, values, normals, camera, spacing, front);
-    CloudSurface               surface{camera.width, camera.height, spacing.typical(),
-                         std::vector<CloudSurface::Sample>(front.size())};
-    for (std::size_t n = 0; n < front.size(); ++n)
-        if (front[n] < kNothing && moments[n].w > 0) surface.samples[n] = sampleOf(moments[n], front[n]);
-    softenOutline(surface);
+    // Edges near the border of the picture are found beyond it.
+    const int   margin = int(std::ceil(kFrontReach * SplatSpacing(positions, camera).widest()));
+    CloudCamera wide   = camera;
+    wide.width += 2 * margin;
+    wide.height += 2 * margin;
+    const SplatSpacing         spacing(positions, wide);
+    const std::vector<float>   front   = Front(positions, wide, spacing).closed();
+    const std::vector<Moments> moments = accumulate(positions, values, normals, wide, spacing, front);
+
+    CloudSurface surface{camera.width, camera.height, spacing.typical(), {}};
+    for (int y = 0; y < camera.height; ++y)
+        for (int x = 0; x < camera.width; ++x) {
+            const std::size_t n = std::size_t(y + margin) * std::size_t(wide.width) + std::size_t(x + margin);
+            surface.samples.push_back(front[n] < kNothing && moments[n].w > 0 ? sampleOf(moments[n], front[n])
+                                                                              : CloudSurface::Sample());
+        }
+    finishOutline(surface);
     return surface;
 }
 

@@ -36,6 +36,7 @@ SplatSpacing::SplatSpacing(std::span<const glm::dvec3> positions, const CloudCam
 
 void SplatSpacing::count(std::span<const glm::dvec3> positions, const CloudCamera& camera)
 {
+
     constexpr float kThickness = 3; // depth of the front layer per side of a cell [1]
     columns_                   = (camera.width + side_ - 1) / side_;
     rows_                      = (camera.height + side_ - 1) / side_;
@@ -77,17 +78,18 @@ void SplatSpacing::measure(double largest)
         typical_ = *middle;
     }
     constexpr double kNarrowest = 0.6, kWidest = 3; // relative to the typical spacing [1]
-    for (double& width : widths_) {
-        const double spacing = width > 0 ? std::clamp(width, kNarrowest * typical_, kWidest * typical_) : typical_;
-        width = std::clamp(kWidthPerSpacing * spacing, kSmallestWidth, std::max(kSmallestWidth, largest));
-    }
+    const auto       widthFor = [&](double spacing) {
+        return std::clamp(kWidthPerSpacing * std::clamp(spacing, kNarrowest * typical_, kWidest * typical_),
+                                kSmallestWidth, std::max(kSmallestWidth, largest));
+    };
+    for (double& width : widths_) width = widthFor(width > 0 ? width : typical_);
 }
 
 // Linear between the centres of the cells: a jump of the width would show as an edge.
-double SplatSpacing::width(double x, double y) const
+double SplatSpacing::width(const CloudCamera::Pixel& point) const
 {
-    const double u    = std::clamp(x / side_ - 0.5, 0.0, double(columns_ - 1));
-    const double v    = std::clamp(y / side_ - 0.5, 0.0, double(rows_ - 1));
+    const double u    = std::clamp(point.x / side_ - 0.5, 0.0, double(columns_ - 1));
+    const double v    = std::clamp(point.y / side_ - 0.5, 0.0, double(rows_ - 1));
     const int    left = int(u), top = int(v), right = std::min(left + 1, columns_ - 1),
               bottom = std::min(top + 1, rows_ - 1);
     const auto at    = [&](int row, int column) {
@@ -103,7 +105,7 @@ void SplatSpacing::boundWork(std::span<const glm::dvec3> positions, const CloudC
     double work = 0; // [px]
     for (const glm::dvec3& position : positions)
         if (const auto p = camera.project(position); p && onPicture(*p, camera)) {
-            const double reach = 2 * kSplatReach * width(p->x, p->y);
+            const double reach = 2 * kSplatReach * width(*p);
             work += reach * reach;
         }
     const double most = kMostWork * double(camera.width) * double(camera.height);

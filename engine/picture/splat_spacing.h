@@ -19,8 +19,10 @@ public:
 
     /// Distance of neighbouring points. [px]
     [[nodiscard]] double typical() const { return typical_; }
-    /// Width of a splat around a place on the screen. [px]
-    [[nodiscard]] double width(double x, double y) const;
+    /// The widest splat. [px]
+    [[nodiscard]] double widest() const { return shrink_ * *std::max_element(widths_.begin(), widths_.end()); }
+    /// Width of the splat of a point. [px]
+    [[nodiscard]] double width(const CloudCamera::Pixel& point) const;
 
 private:
     void count(std::span<const glm::dvec3> positions, const CloudCamera& camera);
@@ -37,7 +39,9 @@ private:
     std::vector<float>  front_;                             // nearest depth per cell [px]
     std::vector<double> counts_;                            // points of the front layer per cell [1]
     std::vector<double> widths_;                            // [px]
-    double              typical_ = 1, shrink_ = 1;
+    double              typical_ = 1;                       // distance of neighbouring points [px]
+
+    double shrink_ = 1; // of all widths [1]
 };
 
 } // namespace palp

@@ -34,7 +34,10 @@ StiffnessRange rangeOf(const std::string& text, bool logarithmic, StiffnessKind 
     return range;
 }
 
-nlohmann::json pointJson(const glm::dvec3& p) { return {p.x, p.y, p.z}; }
+nlohmann::json pointJson(const glm::dvec3& p)
+{
+    return {p.x, p.y, p.z};
+}
 
 /// Smallest and largest stiffness of the points.
 std::pair<double, double> stiffnessBounds(const PointCloud& cloud)
@@ -47,7 +50,8 @@ std::pair<double, double> stiffnessBounds(const PointCloud& cloud)
 
 void CloudSource::addTo(CLI::App& command)
 {
-    command.add_option("CLOUD", name, "a .ply, .pcd, .xyz, .txt or .csv file, or sample:NAME (see palpate info --samples)")
+    command
+        .add_option("CLOUD", name, "a .ply, .pcd, .xyz, .txt or .csv file, or sample:NAME (see palpate info --samples)")
         ->required();
     command.add_option("--unit", unit, "length unit of the file: m, mm, cm, um, km, in, ft (else its comment, else m)");
     command.add_option("--stiffness-property", stiffnessProperty, "property that holds the stiffness, such as quality");
@@ -56,7 +60,8 @@ void CloudSource::addTo(CLI::App& command)
     command.add_option("--stiffness-unit", stiffnessUnit, "Pa (Young's modulus) or N_m (flexural rigidity)");
     command.add_option("--uniform", uniform, "stiffness where the file has none, such as 300kPa");
     command.add_option("--columns", columns, "meaning of a text file's columns, such as x,y,z,-,stiffness");
-    command.add_flag("--drop-invalid", dropInvalid, "leaves out points with NaN or infinity instead of refusing the file");
+    command.add_flag("--drop-invalid", dropInvalid,
+                     "leaves out points with NaN or infinity instead of refusing the file");
     command.add_option("--stiffness", law,
                        "replaces the stiffness by a law, such as linear:from=2e4,to=2e6,axis=x or "
                        "gaussian:from=3e5,to=3e6,centre=0;0;0,sigma=0.003");
@@ -66,10 +71,14 @@ void CloudSource::addTo(CLI::App& command)
 
 const Sample* CloudSource::sample() const
 {
-    return name.starts_with(kSamplePrefix) ? &sampleNamed(std::string_view(name).substr(kSamplePrefix.size())) : nullptr;
+    return name.starts_with(kSamplePrefix) ? &sampleNamed(std::string_view(name).substr(kSamplePrefix.size()))
+                                           : nullptr;
 }
 
-double CloudSource::metresPerPlainNumber() const { return unit.empty() ? 1 : metresPer(unit); }
+double CloudSource::metresPerPlainNumber() const
+{
+    return unit.empty() ? 1 : metresPer(unit);
+}
 
 LoadedCloud CloudSource::load() const
 {
@@ -104,7 +113,8 @@ LoadedCloud CloudSource::load() const
     std::vector<double> stiffness;
     stiffness.reserve(loaded.cloud.size());
     for (const glm::dvec3& p : loaded.cloud.positions()) stiffness.push_back(spread(p));
-    loaded.cloud = PointCloud({loaded.cloud.positions().begin(), loaded.cloud.positions().end()}, std::move(stiffness), kind);
+    loaded.cloud =
+        PointCloud({loaded.cloud.positions().begin(), loaded.cloud.positions().end()}, std::move(stiffness), kind);
     loaded.report.stiffnessSource = "--stiffness " + law + " [" + unitOf(kind) + "]";
     return loaded;
 }

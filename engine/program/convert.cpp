@@ -43,7 +43,7 @@ void convert(const ConvertOptions& options)
 
 void addConvertCommand(CLI::App& app)
 {
-    CLI::App* command = app.add_subcommand("convert", "reads a cloud and writes it in metres, with its stiffness");
+    CLI::App*  command = app.add_subcommand("convert", "reads a cloud and writes it in metres, with its stiffness");
     const auto options = std::make_shared<ConvertOptions>();
     options->source.addTo(*command);
     command->add_option("TARGET", options->target, "a .ply, .pcd, .xyz, .txt or .csv file")->required();

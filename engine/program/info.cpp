@@ -38,14 +38,15 @@ void printInfo(const InfoOptions& options)
     }
     const std::string unit = report["stiffness_unit"] == "Pa" ? "Pa" : "N m";
     std::string       properties;
-    for (const std::string& property : loaded.report.properties) properties += (properties.empty() ? "" : ", ") + property;
+    for (const std::string& property : loaded.report.properties)
+        properties += (properties.empty() ? "" : ", ") + property;
     std::cout << options.source.name << ": " << loaded.report.format << ", " << loaded.cloud.size() << " points";
     if (loaded.report.droppedPoints) std::cout << " (" << loaded.report.droppedPoints << " dropped: NaN or infinity)";
     std::cout << "\n  extent      " << span3(report["low"], report["high"]) << "\n  length unit "
               << loaded.report.lengthUnitSource << "\n  spacing     " << formatQuantity(index.spacing(), "m")
               << " between points, " << loaded.report.duplicatePositions << " exact duplicates\n  stiffness   "
-              << formatQuantity(report["stiffness_min"], unit) << " to " << formatQuantity(report["stiffness_max"], unit)
-              << ": " << loaded.report.stiffnessSource << "\n";
+              << formatQuantity(report["stiffness_min"], unit) << " to "
+              << formatQuantity(report["stiffness_max"], unit) << ": " << loaded.report.stiffnessSource << "\n";
     if (!properties.empty()) std::cout << "  properties  " << properties << "\n";
 }
 
@@ -63,7 +64,7 @@ void printSamples(bool json)
 
 void addInfoCommand(CLI::App& app)
 {
-    CLI::App* command = app.add_subcommand("info", "what a cloud holds and how it is understood");
+    CLI::App*  command = app.add_subcommand("info", "what a cloud holds and how it is understood");
     const auto options = std::make_shared<InfoOptions>();
     options->source.addTo(*command);
     command->get_option("CLOUD")->required(false);

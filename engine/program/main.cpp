@@ -41,7 +41,8 @@ int main(int argumentCount, char** arguments)
         std::cout.flush();
         if (!std::cout) return complain("standard output cannot be written", kBadInput);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : kBadInput;
+        if (error.get_exit_code() == 0) return app.exit(error); // --help, --version
+        return complain(std::string(error.what()) + "; see --help", kBadInput);
     } catch (const palp::Error& error) {
         return complain(error.what(), kBadInput);
     } catch (const std::bad_alloc&) {

@@ -11,7 +11,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json vectorJson(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+Json vectorJson(const glm::dvec3& v)
+{
+    return {v.x, v.y, v.z};
+}
 
 template <class T>
 Json orNull(const std::optional<T>& value)
@@ -41,8 +44,9 @@ Json chartJson(const Chart& chart)
 
 Json windowJson(const Patch& patch)
 {
-    const PlateGrid& grid    = patch.window.grid;
-    const auto [least, most] = std::minmax_element(patch.plate.rigidity.values().begin(), patch.plate.rigidity.values().end());
+    const PlateGrid& grid = patch.window.grid;
+    const auto [least, most] =
+        std::minmax_element(patch.plate.rigidity.values().begin(), patch.plate.rigidity.values().end());
     return {{"size", {grid.sizeX(), grid.sizeZ()}},
             {"cells", {grid.cellsX, grid.cellsZ}},
             {"spacing", grid.spacingX},
@@ -55,7 +59,7 @@ Json windowJson(const Patch& patch)
 
 Json timesJson(const StageTimes& t)
 {
-    return {{"gather", t.gather},     {"fit", t.fit},     {"project", t.project}, {"resample", t.resample},
+    return {{"gather", t.gather},       {"fit", t.fit},     {"project", t.project}, {"resample", t.resample},
             {"factorise", t.factorise}, {"solve", t.solve}, {"lift", t.lift},       {"total", t.total()}};
 }
 
@@ -77,33 +81,36 @@ Json settingsJson(const PatchSettings& s)
             {"map", name(s.map)},
             {"sampling", name(s.sampling)},
             {"force_law", name(s.forceLaw)},
-            {"edges", {{"x0", name(s.edges.x0)}, {"x1", name(s.edges.x1)}, {"z0", name(s.edges.z0)}, {"z1", name(s.edges.z1)}}}};
+            {"edges",
+             {{"x0", name(s.edges.x0)}, {"x1", name(s.edges.x1)}, {"z0", name(s.edges.z0)}, {"z1", name(s.edges.z1)}}}};
 }
 
 Json patchJson(const Patch& patch, const PatchSettings& settings, double force)
 {
-    Json report{{"contact", {{"point", vectorJson(patch.contact.point)}, {"outward", vectorJson(patch.contact.outward)}}},
-                {"force", force},
-                {"settings", settingsJson(settings)},
-                {"differences_from_paper", differencesFromPaper(settings)},
-                {"sphere", sphereJson(patch.sphere)}};
+    Json report{
+        {"contact", {{"point", vectorJson(patch.contact.point)}, {"outward", vectorJson(patch.contact.outward)}}},
+        {"force", force},
+        {"settings", settingsJson(settings)},
+        {"differences_from_paper", differencesFromPaper(settings)},
+        {"sphere", sphereJson(patch.sphere)}};
     if (!patch.deformed()) return report;
-    const int middle                 = settings.cells / 2;
-    report["chart"]                  = chartJson(patch.chart);
-    report["window"]                 = windowJson(patch);
-    report["rigidity_at_contact"]    = patch.plate.rigidity(middle, middle);
-    report["compliance"]             = patch.compliance;
-    report["contact_stiffness"]      = patch.contactStiffness;
-    report["felt_stiffness"]         = patch.feltStiffness;
-    report["deflection_at_contact"]  = force * patch.response(middle, middle);
-    report["max_deflection"]         = force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
-    report["error"]                  = {{"discretisation", orNull(discretisationError(patch, settings))},
-                                        {"solver", orNull(patch.report.errorEstimate)}};
-    report["solver"]                 = {{"device", patch.report.device},
-                                        {"iterations", orNull(patch.report.iterations)},
-                                        {"work_units", orNull(patch.report.workUnits)}};
-    report["milliseconds"]           = timesJson(patch.times);
-    report["warnings"]               = warnings(patch, settings, force);
+    const int middle                = settings.cells / 2;
+    report["chart"]                 = chartJson(patch.chart);
+    report["window"]                = windowJson(patch);
+    report["rigidity_at_contact"]   = patch.plate.rigidity(middle, middle);
+    report["compliance"]            = patch.compliance;
+    report["contact_stiffness"]     = patch.contactStiffness;
+    report["felt_stiffness"]        = patch.feltStiffness;
+    report["deflection_at_contact"] = force * patch.response(middle, middle);
+    report["max_deflection"] =
+        force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
+    report["error"]        = {{"discretisation", orNull(discretisationError(patch, settings))},
+                              {"solver", orNull(patch.report.errorEstimate)}};
+    report["solver"]       = {{"device", patch.report.device},
+                              {"iterations", orNull(patch.report.iterations)},
+                              {"work_units", orNull(patch.report.workUnits)}};
+    report["milliseconds"] = timesJson(patch.times);
+    report["warnings"]     = warnings(patch, settings, force);
     return report;
 }
 

@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -106,7 +108,7 @@ void printText(const Solved& s, const std::string& name)
                 formatQuantity(*stiffest, "N m").c_str());
     if (plate.foundation > 0) std::printf("  foundation  %s\n", formatQuantity(plate.foundation, "Pa/m").c_str());
     std::printf("  load        %s in all\n", formatQuantity(force, "N").c_str());
-    std::printf("  deflection  at most %s, at x %s, z %s\n",
+    std::printf("  deflection  largest %s, at x %s, z %s\n",
                 formatQuantity(s.solution.deflection.values()[s.largestNode], "m").c_str(),
                 formatQuantity(i * grid.spacingX, "m").c_str(), formatQuantity(j * grid.spacingZ, "m").c_str());
     std::printf("  solver      %s, %.0f ms", s.solution.report.device.c_str(), s.solution.report.milliseconds);

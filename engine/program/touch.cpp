@@ -21,7 +21,8 @@ namespace {
 struct TouchOptions {
     CloudSource source;
     std::string at, from, force = "0.5N", preset = "palpate";
-    std::string map, sampling, edges, forceLaw, foundation, thickness, poisson, window, footprint; // empty: the preset's
+    std::string map, sampling, edges, forceLaw, foundation, thickness, poisson, window,
+        footprint;         // empty: the preset's
     int         cells = 0; ///< 0: the default
     std::string out;
     bool        json = false;
@@ -62,8 +63,11 @@ PlateEdges edgesOf(const std::string& text)
         const std::string part = text.substr(begin, end - begin), side = part.substr(0, 2);
         if (part.size() < 4 || part[2] != '=' || (side != "x0" && side != "x1" && side != "z0" && side != "z1"))
             throw Error("--edges: expected SIDE=EDGE with side x0, x1, z0 or z1, found \"" + part + "\"");
-        (side == "x0" ? edges.x0 : side == "x1" ? edges.x1 : side == "z0" ? edges.z0 : edges.z1) = edgeNamed(part.substr(3));
-        begin = end + 1;
+        (side == "x0"   ? edges.x0
+         : side == "x1" ? edges.x1
+         : side == "z0" ? edges.z0
+                        : edges.z1) = edgeNamed(part.substr(3));
+        begin                       = end + 1;
     }
     return edges;
 }
@@ -79,14 +83,19 @@ PatchSettings settingsOf(const TouchOptions& options)
         settings.footprintRadius = sample->footprintRadius;
     }
     settings = withPreset(settings, named(presetNamed(options.preset), "--preset", options.preset, "palpate, paper"));
-    if (!options.thickness.empty()) settings.material.thickness = positive(options.thickness, Dimension::length, "--thickness");
-    if (!options.poisson.empty()) settings.material.poissonRatio = parseQuantity(options.poisson, Dimension::none, "--poisson");
-    if (!options.foundation.empty()) settings.foundation = parseQuantity(options.foundation, Dimension::foundation, "--foundation");
+    if (!options.thickness.empty())
+        settings.material.thickness = positive(options.thickness, Dimension::length, "--thickness");
+    if (!options.poisson.empty())
+        settings.material.poissonRatio = parseQuantity(options.poisson, Dimension::none, "--poisson");
+    if (!options.foundation.empty())
+        settings.foundation = parseQuantity(options.foundation, Dimension::foundation, "--foundation");
     if (!options.window.empty()) settings.window = positive(options.window, Dimension::length, "--window");
-    if (!options.footprint.empty()) settings.footprintRadius = positive(options.footprint, Dimension::length, "--footprint");
+    if (!options.footprint.empty())
+        settings.footprintRadius = positive(options.footprint, Dimension::length, "--footprint");
     if (!options.edges.empty()) settings.edges = edgesOf(options.edges);
     if (!options.map.empty())
-        settings.map = named(mapNamed(options.map), "--map", options.map, "lambert-azimuthal, lambert-cylindrical, gall-peters");
+        settings.map =
+            named(mapNamed(options.map), "--map", options.map, "lambert-azimuthal, lambert-cylindrical, gall-peters");
     if (!options.sampling.empty())
         settings.sampling = named(samplingNamed(options.sampling), "--sampling", options.sampling, "log-mean, nearest");
     if (!options.forceLaw.empty())
@@ -110,8 +119,8 @@ Contact contactOf(const TouchOptions& options, const PointCloud& cloud, const Ne
     if (!options.from.empty()) from = parsePoint(options.from, "--from");
     if (!sample && options.at.empty())
         throw Error("--at: expected a place x,y,z for a cloud from a file; its middle is (" +
-                    std::to_string(cloud.bounds().centre().x) + ", " + std::to_string(cloud.bounds().centre().y) + ", " +
-                    std::to_string(cloud.bounds().centre().z) + ") m");
+                    std::to_string(cloud.bounds().centre().x) + ", " + std::to_string(cloud.bounds().centre().y) +
+                    ", " + std::to_string(cloud.bounds().centre().z) + ") m");
     const glm::dvec3 place =
         options.at.empty() ? sample->place : parsePoint(options.at, "--at", options.source.metresPerPlainNumber());
     return touchAt(cloud, index, place, from, window / 4);
@@ -127,40 +136,46 @@ void printTouch(const TouchOptions& options, const PatchSettings& settings, cons
                 r["contact"]["point"][1].get<double>(), r["contact"]["point"][2].get<double>());
     std::printf("  scene              thickness %s, poisson %.3g, foundation %s, footprint radius %s\n",
                 formatQuantity(settings.material.thickness, "m").c_str(), settings.material.poissonRatio,
-                formatQuantity(settings.foundation, "Pa/m").c_str(), formatQuantity(settings.footprintRadius, "m").c_str());
+                formatQuantity(settings.foundation, "Pa/m").c_str(),
+                formatQuantity(settings.footprintRadius, "m").c_str());
     std::printf("  sphere             %s, radius %s, misfit %s\n", r["sphere"]["outcome"].get<std::string>().c_str(),
                 r["sphere"]["radius"].is_null() ? "infinite" : formatQuantity(r["sphere"]["radius"], "m").c_str(),
                 formatQuantity(r["sphere"]["misfit"], "m").c_str());
     std::printf("  window             %s, %d x %d cells, %zu points, %zu nodes without a point nearby\n",
                 formatQuantity(settings.window, "m").c_str(), settings.cells, settings.cells,
                 window["points_near_side"].get<std::size_t>(), window["nodes_without_point"].get<std::size_t>());
-    std::printf("  rigidity           %s at the contact, %s to %s in the window\n", quantity("rigidity_at_contact", "N m").c_str(),
-                formatQuantity(window["rigidity_min"], "N m").c_str(), formatQuantity(window["rigidity_max"], "N m").c_str());
+    std::printf("  rigidity           %s at the contact, %s to %s in the window\n",
+                quantity("rigidity_at_contact", "N m").c_str(), formatQuantity(window["rigidity_min"], "N m").c_str(),
+                formatQuantity(window["rigidity_max"], "N m").c_str());
     std::printf("  deflection         %s at the contact, %s at most\n", quantity("deflection_at_contact", "m").c_str(),
                 quantity("max_deflection", "m").c_str());
     std::printf("  compliance         %s\n", quantity("compliance", "m/N").c_str());
     std::printf("  contact stiffness  %s\n", quantity("contact_stiffness", "N/m").c_str());
-    std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(), name(settings.forceLaw));
+    std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(),
+                name(settings.forceLaw));
     std::printf("  error              discretisation %s, rounding %.1e\n",
-                error["discretisation"].is_null() ? "unknown"
-                                                  : (formatQuantity(100 * error["discretisation"].get<double>(), "") + "%").c_str(),
+                error["discretisation"].is_null()
+                    ? "unknown"
+                    : (formatQuantity(100 * error["discretisation"].get<double>(), "") + "%").c_str(),
                 error["solver"].get<double>());
     std::printf("  time               %.1f ms:", r["milliseconds"]["total"].get<double>());
     for (const char* stage : {"gather", "fit", "project", "resample", "factorise", "solve", "lift"})
         std::printf(" %s %.2f", stage, r["milliseconds"][stage].get<double>());
     std::printf("\n");
-    for (const std::string& line : differencesFromPaper(settings)) std::printf("  unlike the paper   %s\n", line.c_str());
+    for (const std::string& line : differencesFromPaper(settings))
+        std::printf("  unlike the paper   %s\n", line.c_str());
     for (const auto& line : r["warnings"]) std::printf("  warning            %s\n", line.get<std::string>().c_str());
     if (r.contains("files"))
-        for (const auto& file : r["files"]) std::printf("  wrote              %s\n", (options.out + "/" + file.get<std::string>()).c_str());
+        for (const auto& file : r["files"])
+            std::printf("  wrote              %s\n", (options.out + "/" + file.get<std::string>()).c_str());
 }
 
 /// What the touch looks like; the names of the files, in the order in which one looks at them.
 std::vector<std::string> writePictures(const std::filesystem::path& folder, const PointCloud& cloud, const Patch& patch,
                                        const PatchSettings& settings, double force)
 {
-    const std::string  newtons   = formatQuantity(force, "N");
-    const double       deepest   = force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
+    const std::string newtons = formatQuantity(force, "N");
+    const double deepest = force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
     const PressedPatch pressed[] = {{&patch, force, newtons}};
     const double       far       = roundExaggeration(deepest, cloud.bounds().diagonal());
     const double       near      = roundExaggeration(deepest, 2 * settings.window);
@@ -169,8 +184,10 @@ std::vector<std::string> writePictures(const std::filesystem::path& folder, cons
     };
     const std::pair<const char*, std::string> pictures[] = {
         {"surface.svg", surfaceSvg(cloud, pressed, {"Under " + newtons + times(far), far, {}, false})},
-        {"close_up.svg", surfaceSvg(cloud, pressed, {"Around the contact under " + newtons + times(near), near, {}, true})},
-        {"rigidity.svg", rigidityChartSvg(patch, settings, std::string("Rigidity in the ") + name(patch.chart.map) + " chart")},
+        {"close_up.svg",
+         surfaceSvg(cloud, pressed, {"Around the contact under " + newtons + times(near), near, {}, true})},
+        {"rigidity.svg",
+         rigidityChartSvg(patch, settings, std::string("Rigidity in the ") + name(patch.chart.map) + " chart")},
         {"deflection.svg", deflectionChartSvg(patch, settings, force, "Deflection under " + newtons)},
         {"profile.svg", profileSvg(patch, force, "Deflection through the contact under " + newtons)}};
     std::vector<std::string> files;
@@ -188,9 +205,9 @@ std::vector<std::string> writeFiles(const TouchOptions& options, const PointClou
     const std::filesystem::path folder = options.out;
     makeFolder(folder);
     const std::vector<double>     deflection = deflections(cloud, patch, force);
-    const std::span<const double> stiffness = cloud.stiffness();
-    const PointCloud          bent(displaced(cloud, patch, force), {stiffness.begin(), stiffness.end()}, cloud.kind());
-    const NamedField          field{"deflection", "m", deflection};
+    const std::span<const double> stiffness  = cloud.stiffness();
+    const PointCloud bent(displaced(cloud, patch, force), {stiffness.begin(), stiffness.end()}, cloud.kind());
+    const NamedField field{"deflection", "m", deflection};
     writeCloud(folder / "deformed.ply", bent, {&field, 1});
 
     NodeField w = patch.response;
@@ -199,7 +216,8 @@ std::vector<std::string> writeFiles(const TouchOptions& options, const PointClou
     writeNpy(folder / "rigidity.npy", patch.plate.rigidity);
 
     std::vector<std::string> files = {"deformed.ply", "deflection.npy", "rigidity.npy"};
-    for (std::string& picture : writePictures(folder, cloud, patch, settings, force)) files.push_back(std::move(picture));
+    for (std::string& picture : writePictures(folder, cloud, patch, settings, force))
+        files.push_back(std::move(picture));
     return files;
 }
 
@@ -212,8 +230,10 @@ void touch(const TouchOptions& options)
     const Contact        contact = contactOf(options, loaded.cloud, index, settings.window);
     const Patch          patch   = deform(loaded.cloud, index, contact, settings);
     if (!patch.deformed())
-        throw Error("touch: the " + std::to_string(patch.gathered.size()) + " points around the contact do not determine a "
-                    "surface (" + name(patch.sphere.outcome) + "); try a larger --window, or check --unit");
+        throw Error("touch: the " + std::to_string(patch.gathered.size()) +
+                    " points around the contact do not determine a "
+                    "surface (" +
+                    name(patch.sphere.outcome) + "); try a larger --window, or check --unit");
 
     nlohmann::json report = patchJson(patch, settings, force);
     report["cloud"]       = cloudJson(options.source, loaded);
@@ -225,21 +245,25 @@ void touch(const TouchOptions& options)
         writeFileWhole(std::filesystem::path(options.out) / "touch.json",
                        [&](std::ostream& file) { file << report.dump(2) << "\n"; });
     }
-    if (options.json) std::cout << report.dump(2) << "\n";
-    else printTouch(options, settings, report);
+    if (options.json)
+        std::cout << report.dump(2) << "\n";
+    else
+        printTouch(options, settings, report);
 }
 
 } // namespace
 
 void addTouchCommand(CLI::App& app)
 {
-    CLI::App*  command = app.add_subcommand("touch", "presses a scripted finger on a cloud: how far it gives, how it feels");
-    const auto o       = std::make_shared<TouchOptions>();
+    CLI::App* command =
+        app.add_subcommand("touch", "presses a scripted finger on a cloud: how far it gives, how it feels");
+    const auto o = std::make_shared<TouchOptions>();
     o->source.addTo(*command);
     command->add_option("--at", o->at, "place X,Y,Z, in the unit of --unit or with units, such as 10mm,0,35mm");
     command->add_option("--from", o->from, "direction X,Y,Z from which the finger comes (else from outside)");
     command->add_option("--force", o->force, "that presses, such as 0.5N")->capture_default_str();
-    command->add_option("--preset", o->preset, "palpate, or paper: as Kumari and Chaudhuri published it")->capture_default_str();
+    command->add_option("--preset", o->preset, "palpate, or paper: as Kumari and Chaudhuri published it")
+        ->capture_default_str();
     command->add_option("--thickness", o->thickness, "of the sheet, such as 4mm");
     command->add_option("--poisson", o->poisson, "Poisson's ratio");
     command->add_option("--foundation", o->foundation, "stiffness of what lies below, such as 1.74MPa/m; 0 is nothing");
@@ -248,7 +272,8 @@ void addTouchCommand(CLI::App& app)
     command->add_option("--footprint", o->footprint, "radius of the fingertip, such as 4mm");
     command->add_option("--map", o->map, "lambert-azimuthal, lambert-cylindrical or gall-peters");
     command->add_option("--sampling", o->sampling, "rigidity of a node: log-mean or nearest");
-    command->add_option("--edges", o->edges, "of the window: clamped, supported, free, or such as x0=free,z1=supported");
+    command->add_option("--edges", o->edges,
+                        "of the window: clamped, supported, free, or such as x0=free,z1=supported");
     command->add_option("--force-law", o->forceLaw, "series (plate and contact) or paper (contact alone)");
     command->add_option("--out", o->out, "folder for the deformed cloud, grids, pictures and touch.json");
     command->add_flag("--json", o->json, "machine-readable, SI units");

@@ -79,7 +79,7 @@ TEST(Resample, LogMeanIsTheGaussianMeanOfTheLogarithm)
     const double    width  = std::max(s.spacing, 0.5 / 12);
     for (int i = 0; i <= 12; ++i)
         for (int j = 0; j <= 12; ++j) {
-            const ChartPoint node = nodeOf(window, i, j);
+            const ChartPoint node    = nodeOf(window, i, j);
             double           weights = 0, logs = 0;
             for (std::size_t n = 0; n < s.positions.size(); ++n) {
                 const double dx = s.positions[n].x - node.x, dz = s.positions[n].z - node.z;
@@ -99,7 +99,7 @@ TEST(Resample, LogMeanJittersLessThanNearestWhileTheGridSlides)
     const auto    jitter = [&](Sampling rule) {
         double largest = 0, last = 0;
         for (int step = 0; step <= 40; ++step) {
-            Window window   = Window::square(0.8, 24);
+            Window window = Window::square(0.8, 24);
             window.corner.z += 1e-3 * step; // along the level lines of D: the object itself stays the same
             const double d = resampleRigidity(window, s.positions, s.rigidities, rule, s.spacing).rigidity(14, 12);
             if (step) largest = std::max(largest, std::abs(std::log(d / last)));

@@ -31,7 +31,8 @@ TEST(Samples, EverySampleLiesInItsBoundsAndHasItsOwnNumberOfPoints)
 TEST(Samples, TheSeedDecidesEveryPoint)
 {
     const Sample&    sample = sampleNamed("palm");
-    const PointCloud one = makeSample(sample, 1000, 7), same = makeSample(sample, 1000, 7), other = makeSample(sample, 1000, 8);
+    const PointCloud one = makeSample(sample, 1000, 7), same = makeSample(sample, 1000, 7),
+                     other = makeSample(sample, 1000, 8);
 
     EXPECT_EQ(one.positions()[999], same.positions()[999]);
     EXPECT_NE(one.positions()[999], other.positions()[999]);
@@ -72,19 +73,21 @@ TEST(Samples, EllipsoidPointsAreUniformPerArea)
 
 TEST(Samples, WartAndTendonsAreStifferThanTheirSurroundings)
 {
-    const PointCloud skin        = makeSample(sampleNamed("skin"), 20'000, 1);
+    const PointCloud skin          = makeSample(sampleNamed("skin"), 20'000, 1);
     const auto [softest, stiffest] = std::minmax_element(skin.stiffness().begin(), skin.stiffness().end());
     EXPECT_NEAR(*softest, 0.3e6, 1) << "far from the wart the bump has died out";
-    EXPECT_NEAR(*stiffest, 3e6, 0.1e6) << "one of 20 000 points lies within 0.6 mm of the middle, where the bump lost 3 %";
+    EXPECT_NEAR(*stiffest, 3e6, 0.1e6)
+        << "one of 20 000 points lies within 0.6 mm of the middle, where the bump lost 3 %";
 
-    const PointCloud palm = makeSample(sampleNamed("palm"), 20'000, 1);
+    const PointCloud palm  = makeSample(sampleNamed("palm"), 20'000, 1);
     const auto [low, high] = std::minmax_element(palm.stiffness().begin(), palm.stiffness().end());
     EXPECT_GT(*high / *low, 20) << "tendon x 10 over thumb / 2.5";
 }
 
 TEST(Samples, ALawReplacesTheOwnStiffness)
 {
-    const SpatialLaw law{.kind = SpatialLaw::Kind::linear, .from = 1, .to = 3, .start = {-60e-3, 0, 0}, .end = {60e-3, 0, 0}};
+    const SpatialLaw law{
+        .kind = SpatialLaw::Kind::linear, .from = 1, .to = 3, .start = {-60e-3, 0, 0}, .end = {60e-3, 0, 0}};
     const PointCloud cloud = makeSample(sampleNamed("ellipsoid"), 100, 1, law);
     for (std::size_t i = 0; i < cloud.size(); ++i)
         EXPECT_NEAR(cloud.stiffness()[i], 2 + cloud.positions()[i].x / 60e-3, 1e-12) << "the same formula in double";

@@ -143,6 +143,17 @@ TEST_F(Files, ADeviceIsWrittenToAndNotReplaced)
     EXPECT_EQ(namesInFolder(), std::vector<std::string>{"null"});
 }
 
+TEST_F(Files, ALinkStaysALinkToTheNewContents)
+{
+    std::ofstream(folder_ / "file") << "old";
+    std::filesystem::create_symlink(folder_ / "file", folder_ / "link");
+
+    writeFileWhole(folder_ / "link", writeNew);
+
+    EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link"));
+    EXPECT_EQ(contentsOf(folder_ / "file"), "new");
+}
+
 TEST_F(Files, AFolderOrAMissingFolderCannotBeWritten)
 {
     const std::string folder  = refusalOf([&] { writeFileWhole(folder_, writeNew); });

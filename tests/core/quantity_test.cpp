@@ -37,7 +37,8 @@ TEST(Quantity, PointComponentsMayCarryUnits)
     EXPECT_DOUBLE_EQ(point.x, 10e-3);
     EXPECT_DOUBLE_EQ(point.y, 0.02);
     EXPECT_DOUBLE_EQ(point.z, -0.03);
-    for (const char* text : {"1,2", "1,2,3,4", "1,,3", "a,b,c", ""}) EXPECT_THROW((void)parsePoint(text, "--at"), Error) << text;
+    for (const char* text : {"1,2", "1,2,3,4", "1,,3", "a,b,c", ""})
+        EXPECT_THROW((void)parsePoint(text, "--at"), Error) << text;
 }
 
 TEST(Quantity, PeopleReadThreeDigitsAndAPrefix)

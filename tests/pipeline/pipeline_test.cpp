@@ -63,19 +63,22 @@ TEST(Pipeline, ComplianceIsConstantAlongAPathOnHomogeneousObjects)
         for (const Path& path : paths) {
             std::vector<double> compliances;
             for (int n = 0; n <= 10; ++n) {
-                const Patch patch = path.object.touch(path.start + double(n) * path.step, path.from, withPreset(kCoarse, preset));
+                const Patch patch =
+                    path.object.touch(path.start + double(n) * path.step, path.from, withPreset(kCoarse, preset));
                 ASSERT_TRUE(patch.deformed());
                 compliances.push_back(patch.compliance);
             }
             const auto [least, most] = std::minmax_element(compliances.begin(), compliances.end());
-            EXPECT_LT(*most / *least - 1, 1e-6) << "exact up to the rounding of the factorisation, preset " << name(preset);
+            EXPECT_LT(*most / *least - 1, 1e-6)
+                << "exact up to the rounding of the factorisation, preset " << name(preset);
         }
 }
 
-/// Square plate, clamped, point load: w = 0.0056 F a^2/D at the load (Timoshenko); a footprint of finite radius a little less.
+/// Square plate, clamped, point load: w = 0.0056 F a^2/D at the load (Timoshenko); a footprint of finite radius a
+/// little less.
 TEST(Pipeline, ComplianceOfAFlatSheetIsThatOfAClampedPlate)
 {
-    const Object        sheet    = homogeneous("sheet", 4);
+    const Object        sheet = homogeneous("sheet", 4);
     const PatchSettings settings{.window = 40e-3, .cells = 64, .footprintRadius = 1.3e-3};
     const Patch         patch    = sheet.touch({0, 0, 0}, {0, 0, 1}, settings);
     const double        rigidity = settings.material.rigidity(1e6);
@@ -90,9 +93,9 @@ TEST(Pipeline, ComplianceOfAFlatSheetIsThatOfAClampedPlate)
 
 TEST(Pipeline, TheFootprintCarriesExactlyOneNewtonInTheMiddle)
 {
-    const Window     window = Window::square(24e-3, 32);
-    const NodeField  load   = footprintLoad(window.grid, 1, 12e-3, 12e-3, 3e-3);
-    double           sum    = 0;
+    const Window    window = Window::square(24e-3, 32);
+    const NodeField load   = footprintLoad(window.grid, 1, 12e-3, 12e-3, 3e-3);
+    double          sum    = 0;
     for (double f : load.values()) sum += f;
     EXPECT_NEAR(sum, 1, 1e-14) << "a sum of some hundred terms";
     EXPECT_GT(load(16, 16), 0);
@@ -108,8 +111,10 @@ TEST(Pipeline, DeflectionFallsWhereRigidityRises)
             double last = 1e9;
             for (double x : {-40e-3, -20e-3, 0.0, 20e-3, 40e-3}) {
                 const glm::dvec3 place{x, 0, 35e-3 * std::sqrt(1 - x * x / (60e-3 * 60e-3))};
-                const Patch      patch = ellipsoid.touch(place, {0, 0, 1}, withPreset({.window = 30e-3, .cells = 48}, preset));
-                EXPECT_LT(patch.compliance, 0.9 * last) << "rigidity rises by at least a third from place to place, x = " << x;
+                const Patch      patch =
+                    ellipsoid.touch(place, {0, 0, 1}, withPreset({.window = 30e-3, .cells = 48}, preset));
+                EXPECT_LT(patch.compliance, 0.9 * last)
+                    << "rigidity rises by at least a third from place to place, x = " << x;
                 last = patch.compliance;
             }
         }
@@ -123,7 +128,7 @@ TEST(Pipeline, PointsMoveIntoTheSurfaceByTheFieldAndOnlyInTheWindow)
     const auto   moved     = displaced(ellipsoid.cloud, patch, 0.5);
     const auto   depth     = deflections(ellipsoid.cloud, patch, 0.5);
 
-    std::size_t dented = 0;
+    std::size_t dented  = 0;
     double      deepest = 0;
     for (std::size_t i = 0; i < moved.size(); ++i) {
         const glm::dvec3 move = moved[i] - ellipsoid.cloud.positions()[i];
@@ -138,7 +143,8 @@ TEST(Pipeline, PointsMoveIntoTheSurfaceByTheFieldAndOnlyInTheWindow)
     EXPECT_GT(patch.forceDirection().z, -1.01);
     EXPECT_LT(patch.forceDirection().z, -0.99) << "down, at the top of the ellipsoid";
     EXPECT_GT(dented, 300u);
-    EXPECT_NEAR(deepest / (0.5 * patch.response(16, 16)), 1, 0.03) << "the nearest point is a fraction of a spacing off";
+    EXPECT_NEAR(deepest / (0.5 * patch.response(16, 16)), 1, 0.03)
+        << "the nearest point is a fraction of a spacing off";
 }
 
 TEST(Pipeline, ABowlIsPushedAwayFromTheHand)
@@ -167,7 +173,8 @@ TEST(Pipeline, PaperPresetDentsAShallowerElongatedPit)
             }
         return widest;
     };
-    EXPECT_NEAR(halfWidth(ours, ours.chart.frame.east) / halfWidth(ours, ours.chart.frame.north), 1, 0.1) << "point spacing 0.8 of 5 mm";
+    EXPECT_NEAR(halfWidth(ours, ours.chart.frame.east) / halfWidth(ours, ours.chart.frame.north), 1, 0.1)
+        << "point spacing 0.8 of 5 mm";
     EXPECT_NEAR(halfWidth(paper, paper.chart.frame.east) / halfWidth(paper, paper.chart.frame.north), 2, 0.3)
         << "sqrt2 one way and 1/sqrt2 the other, in the limit of small patches";
 }
@@ -187,12 +194,14 @@ TEST(Pipeline, TwoThinSheetsBendTogether)
 {
     const Sample& sample = sampleNamed("ear-lobe");
     const Object  lobe(makeSample(sample, sample.points, 1));
-    PatchSettings settings{.material = sample.material, .window = sample.window, .cells = 32, .footprintRadius = sample.footprintRadius};
-    const Patch   patch = lobe.touch(sample.place, sample.from, settings);
+    PatchSettings settings{
+        .material = sample.material, .window = sample.window, .cells = 32, .footprintRadius = sample.footprintRadius};
+    const Patch patch = lobe.touch(sample.place, sample.from, settings);
     ASSERT_TRUE(patch.deformed());
     std::size_t front = 0, back = 0;
     for (std::size_t n = 0; n < patch.points.size(); ++n)
-        if (patch.pointResponse[n] > 0.5 * patch.response(16, 16)) ++(lobe.cloud.positions()[patch.points[n]].z > 0 ? front : back);
+        if (patch.pointResponse[n] > 0.5 * patch.response(16, 16))
+            ++(lobe.cloud.positions()[patch.points[n]].z > 0 ? front : back);
     EXPECT_GT(front, 100u);
     EXPECT_GT(back, 100u) << "a lobe is thin: both skins move";
 }
@@ -229,7 +238,8 @@ TEST(Pipeline, PaperPresetHasNoDifferencesAndOursNamesEachOfThem)
 {
     const PatchSettings skin{.foundation = 1e6};
     EXPECT_TRUE(differencesFromPaper(withPreset(skin, Preset::paper)).empty());
-    EXPECT_EQ(differencesFromPaper(withPreset(skin, Preset::palpate)).size(), 4u) << "map, sampling, foundation, force law";
+    EXPECT_EQ(differencesFromPaper(withPreset(skin, Preset::palpate)).size(), 4u)
+        << "map, sampling, foundation, force law";
 }
 
 TEST(Pipeline, DeepDentsAreCalledOutOfTheory)

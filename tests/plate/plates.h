@@ -120,6 +120,12 @@ struct Refinement {
     std::vector<double>                limits; ///< [m]
     std::array<std::vector<double>, 3> values; ///< [m] coarse to fine
 
+    void append(const Refinement& other, std::size_t k)
+    {
+        limits.push_back(other.limits[k]);
+        for (std::size_t grid = 0; grid < values.size(); ++grid) values[grid].push_back(other.values[grid][k]);
+    }
+
     /// The limit that second-order convergence of the two finer grids foretells.
     [[nodiscard]] double richardson(std::size_t k) const { return values[2][k] + (values[2][k] - values[1][k]) / 3; }
 

@@ -81,7 +81,8 @@ bad 'unknown device' 'reference' solve plate.json --device gpu9000
 
 # --- bad files
 bad 'missing file' 'No such file' info nowhere.ply
-bad 'a folder' 'folder' info .
+mkdir folder.ply
+bad 'a folder' 'folder' info folder.ply
 bad 'unknown extension' '.ply' info plate.json
 printf 'ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\nabc' >huge.ply
 bad 'a header that lies' 'huge.ply' info huge.ply
@@ -110,7 +111,7 @@ printf 'precious' >kept.ply
 bad 'bad input keeps the old target' 'short.ply' convert short.ply kept.ply
 [ "$(cat kept.ply)" = precious ] && passed=$((passed + 1)) || complain 'an old file was lost'
 mkdir full && : >full/out
-bad 'a folder that is a file' 'full/out' touch sample:skin --points 5000 --cells 16 --out full/out
+bad 'a folder that is a file' 'full/out' touch sample:skin --points 5000 --cells 48 --out full/out
 left=$(find . -name '*.part')
 [ -z "$left" ] && passed=$((passed + 1)) || complain "left behind: $left"
 
