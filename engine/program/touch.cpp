@@ -191,9 +191,9 @@ std::vector<std::string> writePictures(const std::filesystem::path& folder, cons
         {"deflection.svg", deflectionChartSvg(patch, settings, force, "Deflection under " + newtons)},
         {"profile.svg", profileSvg(patch, force, "Deflection through the contact under " + newtons)}};
     std::vector<std::string> files;
-    for (const auto& [file, svg] : pictures) {
-        writeFileWhole(folder / file, [&](std::ostream& stream) { stream << svg; });
-        files.emplace_back(file);
+    for (const auto& picture : pictures) {
+        writeFileWhole(folder / picture.first, [&](std::ostream& stream) { stream << picture.second; });
+        files.emplace_back(picture.first);
     }
     return files;
 }

@@ -1,0 +1,61 @@
+#!/bin/sh
+# The two commands on machines that lack packages, root, sudo or a terminal, played by stand-ins first in PATH.
+# Argument: the checkout.
+set -u
+cd "$1" || exit 1
+place=$(mktemp -d "${TMPDIR:-/tmp}/palpate prepare XXXXXX") || exit 1
+trap 'rm -rf "$place"' EXIT
+passed=0 failed=0
+
+stand_in() { printf '#!/bin/sh\n%s\n' "$2" >"$place/bin/$1"; chmod +x "$place/bin/$1"; }
+machine() { # a fresh set of stand-ins; every call of apt-get or sudo leaves a line in calls
+    rm -rf "$place/bin" "$place/calls"
+    mkdir "$place/bin"
+    : >"$place/calls"
+    stand_in dpkg-query 'case $* in *libembree-dev*) exit 1 ;; *) printf "install ok installed" ;; esac'
+    stand_in apt-get "echo \"apt-get \$*\" >>'$place/calls'; exit 1"
+    stand_in sudo "echo \"sudo \$*\" >>'$place/calls'; exit 1"
+    stand_in id "echo $1"
+}
+check() { # check DESCRIPTION EXIT-CODE WORD COMMAND...
+    what=$1 code=$2 word=$3
+    shift 3
+    PATH="$place/bin:$PATH" "$@" </dev/null >"$place/out" 2>&1
+    found=$?
+    if [ $found -ne "$code" ]; then echo "FAILED: $what: exit $found, expected $code: $(cat "$place/out")"; failed=$((failed + 1)); return; fi
+    if ! grep -qF -- "$word" "$place/out"; then echo "FAILED: $what: no '$word' in: $(cat "$place/out")"; failed=$((failed + 1)); return; fi
+    passed=$((passed + 1))
+}
+calls() { # calls DESCRIPTION PATTERN: the pattern is in the calls; an empty pattern: there were none
+    if [ -z "$2" ] && [ -s "$place/calls" ] || { [ -n "$2" ] && ! grep -q -- "$2" "$place/calls"; }; then
+        echo "FAILED: $1: $(cat "$place/calls")"; failed=$((failed + 1))
+    else
+        passed=$((passed + 1))
+    fi
+}
+
+for script in tests/run.sh samples/demo.sh; do
+    machine 0
+    check "$script --help" 0 'usage:' sh $script --help
+    check "$script with an unknown option" 2 'unknown option' sh $script --fast
+    check "$script --dry-run names the line" 0 'apt-get install -y --no-install-recommends libembree-dev' sh $script --dry-run
+    check "$script --no-install" 3 'libembree-dev' sh $script --no-install
+    calls "$script installed although it was told not to" ''
+
+    check "$script as root, when nothing can be installed" 3 'libembree-dev' sh $script
+    calls "$script as root does not ask" 'install -y --no-install-recommends libembree-dev'
+
+    machine 1000
+    check "$script without root and terminal" 3 'sudo apt-get install' sh $script
+    calls "$script asked for a password that nobody can type" ''
+    check "$script --yes without password-less sudo" 3 'libembree-dev' sh $script --yes
+    calls "$script --yes tries sudo without a password" 'sudo -n true'
+
+    machine 1000
+    stand_in dpkg-query 'printf "install ok installed"'
+    check "$script with nothing missing" 0 'would' sh $script --dry-run
+    calls "$script needs neither root nor network when nothing is missing" ''
+done
+
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
