@@ -17,6 +17,14 @@
 
 #include "engine/core/contract.h"
 
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define PALP_THREAD_SANITIZER 1
+#endif
+#elif defined(__SANITIZE_THREAD__)
+#define PALP_THREAD_SANITIZER 1
+#endif
+
 namespace palp {
 
 /// Point queries over boxes, by Embree 3 or 4. Internal to the cloud layer: the only file that names Embree.
@@ -33,14 +41,14 @@ public:
     };
 
     /// \throws Error if Embree does not start or runs out of memory
-    explicit BoxTree(const std::vector<Box>& boxes) : device_(rtcNewDevice("verbose=0"))
+    explicit BoxTree(const std::vector<Box>& boxes) : device_(rtcNewDevice(kConfiguration))
     {
         if (!device_) throw Error("Embree does not start (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
         scene_.reset(rtcNewScene(device_.get()));
         const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
         rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(boxes.size()));
-        rtcSetGeometryUserData(geometry.get(),
-                               const_cast<Box*>(boxes.data())); // only `bounds` reads it, while committing
+        // Only `bounds` reads them, and only while the scene is committed.
+        rtcSetGeometryUserData(geometry.get(), const_cast<Box*>(boxes.data()));
         rtcSetGeometryBoundsFunction(geometry.get(), bounds, nullptr);
         rtcCommitGeometry(geometry.get());
         rtcAttachGeometry(scene_.get(), geometry.get());
@@ -69,6 +77,14 @@ public:
     }
 
 private:
+    // ThreadSanitizer does not see how Embree's builders hand over to TBB's workers and would cry wolf. Not for others:
+    // the setting holds down the number of TBB's threads in the whole process for as long as the device lives.
+#if defined(PALP_THREAD_SANITIZER)
+    static constexpr const char* kConfiguration = "threads=1";
+#else
+    static constexpr const char* kConfiguration = "";
+#endif
+
     /// No exception may pass through Embree, which would swallow it: it waits here until the query has returned.
     template <class Visit>
     struct Call {
@@ -88,8 +104,7 @@ private:
         }
     };
 
-    // TBB's workers call this. ThreadSanitizer does not see how TBB hands them the boxes and would cry wolf.
-    __attribute__((no_sanitize("thread"))) static void bounds(const RTCBoundsFunctionArguments* args)
+    static void bounds(const RTCBoundsFunctionArguments* args)
     {
         const Box& box          = static_cast<const Box*>(args->geometryUserPtr)[args->primID];
         args->bounds_o->lower_x = box.low.x;

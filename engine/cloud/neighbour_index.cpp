@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
+#include <string>
 
 #include "engine/cloud/embree.h"
 #include "engine/cloud/morton.h"

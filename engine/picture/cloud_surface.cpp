@@ -62,8 +62,8 @@ public:
     Front(std::span<const glm::dvec3> positions, const CloudCamera& camera, const SplatSpacing& spacing)
         : camera_(camera), covers_(std::size_t(camera.width) * std::size_t(camera.height))
     {
-        for (const glm::dvec3& position : positions)
-            if (const auto p = camera.project(position)) {
+        for (std::size_t k = 0; k < positions.size(); ++k)
+            if (const auto p = camera.project(positions[k]); p && !spacing.skips(k, *p)) {
                 const Cover cover = {float(p->depth), float(spacing.width(*p))};
                 forDisc(p->x, p->y, std::max(kLeastReach, kFrontReach * double(cover.width)), camera,
                         [&](std::size_t n, float, float) {
@@ -173,7 +173,7 @@ std::vector<Moments> accumulate(std::span<const glm::dvec3> positions, std::span
     std::vector<Moments> moments(front.size());
     for (std::size_t k = 0; k < positions.size(); ++k) {
         const auto p = camera.project(positions[k]);
-        if (!p) continue;
+        if (!p || spacing.skips(k, *p)) continue;
         const bool      defined = !values.empty() && std::isfinite(values[k]);
         const float     value   = defined ? float(values[k]) : 0;
         const glm::vec3 normal  = normals.empty() ? glm::vec3(0) : seenNormal(normals[k], camera);

@@ -48,11 +48,14 @@ struct CloudSurface {
 };
 
 /// Draws a cloud as a closed surface. Every point is a round splat as wide as a few times the spacing around it (which
-/// is estimated on the screen); where splats of the front layer overlap, a plane is fitted to their depths by weighted
-/// least squares, so that the surface is smooth, has a normal, and ends where the points end rather than a splat's
-/// radius beyond.
+/// is estimated on the screen). Discs decide what is in front; their cover is pulled back from its edges, so that an
+/// object ends where its points end. Around that front a plane is fitted per pixel to the depths of the splats by
+/// weighted least squares: the surface is smooth and has a normal.
 ///
-/// Memory is bounded by the picture, time by the picture and the number of points.
+/// Two surfaces less than some ten spacings apart in depth melt into each other at the edge of the nearer one, and
+/// where sparse points lie beside denser ones that hide them, gaps may show. Memory is bounded by the picture, time by
+/// the picture and the number of points.
+///
 /// \param values   empty, or one per point; NaN is "no value"
 /// \param normals  empty (then from the fitted planes), or one per point, any length, either sign [1, world]
 /// \source the idea of averaging overlapping splats: Zwicker et al. 2001, "Surface splatting"

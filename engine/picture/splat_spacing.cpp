@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace palp {
 namespace {
@@ -10,7 +9,7 @@ namespace {
 constexpr double kWidthPerSpacing = 1.25; // width of a splat: randomly spread points close with it [1]
 constexpr double kSmallestWidth   = 0.6;  // of a splat [px]
 constexpr double kLargestWidth    = 0.06; // of a splat per side of the picture: fewer points than that show singly [1]
-constexpr double kMostWork        = 150;  // splatted pixels per pixel of the picture, bounds the time [1]
+constexpr double kMostWork        = 800;  // splatted pixels per pixel of a cell: some twenty layers of points [1]
 
 bool onPicture(const CloudCamera::Pixel& p, const CloudCamera& camera)
 {
@@ -26,12 +25,13 @@ SplatSpacing::SplatSpacing(std::span<const glm::dvec3> positions, const CloudCam
     const int        largest    = std::max(camera.width, camera.height);
     for (side_ = kFirstSide;; side_ *= 2) {
         count(positions, camera);
-        const double total = std::accumulate(counts_.begin(), counts_.end(), 0.0);
-        const auto   empty = std::count(counts_.begin(), counts_.end(), 0.0);
+        double total = 0; // of points, of a crowded cell no more than a share
+        for (double n : counts_) total += std::min(n, 2 * kEnough);
+        const auto empty = std::count(counts_.begin(), counts_.end(), 0.0);
         if (total >= kEnough * double(std::ptrdiff_t(counts_.size()) - empty) || side_ >= largest) break;
     }
     measure(kLargestWidth * largest);
-    boundWork(positions, camera);
+    boundWork();
 }
 
 void SplatSpacing::count(std::span<const glm::dvec3> positions, const CloudCamera& camera)
@@ -42,6 +42,7 @@ void SplatSpacing::count(std::span<const glm::dvec3> positions, const CloudCamer
     rows_                      = (camera.height + side_ - 1) / side_;
     front_.assign(std::size_t(columns_) * std::size_t(rows_), std::numeric_limits<float>::infinity());
     counts_.assign(front_.size(), 0);
+    all_.assign(front_.size(), 0);
     for (const glm::dvec3& position : positions)
         if (const auto p = camera.project(position); p && onPicture(*p, camera)) {
             float& front = front_[cell(p->x, p->y)];
@@ -50,6 +51,7 @@ void SplatSpacing::count(std::span<const glm::dvec3> positions, const CloudCamer
     for (const glm::dvec3& position : positions)
         if (const auto p = camera.project(position); p && onPicture(*p, camera)) {
             const std::size_t c = cell(p->x, p->y);
+            ++all_[c];
             counts_[c] += float(p->depth) <= front_[c] + kThickness * float(side_);
         }
 }
@@ -96,20 +98,18 @@ double SplatSpacing::width(const CloudCamera::Pixel& point) const
         return widths_[std::size_t(row) * std::size_t(columns_) + std::size_t(column)];
     };
     const double s = u - left, t = v - top;
-    return shrink_ * ((1 - t) * ((1 - s) * at(top, left) + s * at(top, right)) +
-                      t * ((1 - s) * at(bottom, left) + s * at(bottom, right)));
+    return ((1 - t) * ((1 - s) * at(top, left) + s * at(top, right)) +
+            t * ((1 - s) * at(bottom, left) + s * at(bottom, right)));
 }
 
-void SplatSpacing::boundWork(std::span<const glm::dvec3> positions, const CloudCamera& camera)
+void SplatSpacing::boundWork()
 {
-    double work = 0; // [px]
-    for (const glm::dvec3& position : positions)
-        if (const auto p = camera.project(position); p && onPicture(*p, camera)) {
-            const double reach = 2 * kSplatReach * width(*p);
-            work += reach * reach;
-        }
-    const double most = kMostWork * double(camera.width) * double(camera.height);
-    if (work > most) shrink_ = std::sqrt(most / work);
+    every_.assign(all_.size(), 1);
+    for (std::size_t c = 0; c < all_.size(); ++c) {
+        const double reach = 2 * kSplatReach * widths_[c];
+        every_[c] =
+            std::size_t(std::ceil(std::max(1.0, double(all_[c]) * reach * reach / (kMostWork * side_ * side_))));
+    }
 }
 
 } // namespace palp

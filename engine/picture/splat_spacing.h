@@ -20,14 +20,21 @@ public:
     /// Distance of neighbouring points. [px]
     [[nodiscard]] double typical() const { return typical_; }
     /// The widest splat. [px]
-    [[nodiscard]] double widest() const { return shrink_ * *std::max_element(widths_.begin(), widths_.end()); }
+    [[nodiscard]] double widest() const { return *std::max_element(widths_.begin(), widths_.end()); }
     /// Width of the splat of a point. [px]
     [[nodiscard]] double width(const CloudCamera::Pixel& point) const;
+
+    /// Whether a point need not be drawn, because its place is so crowded that others stand for it: bounds the time.
+    /// \param number  of the point in the cloud
+    [[nodiscard]] bool skips(std::size_t number, const CloudCamera::Pixel& point) const
+    {
+        return number % every_[cell(point.x, point.y)] != 0;
+    }
 
 private:
     void count(std::span<const glm::dvec3> positions, const CloudCamera& camera);
     void measure(double largest);
-    void boundWork(std::span<const glm::dvec3> positions, const CloudCamera& camera);
+    void boundWork();
 
     [[nodiscard]] std::size_t cell(double x, double y) const
     {
@@ -41,7 +48,7 @@ private:
     std::vector<double> widths_;                            // [px]
     double              typical_ = 1;                       // distance of neighbouring points [px]
 
-    double shrink_ = 1; // of all widths [1]
+    std::vector<std::size_t> all_, every_; // per cell: points of all layers, and of how many one is drawn [1]
 };
 
 } // namespace palp

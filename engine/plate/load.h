@@ -18,7 +18,9 @@ namespace palp {
 /// A point force [N] at (x, z) [m], shared bilinearly by the four nodes around it: force and moments are kept.
 [[nodiscard]] NodeField pointLoad(const PlateGrid& grid, double force, double x, double z);
 
-/// A Gaussian pressure of total force [N] on the infinite plane: force exp(-r^2/(2 sigma^2)) / (2 pi sigma^2).
+/// A Gaussian pressure of total force [N] on the infinite plane: force exp(-r^2/(2 sigma^2)) / (2 pi sigma^2). A node
+/// gets its integral against the bilinear hat of that node, so that a sigma below the spacing fades into pointLoad
+/// with force and moments kept; what lies beyond the edges is lost.
 [[nodiscard]] NodeField gaussianLoad(const PlateGrid& grid, double force, double x, double z, double sigma);
 
 /// The fingertip: pressure proportional to (1 - (r/radius)^2)^2 within `radius` [m] of (x, z), integrated on

@@ -58,6 +58,18 @@ bool isHeld(const Plate& plate)
 
 } // namespace
 
+const char* name(Edge edge) noexcept
+{
+    return edge == Edge::clamped ? "clamped" : edge == Edge::supported ? "supported" : "free";
+}
+
+std::optional<Edge> edgeNamed(std::string_view text)
+{
+    for (Edge edge : {Edge::clamped, Edge::supported, Edge::free})
+        if (name(edge) == text) return edge;
+    return {};
+}
+
 std::optional<std::string> whyUnsolvable(const Plate& plate)
 {
     if (auto why = whyGridIsBad(plate.grid)) return why;

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "engine/core/grid.h"
 
@@ -12,6 +13,9 @@ enum class Edge {
     supported, ///< no deflection, free to turn
     free       ///< nothing holds it
 };
+
+[[nodiscard]] const char*         name(Edge edge) noexcept;        ///< "clamped", "supported", "free"
+[[nodiscard]] std::optional<Edge> edgeNamed(std::string_view name); ///< empty if unknown
 
 struct PlateEdges {
     Edge x0 = Edge::clamped; ///< side x = 0

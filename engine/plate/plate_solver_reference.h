@@ -10,7 +10,8 @@ namespace palp {
 /// \thread one at a time
 class ReferencePlateSolver {
 public:
-    /// Assembles and factorises. \throws Error if whyUnsolvable(plate)
+    /// Assembles and factorises: 0.1 s at 129 x 129 nodes, 0.9 s at 257 x 257, 8 s at 513 x 513 (measured on one core).
+    /// \throws Error if whyUnsolvable(plate), beyond 1025 x 1025 nodes, or if double precision does not suffice
     explicit ReferencePlateSolver(const Plate& plate);
     ~ReferencePlateSolver();
     ReferencePlateSolver(ReferencePlateSolver&&) noexcept;
@@ -19,7 +20,8 @@ public:
     /// Deflection under forces at the nodes [N] (a pressure q is q times the node's area: half a cell's on an edge, a
     /// quarter in a corner). Forces on held nodes have no effect.
     /// report.errorEstimate: max |correction of one step of iterative refinement| / max |w|, an estimate of what
-    /// rounding did; it says nothing about the discretisation.
+    /// rounding did before that step; it says nothing about the discretisation.
+    /// \throws Error if the deflection is not finite
     [[nodiscard]] PlateSolution solve(const NodeField& nodalForce) const;
 
     [[nodiscard]] double factoriseMilliseconds() const noexcept; ///< wall time of the constructor

@@ -64,10 +64,7 @@ PlateGrid refined(const PlateGrid& grid, int cells, const std::string& name)
 Edge readEdge(const JsonObject& edges, std::string_view side)
 {
     if (!edges.has(side)) return Edge::clamped;
-    const std::string name = edges.text(side);
-    if (name == "clamped") return Edge::clamped;
-    if (name == "supported") return Edge::supported;
-    if (name == "free") return Edge::free;
+    if (const auto edge = edgeNamed(edges.text(side))) return *edge;
     edges.refuse(side, "\"clamped\", \"supported\" or \"free\"");
 }
 

@@ -65,11 +65,6 @@ Json timesJson(const StageTimes& t)
 
 } // namespace
 
-const char* name(Edge edge) noexcept
-{
-    return edge == Edge::clamped ? "clamped" : edge == Edge::supported ? "supported" : "free";
-}
-
 Json settingsJson(const PatchSettings& s)
 {
     return {{"thickness", s.material.thickness},

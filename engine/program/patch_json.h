@@ -15,7 +15,4 @@ namespace palp {
 /// The scene constants of a touch.
 [[nodiscard]] nlohmann::json settingsJson(const PatchSettings& settings);
 
-/// "clamped", "supported", "free".
-[[nodiscard]] const char* name(Edge edge) noexcept;
-
 } // namespace palp

@@ -14,7 +14,6 @@
 #include "engine/plate/plate_solver_reference.h"
 #include "engine/plate/problem_file.h"
 #include "engine/program/commands.h"
-#include "engine/program/patch_json.h"
 
 namespace palp {
 namespace {

@@ -43,18 +43,13 @@ double positive(const std::string& text, Dimension dimension, const std::string&
     return value;
 }
 
-Edge edgeNamed(const std::string& text)
-{
-    for (Edge edge : {Edge::clamped, Edge::supported, Edge::free})
-        if (name(edge) == text) return edge;
-    throw Error("--edges: unknown edge \"" + text + "\"; known: clamped, supported, free");
-}
+constexpr const char* kEdges = "clamped, supported, free";
 
 /// "free", or "x0=free,z1=supported" with the others clamped.
 PlateEdges edgesOf(const std::string& text)
 {
     if (text.find('=') == std::string::npos) {
-        const Edge all = edgeNamed(text);
+        const Edge all = named(edgeNamed(text), "--edges", text, kEdges);
         return {all, all, all, all};
     }
     PlateEdges edges;
@@ -66,7 +61,7 @@ PlateEdges edgesOf(const std::string& text)
         (side == "x0"   ? edges.x0
          : side == "x1" ? edges.x1
          : side == "z0" ? edges.z0
-                        : edges.z1) = edgeNamed(part.substr(3));
+                        : edges.z1) = named(edgeNamed(part.substr(3)), "--edges", part.substr(3), kEdges);
         begin                       = end + 1;
     }
     return edges;

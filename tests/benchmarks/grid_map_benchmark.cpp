@@ -51,9 +51,11 @@ struct Task {
 /// The textbook way: points sorted into square cells of the grid, rings of cells around each node.
 std::vector<std::uint32_t> byPlainBuckets(const Task& task)
 {
-    const auto& [grid, origin, points] = task;
-    const int  rows = grid.nodesX(), columns = grid.nodesZ();
-    const auto along = [](double x, double low, double step, int count) {
+    const PlateGrid&               grid   = task.grid;
+    const ChartPoint&              origin = task.origin;
+    const std::vector<ChartPoint>& points = task.points;
+    const int                      rows = grid.nodesX(), columns = grid.nodesZ();
+    const auto                     along = [](double x, double low, double step, int count) {
         return int(std::clamp((x - low) / step + 0.5, 0.0, count - 1.0));
     };
     const auto bucketOf = [&](const ChartPoint& p) {

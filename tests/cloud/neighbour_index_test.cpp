@@ -181,6 +181,24 @@ TEST(NeighbourIndex, StrayPointsFarAwayLeaveTheAnswersExact)
     expectBruteForceAnswers(points, 1e12, 6);
 }
 
+TEST(NeighbourIndex, ClumpsTooFineForFloatsAreResolved)
+{
+    // The median of the cloud lies in one of two clumps, so that floats cannot resolve the other; and in the finest,
+    // squares of floats underflow.
+    for (const double clump : {1e-5, 1e-7, 1e-12, 1e-25}) {
+        Points points = randomVolume(1000, clump, 22);
+        for (const glm::dvec3& p : randomVolume(900, clump, 23))
+            points.push_back(p + glm::dvec3(clump > 1e-15 ? 1 : 0));
+        for (const glm::dvec3& p : randomVolume(500, 1.0, 24)) points.push_back(p);
+        const NeighbourIndex index(points);
+        for (std::size_t i = 0; i < 1900; i += 190) {
+            for (const double share : {0.01, 0.1, 0.3, 0.6, 1.0, 2.0})
+                expectGather(index, points, points[i], share * clump);
+            for (const std::size_t k : {1, 7, 40, 890, 1100}) expectNearest(index, points, points[i], k);
+        }
+    }
+}
+
 TEST(NeighbourIndex, CloudsOfExtremeSizesAnswerAsBruteForce)
 {
     for (const double size : {1e-170, 1e-120, 1e-30, 1e-9, 1e6, 1e30, 1e140, 1e150, 1e156, 1e160, 1e307}) {

@@ -1,6 +1,7 @@
 #include "engine/picture/line_plot.h"
 
 #include <cmath>
+#include <cstdio>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -72,21 +73,25 @@ TEST(LinePlot, SeriesDifferWithoutColour)
     EXPECT_EQ(dashes.size(), 5U);
 }
 
-TEST(LinePlot, ThinningKeepsASpike)
+TEST(LinePlot, ThinningKeepsSpikesBothWays)
 {
     PlotSeries s{"", {}, {}, SeriesStyle::line};
-    for (int n = 0; n < 200000; ++n) s.x.push_back(n), s.y.push_back(n == 123456 ? 1 : 0.001 * (n % 7));
+    for (int n = 0; n < 200000; ++n) s.x.push_back(n), s.y.push_back(0.001 * (n % 7));
+    s.y[123456]               = 1;
+    s.y[54321]                = -1;
     LinePlotSettings settings = forceAxes();
-    settings.y.range          = ValueRange{0, 2};
+    settings.y.range          = ValueRange{-2, 2};
 
     const std::string svg = linePlotSvg(std::span(&s, 1), settings);
 
     EXPECT_LT(svg.size(), 60'000U) << "at most four points of 14 characters in each of 560 columns";
-    const double frameTop = std::stod(elementsOf(svg, "svg").at(1).attributes.at("y"));
-    const double spike    = frameTop + settings.height / 2; // the value 1 on an axis from 0 to 2
-    char         text[32];
-    std::snprintf(text, sizeof text, " %gL", spike);
-    EXPECT_NE(elementsOf(svg, "path").at(0).attributes.at("d").find(text), std::string::npos) << text;
+    const double      top  = std::stod(elementsOf(svg, "svg").at(1).attributes.at("y"));
+    const std::string path = elementsOf(svg, "path").at(0).attributes.at("d");
+    for (double share : {0.25, 0.75}) { // of the height, where 1 and -1 lie
+        char text[32];
+        std::snprintf(text, sizeof text, " %gL", top + share * settings.height);
+        EXPECT_NE(path.find(text), std::string::npos) << text;
+    }
 }
 
 TEST(LinePlot, PointsThatCannotBeDrawnBreakTheLineAndAreCounted)
