@@ -9,7 +9,6 @@ namespace {
 constexpr double kWidthPerSpacing = 1.25; // width of a splat: randomly spread points close with it [1]
 constexpr double kSmallestWidth   = 0.6;  // of a splat [px]
 constexpr double kLargestWidth    = 0.06; // of a splat per side of the picture: fewer points than that show singly [1]
-constexpr double kMostWork        = 800;  // splatted pixels per pixel of a cell: some twenty layers of points [1]
 
 bool onPicture(const CloudCamera::Pixel& p, const CloudCamera& camera)
 {
@@ -31,7 +30,7 @@ SplatSpacing::SplatSpacing(std::span<const glm::dvec3> positions, const CloudCam
         if (total >= kEnough * double(std::ptrdiff_t(counts_.size()) - empty) || side_ >= largest) break;
     }
     measure(kLargestWidth * largest);
-    boundWork();
+    boundWork(positions, camera, kLargestWidth * largest);
 }
 
 void SplatSpacing::count(std::span<const glm::dvec3> positions, const CloudCamera& camera)
@@ -42,7 +41,7 @@ void SplatSpacing::count(std::span<const glm::dvec3> positions, const CloudCamer
     rows_                      = (camera.height + side_ - 1) / side_;
     front_.assign(std::size_t(columns_) * std::size_t(rows_), std::numeric_limits<float>::infinity());
     counts_.assign(front_.size(), 0);
-    all_.assign(front_.size(), 0);
+
     for (const glm::dvec3& position : positions)
         if (const auto p = camera.project(position); p && onPicture(*p, camera)) {
             float& front = front_[cell(p->x, p->y)];
@@ -51,7 +50,7 @@ void SplatSpacing::count(std::span<const glm::dvec3> positions, const CloudCamer
     for (const glm::dvec3& position : positions)
         if (const auto p = camera.project(position); p && onPicture(*p, camera)) {
             const std::size_t c = cell(p->x, p->y);
-            ++all_[c];
+
             counts_[c] += float(p->depth) <= front_[c] + kThickness * float(side_);
         }
 }
@@ -59,6 +58,16 @@ void SplatSpacing::count(std::span<const glm::dvec3> positions, const CloudCamer
 void SplatSpacing::measure(double largest)
 {
     // Mean over the neighbourhood weighted by the counts themselves, so that cells cut by a silhouette hardly matter.
+    // A heap of points in one place says little about the spacing around it.
+    constexpr double    kHeap = 4; // relative to the typical count [1]
+    std::vector<double> filled;
+    for (double n : counts_)
+        if (n > 0) filled.push_back(n);
+    if (!filled.empty()) {
+        const auto middle = filled.begin() + std::ptrdiff_t(filled.size() / 2);
+        std::nth_element(filled.begin(), middle, filled.end());
+        for (double& n : counts_) n = std::min(n, kHeap * *middle);
+    }
     widths_.assign(counts_.size(), 0);
     std::vector<double> spacings;
     for (int row = 0; row < rows_; ++row)
@@ -102,14 +111,24 @@ double SplatSpacing::width(const CloudCamera::Pixel& point) const
             t * ((1 - s) * at(bottom, left) + s * at(bottom, right)));
 }
 
-void SplatSpacing::boundWork()
+void SplatSpacing::boundWork(std::span<const glm::dvec3> positions, const CloudCamera& camera, double largest)
 {
-    every_.assign(all_.size(), 1);
-    for (std::size_t c = 0; c < all_.size(); ++c) {
-        const double reach = 2 * kSplatReach * widths_[c];
-        every_[c] =
-            std::size_t(std::ceil(std::max(1.0, double(all_[c]) * reach * reach / (kMostWork * side_ * side_))));
-    }
+    // Squares of half a splat's width hold about 0.4 points of every layer.
+    constexpr double kMostPerSquare = 8; // twenty layers [1]
+    crowdSide_                      = std::max(1, int(0.5 * std::min(kWidthPerSpacing * typical_, largest)));
+    crowdColumns_                   = camera.width / crowdSide_ + 1;
+    std::vector<std::size_t> counts(std::size_t(crowdColumns_) * std::size_t(camera.height / crowdSide_ + 1), 0);
+    every_.assign(counts.size(), 1);
+    for (const glm::dvec3& position : positions)
+        if (const auto p = camera.project(position); p && onPicture(*p, camera)) ++counts[square(*p)];
+    for (std::size_t c = 0; c < counts.size(); ++c)
+        every_[c] = std::max<std::size_t>(1, std::size_t(std::ceil(double(counts[c]) / kMostPerSquare)));
+}
+
+bool SplatSpacing::skips(std::size_t number, const CloudCamera::Pixel& point) const
+{
+    const std::size_t c = point.x < 0 || point.y < 0 ? every_.size() : square(point);
+    return c < every_.size() && point.x < crowdSide_ * crowdColumns_ && number % every_[c] != 0;
 }
 
 } // namespace palp

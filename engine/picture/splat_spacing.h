@@ -26,15 +26,17 @@ public:
 
     /// Whether a point need not be drawn, because its place is so crowded that others stand for it: bounds the time.
     /// \param number  of the point in the cloud
-    [[nodiscard]] bool skips(std::size_t number, const CloudCamera::Pixel& point) const
-    {
-        return number % every_[cell(point.x, point.y)] != 0;
-    }
+    [[nodiscard]] bool skips(std::size_t number, const CloudCamera::Pixel& point) const;
 
 private:
     void count(std::span<const glm::dvec3> positions, const CloudCamera& camera);
     void measure(double largest);
-    void boundWork();
+    void boundWork(std::span<const glm::dvec3> positions, const CloudCamera& camera, double largest);
+
+    [[nodiscard]] std::size_t square(const CloudCamera::Pixel& p) const
+    {
+        return std::size_t(int(p.y) / crowdSide_) * std::size_t(crowdColumns_) + std::size_t(int(p.x) / crowdSide_);
+    }
 
     [[nodiscard]] std::size_t cell(double x, double y) const
     {
@@ -48,7 +50,8 @@ private:
     std::vector<double> widths_;                            // [px]
     double              typical_ = 1;                       // distance of neighbouring points [px]
 
-    std::vector<std::size_t> all_, every_; // per cell: points of all layers, and of how many one is drawn [1]
+    int                      crowdSide_ = 1, crowdColumns_ = 0; // of finer squares [px], [1]
+    std::vector<std::size_t> every_;                            // per square: one of how many points is drawn [1]
 };
 
 } // namespace palp

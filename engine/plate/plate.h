@@ -14,7 +14,7 @@ enum class Edge {
     free       ///< nothing holds it
 };
 
-[[nodiscard]] const char*         name(Edge edge) noexcept;        ///< "clamped", "supported", "free"
+[[nodiscard]] const char*         name(Edge edge) noexcept;         ///< "clamped", "supported", "free"
 [[nodiscard]] std::optional<Edge> edgeNamed(std::string_view name); ///< empty if unknown
 
 struct PlateEdges {
@@ -45,10 +45,10 @@ struct Plate {
 
 /// What a solver says about one answer; a number that a solver does not have is empty.
 struct SolveReport {
-    std::string           device;        ///< "reference", ...
-    std::optional<int>    iterations;    ///< [1]
-    std::optional<double> errorEstimate; ///< [1] relative, in the norm the solver documents
-    std::optional<double> workUnits;     ///< [1] applications of the operator on the finest grid
+    std::string           device;           ///< "reference", ...
+    std::optional<int>    iterations;       ///< [1]
+    std::optional<double> errorEstimate;    ///< [1] relative, in the norm the solver documents
+    std::optional<double> workUnits;        ///< [1] applications of the operator on the finest grid
     double                milliseconds = 0; ///< wall time of this solve
 };
 
