@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <string>
 
 #include "engine/cloud/embree.h"
@@ -242,11 +243,9 @@ public:
         return radius;
     }
 
-    /// Near ones first, which is nearly their order by doubles, unless too many are equally far.
     template <class Visit>
-    void each(Visit&& visit)
+    void each(Visit&& visit) const
     {
-        if (keys_.size() <= kWaiting * k_) std::sort(keys_.begin(), keys_.end());
         for (const std::uint64_t key : keys_) visit(static_cast<std::uint32_t>(key));
     }
 
@@ -263,17 +262,41 @@ private:
     std::vector<std::uint64_t> keys_; ///< distance before slot
 };
 
+bool nearer(const Neighbour& a, const Neighbour& b) noexcept
+{
+    return a.distance != b.distance ? a.distance < b.distance : a.point < b.point;
+}
+
+/// Sorts by squared distance and index in linear time where the squared distances are evenly spread, as they are on a
+/// surface, whose area grows with the square of the radius: a bucket for each then holds about one.
+void sortByDistance(std::vector<Neighbour>& found)
+{
+    constexpr std::size_t kFew  = 32; // below it a comparison sort is as fast, measured
+    const auto            most  = std::max_element(found.begin(), found.end(), nearer);
+    const double          scale = found.size() < kFew ? 0 : double(found.size() - 1) / most->distance;
+    if (!(scale > 0 && std::isfinite(scale))) return std::sort(found.begin(), found.end(), nearer);
+
+    const auto bucketOf = [&](const Neighbour& n) {
+        return std::min(found.size() - 1, std::size_t(n.distance * scale));
+    };
+    std::vector<std::uint32_t> end(found.size() + 1, 0); // of each bucket, once all are placed
+    for (const Neighbour& n : found) ++end[bucketOf(n) + 1];
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    std::vector<Neighbour> sorted(found.size());
+    for (const Neighbour& n : found) sorted[end[bucketOf(n)]++] = n;
+    for (std::size_t bucket = 0, begin = 0; bucket < found.size(); begin = end[bucket++])
+        std::sort(sorted.begin() + std::ptrdiff_t(begin), sorted.begin() + end[bucket], nearer);
+    found = std::move(sorted);
+}
+
 /// \param found  any order; the k best stay, nearest first, equal distances by rising index
 void keepNearest(std::vector<Neighbour>& found, std::size_t k)
 {
-    const auto nearer = [](const Neighbour& a, const Neighbour& b) {
-        return a.distance != b.distance ? a.distance < b.distance : a.point < b.point;
-    };
     if (found.size() > 2 * k) {
         std::nth_element(found.begin(), found.begin() + std::ptrdiff_t(k), found.end(), nearer);
         found.resize(k);
     }
-    if (!std::is_sorted(found.begin(), found.end(), nearer)) std::sort(found.begin(), found.end(), nearer);
+    sortByDistance(found);
     found.resize(k);
 }
 

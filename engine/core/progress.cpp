@@ -27,4 +27,12 @@ void Progress::at(std::size_t done, std::size_t total)
     std::fflush(stderr);
 }
 
+void Progress::lasts(const std::string& howLong)
+{
+    if (!onTerminal_) return;
+    drawn_ = true;
+    std::fprintf(stderr, "\r\033[K%s: %s", what_.c_str(), howLong.c_str());
+    std::fflush(stderr);
+}
+
 } // namespace palp

@@ -18,6 +18,9 @@ public:
     /// Cheap enough to be called every few thousand items.
     void at(std::size_t done, std::size_t total);
 
+    /// For work that cannot count its steps and is known to last: draws the line at once.
+    void lasts(const std::string& howLong);
+
 private:
     using Clock = std::chrono::steady_clock;
     std::string       what_;

@@ -82,7 +82,9 @@ std::string svgNumber(double value)
     PALP_EXPECT(std::abs(value) < 1e7, "a coordinate lies near the picture; found " + std::to_string(value));
     const double         rounded = std::round(100 * value) / 100;
     std::array<char, 32> text{};
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), rounded == 0 ? 0 : rounded).ptr};
+    return {text.data(),
+            std::to_chars(text.data(), text.data() + text.size(), rounded == 0 ? 0 : rounded, std::chars_format::fixed)
+                .ptr};
 }
 
 double textWidth(std::string_view text, double size)

@@ -9,6 +9,7 @@
 
 #include <Eigen/SparseCholesky>
 
+#include "engine/core/progress.h"
 #include "engine/plate/load.h"
 
 // The energy as a sum of small quadratic terms, each
@@ -260,6 +261,10 @@ ReferencePlateSolver::ReferencePlateSolver(const Plate& plate)
         throw Error("the reference solver takes at most " + std::to_string(kMostNodes) + " nodes, found " +
                     std::to_string(plate.grid.nodesX()) + " x " + std::to_string(plate.grid.nodesZ()) +
                     "; use fewer cells");
+    Progress  progress("factorising");
+    const int seconds = int(0.9 * std::pow(double(plate.grid.nodes()) / (257 * 257), 1.75)); // measured on one core
+    if (seconds >= 2)
+        progress.lasts(std::to_string(plate.grid.nodes()) + " nodes, about " + std::to_string(seconds) + " s");
     impl_               = std::make_unique<Impl>(plate);
     impl_->milliseconds = millisecondsSince(start);
 }
