@@ -229,6 +229,13 @@ public:
 
     void clear() noexcept { keys_.clear(); }
 
+    /// How many have a squared distance, as floats measured it, of at most `inner2`.
+    [[nodiscard]] std::size_t within(float inner2) const noexcept
+    {
+        return std::size_t(
+            std::count_if(keys_.begin(), keys_.end(), [=](std::uint64_t key) { return distance2(key) <= inner2; }));
+    }
+
     /// Drops what is certainly not among the k nearest of at least k candidates.
     /// \return  radius [index units] that holds the k nearest candidates
     double prune(const FloatSphere& sphere)
@@ -285,7 +292,8 @@ void sortByDistance(std::vector<Neighbour>& found)
     std::vector<Neighbour> sorted(found.size());
     for (const Neighbour& n : found) sorted[end[bucketOf(n)]++] = n;
     for (std::size_t bucket = 0, begin = 0; bucket < found.size(); begin = end[bucket++])
-        std::sort(sorted.begin() + std::ptrdiff_t(begin), sorted.begin() + end[bucket], nearer);
+        if (end[bucket] > begin + 1)
+            std::sort(sorted.begin() + std::ptrdiff_t(begin), sorted.begin() + end[bucket], nearer);
     found = std::move(sorted);
 }
 
@@ -396,6 +404,8 @@ bool NeighbourIndex::Impl::findCandidates(const FloatSphere& sphere, double star
         shell  = sphere.shell(bound);
         search = std::min(search, sphere.searchRadius(bound));
     });
+    // Usually the guess was good and nothing had to go: then it is enough that k are certainly within `start`.
+    if (bound == start) return candidates.within(sphere.shell(start).inner2) >= k;
     return candidates.size() >= k && candidates.prune(sphere) <= start;
 }
 
