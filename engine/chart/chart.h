@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/chart/sphere_fit.h"
+#include "engine/core/grid.h"
 
 namespace palp {
 
@@ -17,12 +18,6 @@ enum class Map {
 
 [[nodiscard]] const char*        name(Map map) noexcept;          ///< "gall-peters", ...
 [[nodiscard]] std::optional<Map> mapNamed(std::string_view name); ///< empty if unknown
-
-/// A position in the plane of the plate; the contact is (0, 0).
-struct ChartPoint {
-    double x = 0; ///< [m]
-    double z = 0; ///< [m]
-};
 
 /// Right-handed axes at the contact: east x north = normal.
 struct Frame {

@@ -37,7 +37,7 @@ constexpr double     kHemisphere = 50e-3;       ///< radius [m]
 constexpr double     kSheet      = 150e-3;      ///< edge [m]
 constexpr double     kSaddle     = 120e-3;      ///< edge [m]
 constexpr double     kSkin       = 120e-3;      ///< edge [m]
-constexpr double     kPalm       = 100e-3;      ///< edge [m]
+constexpr double     kPalm       = 110e-3;      ///< edge [m]
 constexpr glm::dvec3 kLobe{14e-3, 18e-3, 3e-3}; ///< half width, half height, distance of the two sheets [m]
 
 glm::dvec3 onSphere(Uniform& u)
@@ -176,7 +176,7 @@ const std::array<Shape, 7>& shapes()
           40e-3,
           4e-3,
           {0, 0, kEllipsoid.z},
-          kUp},
+          {}},
          {-kEllipsoid, kEllipsoid},
          onEllipsoid,
          ellipsoidModulus},
@@ -192,7 +192,7 @@ const std::array<Shape, 7>& shapes()
           40e-3,
           4e-3,
           {0, 0, kHemisphere},
-          kUp},
+          {}},
          {{-kHemisphere, -kHemisphere, 0}, glm::dvec3(kHemisphere)},
          onHemisphere,
          hemisphereModulus},
@@ -224,7 +224,7 @@ const std::array<Shape, 7>& shapes()
           "palm with stiff tendons (x 10) and a soft ball of the thumb",
           40'000,
           {4e-3, 0.45},
-          1.74e6,
+          4e6,
           70e-3,
           3.6e-3,
           {1e-3, 0, 0},
@@ -240,7 +240,7 @@ const std::array<Shape, 7>& shapes()
           20e-3,
           2.5e-3,
           {0, 0, kLobe.z / 2},
-          kUp},
+          {}},
          {{-kLobe.x, -kLobe.y, -kLobe.z / 2}, {kLobe.x, kLobe.y, kLobe.z / 2}},
          onLobe,
          lobeModulus},

@@ -13,15 +13,15 @@ namespace palp {
 ///
 /// The constants keep a poke of 0.5 N inside Kirchhoff theory (deflection below half the thickness) at most places.
 struct Sample {
-    std::string_view name;        ///< as users type it, "ear-lobe"
-    std::string_view description; ///< one line
-    std::size_t      points;      ///< default number of points [1]
-    Material         material;
-    double           foundation;      ///< elastic foundation k [Pa/m]
-    double           window;          ///< edge of the chart window [m]
-    double           footprintRadius; ///< of the fingertip [m]
-    glm::dvec3       place;           ///< where a first touch is interesting [m]
-    glm::dvec3       from;            ///< from which side the finger comes [1]
+    std::string_view          name;        ///< as users type it, "ear-lobe"
+    std::string_view          description; ///< one line
+    std::size_t               points;      ///< default number of points [1]
+    Material                  material;
+    double                    foundation;      ///< elastic foundation k [Pa/m]
+    double                    window;          ///< edge of the chart window [m]
+    double                    footprintRadius; ///< of the fingertip [m]
+    glm::dvec3                place;           ///< where a first touch is interesting [m]
+    std::optional<glm::dvec3> from;            ///< the finger's side of an open shell [1]; empty: closed, from outside
 };
 
 /// All samples, in the order in which help texts list them.

@@ -1,6 +1,5 @@
 #include "engine/contact/contact.h"
 
-#include <algorithm>
 #include <sstream>
 
 #include <glm/geometric.hpp>
@@ -18,15 +17,17 @@ std::string inMetres(const glm::dvec3& p)
     return text.str();
 }
 
-/// Away from the middle of the bounds; +z where the object is a sheet, or the point is in its middle.
+/// Normal of the ellipsoid that fills the bounds, at the point: right for closed objects and for thin ones with two
+/// sides. A flat sheet has no inside: there it is the axis across.
 glm::dvec3 awayFromMiddle(const Bounds& bounds, const glm::dvec3& point)
 {
-    constexpr double kClearly = 0.05; // of the bounds' diagonal: a ball has 0.58, a sheet of paper next to nothing
-    const glm::dvec3 size     = bounds.high - bounds.low;
-    const glm::dvec3 offset   = point - bounds.centre();
-    const double     clear    = kClearly * bounds.diagonal();
-    if (std::min({size.x, size.y, size.z}) < clear || glm::length(offset) < clear) return {0, 0, 1};
-    return glm::normalize(offset);
+    constexpr double kFlat  = 1e-3; // of the bounds' diagonal; a sheet of paper has less
+    const glm::dvec3 half   = 0.5 * (bounds.high - bounds.low);
+    const glm::dvec3 offset = point - bounds.centre();
+    for (int k = 2; k >= 0; --k)
+        if (half[k] < kFlat * bounds.diagonal()) return {k == 0, k == 1, k == 2};
+    const glm::dvec3 normal = offset / (half * half);
+    return glm::length(normal) > 0 ? glm::normalize(normal) : glm::dvec3(0, 0, 1);
 }
 
 } // namespace

@@ -18,7 +18,7 @@ struct Contact {
 ///
 /// \param place  [m] where the finger goes; at most `reach` from the nearest point
 /// \param from   [1] from which side the finger comes; empty: away from the middle of the cloud's bounds, which is
-///               right for closed objects, and +z where that says nothing (a flat sheet)
+///               right for closed objects and for flat ones, but may be the hollow side of an open shell
 /// \param reach  [m]
 /// \throws Error naming the place, the distance and the nearest point, if it is farther than `reach`
 [[nodiscard]] Contact touchAt(const PointCloud& cloud, const NeighbourIndex& index, const glm::dvec3& place,

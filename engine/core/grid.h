@@ -6,6 +6,12 @@
 
 namespace palp {
 
+/// A position in the plane of the plate; the origin is the owner's to state; in a chart it is the contact.
+struct ChartPoint {
+    double x = 0; ///< [m]
+    double z = 0; ///< [m]
+};
+
 /// The regular grid of a plate: cellsX by cellsZ cells, so one node more along each side.
 ///
 ///     node (i, j) lies at x = i spacingX, z = j spacingZ from the corner; it is stored at [i * nodesZ() + j]

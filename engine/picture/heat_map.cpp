@@ -107,7 +107,7 @@ PlotFrame frameOf(const HeatMapSettings& s, double top)
             Axis(z, Scale::linear, "m", mostTicks(size.y))};
 }
 
-std::string placeText(const PlotFrame& frame, MapPoint p)
+std::string placeText(const PlotFrame& frame, ChartPoint p)
 {
     return "x = " + frame.x.text(p.x) + ", z = " + frame.y.text(p.z);
 }
@@ -129,7 +129,7 @@ void drawDots(SvgDrawing& svg, const SvgPath& dots)
     svg.path(dots, "none", {"#000000", 1.6});
 }
 
-bool shows(const PlotFrame& frame, MapPoint p)
+bool shows(const PlotFrame& frame, ChartPoint p)
 {
     const auto within = [](const Axis& axis, double v) { return v >= axis.range().low && v <= axis.range().high; };
     return within(frame.x, p.x) && within(frame.y, p.z); // false for NaN
@@ -139,7 +139,7 @@ void drawOverlays(SvgDrawing& svg, const PlotFrame& frame, const HeatMapSettings
 {
     if (!s.points.empty()) {
         SvgPath dots;
-        for (MapPoint p : s.points) {
+        for (ChartPoint p : s.points) {
             if (!shows(frame, p)) continue;
             dots.dotAt(frame.pixel(p.x, p.z));
         }
@@ -168,7 +168,7 @@ void drawExtremes(SvgDrawing& svg, const PlotFrame& frame, const HeatMapSettings
     constexpr double kAbove =
         14; // the greatest value is often at the contact: its triangle points there from outside [px]
     const auto mark = [&](const Extreme& e, Symbol symbol, double above, const std::string& name) {
-        const MapPoint   p    = {s.corner.x + e.i * s.grid.spacingX, s.corner.z + e.j * s.grid.spacingZ};
+        const ChartPoint p    = {s.corner.x + e.i * s.grid.spacingX, s.corner.z + e.j * s.grid.spacingZ};
         const glm::dvec2 at   = frame.pixel(p.x, p.z);
         const bool       flip = above > 0 && at.y - above < frame.corner.y;
         drawSymbol(svg, flip ? Symbol::triangleUp : symbol, at + glm::dvec2(0, flip ? above : -above), 5.5, "#000000");

@@ -9,12 +9,6 @@
 
 namespace palp {
 
-/// A point of the plane of a heat map, in the coordinates of the chart.
-struct MapPoint {
-    double x = 0; ///< to the right [m]
-    double z = 0; ///< up [m]
-};
-
 /// How the field looks between its nodes.
 enum class NodeStyle {
     cells,  ///< a flat cell around every node: shows the grid as it is
@@ -30,11 +24,11 @@ struct HeatMapSettings {
     ColourMap                 map       = ColourMap::viridis;
     NodeStyle                 nodeStyle = NodeStyle::cells;
     PlateGrid                 grid;                ///< where the nodes lie
-    MapPoint                  corner;              ///< position of node (0, 0)
+    ChartPoint                corner;              ///< position of node (0, 0)
     bool                      markExtremes = true; ///< a triangle at the largest value, a diamond at the smallest
-    std::optional<MapPoint>   contact;             ///< a cross
+    std::optional<ChartPoint> contact;             ///< a cross
     double                    footprintRadius = 0; ///< of a circle around the contact [m]; 0 is none
-    std::vector<MapPoint>     points;              ///< dots, such as the projected points of the cloud
+    std::vector<ChartPoint>   points;              ///< dots, such as the projected points of the cloud
 };
 
 /// Draws a field as a self-contained SVG picture: colours, axes of equal scale, colour bar, overlays and legend.

@@ -20,8 +20,8 @@ HeatMapSettings chartSettings(const Patch& patch, const PatchSettings& settings,
     HeatMapSettings chart;
     chart.title           = title;
     chart.grid            = patch.window.grid;
-    chart.corner          = {patch.window.corner.x, patch.window.corner.z};
-    chart.contact         = MapPoint{0, 0};
+    chart.corner          = patch.window.corner;
+    chart.contact         = ChartPoint{0, 0};
     chart.footprintRadius = settings.footprintRadius;
     return chart;
 }
@@ -67,12 +67,14 @@ glm::dvec3 obliquely(const Frame& frame)
 
 std::string rigidityChartSvg(const Patch& patch, const PatchSettings& settings, const std::string& title)
 {
-    HeatMapSettings chart = chartSettings(patch, settings, title);
-    chart.quantity        = "flexural rigidity";
-    chart.unit            = "N m";
-    chart.scale           = Scale::logarithmic;
+    HeatMapSettings chart           = chartSettings(patch, settings, title);
+    chart.quantity                  = "flexural rigidity";
+    chart.unit                      = "N m";
+    chart.scale                     = Scale::logarithmic;
+    constexpr std::size_t kMostDots = 3000; // more would hide the colours
     for (const ChartPoint& p : patch.positions)
-        if (patch.window.holds(p)) chart.points.push_back({p.x, p.z});
+        if (patch.window.holds(p)) chart.points.push_back(p);
+    if (chart.points.size() > kMostDots) chart.points.clear();
     return heatMapSvg(patch.plate.rigidity, chart);
 }
 

@@ -110,7 +110,7 @@ Contact contactOf(const TouchOptions& options, const PointCloud& cloud, const Ne
 {
     const Sample*             sample = options.source.sample();
     std::optional<glm::dvec3> from;
-    if (sample && options.at.empty()) from = sample->from;
+    if (sample) from = sample->from;
     if (!options.from.empty()) from = parsePoint(options.from, "--from");
     if (!sample && options.at.empty())
         throw Error("--at: expected a place x,y,z for a cloud from a file; its middle is (" +
@@ -121,14 +121,24 @@ Contact contactOf(const TouchOptions& options, const PointCloud& cloud, const Ne
     return touchAt(cloud, index, place, from, window / 4);
 }
 
+std::string percent(double share)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g %%", 100 * share);
+    return text;
+}
+
 void printTouch(const TouchOptions& options, const PatchSettings& settings, const nlohmann::json& r)
 {
     const auto  quantity = [&](const char* key, const char* unit) { return formatQuantity(r[key], unit); };
     const auto& window   = r["window"];
     const auto& error    = r["error"];
-    std::printf("%s, preset %s, %s at (%.4g, %.4g, %.4g) m\n", options.source.name.c_str(), options.preset.c_str(),
-                formatQuantity(r["force"], "N").c_str(), r["contact"]["point"][0].get<double>(),
-                r["contact"]["point"][1].get<double>(), r["contact"]["point"][2].get<double>());
+    const auto& at       = r["contact"]["point"];
+    const auto& normal   = r["chart"]["normal"];
+    std::printf("%s, preset %s, %s at (%.4g, %.4g, %.4g) m, pressed against (%.2f, %.2f, %.2f)\n",
+                options.source.name.c_str(), options.preset.c_str(), formatQuantity(r["force"], "N").c_str(),
+                at[0].get<double>(), at[1].get<double>(), at[2].get<double>(), normal[0].get<double>(),
+                normal[1].get<double>(), normal[2].get<double>());
     std::printf("  scene              thickness %s, poisson %.3g, foundation %s, footprint radius %s\n",
                 formatQuantity(settings.material.thickness, "m").c_str(), settings.material.poissonRatio,
                 formatQuantity(settings.foundation, "Pa/m").c_str(),
@@ -149,9 +159,7 @@ void printTouch(const TouchOptions& options, const PatchSettings& settings, cons
     std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(),
                 name(settings.forceLaw));
     std::printf("  error              discretisation %s, rounding %.1e\n",
-                error["discretisation"].is_null()
-                    ? "unknown"
-                    : (formatQuantity(100 * error["discretisation"].get<double>(), "") + "%").c_str(),
+                error["discretisation"].is_null() ? "unknown" : percent(error["discretisation"].get<double>()).c_str(),
                 error["solver"].get<double>());
     std::printf("  time               %.1f ms:", r["milliseconds"]["total"].get<double>());
     for (const char* stage : {"gather", "fit", "project", "resample", "factorise", "solve", "lift"})

@@ -158,13 +158,13 @@ TEST(HeatMap, OverlaysOutsideTheChartAreLeftOut)
     const PlateGrid grid{4, 4, 1e-3, 1e-3};
     HeatMapSettings settings = settingsOn(grid);
     settings.points          = {{1e-3, 1e-3}, {1, 1}, {NAN, 0}, {1e300, 0}};
-    settings.contact         = MapPoint{1e9, 0};
+    settings.contact         = ChartPoint{1e9, 0};
     settings.footprintRadius = 1e-3;
 
     const std::string svg = heatMapSvg(NodeField(grid, 1), settings);
 
     EXPECT_TRUE(hasText(svg, "contact: outside"));
-    settings.contact = MapPoint{2e-3, 2e-3};
+    settings.contact = ChartPoint{2e-3, 2e-3};
     EXPECT_TRUE(hasText(heatMapSvg(NodeField(grid, 1), settings), "footprint, radius 1.00 mm"));
     EXPECT_THROW((void)heatMapSvg(NodeField(PlateGrid{3, 4, 1, 1}), settings), ContractViolation);
 }

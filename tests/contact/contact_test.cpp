@@ -1,0 +1,74 @@
+#include "engine/contact/contact.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "engine/cloud/samples.h"
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+struct Object {
+    explicit Object(const char* sample) : cloud(makeSample(sampleNamed(sample), 5000, 1)), index(cloud.positions()) {}
+
+    [[nodiscard]] Contact touch(const glm::dvec3& place, const std::optional<glm::dvec3>& from = {}) const
+    {
+        return touchAt(cloud, index, place, from, 5e-3);
+    }
+
+    PointCloud     cloud;
+    NeighbourIndex index;
+};
+
+TEST(Contact, IsThePointOfTheCloudNearestToThePlace)
+{
+    const Object  ellipsoid("ellipsoid");
+    const Contact contact = ellipsoid.touch({0, 0, 36e-3});
+    for (const glm::dvec3& p : ellipsoid.cloud.positions())
+        EXPECT_GE(glm::length(p - glm::dvec3(0, 0, 36e-3)), glm::length(contact.point - glm::dvec3(0, 0, 36e-3)));
+}
+
+TEST(Contact, OutwardIsAwayFromAClosedObjectOnEverySide)
+{
+    const Object ellipsoid("ellipsoid");
+    for (const glm::dvec3& p : ellipsoid.cloud.positions()) {
+        const glm::dvec3 normal =
+            glm::normalize(p / (glm::dvec3(60e-3, 45e-3, 35e-3) * glm::dvec3(60e-3, 45e-3, 35e-3)));
+        EXPECT_GT(glm::dot(ellipsoid.touch(p).outward, normal), 0.99) << "the bounds of 5000 points are 1 % short";
+    }
+}
+
+TEST(Contact, BothSidesOfAThinObjectHaveTheirOwnOutward)
+{
+    const Object lobe("ear-lobe");
+    EXPECT_GT(lobe.touch({0, 0, 1.5e-3}).outward.z, 0.9);
+    EXPECT_LT(lobe.touch({0, 0, -1.5e-3}).outward.z, -0.9);
+}
+
+TEST(Contact, AFlatSheetIsTouchedFromAbove)
+{
+    EXPECT_EQ(Object("sheet").touch({70e-3, 70e-3, 0}).outward, glm::dvec3(0, 0, 1));
+}
+
+TEST(Contact, TheUserDecidesTheSide)
+{
+    const glm::dvec3 outward = Object("sheet").touch({0, 0, 0}, glm::dvec3(0, 3, -4)).outward;
+    EXPECT_DOUBLE_EQ(outward.y, 0.6);
+    EXPECT_DOUBLE_EQ(outward.z, -0.8);
+}
+
+TEST(Contact, PlacesFarAwayAndDirectionsThatAreNoneAreRefused)
+{
+    const Object sheet("sheet");
+    EXPECT_THROW((void)sheet.touch({0, 0, 6e-3}), Error) << "farther than the reach of 5 mm";
+    EXPECT_NO_THROW((void)sheet.touch({0, 0, 4e-3})) << "the nearest of 5000 points is within 3 mm sideways";
+    EXPECT_THROW((void)sheet.touch({0, 0, 0}, glm::dvec3(0, 0, 0)), Error);
+}
+
+} // namespace
+} // namespace palp
