@@ -6,25 +6,15 @@
 #include <limits>
 #include <random>
 
-#include <unistd.h>
-
 #include "tests/cloud/cloud_parsing.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palp {
 namespace {
 
-/// A fresh folder that goes with the test.
 class CloudFiles : public testing::Test {
 protected:
-    CloudFiles()
-    {
-        std::string name = (std::filesystem::temp_directory_path() / "palp_cloud_XXXXXX").string();
-        if (!::mkdtemp(name.data())) throw Error("no temporary folder");
-        folder_ = name;
-    }
-    ~CloudFiles() override { std::filesystem::remove_all(folder_); }
-
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
 };
 
 /// Random points, and at the front the doubles that are hardest to bring back.
@@ -116,7 +106,7 @@ TEST_F(CloudFiles, AFailedWriteLeavesTheOlderFile)
                  Error);
 
     EXPECT_EQ(readCloud(folder_ / "c.pcd").cloud.size(), 2u);
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
 }
 
 TEST_F(CloudFiles, UnknownExtensionsAreRefusedBothWays)

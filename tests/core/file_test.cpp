@@ -6,53 +6,24 @@
 #include <string>
 #include <vector>
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 
-#include "engine/core/contract.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palp {
 namespace {
 
-/// A fresh folder that goes with the test.
 class Files : public testing::Test {
 protected:
-    Files()
-    {
-        std::string name = (std::filesystem::temp_directory_path() / "palp_file_XXXXXX").string();
-        if (!::mkdtemp(name.data())) throw Error("no temporary folder");
-        folder_ = name;
-    }
-    ~Files() override { std::filesystem::remove_all(folder_); }
-
-    static std::string contentsOf(const std::filesystem::path& path)
-    {
-        std::ifstream file(path, std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
-
     std::vector<std::string> namesInFolder() const
     {
         std::vector<std::string> names;
-        for (const auto& entry : std::filesystem::directory_iterator(folder_))
+        for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
             names.push_back(entry.path().filename().string());
         return names;
     }
 
-    /// The sentence of the Error that `act` throws; empty if it throws none.
-    template <class Act>
-    static std::string refusalOf(const Act& act)
-    {
-        try {
-            act();
-        } catch (const Error& error) {
-            return error.what();
-        }
-        return "";
-    }
-
-    std::filesystem::path folder_;
+    TemporaryFolder folder_;
 };
 
 void writeNew(std::ostream& stream)
@@ -156,7 +127,7 @@ TEST_F(Files, ALinkStaysALinkToTheNewContents)
 
 TEST_F(Files, AFolderOrAMissingFolderCannotBeWritten)
 {
-    const std::string folder  = refusalOf([&] { writeFileWhole(folder_, writeNew); });
+    const std::string folder  = refusalOf([&] { writeFileWhole(folder_.path(), writeNew); });
     const std::string missing = refusalOf([&] { writeFileWhole(folder_ / "no" / "a", writeNew); });
 
     EXPECT_NE(folder.find("it is a folder"), std::string::npos) << folder;
@@ -178,7 +149,7 @@ TEST_F(Files, ReadingGivesTheBytesUnchanged)
 TEST_F(Files, AMissingFileOrAFolderCannotBeRead)
 {
     const std::string missing = refusalOf([&] { static_cast<void>(openForReading(folder_ / "a")); });
-    const std::string folder  = refusalOf([&] { static_cast<void>(openForReading(folder_)); });
+    const std::string folder  = refusalOf([&] { static_cast<void>(openForReading(folder_.path())); });
 
     EXPECT_NE(missing.find((folder_ / "a").string() + ": cannot be read: No such file"), std::string::npos) << missing;
     EXPECT_NE(folder.find("it is a folder"), std::string::npos) << folder;

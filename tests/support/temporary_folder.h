@@ -28,7 +28,8 @@ public:
     TemporaryFolder(const TemporaryFolder&)            = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
-    [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+    [[nodiscard]] std::filesystem::path        operator/(const std::string& name) const { return path_ / name; }
 
     /// Writes a file into the folder and returns its path.
     [[nodiscard]] std::filesystem::path write(const std::string& name, std::string_view bytes) const
