@@ -296,7 +296,7 @@ void run(const std::filesystem::path& folder)
 
 int main(int argumentCount, char** arguments)
 {
-    if (argumentCount != 2) {
+    if (argumentCount != 2 || arguments[1][0] == '-') {
         std::cerr << "usage: paper_experiment FOLDER\n";
         return 2;
     }

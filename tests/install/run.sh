@@ -1,8 +1,8 @@
 #!/bin/sh
 # Installs the build, moves the tree, and builds an outside project against it. Arguments: build folder, source folder
-# of this test, C++ compiler, sanitizers (may be empty).
+# of this test, C++ compiler, CMake generator (a machine need not have the default one), sanitizers (may be empty).
 set -eu
-build=$1 source=$2 compiler=$3 sanitizers=${4:-}
+build=$1 source=$2 compiler=$3 generator=$4 sanitizers=${5:-}
 place=$(mktemp -d "${TMPDIR:-/tmp}/palpate install XXXXXX")
 trap 'rm -rf "$place"' EXIT
 
@@ -11,7 +11,7 @@ mv "$place/first" "$place/moved" # a package must not remember where it was inst
 
 flags=
 [ -z "$sanitizers" ] || flags="-fsanitize=$sanitizers"
-cmake -S "$source/outside" -B "$place/outside" -DCMAKE_PREFIX_PATH="$place/moved" -DCMAKE_CXX_COMPILER="$compiler" \
+cmake -G "$generator" -S "$source/outside" -B "$place/outside" -DCMAKE_PREFIX_PATH="$place/moved" -DCMAKE_CXX_COMPILER="$compiler" \
     -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="$flags" >"$place/configure.log" 2>&1 || { cat "$place/configure.log"; exit 1; }
 cmake --build "$place/outside" >"$place/build.log" 2>&1 || { cat "$place/build.log"; exit 1; }
 "$place/outside/outside"
