@@ -6,7 +6,7 @@
 #   prepare_build DIR ARGS   configures (Release) and builds the folder DIR
 
 # What the library and the programs are made of, and what the tests add; third_party_notes.md has a row for each.
-packages_build='g++ cmake ninja-build libembree-dev libtbb-dev libeigen3-dev libglm-dev libcli11-dev nlohmann-json3-dev libstb-dev'
+packages_build='g++ cmake make libembree-dev libtbb-dev libeigen3-dev libglm-dev libcli11-dev nlohmann-json3-dev libstb-dev'
 packages_tests='libgtest-dev libbenchmark-dev libnanoflann-dev'
 
 assume_yes= no_install= dry_run= rest=
@@ -87,10 +87,8 @@ prepare_build() {
         say "The folder $build cannot be written; remove it, or name another one with PALPATE_BUILD=FOLDER."
         exit 2
     fi
-    generator=
-    [ -f "$build/CMakeCache.txt" ] || ! command -v ninja >/dev/null 2>&1 || generator='-G Ninja'
-    # shellcheck disable=SC2086
-    cmake -S . -B "$build" $generator -DCMAKE_BUILD_TYPE=Release "$@" >"$build/configure.log" 2>&1 || {
+    # Make, not Ninja: Ninja 1.11 loses every dependency in a path with an apostrophe and builds all anew each time.
+    cmake -S . -B "$build" -DCMAKE_BUILD_TYPE=Release "$@" >"$build/configure.log" 2>&1 || {
         cat "$build/configure.log"
         exit 1
     }

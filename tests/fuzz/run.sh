@@ -22,13 +22,10 @@ if [ -z "$clang" ]; then
     exit 77
 fi
 
-generator=
-if command -v ninja >/dev/null 2>&1; then generator='-G Ninja'; fi
-# shellcheck disable=SC2086
-cmake -S "$here/../.." -B "$build" $generator -DCMAKE_CXX_COMPILER="$clang" -DCMAKE_BUILD_TYPE=Release \
+cmake -S "$here/../.." -B "$build" -DCMAKE_CXX_COMPILER="$clang" -DCMAKE_BUILD_TYPE=Release \
     -DCMAKE_CXX_FLAGS=-fno-sanitize-recover=all -DPALPATE_SANITIZE=fuzzer-no-link,address,undefined \
     -DPALPATE_FUZZERS=ON -DPALPATE_BENCHMARKS=OFF >"$build/configure.log" 2>&1 || { cat "$build/configure.log"; exit 1; }
-cmake --build "$build" --target fuzzers >"$build/build.log" 2>&1 || { cat "$build/build.log"; exit 1; }
+cmake --build "$build" --target fuzzers --parallel 2 >"$build/build.log" 2>&1 || { cat "$build/build.log"; exit 1; }
 
 sh "$here/make_seeds.sh" "$build/seeds"
 failed=0
