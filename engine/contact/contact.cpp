@@ -43,7 +43,7 @@ Contact touchAt(const PointCloud& cloud, const NeighbourIndex& index, const glm:
                     inMetres(point) + "; the cloud spans " + inMetres(cloud.bounds().low) + " to " +
                     inMetres(cloud.bounds().high));
     if (from && !(glm::length(*from) > 0)) throw Error("contact: expected a direction, found the zero vector");
-    return {point, from ? glm::normalize(*from) : awayFromMiddle(cloud.bounds(), point)};
+    return {point, from ? glm::normalize(*from) : awayFromMiddle(cloud.bounds(), point), from.has_value()};
 }
 
 } // namespace palp

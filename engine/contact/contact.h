@@ -12,13 +12,16 @@ namespace palp {
 struct Contact {
     glm::dvec3 point{};          ///< [m] a place on the cloud
     glm::dvec3 outward{0, 0, 1}; ///< [1] unit vector roughly from the surface to the hand; only its side counts
+    /// The hand is there. If false, `outward` is a guess, and deform() overrules it where it lies along the surface.
+    bool outwardKnown = true;
 };
 
 /// The touch of a scripted finger: the point of the cloud nearest to `place`.
 ///
 /// \param place  [m] where the finger goes; at most `reach` from the nearest point
-/// \param from   [1] from which side the finger comes; empty: away from the middle of the cloud's bounds, which is
-///               right for closed objects and for flat ones, but may be the hollow side of an open shell
+/// \param from   [1] from which side the finger comes; empty: away from the middle of the cloud's bounds, a guess that
+/// is
+///               right for closed objects and for flat ones
 /// \param reach  [m]
 /// \throws Error naming the place, the distance and the nearest point, if it is farther than `reach`
 [[nodiscard]] Contact touchAt(const PointCloud& cloud, const NeighbourIndex& index, const glm::dvec3& place,

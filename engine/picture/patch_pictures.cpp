@@ -113,7 +113,7 @@ std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> pa
             positions[p.patch->points[n]] += view.exaggeration * w * p.patch->forceDirection();
         }
         const int        middle = p.patch->window.grid.cellsX / 2;
-        const glm::dvec3 bottom = p.patch->chart.origin + view.exaggeration * p.force *
+        const glm::dvec3 bottom = p.patch->contact.point + view.exaggeration * p.force *
                                                               p.patch->response(middle, middle) *
                                                               p.patch->forceDirection();
         settings.markers.push_back({bottom, p.label, Symbol::circle, {}});
@@ -124,7 +124,7 @@ std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> pa
     const bool given   = glm::length(view.direction) > 0;
     settings.up        = given ? glm::dvec3(0, 0, 1) : chart.frame.normal;
     settings.direction = given ? view.direction : obliquely(chart.frame);
-    if (view.closeUp) settings.window = CloudWindow{chart.origin, 0.75 * patches.front().patch->window.grid.sizeX()};
+    if (view.closeUp) settings.window = CloudWindow{patches.front().patch->contact.point, 0.75 * patches.front().patch->window.grid.sizeX()};
     return cloudViewSvg(positions, depth, settings);
 }
 

@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <numbers>
 
+#include <glm/geometric.hpp>
+
+#include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/plate/load.h"
 #include "engine/plate/plate_solver_reference.h"
@@ -47,6 +52,56 @@ SphereFitResult fitTo(const PointCloud& cloud, const std::vector<std::uint32_t>&
     return fitSphere(points);
 }
 
+std::string formatDirection(const glm::dvec3& d)
+{
+    char text[64];
+    std::snprintf(text, sizeof text, "%.2f,%.2f,%.2f", d.x, d.y, d.z);
+    return text;
+}
+
+std::string degrees(double cosine)
+{
+    return std::to_string(std::lround(std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi)) + " degrees";
+}
+
+/// Whether the cloud has another side behind the contact: points in a tube inwards, beyond the surface itself.
+bool isClosedBehind(const PointCloud& cloud, const glm::dvec3& contact, const glm::dvec3& outward, double spacing)
+{
+    const double reach = 3 * spacing; // radius of the tube, and where it begins: some ten points across a surface [m]
+    return std::any_of(cloud.positions().begin(), cloud.positions().end(), [&](const glm::dvec3& p) {
+        const double depth = glm::dot(contact - p, outward);
+        return depth > reach && glm::length(p + depth * outward - contact) < reach;
+    });
+}
+
+/// The chart on the hand's side of the surface; sets patch.sideUnsure.
+///
+/// A known direction decides unless it runs along the surface. A guessed one decides only where it is within 60 degrees
+/// of the normal; elsewhere the surface is an open sheet, which has no outside: there it is touched from the positive
+/// side of the world axis nearest to its normal, so that all of a sheet is touched from one side.
+Chart chartAt(const PointCloud& cloud, Patch& patch, const PatchSettings& settings, double spacing)
+{
+    constexpr double kSteep = 0.17, kClear = 0.5; // cosines of 80 and 60 degrees [1]
+    const Contact&   contact = patch.contact;
+    const auto       around  = [&](const glm::dvec3& side) {
+        return Chart::around(patch.sphere.fit, contact.point, side, settings.map, settings.frame);
+    };
+    const Chart  chart  = around(contact.outward);
+    const auto&  normal = chart.frame.normal;
+    const double cosine = glm::dot(normal, contact.outward);
+    if (contact.outwardKnown && cosine < kSteep)
+        throw Error("contact: the direction from which the finger comes is " + degrees(cosine) +
+                    " from the surface's normal (" + formatDirection(normal) +
+                    "), expected at most 80, or the side is not clear; try that normal or its opposite");
+    if (contact.outwardKnown) return chart;
+    patch.sideUnsure = !isClosedBehind(cloud, contact.point, normal, spacing);
+    if (!patch.sideUnsure || cosine >= kClear) return chart;
+    int axis = 0;
+    for (int k = 1; k < 3; ++k)
+        if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
+    return around({axis == 0, axis == 1, axis == 2});
+}
+
 /// Fills in the points of the near side and their places in the chart.
 void project(const PointCloud& cloud, Patch& patch)
 {
@@ -63,6 +118,24 @@ Resampled resample(const PointCloud& cloud, const Patch& patch, const PatchSetti
     rigidities.reserve(patch.points.size());
     for (std::uint32_t point : patch.points) rigidities.push_back(cloud.rigidity(point, settings.material));
     return resampleRigidity(patch.window, patch.positions, rigidities, settings.sampling, spacing);
+}
+
+/// A window that holds next to nothing of the cloud would still give an answer, and a wrong unit is the usual reason.
+void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
+{
+    constexpr std::ptrdiff_t kFewestPoints  = 9;   // 3 by 3: less is no field of rigidity [1]
+    constexpr double         kMostUncovered = 0.9; // of the nodes: a corner of a sheet leaves three quarters [1]
+    const auto               held           = std::count_if(patch.positions.begin(), patch.positions.end(),
+                                                            [&](const ChartPoint& p) { return patch.window.holds(p); });
+    const std::string        what           = "touch: the window of " + formatQuantity(settings.window, "m");
+    const char* const        hint           = "; check --unit and --window";
+    if (held < kFewestPoints)
+        throw Error(what + " holds " + std::to_string(held) + " points of the cloud, which are " +
+                    formatQuantity(patch.spacing, "m") + " apart; expected at least " + std::to_string(kFewestPoints) +
+                    hint);
+    if (double(patch.nodesWithoutPoint) > kMostUncovered * double(patch.plate.grid.nodes()))
+        throw Error(what + " is almost empty: " + std::to_string(patch.nodesWithoutPoint) + " of its " +
+                    std::to_string(patch.plate.grid.nodes()) + " grid nodes have no point of the cloud nearby" + hint);
 }
 
 /// Force of 1 N on the footprint about the middle node.
@@ -91,6 +164,21 @@ std::optional<double> windowWanted(const Plate& plate)
     const double mean        = std::exp(logarithm / double(plate.rigidity.values().size()));
     const auto [least, most] = std::minmax_element(plate.rigidity.values().begin(), plate.rigidity.values().end());
     return (*most > 10 * *least ? 12 : 10) * std::pow(mean / plate.foundation, 0.25);
+}
+
+double largest(const NodeField& field)
+{
+    return *std::max_element(field.values().begin(), field.values().end());
+}
+
+/// Largest value on the sides of the grid.
+double edgeDeflection(const NodeField& field)
+{
+    double    most  = 0;
+    const int lastI = field.nodesX() - 1, lastJ = field.nodesZ() - 1;
+    for (int i = 0; i <= lastI; ++i) most = std::max({most, field(i, 0), field(i, lastJ)});
+    for (int j = 0; j <= lastJ; ++j) most = std::max({most, field(0, j), field(lastI, j)});
+    return most;
 }
 
 /// Response of the points by bilinear interpolation; outside the window nothing moves.
@@ -125,7 +213,7 @@ Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact
     if (!patch.sphere.usable()) return patch;
 
     // ... which an equal-area map lays flat about the contact (2.3, equation 4), ...
-    patch.chart = Chart::around(patch.sphere.fit, contact.point, contact.outward, settings.map, settings.frame);
+    patch.chart = chartAt(cloud, patch, settings, spacing);
     project(cloud, patch);
     patch.times.project = watch.lap();
 
@@ -135,7 +223,9 @@ Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact
     patch.nodesWithoutPoint   = resampled.nodesWithoutPoint;
     patch.plate               = {patch.window.grid, settings.edges, settings.material.poissonRatio, settings.foundation,
                                  resampled.rigidity};
-    patch.times.resample      = watch.lap();
+    patch.spacing             = spacing;
+    refuseIfEmpty(patch, settings);
+    patch.times.resample = watch.lap();
 
     // ... and bends as a plate under a unit force (2.5, equations 6 to 8).
     const ReferencePlateSolver solver(patch.plate);
@@ -191,9 +281,8 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
 {
     std::vector<std::string> result;
     if (!patch.deformed()) return result;
-    const double deepest =
-        std::abs(force) * *std::max_element(patch.response.values().begin(), patch.response.values().end());
-    const double half = settings.material.thickness / 2;
+    const double deepest = std::abs(force) * largest(patch.response);
+    const double half    = settings.material.thickness / 2;
     if (deepest > half)
         result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
                          formatQuantity(half, "m") +
@@ -204,6 +293,24 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
             std::to_string(patch.nodesWithoutPoint) + " of " + std::to_string(patch.plate.grid.nodes()) +
             " grid nodes have no point nearby (a hole, a border or the far side): they carry the rigidity of "
             "the nearest point");
+    if (settings.footprintRadius < 2 * patch.spacing)
+        result.push_back("the points are " + formatQuantity(patch.spacing, "m") +
+                         " apart and the footprint's radius is " + formatQuantity(settings.footprintRadius, "m") +
+                         ": rigidity between the points is interpolated, finer detail is not in the data");
+    if (patch.sideUnsure)
+        result.push_back("the cloud has no other side behind this place, so the finger's side is a guess (" +
+                         formatDirection(patch.chart.frame.normal) + "); set --from");
+    constexpr double kFarOffSphere =
+        0.05; // of the window: surfaces then slope by a tenth and more against the sphere [1]
+    if (patch.sphere.fit.misfit > kFarOffSphere * settings.window)
+        result.push_back("the points lie " + formatQuantity(patch.sphere.fit.misfit, "m") +
+                         " (rms) off the fitted sphere, more than 5 % of the window: a smaller window follows the "
+                         "surface better");
+    if (const double moving = edgeDeflection(patch.response) / largest(patch.response); moving > 0.02)
+        result.push_back("the window's edge moves by " + std::to_string(std::lround(100 * moving)) +
+                         " % of the largest deflection and nothing moves beyond it: the deformed cloud is torn there");
+    if (settings.foundation == 0)
+        result.push_back("there is no foundation, so the size of the window decides: compliance grows with its area");
     if (const auto width = windowWanted(patch.plate); width && settings.window < *width)
         result.push_back("the window of " + formatQuantity(settings.window, "m") + " is narrower than the " +
                          formatQuantity(*width, "m") +

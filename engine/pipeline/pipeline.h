@@ -61,8 +61,10 @@ struct Patch {
     Contact         contact;
     SphereFitResult sphere;
     Chart           chart;
+    bool            sideUnsure = false; ///< the finger's side was guessed, and the cloud is open there
     Window          window;
     Plate           plate;                 ///< rigidity at the nodes, edges, foundation
+    double          spacing           = 0; ///< typical distance of neighbouring points of the cloud [m]
     std::size_t     nodesWithoutPoint = 0; ///< see Resampled [1]
     NodeField       response;              ///< deflection per force at the nodes [m/N]
     double          compliance       = 0;  ///< c: response averaged over the footprint, work-conjugate [m/N]
@@ -87,8 +89,9 @@ struct Patch {
 /// Section 2 of the paper on one clock: contact, neighbourhood, sphere, chart, rigidity, plate, points.
 ///
 /// Solves for a force of 1 N on a smooth footprint about the contact; the plate is linear, so any force follows.
-/// \throws Error if the plate cannot be solved (for example free on all sides)
-/// \thread pure, except for the allocations
+/// \throws Error if the plate cannot be solved (for example free on all sides), if the window holds next to nothing of
+///         the cloud, or if the hand's direction runs along the surface
+/// \thread pure, except that it allocates and announces factorisations of many seconds on a terminal
 /// \source Kumari & Chaudhuri 2016, sections 2.1 to 2.6
 /// \differs see differencesFromPaper() and engine/README.md
 [[nodiscard]] Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
