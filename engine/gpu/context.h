@@ -1,0 +1,73 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/gpu/device_list.h"
+
+namespace palp::gpu {
+
+class CommandList;
+
+/// What Khronos' validation layer looks for; each includes the one before it, except that gpuAssisted leaves out
+/// synchronization. All need the package vulkan-validationlayers.
+enum class Validation {
+    off,
+    core,            ///< wrong use of the interface
+    synchronization, ///< and hazards between dispatches, seen only where blocks are readonly or writeonly
+    gpuAssisted      ///< and accesses beyond the ends of buffers, by instrumented shaders: 9 to 23 times slower
+};
+
+struct ContextSettings {
+    std::string device     = "auto"; ///< see chooseDevice()
+    Validation  validation = Validation::off;
+    double      patience   = 0; ///< [s] how long a submission may take; 0: 10 s, or 300 s for a device in software
+};
+
+/// What the device can hold at most.
+struct Limits {
+    std::size_t   buffer       = 0; ///< [byte] one Buffer
+    std::uint32_t invocations  = 0; ///< per workgroup [1]
+    std::size_t   sharedMemory = 0; ///< [byte] per workgroup
+};
+
+/// One device, opened for computing, with one queue. Buffers, kernels and command lists are made from it and must go
+/// before it does; it may be moved meanwhile. \thread one at a time, together with everything made from it
+class Context {
+public:
+    /// Takes 30 to 50 ms on lavapipe.
+    /// \throws DeviceError if no device fits the settings, or if validation is asked for and not installed
+    explicit Context(const ContextSettings& settings = {});
+    ~Context();
+    Context(Context&&) noexcept;
+    Context& operator=(Context&&) noexcept;
+
+    /// Submits a finished list and waits until it is done; then its readback buffers may be read.
+    ///
+    /// A submission that outlasts the patience counts as a hang: drivers reset hardware after about that time, and a
+    /// thread that feeds a hand must not wait for ever. The device may still be at work then, so that nothing made
+    /// from this context is freed any more, and every later call throws at once.
+    /// \throws DeviceLost if the device went away, ran out of memory or hangs
+    void run(CommandList& list);
+
+    /// Warnings and errors of the validation layer since the last call.
+    [[nodiscard]] std::vector<std::string> takeMessages();
+
+    [[nodiscard]] const DeviceDescription& device() const noexcept;
+    [[nodiscard]] const Limits&            limits() const noexcept;
+
+    /// Whether results equal those of C++ without contraction, bit for bit: true for lavapipe, whose compiler neither
+    /// fuses nor re-associates and whose division and square root are correctly rounded.
+    [[nodiscard]] bool bitExact() const noexcept;
+
+    /// For the files of engine/gpu.
+    struct Handles;
+    [[nodiscard]] Handles& handles() const noexcept { return *handles_; }
+
+private:
+    std::unique_ptr<Handles> handles_;
+};
+
+} // namespace palp::gpu

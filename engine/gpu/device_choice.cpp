@@ -1,0 +1,97 @@
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <optional>
+
+#include "engine/gpu/device_list.h"
+
+namespace palp::gpu {
+namespace {
+
+using Devices = std::vector<DeviceDescription>;
+
+/// Best first.
+constexpr std::array<std::string_view, 5> kKinds{"discrete", "integrated", "virtual", "software", "other"};
+
+std::string lower(std::string_view text)
+{
+    std::string result(text);
+    std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return result;
+}
+
+std::string joined(const std::vector<std::string>& reasons)
+{
+    std::string text;
+    for (const std::string& reason : reasons) text += (text.empty() ? "" : ", ") + reason;
+    return text;
+}
+
+[[noreturn]] void refuse(const Devices& devices, const std::string& sentence)
+{
+    std::string text = sentence;
+    if (devices.empty())
+        text += "; no Vulkan device was found: install the vendor's driver, or mesa-vulkan-drivers for one in software";
+    for (const DeviceDescription& device : devices)
+        text += "\n  " + std::to_string(device.index) + "  " + device.name + " (" + device.kind +
+                "): " + (device.refusals.empty() ? "usable" : joined(device.refusals));
+    throw DeviceError(text);
+}
+
+/// The first usable device of a kind.
+std::optional<std::size_t> firstOf(const Devices& devices, std::string_view kind)
+{
+    for (std::size_t n = 0; n < devices.size(); ++n)
+        if (devices[n].kind == kind && devices[n].refusals.empty()) return n;
+    return std::nullopt;
+}
+
+std::optional<std::size_t> withIndex(const Devices& devices, std::string_view wanted)
+{
+    int         index     = -1;
+    const char* end       = wanted.data() + wanted.size();
+    const auto [stop, ok] = std::from_chars(wanted.data(), end, index);
+    if (ok != std::errc() || stop != end) return std::nullopt;
+    for (std::size_t n = 0; n < devices.size(); ++n)
+        if (devices[n].index == index) return n;
+    return std::nullopt; // may still be part of a name, such as 4090
+}
+
+std::size_t withName(const Devices& devices, std::string_view wanted)
+{
+    const std::string        part = lower(wanted);
+    std::vector<std::size_t> usable, refused;
+    for (std::size_t n = 0; n < devices.size(); ++n)
+        if (lower(devices[n].name).find(part) != std::string::npos)
+            (devices[n].refusals.empty() ? usable : refused).push_back(n);
+    const std::string quoted = std::string("'").append(wanted).append("'");
+    if (usable.size() > 1) refuse(devices, "several GPUs are called " + quoted + "; say which by its index");
+    if (usable.size() == 1) return usable.front();
+    if (!refused.empty()) refuse(devices, "the GPU " + quoted + " cannot be used");
+    refuse(devices, "no GPU is called " + quoted + "; expected auto, lavapipe, an index or part of a name");
+}
+
+} // namespace
+
+std::size_t chooseDevice(const Devices& devices, std::string_view wanted)
+{
+    if (wanted == "auto") {
+        for (const std::string_view kind : kKinds)
+            if (const auto found = firstOf(devices, kind)) return *found;
+        refuse(devices, "no GPU can be used");
+    }
+    if (wanted == "lavapipe") {
+        if (const auto found = firstOf(devices, "software")) return *found;
+        refuse(devices, "no GPU in software can be used (package mesa-vulkan-drivers)");
+    }
+    if (wanted.empty())
+        refuse(devices, "an empty word names no GPU; expected auto, lavapipe, an index or part of a name");
+    if (const auto found = withIndex(devices, wanted)) {
+        if (!devices[*found].refusals.empty()) refuse(devices, "GPU " + std::string(wanted) + " cannot be used");
+        return *found;
+    }
+    return withName(devices, wanted);
+}
+
+} // namespace palp::gpu

@@ -1,0 +1,20 @@
+#pragma once
+#include "engine/core/contract.h"
+
+namespace palp::gpu {
+
+/// There is no device with what is needed. The message has one line per device and says why it was refused; programs
+/// print it and exit with 4.
+class DeviceError : public Error {
+public:
+    using Error::Error;
+};
+
+/// The device went away, hangs or has no memory left while it was in use. What lived on it is gone; a new Context may
+/// work, a smaller problem as well.
+class DeviceLost : public Error {
+public:
+    using Error::Error;
+};
+
+} // namespace palp::gpu

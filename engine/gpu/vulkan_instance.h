@@ -1,0 +1,67 @@
+#pragma once
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <vulkan/vulkan.h>
+
+#include "engine/gpu/context.h"
+
+// Internal to engine/gpu.
+
+namespace palp::gpu {
+
+/// A structure of Vulkan that is zero but for its type and what it is chained to.
+template <class Structure>
+[[nodiscard]] Structure typed(VkStructureType type, void* next = nullptr)
+{
+    Structure structure{};
+    structure.sType = type;
+    structure.pNext = next;
+    return structure;
+}
+
+/// The entrance to the drivers, with the validation layer if it is asked for.
+class Instance {
+public:
+    /// \throws DeviceError if validation is asked for and not installed, or if a driver fails; no driver at all is fine
+    explicit Instance(Validation validation);
+    ~Instance();
+    Instance(const Instance&)            = delete;
+    Instance& operator=(const Instance&) = delete;
+
+    [[nodiscard]] VkInstance get() const noexcept { return instance_; } ///< null: there is no driver
+    [[nodiscard]] bool       hasDebugUtils() const noexcept { return debugUtils_; }
+
+    /// Messages since the last call. \thread any
+    [[nodiscard]] std::vector<std::string> takeMessages();
+
+private:
+    static VKAPI_ATTR VkBool32 VKAPI_CALL            collect(VkDebugUtilsMessageSeverityFlagBitsEXT      severity,
+                                                             VkDebugUtilsMessageTypeFlagsEXT             types,
+                                                             const VkDebugUtilsMessengerCallbackDataEXT* data, void* self);
+    [[nodiscard]] VkDebugUtilsMessengerCreateInfoEXT messengerInfo();
+
+    VkInstance               instance_   = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger_  = VK_NULL_HANDLE;
+    bool                     debugUtils_ = false;
+    std::mutex               mutex_; // guards messages_: the layer may call from any thread
+    std::vector<std::string> messages_;
+};
+
+/// A device that could be opened, or why not.
+struct Candidate {
+    DeviceDescription      description;
+    VkPhysicalDevice       physical      = VK_NULL_HANDLE;
+    VkDriverId             driver        = VkDriverId(0);
+    std::uint32_t          family        = 0; ///< the queue family to compute with
+    std::uint32_t          timestampBits = 0;
+    VkPhysicalDeviceLimits limits{};
+    VkDeviceSize           maxBufferBytes = 0; ///< [byte]
+};
+
+/// Every device, in the order of the drivers.
+[[nodiscard]] std::vector<Candidate> candidates(const Instance& instance);
+
+} // namespace palp::gpu
