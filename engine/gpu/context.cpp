@@ -68,8 +68,8 @@ Context::Handles::Handles(const ContextSettings& settings) : instance(std::make_
 
 Context::Handles::~Handles()
 {
-    if (abandoned) {
-        (void)instance.release(); // the device may still be at work: better to leak than to pull the floor away
+    if (atWork()) {
+        (void)instance.release();
         return;
     }
     if (fence) vkDestroyFence(device, fence, nullptr);
@@ -152,7 +152,7 @@ void Context::run(CommandList& list)
     const auto     nanoseconds = std::uint64_t(std::ceil(handles_->patience * 1e9));
     const VkResult result      = vkWaitForFences(handles_->device, 1, &handles_->fence, VK_TRUE, nanoseconds);
     if (result == VK_TIMEOUT || result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY)
-        handles_->abandoned = true; // the queue is still at work
+        handles_->abandoned = true;
     if (result == VK_TIMEOUT)
         throw DeviceLost("the GPU " + device().name + " did not finish within " + std::to_string(handles_->patience) +
                          " s; try fewer cells");

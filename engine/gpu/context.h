@@ -47,8 +47,8 @@ public:
     /// Submits a finished list and waits until it is done; then its readback buffers may be read.
     ///
     /// A submission that outlasts the patience counts as a hang: drivers reset hardware after about that time, and a
-    /// thread that feeds a hand must not wait for ever. The device may still be at work then, so that nothing made
-    /// from this context is freed any more, and every later call throws at once.
+    /// thread that feeds a hand must not wait for ever. Every later call throws at once then. What the device is still
+    /// using when its owner goes is leaked, not freed.
     /// \throws DeviceLost if the device went away, ran out of memory or hangs
     void run(CommandList& list);
 

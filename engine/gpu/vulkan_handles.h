@@ -22,6 +22,9 @@ struct Context::Handles {
     Handles(const Handles&)            = delete;
     Handles& operator=(const Handles&) = delete;
 
+    /// Whether an abandoned submission still runs: then nothing may be destroyed, and leaking is better than crashing.
+    [[nodiscard]] bool atWork() const { return abandoned && vkGetFenceStatus(device, fence) == VK_NOT_READY; }
+
     /// Shows up in messages of the validation layer and in captures. Does nothing without VK_EXT_debug_utils.
     void setName(VkObjectType type, std::uint64_t handle, const std::string& name) const;
 
@@ -40,7 +43,7 @@ struct Context::Handles {
     VkQueue                          queue         = VK_NULL_HANDLE;
     VkFence                          fence         = VK_NULL_HANDLE;
     std::uint32_t                    allocations   = 0;     ///< live ones, of native.maxMemoryAllocationCount
-    bool                             abandoned     = false; ///< hangs: nothing may be destroyed any more
+    bool                             abandoned     = false; ///< a submission outlasted the patience
     PFN_vkSetDebugUtilsObjectNameEXT setObjectName = nullptr;
 
 private:
@@ -48,7 +51,7 @@ private:
     void open();
 };
 
-/// A handle that is destroyed with its owner, unless the device hangs and may still be using it.
+/// A handle that is destroyed with its owner, unless the device hangs and is still using it.
 template <class Handle, auto Destroy>
 class Owned {
 public:
@@ -56,7 +59,7 @@ public:
     Owned(const Context::Handles& context, Handle handle) : context_(&context), handle_(handle) {}
     ~Owned()
     {
-        if (handle_ && !context_->abandoned) Destroy(context_->device, handle_, nullptr);
+        if (handle_ && !context_->atWork()) Destroy(context_->device, handle_, nullptr);
     }
     Owned(Owned&& other) noexcept : context_(other.context_), handle_(std::exchange(other.handle_, {})) {}
     Owned& operator=(Owned&& other) noexcept

@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include "engine/gpu/device_list.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palp::gpu {
+namespace {
+
+using Devices = std::vector<DeviceDescription>;
+
+DeviceDescription device(int index, std::string name, std::string kind, std::vector<std::string> refusals = {})
+{
+    DeviceDescription description;
+    description.index    = index;
+    description.name     = std::move(name);
+    description.kind     = std::move(kind);
+    description.refusals = std::move(refusals);
+    return description;
+}
+
+Devices desk()
+{
+    return {device(0, "llvmpipe (LLVM 15)", "software"), device(1, "Intel UHD 770", "integrated"),
+            device(2, "Intel Arc A770", "discrete", {"it speaks Vulkan 1.1.0, and 1.2 is needed"}),
+            device(3, "GeForce RTX 4090", "discrete"), device(4, "Virtio", "virtual")};
+}
+
+std::string refusal(const Devices& devices, std::string_view wanted)
+{
+    return refusalOf([&] { (void)chooseDevice(devices, wanted); });
+}
+
+TEST(DeviceChoice, AutoTakesTheFirstUsableDeviceOfTheBestKind)
+{
+    Devices devices = desk();
+    EXPECT_EQ(chooseDevice(devices, "auto"), 3u);
+    devices.erase(devices.begin() + 3);
+    EXPECT_EQ(chooseDevice(devices, "auto"), 1u);
+    devices.erase(devices.begin() + 1);
+    EXPECT_EQ(chooseDevice(devices, "auto"), 2u); // virtual before software
+    devices.pop_back();
+    EXPECT_EQ(chooseDevice(devices, "auto"), 0u);
+}
+
+TEST(DeviceChoice, LavapipeIsTheDeviceInSoftware)
+{
+    EXPECT_EQ(chooseDevice(desk(), "lavapipe"), 0u);
+    EXPECT_TRUE(holds(refusal({device(0, "GeForce", "discrete")}, "lavapipe"), {"mesa-vulkan-drivers", "GeForce"}));
+}
+
+TEST(DeviceChoice, AnIndexIsThatOfTheListNotThePlaceInIt)
+{
+    Devices devices = desk();
+    EXPECT_EQ(chooseDevice(devices, "1"), 1u);
+    devices.erase(devices.begin());
+    EXPECT_EQ(chooseDevice(devices, "1"), 0u);
+}
+
+TEST(DeviceChoice, PartOfANameFitsWhateverItsCase)
+{
+    EXPECT_EQ(chooseDevice(desk(), "geforce"), 3u);
+    EXPECT_EQ(chooseDevice(desk(), "LLVM"), 0u);
+    EXPECT_EQ(chooseDevice(desk(), "4090"), 3u) << "no index of the list, so a name";
+    EXPECT_EQ(chooseDevice(desk(), "intel"), 1u) << "the other one cannot be used anyway";
+}
+
+TEST(DeviceChoice, SeveralFittingNamesAreRefused)
+{
+    const Devices two{device(0, "RTX 4090", "discrete"), device(1, "RTX 4090", "discrete")};
+    EXPECT_TRUE(holds(refusal(two, "rtx"), {"several", "'rtx'", "index", "\n  0  RTX", "\n  1  RTX"}));
+}
+
+TEST(DeviceChoice, ARefusedDeviceIsRefusedWithItsReason)
+{
+    EXPECT_TRUE(holds(refusal(desk(), "2"), {"GPU 2", "Vulkan 1.1.0"}));
+    EXPECT_TRUE(holds(refusal(desk(), "Arc"), {"'Arc'", "Vulkan 1.1.0"}));
+}
+
+TEST(DeviceChoice, AnUnknownNameNamesEveryDevice)
+{
+    const std::string sentence = refusal(desk(), "voodoo");
+    EXPECT_TRUE(holds(sentence, {"'voodoo'", "auto", "lavapipe"})) << sentence;
+    for (const DeviceDescription& one : desk()) EXPECT_TRUE(holds(sentence, {one.name, one.kind})) << sentence;
+    EXPECT_NE(refusal(desk(), ""), "");
+    EXPECT_NE(refusal(desk(), "99"), "");
+    EXPECT_NE(refusal(desk(), "-1"), "");
+}
+
+TEST(DeviceChoice, WithoutAnyDeviceThePackageIsNamed)
+{
+    for (const char* wanted : {"auto", "lavapipe", "0", "geforce"})
+        EXPECT_TRUE(holds(refusal({}, wanted), {"mesa-vulkan-drivers"})) << wanted;
+    EXPECT_THROW((void)chooseDevice({}, "auto"), DeviceError);
+}
+
+} // namespace
+} // namespace palp::gpu

@@ -1,0 +1,16 @@
+// LeakSanitizer names leaks by the library they come from, after the program: a driver must still be loaded then, or
+// lsan.supp cannot recognise its leaks. The loader calls this function in place of the C library's.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define PALP_ADDRESS_SANITIZER 1
+#endif
+#elif defined(__SANITIZE_ADDRESS__)
+#define PALP_ADDRESS_SANITIZER 1
+#endif
+
+#if defined(PALP_ADDRESS_SANITIZER)
+extern "C" int dlclose(void*)
+{
+    return 0;
+}
+#endif
