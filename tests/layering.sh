@@ -4,7 +4,7 @@ set -u
 cd "$1" || exit 1
 
 # From the bottom up; a file may include its own layer and those before it.
-layers='core cloud contact chart force plate pipeline picture program'
+layers='core gpu cloud contact chart force plate pipeline picture program'
 level_of() {
     n=0
     for layer in $layers; do
@@ -29,7 +29,7 @@ for folder in engine/*/; do
         done
         sed -n 's|^ *# *include *"\([^"]*\)".*|\1|p' "$file" | while read -r name; do
             case $name in
-            engine/* | compute_shaders/shared/* | stb/*) ;;
+            engine/* | compute_shaders/shared/* | compute_shaders/*.spv.h | stb/*) ;;
             *) echo "$file includes \"$name\": write project includes from the root" ;;
             esac
         done | grep . && bad=1
@@ -45,10 +45,11 @@ wall Embree 'embree[34]/' 'cloud/(embree\.h|neighbour_index\.cpp)'
 wall Eigen 'Eigen/' '(chart|plate)/[a-z_]*\.cpp'
 wall nlohmann-json 'nlohmann/' '[a-z]*/[a-z_]*\.cpp|program/[a-z_]*\.h'
 wall CLI11 'CLI/' 'program/[a-z_]*\.(h|cpp)'
+wall Vulkan 'vulkan/' 'gpu/vulkan_[a-z]*\.(h|cpp)'
 wall stb 'stb' 'picture/png\.cpp'
 
 # Public headers name no type of a wrapped library.
-grep -rnE 'RTC[A-Z]|Eigen::|nlohmann::|stbi_' engine --include='*.h' | grep -vE '^engine/(cloud/embree\.h|program/)' | grep -vE ':[0-9]+: *//' && complain 'a header names a type of a wrapped library'
+grep -rnE 'RTC[A-Z]|Eigen::|nlohmann::|stbi_|Vk[A-Z]|VK_' engine --include='*.h' | grep -vE '^engine/(cloud/embree\.h|gpu/vulkan_[a-z]*\.h|program/)' | grep -vE ':[0-9]+: *//' && complain 'a header names a type of a wrapped library'
 
 [ $bad -eq 0 ] && echo 'every include points downward'
 exit $bad

@@ -8,5 +8,6 @@ void addInfoCommand(CLI::App& app);
 void addConvertCommand(CLI::App& app);
 void addTouchCommand(CLI::App& app);
 void addSolveCommand(CLI::App& app);
+void addDevicesCommand(CLI::App& app);
 
 } // namespace palp

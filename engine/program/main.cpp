@@ -1,16 +1,18 @@
-// palpate: the command line. Exit codes: 0 good, 1 a fault of ours, 2 bad usage or input.
+// palpate: the command line. Exit codes: 0 good, 1 a fault of ours, 2 bad usage or input, 4 no GPU that can be used.
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
 
 #include "engine/core/contract.h"
+#include "engine/gpu/device_error.h"
 #include "engine/program/commands.h"
 
 namespace {
 
 constexpr int kBadInput = 2;
 constexpr int kOurFault = 1;
+constexpr int kNoGpu    = 4; // 3 is a missing package, see engine/prepare.sh
 
 int complain(const std::string& sentence, int code)
 {
@@ -31,11 +33,13 @@ int main(int argumentCount, char** arguments)
                "  palpate info scan.ply --unit mm                what a file holds and how it is understood\n"
                "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
                "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
+               "  palpate devices --gpu                          the GPUs of this machine\n"
                "Each command explains itself with --help.");
     palp::addTouchCommand(app);
     palp::addSolveCommand(app);
     palp::addInfoCommand(app);
     palp::addConvertCommand(app);
+    palp::addDevicesCommand(app);
     try {
         app.parse(argumentCount, arguments);
         std::cout.flush();
@@ -43,6 +47,10 @@ int main(int argumentCount, char** arguments)
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // --help, --version
         return complain(std::string(error.what()) + "; see --help", kBadInput);
+    } catch (const palp::gpu::DeviceError& error) {
+        return complain(error.what(), kNoGpu);
+    } catch (const palp::gpu::DeviceLost& error) {
+        return complain(error.what(), kNoGpu);
     } catch (const palp::Error& error) {
         return complain(error.what(), kBadInput);
     } catch (const std::bad_alloc&) {

@@ -31,7 +31,7 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert; do good "help of $command" $command --help; holds 'Examples:'; done
+for command in touch solve info convert devices; do good "help of $command" $command --help; holds 'Examples:'; done
 good 'list of samples' info --samples
 for sample in ellipsoid sheet hemisphere saddle skin palm ear-lobe; do holds "sample:$sample"; done
 good 'a sample as a file' convert sample:skin skin.ply --points 5000
@@ -58,6 +58,15 @@ for key in '"probes"' '"deflection"' '"max_deflection"' '"report"' '"device"' '"
 good 'solve, finer' solve plate.json --cells 32 --out w.npy
 [ -s w.npy ] || complain 'solve --out wrote nothing'
 
+good 'list of GPUs' devices --gpu
+holds 'usable   yes'
+good 'list of GPUs, for scripts' devices --gpu --json
+for key in '"index": 0' '"name"' '"kind"' '"driver"' '"api"' '"memory"' '"float64"' '"usable": true' '"refusals": []'; do holds "$key"; done
+VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" devices --gpu --json >out.txt 2>err.txt
+code=$?
+[ $code -eq 4 ] && grep -qF 'mesa-vulkan-drivers' err.txt && [ "$(cat out.txt)" = '[]' ] && passed=$((passed + 1)) ||
+    complain "a machine without a GPU: exit $code, expected 4: $(cat out.txt err.txt)"
+
 # --- the same numbers every time
 "$palpate" touch sample:palm --points 8000 --cells 32 --out one --json >/dev/null && "$palpate" touch sample:palm --points 8000 --cells 32 --out two --json >/dev/null
 for file in deformed.ply rigidity.npy deflection.npy rigidity.svg surface.svg; do
@@ -77,6 +86,7 @@ bad 'all edges free, nothing below' 'rigid' touch sample:sheet --points 5000 --c
 bad 'footprint wider than the window' 'footprint' touch sample:sheet --points 5000 --cells 16 --footprint 50mm
 bad 'contact far from the cloud' 'contact' touch sample:skin --points 5000 --at 1m,0,0
 bad 'no place for a file' '--at' touch skin.ply
+bad 'devices take no argument' 'voodoo' devices voodoo
 bad 'unknown device' 'reference' solve plate.json --device gpu9000
 
 # --- bad files
