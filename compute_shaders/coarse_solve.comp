@@ -1,0 +1,46 @@
+// coarse_solve.comp - deflection of the coarsest level by forward and backward substitution, L L' w = f.
+// Domain     one workgroup per load
+// Reads      columns of L with inverse diagonal, forces of the coarsest level
+// Writes     deflection of the coarsest level
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "compute_shaders/plate_prelude.glsl"
+#include "compute_shaders/shared/coarse_band.h"
+#include "compute_shaders/shared/plate_grid.h"
+
+layout(push_constant) uniform Constants { LevelPush push; };
+layout(std430, binding = 0) readonly buffer Factor { float factor[]; };
+layout(std430, binding = 1) readonly buffer Force { float force[]; };
+layout(std430, binding = 2) writeonly buffer Deflection { float w[]; };
+
+shared float right[kMostCoarseNodes], middle[kMostCoarseNodes];
+
+int nodeOf(PlateLevel g, int unknown) { return columnOf(g, unknown) * nodesZ(g) + rowOf(g, unknown); }
+
+void main()
+{
+    PlateLevel g = push.level;
+    int reach = halfBand(g), slots = reach + 1;
+    int unknowns = nodesX(g) * nodesZ(g), base = int(gl_WorkGroupID.z) * unknowns;
+    int lane = int(gl_LocalInvocationID.x), lanes = int(gl_WorkGroupSize.x);
+    for (int n = lane; n < unknowns; n += lanes) {
+        int node = nodeOf(g, n);
+        right[n] = isHeld(g, columnOf(g, n), rowOf(g, n)) ? 0.0f : force[base + node];
+    }
+    for (int n = 0; n < unknowns; ++n) {
+        barrier();
+        float solved = right[n] * factor[n * slots];
+        if (lane == 0) middle[n] = solved;
+        for (int d = 1 + lane; d <= reach && n + d < unknowns; d += lanes) right[n + d] -= factor[n * slots + d] * solved;
+    }
+    for (int n = unknowns - 1; n >= 0; --n) {
+        barrier();
+        float solved = middle[n] * factor[n * slots];
+        if (lane == 0) right[n] = solved;
+        for (int d = 1 + lane; d <= reach && d <= n; d += lanes)
+            middle[n - d] -= factor[(n - d) * slots + d] * solved;
+    }
+    barrier();
+    for (int n = lane; n < unknowns; n += lanes) w[base + nodeOf(g, n)] = right[n];
+}

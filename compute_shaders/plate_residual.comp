@@ -1,0 +1,39 @@
+// plate_residual.comp - forces that a deflection leaves unbalanced, f - A w.
+// Domain     one invocation per node
+// Reads      rigidity [1], force, deflection (real)
+// Writes     residual (real), 0 on held nodes; with PALPATE_ROUNDS also rounded to float, for the cycle
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "compute_shaders/plate_prelude.glsl"
+
+layout(push_constant) uniform Constants { LevelPush push; };
+layout(std430, binding = 0) readonly buffer Rigidity { float D[]; };
+layout(std430, binding = 1) readonly buffer Force { float force[]; };
+layout(std430, binding = 2) readonly buffer Deflection { real w[]; };
+layout(std430, binding = 3) writeonly buffer Residual { real residual[]; };
+#ifdef PALPATE_ROUNDS
+layout(std430, binding = 4) writeonly buffer Rounded { float rounded[]; };
+#endif
+
+int base;
+real rigidity(int i, int j) { return real(D[i * nodesZ(push.level) + j]); }
+real deflection(int i, int j) { return w[base + i * nodesZ(push.level) + j]; }
+real otherColour(int i, int j) { return deflection(i, j); }
+
+#include "compute_shaders/shared/plate_grid.h"
+#include "compute_shaders/shared/plate_operator.h"
+
+void main()
+{
+    PlateLevel g = push.level;
+    int i = int(gl_GlobalInvocationID.y), j = int(gl_GlobalInvocationID.x);
+    if (i > g.cellsX || j > g.cellsZ) return;
+    base = firstOfLoad(g);
+    int n = base + i * nodesZ(g) + j;
+    real r = isHeld(g, i, j) ? real(0.0f) : real(force[n]) - operatorAt(g, i, j);
+    residual[n] = r;
+#ifdef PALPATE_ROUNDS
+    rounded[n] = float(r);
+#endif
+}

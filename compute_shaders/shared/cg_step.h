@@ -1,0 +1,27 @@
+// cg_step.h - the numbers of one step of conjugate gradients (GLSL and C++); include cg_state.h first.
+
+struct CgStep {
+    real alpha;    // [1]
+    real gain;     // in the squared energy norm of the error
+    real ratio;    // of this gain to the last [1]
+    real estimate; // of the relative error in the energy norm after this step [1]
+    real steps;    // done, this one included [1]
+};
+
+// Largest ratio that the geometric tail is trusted with: beyond it a tail of twenty steps is assumed. A first step has
+// no ratio, and its own gain is the estimate: what is left is taken to be as much as what was gained.
+CgStep stepOf(real pq, real rz, real energy, real lastGain, real lastRatio, real steps)
+{
+    const real kMostRatio = real(0.95f), kLeastRatio = real(0.01f), kFirstRatio = real(0.5f);
+    CgStep     now;
+    now.alpha = pq > real(0.0f) ? rz / pq : real(0.0f);
+    now.gain  = now.alpha * rz;
+    now.steps = steps + real(1.0f);
+    now.ratio = lastGain > real(0.0f) ? now.gain / lastGain : real(0.0f);
+    real rho  = steps == real(0.0f) && lastGain == real(0.0f) ? kFirstRatio : max(now.ratio, lastRatio);
+    rho       = min(max(rho, kLeastRatio), kMostRatio);
+    real left = now.gain * rho / (real(1.0f) - rho);
+    real all  = max(energy + now.gain, now.gain);
+    now.estimate = all > real(0.0f) ? sqrt(left / all) : real(0.0f);
+    return now;
+}

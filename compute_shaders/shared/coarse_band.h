@@ -1,0 +1,37 @@
+// coarse_band.h - how the coarsest level's matrix is laid out (GLSL and C++).
+//
+// Unknowns are the nodes, held ones included with the row of the identity, numbered along the shorter side first: the
+// operator reaches two columns, so that the half band is twice the shorter side. Column n of the lower triangle is
+// entries (n, n), (n + 1, n), ... (n + halfBand, n), stored one after the other.
+#ifndef PALPATE_COARSE_BAND_H
+#define PALPATE_COARSE_BAND_H
+
+#include "compute_shaders/shared/plate_level.h"
+
+#ifdef __cplusplus
+namespace palp::shared {
+#define PALPATE_INLINE inline
+#else
+#define PALPATE_INLINE
+#endif
+
+const int kMostCoarseCells = 16; // along either side; the kernels' shared arrays are made for it
+const int kMostCoarseNodes = (kMostCoarseCells + 1) * (kMostCoarseCells + 1);
+const int kMostHalfBand    = 2 * (kMostCoarseCells + 1);
+
+PALPATE_INLINE bool zIsShorter(PlateLevel g) { return g.cellsZ <= g.cellsX; }
+PALPATE_INLINE int  shorterNodes(PlateLevel g) { return (zIsShorter(g) ? g.cellsZ : g.cellsX) + 1; }
+PALPATE_INLINE int  halfBand(PlateLevel g) { return 2 * shorterNodes(g); }
+PALPATE_INLINE int  columnOf(PlateLevel g, int unknown)
+{
+    return zIsShorter(g) ? unknown / shorterNodes(g) : unknown % shorterNodes(g);
+}
+PALPATE_INLINE int rowOf(PlateLevel g, int unknown)
+{
+    return zIsShorter(g) ? unknown % shorterNodes(g) : unknown / shorterNodes(g);
+}
+
+#ifdef __cplusplus
+} // namespace palp::shared
+#endif
+#endif

@@ -1,0 +1,24 @@
+// plate_divisor.h - divisor of the relaxation from the entries of the operator's row (GLSL and C++).
+//
+// The includer provides  int unitI, unitJ  and a deflection that is 1 there and 0 elsewhere; include plate_operator.h and
+// plate_relax.h first.
+
+// The m-th of the eight nodes that share the colour of their middle.
+int sameColourI(int m) { return m < 4 ? (m < 2 ? 2 - 4 * m : 0) : (m < 6 ? -1 : 1); }
+int sameColourJ(int m) { return m < 4 ? (m < 2 ? 0 : 10 - 4 * m) : ((m & 1) == 0 ? -1 : 1); }
+
+float divisorAt(PlateLevel g, int i, int j)
+{
+    unitI          = i;
+    unitJ          = j;
+    float diagonal = operatorAt(g, i, j);
+    float others   = 0.0f;
+    for (int m = 0; m < 8; ++m) {
+        unitI         = i + sameColourI(m);
+        unitJ         = j + sameColourJ(m);
+        bool  moves   = unitI >= 0 && unitI <= g.cellsX && unitJ >= 0 && unitJ <= g.cellsZ && !isHeld(g, unitI, unitJ);
+        float entry   = operatorAt(g, i, j);
+        others       += moves ? abs(entry) : 0.0f;
+    }
+    return relaxationDivisor(diagonal, others);
+}

@@ -1,0 +1,49 @@
+// plate_push.h - push constants of the plate's kernels, at most 128 bytes each (GLSL and C++).
+//
+// 32-bit scalars only, so that C++ and GLSL lay them out alike; a test has a shader echo every field.
+#ifndef PALPATE_PLATE_PUSH_H
+#define PALPATE_PLATE_PUSH_H
+
+#include "compute_shaders/shared/plate_level.h"
+
+#ifdef __cplusplus
+namespace palp::shared {
+#endif
+
+struct LevelPush {
+    PlateLevel level;
+};
+
+struct RelaxPush {
+    PlateLevel level;
+    uint       colour; // parity of i + j of the nodes to relax
+};
+
+struct TransferPush {
+    PlateLevel fine;
+    PlateLevel coarse;
+};
+
+struct VectorPush {
+    uint nodes;     // of one load [1]
+    uint partials;  // sums that each dot product is split into [1]
+    uint iteration; // of the solve; an update is left out if the solve stopped before it [1]
+};
+
+struct ScalarsPush {
+    uint  loads;         // [1]
+    uint  partials;      // per dot product [1]
+    uint  begins;        // 2: anew, without a previous direction; 1: counts its steps anew; 0: goes on
+    uint  argumentWords; // of the indirect dispatches that a finished solve makes empty [1]
+    float tolerance;     // of the error estimate, relative [1]; 0 never stops
+};
+
+struct PointsPush {
+    PlateLevel level;
+    uint       points; // [1]
+};
+
+#ifdef __cplusplus
+} // namespace palp::shared
+#endif
+#endif

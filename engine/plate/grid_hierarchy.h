@@ -1,0 +1,30 @@
+#pragma once
+#include <vector>
+
+#include "compute_shaders/shared/plate_level.h"
+#include "engine/plate/plate.h"
+
+namespace palp {
+
+/// A grid and ever coarser ones over the same rectangle, with what the multigrid shaders need to know of each.
+///
+/// A step halves the cells along both axes (rounding up), until no side has more than kMostCoarseCells. An axis whose
+/// spacing is 1.5 times the other's or more waits, because point relaxation does not smooth along it; so does one that
+/// is down to 4 to 7 cells.
+struct GridHierarchy {
+    struct Level {
+        shared::PlateLevel plate; ///< spacing, sides, scaled coefficients
+        std::vector<float> tableX, tableZ; ///< to the next coarser level, see transfer_table.h; empty on the coarsest
+    };
+    std::vector<Level> levels; ///< finest first
+
+    /// Energy unit of the finest level per squared deflection: a deflection is force/stiffness times the number that
+    /// the shaders compute from rigidity/unitRigidity and force 1 [N/m].
+    double stiffness = 0;
+};
+
+/// \param plate         its rigidity is not looked at
+/// \param unitRigidity  D0 [N m] that the shaders' rigidity is relative to, > 0
+[[nodiscard]] GridHierarchy gridHierarchy(const Plate& plate, double unitRigidity);
+
+} // namespace palp

@@ -1,0 +1,85 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/plate/plate.h"
+
+namespace palp {
+
+namespace gpu {
+class Context;
+}
+
+/// The plate's shaders, compiled for one device; solvers of any size share them. \thread as its context
+class PlateKernels {
+public:
+    explicit PlateKernels(gpu::Context& context);
+    ~PlateKernels();
+    PlateKernels(PlateKernels&&) noexcept;
+    PlateKernels& operator=(PlateKernels&&) noexcept;
+
+    struct All;
+    [[nodiscard]] const All& all() const noexcept { return *all_; } ///< for the files of engine/plate
+
+private:
+    std::unique_ptr<All> all_;
+};
+
+/// Multigrid on a Vulkan device: nested iteration, then conjugate gradients preconditioned by one symmetric V(2,2) cycle
+/// of red-black relaxation, matrix-free in moment form, stopped by the device itself.
+///
+/// The cycle is in 32-bit floats and the conjugate gradients are in doubles where the device has them: a cycle only needs
+/// to be roughly right, but rounding the residual to floats leaves an error that grows with the contrast of the rigidity
+/// (1e-5 at 257 nodes and contrast 1000). Without doubles the tolerance must not ask for more than floats can give.
+/// \thread one at a time, together with its context
+/// \source Brandt 1977 (multigrid, nested iteration); Hestenes & Stiefel 1952; engine/README.md says what was measured
+class VulkanPlateSolver {
+public:
+    struct Settings {
+        double tolerance     = 1e-4; ///< of the error, relative in the energy norm [1]; see SolveReport
+        int    maxIterations = 200;  ///< [1]
+        int    loads         = 1;    ///< solved together, sharing every pass [1]
+    };
+
+    /// Allocates, records and prepares everything for grids, edges, foundation and rigidity of this plate.
+    /// \throws Error if whyUnsolvable(plate), if the tolerance is below kLeastTolerance (or kLeastFloatTolerance on a
+    ///         device without doubles), or if the device cannot hold the grid; gpu::DeviceLost
+    VulkanPlateSolver(gpu::Context& context, const PlateKernels& kernels, const Plate& plate, const Settings& settings);
+    ~VulkanPlateSolver();
+    VulkanPlateSolver(VulkanPlateSolver&&) noexcept;
+    VulkanPlateSolver& operator=(VulkanPlateSolver&&) noexcept;
+
+    static constexpr double kLeastTolerance      = 1e-9; ///< 32-bit cycles and rigidities give no more [1]
+    static constexpr double kLeastFloatTolerance = 1e-5; ///< what conjugate gradients in floats reach at contrast 1000 [1]
+
+    /// Another rigidity [N m] on the same grid.
+    /// \throws Error if whyUnsolvable() with it
+    void setRigidity(const NodeField& rigidity);
+
+    enum class Start {
+        cold, ///< by nested iteration
+        warm  ///< from the last answer (of each load)
+    };
+
+    /// Deflections under forces at the nodes [N], one field per load.
+    ///
+    /// report.errorEstimate: of the error relative to the answer in the energy norm, from the gains of the last steps;
+    /// iterations: steps of conjugate gradients on the finest grid; workUnits include the nested iteration. The same
+    /// report, of the whole batch and the worst load, is in every solution.
+    /// \throws Error if a load is not finite or the deflection is not; gpu::DeviceLost
+    [[nodiscard]] std::vector<PlateSolution> solve(std::span<const NodeField> nodalForces, Start start = Start::cold);
+    [[nodiscard]] PlateSolution              solve(const NodeField& nodalForce, Start start = Start::cold);
+
+    /// What the device did in the last solve [ms]; empty if it has no clock.
+    [[nodiscard]] std::optional<double> deviceMilliseconds() const noexcept;
+    [[nodiscard]] int                   dispatchesPerCycle() const noexcept;
+    [[nodiscard]] int                   levels() const noexcept;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace palp
