@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -12,8 +13,6 @@
 
 namespace palp {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// The standard fixes the bits of mt19937_64 but not of its distributions; this one is the same everywhere.
 class Uniform {
@@ -42,7 +41,7 @@ constexpr glm::dvec3 kLobe{14e-3, 18e-3, 3e-3}; ///< half width, half height, di
 
 glm::dvec3 onSphere(Uniform& u)
 {
-    const double z = u(-1, 1), longitude = u(0, 2 * kPi), s = std::sqrt(1 - z * z);
+    const double z = u(-1, 1), longitude = u(0, 2 * std::numbers::pi), s = std::sqrt(1 - z * z);
     return {s * std::cos(longitude), s * std::sin(longitude), z};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -53,7 +54,7 @@ TEST(Samples, EllipsoidPointsAreUniformPerArea)
         for (int i = 0; i < kSteps; ++i)
             for (int j = 0; j < kSteps; ++j) {
                 const double u = -1 + (t + 1) * (i + 0.5) / kSteps, s = std::sqrt(1 - u * u);
-                const double angle = 2 * 3.14159265358979323846 * (j + 0.5) / kSteps;
+                const double angle = 2 * std::numbers::pi * (j + 0.5) / kSteps;
                 const double y = s * std::cos(angle), z = s * std::sin(angle);
                 area += axes.x * axes.y * axes.z *
                         std::sqrt(u * u / (axes.x * axes.x) + y * y / (axes.y * axes.y) + z * z / (axes.z * axes.z)) *
