@@ -55,24 +55,24 @@ Rgb8 hatch(int x, int y)
     return (x + y) % kPeriod < kLine ? kHatchLine : kUndefinedColour;
 }
 
-Rgb8 colourOf(double value, const Axis& axis, ColourMap map, int x, int y)
+Rgb8 colourOf(double value, const Axis& axis, int x, int y)
 {
-    return drawable(value, axis.scale()) ? colourAt(map, axis.position(value)) : hatch(x, y);
+    return drawable(value, axis.scale()) ? colourAt(axis.position(value)) : hatch(x, y);
 }
 
 // Enlarged here rather than by the viewer: some viewers blur whatever the picture says, and colours are to be taken at
 // interpolated values, not interpolated themselves.
-Image cellsImage(const NodeField& field, const Axis& axis, ColourMap map)
+Image cellsImage(const NodeField& field, const Axis& axis)
 {
     const int perNode = std::max(1, kRasterSide / std::max(field.nodesX(), field.nodesZ()));
     Image     image(perNode * field.nodesX(), perNode * field.nodesZ());
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x)
-            image.at(x, y) = colourOf(field(x / perNode, field.nodesZ() - 1 - y / perNode), axis, map, x, y);
+            image.at(x, y) = colourOf(field(x / perNode, field.nodesZ() - 1 - y / perNode), axis, x, y);
     return image;
 }
 
-Image smoothImage(const NodeField& field, const Axis& axis, ColourMap map)
+Image smoothImage(const NodeField& field, const Axis& axis)
 {
     const int cellsX = field.nodesX() - 1, cellsZ = field.nodesZ() - 1;
     const int perCell = std::max(1, kRasterSide / std::max(cellsX, cellsZ));
@@ -86,7 +86,7 @@ Image smoothImage(const NodeField& field, const Axis& axis, ColourMap map)
                                  s * ((1 - t) * field(i + 1, j) + t * field(i + 1, j + 1));
             const double nearest = field(i + (s > 0.5), j + (t > 0.5));
             image.at(x, y)       = colourOf(
-                      drawable(nearest, axis.scale()) && drawable(value, axis.scale()) ? value : nearest, axis, map, x, y);
+                      drawable(nearest, axis.scale()) && drawable(value, axis.scale()) ? value : nearest, axis, x, y);
         }
     return image;
 }
@@ -212,15 +212,14 @@ std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings)
     if (!settings.title.empty()) svg.text({kFrameLeft, 25}, settings.title, {.size = 15, .bold = true});
 
     svg.image(frame.corner, frame.size,
-              settings.nodeStyle == NodeStyle::cells ? cellsImage(field, values, settings.map)
-                                                     : smoothImage(field, values, settings.map));
+              settings.nodeStyle == NodeStyle::cells ? cellsImage(field, values) : smoothImage(field, values));
     svg.beginClip(frame.corner, frame.size);
     drawOverlays(svg, frame, settings, legend);
     svg.endClip();
     drawFrame(svg, frame, "x", "z");
     if (facts.constant())
-        addSwatch(legend, "constant " + values.text(facts.most.value),
-                  colourAt(settings.map, values.position(facts.most.value)), false);
+        addSwatch(legend, "constant " + values.text(facts.most.value), colourAt(values.position(facts.most.value)),
+                  false);
     else if (facts.any() && settings.markExtremes)
         drawExtremes(svg, frame, settings, facts, values, legend);
     if (facts.undrawable > 0)
@@ -230,8 +229,7 @@ std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings)
                   {}, true);
 
     const double barLeft = frame.corner.x + frame.size.x + 24;
-    const auto   colour  = [&](double position) { return colourAt(settings.map, position); };
-    drawColourBar(svg, {&values, colour, settings.quantity, found}, {barLeft, top}, barHeight);
+    drawColourBar(svg, {&values, colourAt, settings.quantity, found}, {barLeft, top}, barHeight);
     const double width  = std::max(barLeft + kColourBarWidth, kFrameLeft + textWidth(settings.title, 16) + 10);
     double       bottom = top + std::max(frame.size.y + kFrameBelow, barHeight) + 6;
     bottom += drawLegend(svg, legend, {kFrameLeft - kLegendSampleWidth / 2, bottom}, width - kFrameLeft);

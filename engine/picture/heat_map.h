@@ -5,7 +5,6 @@
 
 #include "engine/core/grid.h"
 #include "engine/picture/axis.h"
-#include "engine/picture/colour_map.h"
 
 namespace palp {
 
@@ -21,7 +20,6 @@ struct HeatMapSettings {
     std::string               unit     = "m";          ///< SI unit of the values; the prefix is chosen
     Scale                     scale    = Scale::linear;
     std::optional<ValueRange> range; ///< ends of the colours [unit]; absent: the smallest and largest drawable value
-    ColourMap                 map       = ColourMap::viridis;
     NodeStyle                 nodeStyle = NodeStyle::cells;
     PlateGrid                 grid;                ///< where the nodes lie
     ChartPoint                corner;              ///< position of node (0, 0)
