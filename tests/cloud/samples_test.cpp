@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
 
@@ -41,10 +42,12 @@ TEST(Samples, TheSeedDecidesEveryPoint)
     EXPECT_EQ(std::mt19937_64(1)(), 2469588189546311528ULL);
 }
 
-/// Points per area must not depend on the place: cut the ellipsoid by x into slices of equal area and count.
-TEST(Samples, EllipsoidPointsAreUniformPerArea)
+class RoundSamples : public testing::TestWithParam<const char*> {};
+
+/// Points per area must not depend on the place: cut the ellipsoid by x into slices and count.
+TEST_P(RoundSamples, PointsAreUniformPerArea)
 {
-    const Sample&    sample = sampleNamed("ellipsoid");
+    const Sample&    sample = sampleNamed(GetParam());
     const PointCloud cloud  = makeSample(sample, 40'000, 3);
     const glm::dvec3 axes   = boundsOf(sample).high;
     // Area of the part x < t by quadrature in the parameters (u, longitude): x = a u.
@@ -70,6 +73,16 @@ TEST(Samples, EllipsoidPointsAreUniformPerArea)
         const double sigma    = std::sqrt(expected * (1 - expected) / double(cloud.size()));
         EXPECT_NEAR(double(count) / double(cloud.size()), expected, 4 * sigma) << "binomial spread, 4 sigma, at " << t;
     }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RoundSamples, testing::Values("ellipsoid", "ear-lobe"));
+
+TEST(Samples, TheSheetsOfTheLobeMeetAtTheRim)
+{
+    const glm::dvec3 axes  = boundsOf(sampleNamed("ear-lobe")).high;
+    const PointCloud cloud = makeSample(sampleNamed("ear-lobe"), 20'000, 1);
+    for (const glm::dvec3& p : cloud.positions())
+        EXPECT_NEAR(glm::length(p / axes), 1, 1e-15) << "one ellipsoid holds both; rounding";
 }
 
 TEST(Samples, WartAndTendonsAreStifferThanTheirSurroundings)
