@@ -26,7 +26,16 @@ struct FieldFacts {
     Extreme     least, most; ///< of the drawable nodes, where there are any
 
     [[nodiscard]] bool any() const { return undrawable < total; }
-    [[nodiscard]] bool constant() const { return any() && least.value == most.value; }
+    /// Within what averaging rounds; where such extremes lie says nothing.
+    [[nodiscard]] bool constant() const
+    {
+        constexpr double kRounding = 1e-6; // of the value [1]
+        return any() && most.value - least.value <= kRounding * std::max(std::abs(most.value), std::abs(least.value));
+    }
+    [[nodiscard]] ValueRange range() const
+    {
+        return constant() ? ValueRange{most.value, most.value} : ValueRange{least.value, most.value};
+    }
 };
 
 FieldFacts factsOf(const NodeField& field, Scale scale)
@@ -109,7 +118,7 @@ PlotFrame frameOf(const HeatMapSettings& s, double top)
 
 std::string placeText(const PlotFrame& frame, ChartPoint p)
 {
-    return "x = " + frame.x.text(p.x) + ", z = " + frame.y.text(p.z);
+    return "east " + frame.x.text(p.x) + ", north " + frame.y.text(p.z);
 }
 
 void drawContactCross(SvgDrawing& svg, glm::dvec2 at)
@@ -138,13 +147,15 @@ bool shows(const PlotFrame& frame, ChartPoint p)
 void drawOverlays(SvgDrawing& svg, const PlotFrame& frame, const HeatMapSettings& s, std::vector<LegendEntry>& legend)
 {
     if (!s.points.empty()) {
-        SvgPath dots;
+        SvgPath     dots;
+        std::size_t shown = 0;
         for (ChartPoint p : s.points) {
             if (!shows(frame, p)) continue;
             dots.dotAt(frame.pixel(p.x, p.z));
+            ++shown;
         }
         drawDots(svg, dots);
-        legend.push_back({std::to_string(s.points.size()) + " points",
+        legend.push_back({"points in the window: " + std::to_string(shown),
                           [](SvgDrawing& to, glm::dvec2 at) { drawDots(to, SvgPath().dotAt(at)); }});
     }
     if (!s.contact) return;
@@ -199,14 +210,13 @@ std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings)
                 "a field of " + std::to_string(field.nodesX()) + " x " + std::to_string(field.nodesZ()) +
                     " nodes on a grid of " + std::to_string(grid.nodesX()) + " x " + std::to_string(grid.nodesZ()));
 
-    const FieldFacts                facts = factsOf(field, settings.scale);
-    const std::optional<ValueRange> found =
-        facts.any() ? std::optional(ValueRange{facts.least.value, facts.most.value}) : std::nullopt;
-    const double    top       = settings.title.empty() ? 18 : 42;
-    const PlotFrame frame     = frameOf(settings, top);
-    const double    barHeight = std::max(frame.size.y, kShortest);
-    const Axis      values(settings.range.value_or(found.value_or(ValueRange{1, 2})), settings.scale, settings.unit,
-                           std::clamp(int(barHeight / 45), 2, 9));
+    const FieldFacts                facts     = factsOf(field, settings.scale);
+    const std::optional<ValueRange> found     = facts.any() ? std::optional(facts.range()) : std::nullopt;
+    const double                    top       = settings.title.empty() ? 18 : 42;
+    const PlotFrame                 frame     = frameOf(settings, top);
+    const double                    barHeight = std::max(frame.size.y, kShortest);
+    const Axis values(settings.range.value_or(found.value_or(ValueRange{1, 2})), settings.scale, settings.unit,
+                      std::clamp(int(barHeight / 45), 2, 9));
     std::vector<LegendEntry> legend;
     SvgDrawing               svg;
     if (!settings.title.empty()) svg.text({kFrameLeft, 25}, settings.title, {.size = 15, .bold = true});
@@ -216,7 +226,7 @@ std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings)
     svg.beginClip(frame.corner, frame.size);
     drawOverlays(svg, frame, settings, legend);
     svg.endClip();
-    drawFrame(svg, frame, "x", "z");
+    drawFrame(svg, frame, "east", "north");
     if (facts.constant())
         addSwatch(legend, "constant " + values.text(facts.most.value), colourAt(values.position(facts.most.value)),
                   false);

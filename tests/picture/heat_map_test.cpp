@@ -60,10 +60,10 @@ TEST(HeatMap, LegendGivesExtremesWithUnitAndPlace)
 
     const std::string svg = heatMapSvg(field, settings);
 
-    EXPECT_TRUE(hasText(svg, "max 420 \u00b5m at x = 0 mm, z = \u22125.00 mm"));
-    EXPECT_TRUE(hasText(svg, "min \u221210.0 \u00b5m at x = \u22128.00 mm, z = \u22127.00 mm"));
+    EXPECT_TRUE(hasText(svg, "max 420 \u00b5m at east 0 mm, north \u22125.00 mm"));
+    EXPECT_TRUE(hasText(svg, "min \u221210.0 \u00b5m at east \u22128.00 mm, north \u22127.00 mm"));
     EXPECT_TRUE(hasText(svg, "deflection [\u00b5m]"));
-    EXPECT_TRUE(hasText(svg, "x [mm]"));
+    EXPECT_TRUE(hasText(svg, "east [mm]"));
     EXPECT_TRUE(hasText(svg, settings.title));
     EXPECT_EQ(heatMapSvg(field, settings), svg);
 }
@@ -120,6 +120,20 @@ TEST(HeatMap, ConstantAndEmptyFieldsAreDrawn)
     EXPECT_TRUE(hasText(heatMapSvg(NodeField(grid, NAN), settingsOn(grid)), "36 not finite"));
 }
 
+TEST(HeatMap, RoundingErrorsHaveNoExtremes)
+{
+    const PlateGrid grid{5, 5, 1e-3, 1e-3};
+    NodeField       field(grid, 0.0042);
+    field(2, 3) *= 1 + 5e-7;
+
+    const std::string svg = heatMapSvg(field, settingsOn(grid));
+
+    EXPECT_TRUE(hasText(svg, "constant 4.20 mm"));
+    EXPECT_EQ(svg.find("max "), std::string::npos);
+    field(2, 3) *= 1 + 5e-6;
+    EXPECT_NE(heatMapSvg(field, settingsOn(grid)).find("max "), std::string::npos);
+}
+
 TEST(HeatMap, ColourBarPointsToValuesBeyondAnExplicitRange)
 {
     const PlateGrid grid{2, 2, 1e-3, 1e-3};
@@ -165,6 +179,7 @@ TEST(HeatMap, OverlaysOutsideTheChartAreLeftOut)
     const std::string svg = heatMapSvg(NodeField(grid, 1), settings);
 
     EXPECT_TRUE(hasText(svg, "contact: outside"));
+    EXPECT_TRUE(hasText(svg, "points in the window: 1"));
     settings.contact = ChartPoint{2e-3, 2e-3};
     EXPECT_TRUE(hasText(heatMapSvg(NodeField(grid, 1), settings), "footprint, radius 1.00 mm"));
     EXPECT_THROW((void)heatMapSvg(NodeField(PlateGrid{3, 4, 1, 1}), settings), ContractViolation);
