@@ -38,10 +38,9 @@ private:
 /// (Gall-Peters). The kernel reaches four spacings beyond the edge.
 double gatherRadius(const PatchSettings& settings, double spacing)
 {
-    constexpr double kKernelReach = 4;
-    const double     half         = settings.window / 2;
-    const double     chord = settings.map == Map::lambertAzimuthal ? std::sqrt(2.0) * half : std::sqrt(3.0) * half;
-    return chord + kKernelReach * std::max(spacing, settings.window / settings.cells / 2);
+    const double half  = settings.window / 2;
+    const double chord = settings.map == Map::lambertAzimuthal ? std::sqrt(2.0) * half : std::sqrt(3.0) * half;
+    return chord + kernelReach(spacing, settings.window / settings.cells);
 }
 
 SphereFitResult fitTo(const PointCloud& cloud, const std::vector<std::uint32_t>& gathered)
