@@ -26,7 +26,7 @@ done
 # shellcheck disable=SC2086
 prepare_packages $packages_build
 build=${PALPATE_BUILD:-build}
-# A build that the tests made is used as it is.
+# A build that the tests made keeps its options: changing them would compile everything again.
 if [ -f "$build/CMakeCache.txt" ]; then prepare_build "$build"; else prepare_build "$build" -DPALPATE_TESTS=OFF -DPALPATE_BENCHMARKS=OFF; fi
 out=$build/demo
 if [ -n "$dry_run" ]; then say "would write $out/index.html"; exit 0; fi
