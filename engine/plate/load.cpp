@@ -26,12 +26,6 @@ Place placeOf(double position, double spacing, int cells)
     return {cell, steps - cell};
 }
 
-bool isOnPlate(const PlateGrid& grid, double x, double z)
-{
-    const double slackX = kRounding * grid.sizeX(), slackZ = kRounding * grid.sizeZ();
-    return x >= -slackX && x <= grid.sizeX() + slackX && z >= -slackZ && z <= grid.sizeZ() + slackZ;
-}
-
 std::string pointText(double x, double z)
 {
     std::ostringstream text;
@@ -75,6 +69,12 @@ std::vector<double> hatIntegrals(int cells, double spacing, double centre, doubl
 }
 
 } // namespace
+
+bool isOnPlate(const PlateGrid& grid, double x, double z) noexcept
+{
+    const double slackX = kRounding * grid.sizeX(), slackZ = kRounding * grid.sizeZ();
+    return x >= -slackX && x <= grid.sizeX() + slackX && z >= -slackZ && z <= grid.sizeZ() + slackZ;
+}
 
 double nodeArea(const PlateGrid& grid, int i, int j) noexcept
 {
