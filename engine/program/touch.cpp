@@ -183,9 +183,9 @@ void printTouch(const TouchOptions& options, const PatchSettings& settings, cons
     std::printf("  contact stiffness  %s\n", quantity("contact_stiffness", "N/m").c_str());
     std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(),
                 name(settings.forceLaw));
-    std::printf("  error              discretisation %s, rounding %.1e\n",
+    std::printf("  error              discretisation %s, rounding %s\n",
                 error["discretisation"].is_null() ? "unknown" : percent(error["discretisation"].get<double>()).c_str(),
-                error["solver"].get<double>());
+                percent(error["solver"].get<double>()).c_str());
     std::printf("  time               %.1f ms:", r["milliseconds"]["total"].get<double>());
     for (const char* stage : {"gather", "fit", "project", "resample", "factorise", "solve", "lift"})
         std::printf(" %s %.2f", stage, r["milliseconds"][stage].get<double>());
