@@ -189,6 +189,15 @@ full 'info' info skin.ply
 full 'samples' info --samples
 full 'convert' convert skin.ply other.ply
 
+experiment=$(dirname "$palpate")/paper_experiment
+if [ -x "$experiment" ]; then
+    keep=$palpate palpate=$experiment
+    good 'help of the experiment' --help
+    holds 'usage:'
+    full 'help of the experiment' --help
+    palpate=$keep
+fi
+
 # --- a folder without touch.json holds no whole set
 mkdir -p broken/profile.svg && : >broken/touch.json
 bad 'a set that cannot be finished' 'profile.svg' touch sample:sheet --points 5000 --cells 48 --out broken
