@@ -34,7 +34,8 @@ public:
         if (event == Json::parse_event_t::object_start) open_.emplace_back();
         if (event == Json::parse_event_t::object_end) open_.pop_back();
         if (event == Json::parse_event_t::key && !open_.back().insert(value.get<std::string>()).second)
-            throw Error(where_ + ": the key " + shortened(value.dump()) + " is given twice in one object");
+            throw Error(where_ + ": the key " + shortened(value.dump(-1, ' ', false, Json::error_handler_t::replace)) +
+                        " is given twice in one object");
         return true;
     }
 
@@ -72,7 +73,7 @@ bool isNumbers(const Json& value, std::size_t count)
 
 std::string numbersInWords(std::size_t count)
 {
-    return "a list of " + std::to_string(count) + " numbers";
+    return "a list of " + std::to_string(count) + " numbers in SI units, such as metres, without a unit";
 }
 
 } // namespace
@@ -138,6 +139,7 @@ std::string JsonObject::text(std::string_view key) const
 double JsonObject::number(std::string_view key) const
 {
     const Json& value = node_->at(key, where_);
+    if (value.is_string()) refuse(key, "a number in SI units (m, N, Pa, N m) without a unit");
     if (!value.is_number()) refuse(key, "a number");
     return value.get<double>();
 }

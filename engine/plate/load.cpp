@@ -26,12 +26,6 @@ Place placeOf(double position, double spacing, int cells)
     return {cell, steps - cell};
 }
 
-bool isOnPlate(const PlateGrid& grid, double x, double z)
-{
-    const double slackX = kRounding * grid.sizeX(), slackZ = kRounding * grid.sizeZ();
-    return x >= -slackX && x <= grid.sizeX() + slackX && z >= -slackZ && z <= grid.sizeZ() + slackZ;
-}
-
 std::string pointText(double x, double z)
 {
     std::ostringstream text;
@@ -75,6 +69,12 @@ std::vector<double> hatIntegrals(int cells, double spacing, double centre, doubl
 }
 
 } // namespace
+
+bool isOnPlate(const PlateGrid& grid, double x, double z) noexcept
+{
+    const double slackX = kRounding * grid.sizeX(), slackZ = kRounding * grid.sizeZ();
+    return x >= -slackX && x <= grid.sizeX() + slackX && z >= -slackZ && z <= grid.sizeZ() + slackZ;
+}
 
 double nodeArea(const PlateGrid& grid, int i, int j) noexcept
 {
@@ -125,11 +125,11 @@ NodeField footprintLoad(const PlateGrid& grid, double force, double x, double z,
     if (!inside)
         throw Error("the footprint of radius " + std::to_string(radius) + " m at " + pointText(x, z) +
                     " does not lie wholly on the plate of " + std::to_string(grid.sizeX()) + " x " +
-                    std::to_string(grid.sizeZ()) + " m; make it smaller or the window larger");
+                    std::to_string(grid.sizeZ()) + " m; take a smaller --footprint or a larger --window");
     const double spacing = std::max(grid.spacingX, grid.spacingZ);
     if (!(radius >= spacing * (1 - kRounding)))
         throw Error("the footprint of radius " + std::to_string(radius) + " m is smaller than one spacing of " +
-                    std::to_string(spacing) + " m; refine the grid or make the footprint larger");
+                    std::to_string(spacing) + " m; take more --cells or a larger --footprint");
 
     // Sub-cells are laid out from the contact, not from the grid: their pattern then slides with the contact, so that
     // the load changes smoothly, and a contact on a node gets a symmetric one.

@@ -137,11 +137,6 @@ NodeField readRigidity(const JsonObject& law, const Setting& setting)
     return rigidity;
 }
 
-bool isOnPlate(const PlateGrid& grid, const std::vector<double>& place)
-{
-    return place[0] >= 0 && place[0] <= grid.sizeX() && place[1] >= 0 && place[1] <= grid.sizeZ();
-}
-
 std::string sizeText(const PlateGrid& grid)
 {
     std::ostringstream text;
@@ -153,7 +148,7 @@ std::string sizeText(const PlateGrid& grid)
 std::vector<double> readPlace(const JsonObject& object, std::string_view key, const PlateGrid& grid)
 {
     std::vector<double> place = object.numbers(key, 2);
-    if (!isOnPlate(grid, place)) object.refuse(key, sizeText(grid));
+    if (!isOnPlate(grid, place[0], place[1])) object.refuse(key, sizeText(grid));
     return place;
 }
 
@@ -184,7 +179,7 @@ std::vector<Probe> readProbes(const JsonObject& problem, const PlateGrid& grid)
     std::vector<Probe> probes;
     if (!problem.has("probes")) return probes;
     for (const std::vector<double>& place : problem.rows("probes", 2)) {
-        if (!isOnPlate(grid, place)) {
+        if (!isOnPlate(grid, place[0], place[1])) {
             std::ostringstream text;
             text << problem.where() << ": key \"probes\": entry " << probes.size() << ": expected " << sizeText(grid)
                  << ", found [" << place[0] << ", " << place[1] << "]";
