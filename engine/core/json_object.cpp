@@ -16,6 +16,8 @@ using Json = nlohmann::json;
 std::string shortened(std::string text)
 {
     constexpr std::size_t kMost = 200; // [bytes] of a user's own text in a complaint
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?'; // a terminal would obey them
     return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
 }
 

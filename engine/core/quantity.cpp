@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <numbers>
 #include <span>
 
 #include "engine/core/contract.h"
@@ -19,8 +20,6 @@ struct Unit {
     double           inSi; ///< SI units in one of these
 };
 
-constexpr double kPi = 3.14159265358979323846;
-
 constexpr std::array kLengths     = {Unit{"m", 1},    Unit{"mm", 1e-3},   Unit{"cm", 1e-2},  Unit{"um", 1e-6},
                                      Unit{"km", 1e3}, Unit{"in", 0.0254}, Unit{"ft", 0.3048}};
 constexpr std::array kForces      = {Unit{"N", 1}, Unit{"mN", 1e-3}, Unit{"kN", 1e3}};
@@ -28,7 +27,7 @@ constexpr std::array kPressures   = {Unit{"Pa", 1}, Unit{"kPa", 1e3}, Unit{"MPa"
 constexpr std::array kRigidities  = {Unit{"N_m", 1}, Unit{"Nm", 1}, Unit{"N*m", 1}, Unit{"mN_m", 1e-3},
                                      Unit{"mNm", 1e-3}};
 constexpr std::array kFoundations = {Unit{"Pa/m", 1}, Unit{"kPa/m", 1e3}, Unit{"MPa/m", 1e6}, Unit{"GPa/m", 1e9}};
-constexpr std::array kAngles      = {Unit{"rad", 1}, Unit{"deg", kPi / 180}};
+constexpr std::array kAngles      = {Unit{"rad", 1}, Unit{"deg", std::numbers::pi / 180}};
 
 std::span<const Unit> unitsOf(Dimension dimension)
 {

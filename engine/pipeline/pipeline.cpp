@@ -35,7 +35,7 @@ private:
 ///
 /// Chord and chart distance agree in the azimuthal map. In the cylindrical ones
 /// chord^2 = 2 r^2 (1 - cos a cos b) <= r^2 (a^2 + 2 sin^2 b), which is x^2 + 2 z^2 (Lambert) or 2 x^2 + z^2
-/// (Gall-Peters). The kernel reaches four spacings beyond the edge.
+/// (Gall-Peters).
 double gatherRadius(const PatchSettings& settings, double spacing)
 {
     const double half  = settings.window / 2;

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <sstream>
 
 namespace palp {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Share of a plate's side by which rounding may put a point outside it [1]: far above the rounding of i * spacing,
 /// far below anything a user could mean.
@@ -55,7 +54,7 @@ std::vector<double> hatIntegrals(int cells, double spacing, double centre, doubl
     const auto cumulative = [&](double x) { return 0.5 * std::erf((x - centre) / (sigma * std::sqrt(2.0))); };
     const auto moment     = [&](double x) { // sigma^2 density(x) [m]
         const double t = (x - centre) / sigma;
-        return sigma * std::exp(-0.5 * t * t) / std::sqrt(2 * kPi);
+        return sigma * std::exp(-0.5 * t * t) / std::sqrt(2 * std::numbers::pi);
     };
     std::vector<double> shares(std::size_t(cells) + 1, 0.0);
     for (int cell = 0; cell < cells; ++cell) {

@@ -118,7 +118,7 @@ PatchSettings settingsOf(const TouchOptions& options)
     if (settings.cells < 8 || settings.cells > kMostCells || settings.cells % 2)
         throw Error("--cells: expected an even number from 8 to " + std::to_string(kMostCells) + ", found " +
                     std::to_string(settings.cells));
-    if (!(settings.material.poissonRatio > -1 && settings.material.poissonRatio <= 0.5))
+    if (!isPoissonRatio(settings.material.poissonRatio))
         throw Error("--poisson: expected a number above -1 and at most 0.5, found " + options.poisson);
     return settings;
 }
@@ -179,7 +179,7 @@ void printTouch(const TouchOptions& options, const PatchSettings& settings, cons
                 formatQuantity(window["rigidity_max"], "N m").c_str());
     std::printf("  deflection         %s at the contact, %s at most\n", quantity("deflection_at_contact", "m").c_str(),
                 quantity("max_deflection", "m").c_str());
-    std::printf("  compliance         %s\n", quantity("compliance", "m/N").c_str());
+    std::printf("  compliance         %s, mean under the fingertip\n", quantity("compliance", "m/N").c_str());
     std::printf("  contact stiffness  %s\n", quantity("contact_stiffness", "N/m").c_str());
     std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(),
                 name(settings.forceLaw));
