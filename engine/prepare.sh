@@ -1,7 +1,7 @@
 # Sourced by samples/demo.sh and tests/run.sh, after cd to the checkout: installs what is missing, configures, builds.
 # POSIX sh; needs nothing but a base system.
 #
-#   prepare_options "$@"     reads --yes --no-install --dry-run; leaves the rest in $rest
+#   prepare_options "$@"     reads --yes --no-install --dry-run
 #   prepare_packages LIST    makes sure that the packages are there
 #   prepare_build DIR ARGS   configures (Release) and builds the folder DIR
 
@@ -9,14 +9,13 @@
 packages_build='g++ cmake make libembree-dev libtbb-dev libeigen3-dev libglm-dev libcli11-dev nlohmann-json3-dev libstb-dev libvulkan-dev glslang-tools mesa-vulkan-drivers'
 packages_tests='libgtest-dev libbenchmark-dev libnanoflann-dev spirv-tools vulkan-validationlayers'
 
-assume_yes= no_install= dry_run= rest=
+assume_yes= no_install= dry_run=
 prepare_options() {
     for option; do
         case $option in
         --yes) assume_yes=1 ;;
         --no-install) no_install=1 ;;
         --dry-run) dry_run=1 ;;
-        *) rest="$rest $option" ;;
         esac
     done
 }
@@ -78,7 +77,7 @@ jobs() {
     if [ "$cores" -lt "$fits" ]; then echo "$cores"; else echo "$fits"; fi
 }
 
-# An existing folder is configured again only if CMake finds that it must be.
+# An existing folder keeps the options in its cache, except those that are given here.
 prepare_build() {
     build=$1
     shift

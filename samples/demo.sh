@@ -26,16 +26,17 @@ done
 # shellcheck disable=SC2086
 prepare_packages $packages_build
 build=${PALPATE_BUILD:-build}
-# A build that the tests made is used as it is.
+# A build that the tests made keeps its options: changing them would compile everything again.
 if [ -f "$build/CMakeCache.txt" ]; then prepare_build "$build"; else prepare_build "$build" -DPALPATE_TESTS=OFF -DPALPATE_BENCHMARKS=OFF; fi
 out=$build/demo
 if [ -n "$dry_run" ]; then say "would write $out/index.html"; exit 0; fi
 
-say '== the paper'\''s experiment'
-"$build/bin/paper_experiment" "$out" || exit 1
-say
 say '== a wart under the skin'
 "$build/bin/palpate" touch sample:skin --out "$out/skin" || exit 1
+say
+# After the skin: its page shows that too.
+say '== the paper'\''s experiment'
+"$build/bin/paper_experiment" "$out" || exit 1
 say
 say "pictures, tables and deformed clouds: $out/index.html"
 say "next: $build/bin/palpate touch sample:palm --at 14mm,5mm,0 --out touch"

@@ -57,5 +57,21 @@ for script in tests/run.sh samples/demo.sh; do
     calls "$script needs neither root nor network when nothing is missing" ''
 done
 
+# Both commands share a build folder: after the demo, which builds no tests, the tests still come to be.
+machine 0
+stand_in dpkg-query 'printf "install ok installed"'
+stand_in cmake "echo \"cmake \$*\" >>'$place/calls'; : >'$place/build/CMakeCache.txt'"
+stand_in ctest "echo \"ctest \$*\" >>'$place/calls'"
+mkdir -p "$place/build/bin"
+cp "$place/bin/ctest" "$place/build/bin/paper_experiment"
+cp "$place/bin/ctest" "$place/build/bin/palpate"
+check 'the demo in a fresh clone' 0 'index.html' env PALPATE_BUILD="$place/build" sh samples/demo.sh
+calls 'the demo in a fresh clone builds no tests' '-DPALPATE_TESTS=OFF'
+: >"$place/calls"
+check 'the demo once more' 0 'index.html' env PALPATE_BUILD="$place/build" sh samples/demo.sh
+if grep -q PALPATE_TESTS "$place/calls"; then echo "FAILED: the demo changed the options of a build"; failed=$((failed + 1)); fi
+check 'the tests after the demo' 0 'testing' env PALPATE_BUILD="$place/build" sh tests/run.sh
+calls 'the tests after the demo are built' '-DPALPATE_TESTS=ON'
+
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

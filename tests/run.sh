@@ -46,7 +46,8 @@ for flavour in ${flavours:-plain}; do
     tsan) folder=$top/tsan sanitizers=thread ;;
     esac
     say "== $flavour: building in $folder"
-    prepare_build "$folder" -DPALPATE_WERROR=ON -DPALPATE_SANITIZE=$sanitizers -DPALPATE_BENCHMARKS=$([ $flavour = plain ] && echo ON || echo OFF)
+    # The demo, where it came first, has cached that there are no tests.
+    prepare_build "$folder" -DPALPATE_TESTS=ON -DPALPATE_WERROR=ON -DPALPATE_SANITIZE=$sanitizers -DPALPATE_BENCHMARKS=$([ $flavour = plain ] && echo ON || echo OFF)
     if [ -n "$dry_run" ]; then say "would run the tests in $folder"; continue; fi
     say "== $flavour: testing"
     ctest --test-dir "$folder" --output-on-failure --no-tests=error --parallel "$(jobs)" "$@" || failed=1

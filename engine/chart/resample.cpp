@@ -13,6 +13,12 @@ namespace {
 constexpr double kKernelReach = 4.0; ///< of the Gaussian [standard deviations]; the weight there is 3e-4
 constexpr double kNearby      = 2.5; ///< see resampleRigidity [standard deviations]
 
+/// Standard deviation of the Gaussian [m].
+double kernelWidth(double pointSpacing, double nodeSpacing)
+{
+    return std::max(pointSpacing, nodeSpacing / 2);
+}
+
 /// Range of node numbers within `reach` of `position` along one axis.
 struct NodeRange {
     int first = 0;
@@ -84,13 +90,18 @@ bool Window::holds(const ChartPoint& p) const noexcept
     return p.x >= corner.x && p.x <= corner.x + grid.sizeX() && p.z >= corner.z && p.z <= corner.z + grid.sizeZ();
 }
 
+double kernelReach(double pointSpacing, double nodeSpacing) noexcept
+{
+    return kKernelReach * kernelWidth(pointSpacing, nodeSpacing);
+}
+
 Resampled resampleRigidity(const Window& window, std::span<const ChartPoint> positions,
                            std::span<const double> rigidities, Sampling sampling, double pointSpacing)
 {
     PALP_EXPECT(!positions.empty() && positions.size() == rigidities.size(),
                 std::to_string(positions.size()) + " positions, " + std::to_string(rigidities.size()) + " rigidities");
     const PlateGrid& grid  = window.grid;
-    const double     width = std::max(pointSpacing, 0.5 * std::max(grid.spacingX, grid.spacingZ));
+    const double     width = kernelWidth(pointSpacing, std::max(grid.spacingX, grid.spacingZ));
 
     const std::vector<std::uint32_t> nearest = nearestPoint(grid, window.corner, positions);
     const LogMean sums = sampling == Sampling::logMean ? spread(window, positions, rigidities, width) : LogMean{};

@@ -35,12 +35,21 @@ struct Resampled {
     std::size_t nodesWithoutPoint = 0; ///< nodes that had no point nearby and took the nearest one's value [1]
 };
 
+/// How far along either axis the log-mean looks for points: 4 s, where the weight is 3e-4 [m].
+///
+/// The width s is the spacing of the points, so that some are always near, but no less than half that of the nodes, so
+/// that no point falls between them. Points farther than that outside the window do not matter to its rigidity.
+///
+/// \param pointSpacing  of the cloud [m]
+/// \param nodeSpacing   of the grid, the larger one [m]
+[[nodiscard]] double kernelReach(double pointSpacing, double nodeSpacing) noexcept;
+
 /// Rigidity at the nodes of a window from scattered values.
 ///
-/// Log-mean: ln D = sum w_i ln D_i / sum w_i,  w = exp(-d^2 / (2 s^2)) within 4 s,  s = max(pointSpacing, h/2).
-/// A node farther than 4 s from every point takes the nearest point's value, whatever the rule.
-/// A node counts as without a point if none lies within 2.5 s: in a random cloud that befalls one node in 10^8, so a
-/// count above zero means a hole, a border or a far side.
+/// Log-mean: ln D = sum w_i ln D_i / sum w_i,  w = exp(-d^2 / (2 s^2)),  over the points in the square of half
+/// side 4 s about the node,  s = max(pointSpacing, h/2). A node with no point in its square takes the nearest one's
+/// value. A node counts as without a point if none lies within 2.5 s: in a random cloud that befalls one node in 10^8,
+/// so a count above zero means a hole, a border or a far side.
 ///
 /// \param positions     of the points in the chart [m], at least one; may lie outside the window
 /// \param rigidities    D of the same points [N m], > 0

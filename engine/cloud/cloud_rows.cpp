@@ -141,7 +141,8 @@ CloudRows::CloudRows(const ByteReader& reader, CloudHeader header, const CloudRe
         columns_[slot] = find(reader_, header_.properties, kSlotNames[slot]);
         if (!columns_[slot])
             reader_.fail(std::string("expected a number ") + kSlotNames[slot] +
-                         " for each point, found only: " + listed(header_.properties));
+                         " for each point, found only: " + listed(header_.properties) +
+                         (header_.format == "text" ? "; name the columns, such as --columns x,y,z,-,stiffness" : ""));
     }
     chooseLengthUnit();
     chooseStiffness();
@@ -159,7 +160,8 @@ void CloudRows::chooseLengthUnit()
     } catch (const Error& unknown) {
         reader_.fail("length unit " + source + ": " + unknown.what());
     }
-    report_.lengthUnitSource = unit + ", " + source;
+    report_.lengthUnitSource  = unit + ", " + source;
+    report_.lengthUnitAssumed = !chosen && !header_.lengthUnit;
 }
 
 void CloudRows::chooseKind(std::string_view property)
@@ -182,6 +184,7 @@ void CloudRows::chooseKind(std::string_view property)
         kind_ = StiffnessKind::modulus;
         why   = "because neither a setting, the file nor the name says otherwise";
     }
+    if (header_.stiffnessUnit) report_.statedKind = kindOfUnit(*header_.stiffnessUnit);
     report_.stiffnessSource = "property " + inQuotes(property) + " as " + nameOf(kind_) + " " + why;
 }
 
@@ -212,7 +215,8 @@ void CloudRows::chooseStiffness()
         reader_.fail(none + "; name one of these, or a uniform flexural rigidity");
     uniform_ = settings_.uniformStiffness.value_or(kDefaultModulus);
     checkPositive(reader_, uniform_, "uniform stiffness");
-    report_.stiffnessSource = "uniform " + std::string(nameOf(kind_)) + " " + shown(uniform_) +
+    report_.stiffnessAssumed = !settings_.uniformStiffness;
+    report_.stiffnessSource  = "uniform " + std::string(nameOf(kind_)) + " " + shown(uniform_) +
                               (settings_.uniformStiffness ? " by the setting" : " by default") + ", because " + none;
 }
 
@@ -280,7 +284,7 @@ void CloudRows::refuseRow(const CloudRow& row, Place place) const
         if (!column) continue;
         const std::string found = ", found " + inQuotes(header_.properties[*column]) + " " + shown(row[slot]);
         if (!std::isfinite(row[slot]))
-            failAtRow(place, "expected a finite number" + found + "; such points can be dropped by a setting");
+            failAtRow(place, "expected a finite number" + found + "; such points can be dropped with --drop-invalid");
         if (slot != kSlotStiffness && std::abs(row[slot]) > kLargestCoordinate / metresPerUnit_)
             failAtRow(place, "expected a coordinate below " + shown(kLargestCoordinate) + " m" + found +
                                  "; is the length unit right?");

@@ -18,8 +18,8 @@ struct Neighbour {
 ///
 /// Embree bounding volume hierarchy over blocks of 32 Morton-ordered points, each block one user primitive that is
 /// filtered with vector instructions. Answers are those of a brute-force search in double precision, exactly: a point
-/// is within the radius if the squared distance, in doubles, is at most the squared radius. \thread const calls from
-/// any number of threads at once
+/// is within the radius if the squared distance, in doubles, is at most the squared radius.
+/// \thread  const calls from any number of threads at once
 class NeighbourIndex {
 public:
     /// \param positions  finite [m], at least one; copied, so the caller's array need not live on

@@ -55,14 +55,17 @@ struct PropertyRange {
 
 /// What was found in a file and how it was understood, for the user to check.
 struct CloudFileReport {
-    std::string                  format;                 ///< such as "PLY, binary little-endian"
-    std::size_t                  points             = 0; ///< in the cloud
-    std::size_t                  droppedPoints      = 0; ///< left out because of NaN or infinity
-    std::size_t                  duplicatePositions = 0; ///< points that lie exactly where an earlier one lies
-    std::vector<std::string>     properties;             ///< scalar properties of a point, in file order
-    std::string                  lengthUnitSource;       ///< such as "mm, from the file's comment"
-    std::string                  stiffnessSource;        ///< which property, its unit, and why
-    std::optional<PropertyRange> stiffnessProperty;      ///< of the values before a range; empty if uniform
+    std::string                  format;                    ///< such as "PLY, binary little-endian"
+    std::size_t                  points             = 0;    ///< in the cloud
+    std::size_t                  droppedPoints      = 0;    ///< left out because of NaN or infinity
+    std::size_t                  duplicatePositions = 0;    ///< points that lie exactly where an earlier one lies
+    std::vector<std::string>     properties;                ///< scalar properties of a point, in file order
+    std::string                  lengthUnitSource;          ///< such as "mm, from the file's comment"
+    std::string                  stiffnessSource;           ///< which property, its unit, and why
+    std::optional<PropertyRange> stiffnessProperty;         ///< of the values before a range; empty if uniform
+    bool                         lengthUnitAssumed = false; ///< neither the file nor a setting states one: metres
+    bool                         stiffnessAssumed  = false; ///< neither the file nor a setting: kDefaultModulus
+    std::optional<StiffnessKind> statedKind;                ///< of the property, by the file's comment
 };
 
 struct LoadedCloud {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -12,8 +13,6 @@
 
 namespace palp {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// The standard fixes the bits of mt19937_64 but not of its distributions; this one is the same everywhere.
 class Uniform {
@@ -33,26 +32,27 @@ double bump(double dx, double dy, double sigma)
 
 /// Semi-axes of the ellipsoid, 40 000 points on it as in the paper, which states no size [m].
 constexpr glm::dvec3 kEllipsoid{60e-3, 45e-3, 35e-3};
-constexpr double     kHemisphere = 50e-3;       ///< radius [m]
-constexpr double     kSheet      = 150e-3;      ///< edge [m]
-constexpr double     kSaddle     = 120e-3;      ///< edge [m]
-constexpr double     kSkin       = 120e-3;      ///< edge [m]
-constexpr double     kPalm       = 110e-3;      ///< edge [m]
-constexpr glm::dvec3 kLobe{14e-3, 18e-3, 3e-3}; ///< half width, half height, distance of the two sheets [m]
+constexpr double     kHemisphere = 50e-3;  ///< radius [m]
+constexpr double     kSheet      = 150e-3; ///< edge [m]
+constexpr double     kSaddle     = 120e-3; ///< edge [m]
+constexpr double     kSkin       = 120e-3; ///< edge [m]
+constexpr double     kPalm       = 110e-3; ///< edge [m]
+/// Semi-axes of the ear lobe: two sheets of skin that meet at the rim [m].
+constexpr glm::dvec3 kLobe{14e-3, 18e-3, 1.5e-3};
 
 glm::dvec3 onSphere(Uniform& u)
 {
-    const double z = u(-1, 1), longitude = u(0, 2 * kPi), s = std::sqrt(1 - z * z);
+    const double z = u(-1, 1), longitude = u(0, 2 * std::numbers::pi), s = std::sqrt(1 - z * z);
     return {s * std::cos(longitude), s * std::sin(longitude), z};
 }
 
 /// Uniform per area: the unit sphere's element grows by a b c |(x/a, y/b, z/c)| when it is stretched to the ellipsoid.
-glm::dvec3 onEllipsoid(Uniform& u)
+glm::dvec3 onEllipsoid(Uniform& u, const glm::dvec3& axes)
 {
-    const double largest = 1 / std::min({kEllipsoid.x, kEllipsoid.y, kEllipsoid.z});
+    const double largest = 1 / std::min({axes.x, axes.y, axes.z});
     for (;;) {
         const glm::dvec3 d = onSphere(u);
-        if (u() * largest < glm::length(d / kEllipsoid)) return d * kEllipsoid;
+        if (u() * largest < glm::length(d / axes)) return d * axes;
     }
 }
 
@@ -101,16 +101,6 @@ double               palm(double x, double y)
     const double tendon = tendonDistance(x, y) / kTendonWidth;
     return (x * x + y * y) / (2 * 200e-3) + 7e-3 * bump(x - kThenar.x, y - kThenar.y, kThenar.z) +
            0.6e-3 * std::exp(-tendon * tendon / 2);
-}
-
-/// Two thin sheets that bulge away from each other and meet near the rim, as the skin of a lobe does.
-glm::dvec3 onLobe(Uniform& u)
-{
-    for (;;) {
-        const double x = u(-1, 1), y = u(-1, 1), side = u() < 0.5 ? -0.5 : 0.5, r2 = x * x + y * y;
-        if (r2 > 1) continue;
-        return {x * kLobe.x, y * kLobe.y, side * kLobe.z * std::sqrt(1 - 0.75 * r2)};
-    }
 }
 
 glm::dvec3 onHemisphere(Uniform& u)
@@ -178,7 +168,7 @@ const std::array<Shape, 7>& shapes()
           {0, 0, kEllipsoid.z},
           {}},
          {-kEllipsoid, kEllipsoid},
-         onEllipsoid,
+         [](Uniform& u) { return onEllipsoid(u, kEllipsoid); },
          ellipsoidModulus},
         {{"sheet", "flat rubber, 150 mm square, 1.5 MPa", 40'000, {4e-3, 0.49}, 0, 60e-3, 4e-3, {0, 0, 0}, kUp},
          square(kSheet, 0, 0),
@@ -225,7 +215,7 @@ const std::array<Shape, 7>& shapes()
           40'000,
           {4e-3, 0.45},
           4e6,
-          70e-3,
+          72e-3,
           3.6e-3,
           {1e-3, 0, 0},
           kUp},
@@ -233,16 +223,16 @@ const std::array<Shape, 7>& shapes()
          [](Uniform& u) { return onHeightField(u, kPalm, palm); },
          palmModulus},
         {{"ear-lobe",
-          "two thin sheets 3 mm apart, 28 by 36 mm, 0.4 MPa at the tip to 1 MPa at the root",
+          "two thin sheets, 28 by 36 mm, 3 mm apart in the middle, 0.4 MPa at the tip to 1 MPa at the root",
           20'000,
           {3e-3, 0.45},
           0,
           20e-3,
           2.5e-3,
-          {0, 0, kLobe.z / 2},
+          {0, 0, kLobe.z},
           {}},
-         {{-kLobe.x, -kLobe.y, -kLobe.z / 2}, {kLobe.x, kLobe.y, kLobe.z / 2}},
-         onLobe,
+         {-kLobe, kLobe},
+         [](Uniform& u) { return onEllipsoid(u, kLobe); },
          lobeModulus},
     }};
     return kShapes;

@@ -39,9 +39,9 @@ Contact touchAt(const PointCloud& cloud, const NeighbourIndex& index, const glm:
     const glm::dvec3 point   = cloud.positions()[nearest.point];
     if (!(nearest.distance <= reach))
         throw Error("contact: the place " + inMetres(place) + " is " + formatQuantity(nearest.distance, "m") +
-                    " from the cloud, expected at most " + formatQuantity(reach, "m") + "; the nearest point is " +
-                    inMetres(point) + "; the cloud spans " + inMetres(cloud.bounds().low) + " to " +
-                    inMetres(cloud.bounds().high));
+                    " from the cloud, expected at most " + formatQuantity(reach, "m") +
+                    "; is --unit right? The nearest point is " + inMetres(point) + "; the cloud spans " +
+                    inMetres(cloud.bounds().low) + " to " + inMetres(cloud.bounds().high));
     if (from && !(glm::length(*from) > 0)) throw Error("contact: expected a direction, found the zero vector");
     return {point, from ? glm::normalize(*from) : awayFromMiddle(cloud.bounds(), point), from.has_value()};
 }

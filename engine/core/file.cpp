@@ -51,8 +51,8 @@ void writeFileWhole(const std::filesystem::path& path, const std::function<void(
     std::ofstream file(target, std::ios::binary | std::ios::trunc);
     if (!file) throw Error(path.string() + ": cannot be written: " + reasonOfErrno());
     try {
+        errno = 0; // what fails below, in `write` or in the last flush, says why
         write(file);
-        errno = 0;
         file.close();
         if (!file) throw Error(path.string() + ": cannot be written: " + reasonOfErrno());
         if (replaceable) std::filesystem::rename(target, place);

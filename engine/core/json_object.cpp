@@ -16,6 +16,8 @@ using Json = nlohmann::json;
 std::string shortened(std::string text)
 {
     constexpr std::size_t kMost = 200; // [bytes] of a user's own text in a complaint
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?'; // a terminal would obey them
     return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
 }
 
@@ -34,7 +36,8 @@ public:
         if (event == Json::parse_event_t::object_start) open_.emplace_back();
         if (event == Json::parse_event_t::object_end) open_.pop_back();
         if (event == Json::parse_event_t::key && !open_.back().insert(value.get<std::string>()).second)
-            throw Error(where_ + ": the key " + shortened(value.dump()) + " is given twice in one object");
+            throw Error(where_ + ": the key " + shortened(value.dump(-1, ' ', false, Json::error_handler_t::replace)) +
+                        " is given twice in one object");
         return true;
     }
 
@@ -72,7 +75,7 @@ bool isNumbers(const Json& value, std::size_t count)
 
 std::string numbersInWords(std::size_t count)
 {
-    return "a list of " + std::to_string(count) + " numbers";
+    return "a list of " + std::to_string(count) + " numbers in SI units, such as metres, without a unit";
 }
 
 } // namespace
@@ -138,6 +141,7 @@ std::string JsonObject::text(std::string_view key) const
 double JsonObject::number(std::string_view key) const
 {
     const Json& value = node_->at(key, where_);
+    if (value.is_string()) refuse(key, "a number in SI units (m, N, Pa, N m) without a unit");
     if (!value.is_number()) refuse(key, "a number");
     return value.get<double>();
 }

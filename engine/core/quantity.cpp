@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <numbers>
 #include <span>
 
 #include "engine/core/contract.h"
@@ -19,8 +20,6 @@ struct Unit {
     double           inSi; ///< SI units in one of these
 };
 
-constexpr double kPi = 3.14159265358979323846;
-
 constexpr std::array kLengths     = {Unit{"m", 1},    Unit{"mm", 1e-3},   Unit{"cm", 1e-2},  Unit{"um", 1e-6},
                                      Unit{"km", 1e3}, Unit{"in", 0.0254}, Unit{"ft", 0.3048}};
 constexpr std::array kForces      = {Unit{"N", 1}, Unit{"mN", 1e-3}, Unit{"kN", 1e3}};
@@ -28,7 +27,7 @@ constexpr std::array kPressures   = {Unit{"Pa", 1}, Unit{"kPa", 1e3}, Unit{"MPa"
 constexpr std::array kRigidities  = {Unit{"N_m", 1}, Unit{"Nm", 1}, Unit{"N*m", 1}, Unit{"mN_m", 1e-3},
                                      Unit{"mNm", 1e-3}};
 constexpr std::array kFoundations = {Unit{"Pa/m", 1}, Unit{"kPa/m", 1e3}, Unit{"MPa/m", 1e6}, Unit{"GPa/m", 1e9}};
-constexpr std::array kAngles      = {Unit{"rad", 1}, Unit{"deg", kPi / 180}};
+constexpr std::array kAngles      = {Unit{"rad", 1}, Unit{"deg", std::numbers::pi / 180}};
 
 std::span<const Unit> unitsOf(Dimension dimension)
 {
@@ -83,10 +82,10 @@ NumberAndUnit split(std::string_view text, std::string_view what)
 
 } // namespace
 
-double parseQuantity(std::string_view text, Dimension dimension, std::string_view what)
+double parseQuantity(std::string_view text, Dimension dimension, std::string_view what, double siPerPlainNumber)
 {
     const auto [number, unit] = split(text, what);
-    if (unit.empty()) return number;
+    if (unit.empty()) return number * siPerPlainNumber;
     for (const Unit& known : unitsOf(dimension))
         if (known.name == unit) return number * known.inSi;
     throw Error(std::string(what) + ": unknown unit \"" + std::string(unit) + "\" in \"" + std::string(text) +
@@ -108,9 +107,7 @@ glm::dvec3 parsePoint(std::string_view text, std::string_view what, double metre
         const std::size_t comma = rest.find(',');
         if ((comma == std::string_view::npos) != (k == 2))
             throw Error(std::string(what) + ": expected three numbers x,y,z, found \"" + std::string(text) + "\"");
-        const std::string_view part = rest.substr(0, comma);
-        const auto [number, unit]   = split(part, what);
-        point[k] = unit.empty() ? number * metresPerPlainNumber : parseQuantity(part, Dimension::length, what);
+        point[k] = parseQuantity(rest.substr(0, comma), Dimension::length, what, metresPerPlainNumber);
         if (k < 2) rest.remove_prefix(comma + 1);
     }
     return point;
@@ -119,16 +116,24 @@ glm::dvec3 parsePoint(std::string_view text, std::string_view what, double metre
 std::string formatQuantity(double value, std::string_view siUnit)
 {
     if (!std::isfinite(value)) return std::isnan(value) ? "undefined" : "infinite";
-    constexpr std::array kPrefixes = {"p", "n", "u", "m", "", "k", "M", "G", "T"};
-    char                 text[64];
+    const int length = int(siUnit.size());
+    char      text[64];
+    if (value == 0) {
+        std::snprintf(text, sizeof text, "0 %.*s", length, siUnit.data());
+        return text;
+    }
+    constexpr std::array kPrefixes  = {"p", "n", "u", "m", "", "k", "M", "G", "T"};
+    constexpr int        kMostSteps = 4; // of a thousand, up or down from the unit
     // Rounded to three digits first: 999.96 is 1.00 k, not 1000.
     std::snprintf(text, sizeof text, "%.2e", value);
     const double rounded  = std::strtod(text, nullptr);
-    const int    exponent = rounded == 0 ? 0 : std::atoi(std::strchr(text, 'e') + 1);
-    const int    step     = std::clamp(int(std::floor(exponent / 3.0)), -4, 4);
-    const int    digits   = std::clamp(2 - (exponent - 3 * step), 0, 2);
-    std::snprintf(text, sizeof text, "%.*f %s%.*s", digits, rounded / std::pow(10.0, 3 * step),
-                  kPrefixes[std::size_t(step + 4)], int(siUnit.size()), siUnit.data());
+    const int    exponent = std::atoi(std::strchr(text, 'e') + 1);
+    const int    step     = int(std::floor(exponent / 3.0));
+    if (std::abs(step) > kMostSteps)
+        std::snprintf(text, sizeof text, "%.1e %.*s", value, length, siUnit.data());
+    else
+        std::snprintf(text, sizeof text, "%.*f %s%.*s", 2 - (exponent - 3 * step), rounded / std::pow(10.0, 3 * step),
+                      kPrefixes[std::size_t(step + kMostSteps)], length, siUnit.data());
     return text;
 }
 

@@ -59,7 +59,7 @@ constexpr std::array kKinds = {NamedKind{"constant", Kind::constant},
                                NamedKind{"box", Kind::box},
                                NamedKind{"checker", Kind::checker}};
 
-Kind kindOf(const JsonObject& object)
+Kind kindOf(const JsonObject& object, SpatialLaw::Space space)
 {
     const std::string name = object.text("law");
     std::string       known;
@@ -67,7 +67,8 @@ Kind kindOf(const JsonObject& object)
         if (entry.name == name) return entry.kind;
         known += (known.empty() ? "" : ", ") + std::string(entry.name);
     }
-    throw Error(object.where() + ": unknown law \"" + name + "\"; known laws: " + known);
+    throw Error(object.where() + ": unknown law \"" + name + "\"; known laws: " + known +
+                (space == SpatialLaw::Space::plane ? ", grid" : "")); // a problem file's; its reader knows it
 }
 
 /// The region a law covers, and how its points are written.
@@ -229,7 +230,7 @@ SpatialLaw parseSpatialLaw(const JsonObject& object, const glm::dvec3& low, cons
 {
     const Region region{low, high, space};
     SpatialLaw   law;
-    law.kind = kindOf(object);
+    law.kind = kindOf(object, space);
     if (law.kind == Kind::constant) {
         object.allowOnly({"law", "value"});
         law.from = law.to = object.positiveNumber("value");

@@ -1,5 +1,7 @@
 #include "engine/force/force_law.h"
 
+#include <numbers>
+
 namespace palp {
 
 const char* name(ForceLaw law) noexcept
@@ -16,8 +18,7 @@ std::optional<ForceLaw> forceLawNamed(std::string_view text)
 
 double contactStiffness(double modulus, double footprintRadius, double thickness) noexcept
 {
-    constexpr double kPi = 3.14159265358979323846;
-    return modulus * kPi * footprintRadius * footprintRadius / thickness;
+    return modulus * std::numbers::pi * footprintRadius * footprintRadius / thickness;
 }
 
 double feltStiffness(ForceLaw law, double contact, double compliance) noexcept

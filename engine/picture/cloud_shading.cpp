@@ -76,10 +76,10 @@ std::uint8_t mixed(std::uint8_t colour, float brightness, float coverage)
 
 } // namespace
 
-Rgb8 surfaceColour(ColourMap map, double position)
+Rgb8 surfaceColour(double position)
 {
-    constexpr double kWhite = 0.35; // share of white: the dark end of a map would swallow the shading [1]
-    const Rgb8       colour = colourAt(map, position);
+    constexpr double kWhite = 0.35; // share of white: the dark end of the map would swallow the shading [1]
+    const Rgb8       colour = colourAt(position);
     const auto lightened    = [](std::uint8_t c) { return std::uint8_t(std::lround((1 - kWhite) * c + kWhite * 255)); };
     return {lightened(colour.red), lightened(colour.green), lightened(colour.blue)};
 }
@@ -112,18 +112,19 @@ std::vector<float> cloudShading(const CloudSurface& surface)
     return brightness;
 }
 
-Image cloudImage(const CloudSurface& surface, std::optional<ColourMap> map)
+Image cloudImage(const CloudSurface& surface, Paint paint)
 {
     const std::vector<float> brightness = cloudShading(surface);
     Image                    image(surface.width, surface.height);
     for (std::size_t n = 0; n < surface.samples.size(); ++n) {
         const CloudSurface::Sample& sample = surface.samples[n];
         if (sample.coverage <= 0) continue;
-        Rgb8 colour = map ? kUndefinedColour : kClay;
-        if (map && sample.defined) colour = surfaceColour(*map, double(sample.value));
-        image.pixels[n] = {mixed(colour.red, brightness[n], sample.coverage),
-                           mixed(colour.green, brightness[n], sample.coverage),
-                           mixed(colour.blue, brightness[n], sample.coverage)};
+        const Rgb8 colour = paint == Paint::clay ? kClay
+                            : sample.defined     ? surfaceColour(double(sample.value))
+                                                 : kUndefinedColour;
+        image.pixels[n]   = {mixed(colour.red, brightness[n], sample.coverage),
+                             mixed(colour.green, brightness[n], sample.coverage),
+                             mixed(colour.blue, brightness[n], sample.coverage)};
     }
     return image;
 }

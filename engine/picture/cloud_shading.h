@@ -1,5 +1,4 @@
 #pragma once
-#include <optional>
 #include <vector>
 
 #include "engine/picture/cloud_surface.h"
@@ -15,10 +14,14 @@ namespace palp {
 
 /// The colour of a value on a surface that faces the light: that of the map, lightened so that shading shows on it.
 /// \param position  along the map, 0 to 1 [1]
-[[nodiscard]] Rgb8 surfaceColour(ColourMap map, double position);
+[[nodiscard]] Rgb8 surfaceColour(double position);
 
-/// The shaded surface in the colours of its values, on white.
-/// \param map  turns values from 0 to 1 into surfaceColour(); nullopt draws everything in one neutral colour
-[[nodiscard]] Image cloudImage(const CloudSurface& surface, std::optional<ColourMap> map);
+enum class Paint {
+    values, ///< surfaceColour() of the values, which lie in 0 to 1; grey without one
+    clay    ///< one neutral colour
+};
+
+/// The shaded surface on white.
+[[nodiscard]] Image cloudImage(const CloudSurface& surface, Paint paint);
 
 } // namespace palp

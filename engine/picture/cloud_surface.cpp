@@ -25,11 +25,10 @@ constexpr double kLeastReach = 0.75; // of a disc, so that every point covers a 
 
 // Weighted sums over the splats that reach a pixel; offsets and depths in widths.
 struct Moments {
-    float     w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0, wyy = 0; // of the offset from the pixel
-    float     wd = 0, wxd = 0, wyd = 0;                         // with the depth behind the front
-    float     wWidth   = 0;                                     // with the width [px]
-    float     wDefined = 0, wv = 0;                             // of points that have a value
-    glm::vec3 wn{0};                                            // with the supplied normal
+    float w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0, wyy = 0; // of the offset from the pixel
+    float wd = 0, wxd = 0, wyd = 0;                         // with the depth behind the front
+    float wWidth   = 0;                                     // with the width [px]
+    float wDefined = 0, wv = 0;                             // of points that have a value
 };
 
 // Calls visit(index of pixel, offset x, offset y) for the pixels of a disc; the offset leads from the pixel's centre to
@@ -157,28 +156,17 @@ private:
     std::vector<Cover> covers_; // row by row
 };
 
-// The normal in axes of the camera, towards the eye; zero if there is none.
-glm::vec3 seenNormal(const glm::dvec3& normal, const CloudCamera& camera)
-{
-    const glm::dvec3 seen(glm::dot(normal, camera.right), glm::dot(normal, camera.up), glm::dot(normal, camera.toEye));
-    const double     length = glm::length(seen);
-    if (!(length > 0) || !std::isfinite(length)) return glm::vec3(0);
-    return glm::vec3(seen * ((seen.z < 0 ? -1 : 1) / length));
-}
-
 std::vector<Moments> accumulate(std::span<const glm::dvec3> positions, std::span<const double> values,
-                                std::span<const glm::dvec3> normals, const CloudCamera& camera,
-                                const SplatSpacing& spacing, const std::vector<float>& front)
+                                const CloudCamera& camera, const SplatSpacing& spacing, const std::vector<float>& front)
 {
     std::vector<Moments> moments(front.size());
     for (std::size_t k = 0; k < positions.size(); ++k) {
         const auto p = camera.project(positions[k]);
         if (!p || spacing.skips(k, *p)) continue;
-        const bool      defined = !values.empty() && std::isfinite(values[k]);
-        const float     value   = defined ? float(values[k]) : 0;
-        const glm::vec3 normal  = normals.empty() ? glm::vec3(0) : seenNormal(normals[k], camera);
-        const double    width   = spacing.width(*p);
-        const float     scale   = float(1 / width);
+        const bool   defined = !values.empty() && std::isfinite(values[k]);
+        const float  value   = defined ? float(values[k]) : 0;
+        const double width   = spacing.width(*p);
+        const float  scale   = float(1 / width);
         forDisc(p->x, p->y, std::max(kLeastReach, kSplatReach * width), camera,
                 [&](std::size_t n, float offsetX, float offsetY) {
                     // Both factors fall to zero at their ends: a jump would show as an edge.
@@ -193,7 +181,6 @@ std::vector<Moments> accumulate(std::span<const glm::dvec3> positions, std::span
                     m.wd += w * d, m.wxd += w * x * d, m.wyd += w * y * d;
                     m.wWidth += w * float(width);
                     if (defined) m.wDefined += w, m.wv += w * value;
-                    m.wn += w * normal;
                 });
     }
     return moments;
@@ -217,8 +204,8 @@ CloudSurface::Sample sampleOf(const Moments& m, float front)
     const glm::vec3      plane = fittedPlane(m);
     sample.coverage            = 1;
     sample.depth               = front + m.wWidth / m.w * plane.x;
-    sample.normal  = glm::length(m.wn) > 0 ? glm::normalize(m.wn) : glm::normalize(glm::vec3(plane.y, -plane.z, 1));
-    sample.defined = m.wDefined > 0.5F * m.w;
+    sample.normal              = glm::normalize(glm::vec3(plane.y, -plane.z, 1));
+    sample.defined             = m.wDefined > 0.5F * m.w;
     if (sample.defined) sample.value = m.wv / m.wDefined;
     return sample;
 }
@@ -285,24 +272,18 @@ void finishOutline(CloudSurface& surface)
 
 std::optional<Pixel> CloudCamera::project(const glm::dvec3& point) const
 {
-    constexpr double kNearest = 0.05; // distance from the eye relative to that of the centre [1]
-    constexpr double kFar     = 1e6;  // beyond it nothing is drawn, and a pixel would not fit an int [px]
-    const glm::dvec3 from     = point - centre;
-    const double     away     = -glm::dot(from, toEye);
+    constexpr double kFar = 1e6; // beyond it nothing is drawn, and a pixel would not fit an int [px]
+    const glm::dvec3 from = point - centre;
     Pixel            p;
-    if (eyeDistance > 0) {
-        if (!(eyeDistance + away > kNearest * eyeDistance)) return std::nullopt;
-        p.magnified = eyeDistance / (eyeDistance + away);
-    }
-    p.x             = 0.5 * width + pixelsPerMetre * p.magnified * glm::dot(from, right);
-    p.y             = 0.5 * height - pixelsPerMetre * p.magnified * glm::dot(from, up);
-    p.depth         = pixelsPerMetre * away;
+    p.x             = 0.5 * width + pixelsPerMetre * glm::dot(from, right);
+    p.y             = 0.5 * height - pixelsPerMetre * glm::dot(from, up);
+    p.depth         = -pixelsPerMetre * glm::dot(from, toEye);
     const bool near = std::abs(p.x) < kFar && std::abs(p.y) < kFar && std::abs(p.depth) < kFar; // false for NaN
     return near ? std::optional(p) : std::nullopt;
 }
 
 CloudSurface cloudSurface(std::span<const glm::dvec3> positions, std::span<const double> values,
-                          std::span<const glm::dvec3> normals, const CloudCamera& camera)
+                          const CloudCamera& camera)
 {
     // Edges near the border of the picture are found beyond it.
     const int   margin = int(std::ceil(kFrontReach * SplatSpacing(positions, camera).widest()));
@@ -311,7 +292,7 @@ CloudSurface cloudSurface(std::span<const glm::dvec3> positions, std::span<const
     wide.height += 2 * margin;
     const SplatSpacing         spacing(positions, wide);
     const std::vector<float>   front   = Front(positions, wide, spacing).closed();
-    const std::vector<Moments> moments = accumulate(positions, values, normals, wide, spacing, front);
+    const std::vector<Moments> moments = accumulate(positions, values, wide, spacing, front);
 
     CloudSurface surface{camera.width, camera.height, spacing.typical(), {}};
     for (int y = 0; y < camera.height; ++y)

@@ -7,7 +7,7 @@
 
 namespace palp {
 
-/// Maps the world to a picture: orthographic, or perspective with the eye on the axis through the centre.
+/// Maps the world to a picture by parallel projection.
 struct CloudCamera {
     int        width  = 0;         ///< [px]
     int        height = 0;         ///< [px]
@@ -15,15 +15,13 @@ struct CloudCamera {
     glm::dvec3 right{1, 0, 0};     ///< unit, to the right of the picture
     glm::dvec3 up{0, 1, 0};        ///< unit, up in the picture
     glm::dvec3 toEye{0, 0, 1};     ///< unit, out of the picture
-    double     pixelsPerMetre = 1; ///< at the depth of the centre [px/m]
-    double     eyeDistance    = 0; ///< from the centre [m]; 0 is orthographic
+    double     pixelsPerMetre = 1; ///< [px/m]
 
     struct Pixel {
-        double x = 0, y = 0;  ///< y down [px]
-        double depth     = 0; ///< away from the eye, 0 at the centre [px]
-        double magnified = 1; ///< size on the picture relative to the depth of the centre [1]
+        double x = 0, y = 0; ///< y down [px]
+        double depth = 0;    ///< away from the eye, 0 at the centre [px]
     };
-    /// \return nullopt for a point that is not finite, or (nearly) at the eye or behind it
+    /// \return nullopt for a point that is not finite or far outside the picture
     [[nodiscard]] std::optional<Pixel> project(const glm::dvec3& point) const;
 };
 
@@ -56,10 +54,9 @@ struct CloudSurface {
 /// where sparse points lie beside denser ones that hide them, gaps may show. Memory is bounded by the picture, time by
 /// the picture and the number of points.
 ///
-/// \param values   empty, or one per point; NaN is "no value"
-/// \param normals  empty (then from the fitted planes), or one per point, any length, either sign [1, world]
+/// \param values  empty, or one per point; NaN is "no value"
 /// \source the idea of averaging overlapping splats: Zwicker et al. 2001, "Surface splatting"
 [[nodiscard]] CloudSurface cloudSurface(std::span<const glm::dvec3> positions, std::span<const double> values,
-                                        std::span<const glm::dvec3> normals, const CloudCamera& camera);
+                                        const CloudCamera& camera);
 
 } // namespace palp

@@ -28,16 +28,11 @@ void checkSettings(std::span<const glm::dvec3> positions, std::span<const double
     PALP_EXPECT(values.empty() || values.size() == positions.size(), "found " + std::to_string(values.size()) +
                                                                          " values for " +
                                                                          std::to_string(positions.size()) + " points");
-    PALP_EXPECT(s.normals.empty() || s.normals.size() == positions.size(),
-                "found " + std::to_string(s.normals.size()) + " normals for " + std::to_string(positions.size()) +
-                    " points");
     PALP_EXPECT(s.width >= 64 && s.height >= 64 && s.width <= 8192 && s.height <= 8192,
                 "found a picture of " + std::to_string(s.width) + " x " + std::to_string(s.height) + " px");
     PALP_EXPECT(finitePoint(s.direction) && finitePoint(s.up) &&
                     glm::length(glm::cross(s.direction, s.up)) > 1e-6 * glm::length(s.direction) * glm::length(s.up),
                 "direction and up are finite, not zero and not parallel");
-    PALP_EXPECT(s.fieldOfView >= 0 && s.fieldOfView <= 2,
-                "found a field of view of " + std::to_string(s.fieldOfView) + " rad");
     PALP_EXPECT(!s.window || (finitePoint(s.window->centre) && s.window->halfWidth > 0 &&
                               drawable(s.window->halfWidth, Scale::linear)),
                 "a window has a finite centre and a positive, finite half width");
@@ -52,9 +47,6 @@ CloudCamera cameraOf(std::span<const glm::dvec3> positions, const CloudViewSetti
     camera.right     = glm::normalize(glm::cross(s.up, camera.toEye));
     camera.up        = glm::cross(camera.toEye, camera.right);
     double halfWidth = kDegenerateWidth; // [m]
-    // Distance of the eye from the centre per half width of the picture; infinite when orthographic. [1]
-    const double reach =
-        s.fieldOfView > 0 ? std::max(1.0, double(s.height) / s.width) / std::tan(s.fieldOfView / 2) : INFINITY;
     if (s.window) {
         camera.centre = s.window->centre;
         halfWidth     = s.window->halfWidth;
@@ -67,20 +59,12 @@ CloudCamera cameraOf(std::span<const glm::dvec3> positions, const CloudViewSetti
             if (finitePoint(p)) low = glm::min(low, inAxes(p)), high = glm::max(high, inAxes(p));
         const glm::dvec3 middle = 0.5 * (low + high);
         camera.centre           = middle.x * camera.right + middle.y * camera.up + middle.z * camera.toEye;
-        // A point at (x, z) is drawn at x reach H / (reach H - z) of the half width H, which is to be at most H
-        // kFilled.
-        double needed = 0;
-        for (const glm::dvec3& p : positions) {
-            if (!finitePoint(p)) continue;
-            const glm::dvec3 q = inAxes(p) - middle;
-            needed =
-                std::max(needed, std::max(std::abs(q.x), std::abs(q.y) * s.width / s.height) / kFilled + q.z / reach);
-        }
+        const glm::dvec3 half   = 0.5 * (high - low);
+        const double     needed = std::max(half.x, half.y * s.width / s.height) / kFilled;
         // The extents of coinciding points are rounding errors of their coordinates.
         if (needed > 1e-12 * glm::length(middle)) halfWidth = needed;
     }
     camera.pixelsPerMetre = 0.5 * s.width / halfWidth;
-    if (s.fieldOfView > 0) camera.eyeDistance = halfWidth * reach;
     return camera;
 }
 
@@ -241,16 +225,15 @@ std::string cloudViewSvg(std::span<const glm::dvec3> positions, std::span<const 
         const CloudCamera camera = cameraOf(positions, settings);
         std::vector<double> drawn(values.begin(), values.end());
         for (double& v : drawn) v = drawable(v, settings.scale) ? std::clamp(axis.position(v), 0.0, 1.0) : NAN;
-        const CloudSurface surface = cloudSurface(positions, drawn, settings.normals, camera);
-        svg.image(corner, size, cloudImage(surface, shown ? std::optional(settings.map) : std::nullopt));
+        const CloudSurface surface = cloudSurface(positions, drawn, camera);
+        svg.image(corner, size, cloudImage(surface, shown ? Paint::values : Paint::clay));
         svg.beginClip(corner, size);
         drawMarkers(svg, settings, camera, surface, corner);
         drawScaleBar(svg, camera, corner + size - glm::dvec2(14, 14));
         drawWorldAxes(svg, camera, corner + glm::dvec2(48, size.y - 48));
         svg.endClip();
         if (shown) {
-            const auto colour = [&](double position) { return surfaceColour(settings.map, position); };
-            drawColourBar(svg, {&axis, colour, settings.quantity, found},
+            drawColourBar(svg, {&axis, surfaceColour, settings.quantity, found},
                           corner + glm::dvec2(size.x + 10, 0.5 * (size.y - height)), height);
             width = kSide + size.x + 10 + kColourBarWidth;
         }

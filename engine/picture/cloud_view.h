@@ -7,7 +7,6 @@
 #include <glm/vec3.hpp>
 
 #include "engine/picture/axis.h"
-#include "engine/picture/colour_map.h"
 #include "engine/picture/legend.h"
 
 namespace palp {
@@ -27,20 +26,17 @@ struct CloudWindow {
 };
 
 struct CloudViewSettings {
-    std::string                 title;
-    std::string                 quantity = "displacement"; ///< label of the colour bar
-    std::string                 unit     = "m";            ///< SI unit of the values; the prefix is chosen
-    Scale                       scale    = Scale::linear;
-    std::optional<ValueRange>   range; ///< ends of the colours [unit]; absent: the smallest and largest drawable value
-    ColourMap                   map    = ColourMap::viridis;
-    int                         width  = 900;             ///< of the picture without legends [px]
-    int                         height = 700;             ///< [px]
-    glm::dvec3                  direction{-0.5, 0.6, -1}; ///< in which the eye looks [world], any length
-    glm::dvec3                  up{0, 1, 0};              ///< drawn upwards as far as possible [world], any length
-    double                      fieldOfView = 0;          ///< across the larger side [rad]; 0 is orthographic
-    std::optional<CloudWindow>  window;                   ///< absent: the whole cloud
-    std::span<const glm::dvec3> normals;                  ///< empty, or one per point, any length, either sign [world]
-    std::vector<CloudMarker>    markers;
+    std::string                title;
+    std::string                quantity = "displacement"; ///< label of the colour bar
+    std::string                unit     = "m";            ///< SI unit of the values; the prefix is chosen
+    Scale                      scale    = Scale::linear;
+    std::optional<ValueRange>  range; ///< ends of the colours [unit]; absent: the smallest and largest drawable value
+    int                        width  = 900;             ///< of the picture without legends [px]
+    int                        height = 700;             ///< [px]
+    glm::dvec3                 direction{-0.5, 0.6, -1}; ///< in which the eye looks [world], any length
+    glm::dvec3                 up{0, 1, 0};              ///< drawn upwards as far as possible [world], any length
+    std::optional<CloudWindow> window;                   ///< absent: the whole cloud
+    std::vector<CloudMarker>   markers;
 };
 
 /// Draws a point cloud as a shaded, closed surface in the colours of a value per point: a self-contained SVG picture
@@ -51,8 +47,8 @@ struct CloudViewSettings {
 /// all, or none with a position, give an empty picture that says so. Points that all coincide are shown 2 mm wide.
 /// Shading darkens the colours, so values read off the picture are a guide only.
 /// \param values  empty (one neutral colour, no colour bar), or one per point
-/// \pre a picture of 64 to 8192 px a side; direction and up are finite, not zero and not parallel; fieldOfView in
-///      [0, 2]; a window of positive, finite width
+/// \pre a picture of 64 to 8192 px a side; direction and up are finite, not zero and not parallel; a window of
+///      positive, finite width
 [[nodiscard]] std::string cloudViewSvg(std::span<const glm::dvec3> positions, std::span<const double> values,
                                        const CloudViewSettings& settings);
 

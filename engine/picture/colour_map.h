@@ -12,23 +12,14 @@ struct Rgb8 {
     auto         operator<=>(const Rgb8&) const = default;
 };
 
-/// Colours for a value on a scale from low (dark) to high (light). The lightness of every map grows steadily, so that
-/// each is still in order when printed in grey and for every kind of colour vision.
-enum class ColourMap {
-    viridis,    ///< dark violet, green, yellow
-    blueYellow, ///< dark blue, grey, yellow: no red against green anywhere
-    grey,       ///< black to white
-};
-
-/// The colour at `position` along a map; positions outside [0, 1] take the colour of the nearer end.
+/// The colour of a value on a scale from low (0, dark violet) over green to high (1, yellow); positions outside [0, 1]
+/// take the colour of the nearer end. Lightness grows steadily along the map (viridis), so that it is still in order
+/// when printed in grey and for every kind of colour vision.
 /// \param position  [1], not NaN
-[[nodiscard]] Rgb8 colourAt(ColourMap map, double position);
+[[nodiscard]] Rgb8 colourAt(double position);
 
 /// "#rrggbb"
 [[nodiscard]] std::string hexColour(Rgb8 colour);
-
-/// CIE lightness L* of a colour: 0 is black, 100 is white. [1]
-[[nodiscard]] double lightness(Rgb8 colour);
 
 /// Colours for things that have names rather than values; safe for colour-blind readers, strongest on white first.
 /// \source Okabe & Ito 2008, "Color Universal Design", the set of eight without its black
@@ -42,7 +33,7 @@ inline constexpr std::array<Rgb8, 7> kNamedColours = {{
     {240, 228, 66},  // yellow
 }};
 
-/// Stands for values that cannot be drawn (NaN, infinity); in no map but the grey one.
+/// Stands for values that cannot be drawn (NaN, infinity); not on the map.
 inline constexpr Rgb8 kUndefinedColour = {190, 190, 190};
 
 } // namespace palp

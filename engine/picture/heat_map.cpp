@@ -26,7 +26,16 @@ struct FieldFacts {
     Extreme     least, most; ///< of the drawable nodes, where there are any
 
     [[nodiscard]] bool any() const { return undrawable < total; }
-    [[nodiscard]] bool constant() const { return any() && least.value == most.value; }
+    /// Within what averaging rounds; where such extremes lie says nothing.
+    [[nodiscard]] bool constant() const
+    {
+        constexpr double kRounding = 1e-6; // of the value [1]
+        return any() && most.value - least.value <= kRounding * std::max(std::abs(most.value), std::abs(least.value));
+    }
+    [[nodiscard]] ValueRange range() const
+    {
+        return constant() ? ValueRange{most.value, most.value} : ValueRange{least.value, most.value};
+    }
 };
 
 FieldFacts factsOf(const NodeField& field, Scale scale)
@@ -55,24 +64,24 @@ Rgb8 hatch(int x, int y)
     return (x + y) % kPeriod < kLine ? kHatchLine : kUndefinedColour;
 }
 
-Rgb8 colourOf(double value, const Axis& axis, ColourMap map, int x, int y)
+Rgb8 colourOf(double value, const Axis& axis, int x, int y)
 {
-    return drawable(value, axis.scale()) ? colourAt(map, axis.position(value)) : hatch(x, y);
+    return drawable(value, axis.scale()) ? colourAt(axis.position(value)) : hatch(x, y);
 }
 
 // Enlarged here rather than by the viewer: some viewers blur whatever the picture says, and colours are to be taken at
 // interpolated values, not interpolated themselves.
-Image cellsImage(const NodeField& field, const Axis& axis, ColourMap map)
+Image cellsImage(const NodeField& field, const Axis& axis)
 {
     const int perNode = std::max(1, kRasterSide / std::max(field.nodesX(), field.nodesZ()));
     Image     image(perNode * field.nodesX(), perNode * field.nodesZ());
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x)
-            image.at(x, y) = colourOf(field(x / perNode, field.nodesZ() - 1 - y / perNode), axis, map, x, y);
+            image.at(x, y) = colourOf(field(x / perNode, field.nodesZ() - 1 - y / perNode), axis, x, y);
     return image;
 }
 
-Image smoothImage(const NodeField& field, const Axis& axis, ColourMap map)
+Image smoothImage(const NodeField& field, const Axis& axis)
 {
     const int cellsX = field.nodesX() - 1, cellsZ = field.nodesZ() - 1;
     const int perCell = std::max(1, kRasterSide / std::max(cellsX, cellsZ));
@@ -86,7 +95,7 @@ Image smoothImage(const NodeField& field, const Axis& axis, ColourMap map)
                                  s * ((1 - t) * field(i + 1, j) + t * field(i + 1, j + 1));
             const double nearest = field(i + (s > 0.5), j + (t > 0.5));
             image.at(x, y)       = colourOf(
-                      drawable(nearest, axis.scale()) && drawable(value, axis.scale()) ? value : nearest, axis, map, x, y);
+                      drawable(nearest, axis.scale()) && drawable(value, axis.scale()) ? value : nearest, axis, x, y);
         }
     return image;
 }
@@ -109,7 +118,7 @@ PlotFrame frameOf(const HeatMapSettings& s, double top)
 
 std::string placeText(const PlotFrame& frame, ChartPoint p)
 {
-    return "x = " + frame.x.text(p.x) + ", z = " + frame.y.text(p.z);
+    return "east " + frame.x.text(p.x) + ", north " + frame.y.text(p.z);
 }
 
 void drawContactCross(SvgDrawing& svg, glm::dvec2 at)
@@ -138,13 +147,15 @@ bool shows(const PlotFrame& frame, ChartPoint p)
 void drawOverlays(SvgDrawing& svg, const PlotFrame& frame, const HeatMapSettings& s, std::vector<LegendEntry>& legend)
 {
     if (!s.points.empty()) {
-        SvgPath dots;
+        SvgPath     dots;
+        std::size_t shown = 0;
         for (ChartPoint p : s.points) {
             if (!shows(frame, p)) continue;
             dots.dotAt(frame.pixel(p.x, p.z));
+            ++shown;
         }
         drawDots(svg, dots);
-        legend.push_back({std::to_string(s.points.size()) + " points",
+        legend.push_back({"points in the window: " + std::to_string(shown),
                           [](SvgDrawing& to, glm::dvec2 at) { drawDots(to, SvgPath().dotAt(at)); }});
     }
     if (!s.contact) return;
@@ -199,28 +210,26 @@ std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings)
                 "a field of " + std::to_string(field.nodesX()) + " x " + std::to_string(field.nodesZ()) +
                     " nodes on a grid of " + std::to_string(grid.nodesX()) + " x " + std::to_string(grid.nodesZ()));
 
-    const FieldFacts                facts = factsOf(field, settings.scale);
-    const std::optional<ValueRange> found =
-        facts.any() ? std::optional(ValueRange{facts.least.value, facts.most.value}) : std::nullopt;
-    const double    top       = settings.title.empty() ? 18 : 42;
-    const PlotFrame frame     = frameOf(settings, top);
-    const double    barHeight = std::max(frame.size.y, kShortest);
-    const Axis      values(settings.range.value_or(found.value_or(ValueRange{1, 2})), settings.scale, settings.unit,
-                           std::clamp(int(barHeight / 45), 2, 9));
+    const FieldFacts                facts     = factsOf(field, settings.scale);
+    const std::optional<ValueRange> found     = facts.any() ? std::optional(facts.range()) : std::nullopt;
+    const double                    top       = settings.title.empty() ? 18 : 42;
+    const PlotFrame                 frame     = frameOf(settings, top);
+    const double                    barHeight = std::max(frame.size.y, kShortest);
+    const Axis values(settings.range.value_or(found.value_or(ValueRange{1, 2})), settings.scale, settings.unit,
+                      std::clamp(int(barHeight / 45), 2, 9));
     std::vector<LegendEntry> legend;
     SvgDrawing               svg;
     if (!settings.title.empty()) svg.text({kFrameLeft, 25}, settings.title, {.size = 15, .bold = true});
 
     svg.image(frame.corner, frame.size,
-              settings.nodeStyle == NodeStyle::cells ? cellsImage(field, values, settings.map)
-                                                     : smoothImage(field, values, settings.map));
+              settings.nodeStyle == NodeStyle::cells ? cellsImage(field, values) : smoothImage(field, values));
     svg.beginClip(frame.corner, frame.size);
     drawOverlays(svg, frame, settings, legend);
     svg.endClip();
-    drawFrame(svg, frame, "x", "z");
+    drawFrame(svg, frame, "east", "north");
     if (facts.constant())
-        addSwatch(legend, "constant " + values.text(facts.most.value),
-                  colourAt(settings.map, values.position(facts.most.value)), false);
+        addSwatch(legend, "constant " + values.text(facts.most.value), colourAt(values.position(facts.most.value)),
+                  false);
     else if (facts.any() && settings.markExtremes)
         drawExtremes(svg, frame, settings, facts, values, legend);
     if (facts.undrawable > 0)
@@ -230,8 +239,7 @@ std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings)
                   {}, true);
 
     const double barLeft = frame.corner.x + frame.size.x + 24;
-    const auto   colour  = [&](double position) { return colourAt(settings.map, position); };
-    drawColourBar(svg, {&values, colour, settings.quantity, found}, {barLeft, top}, barHeight);
+    drawColourBar(svg, {&values, colourAt, settings.quantity, found}, {barLeft, top}, barHeight);
     const double width  = std::max(barLeft + kColourBarWidth, kFrameLeft + textWidth(settings.title, 16) + 10);
     double       bottom = top + std::max(frame.size.y + kFrameBelow, barHeight) + 6;
     bottom += drawLegend(svg, legend, {kFrameLeft - kLegendSampleWidth / 2, bottom}, width - kFrameLeft);

@@ -5,7 +5,6 @@
 
 #include "engine/core/grid.h"
 #include "engine/picture/axis.h"
-#include "engine/picture/colour_map.h"
 
 namespace palp {
 
@@ -21,7 +20,6 @@ struct HeatMapSettings {
     std::string               unit     = "m";          ///< SI unit of the values; the prefix is chosen
     Scale                     scale    = Scale::linear;
     std::optional<ValueRange> range; ///< ends of the colours [unit]; absent: the smallest and largest drawable value
-    ColourMap                 map       = ColourMap::viridis;
     NodeStyle                 nodeStyle = NodeStyle::cells;
     PlateGrid                 grid;                ///< where the nodes lie
     ChartPoint                corner;              ///< position of node (0, 0)
@@ -31,11 +29,12 @@ struct HeatMapSettings {
     std::vector<ChartPoint>   points;              ///< dots, such as the projected points of the cloud
 };
 
-/// Draws a field as a self-contained SVG picture: colours, axes of equal scale, colour bar, overlays and legend.
+/// Draws a field as a self-contained SVG picture: colours, axes of equal scale, colour bar, overlays and legend. Chart
+/// x is called east and chart z north, as in a patch's frame: x, y and z are axes of the world.
 ///
 /// Nodes whose value is NaN or infinite, or not positive on a logarithmic scale, are hatched grey, and the legend says
-/// how many they are. A constant field is drawn in the middle colour and the legend gives its value. Values beyond an
-/// explicit range take the end colour, and the colour bar ends in an arrow head.
+/// how many they are. A constant field (to 1e-6 of its value) is drawn in the middle colour; the legend gives the value
+/// and no extremes. Values beyond an explicit range take the end colour, and the colour bar ends in an arrow head.
 /// \pre the field lies on settings.grid, which has positive spacings; an explicit range is drawable and not reversed
 [[nodiscard]] std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings);
 

@@ -32,17 +32,17 @@ NodeField scaled(NodeField field, double factor)
     return field;
 }
 
-enum class Along { x, z };
+enum class Along { east, north };
 
 PlotSeries profileOf(const Patch& patch, double force, Along along, std::string name)
 {
     const PlateGrid& grid = patch.window.grid;
     PlotSeries       series{std::move(name), {}, {}, SeriesStyle::lineAndMarkers};
-    const int        nodes = along == Along::x ? grid.nodesX() : grid.nodesZ();
+    const int        nodes = along == Along::east ? grid.nodesX() : grid.nodesZ();
     for (int n = 0; n < nodes; ++n) {
-        const int i = along == Along::x ? n : grid.cellsX / 2, j = along == Along::x ? grid.cellsZ / 2 : n;
-        series.x.push_back(along == Along::x ? patch.window.corner.x + i * grid.spacingX
-                                             : patch.window.corner.z + j * grid.spacingZ);
+        const int i = along == Along::east ? n : grid.cellsX / 2, j = along == Along::east ? grid.cellsZ / 2 : n;
+        series.x.push_back(along == Along::east ? patch.window.corner.x + i * grid.spacingX
+                                                : patch.window.corner.z + j * grid.spacingZ);
         series.y.push_back(force * patch.response(i, j));
     }
     return series;
@@ -89,15 +89,15 @@ std::string deflectionChartSvg(const Patch& patch, const PatchSettings& settings
 
 std::string profileSvg(const Patch& patch, double force, const std::string& title)
 {
-    const PlotSeries series[] = {profileOf(patch, force, Along::x, "along x"),
-                                 profileOf(patch, force, Along::z, "along z")};
+    const PlotSeries series[] = {profileOf(patch, force, Along::east, "eastwards"),
+                                 profileOf(patch, force, Along::north, "northwards")};
     return linePlotSvg(series, profileAxes(title));
 }
 
 std::string profilesSvg(std::span<const PressedPatch> patches, const std::string& title)
 {
     std::vector<PlotSeries> series;
-    for (const PressedPatch& p : patches) series.push_back(profileOf(*p.patch, p.force, Along::x, p.label));
+    for (const PressedPatch& p : patches) series.push_back(profileOf(*p.patch, p.force, Along::east, p.label));
     return linePlotSvg(series, profileAxes(title));
 }
 

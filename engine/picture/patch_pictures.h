@@ -21,10 +21,10 @@ struct PressedPatch {
 [[nodiscard]] std::string deflectionChartSvg(const Patch& patch, const PatchSettings& settings, double force,
                                              const std::string& title, double deepest = 0);
 
-/// Deflection along the chart's x and z axes through the contact.
+/// Deflection from west to east and from south to north through the contact.
 [[nodiscard]] std::string profileSvg(const Patch& patch, double force, const std::string& title);
 
-/// Deflection along the chart's x axis for several patches.
+/// Deflection from west to east through the contact, for several patches.
 [[nodiscard]] std::string profilesSvg(std::span<const PressedPatch> patches, const std::string& title);
 
 /// Where a view of pressed patches looks from.

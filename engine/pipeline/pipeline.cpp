@@ -35,13 +35,12 @@ private:
 ///
 /// Chord and chart distance agree in the azimuthal map. In the cylindrical ones
 /// chord^2 = 2 r^2 (1 - cos a cos b) <= r^2 (a^2 + 2 sin^2 b), which is x^2 + 2 z^2 (Lambert) or 2 x^2 + z^2
-/// (Gall-Peters). The kernel reaches four spacings beyond the edge.
+/// (Gall-Peters).
 double gatherRadius(const PatchSettings& settings, double spacing)
 {
-    constexpr double kKernelReach = 4;
-    const double     half         = settings.window / 2;
-    const double     chord = settings.map == Map::lambertAzimuthal ? std::sqrt(2.0) * half : std::sqrt(3.0) * half;
-    return chord + kKernelReach * std::max(spacing, settings.window / settings.cells / 2);
+    const double half  = settings.window / 2;
+    const double chord = settings.map == Map::lambertAzimuthal ? std::sqrt(2.0) * half : std::sqrt(3.0) * half;
+    return chord + kernelReach(spacing, settings.window / settings.cells);
 }
 
 SphereFitResult fitTo(const PointCloud& cloud, const std::vector<std::uint32_t>& gathered)

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <sstream>
 
 namespace palp {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Share of a plate's side by which rounding may put a point outside it [1]: far above the rounding of i * spacing,
 /// far below anything a user could mean.
@@ -24,12 +23,6 @@ Place placeOf(double position, double spacing, int cells)
     const double steps = std::clamp(position / spacing, 0.0, double(cells));
     const int    cell  = std::min(int(steps), cells - 1);
     return {cell, steps - cell};
-}
-
-bool isOnPlate(const PlateGrid& grid, double x, double z)
-{
-    const double slackX = kRounding * grid.sizeX(), slackZ = kRounding * grid.sizeZ();
-    return x >= -slackX && x <= grid.sizeX() + slackX && z >= -slackZ && z <= grid.sizeZ() + slackZ;
 }
 
 std::string pointText(double x, double z)
@@ -61,7 +54,7 @@ std::vector<double> hatIntegrals(int cells, double spacing, double centre, doubl
     const auto cumulative = [&](double x) { return 0.5 * std::erf((x - centre) / (sigma * std::sqrt(2.0))); };
     const auto moment     = [&](double x) { // sigma^2 density(x) [m]
         const double t = (x - centre) / sigma;
-        return sigma * std::exp(-0.5 * t * t) / std::sqrt(2 * kPi);
+        return sigma * std::exp(-0.5 * t * t) / std::sqrt(2 * std::numbers::pi);
     };
     std::vector<double> shares(std::size_t(cells) + 1, 0.0);
     for (int cell = 0; cell < cells; ++cell) {
@@ -75,6 +68,12 @@ std::vector<double> hatIntegrals(int cells, double spacing, double centre, doubl
 }
 
 } // namespace
+
+bool isOnPlate(const PlateGrid& grid, double x, double z) noexcept
+{
+    const double slackX = kRounding * grid.sizeX(), slackZ = kRounding * grid.sizeZ();
+    return x >= -slackX && x <= grid.sizeX() + slackX && z >= -slackZ && z <= grid.sizeZ() + slackZ;
+}
 
 double nodeArea(const PlateGrid& grid, int i, int j) noexcept
 {
@@ -125,11 +124,11 @@ NodeField footprintLoad(const PlateGrid& grid, double force, double x, double z,
     if (!inside)
         throw Error("the footprint of radius " + std::to_string(radius) + " m at " + pointText(x, z) +
                     " does not lie wholly on the plate of " + std::to_string(grid.sizeX()) + " x " +
-                    std::to_string(grid.sizeZ()) + " m; make it smaller or the window larger");
+                    std::to_string(grid.sizeZ()) + " m; take a smaller --footprint or a larger --window");
     const double spacing = std::max(grid.spacingX, grid.spacingZ);
     if (!(radius >= spacing * (1 - kRounding)))
         throw Error("the footprint of radius " + std::to_string(radius) + " m is smaller than one spacing of " +
-                    std::to_string(spacing) + " m; refine the grid or make the footprint larger");
+                    std::to_string(spacing) + " m; take more --cells or a larger --footprint");
 
     // Sub-cells are laid out from the contact, not from the grid: their pattern then slides with the contact, so that
     // the load changes smoothly, and a contact on a node gets a symmetric one.

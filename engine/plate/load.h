@@ -6,6 +6,10 @@ namespace palp {
 /// Loads as forces at the nodes [N], the energy's own gradient, so that they need no further weights.
 /// Positions are measured from the corner node (0, 0) of the grid.
 
+/// Whether (x, z) [m] lies on the plate, edges included. Cells times spacing may round below the size that was asked
+/// for, so a place may lie a little outside: the functions below take it for the edge.
+[[nodiscard]] bool isOnPlate(const PlateGrid& grid, double x, double z) noexcept;
+
 /// Area that a node stands for: a cell's inside, half on an edge, a quarter in a corner [m^2].
 [[nodiscard]] double nodeArea(const PlateGrid& grid, int i, int j) noexcept;
 

@@ -8,9 +8,6 @@
 namespace palp {
 namespace {
 
-/// The fewest cells a side: with fewer, the conditions of two opposite edges meet in one second difference.
-constexpr int kFewestCells = 4;
-
 template <class... Part>
 std::string sentence(const Part&... part)
 {
@@ -26,8 +23,8 @@ bool isPositive(double value)
 
 std::optional<std::string> whyGridIsBad(const PlateGrid& grid)
 {
-    if (grid.cellsX < kFewestCells || grid.cellsZ < kFewestCells)
-        return sentence("the grid must have at least ", kFewestCells, " x ", kFewestCells, " cells, found ",
+    if (grid.cellsX < kFewestPlateCells || grid.cellsZ < kFewestPlateCells)
+        return sentence("the grid must have at least ", kFewestPlateCells, " x ", kFewestPlateCells, " cells, found ",
                         grid.cellsX, " x ", grid.cellsZ);
     if (!isPositive(grid.spacingX) || !isPositive(grid.spacingZ))
         return sentence("the spacing must be positive and finite, found ", grid.spacingX, " m x ", grid.spacingZ, " m");
@@ -73,7 +70,7 @@ std::optional<Edge> edgeNamed(std::string_view text)
 std::optional<std::string> whyUnsolvable(const Plate& plate)
 {
     if (auto why = whyGridIsBad(plate.grid)) return why;
-    if (!(plate.poissonRatio > -1 && plate.poissonRatio <= 0.5))
+    if (!isPoissonRatio(plate.poissonRatio))
         return sentence("Poisson's ratio must be above -1 and at most 0.5, found ", plate.poissonRatio);
     if (!(std::isfinite(plate.foundation) && plate.foundation >= 0))
         return sentence("the foundation must be finite and not negative, found ", plate.foundation, " Pa/m");

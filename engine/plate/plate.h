@@ -34,10 +34,20 @@ struct PlateEdges {
 struct Plate {
     PlateGrid  grid;
     PlateEdges edges;
-    double     poissonRatio = 0.3; ///< nu [1], -1 < nu <= 0.5
+    double     poissonRatio = 0.3; ///< nu [1], see isPoissonRatio
     double     foundation   = 0;   ///< k [Pa/m], >= 0; 0 is the paper
     NodeField  rigidity;           ///< D [N m] at the nodes, > 0
 };
+
+/// Fewest cells a side [1]: with fewer, the conditions of two opposite edges meet in one second difference.
+inline constexpr int kFewestPlateCells = 4;
+
+/// Whether nu [1] can be Poisson's ratio of a plate: beyond these bounds the energy is not positive, or the material
+/// grows when it is pressed.
+[[nodiscard]] constexpr bool isPoissonRatio(double nu) noexcept
+{
+    return nu > -1 && nu <= 0.5; // false for NaN
+}
 
 /// Why a plate cannot be solved, in one sentence: wrong shape, rigidity not positive, Poisson's ratio out of range,
 /// or edges that leave it free to move as a rigid body. Empty if it can.

@@ -26,9 +26,8 @@
 // On a node of an edge the difference across that edge reaches outside the plate:
 //
 //   clamped            zero slope: the ghost mirrors the first inner node, p = 2 w(1) - 2 w(0)
-//   supported or free  no bending moment, p + nu q hx^2/hz^2 = 0: p is condensed out, which leaves (1 - nu^2) kqq q^2
-//   / 2.
-//                      Along a supported edge w is zero, so that is nothing at all.
+//   supported or free  no bending moment, p + nu q hx^2/hz^2 = 0: p is condensed out, which leaves
+//                      (1 - nu^2) kqq q^2 / 2. Along a supported edge w is zero, so that is nothing at all.
 //
 // A corner takes the rule of either side for its own direction, and is held if either side holds it:
 //

@@ -15,8 +15,7 @@
 namespace palp {
 namespace {
 
-constexpr int kFewestCells = 4;    // [1] a side, what whyUnsolvable asks for
-constexpr int kMostCells   = 4096; // [1] a side: one field of nodes is then 134 MB
+constexpr int kMostCells = 4096; // [1] a side: one field of nodes is then 134 MB
 
 /// The largest problem file that is read [bytes]: some 400 000 probes.
 constexpr std::size_t kLargestFile = std::size_t(16) << 20;
@@ -24,9 +23,9 @@ constexpr std::size_t kLargestFile = std::size_t(16) << 20;
 std::string textOf(const std::filesystem::path& path)
 {
     std::ifstream in = openForReading(path);
-    std::string   text(kLargestFile + 1, '\0');
-    in.read(text.data(), std::streamsize(text.size()));
-    text.resize(std::size_t(in.gcount()));
+    std::string   text;
+    for (char part[65536]; text.size() <= kLargestFile && in; text.append(part, std::size_t(in.gcount())))
+        in.read(part, sizeof part);
     if (text.size() > kLargestFile)
         throw Error(path.string() + ": longer than " + std::to_string(kLargestFile) +
                     " bytes; expected a problem file, with grids in .npy files beside it");
@@ -42,7 +41,7 @@ PlateGrid readGrid(const JsonObject& problem)
 {
     const std::vector<double> size = problem.numbers("size", 2);
     if (!(size[0] > 0 && size[1] > 0)) problem.refuse("size", "two positive lengths [m]");
-    const std::vector<int> cells = problem.wholeNumbers("cells", 2, kFewestCells, kMostCells);
+    const std::vector<int> cells = problem.wholeNumbers("cells", 2, kFewestPlateCells, kMostCells);
     return gridOf(size[0], size[1], cells[0], cells[1]);
 }
 
@@ -50,14 +49,14 @@ PlateGrid refined(const PlateGrid& grid, int cells, const std::string& name)
 {
     const auto refuse = [&](const std::string& side, double found) {
         std::ostringstream text;
-        text << name << ": --cells: expected " << kFewestCells << " to " << kMostCells << " cells along " << side
+        text << name << ": --cells: expected " << kFewestPlateCells << " to " << kMostCells << " cells along " << side
              << ", found " << found << " (" << cells << " along x, in proportion to the file's " << grid.cellsX << " x "
              << grid.cellsZ << ")";
         throw Error(text.str());
     };
     const double cellsZ = std::round(double(grid.cellsZ) * cells / grid.cellsX);
-    if (cells < kFewestCells || cells > kMostCells) refuse("x", cells);
-    if (cellsZ < kFewestCells || cellsZ > kMostCells) refuse("z", cellsZ);
+    if (cells < kFewestPlateCells || cells > kMostCells) refuse("x", cells);
+    if (cellsZ < kFewestPlateCells || cellsZ > kMostCells) refuse("z", cellsZ);
     return gridOf(grid.sizeX(), grid.sizeZ(), cells, int(cellsZ));
 }
 
@@ -137,11 +136,6 @@ NodeField readRigidity(const JsonObject& law, const Setting& setting)
     return rigidity;
 }
 
-bool isOnPlate(const PlateGrid& grid, const std::vector<double>& place)
-{
-    return place[0] >= 0 && place[0] <= grid.sizeX() && place[1] >= 0 && place[1] <= grid.sizeZ();
-}
-
 std::string sizeText(const PlateGrid& grid)
 {
     std::ostringstream text;
@@ -153,7 +147,7 @@ std::string sizeText(const PlateGrid& grid)
 std::vector<double> readPlace(const JsonObject& object, std::string_view key, const PlateGrid& grid)
 {
     std::vector<double> place = object.numbers(key, 2);
-    if (!isOnPlate(grid, place)) object.refuse(key, sizeText(grid));
+    if (!isOnPlate(grid, place[0], place[1])) object.refuse(key, sizeText(grid));
     return place;
 }
 
@@ -184,7 +178,7 @@ std::vector<Probe> readProbes(const JsonObject& problem, const PlateGrid& grid)
     std::vector<Probe> probes;
     if (!problem.has("probes")) return probes;
     for (const std::vector<double>& place : problem.rows("probes", 2)) {
-        if (!isOnPlate(grid, place)) {
+        if (!isOnPlate(grid, place[0], place[1])) {
             std::ostringstream text;
             text << problem.where() << ": key \"probes\": entry " << probes.size() << ": expected " << sizeText(grid)
                  << ", found [" << place[0] << ", " << place[1] << "]";
@@ -211,8 +205,7 @@ PlateProblem readProblem(const std::filesystem::path& path, std::optional<int> c
     problem.plate.poissonRatio = file.number("poisson");
     problem.plate.foundation   = file.has("foundation") ? file.number("foundation") : 0;
     problem.plate.rigidity     = readRigidity(file.object("rigidity"), setting);
-    if (!(problem.plate.poissonRatio > -1 && problem.plate.poissonRatio <= 0.5))
-        file.refuse("poisson", "a number above -1 and at most 0.5");
+    if (!isPoissonRatio(problem.plate.poissonRatio)) file.refuse("poisson", "a number above -1 and at most 0.5");
     if (!(problem.plate.foundation >= 0)) file.refuse("foundation", "a number [Pa/m] that is not negative");
     if (const auto why = whyUnsolvable(problem.plate)) throw Error(path.string() + ": " + *why);
     problem.nodalForce = readLoad(file.object("load"), setting);

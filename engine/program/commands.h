@@ -1,4 +1,6 @@
 #pragma once
+#include <string>
+
 #include <CLI/CLI.hpp>
 
 namespace palp {
@@ -9,5 +11,15 @@ void addConvertCommand(CLI::App& app);
 void addTouchCommand(CLI::App& app);
 void addSolveCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
+
+/// \throws Error naming the first option of the command that was given an empty value
+void refuseEmptyValues(const CLI::App& command);
+
+/// JSON as all programs print it. A file name may hold bytes that are not UTF-8: JSON cannot, they become U+FFFD.
+template <class Json>
+[[nodiscard]] std::string jsonText(const Json& json)
+{
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 } // namespace palp

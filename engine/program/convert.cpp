@@ -29,13 +29,17 @@ void convert(const ConvertOptions& options)
     const CloudWriteSettings settings{encodingNamed(options.encoding)};
     const LoadedCloud        loaded = options.source.load();
     writeCloud(options.target, loaded.cloud, {}, settings);
+    const std::vector<std::string> warnings = options.source.warnings(loaded);
     if (options.json) {
         nlohmann::json report = cloudJson(options.source, loaded);
         report["written"]     = options.target;
-        std::cout << report.dump(2) << "\n";
+        report["warnings"]    = warnings;
+        std::cout << jsonText(report);
     } else {
         std::cout << options.target << ": " << loaded.cloud.size() << " points, metres, stiffness in "
-                  << unitOf(loaded.cloud.kind()) << " (" << loaded.report.stiffnessSource << ")\n";
+                  << unitOf(loaded.cloud.kind()) << "\n  read as     " << loaded.report.lengthUnitSource
+                  << "\n  stiffness   " << loaded.report.stiffnessSource << "\n";
+        for (const std::string& line : warnings) std::cout << "  warning     " << line << "\n";
     }
 }
 
@@ -54,7 +58,10 @@ void addConvertCommand(CLI::App& app)
                     "  palpate convert sample:ear-lobe lobe.ply\n"
                     "  palpate convert scan.pcd scan.ply --unit mm --stiffness-property intensity --range 20kPa,2MPa\n"
                     "  palpate convert scan.ply ramp.csv --stiffness linear:from=2e4,to=2e6,axis=z");
-    command->callback([options] { convert(*options); });
+    command->callback([command, options] {
+        refuseEmptyValues(*command);
+        convert(*options);
+    });
 }
 
 } // namespace palp

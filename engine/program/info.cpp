@@ -32,22 +32,28 @@ void printInfo(const InfoOptions& options)
     const NeighbourIndex index(loaded.cloud.positions());
     nlohmann::json       report = cloudJson(options.source, loaded);
     report["point_spacing"]     = index.spacing();
+
+    const std::vector<std::string> warnings = options.source.warnings(loaded);
+    report["warnings"]                      = warnings;
     if (options.json) {
-        std::cout << report.dump(2) << "\n";
+        std::cout << jsonText(report);
         return;
     }
-    const std::string unit = report["stiffness_unit"] == "Pa" ? "Pa" : "N m";
+    const std::string spacing = index.spacing() > 0 ? formatQuantity(index.spacing(), "m") + " between points"
+                                                    : "unknown (fewer than seven different places)";
+    const std::string unit    = report["stiffness_unit"] == "Pa" ? "Pa" : "N m";
     std::string       properties;
     for (const std::string& property : loaded.report.properties)
         properties += (properties.empty() ? "" : ", ") + property;
     std::cout << options.source.name << ": " << loaded.report.format << ", " << loaded.cloud.size() << " points";
     if (loaded.report.droppedPoints) std::cout << " (" << loaded.report.droppedPoints << " dropped: NaN or infinity)";
     std::cout << "\n  extent      " << span3(report["low"], report["high"]) << "\n  length unit "
-              << loaded.report.lengthUnitSource << "\n  spacing     " << formatQuantity(index.spacing(), "m")
-              << " between points, " << loaded.report.duplicatePositions << " exact duplicates\n  stiffness   "
+              << loaded.report.lengthUnitSource << "\n  spacing     " << spacing << ", "
+              << loaded.report.duplicatePositions << " exact duplicates\n  stiffness   "
               << formatQuantity(report["stiffness_min"], unit) << " to "
               << formatQuantity(report["stiffness_max"], unit) << ": " << loaded.report.stiffnessSource << "\n";
     if (!properties.empty()) std::cout << "  properties  " << properties << "\n";
+    for (const std::string& line : warnings) std::cout << "  warning     " << line << "\n";
 }
 
 void printSamples(bool json)
@@ -57,7 +63,7 @@ void printSamples(bool json)
         list.push_back({{"name", sample.name}, {"description", sample.description}, {"points", sample.points}});
         if (!json) std::printf("sample:%-11s %s\n", sample.name.data(), sample.description.data());
     }
-    if (json) std::cout << list.dump(2) << "\n";
+    if (json) std::cout << jsonText(list);
 }
 
 } // namespace
@@ -75,7 +81,8 @@ void addInfoCommand(CLI::App& app)
                     "  palpate info scan.ply --unit mm\n"
                     "  palpate info painted.ply --stiffness-property quality --range 20kPa,2MPa\n"
                     "  palpate info --samples");
-    command->callback([options, list] {
+    command->callback([command, options, list] {
+        refuseEmptyValues(*command);
         if (*list) return printSamples(options->json);
         if (options->source.name.empty()) throw CLI::RequiredError("CLOUD");
         printInfo(*options);

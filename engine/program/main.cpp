@@ -8,17 +8,54 @@
 #include "engine/gpu/device_error.h"
 #include "engine/program/commands.h"
 
+namespace palp {
+
+void refuseEmptyValues(const CLI::App& command)
+{
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& value : option->results())
+            if (value.empty()) throw Error(option->get_name() + ": expected a value, found \"\"");
+}
+
+} // namespace palp
+
 namespace {
 
 constexpr int kBadInput = 2;
 constexpr int kOurFault = 1;
 constexpr int kNoGpu    = 4; // 3 is a missing package, see engine/prepare.sh
 
+constexpr const char* kUnprinted = "standard output cannot be written";
+
+/// What was printed has arrived, by whichever of the two libraries.
+bool printed()
+{
+    std::cout.flush();
+    return std::cout && std::fflush(stdout) == 0 && !std::ferror(stdout);
+}
+
 int complain(const std::string& sentence, int code)
 {
     std::cout.flush();
     std::cerr << "palpate: " << sentence << "\n";
     return code;
+}
+
+/// The library would only say that some command is required.
+void refuseUnknownCommand(const CLI::App& app, const std::string& name)
+{
+    std::string known;
+    for (const CLI::App* command : app.get_subcommands({})) {
+        if (name.starts_with('-') || command->get_name() == name) return;
+        known += (known.empty() ? "" : ", ") + command->get_name();
+    }
+    throw palp::Error("unknown command \"" + name + "\"; known: " + known + "; see --help");
+}
+
+int printHelp(const CLI::App& app, const CLI::ParseError& request)
+{
+    app.exit(request);
+    return printed() ? 0 : complain(kUnprinted, kBadInput);
 }
 
 } // namespace
@@ -41,11 +78,11 @@ int main(int argumentCount, char** arguments)
     palp::addConvertCommand(app);
     palp::addDevicesCommand(app);
     try {
+        if (argumentCount > 1) refuseUnknownCommand(app, arguments[1]);
         app.parse(argumentCount, arguments);
-        std::cout.flush();
-        if (!std::cout) return complain("standard output cannot be written", kBadInput);
+        if (!printed()) return complain(kUnprinted, kBadInput);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error); // --help, --version
+        if (error.get_exit_code() == 0) return printHelp(app, error); // or --version
         return complain(std::string(error.what()) + "; see --help", kBadInput);
     } catch (const palp::gpu::DeviceError& error) {
         return complain(error.what(), kNoGpu);

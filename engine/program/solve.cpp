@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -74,7 +75,7 @@ void printJson(const Solved& s)
                                           {"error_estimate", orNull(report.errorEstimate)},
                                           {"work_units", orNull(report.workUnits)},
                                           {"milliseconds", report.milliseconds}}}};
-    std::cout << answer.dump(2) << "\n";
+    std::cout << jsonText(answer);
 }
 
 /// "" where both spacings agree up to rounding.
@@ -117,11 +118,22 @@ void printText(const Solved& s, const std::string& name)
     if (!s.problem.probes.empty()) std::printf("\n  %12s %12s %16s\n", "x [m]", "z [m]", "deflection [m]");
     for (std::size_t k = 0; k < s.problem.probes.size(); ++k)
         std::printf("  %12.6g %12.6g %16.8e\n", s.problem.probes[k].x, s.problem.probes[k].z, s.probeDeflections[k]);
-    std::fflush(stdout);
+}
+
+/// The user's problem must not be replaced by its answer.
+void checkTarget(const SolveOptions& options)
+{
+    if (options.out.empty()) return;
+    if (std::filesystem::path(options.out).extension() != ".npy")
+        throw Error("--out: expected a name that ends with .npy, found \"" + options.out + "\"");
+    std::error_code missing; // where one of them does not exist, they are not the same
+    if (std::filesystem::equivalent(options.out, options.problem, missing))
+        throw Error("--out: \"" + options.out + "\" is the problem file itself; name another one");
 }
 
 void solveAndPrint(const SolveOptions& options)
 {
+    checkTarget(options);
     const Solved s = solved(options);
     if (!options.out.empty()) writeNpy(options.out, s.solution.deflection);
     if (options.json)
@@ -138,13 +150,14 @@ void addSolveCommand(CLI::App& app)
     const auto options = std::make_shared<SolveOptions>();
     command->add_option("PROBLEM", options->problem, "problem file (JSON, SI units)")->required();
     command->add_option("--cells", options->cells,
-                        "solve on this many cells along x, those along z in proportion (4 to 4096)");
+                        "solve on this many cells along x, those along z in proportion (at least 4; the solver takes "
+                        "1050625 nodes in all, such as 1024 x 1024 cells)");
     command->add_option("--device", options->device, "auto or reference (sparse Cholesky in double precision)")
         ->capture_default_str();
     command->add_flag("--json", options->json,
                       "machine-readable, full precision; max_deflection is the deflection of "
                       "largest magnitude, with its sign");
-    command->add_option("--out", options->out, "writes the deflection [m] at the nodes as a .npy array");
+    command->add_option("--out", options->out, "a .npy file for the deflection [m] at the nodes");
     command->footer(
         "A problem file (rigidity in N m, force in N, pressure in Pa, lengths in m):\n"
         "  {\"size\": [1, 1.5], \"cells\": [64, 96], \"poisson\": 0.3,\n"
@@ -152,13 +165,29 @@ void addSolveCommand(CLI::App& app)
         "   \"rigidity\": {\"law\": \"linear\", \"from\": 1, \"to\": 10, \"axis\": \"z\"},\n"
         "   \"load\": {\"law\": \"point\", \"force\": 1, \"at\": [0.5, 0.75]},\n"
         "   \"probes\": [[0.25, 0.25]]}\n"
-        "Rigidity laws: constant, linear, hyperbolic, exponential, gaussian, disc, box, checker, grid.\n"
-        "Load laws: point, uniform, gaussian, grid. A grid names a .npy file of node values.\n\n"
+        "Edges that are not named are clamped; no foundation [Pa/m] is 0; no probes are none.\n"
+        "Rigidity laws and their keys (points are [x, z]):\n"
+        "  constant                         value\n"
+        "  linear, hyperbolic, exponential  from, to, and axis (x or z; x if absent) or start, end\n"
+        "  gaussian                         from, to, centre or centres, sigma\n"
+        "  disc                             from, to, centre or centres, radius\n"
+        "  box                              from, to, low, high\n"
+        "  checker                          from, to, edge\n"
+        "  grid                             file\n"
+        "Load laws and their keys:\n"
+        "  point     force, at\n"
+        "  uniform   pressure\n"
+        "  gaussian  force, centre, sigma\n"
+        "  grid      file (pressures)\n"
+        "A grid names a .npy file of values at the nodes, of shape (cells_x + 1, cells_z + 1).\n\n"
         "Examples:\n"
         "  palpate solve plate.json\n"
         "  palpate solve plate.json --cells 256 --json\n"
         "  palpate solve plate.json --out deflection.npy");
-    command->callback([options] { solveAndPrint(*options); });
+    command->callback([command, options] {
+        refuseEmptyValues(*command);
+        solveAndPrint(*options);
+    });
 }
 
 } // namespace palp

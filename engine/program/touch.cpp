@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -22,10 +23,10 @@ struct TouchOptions {
     CloudSource source;
     std::string at, from, force = "0.5N", preset = "palpate";
     std::string map, sampling, edges, forceLaw, foundation, thickness, poisson, window,
-        footprint;         // empty: the preset's
-    int         cells = 0; ///< 0: the default
-    std::string out;
-    bool        json = false;
+        footprint;            // empty: the preset's
+    std::optional<int> cells; ///< empty: the default
+    std::string        out;
+    bool               json = false;
 };
 
 /// The value of an option with a fixed set of names, or a sentence that lists them.
@@ -36,14 +37,31 @@ T named(const std::optional<T>& value, const std::string& option, const std::str
     throw Error(option + ": unknown name \"" + text + "\"; known: " + known);
 }
 
-double positive(const std::string& text, Dimension dimension, const std::string& option)
+// Far beyond what a hand can feel, and far from where single precision or a result could overflow.
+constexpr double kLeastLength    = 1e-9; // [m]
+constexpr double kMostLength     = 1e4;  // [m]
+constexpr double kMostCoordinate = 1e9;  // [m] as in files: surveyors count from far away
+constexpr double kMostForce      = 1e6;  // [N]
+constexpr double kMostFoundation = 1e15; // [Pa/m] a micrometre of steel has less
+
+double between(double least, double most, const char* unit, double value, const std::string& option,
+               const std::string& text)
 {
-    const double value = parseQuantity(text, dimension, option);
-    if (!(value > 0)) throw Error(option + ": expected a value above zero, found \"" + text + "\"");
-    return value;
+    if (value >= least && value <= most) return value;
+    char bounds[64];
+    std::snprintf(bounds, sizeof bounds, "%g to %g %s", least, most, unit);
+    throw Error(option + ": expected a value from " + bounds + ", found \"" + text + "\"");
 }
 
-constexpr const char* kEdges = "clamped, supported, free";
+/// A plain number is in the unit of --unit, as in --at.
+double lengthOf(const TouchOptions& options, const std::string& text, const std::string& option)
+{
+    const double value = parseQuantity(text, Dimension::length, option, options.source.metresPerPlainNumber());
+    return between(kLeastLength, kMostLength, "m", value, option, text);
+}
+
+constexpr const char* kSummary = "touch.json";
+constexpr const char* kEdges   = "clamped, supported, free";
 
 /// "free", or "x0=free,z1=supported" with the others clamped.
 PlateEdges edgesOf(const std::string& text)
@@ -78,15 +96,15 @@ PatchSettings settingsOf(const TouchOptions& options)
         settings.footprintRadius = sample->footprintRadius;
     }
     settings = withPreset(settings, named(presetNamed(options.preset), "--preset", options.preset, "palpate, paper"));
-    if (!options.thickness.empty())
-        settings.material.thickness = positive(options.thickness, Dimension::length, "--thickness");
+    if (!options.thickness.empty()) settings.material.thickness = lengthOf(options, options.thickness, "--thickness");
     if (!options.poisson.empty())
         settings.material.poissonRatio = parseQuantity(options.poisson, Dimension::none, "--poisson");
     if (!options.foundation.empty())
-        settings.foundation = parseQuantity(options.foundation, Dimension::foundation, "--foundation");
-    if (!options.window.empty()) settings.window = positive(options.window, Dimension::length, "--window");
-    if (!options.footprint.empty())
-        settings.footprintRadius = positive(options.footprint, Dimension::length, "--footprint");
+        settings.foundation = between(0, kMostFoundation, "Pa/m",
+                                      parseQuantity(options.foundation, Dimension::foundation, "--foundation"),
+                                      "--foundation", options.foundation);
+    if (!options.window.empty()) settings.window = lengthOf(options, options.window, "--window");
+    if (!options.footprint.empty()) settings.footprintRadius = lengthOf(options, options.footprint, "--footprint");
     if (!options.edges.empty()) settings.edges = edgesOf(options.edges);
     if (!options.map.empty())
         settings.map =
@@ -95,14 +113,13 @@ PatchSettings settingsOf(const TouchOptions& options)
         settings.sampling = named(samplingNamed(options.sampling), "--sampling", options.sampling, "log-mean, nearest");
     if (!options.forceLaw.empty())
         settings.forceLaw = named(forceLawNamed(options.forceLaw), "--force-law", options.forceLaw, "series, paper");
-    if (options.cells) settings.cells = options.cells;
+    if (options.cells) settings.cells = *options.cells;
     constexpr int kMostCells = 1024; // the reference solver's factor then takes about 4 GB
     if (settings.cells < 8 || settings.cells > kMostCells || settings.cells % 2)
         throw Error("--cells: expected an even number from 8 to " + std::to_string(kMostCells) + ", found " +
                     std::to_string(settings.cells));
-    if (!(settings.material.poissonRatio > -1 && settings.material.poissonRatio <= 0.5))
+    if (!isPoissonRatio(settings.material.poissonRatio))
         throw Error("--poisson: expected a number above -1 and at most 0.5, found " + options.poisson);
-    if (settings.foundation < 0) throw Error("--foundation: expected at least 0, found " + options.foundation);
     return settings;
 }
 
@@ -112,19 +129,25 @@ Contact contactOf(const TouchOptions& options, const PointCloud& cloud, const Ne
     std::optional<glm::dvec3> from;
     if (sample) from = sample->from;
     if (!options.from.empty()) from = parsePoint(options.from, "--from");
-    if (!sample && options.at.empty())
-        throw Error("--at: expected a place x,y,z for a cloud from a file; its middle is (" +
-                    std::to_string(cloud.bounds().centre().x) + ", " + std::to_string(cloud.bounds().centre().y) +
-                    ", " + std::to_string(cloud.bounds().centre().z) + ") m");
-    const glm::dvec3 place =
-        options.at.empty() ? sample->place : parsePoint(options.at, "--at", options.source.metresPerPlainNumber());
+    const double plain = options.source.metresPerPlainNumber();
+    if (!sample && options.at.empty()) {
+        const glm::dvec3 middle = cloud.positions()[index.nearest(cloud.bounds().centre(), 1).front().point];
+        throw Error("--at: expected a place X,Y,Z for a cloud from a file, found none; near its middle it has the "
+                    "point --at " +
+                    placeText(middle, cloud.bounds().diagonal(), plain) + " (in " +
+                    (options.source.unit.empty() ? "m" : options.source.unit) + ")");
+    }
+    const glm::dvec3 place = options.at.empty() ? sample->place : parsePoint(options.at, "--at", plain);
+    for (int k = 0; k < 3; ++k) between(-kMostCoordinate, kMostCoordinate, "m", place[k], "--at", options.at);
     return touchAt(cloud, index, place, from, window / 4);
 }
 
 std::string percent(double share)
 {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2g %%", 100 * share);
+    char             text[32];
+    constexpr double kLeast = 1e-5; // [1] the third decimal of a percent
+    if (share > 0 && share < kLeast) return "below 0.001 %";
+    std::snprintf(text, sizeof text, share < 0.1 ? "%.2g %%" : "%.0f %%", 100 * share);
     return text;
 }
 
@@ -139,6 +162,8 @@ void printTouch(const TouchOptions& options, const PatchSettings& settings, cons
                 options.source.name.c_str(), options.preset.c_str(), formatQuantity(r["force"], "N").c_str(),
                 at[0].get<double>(), at[1].get<double>(), at[2].get<double>(), normal[0].get<double>(),
                 normal[1].get<double>(), normal[2].get<double>());
+    std::printf("  length unit        %s\n", r["cloud"]["length_unit_source"].get<std::string>().c_str());
+    std::printf("  stiffness          %s\n", r["cloud"]["stiffness_source"].get<std::string>().c_str());
     std::printf("  scene              thickness %s, poisson %.3g, foundation %s, footprint radius %s\n",
                 formatQuantity(settings.material.thickness, "m").c_str(), settings.material.poissonRatio,
                 formatQuantity(settings.foundation, "Pa/m").c_str(),
@@ -154,13 +179,13 @@ void printTouch(const TouchOptions& options, const PatchSettings& settings, cons
                 formatQuantity(window["rigidity_max"], "N m").c_str());
     std::printf("  deflection         %s at the contact, %s at most\n", quantity("deflection_at_contact", "m").c_str(),
                 quantity("max_deflection", "m").c_str());
-    std::printf("  compliance         %s\n", quantity("compliance", "m/N").c_str());
+    std::printf("  compliance         %s, mean under the fingertip\n", quantity("compliance", "m/N").c_str());
     std::printf("  contact stiffness  %s\n", quantity("contact_stiffness", "N/m").c_str());
     std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(),
                 name(settings.forceLaw));
-    std::printf("  error              discretisation %s, rounding %.1e\n",
+    std::printf("  error              discretisation %s, rounding %s\n",
                 error["discretisation"].is_null() ? "unknown" : percent(error["discretisation"].get<double>()).c_str(),
-                error["solver"].get<double>());
+                percent(error["solver"].get<double>()).c_str());
     std::printf("  time               %.1f ms:", r["milliseconds"]["total"].get<double>());
     for (const char* stage : {"gather", "fit", "project", "resample", "factorise", "solve", "lift"})
         std::printf(" %s %.2f", stage, r["milliseconds"][stage].get<double>());
@@ -207,6 +232,10 @@ std::vector<std::string> writeFiles(const TouchOptions& options, const PointClou
 {
     const std::filesystem::path folder = options.out;
     makeFolder(folder);
+    // touch.json, written last, says that the folder holds one whole set: that of an earlier touch must not.
+    std::error_code failure;
+    std::filesystem::remove(folder / kSummary, failure);
+    if (failure) throw Error((folder / kSummary).string() + ": cannot be replaced: " + failure.message());
     const std::vector<double>     deflection = deflections(cloud, patch, force);
     const std::span<const double> stiffness  = cloud.stiffness();
     const PointCloud bent(displaced(cloud, patch, force), {stiffness.begin(), stiffness.end()}, cloud.kind());
@@ -224,10 +253,20 @@ std::vector<std::string> writeFiles(const TouchOptions& options, const PointClou
     return files;
 }
 
+/// Stiffnesses and thicknesses may be anything positive; their quotients must still be numbers.
+void refuseOverflow(const nlohmann::json& report)
+{
+    for (const char* key :
+         {"rigidity_at_contact", "compliance", "contact_stiffness", "felt_stiffness", "max_deflection"})
+        if (!std::isfinite(report[key].get<double>()))
+            throw Error(std::string("touch: ") + key + " is not finite; are stiffness, --thickness and --force right?");
+}
+
 void touch(const TouchOptions& options)
 {
     const PatchSettings  settings = settingsOf(options);
-    const double         force    = parseQuantity(options.force, Dimension::force, "--force");
+    const double         force    = between(-kMostForce, kMostForce, "N",
+                                            parseQuantity(options.force, Dimension::force, "--force"), "--force", options.force);
     const LoadedCloud    loaded   = options.source.load();
     const NeighbourIndex index(loaded.cloud.positions());
     const Contact        contact = contactOf(options, loaded.cloud, index, settings.window);
@@ -239,17 +278,19 @@ void touch(const TouchOptions& options)
                     name(patch.sphere.outcome) + "); try a larger --window, or check --unit");
 
     nlohmann::json report = patchJson(patch, settings, force);
-    report["cloud"]       = cloudJson(options.source, loaded);
-    report["preset"]      = options.preset;
+    refuseOverflow(report);
+    report["cloud"] = cloudJson(options.source, loaded);
+    for (std::string& line : options.source.warnings(loaded)) report["warnings"].push_back(std::move(line));
+    report["preset"] = options.preset;
     if (!options.out.empty()) {
         std::vector<std::string> files = writeFiles(options, loaded.cloud, patch, settings, force);
-        files.emplace_back("touch.json");
+        files.emplace_back(kSummary);
         report["files"] = files;
-        writeFileWhole(std::filesystem::path(options.out) / "touch.json",
-                       [&](std::ostream& file) { file << report.dump(2) << "\n"; });
+        writeFileWhole(std::filesystem::path(options.out) / kSummary,
+                       [&](std::ostream& file) { file << jsonText(report); });
     }
     if (options.json)
-        std::cout << report.dump(2) << "\n";
+        std::cout << jsonText(report);
     else
         printTouch(options, settings, report);
 }
@@ -262,12 +303,14 @@ void addTouchCommand(CLI::App& app)
         app.add_subcommand("touch", "presses a scripted finger on a cloud: how far it gives, how it feels");
     const auto o = std::make_shared<TouchOptions>();
     o->source.addTo(*command);
-    command->add_option("--at", o->at, "place X,Y,Z, in the unit of --unit or with units, such as 10mm,0,35mm");
+    command->add_option("--at", o->at,
+                        "place X,Y,Z, such as 10mm,0,35mm; plain numbers are in the unit of --unit (else m)");
     command->add_option("--from", o->from, "direction X,Y,Z from which the finger comes (else from outside)");
     command->add_option("--force", o->force, "that presses, such as 0.5N")->capture_default_str();
     command->add_option("--preset", o->preset, "palpate, or paper: as Kumari and Chaudhuri published it")
         ->capture_default_str();
-    command->add_option("--thickness", o->thickness, "of the sheet, such as 4mm");
+    command->add_option("--thickness", o->thickness,
+                        "of the sheet, such as 4mm; plain numbers of all lengths are in the unit of --unit (else m)");
     command->add_option("--poisson", o->poisson, "Poisson's ratio");
     command->add_option("--foundation", o->foundation, "stiffness of what lies below, such as 1.74MPa/m; 0 is nothing");
     command->add_option("--window", o->window, "edge of the square that bends, such as 40mm");
@@ -276,15 +319,21 @@ void addTouchCommand(CLI::App& app)
     command->add_option("--map", o->map, "lambert-azimuthal, lambert-cylindrical or gall-peters");
     command->add_option("--sampling", o->sampling, "rigidity of a node: log-mean or nearest");
     command->add_option("--edges", o->edges,
-                        "of the window: clamped, supported, free, or such as x0=free,z1=supported");
+                        "of the window: clamped, supported, free, or such as x0=free,z1=supported, the others clamped");
     command->add_option("--force-law", o->forceLaw, "series (plate and contact) or paper (contact alone)");
-    command->add_option("--out", o->out, "folder for the deformed cloud, grids, pictures and touch.json");
+    command->add_option(
+        "--out", o->out,
+        "folder for the deformed cloud, grids, pictures and touch.json; that comes last: a folder without it "
+        "holds no whole set");
     command->add_flag("--json", o->json, "machine-readable, SI units");
     command->footer("Examples:\n"
                     "  palpate touch sample:skin --out touch\n"
                     "  palpate touch sample:ellipsoid --at 30mm,0,30mm --force 0.3N --preset paper --json\n"
                     "  palpate touch scan.ply --unit mm --at 12,0,30 --uniform 300kPa --thickness 3mm --window 30mm");
-    command->callback([o] { touch(*o); });
+    command->callback([command, o] {
+        refuseEmptyValues(*command);
+        touch(*o);
+    });
 }
 
 } // namespace palp

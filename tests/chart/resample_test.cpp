@@ -111,6 +111,20 @@ TEST(Resample, LogMeanJittersLessThanNearestWhileTheGridSlides)
     EXPECT_GT(jitter(Sampling::nearest), 0.05) << "else the fixture has no step to feel";
 }
 
+TEST(Resample, PointsMatterAsFarAsTheKernelReaches)
+{
+    const Window window = Window::square(1, 20);
+    Scatter      s      = scatter(1, 3000, 5, [](const ChartPoint&) { return 1.0; });
+    const double reach  = kernelReach(s.spacing, window.grid.spacingX);
+    const auto   edge   = [&](double beyond) {
+        s.positions.back()  = {0.5 + beyond, 0};
+        s.rigidities.back() = 100;
+        return resampleRigidity(window, s.positions, s.rigidities, Sampling::logMean, s.spacing).rigidity(20, 10);
+    };
+    EXPECT_GT(edge(0.99 * reach), 1 + 1e-6) << "a weight of 4e-4 among some ten";
+    EXPECT_NEAR(edge(1.01 * reach), 1, 1e-12) << "rounding";
+}
+
 TEST(Resample, HolesAndBordersAreCountedAndFilledFromTheNearestPoint)
 {
     const Window window = Window::square(1, 20);

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
 
@@ -40,10 +42,12 @@ TEST(Samples, TheSeedDecidesEveryPoint)
     EXPECT_EQ(std::mt19937_64(1)(), 2469588189546311528ULL);
 }
 
-/// Points per area must not depend on the place: cut the ellipsoid by x into slices of equal area and count.
-TEST(Samples, EllipsoidPointsAreUniformPerArea)
+class RoundSamples : public testing::TestWithParam<const char*> {};
+
+/// Points per area must not depend on the place: cut the ellipsoid by x into slices and count.
+TEST_P(RoundSamples, PointsAreUniformPerArea)
 {
-    const Sample&    sample = sampleNamed("ellipsoid");
+    const Sample&    sample = sampleNamed(GetParam());
     const PointCloud cloud  = makeSample(sample, 40'000, 3);
     const glm::dvec3 axes   = boundsOf(sample).high;
     // Area of the part x < t by quadrature in the parameters (u, longitude): x = a u.
@@ -53,7 +57,7 @@ TEST(Samples, EllipsoidPointsAreUniformPerArea)
         for (int i = 0; i < kSteps; ++i)
             for (int j = 0; j < kSteps; ++j) {
                 const double u = -1 + (t + 1) * (i + 0.5) / kSteps, s = std::sqrt(1 - u * u);
-                const double angle = 2 * 3.14159265358979323846 * (j + 0.5) / kSteps;
+                const double angle = 2 * std::numbers::pi * (j + 0.5) / kSteps;
                 const double y = s * std::cos(angle), z = s * std::sin(angle);
                 area += axes.x * axes.y * axes.z *
                         std::sqrt(u * u / (axes.x * axes.x) + y * y / (axes.y * axes.y) + z * z / (axes.z * axes.z)) *
@@ -69,6 +73,16 @@ TEST(Samples, EllipsoidPointsAreUniformPerArea)
         const double sigma    = std::sqrt(expected * (1 - expected) / double(cloud.size()));
         EXPECT_NEAR(double(count) / double(cloud.size()), expected, 4 * sigma) << "binomial spread, 4 sigma, at " << t;
     }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RoundSamples, testing::Values("ellipsoid", "ear-lobe"));
+
+TEST(Samples, TheSheetsOfTheLobeMeetAtTheRim)
+{
+    const glm::dvec3 axes  = boundsOf(sampleNamed("ear-lobe")).high;
+    const PointCloud cloud = makeSample(sampleNamed("ear-lobe"), 20'000, 1);
+    for (const glm::dvec3& p : cloud.positions())
+        EXPECT_NEAR(glm::length(p / axes), 1, 1e-15) << "one ellipsoid holds both; rounding";
 }
 
 TEST(Samples, WartAndTendonsAreStifferThanTheirSurroundings)

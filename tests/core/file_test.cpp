@@ -101,6 +101,13 @@ TEST_F(Files, AFullDiskIsReported)
     EXPECT_NE(refusal.find((folder_ / "full").string() + ": cannot be written: No space left"), std::string::npos)
         << refusal;
     EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "full"));
+
+    // More than a buffer holds: the disk is full while `write` still writes.
+    const auto writeMuch = [](std::ostream& stream) {
+        for (int line = 0; line < 100'000; ++line) stream << "much\n";
+    };
+    const std::string early = refusalOf([&] { writeFileWhole(folder_ / "full", writeMuch); });
+    EXPECT_NE(early.find("cannot be written: No space left"), std::string::npos) << early;
 }
 
 TEST_F(Files, ADeviceIsWrittenToAndNotReplaced)

@@ -45,9 +45,24 @@ TEST(Quantity, PeopleReadThreeDigitsAndAPrefix)
 {
     EXPECT_EQ(formatQuantity(0.0042, "m"), "4.20 mm");
     EXPECT_EQ(formatQuantity(1.74e6, "Pa/m"), "1.74 MPa/m");
-    EXPECT_EQ(formatQuantity(0, "N"), "0.00 N");
+    EXPECT_EQ(formatQuantity(0, "N"), "0 N");
     EXPECT_EQ(formatQuantity(-35e-6, "m"), "-35.0 um");
     EXPECT_EQ(formatQuantity(999.96, "N"), "1.00 kN");
+    EXPECT_EQ(formatQuantity(1e-12, "m"), "1.00 pm");
+    EXPECT_EQ(formatQuantity(999e12, "Pa"), "999 TPa");
+}
+
+TEST(Quantity, BeyondThePrefixesTheUnitStays)
+{
+    EXPECT_EQ(formatQuantity(1e300, "Pa"), "1.0e+300 Pa");
+    EXPECT_EQ(formatQuantity(-1e15, "N m"), "-1.0e+15 N m");
+    EXPECT_EQ(formatQuantity(3.5e-13, "m"), "3.5e-13 m");
+}
+
+TEST(Quantity, APlainNumberIsInTheUnitThatTheCallerNames)
+{
+    EXPECT_DOUBLE_EQ(parseQuantity("3", Dimension::length, "--thickness", 1e-3), 3e-3);
+    EXPECT_DOUBLE_EQ(parseQuantity("3cm", Dimension::length, "--thickness", 1e-3), 3e-2);
 }
 
 } // namespace

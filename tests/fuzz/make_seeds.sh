@@ -1,7 +1,7 @@
 #!/bin/sh
 # Writes small files that the readers accept, or nearly, for the fuzzers to start from. Argument: the folder.
 set -eu
-mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/npy"
+mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/npy" "$1/problem"
 cd "$1"
 
 # The floats 1 and 2, little and big endian, and the doubles 1 and 2, little endian; printf takes octal.
@@ -30,3 +30,17 @@ printf '1 2 a 3 9\n4 5 b 6 9\n' >text/columns
 head="{'descr': '<f8', 'fortran_order': False, 'shape': (1, 2), }"
 printf '\223NUMPY\001\000\166\000%-117s\n'"$d1$d2" "$head" >npy/double
 printf '\223NUMPY\002\000\166\000\000\000%-117s\n'"$f1$f2" "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 1), }" >npy/float
+
+plate='"size": [1, 1.5], "cells": [4, 4], "poisson": 0.3'
+point='"load": {"law": "point", "force": 2, "at": [0.5, 0.75]}'
+cat >problem/all <<END
+{$plate, // a comment
+ "edges": {"x0": "clamped", "x1": "free", "z0": "supported", "z1": "clamped"}, "foundation": 5,
+ "rigidity": {"law": "linear", "from": 1, "to": 10, "axis": "z"}, $point, "probes": [[0.25, 0.25], [1, 1.5]]}
+END
+printf '{%s, "rigidity": {"law": "grid", "file": "D.npy"}, "load": {"law": "grid", "file": "D.npy"}}' "$plate" >problem/grid
+printf '{%s, "rigidity": {"law": "constant", "value": 2}, "load": {"law": "uniform", "pressure": 3}}' "$plate" >problem/uniform
+printf '{%s, "rigidity": {"law": "gaussian", "low": 1, "high": 9, "centre": [0.5, 0.5], "sigma": 0.1}, "load": {"law": "gaussian", "force": 1, "centre": [0.5, 0.5], "sigma": 0.05}}' "$plate" >problem/gaussian
+printf '{%s, "rigidity": {"law": "exponential", "from": 1, "to": 10, "start": [0, 0], "end": [1, 1]}, %s}' "$plate" "$point" >problem/exponential
+printf '{%s, "rigidity": {"law": "checker", "low": 1, "high": 2, "edge": 0.2}, %s}' "$plate" "$point" >problem/checker
+printf '{"size": [1, 1], "cells": [4, 4096], "poisson": 0.5, "rigidity": 3, "load": {}}' >problem/refused

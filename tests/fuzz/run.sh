@@ -5,7 +5,6 @@ set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 build=$1
 seconds=${2:-5}
-formats='ply pcd text npy'
 mkdir -p "$build"
 
 clang=
@@ -29,7 +28,8 @@ cmake --build "$build" --target fuzzers --parallel 2 >"$build/build.log" 2>&1 ||
 
 sh "$here/make_seeds.sh" "$build/seeds"
 failed=0
-for format in $formats; do
+for harness in "$here"/*_fuzzer.cpp; do
+    format=$(basename "$harness" _fuzzer.cpp)
     mkdir -p "$build/corpus/$format"
     dictionary=
     if [ -f "$here/$format.dict" ]; then dictionary="-dict=$here/$format.dict"; fi

@@ -57,7 +57,7 @@ void addSheet(std::vector<glm::dvec3>& points, double halfSide, double z)
 TEST(CloudSurface, RandomPointsOnASphereCloseWithoutHoles)
 {
     const int          side    = 300;
-    const CloudSurface surface = cloudSurface(sphere(20000), {}, {}, fromAbove(side));
+    const CloudSurface surface = cloudSurface(sphere(20000), {}, fromAbove(side));
 
     const double radius = kRadius * side / 0.12;
     int          holes = 0, spill = 0;
@@ -74,7 +74,7 @@ TEST(CloudSurface, RandomPointsOnASphereCloseWithoutHoles)
 TEST(CloudSurface, DepthAndNormalAreThoseOfTheSphere)
 {
     const int          side    = 300;
-    const CloudSurface surface = cloudSurface(sphere(40000), {}, {}, fromAbove(side));
+    const CloudSurface surface = cloudSurface(sphere(40000), {}, fromAbove(side));
 
     const double radius     = kRadius * side / 0.12;
     double       worstDepth = 0, squares = 0;
@@ -106,10 +106,10 @@ TEST(CloudSurface, NearerSheetHidesTheFartherOne)
     values.resize(points.size(), 1.0);
 
     CloudCamera        camera = fromAbove(300);
-    const CloudSurface above  = cloudSurface(points, values, {}, camera);
+    const CloudSurface above  = cloudSurface(points, values, camera);
     camera.toEye              = {0, 0, -1};
     camera.right              = {-1, 0, 0};
-    const CloudSurface below  = cloudSurface(points, values, {}, camera);
+    const CloudSurface below  = cloudSurface(points, values, camera);
 
     EXPECT_FLOAT_EQ(above.at(150, 150).value, 1);
     EXPECT_FLOAT_EQ(above.at(150, 50).value, 0);
@@ -129,23 +129,11 @@ TEST(CloudSurface, AFewMissingPointsAreClosedAndAWindowStaysOpen)
                 const glm::dvec3 p(1e-3 * (i + 0.5), 1e-3 * (j + 0.5), 0);
                 if (std::max(std::abs(p.x), std::abs(p.y)) > halfSide) points.push_back(p);
             }
-        return cloudSurface(points, {}, {}, fromAbove(300)).at(150, 150).coverage;
+        return cloudSurface(points, {}, fromAbove(300)).at(150, 150).coverage;
     };
 
     EXPECT_EQ(without(2.1e-3), 1);
     EXPECT_EQ(without(7.1e-3), 0);
-}
-
-TEST(CloudSurface, SuppliedNormalsReplaceFittedOnes)
-{
-    std::vector<glm::dvec3> points;
-    addSheet(points, 0.05, 0);
-    const std::vector<glm::dvec3> normals(points.size(), glm::dvec3(-3, 0, -4)); // of either sign, any length
-
-    const auto sample = cloudSurface(points, {}, normals, fromAbove(200)).at(100, 100);
-
-    EXPECT_NEAR(sample.normal.x, 0.6, 1e-5) << "single precision";
-    EXPECT_NEAR(sample.normal.z, 0.8, 1e-5);
 }
 
 TEST(CloudSurface, ACrowdedPixelDoesNotStallThePicture)
@@ -156,7 +144,7 @@ TEST(CloudSurface, ACrowdedPixelDoesNotStallThePicture)
         for (int j = -5; j <= 5; ++j) points.push_back({0.01 * i, 0.01 * j, 0});
 
     const std::clock_t start   = std::clock();
-    const CloudSurface surface = cloudSurface(points, {}, {}, fromAbove(400));
+    const CloudSurface surface = cloudSurface(points, {}, fromAbove(400));
     const double       seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
 
     EXPECT_EQ(surface.at(200, 200).coverage, 1);
@@ -168,8 +156,8 @@ TEST(CloudShading, DentOfOnePercentIsPlainlyVisible)
 {
     // 1 mm on a sphere of 100 mm, in plain light: no colours.
     const int  side   = 500;
-    const auto round  = cloudShading(cloudSurface(sphere(40000), {}, {}, fromAbove(side)));
-    const auto dented = cloudShading(cloudSurface(sphere(40000, 1e-3), {}, {}, fromAbove(side)));
+    const auto round  = cloudShading(cloudSurface(sphere(40000), {}, fromAbove(side)));
+    const auto dented = cloudShading(cloudSurface(sphere(40000, 1e-3), {}, fromAbove(side)));
     const auto at     = [&](const std::vector<float>& b, int x, int y) { return double(b[std::size_t(y * side + x)]); };
 
     EXPECT_LT(at(dented, 250, 250), 0.88 * at(round, 250, 250)) << "the bottom of the dent is at least 12 % darker";
@@ -204,40 +192,33 @@ TEST(CloudView, WindowShowsItsCentreInTheMiddle)
     CloudViewSettings settings;
     settings.width = settings.height = 200;
     settings.direction               = {0, 0, -1};
-    settings.map                     = ColourMap::grey;
     settings.range                   = ValueRange{-0.05, 0.05};
 
-    settings.window       = CloudWindow{{0.03, 0, 0}, 0.01};
-    const Image right     = embeddedImage(cloudViewSvg(points, values, settings));
-    settings.window       = CloudWindow{{-0.03, 0, 0}, 0.01};
-    const Image left      = embeddedImage(cloudViewSvg(points, values, settings));
-    settings.fieldOfView  = 0.4;
-    const Image projected = embeddedImage(cloudViewSvg(points, values, settings));
+    settings.window   = CloudWindow{{0.03, 0, 0}, 0.01};
+    const Image right = embeddedImage(cloudViewSvg(points, values, settings));
+    settings.window   = CloudWindow{{-0.03, 0, 0}, 0.01};
+    const Image left  = embeddedImage(cloudViewSvg(points, values, settings));
 
-    EXPECT_GT(right.at(100, 100).red, left.at(100, 100).red + 50);
-    EXPECT_GT(right.at(190, 100).red, right.at(10, 100).red + 10) << "x grows to the right";
-    EXPECT_NEAR(projected.at(100, 100).red, left.at(100, 100).red, 3) << "the plane of the centre keeps its size";
+    EXPECT_GT(right.at(100, 100).green, left.at(100, 100).green + 50);
+    EXPECT_GT(right.at(190, 100).green, right.at(10, 100).green + 10) << "x grows to the right";
 }
 
-TEST(CloudView, WholeCloudFitsThePictureInPerspectiveToo)
+TEST(CloudView, WholeCloudFitsThePicture)
 {
-    const auto        points = sphere(20000);
     CloudViewSettings settings;
     settings.width = 300, settings.height = 200;
-    for (double fieldOfView : {0.0, 0.5, 1.5}) {
-        settings.fieldOfView = fieldOfView;
-        const Image image    = embeddedImage(cloudViewSvg(points, {}, settings));
 
-        int highest = image.height, border = 0;
-        for (int y = 0; y < image.height; ++y)
-            for (int x = 0; x < image.width; ++x)
-                if (image.at(x, y) != Rgb8{255, 255, 255}) {
-                    highest = std::min(highest, y);
-                    border += x == 0 || y == 0 || x + 1 == image.width || y + 1 == image.height;
-                }
-        EXPECT_EQ(border, 0) << fieldOfView;
-        EXPECT_LT(highest, 40) << "and it fills most of it, at " << fieldOfView;
-    }
+    const Image image = embeddedImage(cloudViewSvg(sphere(20000), {}, settings));
+
+    int highest = image.height, border = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            if (image.at(x, y) != Rgb8{255, 255, 255}) {
+                highest = std::min(highest, y);
+                border += x == 0 || y == 0 || x + 1 == image.width || y + 1 == image.height;
+            }
+    EXPECT_EQ(border, 0);
+    EXPECT_LT(highest, 40) << "and it fills most of it";
 }
 
 TEST(CloudView, DegenerateCloudsGiveThePictureOfTheContract)

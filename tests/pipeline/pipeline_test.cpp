@@ -292,8 +292,9 @@ TEST(Pipeline, AHandThatComesAlongTheSurfaceIsRefused)
 
 TEST(Pipeline, AWindowThatHoldsNextToNothingIsRefused)
 {
+    const PointCloud        sheet = makeSample(sampleNamed("sheet"), 2000, 12);
     std::vector<glm::dvec3> metres;
-    for (const glm::dvec3& p : makeSample(sampleNamed("sheet"), 2000, 12).positions()) metres.push_back(1000.0 * p);
+    for (const glm::dvec3& p : sheet.positions()) metres.push_back(1000.0 * p);
     const Object large(PointCloud(metres, std::vector<double>(metres.size(), 1e6), StiffnessKind::modulus));
     EXPECT_THROW((void)large.touch(metres[0], {0, 0, 1}, kCoarse), Error) << "millimetres read as metres";
 

@@ -123,7 +123,11 @@ TEST(RigidityThatJumps, ConvergesWithFirstOrder)
         // Nodes on the rim belong to the box, so the box is half a spacing too wide: an error of first order.
         EXPECT_GE(r.order(0), 0.85) << name(c.load);
         EXPECT_GE(r.order(1), 0.9) << name(c.load);
-        EXPECT_LE(r.error(2), 0.02) << name(c.load) << ": measured 0.011 to 0.018 at 128 cells";
+        EXPECT_LE(r.error(2), 0.03) << name(c.load) << ": measured 0.011 to 0.025 at 128 cells";
+        for (std::size_t k = 0; k < r.limits.size(); ++k) {
+            const double extrapolated = 2 * r.values[2][k] - r.values[1][k];
+            EXPECT_NEAR(extrapolated / r.limits[k], 1, 4e-3) << name(c.load) << ": measured 1.6e-3 to 3.0e-3";
+        }
     }
 }
 
@@ -179,7 +183,7 @@ TEST(SupportedRectangle, MatchesNaviersSeriesAtEveryAspectRatioAndFoundation)
 TEST(CellsThatAreNotSquare, GiveTheAnswerOfSquareOnes)
 {
     for (const VariableCase& c : kVariableRigidity)
-        if (c.law == Law::wartOffCentre && c.load != Load::point) {
+        if (c.law == Law::wartOffCentre) {
             expectSecondOrder(platesOf(c.law, 24, 40), c.load, valuesOf(c));
             expectSecondOrder(platesOf(c.law, 40, 16), c.load, valuesOf(c));
         }

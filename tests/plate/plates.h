@@ -65,6 +65,7 @@ inline NodeField nodalForce(const PlateGrid& grid, Load load)
     if (const auto at = loadedPoint(load)) return pointLoad(grid, 1, (*at)[0], (*at)[1]);
     if (load == Load::uniform) return uniformLoad(grid, 1);
     if (load == Load::gaussian) return gaussianLoad(grid, 1, 0.25, 0.375, 0.05);
+    if (load == Load::gaussianCentre) return gaussianLoad(grid, 1, 0.5, 0.5, 0.05);
     NodeField pressure(grid); // hydrostatic
     for (int i = 0; i < grid.nodesX(); ++i)
         for (int j = 0; j < grid.nodesZ(); ++j) pressure(i, j) = i * grid.spacingX;
@@ -73,8 +74,8 @@ inline NodeField nodalForce(const PlateGrid& grid, Load load)
 
 inline const char* name(Load load)
 {
-    constexpr std::array kNames = {"uniform",     "gaussian",    "point",       "hydrostatic",
-                                   "pointCentre", "pointCorner", "pointBeside", "pointOnEdge"};
+    constexpr std::array kNames = {"uniform",     "gaussian",    "gaussianCentre", "point",      "hydrostatic",
+                                   "pointCentre", "pointCorner", "pointBeside",    "pointOnEdge"};
     return kNames[std::size_t(load)];
 }
 

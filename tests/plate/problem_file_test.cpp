@@ -206,6 +206,20 @@ TEST_F(ProblemFile, PlacesBesideThePlateAreRefused)
     EXPECT_TRUE(holds(refusal(with("[[0.25, 0.25], [1, 1.5]]", "0.25")), {"probes", "0.25"}));
 }
 
+TEST_F(ProblemFile, TheFarEdgeIsOnThePlateWhereCellsTimesSpacingRoundBelowTheSize)
+{
+    for (const int cells : {49, 98}) {
+        ASSERT_LT(cells * (1.0 / cells), 1.0) << "these cells no longer show the rounding";
+        const std::string  side = std::to_string(cells);
+        const PlateProblem problem =
+            read(R"({"size": [1, 1], "cells": [)" + side + ", " + side +
+                 R"(], "poisson": 0.3, "rigidity": {"law": "constant", "value": 1}, "probes": [[1, 1]],
+                 "load": {"law": "point", "force": 2, "at": [1, 0.5]}})");
+        EXPECT_NEAR(total(problem.nodalForce), 2, 1e-12);
+        EXPECT_EQ(problem.probes.size(), 1u);
+    }
+}
+
 TEST_F(ProblemFile, APlateThatNothingHoldsIsRefused)
 {
     const std::string loose = with(R"({"x0": "clamped", "x1": "free", "z0": "supported", "z1": "clamped"},

@@ -122,6 +122,96 @@ bad 'bad input keeps the old target' 'short.ply' convert short.ply kept.ply
 [ "$(cat kept.ply)" = precious ] && passed=$((passed + 1)) || complain 'an old file was lost'
 mkdir full && : >full/out
 bad 'a folder that is a file' 'full/out' touch sample:skin --points 5000 --cells 48 --out full/out
+# --- options that cannot apply
+for option in '--stiffness-property quality' '--range 1kPa,2kPa' --log-range '--uniform 3kPa' '--stiffness-unit N_m' '--columns x,y,z' --drop-invalid; do
+    # shellcheck disable=SC2086  # an option and its value
+    bad "a sample with $option" "${option%% *}: expected a file" info sample:skin $option
+done
+bad 'an unknown unit on a sample' 'parsec' info sample:skin --unit parsec
+for option in --points --seed; do bad "a file with $option" "$option: expected a sample" info skin.ply $option 100; done
+bad 'points below zero' 'found -3' info sample:skin --points -3
+bad 'no points' '--points: expected at least 16, found 0' info sample:skin --points 0
+bad 'no cells' 'found 0' touch sample:skin --cells 0
+bad 'a scale without a range' '--range' info skin.ply --log-range
+bad 'uniform where there is a stiffness' '--uniform: expected a file without' info skin.ply --uniform 300kPa
+bad 'uniform beside a law' '--uniform: --stiffness replaces' info skin.ply --uniform 300kPa --stiffness constant:value=1
+bad 'a folder without a name' '--out: expected a value' touch sample:skin --out ''
+bad 'a law with a unit' 'SI units' info skin.ply --stiffness constant:value=300kPa
+bad 'the comment says otherwise' 'stiffness_unit Pa' info skin.ply --stiffness-unit N_m
+bad 'an unknown command' 'frob' frob
+bad 'an answer that is no array' '.npy' solve plate.json --out plate.json
+cp plate.json plate.npy
+bad 'an answer over its problem' 'problem file itself' solve plate.npy --out ./plate.npy
+sed 's/"constant","value"/"odd","value"/' plate.json >odd.json
+bad 'an unknown rigidity law' 'checker, grid' solve odd.json
+
+# --- values beyond all sense
+bad 'a window beyond the world' '--window: expected a value from 1e-09 to 10000 m' touch sample:sheet --window 1e300m --footprint 1e299m
+for option in --thickness --footprint --window; do bad "nothing of $option" "$option" touch sample:sheet $option 1e-12m; done
+bad 'a force beyond the world' '--force' touch sample:sheet --force 1e308 --thickness 0.001mm
+bad 'a foundation beyond the world' '--foundation' touch sample:sheet --foundation 1e300
+bad 'a place beyond the world' '--at' touch sample:sheet --at 1e300,0,0
+bad 'a stiffness beyond the world' 'not finite' touch sample:sheet --points 5000 --cells 16 --stiffness constant:value=1e307 --thickness 1e-9m
+
+# --- what is assumed is said
+printf 'x,y,z\n' >bare.csv
+awk 'BEGIN { for (i = -20; i <= 20; ++i) for (j = -20; j <= 20; ++j) print i "," j "," 0.01 * (i * i + j * j) }' >>bare.csv
+good 'a bare file' convert bare.csv bare.ply
+holds 'assumed metres'
+holds '300 kPa assumed'
+good 'a bare file, touched in millimetres' touch bare.csv --unit mm --at 0,0,0 --window 20 --thickness 3 --footprint 2mm --cells 32
+holds '300 kPa assumed'
+holds 'mm, from the setting'
+holds 'thickness 3.00 mm'
+bad 'a suggested place on the cloud' '--at 0.00,0.00,' touch bare.csv --unit mm
+bad 'no place near the cloud' '--unit' touch bare.csv --at 5,5,1000 --window 20 --footprint 2 --cells 16
+good 'a law beside the cloud' info bare.csv --unit mm --stiffness disc:from=1,to=2,centre=5\;5\;5,radius=1
+holds 'same stiffness'
+printf '0 0 0 1\n1 0 0 1\n0 1 0 1\n' >three.xyz
+good 'three points' info three.xyz
+holds 'spacing     unknown'
+printf 'x [mm],y [mm],z [mm]\n0,0,0\n1,0,0\n0,1,0\n' >units.csv
+bad 'a header with units' '--columns' info units.csv
+good 'such a header with names' info units.csv --columns x,y,z
+name=$(printf 'caf\351.csv')
+cp bare.csv "$name"
+good 'a name that is not UTF-8' info "$name" --json
+good 'nor in convert' convert bare.csv "$name" --json
+good 'nor in touch' touch "$name" --unit mm --at 0,0,0 --window 20 --footprint 2 --cells 16 --json --out "folder $name"
+
+# --- standard output that cannot be written
+full() { # full DESCRIPTION ARGUMENTS...: exit 2 and a sentence, on a full device and on a closed output
+    what=$1; shift
+    [ -c /dev/full ] || return
+    for where in full closed; do
+        if [ $where = full ]; then "$palpate" "$@" >/dev/full 2>err.txt; else "$palpate" "$@" >&- 2>err.txt; fi
+        code=$?
+        if [ $code -eq 2 ] && grep -q 'standard output cannot be written' err.txt; then passed=$((passed + 1)); else complain "$what ($where): exit $code: $(cat err.txt)"; fi
+    done
+}
+full 'help' --help
+full 'version' --version
+full 'help of a command' touch --help
+full 'solve' solve plate.json
+full 'solve for scripts' solve plate.json --json
+full 'touch' touch sample:sheet --points 5000 --cells 16
+full 'info' info skin.ply
+full 'samples' info --samples
+full 'convert' convert skin.ply other.ply
+
+experiment=$(dirname "$palpate")/paper_experiment
+if [ -x "$experiment" ]; then
+    keep=$palpate palpate=$experiment
+    good 'help of the experiment' --help
+    holds 'usage:'
+    full 'help of the experiment' --help
+    palpate=$keep
+fi
+
+# --- a folder without touch.json holds no whole set
+mkdir -p broken/profile.svg && : >broken/touch.json
+bad 'a set that cannot be finished' 'profile.svg' touch sample:sheet --points 5000 --cells 48 --out broken
+[ ! -e broken/touch.json ] && passed=$((passed + 1)) || complain 'an unfinished folder kept its touch.json'
 left=$(find . -name '*.part')
 [ -z "$left" ] && passed=$((passed + 1)) || complain "left behind: $left"
 
