@@ -46,6 +46,7 @@ void main()
         real pq = total(load * push.partials);
         CgStep now = stepOf(pq, state[at + kStateRz], state[at + kStateEnergy], state[at + kStateGain],
                             state[at + kStateRatio], state[at + kStateSteps]);
+        barrier(); // every invocation has read the state
         if (leads) {
             state[at + kStateAlpha]    = now.alpha;
             state[at + kStateGain]     = now.gain;

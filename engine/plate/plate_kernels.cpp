@@ -38,12 +38,16 @@
 namespace palp {
 namespace {
 
-// Any multiple of 8 along x is within a few per cent of the best on every device that was tried; small levels waste less
-// of a small group.
-constexpr gpu::Workgroup kTile{16, 4, 1};   // nodes of a grid
-constexpr gpu::Workgroup kLine{64, 1, 1};   // nodes one after the other
-constexpr gpu::Workgroup kAlone{64, 1, 1};  // the one workgroup of a serial kernel; kMostHalfBand lanes are busy
-constexpr gpu::Workgroup kReduce{128, 1, 1}; // at most kMostInvocations of cg_scalars.comp
+/// Shapes of workgroups. A software device runs 8 invocations side by side, pays for each more and for idle ones in small
+/// levels; hardware wants wide rows for its memory, and hides the waits of serial kernels behind more invocations.
+struct Shapes {
+    gpu::Workgroup tile;   ///< nodes of a grid
+    gpu::Workgroup line;   ///< nodes one after the other
+    gpu::Workgroup alone;  ///< the one workgroup of a serial kernel; kMostHalfBand invocations find work
+    gpu::Workgroup reduce; ///< at most kMostInvocations of cg_scalars.comp
+};
+constexpr Shapes kSoftware{{8, 8, 1}, {64, 1, 1}, {8, 1, 1}, {64, 1, 1}};
+constexpr Shapes kHardware{{32, 4, 1}, {64, 1, 1}, {64, 1, 1}, {256, 1, 1}};
 
 template <class Push, std::size_t N>
 gpu::KernelCode code(const char* name, const std::uint32_t (&spirv)[N], int buffers)
@@ -56,6 +60,7 @@ gpu::KernelCode code(const char* name, const std::uint32_t (&spirv)[N], int buff
 PlateKernels::PlateKernels(gpu::Context& context)
 {
     using namespace shared;
+    const Shapes& shapes = context.device().kind == "software" ? kSoftware : kHardware;
     const bool f64  = context.device().float64;
     const auto real = [&](gpu::KernelCode f32Code, gpu::KernelCode f64Code) { return f64 ? f64Code : f32Code; };
 #define PALPATE_REAL(Push, name, buffers) real(code<Push>(#name "_f32", name##_f32_spv, buffers), code<Push>(#name "_f64", name##_f64_spv, buffers))
@@ -63,27 +68,27 @@ PlateKernels::PlateKernels(gpu::Context& context)
     const auto kernel = [&](const gpu::KernelCode& what, gpu::Workgroup group) { return gpu::Kernel(context, what, group); };
     all_.reset(new All{
         f64,
-        kernel(PALPATE_FLOAT(TransferPush, rigidity_coarsen, 2), kTile),
-        kernel(PALPATE_FLOAT(LevelPush, plate_divisor, 2), kTile),
-        kernel(PALPATE_FLOAT(LevelPush, coarse_assemble, 2), kTile),
-        kernel(PALPATE_FLOAT(LevelPush, coarse_factor, 2), kAlone),
-        kernel(PALPATE_FLOAT(RelaxPush, plate_relax_first, 3), kTile),
-        kernel(PALPATE_FLOAT(RelaxPush, plate_relax, 6), kTile),
-        kernel(PALPATE_FLOAT(LevelPush, plate_residual, 4), kTile),
-        kernel(PALPATE_FLOAT(TransferPush, plate_restrict, 4), kTile),
-        kernel(PALPATE_FLOAT(TransferPush, plate_correct, 5), kTile),
-        kernel(PALPATE_FLOAT(LevelPush, coarse_solve, 3), kAlone),
-        kernel(PALPATE_REAL(LevelPush, plate_start, 5), kTile),
-        kernel(PALPATE_REAL(TransferPush, plate_interpolate, 4), kTile),
-        kernel(PALPATE_REAL(TransferPush, plate_interpolate_first, 4), kTile),
-        kernel(PALPATE_REAL(VectorPush, cg_dots, 5), kLine),
-        kernel(PALPATE_REAL(ScalarsPush, cg_beta, 2), kReduce),
-        kernel(PALPATE_REAL(VectorPush, cg_direction, 4), kLine),
-        kernel(PALPATE_REAL(LevelPush, plate_apply, 3), kTile),
-        kernel(PALPATE_REAL(VectorPush, cg_step_dots, 3), kLine),
-        kernel(PALPATE_REAL(ScalarsPush, cg_step, 3), kReduce),
-        kernel(PALPATE_REAL(VectorPush, cg_update, 6), kLine),
-        kernel(PALPATE_REAL(VectorPush, plate_result, 3), kLine)});
+        kernel(PALPATE_FLOAT(TransferPush, rigidity_coarsen, 2), shapes.tile),
+        kernel(PALPATE_FLOAT(LevelPush, plate_divisor, 2), shapes.tile),
+        kernel(PALPATE_FLOAT(LevelPush, coarse_assemble, 2), shapes.tile),
+        kernel(PALPATE_FLOAT(LevelPush, coarse_factor, 2), shapes.alone),
+        kernel(PALPATE_FLOAT(RelaxPush, plate_relax_first, 3), shapes.tile),
+        kernel(PALPATE_FLOAT(RelaxPush, plate_relax, 6), shapes.tile),
+        kernel(PALPATE_FLOAT(LevelPush, plate_residual, 4), shapes.tile),
+        kernel(PALPATE_FLOAT(TransferPush, plate_restrict, 4), shapes.tile),
+        kernel(PALPATE_FLOAT(TransferPush, plate_correct, 5), shapes.tile),
+        kernel(PALPATE_FLOAT(LevelPush, coarse_solve, 3), shapes.alone),
+        kernel(PALPATE_REAL(LevelPush, plate_start, 5), shapes.tile),
+        kernel(PALPATE_REAL(TransferPush, plate_interpolate, 4), shapes.tile),
+        kernel(PALPATE_REAL(TransferPush, plate_interpolate_first, 4), shapes.tile),
+        kernel(PALPATE_REAL(VectorPush, cg_dots, 5), shapes.line),
+        kernel(PALPATE_REAL(ScalarsPush, cg_beta, 2), shapes.reduce),
+        kernel(PALPATE_REAL(VectorPush, cg_direction, 4), shapes.line),
+        kernel(PALPATE_REAL(LevelPush, plate_apply, 3), shapes.tile),
+        kernel(PALPATE_REAL(VectorPush, cg_step_dots, 3), shapes.line),
+        kernel(PALPATE_REAL(ScalarsPush, cg_step, 3), shapes.reduce),
+        kernel(PALPATE_REAL(VectorPush, cg_update, 6), shapes.line),
+        kernel(PALPATE_REAL(VectorPush, plate_result, 3), shapes.line)});
 #undef PALPATE_REAL
 #undef PALPATE_FLOAT
 }
