@@ -141,8 +141,8 @@ void drawMarkers(SvgDrawing& svg, const CloudViewSettings& s, const CloudCamera&
     }
     for (std::size_t n = 0; n < s.markers.size(); ++n) {
         const CloudMarker& marker = s.markers[n];
-        const std::string  ink    = kInks[n % kInks.size()];
-        const auto         p      = camera.project(marker.position);
+        const std::string  ink = marker.label.empty() ? kInks[0] : kInks[n % kInks.size()]; // a colour needs its name
+        const auto         p   = camera.project(marker.position);
         if (!p || p->x < 0 || p->y < 0 || p->x >= s.width || p->y >= s.height) continue;
         const glm::dvec2 at = corner + glm::dvec2(p->x, p->y);
         if (const auto tip = pixelOf(marker.position + marker.arrow)) drawArrow(svg, at, *tip, ink);
