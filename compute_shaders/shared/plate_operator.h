@@ -38,23 +38,23 @@ real secondDifference(real before, real middle, real after)
     return (after - middle) - (middle - before);
 }
 
-// Bending moment along x of a node in column i, row j with rigidity D; zero where none acts, on hinged sides and outside.
-real momentX(PlateLevel g, int i, int j, real D, real p, real q)
+// Bending moment along x of the node in column i, row j; zero where none acts, on hinged sides and outside.
+real momentX(PlateLevel g, int i, int j, real nodeRigidity, real p, real q)
 {
-    real m = D * (isHingedZ(g, j) ? real(g.exx) * p : real(g.kxx) * p + real(g.kxz) * q);
+    real m = nodeRigidity * (isHingedZ(g, j) ? real(g.exx) * p : real(g.kxx) * p + real(g.kxz) * q);
     return i < 0 || i > g.cellsX || isHingedX(g, i) ? real(0) : m;
 }
 
-real momentZ(PlateLevel g, int i, int j, real D, real p, real q)
+real momentZ(PlateLevel g, int i, int j, real nodeRigidity, real p, real q)
 {
-    real m = D * (isHingedX(g, i) ? real(g.ezz) * q : real(g.kzz) * q + real(g.kxz) * p);
+    real m = nodeRigidity * (isHingedX(g, i) ? real(g.ezz) * q : real(g.kzz) * q + real(g.kxz) * p);
     return j < 0 || j > g.cellsZ || isHingedZ(g, j) ? real(0) : m;
 }
 
 // Twisting moment of the cell whose first corner is (i, j); zero outside.
-real twistingMoment(PlateLevel g, int i, int j, real sumOfD, real w00, real w10, real w01, real w11)
+real twistingMoment(PlateLevel g, int i, int j, real sumOfRigidities, real w00, real w10, real w01, real w11)
 {
-    real m = real(g.twist) * sumOfD * ((w00 - w10) - (w01 - w11));
+    real m = real(g.twist) * sumOfRigidities * ((w00 - w10) - (w01 - w11));
     return i < 0 || j < 0 || i >= g.cellsX || j >= g.cellsZ ? real(0) : m;
 }
 

@@ -11,7 +11,7 @@ real relaxationDivisor(real diagonal, real sameColour)
     return max(diagonal / real(1.1f), real(0.51f) * (diagonal + sameColour));
 }
 
-real relaxed(real w, real force, real forceOfW, real inverseDivisor)
+real relaxed(real before, real load, real forceOfBefore, real inverse)
 {
-    return w + (force - forceOfW) * inverseDivisor;
+    return before + (load - forceOfBefore) * inverse;
 }

@@ -24,12 +24,12 @@ float meanAlongZ(int i, int j, int fineCellsZ, bool coarsened)
                        fineRigidity(i, mirrored(j + 1, fineCellsZ)));
 }
 
-float coarseRigidityAt(PlateLevel fine, PlateLevel coarse, int i, int j)
+float coarseRigidityAt(PlateLevel from, PlateLevel to, int i, int j)
 {
-    bool alongX = coarse.cellsX != fine.cellsX, alongZ = coarse.cellsZ != fine.cellsZ;
-    int  fi = finePlace(i, fine.cellsX, coarse.cellsX), fj = finePlace(j, fine.cellsZ, coarse.cellsZ);
-    if (!alongX) return meanAlongZ(fi, fj, fine.cellsZ, alongZ);
-    return meanOfThree(meanAlongZ(mirrored(fi - 1, fine.cellsX), fj, fine.cellsZ, alongZ),
-                       meanAlongZ(fi, fj, fine.cellsZ, alongZ),
-                       meanAlongZ(mirrored(fi + 1, fine.cellsX), fj, fine.cellsZ, alongZ));
+    bool alongX = to.cellsX != from.cellsX, alongZ = to.cellsZ != from.cellsZ;
+    int  fi = finePlace(i, from.cellsX, to.cellsX), fj = finePlace(j, from.cellsZ, to.cellsZ);
+    if (!alongX) return meanAlongZ(fi, fj, from.cellsZ, alongZ);
+    return meanOfThree(meanAlongZ(mirrored(fi - 1, from.cellsX), fj, from.cellsZ, alongZ),
+                       meanAlongZ(fi, fj, from.cellsZ, alongZ),
+                       meanAlongZ(mirrored(fi + 1, from.cellsX), fj, from.cellsZ, alongZ));
 }
