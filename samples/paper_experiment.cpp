@@ -88,14 +88,15 @@ PointCloud ellipsoid(SpatialLaw::Kind kind)
     return makeSample(sample, sample.points, 1, law);
 }
 
-Series press(const PointCloud& cloud, const NeighbourIndex& index, const std::string& law, Preset preset)
+Series press(const PointCloud& cloud, const NeighbourIndex& index, const std::string& law, Preset preset,
+             PlateDevice& device)
 {
     const glm::dvec3 axes = boundsOf(sampleNamed("ellipsoid")).high;
     Series           series{law, palp::name(preset), settingsFor(preset), {}};
     for (double x : kPlaces) {
         const glm::dvec3 place{x, 0, axes.z * std::sqrt(1 - x * x / (axes.x * axes.x))};
         const Contact    contact = touchAt(cloud, index, place, glm::dvec3(0, 0, 1), 5e-3);
-        series.touches.push_back({x, deform(cloud, index, contact, series.settings)});
+        series.touches.push_back({x, deform(cloud, index, contact, series.settings, device)});
     }
     return series;
 }
@@ -203,12 +204,12 @@ std::string productPlot(const std::vector<Series>& all)
     return linePlotSvg(plot, settings);
 }
 
-nlohmann::json numbers(const std::vector<Series>& all)
+nlohmann::json numbers(const std::vector<Series>& all, PlateDevice& device)
 {
     nlohmann::json rows = nlohmann::json::array();
     for (const Series& series : all)
         for (const Touch& touch : series.touches) {
-            const auto error = discretisationError(touch.patch, series.settings);
+            const auto error = discretisationError(touch.patch, series.settings, device);
             rows.push_back({{"law", series.law},
                             {"preset", series.preset},
                             {"x", touch.x},
@@ -332,13 +333,15 @@ std::string skinSection(const std::filesystem::path& folder)
 void run(const std::filesystem::path& folder)
 {
     makeFolder(folder);
+    PlateDevice         device;
     std::vector<Series> all;
     Progress            progress("pressing");
     for (const auto& [law, kind] :
          {std::pair("linear", SpatialLaw::Kind::linear), std::pair("hyperbolic", SpatialLaw::Kind::hyperbolic)}) {
         const PointCloud     cloud = ellipsoid(kind);
         const NeighbourIndex index(cloud.positions());
-        const Series pair[]  = {press(cloud, index, law, Preset::paper), press(cloud, index, law, Preset::palpate)};
+        const Series pair[]  = {press(cloud, index, law, Preset::paper, device),
+                               press(cloud, index, law, Preset::palpate, device)};
         const double deepest = std::max(pair[0].middle().deepest(), pair[1].middle().deepest());
         for (const Series& series : pair) {
             writeDeformed(folder / (series.name() + ".ply"), cloud, series);
@@ -347,7 +350,7 @@ void run(const std::filesystem::path& folder)
             progress.at(all.size(), 4);
         }
     }
-    const nlohmann::json rows = numbers(all);
+    const nlohmann::json rows = numbers(all, device);
     write(folder / "results.json", rows.dump(2) + "\n");
     write(folder / "summary.svg", summaryPlot(all));
     write(folder / "product.svg", productPlot(all));

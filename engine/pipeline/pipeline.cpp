@@ -11,7 +11,6 @@
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/plate/load.h"
-#include "engine/plate/plate_solver_reference.h"
 
 namespace palp {
 namespace {
@@ -81,7 +80,7 @@ bool isClosedBehind(const PointCloud& cloud, const glm::dvec3& contact, const gl
 Chart chartAt(const PointCloud& cloud, Patch& patch, const PatchSettings& settings, double spacing)
 {
     constexpr double kSteep = 0.17, kClear = 0.5; // cosines of 80 and 60 degrees [1]
-    const Contact&   contact = patch.contact;
+    const Contact    contact = patch.contact;
     const auto       around  = [&](const glm::dvec3& side) {
         return Chart::around(patch.sphere.fit, contact.point, side, settings.map, settings.frame);
     };
@@ -98,7 +97,8 @@ Chart chartAt(const PointCloud& cloud, Patch& patch, const PatchSettings& settin
     int axis = 0;
     for (int k = 1; k < 3; ++k)
         if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
-    return around({axis == 0, axis == 1, axis == 2});
+    patch.contact.outward = {axis == 0, axis == 1, axis == 2};
+    return around(patch.contact.outward);
 }
 
 /// Fills in the points of the near side and their places in the chart.
@@ -197,6 +197,13 @@ std::vector<double> lift(const Patch& patch)
 Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
              const PatchSettings& settings)
 {
+    PlateDevice reference("reference");
+    return deform(cloud, index, contact, settings, reference);
+}
+
+Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
+             const PatchSettings& settings, PlateDevice& device)
+{
     Patch        patch;
     Stopwatch    watch;
     const double spacing = index.spacing();
@@ -227,14 +234,13 @@ Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact
     patch.times.resample = watch.lap();
 
     // ... and bends as a plate under a unit force (2.5, equations 6 to 8).
-    const ReferencePlateSolver solver(patch.plate);
-    patch.times.factorise    = watch.lap();
     const NodeField load     = unitLoad(patch.plate.grid, settings);
-    PlateSolution   solution = solver.solve(load);
+    PlateSolution   solution = device.solve(patch.plate, load, settings.tolerance);
     patch.response           = std::move(solution.deflection);
     patch.report             = std::move(solution.report);
     patch.compliance         = work(load, patch.response);
-    patch.times.solve        = watch.lap();
+    patch.times.prepare      = patch.report.setUpMilliseconds;
+    patch.times.solve        = watch.lap() - patch.times.prepare;
 
     // The bent plate moves the points (2.6, equation 9), and plate and contact together are what the hand feels.
     patch.pointResponse    = lift(patch);
@@ -261,7 +267,7 @@ std::vector<glm::dvec3> displaced(const PointCloud& cloud, const Patch& patch, d
     return result;
 }
 
-std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings)
+std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings, PlateDevice& device)
 {
     const PlateGrid& fine = patch.plate.grid;
     if (!patch.deformed() || settings.cells % 4 != 0 || settings.footprintRadius < 2 * fine.spacingX) return {};
@@ -272,7 +278,7 @@ std::optional<double> discretisationError(const Patch& patch, const PatchSetting
         for (int j = 0; j < coarse.grid.nodesZ(); ++j) coarse.rigidity(i, j) = patch.plate.rigidity(2 * i, 2 * j);
     if (whyUnsolvable(coarse)) return {};
     const NodeField load       = unitLoad(coarse.grid, settings);
-    const double    compliance = work(load, ReferencePlateSolver(coarse).solve(load).deflection);
+    const double    compliance = work(load, device.solve(coarse, load, settings.tolerance).deflection);
     return std::abs(compliance - patch.compliance) / 3 / patch.compliance;
 }
 

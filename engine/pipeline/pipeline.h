@@ -13,6 +13,7 @@
 #include "engine/contact/contact.h"
 #include "engine/force/force_law.h"
 #include "engine/plate/plate.h"
+#include "engine/plate/plate_device.h"
 
 namespace palp {
 
@@ -29,7 +30,8 @@ struct PatchSettings {
     Map                  map             = Map::lambertAzimuthal;
     Sampling             sampling        = Sampling::logMean;
     PlateEdges           edges{}; ///< of the window
-    ForceLaw             forceLaw = ForceLaw::series;
+    ForceLaw             forceLaw  = ForceLaw::series;
+    double               tolerance = 1e-4; ///< of the plate's solution, relative; see PlateDevice::solve [1]
     std::optional<Frame> frame{}; ///< chart axes carried from the neighbouring contact
 };
 
@@ -51,9 +53,9 @@ enum class Preset {
 
 /// Milliseconds that each stage of deform() took.
 struct StageTimes {
-    double gather = 0, fit = 0, project = 0, resample = 0, factorise = 0, solve = 0, lift = 0;
+    double gather = 0, fit = 0, project = 0, resample = 0, prepare = 0, solve = 0, lift = 0;
 
-    [[nodiscard]] double total() const noexcept { return gather + fit + project + resample + factorise + solve + lift; }
+    [[nodiscard]] double total() const noexcept { return gather + fit + project + resample + prepare + solve + lift; }
 };
 
 /// What a unit force at the contact does to the neighbourhood.
@@ -91,9 +93,13 @@ struct Patch {
 /// Solves for a force of 1 N on a smooth footprint about the contact; the plate is linear, so any force follows.
 /// \throws Error if the plate cannot be solved (for example free on all sides), if the window holds next to nothing of
 ///         the cloud, or if the hand's direction runs along the surface
-/// \thread pure, except that it allocates and announces factorisations of many seconds on a terminal
+/// \thread as the device; announces factorisations of many seconds on a terminal
 /// \source Kumari & Chaudhuri 2016, sections 2.1 to 2.6
 /// \differs see differencesFromPaper() and engine/README.md
+[[nodiscard]] Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
+                           const PatchSettings& settings, PlateDevice& device);
+
+/// As above, with the plate solved by the reference solver.
 [[nodiscard]] Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
                            const PatchSettings& settings);
 
@@ -106,7 +112,8 @@ struct Patch {
 
 /// How far the compliance is from its limit of fine grids, relative [1]: the change of c from a grid twice as coarse,
 /// divided by 3 (Richardson, second order). Empty if the cells are not a multiple of 4 or the footprint is too small.
-[[nodiscard]] std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings);
+[[nodiscard]] std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings,
+                                                         PlateDevice& device);
 
 /// What a user must know about a result, in sentences: where theory or data end. Empty is good.
 [[nodiscard]] std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force);

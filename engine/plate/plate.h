@@ -59,7 +59,8 @@ struct SolveReport {
     std::optional<int>    iterations;       ///< [1]
     std::optional<double> errorEstimate;    ///< [1] relative, in the norm the solver documents
     std::optional<double> workUnits;        ///< [1] applications of the operator on the finest grid
-    double                milliseconds = 0; ///< wall time of this solve
+    double                setUpMilliseconds = 0; ///< wall time from the rigidity to a ready solver: a factorisation, coarser grids
+    double                milliseconds      = 0; ///< wall time of this solve
 };
 
 struct PlateSolution {

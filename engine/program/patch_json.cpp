@@ -60,7 +60,7 @@ Json windowJson(const Patch& patch)
 Json timesJson(const StageTimes& t)
 {
     return {{"gather", t.gather},       {"fit", t.fit},     {"project", t.project}, {"resample", t.resample},
-            {"factorise", t.factorise}, {"solve", t.solve}, {"lift", t.lift},       {"total", t.total()}};
+            {"prepare", t.prepare}, {"solve", t.solve}, {"lift", t.lift},       {"total", t.total()}};
 }
 
 } // namespace
@@ -80,7 +80,7 @@ Json settingsJson(const PatchSettings& s)
              {{"x0", name(s.edges.x0)}, {"x1", name(s.edges.x1)}, {"z0", name(s.edges.z0)}, {"z1", name(s.edges.z1)}}}};
 }
 
-Json patchJson(const Patch& patch, const PatchSettings& settings, double force)
+Json patchJson(const Patch& patch, const PatchSettings& settings, double force, PlateDevice& device)
 {
     Json report{
         {"contact", {{"point", vectorJson(patch.contact.point)}, {"outward", vectorJson(patch.contact.outward)}}},
@@ -99,11 +99,12 @@ Json patchJson(const Patch& patch, const PatchSettings& settings, double force)
     report["deflection_at_contact"] = force * patch.response(middle, middle);
     report["max_deflection"] =
         force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
-    report["error"]        = {{"discretisation", orNull(discretisationError(patch, settings))},
+    report["error"]        = {{"discretisation", orNull(discretisationError(patch, settings, device))},
                               {"solver", orNull(patch.report.errorEstimate)}};
     report["solver"]       = {{"device", patch.report.device},
                               {"iterations", orNull(patch.report.iterations)},
-                              {"work_units", orNull(patch.report.workUnits)}};
+                              {"work_units", orNull(patch.report.workUnits)},
+                              {"tolerance", settings.tolerance}};
     report["milliseconds"] = timesJson(patch.times);
     report["warnings"]     = warnings(patch, settings, force);
     return report;

@@ -10,7 +10,8 @@ namespace palp {
 
 /// Everything a touch says, in SI units, for --json and touch.json.
 /// \param force  that presses [N]; the patch itself holds responses to 1 N
-[[nodiscard]] nlohmann::json patchJson(const Patch& patch, const PatchSettings& settings, double force);
+[[nodiscard]] nlohmann::json patchJson(const Patch& patch, const PatchSettings& settings, double force,
+                                       PlateDevice& device);
 
 /// The scene constants of a touch.
 [[nodiscard]] nlohmann::json settingsJson(const PatchSettings& settings);

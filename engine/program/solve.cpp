@@ -12,9 +12,9 @@
 #include "engine/core/npy.h"
 #include "engine/core/quantity.h"
 #include "engine/plate/load.h"
-#include "engine/plate/plate_solver_reference.h"
 #include "engine/plate/problem_file.h"
 #include "engine/program/commands.h"
+#include "engine/program/solver_choice.h"
 
 namespace palp {
 namespace {
@@ -22,8 +22,8 @@ namespace {
 struct SolveOptions {
     std::string        problem;
     std::optional<int> cells;
-    std::string        device = "auto";
-    bool               json   = false;
+    SolverChoice       solver;
+    bool               json = false;
     std::string        out;
 };
 
@@ -37,14 +37,12 @@ struct Solved {
 
 Solved solved(const SolveOptions& options)
 {
-    if (options.device != "auto" && options.device != "reference")
-        throw Error("--device: unknown device \"" + options.device + "\"; known devices: auto, reference");
     Solved s{readProblem(options.problem, options.cells), {}, {}, 0};
 
-    const ReferencePlateSolver solver(s.problem.plate);
-    s.solution = solver.solve(s.problem.nodalForce);
-    // One plate, one load: whoever asks for the time of the answer waits for the factorisation too.
-    s.solution.report.milliseconds += solver.factoriseMilliseconds();
+    PlateDevice device = options.solver.open();
+    s.solution         = device.solve(s.problem.plate, s.problem.nodalForce, options.solver.tolerance);
+    // One plate, one load: whoever asks for the time of the answer waits for the preparation too.
+    s.solution.report.milliseconds += s.solution.report.setUpMilliseconds;
 
     for (const Probe& probe : s.problem.probes)
         s.probeDeflections.push_back(interpolate(s.problem.plate.grid, s.solution.deflection, probe.x, probe.z));
@@ -113,7 +111,9 @@ void printText(const Solved& s, const std::string& name)
                 formatQuantity(i * grid.spacingX, "m").c_str(), formatQuantity(j * grid.spacingZ, "m").c_str());
     std::printf("  solver      %s, %.0f ms", s.solution.report.device.c_str(), s.solution.report.milliseconds);
     if (s.solution.report.errorEstimate)
-        std::printf(", error %.1e of the largest deflection before the last step", *s.solution.report.errorEstimate);
+        std::printf(", error about %.1e", *s.solution.report.errorEstimate);
+    if (s.solution.report.iterations)
+        std::printf(", %d steps, %.0f work units", *s.solution.report.iterations, s.solution.report.workUnits.value_or(0));
     std::printf("\n");
     if (!s.problem.probes.empty()) std::printf("\n  %12s %12s %16s\n", "x [m]", "z [m]", "deflection [m]");
     for (std::size_t k = 0; k < s.problem.probes.size(); ++k)
@@ -150,10 +150,9 @@ void addSolveCommand(CLI::App& app)
     const auto options = std::make_shared<SolveOptions>();
     command->add_option("PROBLEM", options->problem, "problem file (JSON, SI units)")->required();
     command->add_option("--cells", options->cells,
-                        "solve on this many cells along x, those along z in proportion (at least 4; the solver takes "
-                        "1050625 nodes in all, such as 1024 x 1024 cells)");
-    command->add_option("--device", options->device, "auto or reference (sparse Cholesky in double precision)")
-        ->capture_default_str();
+                        "solve on this many cells along x, those along z in proportion (at least 4; the reference solver "
+                        "takes 1050625 nodes in all, such as 1024 x 1024 cells)");
+    options->solver.addTo(*command);
     command->add_flag("--json", options->json,
                       "machine-readable, full precision; max_deflection is the deflection of "
                       "largest magnitude, with its sign");
@@ -182,7 +181,7 @@ void addSolveCommand(CLI::App& app)
         "A grid names a .npy file of values at the nodes, of shape (cells_x + 1, cells_z + 1).\n\n"
         "Examples:\n"
         "  palpate solve plate.json\n"
-        "  palpate solve plate.json --cells 256 --json\n"
+        "  palpate solve plate.json --cells 256 --device lavapipe --tolerance 1e-6 --json\n"
         "  palpate solve plate.json --out deflection.npy");
     command->callback([command, options] {
         refuseEmptyValues(*command);

@@ -15,12 +15,14 @@
 #include "engine/program/cloud_source.h"
 #include "engine/program/commands.h"
 #include "engine/program/patch_json.h"
+#include "engine/program/solver_choice.h"
 
 namespace palp {
 namespace {
 
 struct TouchOptions {
-    CloudSource source;
+    CloudSource  source;
+    SolverChoice solver;
     std::string at, from, force = "0.5N", preset = "palpate";
     std::string map, sampling, edges, forceLaw, foundation, thickness, poisson, window,
         footprint;            // empty: the preset's
@@ -120,6 +122,7 @@ PatchSettings settingsOf(const TouchOptions& options)
                     std::to_string(settings.cells));
     if (!isPoissonRatio(settings.material.poissonRatio))
         throw Error("--poisson: expected a number above -1 and at most 0.5, found " + options.poisson);
+    settings.tolerance = options.solver.tolerance;
     return settings;
 }
 
@@ -183,11 +186,12 @@ void printTouch(const TouchOptions& options, const PatchSettings& settings, cons
     std::printf("  contact stiffness  %s\n", quantity("contact_stiffness", "N/m").c_str());
     std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(),
                 name(settings.forceLaw));
-    std::printf("  error              discretisation %s, rounding %s\n",
+    std::printf("  error              discretisation %s, solver %s (%s)\n",
                 error["discretisation"].is_null() ? "unknown" : percent(error["discretisation"].get<double>()).c_str(),
-                percent(error["solver"].get<double>()).c_str());
+                percent(error["solver"].get<double>()).c_str(),
+                r["solver"]["device"].get<std::string>().c_str());
     std::printf("  time               %.1f ms:", r["milliseconds"]["total"].get<double>());
-    for (const char* stage : {"gather", "fit", "project", "resample", "factorise", "solve", "lift"})
+    for (const char* stage : {"gather", "fit", "project", "resample", "prepare", "solve", "lift"})
         std::printf(" %s %.2f", stage, r["milliseconds"][stage].get<double>());
     std::printf("\n");
     for (const std::string& line : differencesFromPaper(settings))
@@ -270,14 +274,15 @@ void touch(const TouchOptions& options)
     const LoadedCloud    loaded   = options.source.load();
     const NeighbourIndex index(loaded.cloud.positions());
     const Contact        contact = contactOf(options, loaded.cloud, index, settings.window);
-    const Patch          patch   = deform(loaded.cloud, index, contact, settings);
+    PlateDevice          device  = options.solver.open();
+    const Patch          patch   = deform(loaded.cloud, index, contact, settings, device);
     if (!patch.deformed())
         throw Error("touch: the " + std::to_string(patch.gathered.size()) +
                     " points around the contact do not determine a "
                     "surface (" +
                     name(patch.sphere.outcome) + "); try a larger --window, or check --unit");
 
-    nlohmann::json report = patchJson(patch, settings, force);
+    nlohmann::json report = patchJson(patch, settings, force, device);
     refuseOverflow(report);
     report["cloud"] = cloudJson(options.source, loaded);
     for (std::string& line : options.source.warnings(loaded)) report["warnings"].push_back(std::move(line));
@@ -320,6 +325,7 @@ void addTouchCommand(CLI::App& app)
     command->add_option("--sampling", o->sampling, "rigidity of a node: log-mean or nearest");
     command->add_option("--edges", o->edges,
                         "of the window: clamped, supported, free, or such as x0=free,z1=supported, the others clamped");
+    o->solver.addTo(*command);
     command->add_option("--force-law", o->forceLaw, "series (plate and contact) or paper (contact alone)");
     command->add_option(
         "--out", o->out,

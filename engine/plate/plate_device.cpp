@@ -1,0 +1,94 @@
+#include "engine/plate/plate_device.h"
+
+#include <chrono>
+#include <optional>
+
+#include "engine/gpu/context.h"
+#include "engine/gpu/device_error.h"
+#include "engine/plate/plate_solver_reference.h"
+#include "engine/plate/plate_solver_vulkan.h"
+
+namespace palp {
+namespace {
+
+bool sameButRigidity(const Plate& a, const Plate& b)
+{
+    return a.grid == b.grid && a.edges == b.edges && a.poissonRatio == b.poissonRatio && a.foundation == b.foundation;
+}
+
+} // namespace
+
+struct PlateDevice::Vulkan {
+    gpu::Context                     context;
+    PlateKernels                     kernels;
+    std::optional<VulkanPlateSolver> solver;
+    Plate                            plate; ///< of the solver
+    double                           tolerance = 0;
+
+    explicit Vulkan(const gpu::ContextSettings& settings) : context(settings), kernels(context) {}
+
+    [[nodiscard]] PlateSolution solve(const Plate& wanted, const NodeField& nodalForce, double wantedTolerance)
+    {
+        const auto began = std::chrono::steady_clock::now();
+        if (solver && sameButRigidity(plate, wanted) && tolerance == wantedTolerance) {
+            solver->setRigidity(wanted.rigidity);
+        } else {
+            solver.reset(); // its memory goes before the next one's comes
+            solver.emplace(context, kernels, wanted, VulkanPlateSolver::Settings{.tolerance = wantedTolerance});
+            plate     = wanted;
+            tolerance = wantedTolerance;
+        }
+        const std::chrono::duration<double, std::milli> setUp = std::chrono::steady_clock::now() - began;
+
+        PlateSolution solution            = solver->solve(nodalForce);
+        solution.report.setUpMilliseconds = setUp.count();
+        return solution;
+    }
+};
+
+PlateDevice::PlateDevice(std::string_view wanted)
+{
+    if (wanted == "reference") return;
+    try {
+        gpu::ContextSettings settings;
+        settings.device = std::string(wanted);
+        vulkan_         = std::make_unique<Vulkan>(settings);
+        name_           = vulkan_->context.device().name;
+    } catch (const gpu::DeviceError& error) {
+        if (wanted != "auto") throw;
+        note_ = error.what();
+    }
+}
+
+PlateDevice::~PlateDevice()                                 = default;
+PlateDevice::PlateDevice(PlateDevice&&) noexcept            = default;
+PlateDevice& PlateDevice::operator=(PlateDevice&&) noexcept = default;
+
+const std::string& PlateDevice::name() const noexcept
+{
+    return name_;
+}
+
+const std::string& PlateDevice::note() const noexcept
+{
+    return note_;
+}
+
+PlateSolution PlateDevice::solve(const Plate& plate, const NodeField& nodalForce, double tolerance)
+{
+    if (vulkan_) {
+        try {
+            return vulkan_->solve(plate, nodalForce, tolerance);
+        } catch (const gpu::DeviceLost& error) {
+            note_ = error.what();
+            name_ = "reference";
+            vulkan_.reset();
+        }
+    }
+    const ReferencePlateSolver solver(plate);
+    PlateSolution              solution = solver.solve(nodalForce);
+    solution.report.setUpMilliseconds   = solver.factoriseMilliseconds();
+    return solution;
+}
+
+} // namespace palp
