@@ -70,10 +70,10 @@ GridHierarchy gridHierarchy(const Plate& plate, double unitRigidity)
     for (PlateGrid grid = plate.grid;;) {
         result.levels.push_back({levelOf(grid, plate, bed), {}, {}});
         if (grid.cellsX <= shared::kMostCoarseCells && grid.cellsZ <= shared::kMostCoarseCells) return result;
-        const PlateGrid next         = coarser(grid);
+        const PlateGrid next        = coarser(grid);
         result.levels.back().tableX = transferTable(grid.cellsX, next.cellsX, plate.edges.x0, plate.edges.x1);
         result.levels.back().tableZ = transferTable(grid.cellsZ, next.cellsZ, plate.edges.z0, plate.edges.z1);
-        grid                         = next;
+        grid                        = next;
     }
 }
 

@@ -13,7 +13,7 @@ namespace palp {
 /// is down to 4 to 7 cells.
 struct GridHierarchy {
     struct Level {
-        shared::PlateLevel plate; ///< spacing, sides, scaled coefficients
+        shared::PlateLevel plate;          ///< spacing, sides, scaled coefficients
         std::vector<float> tableX, tableZ; ///< to the next coarser level, see transfer_table.h; empty on the coarsest
     };
     std::vector<Level> levels; ///< finest first

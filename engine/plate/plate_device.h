@@ -23,7 +23,8 @@ public:
     PlateDevice& operator=(PlateDevice&&) noexcept;
 
     [[nodiscard]] const std::string& name() const noexcept; ///< of the Vulkan device, or "reference"
-    [[nodiscard]] const std::string& note() const noexcept; ///< why "auto" is the reference, or what went wrong; or empty
+    [[nodiscard]] const std::string&
+    note() const noexcept; ///< why "auto" is the reference, or what went wrong; or empty
 
     /// Deflection under forces at the nodes [N]; see VulkanPlateSolver and ReferencePlateSolver for the report.
     ///

@@ -38,8 +38,9 @@
 namespace palp {
 namespace {
 
-/// Shapes of workgroups. A software device runs 8 invocations side by side, pays for each more and for idle ones in small
-/// levels; hardware wants wide rows for its memory, and hides the waits of serial kernels behind more invocations.
+/// Shapes of workgroups. A software device runs 8 invocations side by side, pays for each more and for idle ones in
+/// small levels; hardware wants wide rows for its memory, and hides the waits of serial kernels behind more
+/// invocations.
 struct Shapes {
     gpu::Workgroup tile;   ///< nodes of a grid
     gpu::Workgroup line;   ///< nodes one after the other
@@ -61,34 +62,36 @@ PlateKernels::PlateKernels(gpu::Context& context)
 {
     using namespace shared;
     const Shapes& shapes = context.device().kind == "software" ? kSoftware : kHardware;
-    const bool f64  = context.device().float64;
-    const auto real = [&](gpu::KernelCode f32Code, gpu::KernelCode f64Code) { return f64 ? f64Code : f32Code; };
-#define PALPATE_REAL(Push, name, buffers) real(code<Push>(#name "_f32", name##_f32_spv, buffers), code<Push>(#name "_f64", name##_f64_spv, buffers))
+    const bool    f64    = context.device().float64;
+    const auto    real   = [&](gpu::KernelCode f32Code, gpu::KernelCode f64Code) { return f64 ? f64Code : f32Code; };
+#define PALPATE_REAL(Push, name, buffers)                                                                              \
+    real(code<Push>(#name "_f32", name##_f32_spv, buffers), code<Push>(#name "_f64", name##_f64_spv, buffers))
 #define PALPATE_FLOAT(Push, name, buffers) code<Push>(#name, name##_spv, buffers)
-    const auto kernel = [&](const gpu::KernelCode& what, gpu::Workgroup group) { return gpu::Kernel(context, what, group); };
-    all_.reset(new All{
-        f64,
-        kernel(PALPATE_FLOAT(TransferPush, rigidity_coarsen, 2), shapes.tile),
-        kernel(PALPATE_FLOAT(LevelPush, plate_divisor, 2), shapes.tile),
-        kernel(PALPATE_FLOAT(LevelPush, coarse_assemble, 2), shapes.tile),
-        kernel(PALPATE_FLOAT(LevelPush, coarse_factor, 2), shapes.alone),
-        kernel(PALPATE_FLOAT(RelaxPush, plate_relax_first, 3), shapes.tile),
-        kernel(PALPATE_FLOAT(RelaxPush, plate_relax, 6), shapes.tile),
-        kernel(PALPATE_FLOAT(LevelPush, plate_residual, 4), shapes.tile),
-        kernel(PALPATE_FLOAT(TransferPush, plate_restrict, 4), shapes.tile),
-        kernel(PALPATE_FLOAT(TransferPush, plate_correct, 5), shapes.tile),
-        kernel(PALPATE_FLOAT(LevelPush, coarse_solve, 3), shapes.alone),
-        kernel(PALPATE_REAL(LevelPush, plate_start, 5), shapes.tile),
-        kernel(PALPATE_REAL(TransferPush, plate_interpolate, 4), shapes.tile),
-        kernel(PALPATE_REAL(TransferPush, plate_interpolate_first, 4), shapes.tile),
-        kernel(PALPATE_REAL(VectorPush, cg_dots, 5), shapes.line),
-        kernel(PALPATE_REAL(ScalarsPush, cg_beta, 2), shapes.reduce),
-        kernel(PALPATE_REAL(VectorPush, cg_direction, 4), shapes.line),
-        kernel(PALPATE_REAL(LevelPush, plate_apply, 3), shapes.tile),
-        kernel(PALPATE_REAL(VectorPush, cg_step_dots, 3), shapes.line),
-        kernel(PALPATE_REAL(ScalarsPush, cg_step, 3), shapes.reduce),
-        kernel(PALPATE_REAL(VectorPush, cg_update, 6), shapes.line),
-        kernel(PALPATE_REAL(VectorPush, plate_result, 3), shapes.line)});
+    const auto kernel = [&](const gpu::KernelCode& what, gpu::Workgroup group) {
+        return gpu::Kernel(context, what, group);
+    };
+    all_.reset(new All{f64,
+                       kernel(PALPATE_FLOAT(TransferPush, rigidity_coarsen, 2), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, plate_divisor, 2), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, coarse_assemble, 2), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, coarse_factor, 2), shapes.alone),
+                       kernel(PALPATE_FLOAT(RelaxPush, plate_relax_first, 3), shapes.tile),
+                       kernel(PALPATE_FLOAT(RelaxPush, plate_relax, 6), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, plate_residual, 4), shapes.tile),
+                       kernel(PALPATE_FLOAT(TransferPush, plate_restrict, 4), shapes.tile),
+                       kernel(PALPATE_FLOAT(TransferPush, plate_correct, 5), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, coarse_solve, 3), shapes.alone),
+                       kernel(PALPATE_REAL(LevelPush, plate_start, 5), shapes.tile),
+                       kernel(PALPATE_REAL(TransferPush, plate_interpolate, 4), shapes.tile),
+                       kernel(PALPATE_REAL(TransferPush, plate_interpolate_first, 4), shapes.tile),
+                       kernel(PALPATE_REAL(VectorPush, cg_dots, 5), shapes.line),
+                       kernel(PALPATE_REAL(ScalarsPush, cg_beta, 2), shapes.reduce),
+                       kernel(PALPATE_REAL(VectorPush, cg_direction, 4), shapes.line),
+                       kernel(PALPATE_REAL(LevelPush, plate_apply, 3), shapes.tile),
+                       kernel(PALPATE_REAL(VectorPush, cg_step_dots, 3), shapes.line),
+                       kernel(PALPATE_REAL(ScalarsPush, cg_step, 3), shapes.reduce),
+                       kernel(PALPATE_REAL(VectorPush, cg_update, 6), shapes.line),
+                       kernel(PALPATE_REAL(VectorPush, plate_result, 3), shapes.line)});
 #undef PALPATE_REAL
 #undef PALPATE_FLOAT
 }

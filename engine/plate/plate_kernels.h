@@ -7,9 +7,10 @@ namespace palp {
 /// One kernel per shader and variant; `real` ones compute in doubles where the device has them.
 struct PlateKernels::All {
     bool        doubles = false;
-    gpu::Kernel coarsen, divisor, assemble, factor;                              // once per rigidity
-    gpu::Kernel relaxFirst, relax, residual, restrict, correct, coarseSolve;     // the cycle, in floats
-    gpu::Kernel start, interpolate, interpolateFirst, dots, beta, direction, apply, stepDots, step, update, result; // real
+    gpu::Kernel coarsen, divisor, assemble, factor;                          // once per rigidity
+    gpu::Kernel relaxFirst, relax, residual, restrict, correct, coarseSolve; // the cycle, in floats
+    gpu::Kernel start, interpolate, interpolateFirst, dots, beta, direction, apply, stepDots, step, update,
+        result; // real
 
     [[nodiscard]] std::size_t realBytes() const noexcept { return doubles ? sizeof(double) : sizeof(float); }
 };

@@ -39,11 +39,11 @@ using gpu::Intent;
 using gpu::Kernel;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kSlots         = 3; ///< results in mapped memory: one is written, one is read, one is in between [1]
-constexpr int kStepsPerList  = 4; ///< even, because directions take turns in two buffers [1]
-constexpr int kNestedSteps   = 2; ///< on each coarser level of the nested iteration [1]
-constexpr int kNestedSweeps  = 1; ///< of its cycles [1]
-constexpr int kSweeps        = 2; ///< before and after the correction, on the finest level's cycles [1]
+constexpr int           kSlots = 3; ///< results in mapped memory: one is written, one is read, one is in between [1]
+constexpr int           kStepsPerList = 4;     ///< even, because directions take turns in two buffers [1]
+constexpr int           kNestedSteps  = 2;     ///< on each coarser level of the nested iteration [1]
+constexpr int           kNestedSweeps = 1;     ///< of its cycles [1]
+constexpr int           kSweeps       = 2;     ///< before and after the correction, on the finest level's cycles [1]
 constexpr std::uint32_t kMostPartials = 16384; ///< sums that a dot product is split into [1]
 constexpr std::uint32_t kTermsPerSum  = 64;    ///< that a sum has at least, unless there are too few partials [1]
 
@@ -55,8 +55,8 @@ std::size_t nodesOf(const shared::PlateLevel& g)
 /// Everything a level keeps on the device. `real` arrays are doubles where the device has them.
 struct LevelBuffers {
     Buffer rigidity, divisor, tableX, tableZ;
-    Buffer force, w[2], residual;            ///< of the cycle, floats
-    Buffer load;                             ///< of the nested iteration, floats
+    Buffer force, w[2], residual;              ///< of the cycle, floats
+    Buffer load;                               ///< of the nested iteration, floats
     Buffer answer, left, direction[2], forces; ///< x, r, p, A p of conjugate gradients, real
 };
 
@@ -73,25 +73,26 @@ struct VulkanPlateSolver::Impl {
     std::uint32_t            partials;
 
     std::vector<LevelBuffers> levels;
-    Buffer zeroes, band, factor, sums, state, units;
-    Buffer hostRigidity, hostLoads, hostUnits, arguments, hostArguments, hostState;
-    std::vector<Buffer> results;
+    Buffer                    zeroes, band, factor, sums, state, units;
+    Buffer                    hostRigidity, hostLoads, hostUnits, arguments, hostArguments, hostState;
+    std::vector<Buffer>       results;
 
-    std::map<std::array<std::uint32_t, 3>, std::size_t> argumentAt; ///< groups -> byte offset in `arguments`
+    std::map<std::array<std::uint32_t, 3>, std::size_t> argumentAt;  ///< groups -> byte offset in `arguments`
     std::vector<CommandList>                            prepareList; ///< one, or none before it is recorded
     std::array<std::vector<CommandList>, kSlots>        coldList, warmList, moreList;
-    int                                                 slot = 0;
+    int                                                 slot      = 0;
     bool                                                hasAnswer = false;
     std::optional<double>                               deviceMilliseconds;
 
-    double work         = 0; ///< of what has been recorded since it was last set to 0 [applications on the finest grid]
-    double coldWork     = 0, warmWork = 0, stepWork = 0;
+    double work     = 0; ///< of what has been recorded since it was last set to 0 [applications on the finest grid]
+    double coldWork = 0, warmWork = 0, stepWork = 0;
     int    cycleDispatches = 0;
 
     Impl(gpu::Context& device, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted)
         : context(device), k(kernels), plate(given), settings(wanted), unitRigidity(largest(given.rigidity)),
           grids(gridHierarchy(given, unitRigidity)), loads(std::uint32_t(wanted.loads)),
-          partials(std::uint32_t(std::clamp<std::size_t>(given.grid.nodes() / kTermsPerSum, kTermsPerSum, kMostPartials))),
+          partials(
+              std::uint32_t(std::clamp<std::size_t>(given.grid.nodes() / kTermsPerSum, kTermsPerSum, kMostPartials))),
           levels(makeLevels()), zeroes(floats("zeroes", fieldSize(0))), band(floats("band", bandSize())),
           factor(floats("factor", bandSize())), sums(reals("partial sums", 2 * std::size_t(loads) * partials)),
           state(reals("state", std::size_t(shared::kStateWords) * loads)), units(floats("metres per unit", loads)),
@@ -110,33 +111,44 @@ struct VulkanPlateSolver::Impl {
 
     static constexpr std::size_t kArgumentBytes = 12 * 256; ///< for 256 sizes of dispatches; a solver has about 60
 
-    static double largest(const NodeField& field) { return *std::max_element(field.values().begin(), field.values().end()); }
+    static double largest(const NodeField& field)
+    {
+        return *std::max_element(field.values().begin(), field.values().end());
+    }
 
     // --- memory
 
     [[nodiscard]] const shared::PlateLevel& level(std::size_t l) const { return grids.levels[l].plate; }
-    [[nodiscard]] std::size_t fieldSize(std::size_t l) const { return nodesOf(level(l)) * loads; }
-    [[nodiscard]] std::size_t bandSize() const
+    [[nodiscard]] std::size_t               fieldSize(std::size_t l) const { return nodesOf(level(l)) * loads; }
+    [[nodiscard]] std::size_t               bandSize() const
     {
         const auto& coarsest = grids.levels.back().plate;
         return nodesOf(coarsest) * std::size_t(shared::halfBand(coarsest) + 1);
     }
     Buffer floats(const std::string& name, std::size_t count) { return {context, name, 4 * count, Intent::device}; }
-    Buffer reals(const std::string& name, std::size_t count) { return {context, name, k.realBytes() * count, Intent::device}; }
+    Buffer reals(const std::string& name, std::size_t count)
+    {
+        return {context, name, k.realBytes() * count, Intent::device};
+    }
 
     std::vector<LevelBuffers> makeLevels()
     {
         std::vector<LevelBuffers> made;
         for (std::size_t l = 0; l < grids.levels.size(); ++l) {
-            const std::string of = " of level " + std::to_string(l);
+            const std::string of    = " of level " + std::to_string(l);
             const std::size_t nodes = nodesOf(level(l)), field = fieldSize(l);
-            const auto& tables = grids.levels[l];
-            made.push_back({floats("rigidity" + of, nodes), floats("divisor" + of, nodes),
+            const auto&       tables = grids.levels[l];
+            made.push_back({floats("rigidity" + of, nodes),
+                            floats("divisor" + of, nodes),
                             floats("table x" + of, std::max<std::size_t>(1, tables.tableX.size())),
                             floats("table z" + of, std::max<std::size_t>(1, tables.tableZ.size())),
-                            floats("force" + of, field), {floats("w0" + of, field), floats("w1" + of, field)},
-                            floats("residual" + of, field), floats("load" + of, field), reals("answer" + of, field),
-                            reals("left" + of, field), {reals("direction 0" + of, field), reals("direction 1" + of, field)},
+                            floats("force" + of, field),
+                            {floats("w0" + of, field), floats("w1" + of, field)},
+                            floats("residual" + of, field),
+                            floats("load" + of, field),
+                            reals("answer" + of, field),
+                            reals("left" + of, field),
+                            {reals("direction 0" + of, field), reals("direction 1" + of, field)},
                             reals("forces" + of, field)});
         }
         return made;
@@ -231,7 +243,8 @@ struct VulkanPlateSolver::Impl {
         for (int n = 0; n < sweeps; ++n) at = sweep(pass, l, at, 0, n == 0);
         const LevelBuffers&        below = levels[l + 1];
         const shared::TransferPush transfer{level(l), level(l + 1)};
-        pass(k.residual, {b.rigidity, b.force, b.w[at], b.residual}, shared::LevelPush{level(l)}, everyNode(k.residual, l));
+        pass(k.residual, {b.rigidity, b.force, b.w[at], b.residual}, shared::LevelPush{level(l)},
+             everyNode(k.residual, l));
         work += share(l);
         pass(k.restrict, {b.tableX, b.tableZ, b.residual, below.force}, transfer, everyNode(k.restrict, l + 1));
         const int from = cycle(pass, l + 1, sweeps);
@@ -245,7 +258,8 @@ struct VulkanPlateSolver::Impl {
     void start(Recorder& pass, std::size_t l)
     {
         const LevelBuffers& b = levels[l];
-        pass(k.start, {b.rigidity, b.load, b.answer, b.left, b.force}, shared::LevelPush{level(l)}, everyNode(k.start, l));
+        pass(k.start, {b.rigidity, b.load, b.answer, b.left, b.force}, shared::LevelPush{level(l)},
+             everyNode(k.start, l));
         work += share(l);
     }
 
@@ -256,7 +270,8 @@ struct VulkanPlateSolver::Impl {
         for (int n = 1; n <= count; ++n) {
             const auto                nodes = std::uint32_t(nodesOf(level(l)));
             const shared::VectorPush  vector{nodes, partials, std::uint32_t(n)};
-            const shared::ScalarsPush scalars{loads, partials, n == 1 ? begins : 0, kArgumentBytes / 4, float(tolerance)};
+            const shared::ScalarsPush scalars{loads, partials, n == 1 ? begins : 0, kArgumentBytes / 4,
+                                              float(tolerance)};
             const Buffer&             z   = b.w[cycle(pass, l, sweeps)];
             const Buffer &            now = b.direction[n % 2], &last = b.direction[(n + 1) % 2];
             pass(k.dots, {b.left, z, b.answer, b.load, sums}, vector, k.dots.groupsOver(partials, 1, loads));
@@ -267,7 +282,8 @@ struct VulkanPlateSolver::Impl {
             pass(k.stepDots, {now, b.forces, sums}, vector, k.stepDots.groupsOver(partials, 1, loads));
             pass(k.step, {sums, state, arguments}, scalars, {1, 1, 1});
             // Not stoppable: the step that finds the estimate small enough must still be taken. It looks at the count.
-            pass.list.dispatch(k.update, {state, now, b.forces, b.answer, b.left, b.force}, vector, inOrder(k.update, l));
+            pass.list.dispatch(k.update, {state, now, b.forces, b.answer, b.left, b.force}, vector,
+                               inOrder(k.update, l));
         }
     }
 
@@ -305,7 +321,8 @@ struct VulkanPlateSolver::Impl {
                  k.divisor.groupsOver(std::uint32_t(level(l).cellsZ + 1), std::uint32_t(level(l).cellsX + 1)));
         const shared::LevelPush coarsest{level(levels.size() - 1)};
         pass(k.assemble, {levels.back().rigidity, band}, coarsest,
-             k.assemble.groupsOver(std::uint32_t(shared::halfBand(coarsest.level) + 1), std::uint32_t(nodesOf(coarsest.level))));
+             k.assemble.groupsOver(std::uint32_t(shared::halfBand(coarsest.level) + 1),
+                                   std::uint32_t(nodesOf(coarsest.level))));
         pass(k.factor, {band, factor}, coarsest, {1, 1, 1});
         list.end();
         prepareList.push_back(std::move(list));
@@ -318,14 +335,17 @@ struct VulkanPlateSolver::Impl {
         for (std::size_t l = 0; l < last; ++l)
             pass(k.restrict, {levels[l].tableX, levels[l].tableZ, levels[l].load, levels[l + 1].load},
                  shared::TransferPush{level(l), level(l + 1)}, everyNode(k.restrict, l + 1));
-        pass(k.coarseSolve, {factor, levels[last].load, levels[last].w[0]}, shared::LevelPush{level(last)}, {1, 1, loads});
+        pass(k.coarseSolve, {factor, levels[last].load, levels[last].w[0]}, shared::LevelPush{level(last)},
+             {1, 1, loads});
         for (std::size_t l = last; l-- > 0;) {
             const shared::TransferPush transfer{level(l), level(l + 1)};
             const LevelBuffers &       b = levels[l], &below = levels[l + 1];
             if (l + 1 == last)
-                pass(k.interpolateFirst, {b.tableX, b.tableZ, below.w[0], b.answer}, transfer, everyNode(k.interpolateFirst, l));
+                pass(k.interpolateFirst, {b.tableX, b.tableZ, below.w[0], b.answer}, transfer,
+                     everyNode(k.interpolateFirst, l));
             else
-                pass(k.interpolate, {b.tableX, b.tableZ, below.answer, b.answer}, transfer, everyNode(k.interpolate, l));
+                pass(k.interpolate, {b.tableX, b.tableZ, below.answer, b.answer}, transfer,
+                     everyNode(k.interpolate, l));
             start(pass, l);
             if (l > 0) steps(pass, l, kNestedSteps, kNestedSweeps, 2, 0);
         }
@@ -407,7 +427,8 @@ struct VulkanPlateSolver::Impl {
             PALP_EXPECT(nodalForces[n].on(plate.grid), "the load's grid is not the plate's");
             double most = 0;
             for (double f : nodalForces[n].values()) {
-                if (!std::isfinite(f)) throw Error("plate: expected finite forces, found a load that is not a number or infinite");
+                if (!std::isfinite(f))
+                    throw Error("plate: expected finite forces, found a load that is not a number or infinite");
                 most = std::max(most, std::abs(f));
             }
             const double scale = most > 0 ? 1 / most : 0;
@@ -437,27 +458,31 @@ struct VulkanPlateSolver::Impl {
     {
         const auto began = Clock::now();
         upload(nodalForces);
-        slot            = (slot + 1) % kSlots;
-        const bool warm = how == Start::warm && hasAnswer;
-        hasAnswer       = false; // whatever happens below
+        slot               = (slot + 1) % kSlots;
+        const bool warm    = how == Start::warm && hasAnswer;
+        hasAnswer          = false; // whatever happens below
         CommandList* list  = warm ? &run(warmList, &Impl::recordWarm) : &run(coldList, &Impl::recordCold);
         int          done  = int(worst(shared::kStateSteps));
         deviceMilliseconds = 0;
         for (;;) {
             const auto times = list->timestampsMilliseconds();
-            deviceMilliseconds = times.empty() ? std::nullopt : std::optional(deviceMilliseconds.value_or(0) + times.back());
+            deviceMilliseconds =
+                times.empty() ? std::nullopt : std::optional(deviceMilliseconds.value_or(0) + times.back());
             const double estimate = worst(shared::kStateEstimate);
             if (!(estimate > settings.tolerance) || done >= settings.maxIterations) break;
             list = &run(moreList, &Impl::recordMore);
             done += int(worst(shared::kStateSteps));
         }
-        if (getenv("DBG")) { for (int w = 0; w < 8; ++w) printf("%g ", stateOf(0, w)); puts(""); }
+        if (getenv("DBG")) {
+            for (int w = 0; w < 8; ++w) printf("%g ", stateOf(0, w));
+            puts("");
+        }
         SolveReport report;
-        report.device        = context.device().name;
-        report.iterations    = done;
-        report.errorEstimate = worst(shared::kStateEstimate);
-        report.workUnits     = (warm ? warmWork : coldWork) + done * stepWork;
-        report.milliseconds  = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+        report.device                      = context.device().name;
+        report.iterations                  = done;
+        report.errorEstimate               = worst(shared::kStateEstimate);
+        report.workUnits                   = (warm ? warmWork : coldWork) + done * stepWork;
+        report.milliseconds                = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
         std::vector<PlateSolution> answers = read(report);
         hasAnswer                          = true;
         return answers;
@@ -474,7 +499,8 @@ struct VulkanPlateSolver::Impl {
             const float* from = result.as<float>().data() + load * nodes;
             for (std::size_t n = 0; n < nodes; ++n) {
                 w.values()[n] = double(from[n]);
-                if (!std::isfinite(from[n])) throw Error("plate: the deflection is not finite; the rigidity or the load is out of range");
+                if (!std::isfinite(from[n]))
+                    throw Error("plate: the deflection is not finite; the rigidity or the load is out of range");
             }
             answers.push_back({std::move(w), report});
         }
@@ -488,7 +514,8 @@ VulkanPlateSolver::VulkanPlateSolver(gpu::Context& context, const PlateKernels& 
     if (const auto why = whyUnsolvable(plate)) throw Error("plate: " + *why);
     const double least = kernels.all().doubles ? kLeastTolerance : kLeastFloatTolerance;
     if (!(settings.tolerance >= least && settings.tolerance < 1))
-        throw Error("plate: expected a tolerance from " + std::to_string(least) + " to 1, found " + std::to_string(settings.tolerance));
+        throw Error("plate: expected a tolerance from " + std::to_string(least) + " to 1, found " +
+                    std::to_string(settings.tolerance));
     PALP_EXPECT(settings.loads >= 1 && settings.maxIterations >= 1, "loads and iterations are at least 1");
     impl_ = std::make_unique<Impl>(context, kernels.all(), plate, settings);
     impl_->uploadRigidity(plate.rigidity);

@@ -27,14 +27,14 @@ private:
     std::unique_ptr<All> all_;
 };
 
-/// Multigrid on a Vulkan device: nested iteration, then conjugate gradients preconditioned by one symmetric V(2,2) cycle
-/// of red-black relaxation, matrix-free in moment form, stopped by the device itself.
+/// Multigrid on a Vulkan device: nested iteration, then conjugate gradients preconditioned by one symmetric V(2,2)
+/// cycle of red-black relaxation, matrix-free in moment form, stopped by the device itself.
 ///
-/// The cycle is in 32-bit floats and the conjugate gradients are in doubles where the device has them: a cycle only needs
-/// to be roughly right, but rounding the residual to floats leaves an error that grows with the contrast of the rigidity
-/// (1e-5 at 257 nodes and contrast 1000). Without doubles the tolerance must not ask for more than floats can give.
-/// \thread one at a time, together with its context
-/// \source Brandt 1977 (multigrid, nested iteration); Hestenes & Stiefel 1952; engine/README.md says what was measured
+/// The cycle is in 32-bit floats and the conjugate gradients are in doubles where the device has them: a cycle only
+/// needs to be roughly right, but rounding the residual to floats leaves an error that grows with the contrast of the
+/// rigidity (1e-5 at 257 nodes and contrast 1000). Without doubles the tolerance must not ask for more than floats can
+/// give. \thread one at a time, together with its context \source Brandt 1977 (multigrid, nested iteration); Hestenes &
+/// Stiefel 1952; engine/README.md says what was measured
 class VulkanPlateSolver {
 public:
     struct Settings {
@@ -51,8 +51,9 @@ public:
     VulkanPlateSolver(VulkanPlateSolver&&) noexcept;
     VulkanPlateSolver& operator=(VulkanPlateSolver&&) noexcept;
 
-    static constexpr double kLeastTolerance      = 1e-9; ///< 32-bit cycles and rigidities give no more [1]
-    static constexpr double kLeastFloatTolerance = 1e-5; ///< what conjugate gradients in floats reach at contrast 1000 [1]
+    static constexpr double kLeastTolerance = 1e-9; ///< 32-bit cycles and rigidities give no more [1]
+    static constexpr double kLeastFloatTolerance =
+        1e-5; ///< what conjugate gradients in floats reach at contrast 1000 [1]
 
     /// Another rigidity [N m] on the same grid.
     /// \throws Error if whyUnsolvable() with it

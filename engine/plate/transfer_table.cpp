@@ -14,7 +14,7 @@ namespace {
 
 /// Weights of the coarse nodes first, first + 1, ...
 struct Row {
-    int                                       first = 0;
+    int                                      first = 0;
     std::array<double, shared::kFineWeights> weights{};
 };
 

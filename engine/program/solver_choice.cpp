@@ -11,9 +11,10 @@ namespace palp {
 void SolverChoice::addTo(CLI::App& command)
 {
     command
-        .add_option("--device", device,
-                    "where the plate is solved: auto (the best Vulkan device), lavapipe (Vulkan in software), an index or "
-                    "part of a name from \"palpate devices\", or reference (sparse Cholesky in double precision)")
+        .add_option(
+            "--device", device,
+            "where the plate is solved: auto (the best Vulkan device), lavapipe (Vulkan in software), an index or "
+            "part of a name from \"palpate devices\", or reference (sparse Cholesky in double precision)")
         ->capture_default_str();
     command
         .add_option("--tolerance", tolerance,
