@@ -1,0 +1,84 @@
+#pragma once
+#include "compute_shaders/cg_beta_f32.spv.h"
+#include "compute_shaders/cg_beta_f64.spv.h"
+#include "compute_shaders/cg_direction_f32.spv.h"
+#include "compute_shaders/cg_direction_f64.spv.h"
+#include "compute_shaders/cg_dots_f32.spv.h"
+#include "compute_shaders/cg_dots_f64.spv.h"
+#include "compute_shaders/cg_step_dots_f32.spv.h"
+#include "compute_shaders/cg_step_dots_f64.spv.h"
+#include "compute_shaders/cg_step_f32.spv.h"
+#include "compute_shaders/cg_step_f64.spv.h"
+#include "compute_shaders/cg_update_f32.spv.h"
+#include "compute_shaders/cg_update_f64.spv.h"
+#include "compute_shaders/coarse_assemble.spv.h"
+#include "compute_shaders/coarse_factor.spv.h"
+#include "compute_shaders/coarse_solve.spv.h"
+#include "compute_shaders/plate_apply_f32.spv.h"
+#include "compute_shaders/plate_apply_f64.spv.h"
+#include "compute_shaders/plate_correct.spv.h"
+#include "compute_shaders/plate_divisor.spv.h"
+#include "compute_shaders/plate_interpolate_f32.spv.h"
+#include "compute_shaders/plate_interpolate_f64.spv.h"
+#include "compute_shaders/plate_interpolate_first_f32.spv.h"
+#include "compute_shaders/plate_interpolate_first_f64.spv.h"
+#include "compute_shaders/plate_relax.spv.h"
+#include "compute_shaders/plate_relax_first.spv.h"
+#include "compute_shaders/plate_residual.spv.h"
+#include "compute_shaders/plate_restrict.spv.h"
+#include "compute_shaders/plate_result_f32.spv.h"
+#include "compute_shaders/plate_result_f64.spv.h"
+#include "compute_shaders/plate_start_f32.spv.h"
+#include "compute_shaders/plate_start_f64.spv.h"
+#include "compute_shaders/rigidity_coarsen.spv.h"
+#include "compute_shaders/shared/plate_push.h"
+#include "engine/gpu/kernel.h"
+
+/// The plate's kernels by name; those of conjugate gradients as code<float>() or code<double>().
+namespace palp::kernels {
+
+template <class Constants, std::size_t N>
+gpu::KernelCode code(const char* name, const std::uint32_t (&spirv)[N], int buffers)
+{
+    return {name, spirv, buffers, int(sizeof(Constants))};
+}
+
+#define PALPATE_KERNEL(function, name, Constants, buffers)                                                             \
+    inline gpu::KernelCode function() { return code<shared::Constants>(#name, name##_spv, buffers); }
+#define PALPATE_REAL_KERNEL(function, name, Constants, buffers)                                                        \
+    template <class Real>                                                                                              \
+    gpu::KernelCode function()                                                                                         \
+    {                                                                                                                  \
+        if constexpr (sizeof(Real) == sizeof(double))                                                                  \
+            return code<shared::Constants>(#name "_f64", name##_f64_spv, buffers);                                     \
+        else                                                                                                           \
+            return code<shared::Constants>(#name "_f32", name##_f32_spv, buffers);                                     \
+    }
+
+PALPATE_KERNEL(coarsen, rigidity_coarsen, TransferPush, 2)
+PALPATE_KERNEL(divisor, plate_divisor, LevelPush, 2)
+PALPATE_KERNEL(assemble, coarse_assemble, LevelPush, 2)
+PALPATE_KERNEL(factor, coarse_factor, LevelPush, 2)
+PALPATE_KERNEL(coarseSolve, coarse_solve, LevelPush, 3)
+PALPATE_KERNEL(relaxFirst, plate_relax_first, RelaxPush, 3)
+PALPATE_KERNEL(relax, plate_relax, RelaxPush, 6)
+PALPATE_KERNEL(residual, plate_residual, LevelPush, 4)
+PALPATE_KERNEL(restriction, plate_restrict, TransferPush, 4)
+PALPATE_KERNEL(correct, plate_correct, TransferPush, 5)
+
+PALPATE_REAL_KERNEL(start, plate_start, LevelPush, 5)
+PALPATE_REAL_KERNEL(apply, plate_apply, LevelPush, 3)
+PALPATE_REAL_KERNEL(interpolate, plate_interpolate, TransferPush, 4)
+PALPATE_REAL_KERNEL(interpolateFirst, plate_interpolate_first, TransferPush, 4)
+PALPATE_REAL_KERNEL(result, plate_result, VectorPush, 3)
+PALPATE_REAL_KERNEL(dots, cg_dots, VectorPush, 5)
+PALPATE_REAL_KERNEL(stepDots, cg_step_dots, VectorPush, 3)
+PALPATE_REAL_KERNEL(direction, cg_direction, VectorPush, 4)
+PALPATE_REAL_KERNEL(update, cg_update, VectorPush, 6)
+PALPATE_REAL_KERNEL(beta, cg_beta, ScalarsPush, 2)
+PALPATE_REAL_KERNEL(step, cg_step, ScalarsPush, 3)
+
+#undef PALPATE_KERNEL
+#undef PALPATE_REAL_KERNEL
+
+} // namespace palp::kernels
