@@ -473,10 +473,6 @@ struct VulkanPlateSolver::Impl {
             list = &run(moreList, &Impl::recordMore);
             done += int(worst(shared::kStateSteps));
         }
-        if (getenv("DBG")) {
-            for (int w = 0; w < 8; ++w) printf("%g ", stateOf(0, w));
-            puts("");
-        }
         SolveReport report;
         report.device                      = context.device().name;
         report.iterations                  = done;
