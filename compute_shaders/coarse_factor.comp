@@ -1,7 +1,7 @@
 // coarse_factor.comp - Cholesky factor of the coarsest level's band, A = L L'.
 // Domain     one workgroup; unknown after unknown, the columns within reach updated side by side
 // Reads      columns of the lower triangle of A
-// Writes     columns of L, with the inverse of the diagonal in its place
+// Writes     columns of L, with the inverse of the diagonal in its place; 0 where rounding has left no pivot
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -24,7 +24,8 @@ void main()
     for (int n = 0; n < unknowns; ++n) {
         int slot = n % slots;
         barrier();
-        float inverse = 1.0f / sqrt(window[slot][0]);
+        float pivot = window[slot][0];
+        float inverse = pivot > kLeastPivot * band[n * slots] ? 1.0f / sqrt(pivot) : 0.0f;
         for (int d = lane; d <= reach; d += lanes) {
             column[d] = window[slot][d] * inverse;
             factor[n * slots + d] = d == 0 ? inverse : column[d];

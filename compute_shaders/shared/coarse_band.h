@@ -19,6 +19,10 @@ const int kMostCoarseCells = 16; // along either side; the kernels' shared array
 const int kMostCoarseNodes = (kMostCoarseCells + 1) * (kMostCoarseCells + 1);
 const int kMostHalfBand    = 2 * (kMostCoarseCells + 1);
 
+// A pivot of no more than this share of the diagonal is rounding, perhaps negative: contrasts of 1e9 and more have such
+// pivots. Its node is held then, by an inverse of 0, which keeps the factor finite and the solve symmetric.
+const float kLeastPivot = 1e-7f; // [1]
+
 PALPATE_INLINE bool zIsShorter(PlateLevel g) { return g.cellsZ <= g.cellsX; }
 PALPATE_INLINE int  shorterNodes(PlateLevel g) { return (zIsShorter(g) ? g.cellsZ : g.cellsX) + 1; }
 PALPATE_INLINE int  halfBand(PlateLevel g) { return 2 * shorterNodes(g); }
