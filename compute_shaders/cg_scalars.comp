@@ -1,5 +1,5 @@
 // cg_scalars.comp - completes the dot products, makes of them the numbers of a step, and stops a finished solve.
-// Domain     one workgroup; loads one after the other
+// Domain     one workgroup, of a power of two of invocations; loads one after the other
 // Reads      partial sums (real), see cg_dot.comp; state of the loads (real), see cg_state.h
 // Writes     state of the loads; with PALPATE_STEP, when every load is finished, zeroes to the arguments of the indirect
 //            dispatches, so that whatever was recorded after this does nothing
@@ -54,7 +54,7 @@ void main()
             state[at + kStateEstimate] = now.estimate;
             state[at + kStateSteps]    = now.steps;
         }
-        unfinished = unfinished || now.estimate > real(push.tolerance);
+        unfinished = unfinished || push.tolerance == 0.0f || now.estimate > real(push.tolerance);
 #else
         real rz = total(2u * load * push.partials), fx = total((2u * load + 1u) * push.partials);
         if (leads) {
