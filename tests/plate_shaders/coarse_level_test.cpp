@@ -146,8 +146,35 @@ TEST_F(CoarseLevelTest, TheAnswerIsThatOfADenseCholeskyInDoubles)
         const Eigen::VectorXd exact = A.llt().solve(f);
         const Eigen::VectorXd error = Eigen::Map<const Eigen::VectorXf>(w.data(), A.rows()).cast<double>() - exact;
         const double          relative = std::sqrt(error.dot(A * error) / exact.dot(A * exact));
-        RecordProperty("energyError", std::to_string(relative));
-        EXPECT_LT(relative, 1e-2) << "far below what a cycle leaves, some 0.1";
+        EXPECT_LT(relative, 5e-3) << "largest measured 1.2e-3, where three sides are free; a cycle leaves some 0.1";
+    }
+}
+
+TEST_F(CoarseLevelTest, AFactorIsFiniteWhateverRoundingLeavesOfThePivots)
+{
+    using enum Edge;
+    const gpu::Kernel factor(context(), kernels::factor(), {64, 1, 1}), solve(context(), kernels::coarseSolve(), {64, 1, 1});
+    for (const Edge edge : {supported, free}) {
+        Plate plate      = roughPlate(16, 16, {supported, supported, edge, edge});
+        plate.foundation = 0;
+        for (double& D : plate.rigidity.values()) D = D > 100 ? 1e9 : 1;
+        const RoughLevel         level(plate);
+        const std::vector<float> band  = host::assembled(level.g, level.rigidity);
+        const std::vector<float> force = roughDeflection<float>(level.g, 1, 34);
+
+        const std::vector<float> L = factorBy(factor, level.g, band), w = solveBy(solve, level.g, L, force);
+
+        const auto isFinite = [](float value) { return std::isfinite(value); };
+        EXPECT_TRUE(std::ranges::all_of(L, isFinite)) << describe(plate);
+        EXPECT_TRUE(std::ranges::all_of(w, isFinite)) << describe(plate);
+        bool   holdsSome = false;
+        double work      = 0;
+        for (std::size_t n = 0; n < w.size(); ++n) {
+            holdsSome = holdsSome || L[n * std::size_t(shared::halfBand(level.g) + 1)] == 0;
+            work += double(w[n]) * double(force[n]);
+        }
+        EXPECT_TRUE(holdsSome) << "else this test shows nothing";
+        EXPECT_GT(work, 0) << "conjugate gradients need a positive preconditioner";
     }
 }
 

@@ -134,12 +134,13 @@ inline std::vector<float> assembled(const PlateLevel& g, const std::vector<float
     return band;
 }
 
-inline std::vector<float> factored(const PlateLevel& g, std::vector<float> band)
+inline std::vector<float> factored(const PlateLevel& g, const std::vector<float>& matrix)
 {
     const std::size_t  unknowns = nodesOf(g), slots = std::size_t(halfBand(g) + 1);
-    std::vector<float> factor(band.size());
+    std::vector<float> band = matrix, factor(band.size());
     for (std::size_t n = 0; n < unknowns; ++n) {
-        const float  inverse = 1.0F / sqrt(band[n * slots]);
+        const float  pivot   = band[n * slots];
+        const float  inverse = pivot > kLeastPivot * matrix[n * slots] ? 1.0F / sqrt(pivot) : 0.0F;
         float* const column  = factor.data() + n * slots;
         for (std::size_t d = 0; d < slots; ++d) column[d] = band[n * slots + d] * inverse;
         for (std::size_t d = 1; d < slots && n + d < unknowns; ++d)
