@@ -1,0 +1,73 @@
+// push_echo.comp - writes every field of a push-constant struct back, one word each in the order of declaration.
+// Domain     one invocation
+// Reads      push
+// Writes     bits of the fields
+// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS, ECHO_POINTS
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "compute_shaders/shared/plate_push.h"
+
+layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
+layout(set = 0, binding = 0) writeonly buffer Words { uint words[]; };
+
+#if defined(ECHO_LEVEL)
+layout(push_constant) uniform Constants { LevelPush push; };
+#elif defined(ECHO_RELAX)
+layout(push_constant) uniform Constants { RelaxPush push; };
+#elif defined(ECHO_TRANSFER)
+layout(push_constant) uniform Constants { TransferPush push; };
+#elif defined(ECHO_VECTOR)
+layout(push_constant) uniform Constants { VectorPush push; };
+#elif defined(ECHO_SCALARS)
+layout(push_constant) uniform Constants { ScalarsPush push; };
+#else
+layout(push_constant) uniform Constants { PointsPush push; };
+#endif
+
+int count = 0;
+void echo(uint value) { words[count++] = value; }
+void echo(int value) { words[count++] = uint(value); }
+void echo(float value) { words[count++] = floatBitsToUint(value); }
+
+void echo(PlateLevel g)
+{
+    echo(g.cellsX);
+    echo(g.cellsZ);
+    echo(g.hinged);
+    echo(g.free);
+    echo(g.kxx);
+    echo(g.kzz);
+    echo(g.kxz);
+    echo(g.exx);
+    echo(g.ezz);
+    echo(g.twist);
+    echo(g.bed);
+}
+
+void main()
+{
+    if (gl_GlobalInvocationID.x + gl_GlobalInvocationID.y > 0) return;
+#if defined(ECHO_LEVEL)
+    echo(push.level);
+#elif defined(ECHO_RELAX)
+    echo(push.level);
+    echo(push.colour);
+#elif defined(ECHO_TRANSFER)
+    echo(push.fine);
+    echo(push.coarse);
+#elif defined(ECHO_VECTOR)
+    echo(push.nodes);
+    echo(push.partials);
+    echo(push.iteration);
+#elif defined(ECHO_SCALARS)
+    echo(push.loads);
+    echo(push.partials);
+    echo(push.begins);
+    echo(push.argumentWords);
+    echo(push.tolerance);
+#else
+    echo(push.level);
+    echo(push.points);
+#endif
+}
