@@ -87,7 +87,10 @@ bad 'footprint wider than the window' 'footprint' touch sample:sheet --points 50
 bad 'contact far from the cloud' 'contact' touch sample:skin --points 5000 --at 1m,0,0
 bad 'no place for a file' '--at' touch skin.ply
 bad 'devices take no argument' 'voodoo' devices voodoo
-bad 'unknown device' 'reference' solve plate.json --device gpu9000
+"$palpate" solve plate.json --device gpu9000 >out.txt 2>err.txt
+code=$?
+[ $code -eq 4 ] && grep -qF "'gpu9000'" err.txt && grep -qF usable err.txt && [ ! -s out.txt ] && passed=$((passed + 1)) ||
+    complain "unknown device: exit $code, expected 4 and the list of devices: $(cat err.txt)"
 
 # --- bad files
 bad 'missing file' 'No such file' info nowhere.ply
