@@ -11,6 +11,7 @@ void addConvertCommand(CLI::App& app);
 void addTouchCommand(CLI::App& app);
 void addSolveCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
+void addBenchCommand(CLI::App& app);
 
 /// \throws Error naming the first option of the command that was given an empty value
 void refuseEmptyValues(const CLI::App& command);

@@ -71,12 +71,14 @@ int main(int argumentCount, char** arguments)
                "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
                "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
                "  palpate devices --gpu                          the GPUs of this machine\n"
+               "  palpate bench solve                            how fast its solvers are\n"
                "Each command explains itself with --help.");
     palp::addTouchCommand(app);
     palp::addSolveCommand(app);
     palp::addInfoCommand(app);
     palp::addConvertCommand(app);
     palp::addDevicesCommand(app);
+    palp::addBenchCommand(app);
     try {
         if (argumentCount > 1) refuseUnknownCommand(app, arguments[1]);
         app.parse(argumentCount, arguments);
