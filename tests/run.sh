@@ -11,7 +11,7 @@ usage: sh tests/run.sh [--asan | --tsan | --all] [--yes] [--no-install] [--dry-r
   (nothing)      every test, Release build in build/
   --asan         the same tests under AddressSanitizer and UndefinedBehaviorSanitizer, in build/asan
   --tsan         the same tests under ThreadSanitizer, in build/tsan
-  --all          the three one after the other
+  --all          the three one after the other, and GPU-assisted validation of the shaders
   --yes          install missing packages without asking (password-less sudo)
   --no-install   install nothing; exit 3 naming what is missing
   --dry-run      say what would be done
@@ -21,12 +21,12 @@ usage: sh tests/run.sh [--asan | --tsan | --all] [--yes] [--no-install] [--dry-r
 TEXT
 }
 
-flavours=
+flavours= all=
 while [ $# -gt 0 ]; do
     case $1 in
     --asan) flavours="$flavours asan" ;;
     --tsan) flavours="$flavours tsan" ;;
-    --all) flavours='plain asan tsan' ;;
+    --all) flavours='plain asan tsan' all=1 ;;
     --help | -h) usage; exit 0 ;;
     --) shift; break ;;
     --yes | --no-install | --dry-run) prepare_options "$1" ;;
@@ -50,6 +50,10 @@ for flavour in ${flavours:-plain}; do
     prepare_build "$folder" -DPALPATE_TESTS=ON -DPALPATE_WERROR=ON -DPALPATE_SANITIZE=$sanitizers -DPALPATE_BENCHMARKS=$([ $flavour = plain ] && echo ON || echo OFF)
     if [ -n "$dry_run" ]; then say "would run the tests in $folder"; continue; fi
     say "== $flavour: testing"
-    ctest --test-dir "$folder" --output-on-failure --no-tests=error --parallel "$(jobs)" "$@" || failed=1
+    # Instrumented shaders are 20 times slower: minutes, which only --all takes, or who asks for them.
+    leave_out=
+    [ $# -gt 0 ] || { [ -n "$all" ] && [ $flavour = plain ]; } || leave_out='-LE shader-gpu-assisted'
+    # shellcheck disable=SC2086
+    ctest --test-dir "$folder" --output-on-failure --no-tests=error --parallel "$(jobs)" $leave_out "$@" || failed=1
 done
 exit $failed
