@@ -2,7 +2,7 @@
 
 #include "tests/plate_shaders/plate_shader_test.h"
 
-// Conjugate gradients: cg_dot.comp, cg_scalars.comp, cg_direction.comp, cg_update.comp, and plate_result.comp.
+// Conjugate gradients: cg_dot.comp, cg_scalars.comp, cg_direction.comp and cg_update.comp.
 
 namespace palp {
 namespace {
@@ -363,26 +363,6 @@ TEST_F(CgTest, AnUpdateIsThatOfCxxAndIsLeftOutWhereTheSolveStoppedBefore)
             EXPECT_TRUE(agree(r, rExpected, sizes, kFusedRounding));
             for (std::size_t n = 0; n < r.size(); ++n)
                 EXPECT_EQ(rounded[n], n / kNodes == 1 ? float(r[n]) : roundedBefore[n]) << "load " << n / kNodes;
-        }
-    });
-}
-
-TEST_F(CgTest, TheResultIsInMetresPerLoad)
-{
-    inEachPrecision([](auto number) {
-        using Real = decltype(number);
-        const std::vector<Real>  x = vectors<Real>(60);
-        const std::vector<float> metres{1e-3F, 2.5F, 7e5F};
-        std::vector<float>       expected;
-        for (std::size_t n = 0; n < x.size(); ++n) expected.push_back(float(x[n]) * metres[n / kNodes]);
-        for (const gpu::Workgroup shape : lines()) {
-            const gpu::Kernel  result(context(), kernels::result<Real>(), shape);
-            std::vector<float> w(x.size());
-
-            dispatchOnce(result, {in(x), in(metres), out(w)}, shared::VectorPush{kNodes, 0, 0},
-                         result.groupsOver(kNodes, 1, kLoads));
-
-            EXPECT_TRUE(ShaderTest::agree(w, expected, {0, "one product: there is nothing to fuse"})) << describe(shape);
         }
     });
 }
