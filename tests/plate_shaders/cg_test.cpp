@@ -17,7 +17,8 @@ using shared::kStateRz;
 using shared::kStateSteps;
 using shared::kStateWords;
 
-constexpr Rounding kScalarRounding{16, "sums in a fixed order, two divisions good to 2.5 ulp, and a square root good to 5"};
+constexpr Rounding kScalarRounding{16,
+                                   "sums in a fixed order, two divisions good to 2.5 ulp, and a square root good to 5"};
 
 class CgTest : public PlateShaderTest {
 protected:
@@ -86,7 +87,7 @@ constexpr Rounding kDotRounding{1000, "each of up to 67 terms is a product that 
 TEST_F(CgTest, DotProductsAreAddedInTheOrderOfCxx)
 {
     inEachPrecision([](auto number) {
-        using Real = decltype(number);
+        using Real                 = decltype(number);
         const std::vector<Real>  r = vectors<Real>(41), x = vectors<Real>(42);
         const std::vector<float> z = vectors<float>(43), f = vectors<float>(44);
         for (const gpu::Workgroup shape : lines()) {
@@ -101,8 +102,10 @@ TEST_F(CgTest, DotProductsAreAddedInTheOrderOfCxx)
                 std::vector<host::Partial<Real>> expected;
                 for (std::size_t load = 0; load < kLoads; ++load) {
                     const std::size_t at = load * kNodes;
-                    const auto rz = host::partialSums<Real>(kNodes, count, [&](std::size_t n) { return r[at + n] * Real(z[at + n]); });
-                    const auto fx = host::partialSums<Real>(kNodes, count, [&](std::size_t n) { return Real(f[at + n]) * x[at + n]; });
+                    const auto        rz = host::partialSums<Real>(kNodes, count,
+                                                            [&](std::size_t n) { return r[at + n] * Real(z[at + n]); });
+                    const auto        fx = host::partialSums<Real>(kNodes, count,
+                                                            [&](std::size_t n) { return Real(f[at + n]) * x[at + n]; });
                     expected.insert(expected.end(), rz.begin(), rz.end());
                     expected.insert(expected.end(), fx.begin(), fx.end());
                 }
@@ -115,7 +118,7 @@ TEST_F(CgTest, DotProductsAreAddedInTheOrderOfCxx)
 TEST_F(CgTest, TheDotProductOfAStepIsAddedInTheOrderOfCxx)
 {
     inEachPrecision([](auto number) {
-        using Real = decltype(number);
+        using Real                = decltype(number);
         const std::vector<Real> p = vectors<Real>(45), q = vectors<Real>(46);
         for (const gpu::Workgroup shape : lines()) {
             const gpu::Kernel dots(context(), kernels::stepDots<Real>(), shape);
@@ -129,7 +132,8 @@ TEST_F(CgTest, TheDotProductOfAStepIsAddedInTheOrderOfCxx)
                 std::vector<host::Partial<Real>> expected;
                 for (std::size_t load = 0; load < kLoads; ++load) {
                     const std::size_t at = load * kNodes;
-                    const auto pq = host::partialSums<Real>(kNodes, count, [&](std::size_t n) { return p[at + n] * q[at + n]; });
+                    const auto        pq =
+                        host::partialSums<Real>(kNodes, count, [&](std::size_t n) { return p[at + n] * q[at + n]; });
                     expected.insert(expected.end(), pq.begin(), pq.end());
                 }
                 EXPECT_TRUE(agree(partials, sumsOf(expected), sizesOf(expected), kDotRounding));
@@ -146,11 +150,13 @@ TEST_F(CgTest, BetaAndTheEnergyAreThoseOfCxxHoweverASolveBegins)
             const gpu::Kernel beta(context(), kernels::beta<Real>(), shape);
             for (const std::uint32_t count : partialCounts())
                 for (const std::uint32_t begins : {0U, 1U, 2U}) {
-                    SCOPED_TRACE(std::to_string(count) + " sums, begins " + std::to_string(begins) + " by " + describe(shape));
+                    SCOPED_TRACE(std::to_string(count) + " sums, begins " + std::to_string(begins) + " by " +
+                                 describe(shape));
                     const shared::ScalarsPush push{kLoads, count, begins, 0, 1e-6F};
                     std::vector<Real>         partials = roughValues<Real>(2 * std::size_t(kLoads) * count, 47);
                     std::vector<Real>         state = roughState<Real>(48), expected = state;
-                    expected[kStateWords + kStateRz] = state[kStateWords + kStateRz] = 0; // of load 1: nothing to divide by
+                    expected[kStateWords + kStateRz] = state[kStateWords + kStateRz] =
+                        0; // of load 1: nothing to divide by
 
                     dispatchOnce(beta, {in(partials), inOut(state)}, push, {1, 1, 1});
 
@@ -160,7 +166,8 @@ TEST_F(CgTest, BetaAndTheEnergyAreThoseOfCxxHoweverASolveBegins)
                     for (int load = 0; load < kLoads; ++load) {
                         const Real* at = state.data() + load * kStateWords;
                         EXPECT_TRUE(begins == 0 || at[kStateSteps] == 0) << "counts anew";
-                        EXPECT_TRUE(begins != 2 || (at[kStateBeta] == 0 && at[kStateGain] == 0 && at[kStateRatio] == 0)) << "anew";
+                        EXPECT_TRUE(begins != 2 || (at[kStateBeta] == 0 && at[kStateGain] == 0 && at[kStateRatio] == 0))
+                            << "anew";
                     }
                 }
         }
@@ -240,7 +247,7 @@ protected:
 TEST_F(CgStepTest, TheEstimateIsAGeometricTail)
 {
     inEachPrecision([](auto number) {
-        using Real = decltype(number);
+        using Real       = decltype(number);
         const auto after = stepped<Real>({1}, stateOf<Real>({Real(0.5)}), 1e-3F);
 
         EXPECT_EQ(after.state[kStateAlpha], Real(0.5));
@@ -254,7 +261,7 @@ TEST_F(CgStepTest, TheEstimateIsAGeometricTail)
 TEST_F(CgStepTest, DispatchesAreEmptiedOnlyWhenEveryLoadIsFinished)
 {
     inEachPrecision([](auto number) {
-        using Real = decltype(number);
+        using Real      = decltype(number);
         const Real fine = Real(1e-3), rough = Real(0.1); // estimates of 6e-4 and 6e-2
         struct Case {
             std::vector<Real> rz;
@@ -272,7 +279,7 @@ TEST_F(CgStepTest, DispatchesAreEmptiedOnlyWhenEveryLoadIsFinished)
 TEST_F(CgStepTest, ALoadWithoutAPositiveProductTakesNoStepAndIsNotCalledFinished)
 {
     inEachPrecision([](auto number) {
-        using Real = decltype(number);
+        using Real     = decltype(number);
         const Real nan = std::numeric_limits<Real>::quiet_NaN();
         for (const Real pq : {Real(0), Real(-1), nan}) {
             const auto after = stepped<Real>({1, pq, 1}, stateOf<Real>({Real(1e-3), Real(0.25), Real(1e-3)}), 1e-2F);
@@ -289,7 +296,7 @@ TEST_F(CgStepTest, ALoadWithoutAPositiveProductTakesNoStepAndIsNotCalledFinished
 TEST_F(CgStepTest, ALoadOfNothingIsFinished)
 {
     inEachPrecision([](auto number) {
-        using Real = decltype(number);
+        using Real       = decltype(number);
         const auto after = stepped<Real>({0}, std::vector<Real>(std::size_t(kStateWords)), 1e-6F);
 
         EXPECT_EQ(after.state[kStateAlpha], Real(0));
@@ -301,7 +308,7 @@ TEST_F(CgStepTest, ALoadOfNothingIsFinished)
 TEST_F(CgStepTest, AToleranceOfZeroNeverStops)
 {
     inEachPrecision([](auto number) {
-        using Real = decltype(number);
+        using Real       = decltype(number);
         const auto after = stepped<Real>({0, 1}, std::vector<Real>(2 * std::size_t(kStateWords)), 0);
 
         EXPECT_EQ(after.arguments.front(), 5U);
@@ -311,7 +318,7 @@ TEST_F(CgStepTest, AToleranceOfZeroNeverStops)
 TEST_F(CgTest, TheNextDirectionIsThatOfCxxAndTheFirstNeedsNoLast)
 {
     inEachPrecision([](auto number) {
-        using Real = decltype(number);
+        using Real                    = decltype(number);
         const std::vector<float> z    = vectors<float>(51);
         std::vector<Real>        last = vectors<Real>(52), state = roughState<Real>(53);
         state[kStateWords + kStateBeta] = 0; // of load 1, whose last direction is whatever memory held
@@ -338,12 +345,12 @@ TEST_F(CgTest, TheNextDirectionIsThatOfCxxAndTheFirstNeedsNoLast)
 TEST_F(CgTest, AnUpdateIsThatOfCxxAndIsLeftOutWhereTheSolveStoppedBefore)
 {
     inEachPrecision([](auto number) {
-        using Real = decltype(number);
-        const std::vector<Real> p = vectors<Real>(54), q = vectors<Real>(55), state = roughState<Real>(56);
-        const std::uint32_t     iteration = 4; // of load 1; loads 0 and 2 have made 3 and 5 steps
-        const std::vector<Real> xBefore = vectors<Real>(57), rBefore = vectors<Real>(58);
+        using Real                 = decltype(number);
+        const std::vector<Real>  p = vectors<Real>(54), q = vectors<Real>(55), state = roughState<Real>(56);
+        const std::uint32_t      iteration = 4; // of load 1; loads 0 and 2 have made 3 and 5 steps
+        const std::vector<Real>  xBefore = vectors<Real>(57), rBefore = vectors<Real>(58);
         const std::vector<float> roundedBefore = vectors<float>(59);
-        std::vector<Real>       xExpected = xBefore, rExpected = rBefore;
+        std::vector<Real>        xExpected = xBefore, rExpected = rBefore;
         for (std::size_t n = kNodes; n < 2 * kNodes; ++n) {
             const Real alpha = state[std::size_t(kStateWords + kStateAlpha)];
             xExpected[n] += alpha * p[n];
@@ -378,9 +385,9 @@ TEST_F(CgTest, RepeatsAreEqualToTheBit)
             std::vector<Real>          partials(std::size_t(kLoads) * 64), state = roughState<Real>(63);
             std::vector<std::uint32_t> arguments(6, 5);
             dispatchOnce(dots, {in(p), in(q), out(partials)}, shared::VectorPush{kNodes, 64, 0},
-                         dots.groupsOver(64, 1, kLoads));
+                                      dots.groupsOver(64, 1, kLoads));
             dispatchOnce(step, {in(partials), inOut(state), inOut(arguments)},
-                         shared::ScalarsPush{kLoads, 64, 0, 6, 1e-6F}, {1, 1, 1});
+                                      shared::ScalarsPush{kLoads, 64, 0, 6, 1e-6F}, {1, 1, 1});
             return state;
         };
 

@@ -20,7 +20,7 @@ TEST_F(PlateResultTest, IsInMetresPerLoad) // shown in tests/README.md
 TEST_F(PlateResultTest, IsRoundedBeforeItIsScaledWhateverTheShapeOfTheWorkgroup)
 {
     inEachPrecision([](auto number) {
-        using Real = decltype(number);
+        using Real                      = decltype(number);
         const std::vector<Real>  answer = roughValues<Real>(kLoads * 997, 61);
         const std::vector<float> metres{1e-3F, 2.5F, 7e5F};
         std::vector<float>       expected;

@@ -19,8 +19,9 @@ struct Rounding {
     const char* because; ///< printed on failure
 };
 
-inline constexpr Rounding kOperatorRounding{64, "some 60 sums and products of 13 deflections, of which a driver may fuse "
-                                                "or reorder any"};
+inline constexpr Rounding kOperatorRounding{64,
+                                            "some 60 sums and products of 13 deflections, of which a driver may fuse "
+                                            "or reorder any"};
 inline constexpr Rounding kTransferRounding{16, "16 or 64 products in nested sums of 4 or 8, most with small weights"};
 inline constexpr Rounding kFusedRounding{3, "one product and one sum, which a driver may fuse"};
 
@@ -103,14 +104,15 @@ protected:
         check(0.0);
     }
 
-    /// Whether a kernel computed what C++ does: to the bit where the device is bitExact(), else within the rounding. The
-    /// sign of a zero does not count: drivers leave out the addition of 0, which turns -0 into 0.
-    /// \param sizes  for each number the magnitudes that were added up to it, at least its own
+    /// Whether a kernel computed what C++ does: to the bit where the device is bitExact(), else within the rounding.
+    /// The sign of a zero does not count: drivers leave out the addition of 0, which turns -0 into 0. \param sizes  for
+    /// each number the magnitudes that were added up to it, at least its own
     template <class Real>
     static ::testing::AssertionResult agree(const std::vector<Real>& measured, const std::vector<Real>& expected,
                                             const std::vector<double>& sizes, Rounding rounding)
     {
-        if (context().bitExact()) return ShaderTest::agree(withoutSignOfZero(measured), withoutSignOfZero(expected), {0, ""});
+        if (context().bitExact())
+            return ShaderTest::agree(withoutSignOfZero(measured), withoutSignOfZero(expected), {0, ""});
         return isWithin(measured, expected, sizes, rounding);
     }
     using ShaderTest::agree;
@@ -132,9 +134,9 @@ protected:
         for (std::size_t n = 0; n < measured.size(); ++n) {
             const double allowed = rounding.units * kUnit * sizes[n];
             if (std::abs(double(measured[n]) - double(expected[n])) <= allowed) continue;
-            return ::testing::AssertionFailure() << "value " << n << ": measured " << measured[n] << ", expected "
-                                                 << expected[n] << ", allowed " << allowed << ", because "
-                                                 << rounding.because;
+            return ::testing::AssertionFailure()
+                   << "value " << n << ": measured " << measured[n] << ", expected " << expected[n] << ", allowed "
+                   << allowed << ", because " << rounding.because;
         }
         return ::testing::AssertionSuccess();
     }

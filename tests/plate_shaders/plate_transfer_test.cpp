@@ -5,8 +5,9 @@
 namespace palp {
 namespace {
 
-constexpr UlpTolerance kCoarsenTolerance{24, "up to four nested square roots, each good to some 5 ulp, of which the outer "
-                                             "ones halve"};
+constexpr UlpTolerance kCoarsenTolerance{24,
+                                         "up to four nested square roots, each good to some 5 ulp, of which the outer "
+                                         "ones halve"};
 
 class PlateTransferTest : public PlateShaderTest {
 protected:
@@ -109,7 +110,7 @@ TEST_F(PlateTransferTest, TheCoarsestAnswerIsInterpolatedFromFloats)
 
 TEST_F(PlateTransferTest, RigidityIsCoarsenedAsInCxx)
 {
-    const std::vector<Plate>     all    = plates();
+    const std::vector<Plate>     all     = plates();
     const std::vector<LevelPair> coarser = pairs();
     for (const gpu::Workgroup shape : tiles()) {
         const gpu::Kernel coarsen(context(), kernels::coarsen(), shape);
@@ -136,7 +137,7 @@ TEST_F(PlateTransferTest, RepeatsAreEqualToTheBit)
     std::vector<float>       first(kLoads * nodesOf(pair.coarse)), again(first.size());
     const auto               run = [&](std::vector<float>& coarse) {
         dispatchOnce(restriction, {in(pair.tableX), in(pair.tableZ), in(fine), out(coarse)}, pushOf(pair),
-                     groupsOver(restriction, pair.coarse, kLoads));
+                                   groupsOver(restriction, pair.coarse, kLoads));
     };
 
     run(first);
