@@ -96,8 +96,8 @@ TEST_F(CgTest, DotProductsAreAddedInTheOrderOfCxx)
                 SCOPED_TRACE(std::to_string(count) + " sums by " + describe(shape));
                 std::vector<Real> partials(2 * std::size_t(kLoads) * count);
 
-                dispatchOnce(dots, {in(r), in(z), in(x), in(f), out(partials)}, shared::VectorPush{kNodes, count, 0},
-                             dots.groupsOver(count, 1, kLoads));
+                dispatchTwice(dots, {in(r), in(z), in(x), in(f), out(partials)}, shared::VectorPush{kNodes, count, 0},
+                              dots.groupsOver(count, 1, kLoads));
 
                 std::vector<host::Partial<Real>> expected;
                 for (std::size_t load = 0; load < kLoads; ++load) {
@@ -126,8 +126,8 @@ TEST_F(CgTest, TheDotProductOfAStepIsAddedInTheOrderOfCxx)
                 SCOPED_TRACE(std::to_string(count) + " sums by " + describe(shape));
                 std::vector<Real> partials(std::size_t(kLoads) * count);
 
-                dispatchOnce(dots, {in(p), in(q), out(partials)}, shared::VectorPush{kNodes, count, 0},
-                             dots.groupsOver(count, 1, kLoads));
+                dispatchTwice(dots, {in(p), in(q), out(partials)}, shared::VectorPush{kNodes, count, 0},
+                              dots.groupsOver(count, 1, kLoads));
 
                 std::vector<host::Partial<Real>> expected;
                 for (std::size_t load = 0; load < kLoads; ++load) {
@@ -158,7 +158,7 @@ TEST_F(CgTest, BetaAndTheEnergyAreThoseOfCxxHoweverASolveBegins)
                     expected[kStateWords + kStateRz] = state[kStateWords + kStateRz] =
                         0; // of load 1: nothing to divide by
 
-                    dispatchOnce(beta, {in(partials), inOut(state)}, push, {1, 1, 1});
+                    dispatchTwice(beta, {in(partials), inOut(state)}, push, {1, 1, 1});
 
                     host::beta(push, partials, shape.x, expected);
                     EXPECT_TRUE(agree(state, expected, std::vector<double>(state.size(), count), kScalarRounding));
@@ -188,7 +188,7 @@ TEST_F(CgTest, AStepIsThatOfCxx)
                 std::vector<Real>          state = roughState<Real>(50), expected = state;
                 std::vector<std::uint32_t> arguments(9, 5);
 
-                dispatchOnce(step, {in(partials), inOut(state), inOut(arguments)}, push, {1, 1, 1});
+                dispatchTwice(step, {in(partials), inOut(state), inOut(arguments)}, push, {1, 1, 1});
 
                 EXPECT_FALSE(host::step(push, partials, shape.x, expected));
                 EXPECT_TRUE(agree(state, expected, ownSizes(expected), kScalarRounding));
@@ -219,7 +219,7 @@ protected:
         std::vector<std::uint32_t> arguments(100, 5); // more than a workgroup; three of them not the kernel's
         const shared::ScalarsPush  push{std::uint32_t(pq.size()), kPartials, 0, 97, tolerance};
         std::vector<Real>          expected = state;
-        dispatchOnce(step, {in(partials), inOut(state), inOut(arguments)}, push, {1, 1, 1});
+        dispatchTwice(step, {in(partials), inOut(state), inOut(arguments)}, push, {1, 1, 1});
 
         std::vector<std::uint32_t> wanted(100, 5);
         if (host::step(push, partials, shape.x, expected)) std::fill(wanted.begin(), wanted.end() - 3, 0U);
@@ -334,8 +334,8 @@ TEST_F(CgTest, TheNextDirectionIsThatOfCxxAndTheFirstNeedsNoLast)
             const gpu::Kernel direction(context(), kernels::direction<Real>(), shape);
             std::vector<Real> p(last.size());
 
-            dispatchOnce(direction, {in(state), in(z), in(last), out(p)}, shared::VectorPush{kNodes, 0, 0},
-                         direction.groupsOver(kNodes, 1, kLoads));
+            dispatchTwice(direction, {in(state), in(z), in(last), out(p)}, shared::VectorPush{kNodes, 0, 0},
+                          direction.groupsOver(kNodes, 1, kLoads));
 
             EXPECT_TRUE(agree(p, expected, sizes, kFusedRounding)) << describe(shape);
         }
@@ -362,8 +362,8 @@ TEST_F(CgTest, AnUpdateIsThatOfCxxAndIsLeftOutWhereTheSolveStoppedBefore)
             std::vector<Real>  x = xBefore, r = rBefore;
             std::vector<float> rounded = roundedBefore;
 
-            dispatchOnce(update, {in(state), in(p), in(q), inOut(x), inOut(r), inOut(rounded)},
-                         shared::VectorPush{kNodes, 0, iteration}, update.groupsOver(kNodes, 1, kLoads));
+            dispatchTwice(update, {in(state), in(p), in(q), inOut(x), inOut(r), inOut(rounded)},
+                          shared::VectorPush{kNodes, 0, iteration}, update.groupsOver(kNodes, 1, kLoads));
 
             const std::vector<double> sizes(x.size(), 2);
             EXPECT_TRUE(agree(x, xExpected, sizes, kFusedRounding));

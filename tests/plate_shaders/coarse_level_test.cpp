@@ -30,7 +30,7 @@ protected:
                                        const std::vector<float>& band)
     {
         std::vector<float> measured(band.size());
-        dispatchOnce(factor, {in(band), out(measured)}, shared::LevelPush{g}, {1, 1, 1});
+        dispatchTwice(factor, {in(band), out(measured)}, shared::LevelPush{g}, {1, 1, 1});
         return measured;
     }
 
@@ -38,8 +38,8 @@ protected:
                                       const std::vector<float>& factor, const std::vector<float>& force)
     {
         std::vector<float> w(force.size());
-        dispatchOnce(solve, {in(factor), in(force), out(w)}, shared::LevelPush{g},
-                     {1, 1, std::uint32_t(force.size() / nodesOf(g))});
+        dispatchTwice(solve, {in(factor), in(force), out(w)}, shared::LevelPush{g},
+                      {1, 1, std::uint32_t(force.size() / nodesOf(g))});
         return w;
     }
 
@@ -76,7 +76,7 @@ TEST_F(CoarseLevelTest, TheBandIsThatOfCxx)
             const std::vector<float> expected = host::assembled(level.g, level.rigidity);
             std::vector<float>       band(expected.size());
 
-            dispatchOnce(
+            dispatchTwice(
                 assemble, {in(level.rigidity), out(band)}, shared::LevelPush{level.g},
                 assemble.groupsOver(std::uint32_t(shared::halfBand(level.g) + 1), std::uint32_t(nodesOf(level.g))));
 

@@ -30,8 +30,8 @@ TEST_F(PlateApplyTest, EveryShapeOfWorkgroupComputesWhatCxxDoes)
                 const std::vector<Real> w = roughDeflection<Real>(level.g, kLoads, 1);
                 std::vector<Real>       forces(w.size());
 
-                dispatchOnce(apply, {in(level.rigidity), in(w), out(forces)}, shared::LevelPush{level.g},
-                             groupsOver(apply, level.g, kLoads));
+                dispatchTwice(apply, {in(level.rigidity), in(w), out(forces)}, shared::LevelPush{level.g},
+                              groupsOver(apply, level.g, kLoads));
 
                 EXPECT_TRUE(agree(forces, host::applied(level.g, level.rigidity, w), operatorSizes(level, w),
                                   kOperatorRounding));
@@ -90,8 +90,8 @@ TEST_F(PlateResidualTest, EveryShapeOfWorkgroupComputesWhatCxxDoes)
             const std::vector<float> force = roughValues<float>(w.size(), 5); // on held nodes too
             std::vector<float>       left(w.size());
 
-            dispatchOnce(residual, {in(level.rigidity), in(force), in(w), out(left)}, shared::LevelPush{level.g},
-                         groupsOver(residual, level.g, kLoads));
+            dispatchTwice(residual, {in(level.rigidity), in(force), in(w), out(left)}, shared::LevelPush{level.g},
+                          groupsOver(residual, level.g, kLoads));
 
             EXPECT_TRUE(agree(left, host::residual(level.g, level.rigidity, force, w), sizesOf(level, force, w),
                               kOperatorRounding));
@@ -113,8 +113,8 @@ TEST_F(PlateResidualTest, TheStartOfConjugateGradientsKeepsItInFullAndRounded)
                 std::vector<Real>        left(w.size());
                 std::vector<float>       rounded(w.size());
 
-                dispatchOnce(start, {in(level.rigidity), in(force), in(w), out(left), out(rounded)},
-                             shared::LevelPush{level.g}, groupsOver(start, level.g, kLoads));
+                dispatchTwice(start, {in(level.rigidity), in(force), in(w), out(left), out(rounded)},
+                              shared::LevelPush{level.g}, groupsOver(start, level.g, kLoads));
 
                 EXPECT_TRUE(agree(left, host::residual(level.g, level.rigidity, force, w), sizesOf(level, force, w),
                                   kOperatorRounding));

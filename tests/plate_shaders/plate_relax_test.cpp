@@ -107,8 +107,8 @@ TEST_F(PlateRelaxTest, AHalfSweepFromZeroIsTheFirstOne)
                 fields.other             = fields.same;
                 std::vector<float> after = fields.after;
 
-                dispatchOnce(first, {in(fields.inverseDivisor), in(fields.force), inOut(after)},
-                             shared::RelaxPush{level.g, colour}, everySecondNode(first, level.g, kLoads));
+                dispatchTwice(first, {in(fields.inverseDivisor), in(fields.force), inOut(after)},
+                              shared::RelaxPush{level.g, colour}, everySecondNode(first, level.g, kLoads));
 
                 // One product, then, in C++, a sum with 0: nothing to round differently. Zeroes may differ in sign.
                 const std::vector<float> expected = host::relaxed(level, fields, colour);
@@ -177,8 +177,8 @@ TEST_F(PlateRelaxTest, DivisorsAreThoseOfCxxAndHeldNodesHaveNone)
             const RoughLevel   level(plate);
             std::vector<float> inverse(nodesOf(level.g));
 
-            dispatchOnce(divisor, {in(level.rigidity), out(inverse)}, shared::LevelPush{level.g},
-                         groupsOver(divisor, level.g, 1));
+            dispatchTwice(divisor, {in(level.rigidity), out(inverse)}, shared::LevelPush{level.g},
+                          groupsOver(divisor, level.g, 1));
 
             EXPECT_TRUE(agree(inverse, host::inverseDivisor(level.g, level.rigidity), kDivisorTolerance));
             host::forEachNode(level.g, 1, [&](int i, int j, std::size_t n, std::size_t) {

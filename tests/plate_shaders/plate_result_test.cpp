@@ -29,8 +29,8 @@ TEST_F(PlateResultTest, IsRoundedBeforeItIsScaledWhateverTheShapeOfTheWorkgroup)
             const gpu::Kernel  result(context(), kernels::result<Real>(), shape);
             std::vector<float> w(answer.size());
 
-            dispatchOnce(result, {in(answer), in(metres), out(w)}, shared::VectorPush{997, 0, 0},
-                         result.groupsOver(997, 1, kLoads));
+            dispatchTwice(result, {in(answer), in(metres), out(w)}, shared::VectorPush{997, 0, 0},
+                          result.groupsOver(997, 1, kLoads));
 
             EXPECT_TRUE(agree(w, expected, {0, "one product: there is nothing to fuse"})) << describe(shape);
         }

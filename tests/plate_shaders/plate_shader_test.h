@@ -1,6 +1,8 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <string>
 #include <vector>
@@ -89,6 +91,27 @@ protected:
     static gpu::Groups groupsOver(const gpu::Kernel& kernel, const shared::PlateLevel& g, int loads)
     {
         return kernel.groupsOver(std::uint32_t(g.cellsZ + 1), std::uint32_t(g.cellsX + 1), std::uint32_t(loads));
+    }
+
+    /// dispatchOnce(), and again from the same contents: the answers must be equal to the bit.
+    static void dispatchTwice(const gpu::Kernel& kernel, std::initializer_list<ShaderArray> arrays,
+                              const gpu::Push& push, gpu::Groups groups)
+    {
+        const auto contents = [&] {
+            std::vector<std::vector<std::byte>> all;
+            for (const ShaderArray& array : arrays) all.emplace_back(array.data, array.data + array.bytes);
+            return all;
+        };
+        const auto before = contents();
+        dispatchOnce(kernel, arrays, push, groups);
+        const auto  first  = contents();
+        std::size_t number = 0;
+        for (const ShaderArray& array : arrays) {
+            if (array.role == ShaderArray::Role::inOut) std::ranges::copy(before[number], array.data);
+            ++number;
+        }
+        dispatchOnce(kernel, arrays, push, groups);
+        EXPECT_EQ(first, contents()) << kernel.code().name << ": a repeat differs";
     }
 
     /// Calls check(0.0F), and check(0.0) where the device has doubles; the argument's type is what matters.
