@@ -72,8 +72,8 @@ inline std::vector<float> relaxed(const RoughLevel& level, const HalfSweep& fiel
     forEachNode(g, after.size() / nodesOf(g), [&](int i, int j, std::size_t n, std::size_t node) {
         if ((unsigned(i + j) & 1U) != colour) return;
         const std::size_t first = n - node;
-        auto A       = operatorOf(g, level.rigidity, fields.same.data() + first, fields.other.data() + first);
-        after[n]     = A.relaxed(fields.same[n], fields.force[n], A.operatorAt(g, i, j), fields.inverseDivisor[node]);
+        auto              A = operatorOf(g, level.rigidity, fields.same.data() + first, fields.other.data() + first);
+        after[n] = A.relaxed(fields.same[n], fields.force[n], A.operatorAt(g, i, j), fields.inverseDivisor[node]);
     });
     return after;
 }
@@ -95,8 +95,8 @@ inline std::vector<float> restricted(const LevelPair& pair, const std::vector<fl
     const std::size_t  loads = fine.size() / nodesOf(pair.fine);
     std::vector<float> coarse(loads * nodesOf(pair.coarse));
     forEachNode(pair.coarse, loads, [&](int i, int j, std::size_t n, std::size_t) {
-        const float*   of = fine.data() + n / nodesOf(pair.coarse) * nodesOf(pair.fine);
-        Restrict       gather{pair.tableX.data(), pair.tableZ.data(), of, pair.fine.cellsZ + 1};
+        const float* of = fine.data() + n / nodesOf(pair.coarse) * nodesOf(pair.fine);
+        Restrict     gather{pair.tableX.data(), pair.tableZ.data(), of, pair.fine.cellsZ + 1};
         coarse[n] = gather.restrictedAt(i, j, pair.fine.cellsX + 1, pair.fine.cellsZ + 1);
     });
     return coarse;
@@ -163,7 +163,8 @@ inline std::vector<float> coarseSolved(const PlateLevel& g, const std::vector<fl
             right[n] = holds(g, columnOf(g, int(n)), rowOf(g, int(n))) ? 0.0F : force[first + nodeOf(n)];
         for (std::size_t n = 0; n < unknowns; ++n) {
             right[n] *= factor[n * slots];
-            for (std::size_t d = 1; d < slots && n + d < unknowns; ++d) right[n + d] -= factor[n * slots + d] * right[n];
+            for (std::size_t d = 1; d < slots && n + d < unknowns; ++d)
+                right[n + d] -= factor[n * slots + d] * right[n];
         }
         for (std::size_t n = unknowns; n-- > 0;) {
             right[n] *= factor[n * slots];
@@ -226,10 +227,10 @@ bool step(const ScalarsPush& push, const std::vector<Real>& partials, std::size_
 {
     bool finished = true;
     for (std::size_t load = 0; load < push.loads; ++load) {
-        Real* const at  = state.data() + load * kStateWords;
-        const auto  now = Scalars<Real>{}.stepOf(total(partials.data() + load * push.partials, push.partials, width),
-                                                at[kStateRz], at[kStateEnergy], at[kStateGain], at[kStateRatio],
-                                                at[kStateSteps]);
+        Real* const at = state.data() + load * kStateWords;
+        const auto  now =
+            Scalars<Real>{}.stepOf(total(partials.data() + load * push.partials, push.partials, width), at[kStateRz],
+                                   at[kStateEnergy], at[kStateGain], at[kStateRatio], at[kStateSteps]);
         at[kStateAlpha]    = now.alpha;
         at[kStateGain]     = now.gain;
         at[kStateRatio]    = now.ratio;

@@ -44,7 +44,10 @@ gpu::KernelCode code(const char* name, const std::uint32_t (&spirv)[N], int buff
 }
 
 #define PALPATE_KERNEL(function, name, Constants, buffers)                                                             \
-    inline gpu::KernelCode function() { return code<shared::Constants>(#name, name##_spv, buffers); }
+    inline gpu::KernelCode function()                                                                                  \
+    {                                                                                                                  \
+        return code<shared::Constants>(#name, name##_spv, buffers);                                                    \
+    }
 #define PALPATE_REAL_KERNEL(function, name, Constants, buffers)                                                        \
     template <class Real>                                                                                              \
     gpu::KernelCode function()                                                                                         \

@@ -9,7 +9,8 @@ class PlateApplyTest : public PlateShaderTest {};
 class PlateResidualTest : public PlateShaderTest {
 protected:
     template <class Real>
-    static std::vector<double> sizesOf(const RoughLevel& level, const std::vector<float>& force, const std::vector<Real>& w)
+    static std::vector<double> sizesOf(const RoughLevel& level, const std::vector<float>& force,
+                                       const std::vector<Real>& w)
     {
         std::vector<double> sizes = operatorSizes(level, w);
         for (std::size_t n = 0; n < sizes.size(); ++n) sizes[n] += std::abs(double(force[n]));
@@ -29,8 +30,8 @@ TEST_F(PlateApplyTest, EveryShapeOfWorkgroupComputesWhatCxxDoes)
                 const std::vector<Real> w = roughDeflection<Real>(level.g, kLoads, 1);
                 std::vector<Real>       forces(w.size());
 
-                dispatchOnce(apply, {in(level.rigidity), in(w), out(forces)}, shared::LevelPush{level.g},
-                             groupsOver(apply, level.g, kLoads));
+                dispatchTwice(apply, {in(level.rigidity), in(w), out(forces)}, shared::LevelPush{level.g},
+                              groupsOver(apply, level.g, kLoads));
 
                 EXPECT_TRUE(agree(forces, host::applied(level.g, level.rigidity, w), operatorSizes(level, w),
                                   kOperatorRounding));
@@ -49,7 +50,7 @@ TEST_F(PlateApplyTest, RepeatsAreEqualToTheBit)
         std::vector<Real>       first(w.size()), again(w.size());
         const auto              run = [&](std::vector<Real>& forces) {
             dispatchOnce(apply, {in(level.rigidity), in(w), out(forces)}, shared::LevelPush{level.g},
-                         groupsOver(apply, level.g, kLoads));
+                                      groupsOver(apply, level.g, kLoads));
         };
 
         run(first);
@@ -85,12 +86,12 @@ TEST_F(PlateResidualTest, EveryShapeOfWorkgroupComputesWhatCxxDoes)
         for (const Plate& plate : plates()) {
             SCOPED_TRACE(describe(plate) + " by " + describe(shape));
             const RoughLevel         level(plate);
-            const std::vector<float> w = roughDeflection<float>(level.g, kLoads, 4);
+            const std::vector<float> w     = roughDeflection<float>(level.g, kLoads, 4);
             const std::vector<float> force = roughValues<float>(w.size(), 5); // on held nodes too
             std::vector<float>       left(w.size());
 
-            dispatchOnce(residual, {in(level.rigidity), in(force), in(w), out(left)}, shared::LevelPush{level.g},
-                         groupsOver(residual, level.g, kLoads));
+            dispatchTwice(residual, {in(level.rigidity), in(force), in(w), out(left)}, shared::LevelPush{level.g},
+                          groupsOver(residual, level.g, kLoads));
 
             EXPECT_TRUE(agree(left, host::residual(level.g, level.rigidity, force, w), sizesOf(level, force, w),
                               kOperatorRounding));
@@ -112,8 +113,8 @@ TEST_F(PlateResidualTest, TheStartOfConjugateGradientsKeepsItInFullAndRounded)
                 std::vector<Real>        left(w.size());
                 std::vector<float>       rounded(w.size());
 
-                dispatchOnce(start, {in(level.rigidity), in(force), in(w), out(left), out(rounded)},
-                             shared::LevelPush{level.g}, groupsOver(start, level.g, kLoads));
+                dispatchTwice(start, {in(level.rigidity), in(force), in(w), out(left), out(rounded)},
+                              shared::LevelPush{level.g}, groupsOver(start, level.g, kLoads));
 
                 EXPECT_TRUE(agree(left, host::residual(level.g, level.rigidity, force, w), sizesOf(level, force, w),
                                   kOperatorRounding));
@@ -132,7 +133,7 @@ TEST_F(PlateResidualTest, RepeatsAreEqualToTheBit)
     std::vector<float>       first(w.size()), again(w.size());
     const auto               run = [&](std::vector<float>& left) {
         dispatchOnce(residual, {in(level.rigidity), in(force), in(w), out(left)}, shared::LevelPush{level.g},
-                     groupsOver(residual, level.g, kLoads));
+                                   groupsOver(residual, level.g, kLoads));
     };
 
     run(first);

@@ -22,7 +22,7 @@ std::vector<Real> roughValues(std::size_t count, std::uint32_t seed)
     std::vector<Real> values(count);
     for (Real& value : values) {
         const double whole = double(engine() >> 8), part = double(engine() >> 8); // 24 bits each
-        value              = Real((whole + (sizeof(Real) == 8 ? part / 16777216 : 0)) / 8388608 - 1);
+        value = Real((whole + (sizeof(Real) == 8 ? part / 16777216 : 0)) / 8388608 - 1);
     }
     return values;
 }
@@ -96,8 +96,8 @@ struct LevelPair {
 
     LevelPair(const Plate& plate, int coarseX, int coarseZ)
     {
-        fine   = gridHierarchy(plate, 1).levels.front().plate;
-        coarse = fine; // transfers look at the sizes and the sides only
+        fine          = gridHierarchy(plate, 1).levels.front().plate;
+        coarse        = fine; // transfers look at the sizes and the sides only
         coarse.cellsX = coarseX;
         coarse.cellsZ = coarseZ;
         tableX        = transferTable(fine.cellsX, coarseX, plate.edges.x0, plate.edges.x1);

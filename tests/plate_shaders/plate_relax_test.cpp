@@ -14,9 +14,10 @@
 namespace palp {
 namespace {
 
-constexpr UlpTolerance kDivisorTolerance{128, "an entry of the row is a sum of some ten products, of which a driver may "
-                                              "fuse or reorder any, and up to nine entries are added; division is good "
-                                              "to 2.5 ulp only"};
+constexpr UlpTolerance kDivisorTolerance{128,
+                                         "an entry of the row is a sum of some ten products, of which a driver may "
+                                         "fuse or reorder any, and up to nine entries are added; division is good "
+                                         "to 2.5 ulp only"};
 
 class PlateRelaxTest : public PlateShaderTest {
 protected:
@@ -38,15 +39,16 @@ protected:
     }
 
     /// One half sweep by a kernel; faults that the guard bands find are appended.
-    static std::vector<float> relaxedBy(const gpu::Kernel& relax, const RoughLevel& level, const host::HalfSweep& fields,
-                                        unsigned colour, std::vector<std::string>& faults)
+    static std::vector<float> relaxedBy(const gpu::Kernel& relax, const RoughLevel& level,
+                                        const host::HalfSweep& fields, unsigned colour,
+                                        std::vector<std::string>& faults)
     {
         const int          loads = int(fields.same.size() / nodesOf(level.g));
         std::vector<float> after = fields.after;
-        const auto found = dispatchGuarded(context(), relax,
-                                           {in(level.rigidity), in(fields.inverseDivisor), in(fields.force),
-                                            in(fields.same), in(fields.other), inOut(after)},
-                                           shared::RelaxPush{level.g, colour}, everySecondNode(relax, level.g, loads));
+        const auto         found = dispatchGuarded(context(), relax,
+                                                   {in(level.rigidity), in(fields.inverseDivisor), in(fields.force),
+                                                    in(fields.same), in(fields.other), inOut(after)},
+                                                   shared::RelaxPush{level.g, colour}, everySecondNode(relax, level.g, loads));
         faults.insert(faults.end(), found.begin(), found.end());
         return after;
     }
@@ -58,9 +60,9 @@ protected:
         const auto          other = operatorSizes(level, fields.other); // not less than its share of the nodes
         const std::size_t   nodes = nodesOf(level.g);
         for (std::size_t n = 0; n < sizes.size(); ++n)
-            sizes[n] = std::abs(double(fields.after[n])) + std::abs(double(fields.same[n])) +
-                       (std::abs(double(fields.force[n])) + sizes[n] + other[n]) *
-                           double(fields.inverseDivisor[n % nodes]);
+            sizes[n] =
+                std::abs(double(fields.after[n])) + std::abs(double(fields.same[n])) +
+                (std::abs(double(fields.force[n])) + sizes[n] + other[n]) * double(fields.inverseDivisor[n % nodes]);
         return sizes;
     }
 };
@@ -79,7 +81,8 @@ TEST_F(PlateRelaxTest, AHalfSweepRelaxesItsColourAsCxxDoesAndLeavesTheOther)
                 const std::vector<float> after = relaxedBy(relax, level, fields, colour, faults);
 
                 EXPECT_EQ(faults, std::vector<std::string>{});
-                EXPECT_TRUE(agree(after, host::relaxed(level, fields, colour), sizesOf(level, fields), kOperatorRounding));
+                EXPECT_TRUE(
+                    agree(after, host::relaxed(level, fields, colour), sizesOf(level, fields), kOperatorRounding));
                 host::forEachNode(level.g, kLoads, [&](int i, int j, std::size_t n, std::size_t) {
                     if ((unsigned(i + j) & 1U) != colour) {
                         EXPECT_EQ(after[n], fields.after[n]) << "untouched";
@@ -104,8 +107,8 @@ TEST_F(PlateRelaxTest, AHalfSweepFromZeroIsTheFirstOne)
                 fields.other             = fields.same;
                 std::vector<float> after = fields.after;
 
-                dispatchOnce(first, {in(fields.inverseDivisor), in(fields.force), inOut(after)},
-                             shared::RelaxPush{level.g, colour}, everySecondNode(first, level.g, kLoads));
+                dispatchTwice(first, {in(fields.inverseDivisor), in(fields.force), inOut(after)},
+                              shared::RelaxPush{level.g, colour}, everySecondNode(first, level.g, kLoads));
 
                 // One product, then, in C++, a sum with 0: nothing to round differently. Zeroes may differ in sign.
                 const std::vector<float> expected = host::relaxed(level, fields, colour);
@@ -118,13 +121,13 @@ TEST_F(PlateRelaxTest, AHalfSweepFromZeroIsTheFirstOne)
 // buffer that it writes.
 TEST_F(PlateRelaxTest, ASweepInTwoBuffersIsTwoHalfSweeps)
 {
-    const gpu::Kernel     relax(context(), kernels::relax(), {8, 8, 1});
-    const RoughLevel      level(plates()[1]);
-    host::HalfSweep       fields = fieldsOf(level, kLoads);
-    const std::size_t     bytes  = 4 * fields.same.size();
-    gpu::CommandList      list(context());
+    const gpu::Kernel        relax(context(), kernels::relax(), {8, 8, 1});
+    const RoughLevel         level(plates()[1]);
+    host::HalfSweep          fields = fieldsOf(level, kLoads);
+    const std::size_t        bytes  = 4 * fields.same.size();
+    gpu::CommandList         list(context());
     std::vector<gpu::Buffer> staging;
-    const auto            onDevice = [&](const std::vector<float>& values) {
+    const auto               onDevice = [&](const std::vector<float>& values) {
         staging.emplace_back(context(), "from the host", 4 * values.size(), gpu::Intent::upload);
         std::memcpy(staging.back().mapped(), values.data(), 4 * values.size());
         gpu::Buffer there(context(), "field", 4 * values.size(), gpu::Intent::device);
@@ -143,9 +146,9 @@ TEST_F(PlateRelaxTest, ASweepInTwoBuffersIsTwoHalfSweeps)
     list.end();
     context().run(list);
 
-    fields.other = fields.same;
-    fields.after = host::relaxed(level, fields, 0);
-    fields.other = fields.after;
+    fields.other                      = fields.same;
+    fields.after                      = host::relaxed(level, fields, 0);
+    fields.other                      = fields.after;
     const std::vector<float> expected = host::relaxed(level, fields, 1);
     down.makeVisibleToHost();
     const auto values = down.as<const float>();
@@ -174,8 +177,8 @@ TEST_F(PlateRelaxTest, DivisorsAreThoseOfCxxAndHeldNodesHaveNone)
             const RoughLevel   level(plate);
             std::vector<float> inverse(nodesOf(level.g));
 
-            dispatchOnce(divisor, {in(level.rigidity), out(inverse)}, shared::LevelPush{level.g},
-                         groupsOver(divisor, level.g, 1));
+            dispatchTwice(divisor, {in(level.rigidity), out(inverse)}, shared::LevelPush{level.g},
+                          groupsOver(divisor, level.g, 1));
 
             EXPECT_TRUE(agree(inverse, host::inverseDivisor(level.g, level.rigidity), kDivisorTolerance));
             host::forEachNode(level.g, 1, [&](int i, int j, std::size_t n, std::size_t) {
@@ -207,7 +210,8 @@ TEST_F(PlateRelaxTest, MistakesAreFound)
             const std::vector<float> after    = relaxedBy(relax, level, fields, colour, faults);
             const std::vector<float> expected = host::relaxed(level, fields, colour);
 
-            EXPECT_EQ(!agree(after, expected, sizesOf(level, fields), kOperatorRounding), mistake.isOne) << mistake.what;
+            EXPECT_EQ(!agree(after, expected, sizesOf(level, fields), kOperatorRounding), mistake.isOne)
+                << mistake.what;
             EXPECT_EQ(!isWithin(after, expected, sizesOf(level, fields), kOperatorRounding), mistake.isOne)
                 << mistake.what << ", on a device that is not bit-exact";
         }

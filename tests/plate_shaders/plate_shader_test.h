@@ -1,6 +1,8 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <string>
 #include <vector>
@@ -19,8 +21,9 @@ struct Rounding {
     const char* because; ///< printed on failure
 };
 
-inline constexpr Rounding kOperatorRounding{64, "some 60 sums and products of 13 deflections, of which a driver may fuse "
-                                                "or reorder any"};
+inline constexpr Rounding kOperatorRounding{64,
+                                            "some 60 sums and products of 13 deflections, of which a driver may fuse "
+                                            "or reorder any"};
 inline constexpr Rounding kTransferRounding{16, "16 or 64 products in nested sums of 4 or 8, most with small weights"};
 inline constexpr Rounding kFusedRounding{3, "one product and one sum, which a driver may fuse"};
 
@@ -90,6 +93,27 @@ protected:
         return kernel.groupsOver(std::uint32_t(g.cellsZ + 1), std::uint32_t(g.cellsX + 1), std::uint32_t(loads));
     }
 
+    /// dispatchOnce(), and again from the same contents: the answers must be equal to the bit.
+    static void dispatchTwice(const gpu::Kernel& kernel, std::initializer_list<ShaderArray> arrays,
+                              const gpu::Push& push, gpu::Groups groups)
+    {
+        const auto contents = [&] {
+            std::vector<std::vector<std::byte>> all;
+            for (const ShaderArray& array : arrays) all.emplace_back(array.data, array.data + array.bytes);
+            return all;
+        };
+        const auto before = contents();
+        dispatchOnce(kernel, arrays, push, groups);
+        const auto  first  = contents();
+        std::size_t number = 0;
+        for (const ShaderArray& array : arrays) {
+            if (array.role == ShaderArray::Role::inOut) std::ranges::copy(before[number], array.data);
+            ++number;
+        }
+        dispatchOnce(kernel, arrays, push, groups);
+        EXPECT_EQ(first, contents()) << kernel.code().name << ": a repeat differs";
+    }
+
     /// Calls check(0.0F), and check(0.0) where the device has doubles; the argument's type is what matters.
     template <class Check>
     static void inEachPrecision(const Check& check)
@@ -103,14 +127,15 @@ protected:
         check(0.0);
     }
 
-    /// Whether a kernel computed what C++ does: to the bit where the device is bitExact(), else within the rounding. The
-    /// sign of a zero does not count: drivers leave out the addition of 0, which turns -0 into 0.
-    /// \param sizes  for each number the magnitudes that were added up to it, at least its own
+    /// Whether a kernel computed what C++ does: to the bit where the device is bitExact(), else within the rounding.
+    /// The sign of a zero does not count: drivers leave out the addition of 0, which turns -0 into 0. \param sizes  for
+    /// each number the magnitudes that were added up to it, at least its own
     template <class Real>
     static ::testing::AssertionResult agree(const std::vector<Real>& measured, const std::vector<Real>& expected,
                                             const std::vector<double>& sizes, Rounding rounding)
     {
-        if (context().bitExact()) return ShaderTest::agree(withoutSignOfZero(measured), withoutSignOfZero(expected), {0, ""});
+        if (context().bitExact())
+            return ShaderTest::agree(withoutSignOfZero(measured), withoutSignOfZero(expected), {0, ""});
         return isWithin(measured, expected, sizes, rounding);
     }
     using ShaderTest::agree;
@@ -132,9 +157,9 @@ protected:
         for (std::size_t n = 0; n < measured.size(); ++n) {
             const double allowed = rounding.units * kUnit * sizes[n];
             if (std::abs(double(measured[n]) - double(expected[n])) <= allowed) continue;
-            return ::testing::AssertionFailure() << "value " << n << ": measured " << measured[n] << ", expected "
-                                                 << expected[n] << ", allowed " << allowed << ", because "
-                                                 << rounding.because;
+            return ::testing::AssertionFailure()
+                   << "value " << n << ": measured " << measured[n] << ", expected " << expected[n] << ", allowed "
+                   << allowed << ", because " << rounding.because;
         }
         return ::testing::AssertionSuccess();
     }

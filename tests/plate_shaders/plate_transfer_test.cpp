@@ -5,8 +5,9 @@
 namespace palp {
 namespace {
 
-constexpr UlpTolerance kCoarsenTolerance{24, "up to four nested square roots, each good to some 5 ulp, of which the outer "
-                                             "ones halve"};
+constexpr UlpTolerance kCoarsenTolerance{24,
+                                         "up to four nested square roots, each good to some 5 ulp, of which the outer "
+                                         "ones halve"};
 
 class PlateTransferTest : public PlateShaderTest {
 protected:
@@ -30,8 +31,8 @@ TEST_F(PlateTransferTest, RestrictionGathersForcesAsCxxDoes)
             const std::vector<float> fine = roughValues<float>(kLoads * nodesOf(pair.fine), 21);
             std::vector<float>       coarse(kLoads * nodesOf(pair.coarse));
 
-            dispatchOnce(restriction, {in(pair.tableX), in(pair.tableZ), in(fine), out(coarse)}, pushOf(pair),
-                         groupsOver(restriction, pair.coarse, kLoads));
+            dispatchTwice(restriction, {in(pair.tableX), in(pair.tableZ), in(fine), out(coarse)}, pushOf(pair),
+                          groupsOver(restriction, pair.coarse, kLoads));
 
             EXPECT_TRUE(agree(coarse, host::restricted(pair, fine), sizesOf(coarse.size(), fine), kTransferRounding));
             host::forEachNode(pair.coarse, kLoads, [&](int i, int j, std::size_t n, std::size_t) {
@@ -51,8 +52,8 @@ TEST_F(PlateTransferTest, ACorrectionIsAddedAsInCxx)
             const std::vector<float> before = roughDeflection<float>(pair.fine, kLoads, 23);
             std::vector<float>       after(before.size());
 
-            dispatchOnce(correct, {in(pair.tableX), in(pair.tableZ), in(coarse), out(after), in(before)}, pushOf(pair),
-                         groupsOver(correct, pair.fine, kLoads));
+            dispatchTwice(correct, {in(pair.tableX), in(pair.tableZ), in(coarse), out(after), in(before)}, pushOf(pair),
+                          groupsOver(correct, pair.fine, kLoads));
 
             std::vector<float> expected = host::interpolated(pair, coarse);
             for (std::size_t n = 0; n < expected.size(); ++n) expected[n] = before[n] + expected[n];
@@ -72,8 +73,8 @@ TEST_F(PlateTransferTest, AnAnswerIsInterpolatedAsInCxx)
                 const std::vector<Real> coarse = roughDeflection<Real>(pair.coarse, kLoads, 24);
                 std::vector<Real>       fine(kLoads * nodesOf(pair.fine));
 
-                dispatchOnce(interpolate, {in(pair.tableX), in(pair.tableZ), in(coarse), out(fine)}, pushOf(pair),
-                             groupsOver(interpolate, pair.fine, kLoads));
+                dispatchTwice(interpolate, {in(pair.tableX), in(pair.tableZ), in(coarse), out(fine)}, pushOf(pair),
+                              groupsOver(interpolate, pair.fine, kLoads));
 
                 EXPECT_TRUE(
                     agree(fine, host::interpolated(pair, coarse), sizesOf(fine.size(), coarse), kTransferRounding));
@@ -97,8 +98,8 @@ TEST_F(PlateTransferTest, TheCoarsestAnswerIsInterpolatedFromFloats)
                 const std::vector<Real>  widened(coarse.begin(), coarse.end());
                 std::vector<Real>        fine(kLoads * nodesOf(pair.fine));
 
-                dispatchOnce(interpolate, {in(pair.tableX), in(pair.tableZ), in(coarse), out(fine)}, pushOf(pair),
-                             groupsOver(interpolate, pair.fine, kLoads));
+                dispatchTwice(interpolate, {in(pair.tableX), in(pair.tableZ), in(coarse), out(fine)}, pushOf(pair),
+                              groupsOver(interpolate, pair.fine, kLoads));
 
                 EXPECT_TRUE(
                     agree(fine, host::interpolated(pair, widened), sizesOf(fine.size(), coarse), kTransferRounding));
@@ -109,7 +110,7 @@ TEST_F(PlateTransferTest, TheCoarsestAnswerIsInterpolatedFromFloats)
 
 TEST_F(PlateTransferTest, RigidityIsCoarsenedAsInCxx)
 {
-    const std::vector<Plate>     all    = plates();
+    const std::vector<Plate>     all     = plates();
     const std::vector<LevelPair> coarser = pairs();
     for (const gpu::Workgroup shape : tiles()) {
         const gpu::Kernel coarsen(context(), kernels::coarsen(), shape);
@@ -120,8 +121,8 @@ TEST_F(PlateTransferTest, RigidityIsCoarsenedAsInCxx)
                 const RoughLevel   level(plate);
                 std::vector<float> coarse(nodesOf(pair.coarse));
 
-                dispatchOnce(coarsen, {in(level.rigidity), out(coarse)}, pushOf(pair),
-                             groupsOver(coarsen, pair.coarse, 1));
+                dispatchTwice(coarsen, {in(level.rigidity), out(coarse)}, pushOf(pair),
+                              groupsOver(coarsen, pair.coarse, 1));
 
                 EXPECT_TRUE(agree(coarse, host::coarsened(pair, level.rigidity), kCoarsenTolerance));
             }
@@ -136,7 +137,7 @@ TEST_F(PlateTransferTest, RepeatsAreEqualToTheBit)
     std::vector<float>       first(kLoads * nodesOf(pair.coarse)), again(first.size());
     const auto               run = [&](std::vector<float>& coarse) {
         dispatchOnce(restriction, {in(pair.tableX), in(pair.tableZ), in(fine), out(coarse)}, pushOf(pair),
-                     groupsOver(restriction, pair.coarse, kLoads));
+                                   groupsOver(restriction, pair.coarse, kLoads));
     };
 
     run(first);

@@ -92,11 +92,11 @@ TEST(SharedOperatorTest, GivesTheLoadBackThatTheReferenceSolverWasGivenWhateverT
 TEST(SharedOperatorTest, GivesTheLoadBackAlsoWhereFloatsRoundTheCoefficients)
 {
     forAllEdges([&](const PlateEdges& edges) {
-        Plate            plate = roughPlate(9, 6, edges, 0.013, 0.017);
-        const double     most  = *std::max_element(plate.rigidity.values().begin(), plate.rigidity.values().end());
-        plate.foundation       = 1e-3 * most / std::pow(0.013 * 0.017, 2);
+        Plate        plate = roughPlate(9, 6, edges, 0.013, 0.017);
+        const double most  = *std::max_element(plate.rigidity.values().begin(), plate.rigidity.values().end());
+        plate.foundation   = 1e-3 * most / std::pow(0.013 * 0.017, 2);
         const RoughLevel level(plate);
-        NodeField load(plate.grid);
+        NodeField        load(plate.grid);
         load.values() = roughDeflection<double>(level.g, 1, 72);
 
         const NodeField     w = ReferencePlateSolver(plate).solve(load).deflection;
@@ -116,7 +116,8 @@ TEST(SharedOperatorTest, IsSymmetricAndPositive)
     forAllEdges([](const PlateEdges& edges) {
         const Plate               plate = exactPlate(5, 8, edges);
         const ExactLevel          level(plate);
-        const std::vector<double> u = roughDeflection<double>(level.g, 1, 73), v = roughDeflection<double>(level.g, 1, 74);
+        const std::vector<double> u = roughDeflection<double>(level.g, 1, 73),
+                                  v = roughDeflection<double>(level.g, 1, 74);
 
         const std::vector<double> Au = host::applied(level.g, level.rigidity, u);
         const std::vector<double> Av = host::applied(level.g, level.rigidity, v);
@@ -147,10 +148,11 @@ TEST(SharedRelaxationTest, TheDivisorIsAtLeastTheBoundOfAConvergentSplitting)
     forAllEdges([](const PlateEdges& edges) {
         Plate      plate  = exactPlate(5, 6, edges);
         const auto values = roughValues<double>(plate.grid.nodes(), 75);
-        for (std::size_t n = 0; n < values.size(); ++n) plate.rigidity.values()[n] = std::pow(1000, (values[n] + 1) / 2);
+        for (std::size_t n = 0; n < values.size(); ++n)
+            plate.rigidity.values()[n] = std::pow(1000, (values[n] + 1) / 2);
         const ExactLevel         level(plate);
-        const std::size_t        nodes = nodesOf(level.g);
-        const int                nodesZ = level.g.cellsZ + 1;
+        const std::size_t        nodes   = nodesOf(level.g);
+        const int                nodesZ  = level.g.cellsZ + 1;
         const std::vector<float> inverse = host::inverseDivisor(level.g, level.rigidity);
 
         // The matrix by brute force: answers to unit deflections of every node that moves.
@@ -210,7 +212,8 @@ TEST(SharedRelaxationTest, EveryHalfSweepLowersTheEnergy)
 struct Sizes {
     int fine, coarse; ///< cells
 };
-constexpr std::array<Sizes, 12> kSizes{{{6, 3}, {7, 4}, {8, 4}, {9, 5}, {10, 5}, {13, 7}, {17, 9}, {17, 17}, {33, 17}, {12, 7}, {20, 13}, {5, 3}}};
+constexpr std::array<Sizes, 12> kSizes{
+    {{6, 3}, {7, 4}, {8, 4}, {9, 5}, {10, 5}, {13, 7}, {17, 9}, {17, 17}, {33, 17}, {12, 7}, {20, 13}, {5, 3}}};
 
 /// A table as rows of fine nodes and as rows of coarse ones.
 struct Matrices {
@@ -240,8 +243,8 @@ TEST(SharedTransferTest, RestrictionIsExactlyTheTransposeOfProlongation)
         for (const Edge first : kEdges)
             for (const Edge last : kEdges) {
                 const Matrices matrices(sizes, first, last);
-                EXPECT_EQ(matrices.byFine, matrices.byCoarse) << sizes.fine << " to " << sizes.coarse << ", "
-                                                              << name(first) << ", " << name(last);
+                EXPECT_EQ(matrices.byFine, matrices.byCoarse)
+                    << sizes.fine << " to " << sizes.coarse << ", " << name(first) << ", " << name(last);
             }
 }
 
@@ -308,7 +311,8 @@ TEST(SharedTransferTest, SidesKeepTheirConditions)
                 // up to the middle: on small grids the other side reaches no further
                 EXPECT_LT(interpolationError(sizes, edge, other, 0, middle - 1, function), kWeightRounding)
                     << name(edge) << ", first side, " << sizes.fine << " to " << sizes.coarse;
-                EXPECT_LT(interpolationError(sizes, other, edge, sizes.fine - middle + 1, sizes.fine, fromLast), kWeightRounding)
+                EXPECT_LT(interpolationError(sizes, other, edge, sizes.fine - middle + 1, sizes.fine, fromLast),
+                              kWeightRounding)
                     << name(edge) << ", last side, " << sizes.fine << " to " << sizes.coarse;
             };
             if (sizes.coarse < 5) continue; // the other side is too near
@@ -348,7 +352,9 @@ TEST(SharedTransferTest, CoarsenedRigidityIsAGeometricMean)
 {
     const LevelPair    pair(roughPlate(12, 10, {}), 6, 5); // every coarse node lies on a fine one
     std::vector<float> rigidity(nodesOf(pair.fine));
-    host::forEachNode(pair.fine, 1, [&](int i, int j, std::size_t n, std::size_t) { rigidity[n] = float(std::exp(0.2 * i - 0.3 * j)); });
+    host::forEachNode(pair.fine, 1, [&](int i, int j, std::size_t n, std::size_t) {
+        rigidity[n] = float(std::exp(0.2 * i - 0.3 * j));
+    });
 
     const std::vector<float> coarse = host::coarsened(pair, rigidity);
 
