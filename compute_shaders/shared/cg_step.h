@@ -9,18 +9,20 @@ struct CgStep {
 };
 
 // Largest ratio that the geometric tail is trusted with: beyond it a tail of twenty steps is assumed. A first step has
-// no ratio, and its own gain is the estimate: what is left is taken to be as much as what was gained. Where rounding
-// leaves no positive pq no step is taken, and (r, z), which is about the squared error, says what is left.
+// no ratio: what is left is taken to be as much as what was gained. A single ratio may be lucky, as small grids with
+// sharp discs have shown: below kSecondRatio it is not believed. Where rounding leaves no positive pq no step is taken,
+// and (r, z), which is about the squared error, says what is left.
 CgStep stepOf(real pq, real rz, real energy, real lastGain, real lastRatio, real steps)
 {
     const real kMostRatio = real(0.95f), kLeastRatio = real(0.01f), kFirstRatio = real(0.5f);
+    const real kSecondRatio = real(0.1f);
     CgStep     now;
     now.alpha = pq > real(0.0f) ? rz / pq : real(0.0f);
     now.gain  = now.alpha * rz;
     now.steps = steps + real(1.0f);
     now.ratio = lastGain > real(0.0f) ? now.gain / lastGain : real(0.0f);
     real rho  = steps == real(0.0f) && lastGain == real(0.0f) ? kFirstRatio : max(now.ratio, lastRatio);
-    rho       = min(max(rho, kLeastRatio), kMostRatio);
+    rho       = min(max(rho, lastRatio > real(0.0f) ? kLeastRatio : kSecondRatio), kMostRatio);
     real left = pq > real(0.0f) ? now.gain * rho / (real(1.0f) - rho) : abs(rz);
     real all  = max(max(energy, real(0.0f)) + now.gain, left); // an estimate is at most 1
     now.estimate = all > real(0.0f) ? sqrt(left / all) : real(0.0f);

@@ -10,9 +10,6 @@
 
 #ifdef __cplusplus
 namespace palp::shared {
-#define PALPATE_INLINE inline
-#else
-#define PALPATE_INLINE
 #endif
 
 const int kMostCoarseCells = 16; // along either side; the kernels' shared arrays are made for it

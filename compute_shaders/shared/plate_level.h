@@ -4,8 +4,11 @@
 
 #ifdef __cplusplus
 #include <cstdint>
+#define PALPATE_INLINE inline
 namespace palp::shared {
 using uint = std::uint32_t;
+#else
+#define PALPATE_INLINE
 #endif
 
 // Sides of a plate, as bits.

@@ -15,8 +15,11 @@
 #include "compute_shaders/coarse_assemble.spv.h"
 #include "compute_shaders/coarse_factor.spv.h"
 #include "compute_shaders/coarse_solve.spv.h"
+#include "compute_shaders/jump_list.spv.h"
+#include "compute_shaders/jump_mark.spv.h"
 #include "compute_shaders/plate_apply_f32.spv.h"
 #include "compute_shaders/plate_apply_f64.spv.h"
+#include "compute_shaders/plate_copy_tile.spv.h"
 #include "compute_shaders/plate_correct.spv.h"
 #include "compute_shaders/plate_divisor.spv.h"
 #include "compute_shaders/plate_interpolate_f32.spv.h"
@@ -25,6 +28,7 @@
 #include "compute_shaders/plate_interpolate_first_f64.spv.h"
 #include "compute_shaders/plate_relax.spv.h"
 #include "compute_shaders/plate_relax_first.spv.h"
+#include "compute_shaders/plate_relax_tile.spv.h"
 #include "compute_shaders/plate_residual.spv.h"
 #include "compute_shaders/plate_restrict.spv.h"
 #include "compute_shaders/plate_result_f32.spv.h"
@@ -33,6 +37,7 @@
 #include "compute_shaders/plate_start_f64.spv.h"
 #include "compute_shaders/rigidity_coarsen.spv.h"
 #include "compute_shaders/shared/plate_push.h"
+#include "compute_shaders/shared/tile_layout.h"
 #include "engine/gpu/context.h"
 
 namespace palp {
@@ -67,16 +72,21 @@ PlateKernels::PlateKernels(gpu::Context& context)
 #define PALPATE_REAL(Push, name, buffers)                                                                              \
     real(code<Push>(#name "_f32", name##_f32_spv, buffers), code<Push>(#name "_f64", name##_f64_spv, buffers))
 #define PALPATE_FLOAT(Push, name, buffers) code<Push>(#name, name##_spv, buffers)
-    const auto kernel = [&](const gpu::KernelCode& what, gpu::Workgroup group) {
+    constexpr gpu::Workgroup jumpTile{kTile, kTile, 1};
+    const auto               kernel = [&](const gpu::KernelCode& what, gpu::Workgroup group) {
         return gpu::Kernel(context, what, group);
     };
     all_.reset(new All{f64,
                        kernel(PALPATE_FLOAT(TransferPush, rigidity_coarsen, 2), shapes.tile),
                        kernel(PALPATE_FLOAT(LevelPush, plate_divisor, 2), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, jump_mark, 2), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, jump_list, 2), shapes.reduce),
                        kernel(PALPATE_FLOAT(LevelPush, coarse_assemble, 2), shapes.tile),
                        kernel(PALPATE_FLOAT(LevelPush, coarse_factor, 2), shapes.alone),
                        kernel(PALPATE_FLOAT(RelaxPush, plate_relax_first, 3), shapes.tile),
                        kernel(PALPATE_FLOAT(RelaxPush, plate_relax, 6), shapes.tile),
+                       kernel(PALPATE_FLOAT(RelaxPush, plate_relax_tile, 6), jumpTile),
+                       kernel(PALPATE_FLOAT(RelaxPush, plate_copy_tile, 3), jumpTile),
                        kernel(PALPATE_FLOAT(LevelPush, plate_residual, 4), shapes.tile),
                        kernel(PALPATE_FLOAT(TransferPush, plate_restrict, 4), shapes.tile),
                        kernel(PALPATE_FLOAT(TransferPush, plate_correct, 5), shapes.tile),

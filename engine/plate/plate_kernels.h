@@ -7,8 +7,9 @@ namespace palp {
 /// One kernel per shader and variant; `real` ones compute in doubles where the device has them.
 struct PlateKernels::All {
     bool        doubles = false;
-    gpu::Kernel coarsen, divisor, assemble, factor;                          // once per rigidity
-    gpu::Kernel relaxFirst, relax, residual, restrict, correct, coarseSolve; // the cycle, in floats
+    gpu::Kernel coarsen, divisor, jumpMark, jumpList, assemble, factor; // once per rigidity
+    gpu::Kernel relaxFirst, relax, relaxTile, copyTile, residual, restrict, correct,
+        coarseSolve; // the cycle, in floats
     gpu::Kernel start, interpolate, interpolateFirst, dots, beta, direction, apply, stepDots, step, update,
         result; // real
 

@@ -10,6 +10,7 @@
 #include "compute_shaders/shared/cg_state.h"
 #include "compute_shaders/shared/coarse_band.h"
 #include "compute_shaders/shared/plate_push.h"
+#include "compute_shaders/shared/tile_layout.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/gpu/command_list.h"
@@ -19,14 +20,15 @@
 
 // One submission is a list of passes, recorded once:
 //
-//   prepare   rigidity -> coarser rigidities -> divisors -> factor of the coarsest level
+//   prepare   rigidity -> coarser rigidities -> divisors, tiles where it jumps -> factor of the coarsest level
 //   cold      loads -> coarser loads; coarsest answer; level by level upwards: interpolate, two steps of conjugate
 //             gradients with V(1,1); then kStepsPerList steps with V(2,2) on the finest level
 //   warm      the residual of the last answer, then kStepsPerList steps
 //   more      kStepsPerList further steps
 //
-// The steps on the finest level are dispatched indirectly: when the estimate is small enough a kernel sets all their
-// sizes to zero, and the rest of the list runs empty. The host looks only between lists.
+// Lists are recorded for the number of tiles in which the rigidity jumps, and anew where another rigidity has other
+// numbers. The steps on the finest level are dispatched indirectly: when the estimate is small enough a kernel sets all
+// their sizes to zero, and the rest of the list runs empty. The host looks only between lists.
 
 namespace palp {
 namespace {
@@ -40,10 +42,11 @@ using gpu::Kernel;
 using Clock = std::chrono::steady_clock;
 
 constexpr int           kSlots = 3; ///< results in mapped memory: one is written, one is read, one is in between [1]
-constexpr int           kStepsPerList = 4;     ///< even, because directions take turns in two buffers [1]
-constexpr int           kNestedSteps  = 2;     ///< on each coarser level of the nested iteration [1]
-constexpr int           kNestedSweeps = 1;     ///< of its cycles [1]
-constexpr int           kSweeps       = 2;     ///< before and after the correction, on the finest level's cycles [1]
+constexpr int           kStepsPerList = 4; ///< even, because directions take turns in two buffers [1]
+constexpr int           kNestedSteps  = 2; ///< on each coarser level of the nested iteration [1]
+constexpr int           kNestedSweeps = 1; ///< of its cycles [1]
+constexpr int           kSweeps       = 2; ///< before and after the correction, on the finest level's cycles [1]
+constexpr int           kTileSweeps   = 6; ///< extra ones where the rigidity jumps, before and after the correction [1]
 constexpr std::uint32_t kMostPartials = 16384; ///< sums that a dot product is split into [1]
 constexpr std::uint32_t kTermsPerSum  = 64;    ///< that a sum has at least, unless there are too few partials [1]
 
@@ -52,11 +55,17 @@ std::size_t nodesOf(const shared::PlateLevel& g)
     return std::size_t(g.cellsX + 1) * std::size_t(g.cellsZ + 1);
 }
 
+std::size_t tilesOf(const shared::PlateLevel& g)
+{
+    return std::size_t(shared::tilesX(g)) * std::size_t(shared::tilesZ(g));
+}
+
 /// Everything a level keeps on the device. `real` arrays are doubles where the device has them.
 struct LevelBuffers {
     Buffer rigidity, divisor, tableX, tableZ;
-    Buffer force, w[2], residual;              ///< of the cycle, floats
-    Buffer load;                               ///< of the nested iteration, floats
+    Buffer force, w[2], residual; ///< of the cycle, floats
+    Buffer marks, tiles;          ///< where the rigidity jumps: a flag per tile; how many tiles, then their numbers
+    Buffer load;                  ///< of the nested iteration, floats
     Buffer answer, left, direction[2], forces; ///< x, r, p, A p of conjugate gradients, real
 };
 
@@ -72,10 +81,11 @@ struct VulkanPlateSolver::Impl {
     std::uint32_t            loads;
     std::uint32_t            partials;
 
-    std::vector<LevelBuffers> levels;
-    Buffer                    zeroes, band, factor, sums, state, units;
-    Buffer                    hostRigidity, hostLoads, hostUnits, arguments, hostArguments, hostState;
-    std::vector<Buffer>       results;
+    std::vector<LevelBuffers>  levels;
+    Buffer                     zeroes, band, factor, sums, state, units;
+    Buffer                     hostRigidity, hostLoads, hostUnits, arguments, hostArguments, hostState, hostTiles;
+    std::vector<std::uint32_t> jumpTiles; ///< per level, with a jump of rigidity; what the lists were recorded for [1]
+    std::vector<Buffer>        results;
 
     std::map<std::array<std::uint32_t, 3>, std::size_t> argumentAt;  ///< groups -> byte offset in `arguments`
     std::vector<CommandList>                            prepareList; ///< one, or none before it is recorded
@@ -101,7 +111,9 @@ struct VulkanPlateSolver::Impl {
           hostUnits(context, "units from the host", 4 * std::size_t(loads), Intent::upload),
           arguments(context, "groups of dispatches", kArgumentBytes, Intent::device),
           hostArguments(context, "groups from the host", kArgumentBytes, Intent::upload),
-          hostState(context, "state for the host", state.bytes(), Intent::readback)
+          hostState(context, "state for the host", state.bytes(), Intent::readback),
+          hostTiles(context, "numbers of tiles for the host", 4 * levels.size(), Intent::readback),
+          jumpTiles(levels.size(), 0)
     {
         for (int s = 0; s < kSlots; ++s)
             results.emplace_back(context, "deflection " + std::to_string(s), 4 * fieldSize(0), Intent::readback);
@@ -145,6 +157,8 @@ struct VulkanPlateSolver::Impl {
                             floats("force" + of, field),
                             {floats("w0" + of, field), floats("w1" + of, field)},
                             floats("residual" + of, field),
+                            floats("marks" + of, tilesOf(level(l))),
+                            floats("tiles" + of, 1 + tilesOf(level(l))),
                             floats("load" + of, field),
                             reals("answer" + of, field),
                             reals("left" + of, field),
@@ -231,6 +245,21 @@ struct VulkanPlateSolver::Impl {
         return 1 - at;
     }
 
+    /// Extra sweeps of w[at] in the tiles where the rigidity jumps. The residual's memory is free while they run.
+    void sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first)
+    {
+        if (jumpTiles[l] == 0) return;
+        const LevelBuffers& b = levels[l];
+        const Groups        groups{jumpTiles[l], 1, loads};
+        for (int n = 0; n < kTileSweeps; ++n)
+            for (std::uint32_t colour : {first, 1 - first}) {
+                const shared::RelaxPush push{level(l), colour};
+                pass(k.relaxTile, {b.rigidity, b.divisor, b.force, b.w[at], b.tiles, b.residual}, push, groups);
+                pass(k.copyTile, {b.tiles, b.residual, b.w[at]}, push, groups);
+            }
+        work += kTileSweeps * double(jumpTiles[l]) * shared::kTile * shared::kTile / double(nodesOf(level(0)));
+    }
+
     /// One symmetric cycle for the forces of level l; returns which of its w holds the answer.
     int cycle(Recorder& pass, std::size_t l, int sweeps)
     {
@@ -241,6 +270,7 @@ struct VulkanPlateSolver::Impl {
         }
         int at = 0;
         for (int n = 0; n < sweeps; ++n) at = sweep(pass, l, at, 0, n == 0);
+        sweepTiles(pass, l, at, 0);
         const LevelBuffers&        below = levels[l + 1];
         const shared::TransferPush transfer{level(l), level(l + 1)};
         pass(k.residual, {b.rigidity, b.force, b.w[at], b.residual}, shared::LevelPush{level(l)},
@@ -250,6 +280,7 @@ struct VulkanPlateSolver::Impl {
         const int from = cycle(pass, l + 1, sweeps);
         pass(k.correct, {b.tableX, b.tableZ, below.w[from], b.w[1 - at], b.w[at]}, transfer, everyNode(k.correct, l));
         at = 1 - at;
+        sweepTiles(pass, l, at, 1);
         for (int n = 0; n < sweeps; ++n) at = sweep(pass, l, at, 1, false);
         return at;
     }
@@ -319,6 +350,15 @@ struct VulkanPlateSolver::Impl {
         for (std::size_t l = 0; l + 1 < levels.size(); ++l)
             pass(k.divisor, {levels[l].rigidity, levels[l].divisor}, shared::LevelPush{level(l)},
                  k.divisor.groupsOver(std::uint32_t(level(l).cellsZ + 1), std::uint32_t(level(l).cellsX + 1)));
+        for (std::size_t l = 0; l + 1 < levels.size(); ++l) {
+            const LevelBuffers&     b = levels[l];
+            const shared::LevelPush push{level(l)};
+            pass(k.jumpMark, {b.rigidity, b.marks}, push,
+                 k.jumpMark.groupsOver(std::uint32_t(shared::tilesZ(level(l))),
+                                       std::uint32_t(shared::tilesX(level(l)))));
+            pass(k.jumpList, {b.marks, b.tiles}, push, {1, 1, 1});
+            list.copy(b.tiles, 0, hostTiles, 4 * l, 4);
+        }
         const shared::LevelPush coarsest{level(levels.size() - 1)};
         pass(k.assemble, {levels.back().rigidity, band}, coarsest,
              k.assemble.groupsOver(std::uint32_t(shared::halfBand(coarsest.level) + 1),
@@ -452,6 +492,17 @@ struct VulkanPlateSolver::Impl {
                         formatQuantity(double(*most) * unitRigidity, "N m"));
         if (prepareList.empty()) recordPrepare();
         context.run(prepareList.front());
+        hostTiles.makeVisibleToHost();
+        for (std::size_t l = 0; l + 1 < levels.size(); ++l) {
+            // A slope that is smooth on the finest grid may look like a jump on a coarse one: the cycle copes with
+            // that.
+            const std::uint32_t* found = hostTiles.as<std::uint32_t>().data();
+            const std::uint32_t  now   = found[0] > 0 ? found[l] : 0;
+            if (now == jumpTiles[l]) continue;
+            jumpTiles[l] = now;
+            for (auto* lists : {&coldList, &warmList, &moreList})
+                for (auto& recorded : *lists) recorded.clear();
+        }
     }
 
     [[nodiscard]] std::vector<PlateSolution> solve(std::span<const NodeField> nodalForces, Start how)
@@ -469,6 +520,8 @@ struct VulkanPlateSolver::Impl {
             deviceMilliseconds =
                 times.empty() ? std::nullopt : std::optional(deviceMilliseconds.value_or(0) + times.back());
             const double estimate = worst(shared::kStateEstimate);
+            if (std::isnan(estimate))
+                throw Error("plate: the solver broke down; the rigidity or the load is out of range");
             if (!(estimate > settings.tolerance) || done >= settings.maxIterations) break;
             list = &run(moreList, &Impl::recordMore);
             done += int(worst(shared::kStateSteps));

@@ -14,8 +14,11 @@
 #include "compute_shaders/coarse_assemble.spv.h"
 #include "compute_shaders/coarse_factor.spv.h"
 #include "compute_shaders/coarse_solve.spv.h"
+#include "compute_shaders/jump_list.spv.h"
+#include "compute_shaders/jump_mark.spv.h"
 #include "compute_shaders/plate_apply_f32.spv.h"
 #include "compute_shaders/plate_apply_f64.spv.h"
+#include "compute_shaders/plate_copy_tile.spv.h"
 #include "compute_shaders/plate_correct.spv.h"
 #include "compute_shaders/plate_divisor.spv.h"
 #include "compute_shaders/plate_interpolate_f32.spv.h"
@@ -24,6 +27,7 @@
 #include "compute_shaders/plate_interpolate_first_f64.spv.h"
 #include "compute_shaders/plate_relax.spv.h"
 #include "compute_shaders/plate_relax_first.spv.h"
+#include "compute_shaders/plate_relax_tile.spv.h"
 #include "compute_shaders/plate_residual.spv.h"
 #include "compute_shaders/plate_restrict.spv.h"
 #include "compute_shaders/plate_result_f32.spv.h"
@@ -65,6 +69,10 @@ PALPATE_KERNEL(factor, coarse_factor, LevelPush, 2)
 PALPATE_KERNEL(coarseSolve, coarse_solve, LevelPush, 3)
 PALPATE_KERNEL(relaxFirst, plate_relax_first, RelaxPush, 3)
 PALPATE_KERNEL(relax, plate_relax, RelaxPush, 6)
+PALPATE_KERNEL(jumpMark, jump_mark, LevelPush, 2)
+PALPATE_KERNEL(jumpList, jump_list, LevelPush, 2)
+PALPATE_KERNEL(relaxTile, plate_relax_tile, RelaxPush, 6)
+PALPATE_KERNEL(copyTile, plate_copy_tile, RelaxPush, 3)
 PALPATE_KERNEL(residual, plate_residual, LevelPush, 4)
 PALPATE_KERNEL(restriction, plate_restrict, TransferPush, 4)
 PALPATE_KERNEL(correct, plate_correct, TransferPush, 5)

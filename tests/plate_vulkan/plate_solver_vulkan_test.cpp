@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <string_view>
+#include <utility>
 
 #include "engine/core/contract.h"
 #include "engine/plate/load.h"
@@ -192,23 +194,31 @@ TEST_F(VulkanPlate, TheEstimateIsNeverBelowTheErrorByMoreThanAFactorOfThree)
 }
 
 /// To a true error, not to an estimate: each tolerance stops after one more step, until the error is small enough.
-TEST_F(VulkanPlate, SmoothRigiditiesNeedFiveAndEightIterationsWhateverTheSize)
+/// The bars are those of the issue that asked for the solver; measured 3 and 5, 5 and 9, 9 and 13 up to 129 nodes.
+TEST_F(VulkanPlate, StepsToATrueErrorAreFewWhateverTheSize)
 {
+    const auto allowed = [](const Law& law) -> std::pair<int, int> { // to 1e-4 and to 1e-6
+        if (law.smooth) return {5, 8};
+        return std::string_view(law.name) == "disc 1000" ? std::pair(12, 18) : std::pair(8, 12);
+    };
     for (const Law& law : kLaws)
         for (int cells : sizes()) {
-            if (!law.smooth) continue;
+            if (cells > 64 && !law.smooth && std::string_view(law.name) != "disc 1000") continue; // time
             const Plate         plate  = plateOf(cells, cells, {}, law);
             const NodeField     load   = loadOn(plate.grid);
             const PlateSolution truth  = ReferencePlateSolver(plate).solve(load);
-            int                 coarse = 0, fine = 0; // iterations to 1e-4 and to 1e-6
-            for (double tolerance = 0.5; tolerance > 1e-8 && fine == 0; tolerance /= 2) {
+            int                 coarse = 0, fine = 0, last = 0;
+            for (double tolerance = 0.5; tolerance > 1e-8 && fine == 0; tolerance /= 2.5) {
                 const PlateSolution found = solverFor(plate, {.tolerance = tolerance}).solve(load);
-                const double        error = errorOf(found.deflection, truth.deflection);
-                if (error < 1e-4 && coarse == 0) coarse = *found.report.iterations;
-                if (error < 1e-6) fine = *found.report.iterations;
+                if (*found.report.iterations == last) continue;
+                last               = *found.report.iterations;
+                const double error = errorOf(found.deflection, truth.deflection);
+                if (error < 1e-4 && coarse == 0) coarse = last;
+                if (error < 1e-6) fine = last;
             }
-            EXPECT_TRUE(coarse >= 1 && coarse <= 5) << law.name << ", " << cells << " cells: " << coarse;
-            EXPECT_TRUE(fine >= 1 && fine <= 8) << law.name << ", " << cells << " cells: " << fine;
+            EXPECT_TRUE(coarse >= 1 && coarse <= allowed(law).first)
+                << law.name << ", " << cells << " cells: " << coarse;
+            EXPECT_TRUE(fine >= 1 && fine <= allowed(law).second) << law.name << ", " << cells << " cells: " << fine;
         }
 }
 

@@ -58,6 +58,16 @@ for key in '"probes"' '"deflection"' '"max_deflection"' '"report"' '"device"' '"
 good 'solve, finer' solve plate.json --cells 32 --out w.npy
 [ -s w.npy ] || complain 'solve --out wrote nothing'
 
+good 'solve by the reference' solve plate.json --device reference --json
+holds '"device": "reference"'
+good 'solve tightly' solve plate.json --device lavapipe --tolerance 1e-7 --json
+holds '"work_units"'
+good 'touch by the reference' touch sample:skin --points 5000 --cells 16 --device reference
+holds '(reference)'
+good 'benchmark' bench solve --device lavapipe,reference --nodes 17,33 --loads 1,4 --repeats 2 --out bench --json
+for key in '"cold_p50_ms"' '"cold_p99_ms"' '"warm_p50_ms"' '"iterations"' '"work_units"' '"error"' '"copy_gb_per_s"' '"dispatches_per_cycle"'; do holds "$key"; done
+[ -s bench/solve.json ] && [ -s bench/solve.svg ] && passed=$((passed + 1)) || complain 'bench --out wrote nothing'
+
 good 'list of GPUs' devices --gpu
 holds 'usable   yes'
 good 'list of GPUs, for scripts' devices --gpu --json
@@ -86,6 +96,10 @@ bad 'all edges free, nothing below' 'rigid' touch sample:sheet --points 5000 --c
 bad 'footprint wider than the window' 'footprint' touch sample:sheet --points 5000 --cells 16 --footprint 50mm
 bad 'contact far from the cloud' 'contact' touch sample:skin --points 5000 --at 1m,0,0
 bad 'no place for a file' '--at' touch skin.ply
+bad 'tolerance that 32 bits cannot give' '--tolerance' solve plate.json --tolerance 1e-12
+bad 'tolerance that is no number' '--tolerance' touch sample:skin --tolerance nan
+bad 'benchmark of a giant' '--nodes' bench solve --nodes 4097
+bad 'benchmark of an unknown law' 'hyperbolic' bench solve --law cubic
 bad 'devices take no argument' 'voodoo' devices voodoo
 "$palpate" solve plate.json --device gpu9000 >out.txt 2>err.txt
 code=$?

@@ -1,0 +1,19 @@
+// tile_layout.h - the tiles of a level, numbered along z first (GLSL and C++).
+#ifndef PALPATE_TILE_LAYOUT_H
+#define PALPATE_TILE_LAYOUT_H
+
+#include "compute_shaders/shared/plate_level.h"
+
+#ifdef __cplusplus
+namespace palp::shared {
+#endif
+
+const int kTile = 8; // nodes along either side: a workgroup of plate_relax_tile.comp
+
+PALPATE_INLINE int tilesX(PlateLevel g) { return g.cellsX / kTile + 1; }
+PALPATE_INLINE int tilesZ(PlateLevel g) { return g.cellsZ / kTile + 1; }
+
+#ifdef __cplusplus
+} // namespace palp::shared
+#endif
+#endif
