@@ -62,7 +62,7 @@ good 'solve by the reference' solve plate.json --device reference --json
 holds '"device": "reference"'
 good 'solve tightly' solve plate.json --device lavapipe --tolerance 1e-7 --json
 holds '"work_units"'
-good 'touch by the reference' touch sample:skin --points 5000 --cells 16 --device reference
+good 'touch by the reference' touch sample:skin --points 5000 --cells 32 --device reference
 holds '(reference)'
 good 'benchmark' bench solve --device lavapipe,reference --nodes 17,33 --loads 1,4 --repeats 2 --out bench --json
 for key in '"cold_p50_ms"' '"cold_p99_ms"' '"warm_p50_ms"' '"iterations"' '"work_units"' '"error"' '"copy_gb_per_s"' '"dispatches_per_cycle"'; do holds "$key"; done
