@@ -48,12 +48,12 @@ namespace {
 /// invocations.
 struct Shapes {
     gpu::Workgroup tile;   ///< nodes of a grid
-    gpu::Workgroup line;   ///< nodes one after the other
+    gpu::Workgroup line;   ///< nodes one after the other; 65535 of them hold 2049 x 2049 nodes
     gpu::Workgroup alone;  ///< the one workgroup of a serial kernel; kMostHalfBand invocations find work
     gpu::Workgroup reduce; ///< at most kMostInvocations of cg_scalars.comp
 };
-constexpr Shapes kSoftware{{8, 8, 1}, {64, 1, 1}, {8, 1, 1}, {64, 1, 1}};
-constexpr Shapes kHardware{{32, 4, 1}, {64, 1, 1}, {64, 1, 1}, {256, 1, 1}};
+constexpr Shapes kSoftware{{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}};
+constexpr Shapes kHardware{{32, 4, 1}, {128, 1, 1}, {64, 1, 1}, {256, 1, 1}};
 
 template <class Push, std::size_t N>
 gpu::KernelCode code(const char* name, const std::uint32_t (&spirv)[N], int buffers)
