@@ -76,6 +76,14 @@ VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" de
 code=$?
 [ $code -eq 4 ] && grep -qF 'mesa-vulkan-drivers' err.txt && [ "$(cat out.txt)" = '[]' ] && passed=$((passed + 1)) ||
     complain "a machine without a GPU: exit $code, expected 4: $(cat out.txt err.txt)"
+VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" solve plate.json --json >out.txt 2>err.txt
+code=$?
+[ $code -eq 0 ] && grep -qF 'reference solver takes over' err.txt && grep -qF '"device": "reference"' out.txt && passed=$((passed + 1)) ||
+    complain "solving without a GPU: exit $code, expected 0 by the reference: $(cat out.txt err.txt)"
+VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" solve plate.json --device lavapipe >out.txt 2>err.txt
+code=$?
+[ $code -eq 4 ] && [ ! -s out.txt ] && passed=$((passed + 1)) ||
+    complain "a GPU that is asked for and is not there: exit $code, expected 4: $(cat out.txt err.txt)"
 
 # --- the same numbers every time
 "$palpate" touch sample:palm --points 8000 --cells 32 --out one --json >/dev/null && "$palpate" touch sample:palm --points 8000 --cells 32 --out two --json >/dev/null
