@@ -96,7 +96,6 @@ struct VulkanPlateSolver::Impl {
 
     double work     = 0; ///< of what has been recorded since it was last set to 0 [applications on the finest grid]
     double coldWork = 0, warmWork = 0, stepWork = 0;
-    int    cycleDispatches = 0;
 
     Impl(gpu::Context& device, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted)
         : context(device), k(kernels), plate(given), settings(wanted), unitRigidity(largest(given.rigidity)),
@@ -500,6 +499,7 @@ struct VulkanPlateSolver::Impl {
             const std::uint32_t  now   = found[0] > 0 ? found[l] : 0;
             if (now == jumpTiles[l]) continue;
             jumpTiles[l] = now;
+            argumentAt.clear(); // of the lists that go
             for (auto* lists : {&coldList, &warmList, &moreList})
                 for (auto& recorded : *lists) recorded.clear();
         }

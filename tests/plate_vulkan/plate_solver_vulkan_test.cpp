@@ -294,6 +294,26 @@ TEST_F(VulkanPlate, AnotherRigidityIsAsIfTheSolverWereNew)
     EXPECT_LT(errorOf(solver.solve(load).deflection, ReferencePlateSolver(stiff).solve(load).deflection), 1e-6);
 }
 
+/// Each rigidity has other tiles with a jump, so that everything is recorded anew, in room that was there.
+TEST_F(VulkanPlate, ManyRigiditiesWithJumpsElsewhereAreSolvedOneAfterTheOther)
+{
+    const int         count  = validation() == gpu::Validation::off ? 120 : 5;
+    Plate             plate  = plateOf(40, 40, {}, kLaws[6]);
+    const NodeField   load   = loadOn(plate.grid);
+    VulkanPlateSolver solver = solverFor(plate, {.tolerance = 1e-6});
+    for (int n = 0; n < count; ++n) {
+        const double radius = 0.02 + 0.4 * n / count;
+        for (int i = 0; i <= 40; ++i)
+            for (int j = 0; j <= 40; ++j)
+                plate.rigidity(i, j) = std::hypot(i / 40.0 - 0.4, j / 40.0 - 0.6) < radius ? 50 : 1;
+        solver.setRigidity(plate.rigidity);
+        const PlateSolution found = solver.solve(load);
+        if (n % 40 == 0) {
+            EXPECT_LT(errorOf(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 3e-6) << n;
+        }
+    }
+}
+
 /// Contrast beyond what the cycle is good at: slow, but never dishonest.
 TEST_F(VulkanPlate, AnExtremeContrastConvergesOrSaysThatItDidNot)
 {
