@@ -294,10 +294,11 @@ TEST_F(VulkanPlate, AnotherRigidityIsAsIfTheSolverWereNew)
     EXPECT_LT(errorOf(solver.solve(load).deflection, ReferencePlateSolver(stiff).solve(load).deflection), 1e-6);
 }
 
-/// Each rigidity has other tiles with a jump, so that everything is recorded anew, in room that was there.
+/// Each rigidity has other tiles with a jump, so that everything is recorded anew; first a small disc, at last one that
+/// leaves the plate's corners soft.
 TEST_F(VulkanPlate, ManyRigiditiesWithJumpsElsewhereAreSolvedOneAfterTheOther)
 {
-    const int         count  = validation() == gpu::Validation::off ? 120 : 5;
+    const int         count  = validation() == gpu::Validation::off ? 30 : 5;
     Plate             plate  = plateOf(40, 40, {}, kLaws[6]);
     const NodeField   load   = loadOn(plate.grid);
     VulkanPlateSolver solver = solverFor(plate, {.tolerance = 1e-6});
@@ -308,7 +309,7 @@ TEST_F(VulkanPlate, ManyRigiditiesWithJumpsElsewhereAreSolvedOneAfterTheOther)
                 plate.rigidity(i, j) = std::hypot(i / 40.0 - 0.4, j / 40.0 - 0.6) < radius ? 50 : 1;
         solver.setRigidity(plate.rigidity);
         const PlateSolution found = solver.solve(load);
-        if (n % 40 == 0) {
+        if (n % 10 == 9 || n == 0) {
             EXPECT_LT(errorOf(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 3e-6) << n;
         }
     }
