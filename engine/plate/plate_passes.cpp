@@ -1,0 +1,312 @@
+#include "engine/plate/plate_passes.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "compute_shaders/shared/cg_state.h"
+#include "compute_shaders/shared/coarse_band.h"
+#include "compute_shaders/shared/plate_push.h"
+#include "compute_shaders/shared/tile_layout.h"
+#include "engine/core/contract.h"
+#include "engine/gpu/context.h"
+
+namespace palp {
+namespace {
+
+using gpu::Buffer;
+using gpu::CommandList;
+using gpu::Groups;
+using gpu::Intent;
+using gpu::Kernel;
+
+constexpr int           kNestedSteps  = 2; ///< on each coarser level of the nested iteration [1]
+constexpr int           kNestedSweeps = 1; ///< of its cycles [1]
+constexpr int           kTileSweeps   = 6; ///< extra ones where the rigidity jumps, before and after the correction [1]
+constexpr std::uint32_t kMostPartials = 16384; ///< sums that a dot product is split into [1]
+constexpr std::uint32_t kTermsPerSum  = 64;    ///< that a sum has at least, unless there are too few partials [1]
+
+std::size_t nodesOf(const shared::PlateLevel& g)
+{
+    return std::size_t(g.cellsX + 1) * std::size_t(g.cellsZ + 1);
+}
+
+std::size_t tilesOf(const shared::PlateLevel& g)
+{
+    return std::size_t(shared::tilesX(g)) * std::size_t(shared::tilesZ(g));
+}
+
+std::uint32_t partialsFor(std::size_t nodes)
+{
+    return std::uint32_t(std::clamp<std::size_t>(nodes / kTermsPerSum, kTermsPerSum, kMostPartials));
+}
+
+} // namespace
+
+PlatePasses::PlatePasses(gpu::Context& context, const PlateKernels::All& kernels, GridHierarchy grids,
+                         std::uint32_t loads)
+    : state(context, "state", kernels.realBytes() * shared::kStateWords * loads, Intent::device), context_(context),
+      k(kernels), grids_(std::move(grids)), loads_(loads), partials_(partialsFor(nodesOf(level(0)))),
+      zeroes_(floats("zeroes", fieldSize(0))), band_(floats("band", bandSize())), factor_(floats("factor", bandSize())),
+      sums_(reals("partial sums", 2 * std::size_t(loads_) * partials_)),
+      arguments_(context, "groups of dispatches", kArgumentBytes, Intent::device),
+      hostArguments_(context, "groups from the host", kArgumentBytes, Intent::upload),
+      hostTiles_(context, "numbers of tiles for the host", 4 * grids_.levels.size(), Intent::readback),
+      jumpTiles_(grids_.levels.size(), 0)
+{
+    levels = makeLevels();
+    std::memset(hostArguments_.mapped(), 0, kArgumentBytes);
+    uploadTables();
+}
+
+std::size_t PlatePasses::nodes() const
+{
+    return nodesOf(level(0));
+}
+
+std::size_t PlatePasses::fieldSize(std::size_t l) const
+{
+    return nodesOf(level(l)) * loads_;
+}
+
+std::size_t PlatePasses::bandSize() const
+{
+    const auto& coarsest = grids_.levels.back().plate;
+    return nodesOf(coarsest) * std::size_t(shared::halfBand(coarsest) + 1);
+}
+
+Buffer PlatePasses::floats(const std::string& name, std::size_t count) const
+{
+    return {context_, name, 4 * count, Intent::device};
+}
+
+Buffer PlatePasses::reals(const std::string& name, std::size_t count) const
+{
+    return {context_, name, k.realBytes() * count, Intent::device};
+}
+
+std::vector<LevelBuffers> PlatePasses::makeLevels() const
+{
+    std::vector<LevelBuffers> made;
+    for (std::size_t l = 0; l < grids_.levels.size(); ++l) {
+        const std::string of    = " of level " + std::to_string(l);
+        const std::size_t nodes = nodesOf(level(l)), field = fieldSize(l);
+        const auto&       tables = grids_.levels[l];
+        made.push_back({floats("rigidity" + of, nodes),
+                        floats("divisor" + of, nodes),
+                        floats("table x" + of, std::max<std::size_t>(1, tables.tableX.size())),
+                        floats("table z" + of, std::max<std::size_t>(1, tables.tableZ.size())),
+                        floats("force" + of, field),
+                        {floats("w0" + of, field), floats("w1" + of, field)},
+                        floats("residual" + of, field),
+                        floats("marks" + of, tilesOf(level(l))),
+                        floats("tiles" + of, 1 + tilesOf(level(l))),
+                        floats("load" + of, field),
+                        reals("answer" + of, field),
+                        reals("left" + of, field),
+                        {reals("direction 0" + of, field), reals("direction 1" + of, field)},
+                        reals("forces" + of, field)});
+    }
+    return made;
+}
+
+void PlatePasses::uploadTables()
+{
+    std::vector<Buffer> staging;
+    CommandList         list(context_);
+    const auto          upload = [&](const std::vector<float>& from, const Buffer& to) {
+        if (from.empty()) return;
+        staging.emplace_back(context_, "table from the host", 4 * from.size(), Intent::upload);
+        std::memcpy(staging.back().mapped(), from.data(), 4 * from.size());
+        list.copy(staging.back(), to);
+    };
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+        upload(grids_.levels[l].tableX, levels[l].tableX);
+        upload(grids_.levels[l].tableZ, levels[l].tableZ);
+    }
+    list.fill(zeroes_, 0);
+    for (const LevelBuffers& b : levels)
+        for (const Buffer* w : {&b.w[0], &b.w[1]}) list.fill(*w, 0); // held nodes stay at 0
+    list.end();
+    context_.run(list);
+}
+
+std::size_t PlatePasses::argumentsFor(Groups groups)
+{
+    const auto [found, isNew] = argumentAt_.try_emplace({groups.x, groups.y, groups.z}, 12 * argumentAt_.size());
+    PALP_EXPECT(found->second < kArgumentBytes, "more sizes of dispatches than were foreseen");
+    if (isNew) std::memcpy(static_cast<char*>(hostArguments_.mapped()) + found->second, found->first.data(), 12);
+    return found->second;
+}
+
+Groups PlatePasses::everyNode(const Kernel& kernel, std::size_t l) const
+{
+    return kernel.groupsOver(std::uint32_t(level(l).cellsZ + 1), std::uint32_t(level(l).cellsX + 1), loads_);
+}
+
+Groups PlatePasses::everySecondNode(const Kernel& kernel, std::size_t l) const
+{
+    return kernel.groupsOver(std::uint32_t(level(l).cellsZ / 2 + 1), std::uint32_t(level(l).cellsX + 1), loads_);
+}
+
+Groups PlatePasses::inOrder(const Kernel& kernel, std::size_t l) const
+{
+    return kernel.groupsOver(std::uint32_t(nodesOf(level(l))), 1, loads_);
+}
+double PlatePasses::share(std::size_t l) const
+{
+    return double(nodesOf(level(l))) / double(nodesOf(level(0)));
+}
+
+// Sweeps from w[at], both colours, the one of `first` first; what is valid afterwards is returned.
+int PlatePasses::sweep(Recorder& pass, std::size_t l, int at, std::uint32_t first, bool fromZero)
+{
+    const LevelBuffers& b = levels[l];
+    for (std::uint32_t n = 0; n < 2; ++n) {
+        const shared::RelaxPush push{level(l), n == 0 ? first : 1 - first};
+        const Buffer&           old = fromZero ? zeroes_ : b.w[at];
+        if (fromZero && n == 0)
+            pass(k.relaxFirst, {b.divisor, b.force, b.w[1 - at]}, push, everySecondNode(k.relaxFirst, l));
+        else
+            pass(k.relax, {b.rigidity, b.divisor, b.force, old, n == 0 ? old : b.w[1 - at], b.w[1 - at]}, push,
+                 everySecondNode(k.relax, l));
+        work += share(l) / 2;
+    }
+    return 1 - at;
+}
+
+// Extra sweeps of w[at] in the tiles where the rigidity jumps. The residual's memory is free while they run.
+void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first)
+{
+    if (jumpTiles_[l] == 0) return;
+    const LevelBuffers& b = levels[l];
+    const Groups        groups{jumpTiles_[l], 1, loads_};
+    for (int n = 0; n < kTileSweeps; ++n)
+        for (std::uint32_t colour : {first, 1 - first}) {
+            const shared::RelaxPush push{level(l), colour};
+            pass(k.relaxTile, {b.rigidity, b.divisor, b.force, b.w[at], b.tiles, b.residual}, push, groups);
+            pass(k.copyTile, {b.tiles, b.residual, b.w[at]}, push, groups);
+        }
+    work += kTileSweeps * double(jumpTiles_[l]) * shared::kTile * shared::kTile / double(nodesOf(level(0)));
+}
+
+// One symmetric cycle for the forces of level l; returns which of its w holds the answer.
+int PlatePasses::cycle(Recorder& pass, std::size_t l, int sweeps)
+{
+    const LevelBuffers& b = levels[l];
+    if (l + 1 == levels.size()) {
+        pass(k.coarseSolve, {factor_, b.force, b.w[0]}, shared::LevelPush{level(l)}, {1, 1, loads_});
+        return 0;
+    }
+    int at = 0;
+    for (int n = 0; n < sweeps; ++n) at = sweep(pass, l, at, 0, n == 0);
+    sweepTiles(pass, l, at, 0);
+    const LevelBuffers&        below = levels[l + 1];
+    const shared::TransferPush transfer{level(l), level(l + 1)};
+    pass(k.residual, {b.rigidity, b.force, b.w[at], b.residual}, shared::LevelPush{level(l)}, everyNode(k.residual, l));
+    work += share(l);
+    pass(k.restrict, {b.tableX, b.tableZ, b.residual, below.force}, transfer, everyNode(k.restrict, l + 1));
+    const int from = cycle(pass, l + 1, sweeps);
+    pass(k.correct, {b.tableX, b.tableZ, below.w[from], b.w[1 - at], b.w[at]}, transfer, everyNode(k.correct, l));
+    at = 1 - at;
+    sweepTiles(pass, l, at, 1);
+    for (int n = 0; n < sweeps; ++n) at = sweep(pass, l, at, 1, false);
+    return at;
+}
+
+void PlatePasses::start(Recorder& pass, std::size_t l)
+{
+    const LevelBuffers& b = levels[l];
+    pass(k.start, {b.rigidity, b.load, b.answer, b.left, b.force}, shared::LevelPush{level(l)}, everyNode(k.start, l));
+    work += share(l);
+}
+
+void PlatePasses::steps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins, double tolerance)
+{
+    const LevelBuffers& b = levels[l];
+    for (int n = 1; n <= count; ++n) {
+        const auto                nodes = std::uint32_t(nodesOf(level(l)));
+        const shared::VectorPush  vector{nodes, partials_, std::uint32_t(n)};
+        const shared::ScalarsPush scalars{loads_, partials_, n == 1 ? begins : 0, kArgumentBytes / 4, float(tolerance)};
+        const Buffer&             z   = b.w[cycle(pass, l, sweeps)];
+        const Buffer &            now = b.direction[n % 2], &last = b.direction[(n + 1) % 2];
+        pass(k.dots, {b.left, z, b.answer, b.load, sums_}, vector, k.dots.groupsOver(partials_, 1, loads_));
+        pass(k.beta, {sums_, state}, scalars, {1, 1, 1});
+        pass(k.direction, {state, z, last, now}, vector, inOrder(k.direction, l));
+        pass(k.apply, {b.rigidity, now, b.forces}, shared::LevelPush{level(l)}, everyNode(k.apply, l));
+        work += share(l);
+        pass(k.stepDots, {now, b.forces, sums_}, vector, k.stepDots.groupsOver(partials_, 1, loads_));
+        pass(k.step, {sums_, state, arguments_}, scalars, {1, 1, 1});
+        // Not stoppable: the step that finds the estimate small enough must still be taken. It looks at the count.
+        pass.list.dispatch(k.update, {state, now, b.forces, b.answer, b.left, b.force}, vector, inOrder(k.update, l));
+    }
+}
+
+void PlatePasses::prepare(Recorder& pass)
+{
+    for (std::size_t l = 0; l + 1 < levels.size(); ++l)
+        pass(k.coarsen, {levels[l].rigidity, levels[l + 1].rigidity}, shared::TransferPush{level(l), level(l + 1)},
+             k.coarsen.groupsOver(std::uint32_t(level(l + 1).cellsZ + 1), std::uint32_t(level(l + 1).cellsX + 1)));
+    for (std::size_t l = 0; l + 1 < levels.size(); ++l)
+        pass(k.divisor, {levels[l].rigidity, levels[l].divisor}, shared::LevelPush{level(l)},
+             k.divisor.groupsOver(std::uint32_t(level(l).cellsZ + 1), std::uint32_t(level(l).cellsX + 1)));
+    for (std::size_t l = 0; l + 1 < levels.size(); ++l) {
+        const LevelBuffers&     b = levels[l];
+        const shared::LevelPush push{level(l)};
+        pass(k.jumpMark, {b.rigidity, b.marks}, push,
+             k.jumpMark.groupsOver(std::uint32_t(shared::tilesZ(level(l))), std::uint32_t(shared::tilesX(level(l)))));
+        pass(k.jumpList, {b.marks, b.tiles}, push, {1, 1, 1});
+        pass.list.copy(b.tiles, 0, hostTiles_, 4 * l, 4);
+    }
+    const shared::LevelPush coarsest{level(levels.size() - 1)};
+    pass(k.assemble, {levels.back().rigidity, band_}, coarsest,
+         k.assemble.groupsOver(std::uint32_t(shared::halfBand(coarsest.level) + 1),
+                               std::uint32_t(nodesOf(coarsest.level))));
+    pass(k.factor, {band_, factor_}, coarsest, {1, 1, 1});
+}
+
+void PlatePasses::nest(Recorder& pass)
+{
+    const std::size_t last = levels.size() - 1;
+    for (std::size_t l = 0; l < last; ++l)
+        pass(k.restrict, {levels[l].tableX, levels[l].tableZ, levels[l].load, levels[l + 1].load},
+             shared::TransferPush{level(l), level(l + 1)}, everyNode(k.restrict, l + 1));
+    pass(k.coarseSolve, {factor_, levels[last].load, levels[last].w[0]}, shared::LevelPush{level(last)},
+         {1, 1, loads_});
+    for (std::size_t l = last; l-- > 0;) {
+        const shared::TransferPush transfer{level(l), level(l + 1)};
+        const LevelBuffers &       b = levels[l], &below = levels[l + 1];
+        if (l + 1 == last)
+            pass(k.interpolateFirst, {b.tableX, b.tableZ, below.w[0], b.answer}, transfer,
+                 everyNode(k.interpolateFirst, l));
+        else
+            pass(k.interpolate, {b.tableX, b.tableZ, below.answer, b.answer}, transfer, everyNode(k.interpolate, l));
+        start(pass, l);
+        if (l > 0) steps(pass, l, kNestedSteps, kNestedSweeps, 2, 0);
+    }
+}
+
+void PlatePasses::Recorder::operator()(const Kernel& kernel, const gpu::Bindings& bindings, const gpu::Push& push,
+                                       Groups groups)
+{
+    if (stoppable)
+        list.dispatchIndirect(kernel, bindings, push, passes.arguments_, passes.argumentsFor(groups));
+    else
+        list.dispatch(kernel, bindings, push, groups);
+}
+
+bool PlatePasses::tilesChanged()
+{
+    hostTiles_.makeVisibleToHost();
+    const auto found   = hostTiles_.as<std::uint32_t>();
+    bool       changed = false;
+    for (std::size_t l = 0; l + 1 < levels.size(); ++l) {
+        // A slope that is smooth on the finest grid may look like a jump on a coarse one: the cycle copes with that.
+        const std::uint32_t now = found[0] > 0 ? found[l] : 0;
+        changed                 = changed || now != jumpTiles_[l];
+        jumpTiles_[l]           = now;
+    }
+    if (changed) argumentAt_.clear(); // of the lists that go
+    return changed;
+}
+
+} // namespace palp

@@ -1,0 +1,96 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/gpu/buffer.h"
+#include "engine/gpu/command_list.h"
+#include "engine/plate/grid_hierarchy.h"
+#include "engine/plate/plate_kernels.h"
+
+namespace palp {
+
+/// Everything a level keeps on the device. `real` arrays are doubles where the device has them.
+struct LevelBuffers {
+    gpu::Buffer rigidity, divisor, tableX, tableZ;
+    gpu::Buffer force, w[2], residual; ///< of the cycle, floats
+    gpu::Buffer marks, tiles; ///< where the rigidity jumps: a flag per tile; how many tiles, then their numbers
+    gpu::Buffer load;         ///< of the nested iteration, floats
+    gpu::Buffer answer, left, direction[2], forces; ///< x, r, p, A p of conjugate gradients, real
+};
+
+/// The multigrid method as passes over the levels' memory, which the solver puts together to command lists.
+///
+/// Recording changes nothing but `work` and the table of sizes; the memory changes when a list runs.
+/// \thread as its context
+class PlatePasses {
+public:
+    PlatePasses(gpu::Context& context, const PlateKernels::All& kernels, GridHierarchy grids, std::uint32_t loads);
+
+    /// Adds passes to a list; `stoppable` ones become empty once the solve is finished.
+    struct Recorder {
+        PlatePasses&      passes;
+        gpu::CommandList& list;
+        bool              stoppable = false;
+
+        void operator()(const gpu::Kernel& kernel, const gpu::Bindings& bindings, const gpu::Push& push,
+                        gpu::Groups groups);
+    };
+
+    /// Coarser rigidities, divisors, tiles with a jump (their numbers to hostTiles), factor of the coarsest level.
+    void prepare(Recorder& pass);
+    /// Nested iteration: an answer on the finest level from those on the coarser ones, and its residual.
+    void nest(Recorder& pass);
+    /// The residual of the answer of level l.
+    void start(Recorder& pass, std::size_t l);
+    /// Conjugate gradients on level l. \param begins  as in shared::ScalarsPush
+    void steps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins, double tolerance);
+    /// To be first in a list with stoppable passes: they are not stopped yet.
+    void allow(gpu::CommandList& list) const { list.copy(hostArguments_, arguments_); }
+
+    /// Takes over the numbers of tiles that prepare() found, and says whether they differ from the last: then every
+    /// list with steps must be recorded anew.
+    [[nodiscard]] bool tilesChanged();
+
+    [[nodiscard]] const shared::PlateLevel& level(std::size_t l) const { return grids_.levels[l].plate; }
+    [[nodiscard]] std::size_t               nodes() const; ///< of the finest level, of one load [1]
+    [[nodiscard]] std::uint32_t             partials() const noexcept { return partials_; } ///< per dot product [1]
+    [[nodiscard]] gpu::Groups               inOrder(const gpu::Kernel& kernel, std::size_t l) const;
+
+    std::vector<LevelBuffers> levels; ///< finest first
+    gpu::Buffer               state;  ///< real, see compute_shaders/shared/cg_state.h
+    double work = 0; ///< of what was recorded since it was last set to 0 [applications on the finest grid]
+
+private:
+    /// For 256 sizes of dispatches; a list has about 60 [byte]
+    static constexpr std::size_t kArgumentBytes = 12 * 256;
+
+    [[nodiscard]] std::size_t               fieldSize(std::size_t l) const;
+    [[nodiscard]] std::size_t               bandSize() const;
+    [[nodiscard]] gpu::Buffer               floats(const std::string& name, std::size_t count) const;
+    [[nodiscard]] gpu::Buffer               reals(const std::string& name, std::size_t count) const;
+    [[nodiscard]] std::vector<LevelBuffers> makeLevels() const;
+    void                                    uploadTables();
+
+    [[nodiscard]] std::size_t argumentsFor(gpu::Groups groups);
+    [[nodiscard]] gpu::Groups everyNode(const gpu::Kernel& kernel, std::size_t l) const;
+    [[nodiscard]] gpu::Groups everySecondNode(const gpu::Kernel& kernel, std::size_t l) const;
+    [[nodiscard]] double      share(std::size_t l) const;
+
+    [[nodiscard]] int sweep(Recorder& pass, std::size_t l, int at, std::uint32_t first, bool fromZero);
+    void              sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first);
+    [[nodiscard]] int cycle(Recorder& pass, std::size_t l, int sweeps);
+
+    gpu::Context&            context_;
+    const PlateKernels::All& k;
+    GridHierarchy            grids_;
+    std::uint32_t            loads_, partials_;
+
+    gpu::Buffer                zeroes_, band_, factor_, sums_, arguments_, hostArguments_, hostTiles_;
+    std::vector<std::uint32_t> jumpTiles_; ///< per level, with a jump of rigidity; what lists are recorded for [1]
+    std::map<std::array<std::uint32_t, 3>, std::size_t> argumentAt_; ///< groups -> byte offset in `arguments_`
+};
+
+} // namespace palp
