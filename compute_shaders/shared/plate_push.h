@@ -38,11 +38,6 @@ struct ScalarsPush {
     float tolerance;     // of the error estimate, relative [1]; 0 never stops
 };
 
-struct PointsPush {
-    PlateLevel level;
-    uint       points; // [1]
-};
-
 #ifdef __cplusplus
 } // namespace palp::shared
 #endif

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "tests/plate_shaders/push_echo_level.spv.h"
-#include "tests/plate_shaders/push_echo_points.spv.h"
 #include "tests/plate_shaders/push_echo_relax.spv.h"
 #include "tests/plate_shaders/push_echo_scalars.spv.h"
 #include "tests/plate_shaders/push_echo_transfer.spv.h"
@@ -24,7 +23,6 @@ static_assert(sizeof(RelaxPush) == 48 && sizeof(RelaxPush) <= kMostPushBytes);
 static_assert(sizeof(TransferPush) == 88 && sizeof(TransferPush) <= kMostPushBytes);
 static_assert(sizeof(VectorPush) == 12 && sizeof(VectorPush) <= kMostPushBytes);
 static_assert(sizeof(ScalarsPush) == 20 && sizeof(ScalarsPush) <= kMostPushBytes);
-static_assert(sizeof(PointsPush) == 48 && sizeof(PointsPush) <= kMostPushBytes);
 
 /// Bits of the fields, in the order in which the shader echoes them.
 class Words : public std::vector<std::uint32_t> {
@@ -69,7 +67,6 @@ TEST_F(PlatePushTest, EveryFieldArrivesInItsPlace)
     const TransferPush transfer{kFine, kCoarse};
     const VectorPush   vector{1000U, 64U, 7U};
     const ScalarsPush  scalars{3U, 64U, 2U, 768U, 1e-6F};
-    const PointsPush   points{kCoarse, 500U};
 
     EXPECT_EQ(echoed(push_echo_level_spv, level), Words(level.level));
     EXPECT_EQ(echoed(push_echo_relax_spv, relax), Words(relax.level, relax.colour));
@@ -77,7 +74,6 @@ TEST_F(PlatePushTest, EveryFieldArrivesInItsPlace)
     EXPECT_EQ(echoed(push_echo_vector_spv, vector), Words(vector.nodes, vector.partials, vector.iteration));
     EXPECT_EQ(echoed(push_echo_scalars_spv, scalars),
               Words(scalars.loads, scalars.partials, scalars.begins, scalars.argumentWords, scalars.tolerance));
-    EXPECT_EQ(echoed(push_echo_points_spv, points), Words(points.level, points.points));
 }
 
 } // namespace

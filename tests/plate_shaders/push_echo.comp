@@ -2,7 +2,7 @@
 // Domain     one invocation
 // Reads      push
 // Writes     bits of the fields
-// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS, ECHO_POINTS
+// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -19,10 +19,8 @@ layout(push_constant) uniform Constants { RelaxPush push; };
 layout(push_constant) uniform Constants { TransferPush push; };
 #elif defined(ECHO_VECTOR)
 layout(push_constant) uniform Constants { VectorPush push; };
-#elif defined(ECHO_SCALARS)
+#else // ECHO_SCALARS
 layout(push_constant) uniform Constants { ScalarsPush push; };
-#else
-layout(push_constant) uniform Constants { PointsPush push; };
 #endif
 
 int count = 0;
@@ -60,14 +58,11 @@ void main()
     echo(push.nodes);
     echo(push.partials);
     echo(push.iteration);
-#elif defined(ECHO_SCALARS)
+#else
     echo(push.loads);
     echo(push.partials);
     echo(push.begins);
     echo(push.argumentWords);
     echo(push.tolerance);
-#else
-    echo(push.level);
-    echo(push.points);
 #endif
 }
