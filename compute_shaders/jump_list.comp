@@ -1,7 +1,7 @@
 // jump_list.comp - the marked tiles as a list, in their own order.
 // Domain     one workgroup; each invocation lists a stretch of the tiles
 // Reads      marks of the tiles
-// Writes     how many tiles are marked, then their numbers
+// Writes     how many tiles are marked, at most kMostListed, then their numbers
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -26,7 +26,7 @@ void main()
     barrier();
     uint at = 1u;
     for (int n = 0; n < lane; ++n) at += counts[n];
-    if (lane == lanes - 1) list[0] = at - 1u + count;
+    if (lane == lanes - 1) list[0] = min(at - 1u + count, kMostListed);
     for (int n = first; n < end; ++n)
         if (marks[n] == 1u) list[at++] = uint(n);
 }

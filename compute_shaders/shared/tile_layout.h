@@ -10,6 +10,9 @@ namespace palp::shared {
 
 const int kTile = 8; // nodes along either side: a workgroup of plate_relax_tile.comp
 
+// Every device takes so many workgroups along x; tiles beyond get no extra sweeps, which costs steps, not accuracy.
+const uint kMostListed = 65535u; // [1]
+
 PALPATE_INLINE int tilesX(PlateLevel g) { return g.cellsX / kTile + 1; }
 PALPATE_INLINE int tilesZ(PlateLevel g) { return g.cellsZ / kTile + 1; }
 

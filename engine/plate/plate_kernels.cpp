@@ -1,5 +1,9 @@
 #include "engine/plate/plate_kernels.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
 #include "compute_shaders/cg_beta_f32.spv.h"
 #include "compute_shaders/cg_beta_f64.spv.h"
 #include "compute_shaders/cg_direction_f32.spv.h"
@@ -22,6 +26,7 @@
 #include "compute_shaders/plate_copy_tile.spv.h"
 #include "compute_shaders/plate_correct.spv.h"
 #include "compute_shaders/plate_divisor.spv.h"
+#include "compute_shaders/plate_down.spv.h"
 #include "compute_shaders/plate_interpolate_f32.spv.h"
 #include "compute_shaders/plate_interpolate_f64.spv.h"
 #include "compute_shaders/plate_interpolate_first_f32.spv.h"
@@ -35,9 +40,13 @@
 #include "compute_shaders/plate_result_f64.spv.h"
 #include "compute_shaders/plate_start_f32.spv.h"
 #include "compute_shaders/plate_start_f64.spv.h"
+#include "compute_shaders/plate_tail.spv.h"
+#include "compute_shaders/plate_up.spv.h"
 #include "compute_shaders/rigidity_coarsen.spv.h"
 #include "compute_shaders/shared/plate_push.h"
+#include "compute_shaders/shared/tail_level.h"
 #include "compute_shaders/shared/tile_layout.h"
+#include "engine/core/contract.h"
 #include "engine/gpu/context.h"
 
 namespace palp {
@@ -61,9 +70,34 @@ gpu::KernelCode code(const char* name, const std::uint32_t (&spirv)[N], int buff
     return {name, spirv, buffers, int(sizeof(Push))};
 }
 
+constexpr gpu::Workgroup kRegionShape{256, 1, 1}; // of plate_region.glsl
+
+/// Fused passes compute the rims of regions several times: worth it where waiting for a dispatch costs more.
+bool isFused(const gpu::Context& context, Schedule schedule)
+{
+    const bool fits = context.limits().sharedMemory >= sizeof(float) * shared::kTailPool &&
+                      context.limits().invocations >= kRegionShape.x;
+    PALP_EXPECT(fits || schedule != Schedule::fused, "the device's workgroups are too small for fused passes");
+    return schedule == Schedule::fused ||
+           (schedule == Schedule::automatic && fits && context.device().kind != "software");
+}
+
+PlateKernels::All::Fused fusedKernels(gpu::Context& context)
+{
+    using namespace shared;
+    const gpu::Workgroup tailShape{std::min(context.limits().invocations, 1024U), 1, 1};
+    const auto           bySweeps = [&](const gpu::KernelCode& what, gpu::Workgroup shape) {
+        const std::uint32_t one = 1, two = 2;
+        return std::array{gpu::Kernel(context, what, shape, {&one, 1}), gpu::Kernel(context, what, shape, {&two, 1})};
+    };
+    return {bySweeps(code<LevelPush>("plate_down", plate_down_spv, 5), kRegionShape),
+            bySweeps(code<TransferPush>("plate_up", plate_up_spv, 8), kRegionShape),
+            bySweeps(code<TailPush>("plate_tail", plate_tail_spv, 9), tailShape)};
+}
+
 } // namespace
 
-PlateKernels::PlateKernels(gpu::Context& context)
+PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule)
 {
     using namespace shared;
     const Shapes& shapes = context.device().kind == "software" ? kSoftware : kHardware;
@@ -101,9 +135,11 @@ PlateKernels::PlateKernels(gpu::Context& context)
                        kernel(PALPATE_REAL(VectorPush, cg_step_dots, 3), shapes.line),
                        kernel(PALPATE_REAL(ScalarsPush, cg_step, 3), shapes.reduce),
                        kernel(PALPATE_REAL(VectorPush, cg_update, 6), shapes.line),
-                       kernel(PALPATE_REAL(VectorPush, plate_result, 3), shapes.line)});
+                       kernel(PALPATE_REAL(VectorPush, plate_result, 3), shapes.line),
+                       {}});
 #undef PALPATE_REAL
 #undef PALPATE_FLOAT
+    if (isFused(context, schedule)) all_->fused.emplace(fusedKernels(context));
 }
 
 PlateKernels::~PlateKernels()                                  = default;

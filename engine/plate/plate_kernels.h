@@ -1,4 +1,7 @@
 #pragma once
+#include <array>
+#include <optional>
+
 #include "engine/gpu/kernel.h"
 #include "engine/plate/plate_solver_vulkan.h"
 
@@ -6,12 +9,18 @@ namespace palp {
 
 /// One kernel per shader and variant; `real` ones compute in doubles where the device has them.
 struct PlateKernels::All {
+    /// The cycle in fewer and larger passes; [n] has n + 1 sweeps before and after the correction.
+    struct Fused {
+        std::array<gpu::Kernel, 2> down, up, tail;
+    };
+
     bool        doubles = false;
     gpu::Kernel coarsen, divisor, jumpMark, jumpList, assemble, factor; // once per rigidity
     gpu::Kernel relaxFirst, relax, relaxTile, copyTile, residual, restrict, correct,
-        coarseSolve; // the cycle, in floats
+        coarseSolve; // the cycle, in floats, pass by pass
     gpu::Kernel start, interpolate, interpolateFirst, dots, beta, direction, apply, stepDots, step, update,
-        result; // real
+        result;                 // real
+    std::optional<Fused> fused; ///< if the schedule is Schedule::fused
 
     [[nodiscard]] std::size_t realBytes() const noexcept { return doubles ? sizeof(double) : sizeof(float); }
 };

@@ -1,11 +1,13 @@
 #include "engine/plate/plate_passes.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "compute_shaders/shared/cg_state.h"
 #include "compute_shaders/shared/coarse_band.h"
 #include "compute_shaders/shared/plate_push.h"
+#include "compute_shaders/shared/region_layout.h"
 #include "compute_shaders/shared/tile_layout.h"
 #include "engine/core/contract.h"
 #include "engine/gpu/context.h"
@@ -48,13 +50,15 @@ PlatePasses::PlatePasses(gpu::Context& context, const PlateKernels::All& kernels
       k(kernels), grids_(std::move(grids)), loads_(loads), partials_(partialsFor(nodesOf(level(0)))),
       zeroes_(floats("zeroes", fieldSize(0))), band_(floats("band", bandSize())), factor_(floats("factor", bandSize())),
       sums_(reals("partial sums", 2 * std::size_t(loads_) * partials_)),
-      arguments_(context, "groups of dispatches", kArgumentBytes, Intent::device),
-      hostArguments_(context, "groups from the host", kArgumentBytes, Intent::upload),
-      hostTiles_(context, "numbers of tiles for the host", 4 * grids_.levels.size(), Intent::readback),
-      jumpTiles_(grids_.levels.size(), 0)
+      arguments_(context, "groups of dispatches", argumentBytes(), Intent::device),
+      hostArguments_(context, "groups from the host", argumentBytes(), Intent::upload),
+      hostTiles_(context, "numbers of tiles for the host", 4 * grids_.levels.size(), Intent::readback)
 {
     levels = makeLevels();
-    std::memset(hostArguments_.mapped(), 0, kArgumentBytes);
+    std::memset(hostArguments_.mapped(), 0, argumentBytes());
+    for (std::size_t l = 0; l < grids_.levels.size(); ++l)
+        setGroups(tileArgument(l), {0, 1, loads_}); // how many tiles, allow() takes from where prepare() counts them
+    if (k.fused) tail_.emplace(context, kernels, grids_, loads);
     uploadTables();
 }
 
@@ -132,10 +136,17 @@ void PlatePasses::uploadTables()
 
 std::size_t PlatePasses::argumentsFor(Groups groups)
 {
-    const auto [found, isNew] = argumentAt_.try_emplace({groups.x, groups.y, groups.z}, 12 * argumentAt_.size());
-    PALP_EXPECT(found->second < kArgumentBytes, "more sizes of dispatches than were foreseen");
-    if (isNew) std::memcpy(static_cast<char*>(hostArguments_.mapped()) + found->second, found->first.data(), 12);
+    const auto [found, isNew] =
+        argumentAt_.try_emplace({groups.x, groups.y, groups.z}, kSizeBytes * argumentAt_.size());
+    PALP_EXPECT(found->second < kSizeBytes * kSizes, "more sizes of dispatches than were foreseen");
+    if (isNew) setGroups(found->second, groups);
     return found->second;
+}
+
+void PlatePasses::setGroups(std::size_t offset, Groups groups)
+{
+    const std::array words{groups.x, groups.y, groups.z};
+    std::memcpy(static_cast<char*>(hostArguments_.mapped()) + offset, words.data(), kSizeBytes);
 }
 
 Groups PlatePasses::everyNode(const Kernel& kernel, std::size_t l) const
@@ -152,9 +163,10 @@ Groups PlatePasses::inOrder(const Kernel& kernel, std::size_t l) const
 {
     return kernel.groupsOver(std::uint32_t(nodesOf(level(l))), 1, loads_);
 }
-double PlatePasses::share(std::size_t l) const
+
+void PlatePasses::countWork(std::size_t l, double applications)
 {
-    return double(nodesOf(level(l))) / double(nodesOf(level(0)));
+    work.nodes += applications * double(nodesOf(level(l)));
 }
 
 // Sweeps from w[at], both colours, the one of `first` first; what is valid afterwards is returned.
@@ -169,7 +181,7 @@ int PlatePasses::sweep(Recorder& pass, std::size_t l, int at, std::uint32_t firs
         else
             pass(k.relax, {b.rigidity, b.divisor, b.force, old, n == 0 ? old : b.w[1 - at], b.w[1 - at]}, push,
                  everySecondNode(k.relax, l));
-        work += share(l) / 2;
+        countWork(l, 0.5);
     }
     return 1 - at;
 }
@@ -177,24 +189,26 @@ int PlatePasses::sweep(Recorder& pass, std::size_t l, int at, std::uint32_t firs
 // Extra sweeps of w[at] in the tiles where the rigidity jumps. The residual's memory is free while they run.
 void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first)
 {
-    if (jumpTiles_[l] == 0) return;
+    if (!jumps_) return;
     const LevelBuffers& b = levels[l];
-    const Groups        groups{jumpTiles_[l], 1, loads_};
     for (int n = 0; n < kTileSweeps; ++n)
         for (std::uint32_t colour : {first, 1 - first}) {
             const shared::RelaxPush push{level(l), colour};
-            pass(k.relaxTile, {b.rigidity, b.divisor, b.force, b.w[at], b.tiles, b.residual}, push, groups);
-            pass(k.copyTile, {b.tiles, b.residual, b.w[at]}, push, groups);
+            pass.list.dispatchIndirect(k.relaxTile, {b.rigidity, b.divisor, b.force, b.w[at], b.tiles, b.residual},
+                                       push, arguments_, tileArgument(l));
+            pass.list.dispatchIndirect(k.copyTile, {b.tiles, b.residual, b.w[at]}, push, arguments_, tileArgument(l));
         }
-    work += kTileSweeps * double(jumpTiles_[l]) * shared::kTile * shared::kTile / double(nodesOf(level(0)));
+    work.tileSweeps.resize(levels.size());
+    work.tileSweeps[l] += kTileSweeps;
 }
 
 // One symmetric cycle for the forces of level l; returns which of its w holds the answer.
 int PlatePasses::cycle(Recorder& pass, std::size_t l, int sweeps)
 {
+    if (isFused()) return fusedCycle(pass, l, sweeps);
     const LevelBuffers& b = levels[l];
     if (l + 1 == levels.size()) {
-        pass(k.coarseSolve, {factor_, b.force, b.w[0]}, shared::LevelPush{level(l)}, {1, 1, loads_});
+        solveCoarsest(pass, b.force);
         return 0;
     }
     int at = 0;
@@ -203,7 +217,7 @@ int PlatePasses::cycle(Recorder& pass, std::size_t l, int sweeps)
     const LevelBuffers&        below = levels[l + 1];
     const shared::TransferPush transfer{level(l), level(l + 1)};
     pass(k.residual, {b.rigidity, b.force, b.w[at], b.residual}, shared::LevelPush{level(l)}, everyNode(k.residual, l));
-    work += share(l);
+    countWork(l, 1);
     pass(k.restrict, {b.tableX, b.tableZ, b.residual, below.force}, transfer, everyNode(k.restrict, l + 1));
     const int from = cycle(pass, l + 1, sweeps);
     pass(k.correct, {b.tableX, b.tableZ, below.w[from], b.w[1 - at], b.w[at]}, transfer, everyNode(k.correct, l));
@@ -213,11 +227,52 @@ int PlatePasses::cycle(Recorder& pass, std::size_t l, int sweeps)
     return at;
 }
 
+// The same cycle in fewer dispatches.
+int PlatePasses::fusedCycle(Recorder& pass, std::size_t l, int sweeps)
+{
+    const LevelBuffers& b = levels[l];
+    if (tail_->holds(l)) {
+        solveTail(pass, l, sweeps, b.force);
+        return 0;
+    }
+    const LevelBuffers&        below = levels[l + 1];
+    const shared::TransferPush transfer{level(l), level(l + 1)};
+    const auto                 kernel  = std::size_t(sweeps - 1);
+    const auto                 owned   = std::uint32_t(shared::kRegion - 2 * shared::kRimPerSweep * sweeps);
+    const auto                 regions = [&](int cells) { return (std::uint32_t(cells) + owned) / owned; };
+    const Groups               groups{regions(level(l).cellsZ), regions(level(l).cellsX), loads_};
+    pass(k.fused->down[kernel], {b.rigidity, b.divisor, b.force, b.w[0], b.residual}, shared::LevelPush{level(l)},
+         groups);
+    pass(k.restrict, {b.tableX, b.tableZ, b.residual, below.force}, transfer, everyNode(k.restrict, l + 1));
+    const int from = fusedCycle(pass, l + 1, sweeps);
+    pass(k.fused->up[kernel], {b.rigidity, b.divisor, b.force, b.tableX, b.tableZ, below.w[from], b.w[0], b.w[1]},
+         transfer, groups);
+    countWork(l, 2 * sweeps + 1);
+    return 1;
+}
+
+// A cycle from level l down, the answer to w[0].
+void PlatePasses::solveTail(Recorder& pass, std::size_t l, int sweeps, const Buffer& force)
+{
+    pass(k.fused->tail[std::size_t(sweeps - 1)], tail_->bindings(force, levels[l].w[0]), tail_->pushFrom(l),
+         tail_->groups());
+    for (std::size_t n = l; n + 1 < levels.size(); ++n) countWork(n, 2 * sweeps + 1);
+}
+
+void PlatePasses::solveCoarsest(Recorder& pass, const Buffer& force)
+{
+    const std::size_t last = levels.size() - 1;
+    if (isFused())
+        solveTail(pass, last, 1, force);
+    else
+        pass(k.coarseSolve, {factor_, force, levels[last].w[0]}, shared::LevelPush{level(last)}, {1, 1, loads_});
+}
+
 void PlatePasses::start(Recorder& pass, std::size_t l)
 {
     const LevelBuffers& b = levels[l];
     pass(k.start, {b.rigidity, b.load, b.answer, b.left, b.force}, shared::LevelPush{level(l)}, everyNode(k.start, l));
-    work += share(l);
+    countWork(l, 1);
 }
 
 void PlatePasses::steps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins, double tolerance)
@@ -226,14 +281,17 @@ void PlatePasses::steps(Recorder& pass, std::size_t l, int count, int sweeps, st
     for (int n = 1; n <= count; ++n) {
         const auto                nodes = std::uint32_t(nodesOf(level(l)));
         const shared::VectorPush  vector{nodes, partials_, std::uint32_t(n)};
-        const shared::ScalarsPush scalars{loads_, partials_, n == 1 ? begins : 0, kArgumentBytes / 4, float(tolerance)};
-        const Buffer&             z   = b.w[cycle(pass, l, sweeps)];
-        const Buffer &            now = b.direction[n % 2], &last = b.direction[(n + 1) % 2];
+        const shared::ScalarsPush scalars{loads_, partials_, n == 1 ? begins : 0, std::uint32_t(argumentBytes() / 4),
+                                          float(tolerance)};
+        const int                 before = pass.list.dispatches();
+        const Buffer&             z      = b.w[cycle(pass, l, sweeps)];
+        if (l == 0) dispatchesPerCycle_ = pass.list.dispatches() - before;
+        const Buffer &now = b.direction[n % 2], &last = b.direction[(n + 1) % 2];
         pass(k.dots, {b.left, z, b.answer, b.load, sums_}, vector, k.dots.groupsOver(partials_, 1, loads_));
         pass(k.beta, {sums_, state}, scalars, {1, 1, 1});
         pass(k.direction, {state, z, last, now}, vector, inOrder(k.direction, l));
         pass(k.apply, {b.rigidity, now, b.forces}, shared::LevelPush{level(l)}, everyNode(k.apply, l));
-        work += share(l);
+        countWork(l, 1);
         pass(k.stepDots, {now, b.forces, sums_}, vector, k.stepDots.groupsOver(partials_, 1, loads_));
         pass(k.step, {sums_, state, arguments_}, scalars, {1, 1, 1});
         // Not stoppable: the step that finds the estimate small enough must still be taken. It looks at the count.
@@ -262,6 +320,17 @@ void PlatePasses::prepare(Recorder& pass)
          k.assemble.groupsOver(std::uint32_t(shared::halfBand(coarsest.level) + 1),
                                std::uint32_t(nodesOf(coarsest.level))));
     pass(k.factor, {band_, factor_}, coarsest, {1, 1, 1});
+    if (!tail_) return;
+    for (std::size_t l = tail_->first(); l + 1 < levels.size(); ++l)
+        tail_->take(pass.list, l, levels[l].rigidity, levels[l].divisor);
+    tail_->invert(pass.list, factor_);
+}
+
+void PlatePasses::allow(CommandList& list) const
+{
+    list.copy(hostArguments_, arguments_);
+    if (!jumps_) return;
+    for (std::size_t l = 0; l + 1 < levels.size(); ++l) list.copy(levels[l].tiles, 0, arguments_, tileArgument(l), 4);
 }
 
 void PlatePasses::nest(Recorder& pass)
@@ -270,8 +339,7 @@ void PlatePasses::nest(Recorder& pass)
     for (std::size_t l = 0; l < last; ++l)
         pass(k.restrict, {levels[l].tableX, levels[l].tableZ, levels[l].load, levels[l + 1].load},
              shared::TransferPush{level(l), level(l + 1)}, everyNode(k.restrict, l + 1));
-    pass(k.coarseSolve, {factor_, levels[last].load, levels[last].w[0]}, shared::LevelPush{level(last)},
-         {1, 1, loads_});
+    solveCoarsest(pass, levels[last].load);
     for (std::size_t l = last; l-- > 0;) {
         const shared::TransferPush transfer{level(l), level(l + 1)};
         const LevelBuffers &       b = levels[l], &below = levels[l + 1];
@@ -294,19 +362,19 @@ void PlatePasses::Recorder::operator()(const Kernel& kernel, const gpu::Bindings
         list.dispatch(kernel, bindings, push, groups);
 }
 
-bool PlatePasses::tilesChanged()
+bool PlatePasses::foundJumps() const
 {
     hostTiles_.makeVisibleToHost();
-    const auto found   = hostTiles_.as<std::uint32_t>();
-    bool       changed = false;
-    for (std::size_t l = 0; l + 1 < levels.size(); ++l) {
-        // A slope that is smooth on the finest grid may look like a jump on a coarse one: the cycle copes with that.
-        const std::uint32_t now = found[0] > 0 ? found[l] : 0;
-        changed                 = changed || now != jumpTiles_[l];
-        jumpTiles_[l]           = now;
-    }
-    if (changed) argumentAt_.clear(); // of the lists that go
-    return changed;
+    return hostTiles_.as<std::uint32_t>()[0] > 0;
+}
+
+double PlatePasses::workUnits(const PlateWork& of) const
+{
+    double nodes = of.nodes;
+    hostTiles_.makeVisibleToHost();
+    for (std::size_t l = 0; l < of.tileSweeps.size(); ++l)
+        nodes += double(of.tileSweeps[l]) * hostTiles_.as<std::uint32_t>()[l] * shared::kTile * shared::kTile;
+    return nodes / double(nodesOf(level(0)));
 }
 
 } // namespace palp

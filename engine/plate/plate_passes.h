@@ -2,6 +2,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "engine/gpu/command_list.h"
 #include "engine/plate/grid_hierarchy.h"
 #include "engine/plate/plate_kernels.h"
+#include "engine/plate/plate_tail.h"
 
 namespace palp {
 
@@ -21,10 +23,17 @@ struct LevelBuffers {
     gpu::Buffer answer, left, direction[2], forces; ///< x, r, p, A p of conjugate gradients, real
 };
 
+/// What recorded passes cost.
+struct PlateWork {
+    double           nodes = 0;  ///< the operator was applied to so many [1]
+    std::vector<int> tileSweeps; ///< per level, sweeps of the tiles where the rigidity jumps [1]
+};
+
 /// The multigrid method as passes over the levels' memory, which the solver puts together to command lists.
 ///
-/// Recording changes nothing but `work` and the table of sizes; the memory changes when a list runs.
-/// \thread as its context
+/// Recording changes nothing but `work` and the table of sizes; the memory changes when a list runs. With or without
+/// extra sweeps where the rigidity jumps is decided when a list is recorded; in which tiles, by the device when it
+/// runs. \thread as its context
 class PlatePasses {
 public:
     PlatePasses(gpu::Context& context, const PlateKernels::All& kernels, GridHierarchy grids, std::uint32_t loads);
@@ -47,12 +56,16 @@ public:
     void start(Recorder& pass, std::size_t l);
     /// Conjugate gradients on level l. \param begins  as in shared::ScalarsPush
     void steps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins, double tolerance);
-    /// To be first in a list with stoppable passes: they are not stopped yet.
-    void allow(gpu::CommandList& list) const { list.copy(hostArguments_, arguments_); }
+    /// To be first in a list with steps: they are not stopped yet, and sweep the tiles that prepare() found.
+    void allow(gpu::CommandList& list) const;
 
-    /// Takes over the numbers of tiles that prepare() found, and says whether they differ from the last: then every
-    /// list with steps must be recorded anew.
-    [[nodiscard]] bool tilesChanged();
+    /// Whether lists recorded from now on have extra sweeps where the rigidity jumps; without, jumps take more steps.
+    void expectJumps(bool expected) noexcept { jumps_ = expected; }
+    /// Whether the last prepare() that ran found jumps on the finest level.
+    [[nodiscard]] bool foundJumps() const;
+    /// In applications of the operator on the finest grid, with the tiles of the last prepare() [1].
+    [[nodiscard]] double workUnits(const PlateWork& of) const;
+    [[nodiscard]] int    dispatchesPerCycle() const noexcept { return dispatchesPerCycle_; } ///< as last recorded [1]
 
     [[nodiscard]] const shared::PlateLevel& level(std::size_t l) const { return grids_.levels[l].plate; }
     [[nodiscard]] std::size_t               nodes() const; ///< of the finest level, of one load [1]
@@ -61,11 +74,11 @@ public:
 
     std::vector<LevelBuffers> levels; ///< finest first
     gpu::Buffer               state;  ///< real, see compute_shaders/shared/cg_state.h
-    double work = 0; ///< of what was recorded since it was last set to 0 [applications on the finest grid]
+    PlateWork                 work;   ///< of what was recorded since it was last set to {}
 
 private:
-    /// For 256 sizes of dispatches; a list has about 60 [byte]
-    static constexpr std::size_t kArgumentBytes = 12 * 256;
+    static constexpr std::size_t kSizes     = 256; ///< of dispatches, in the table; a list has about 60 [1]
+    static constexpr std::size_t kSizeBytes = 12;  ///< three words
 
     [[nodiscard]] std::size_t               fieldSize(std::size_t l) const;
     [[nodiscard]] std::size_t               bandSize() const;
@@ -75,21 +88,30 @@ private:
     void                                    uploadTables();
 
     [[nodiscard]] std::size_t argumentsFor(gpu::Groups groups);
+    void                      setGroups(std::size_t offset, gpu::Groups groups);
     [[nodiscard]] gpu::Groups everyNode(const gpu::Kernel& kernel, std::size_t l) const;
     [[nodiscard]] gpu::Groups everySecondNode(const gpu::Kernel& kernel, std::size_t l) const;
-    [[nodiscard]] double      share(std::size_t l) const;
+    void                      countWork(std::size_t l, double applications);
+    [[nodiscard]] std::size_t argumentBytes() const { return kSizeBytes * (kSizes + grids_.levels.size()); }
+    [[nodiscard]] std::size_t tileArgument(std::size_t l) const { return kSizeBytes * (kSizes + l); }
+    [[nodiscard]] bool        isFused() const noexcept { return tail_ && !jumps_; }
 
     [[nodiscard]] int sweep(Recorder& pass, std::size_t l, int at, std::uint32_t first, bool fromZero);
     void              sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first);
     [[nodiscard]] int cycle(Recorder& pass, std::size_t l, int sweeps);
+    [[nodiscard]] int fusedCycle(Recorder& pass, std::size_t l, int sweeps);
+    void              solveTail(Recorder& pass, std::size_t l, int sweeps, const gpu::Buffer& force);
+    void              solveCoarsest(Recorder& pass, const gpu::Buffer& force);
 
     gpu::Context&            context_;
     const PlateKernels::All& k;
     GridHierarchy            grids_;
     std::uint32_t            loads_, partials_;
 
-    gpu::Buffer                zeroes_, band_, factor_, sums_, arguments_, hostArguments_, hostTiles_;
-    std::vector<std::uint32_t> jumpTiles_; ///< per level, with a jump of rigidity; what lists are recorded for [1]
+    gpu::Buffer              zeroes_, band_, factor_, sums_, arguments_, hostArguments_, hostTiles_;
+    std::optional<PlateTail> tail_; ///< if the schedule is fused
+    bool                     jumps_              = false;
+    int                      dispatchesPerCycle_ = 0;
     std::map<std::array<std::uint32_t, 3>, std::size_t> argumentAt_; ///< groups -> byte offset in `arguments_`
 };
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "compute_shaders/shared/cg_state.h"
 #include "compute_shaders/shared/plate_push.h"
@@ -23,9 +24,9 @@
 //   warm      the residual of the last answer, then kStepsPerList steps
 //   more      kStepsPerList further steps
 //
-// Lists are recorded for the number of tiles in which the rigidity jumps, and anew where another rigidity has other
-// numbers. The steps on the finest level are dispatched indirectly: when the estimate is small enough a kernel sets all
-// their sizes to zero, and the rest of the list runs empty. The host looks only between lists.
+// Lists are recorded once with, or without, extra sweeps of the tiles in which the rigidity jumps. The steps on the
+// finest level are dispatched indirectly: when the estimate is small enough a kernel sets all their sizes to zero, and
+// the rest of the list runs empty. The host looks only between lists.
 
 namespace palp {
 namespace {
@@ -61,10 +62,11 @@ struct VulkanPlateSolver::Impl {
     std::vector<CommandList>                     prepareList; ///< one, or none before it is recorded
     std::array<std::vector<CommandList>, kSlots> coldList, warmList, moreList;
     int                                          slot      = 0;
+    bool                                         jumps     = false; ///< what the lists are recorded for
     bool                                         hasAnswer = false;
     std::optional<double>                        deviceMilliseconds;
 
-    double coldWork = 0, warmWork = 0, stepWork = 0; ///< [applications of the operator on the finest grid]
+    PlateWork coldWork, warmWork, stepsWork; ///< before the steps on the finest level; kStepsPerList of these
 
     Impl(gpu::Context& device, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted)
         : Impl(device, kernels, given, wanted, gridHierarchy(given, largest(given.rigidity)))
@@ -129,16 +131,16 @@ struct VulkanPlateSolver::Impl {
         CommandList           list(context);
         PlatePasses::Recorder pass{passes, list};
         beginSolve(list);
-        passes.work = 0;
+        passes.work = {};
         if (passes.levels.size() == 1) {
             list.fill(passes.levels[0].answer, 0);
             passes.start(pass, 0);
         } else {
             passes.nest(pass);
         }
-        coldWork = passes.work;
+        coldWork = std::exchange(passes.work, {});
         finestSteps(list, 2);
-        stepWork = (passes.work - coldWork) / kStepsPerList;
+        stepsWork = passes.work;
         return list;
     }
 
@@ -147,11 +149,11 @@ struct VulkanPlateSolver::Impl {
         CommandList           list(context);
         PlatePasses::Recorder pass{passes, list};
         beginSolve(list);
-        passes.work = 0;
+        passes.work = {};
         passes.start(pass, 0);
-        warmWork = passes.work;
+        warmWork = std::exchange(passes.work, {});
         finestSteps(list, 2);
-        stepWork = (passes.work - warmWork) / kStepsPerList;
+        stepsWork = passes.work;
         return list;
     }
 
@@ -225,7 +227,15 @@ struct VulkanPlateSolver::Impl {
                         formatQuantity(double(*most) * unitRigidity, "N m"));
         if (prepareList.empty()) recordPrepare();
         context.run(prepareList.front());
-        if (!passes.tilesChanged()) return;
+        expectJumps(passes.foundJumps());
+    }
+
+    /// Lists are recorded with or without the extra sweeps that jumps want; anew when that changes.
+    void expectJumps(bool expected)
+    {
+        if (expected == jumps) return;
+        jumps = expected;
+        passes.expectJumps(expected);
         for (auto* lists : {&coldList, &warmList, &moreList})
             for (auto& recorded : *lists) recorded.clear();
     }
@@ -252,10 +262,11 @@ struct VulkanPlateSolver::Impl {
             done += int(worst(shared::kStateSteps));
         }
         SolveReport report;
-        report.device                      = context.device().name;
-        report.iterations                  = done;
-        report.errorEstimate               = worst(shared::kStateEstimate);
-        report.workUnits                   = (warm ? warmWork : coldWork) + done * stepWork;
+        report.device        = context.device().name;
+        report.iterations    = done;
+        report.errorEstimate = worst(shared::kStateEstimate);
+        report.workUnits =
+            passes.workUnits(warm ? warmWork : coldWork) + done * passes.workUnits(stepsWork) / kStepsPerList;
         report.milliseconds                = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
         std::vector<PlateSolution> answers = read(report);
         hasAnswer                          = true;
@@ -321,8 +332,7 @@ std::optional<double> VulkanPlateSolver::deviceMilliseconds() const noexcept
 
 int VulkanPlateSolver::dispatchesPerCycle() const noexcept
 {
-    // down and up on each level but the coarsest: two half sweeps per sweep, twice; residual, restriction, correction
-    return int(impl_->passes.levels.size() - 1) * (4 * kSweeps + 3) + 1;
+    return impl_->passes.dispatchesPerCycle();
 }
 
 int VulkanPlateSolver::levels() const noexcept

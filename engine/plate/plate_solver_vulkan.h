@@ -12,10 +12,17 @@ namespace gpu {
 class Context;
 }
 
+/// How a cycle is cut into dispatches; the answers are the same.
+enum class Schedule {
+    automatic,  ///< fused on hardware, pass by pass in software
+    passByPass, ///< 11 dispatches per level: nothing is computed twice
+    fused       ///< 3 per level, and one for all levels of up to 64 cells together: few dispatches to wait for
+};
+
 /// The plate's shaders, compiled for one device; solvers of any size share them. \thread as its context
 class PlateKernels {
 public:
-    explicit PlateKernels(gpu::Context& context);
+    explicit PlateKernels(gpu::Context& context, Schedule schedule = Schedule::automatic);
     ~PlateKernels();
     PlateKernels(PlateKernels&&) noexcept;
     PlateKernels& operator=(PlateKernels&&) noexcept;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -26,6 +27,7 @@ struct BenchOptions {
     std::vector<std::string> devices  = {"auto", "reference"};
     std::vector<int>         nodes    = {65, 129, 257};
     std::vector<int>         loads    = {1};
+    Schedule                 schedule = Schedule::automatic;
     std::string              law      = "linear";
     double                   contrast = 10, tolerance = 1e-4;
     int                      repeats = 21;
@@ -80,14 +82,15 @@ Plate plateOf(const BenchOptions& o, int nodes)
     return plate;
 }
 
-/// Fingertips of 4 mm, each a little beside the last, as a batch for the force between two updates has.
+/// Fingertips of 4 mm, or 1.5 spacings on a very coarse grid, each a little beside the last, as a batch for the force between two updates has.
 std::vector<NodeField> fingertips(const PlateGrid& grid, int count)
 {
-    const int              side = int(std::ceil(std::sqrt(count)));
+    const int              side   = int(std::ceil(std::sqrt(count)));
+    const double           radius = std::max(4e-3, 1.5 * grid.spacingX);
     std::vector<NodeField> loads;
     for (int n = 0; n < count; ++n) {
         const double x = 1e-3 * (n / side - (side - 1) / 2.0), z = 1e-3 * (n % side - (side - 1) / 2.0);
-        loads.push_back(footprintLoad(grid, 1, grid.sizeX() / 2 + x, grid.sizeZ() / 2 + z, 4e-3));
+        loads.push_back(footprintLoad(grid, 1, grid.sizeX() / 2 + x, grid.sizeZ() / 2 + z, radius));
     }
     return loads;
 }
@@ -208,7 +211,7 @@ std::vector<Row> measure(const BenchOptions& o)
             continue;
         }
         gpu::Context       context(gpu::ContextSettings{.device = name});
-        const PlateKernels kernels(context);
+        const PlateKernels kernels(context, o.schedule);
         const auto         copy = copyBandwidth(context);
         for (int nodes : o.nodes)
             for (int loads : o.loads) rows.push_back(measureVulkan(o, context, kernels, nodes, loads, copy));
@@ -232,6 +235,7 @@ nlohmann::ordered_json jsonOf(const BenchOptions& o, const std::vector<Row>& row
                         {"prepare_ms", r.prepare},
                         {"cold_p50_ms", r.coldMedian},
                         {"cold_p99_ms", r.coldTail},
+                        {"cold_p50_ms_per_load", r.coldMedian / r.loads},
                         {"warm_p50_ms", orNull(r.warmMedian)},
                         {"device_p50_ms", orNull(r.deviceMedian)},
                         {"iterations", orNull(r.report.iterations)},
@@ -258,12 +262,15 @@ void printTable(const BenchOptions& o, const std::vector<Row>& rows)
 {
     std::printf("clamped plate, %s rigidity of contrast %g, tolerance %g, %d repeats; times in ms\n", o.law.c_str(),
                 o.contrast, o.tolerance, o.repeats);
-    std::printf("%-24s %6s %6s %9s %9s %9s %9s %6s %6s %9s %9s %13s\n", "device", "nodes", "loads", "prepare",
-                "cold p50", "cold p99", "warm p50", "steps", "work", "estimate", "error", "GB/s of copy");
+    std::printf("%-20s %5s %5s %8s %8s %8s %8s %8s %5s %10s %5s %8s %8s %13s\n", "device", "nodes", "loads", "prepare",
+                "cold p50", "cold p99", "per load", "warm p50", "steps", "dispatches", "work", "estimate", "error",
+                "GB/s of copy");
     for (const Row& r : rows)
-        std::printf("%-24.24s %6d %6d %9.2f %9.2f %9.2f %9s %6s %6s %9s %9s %6s/%6s\n", r.device.c_str(), r.nodes,
-                    r.loads, r.prepare, r.coldMedian, r.coldTail, cell(r.warmMedian, "%.2f").c_str(),
+        std::printf("%-20.20s %5d %5d %8.2f %8.2f %8.2f %8.2f %8s %5s %10s %5s %8s %8s %6s/%6s\n", r.device.c_str(),
+                    r.nodes, r.loads, r.prepare, r.coldMedian, r.coldTail, r.coldMedian / r.loads,
+                    cell(r.warmMedian, "%.2f").c_str(),
                     r.report.iterations ? std::to_string(*r.report.iterations).c_str() : "-",
+                    r.dispatchesPerCycle ? std::to_string(*r.dispatchesPerCycle).c_str() : "-",
                     cell(r.report.workUnits, "%.0f").c_str(), cell(r.report.errorEstimate, "%.1e").c_str(),
                     cell(r.error, "%.1e").c_str(), cell(r.traffic, "%.2f").c_str(), cell(r.copy, "%.1f").c_str());
 }
@@ -333,6 +340,14 @@ void addBenchCommand(CLI::App& app)
     solve->add_option("--loads", o->loads, "solved together in one batch (Vulkan devices)")
         ->delimiter(',')
         ->capture_default_str();
+    solve
+        ->add_option("--schedule", o->schedule,
+                     "of the cycle's dispatches: automatic (fused on hardware), pass-by-pass or fused")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Schedule>{{"automatic", Schedule::automatic},
+                                                                            {"pass-by-pass", Schedule::passByPass},
+                                                                            {"fused", Schedule::fused}},
+                                            CLI::ignore_case))
+        ->option_text("NAME");
     solve->add_option("--law", o->law, "of the rigidity: linear, hyperbolic, wart or disc")->capture_default_str();
     solve->add_option("--contrast", o->contrast, "stiffest over softest")->capture_default_str();
     solve->add_option("--tolerance", o->tolerance, "relative, in the energy norm")->capture_default_str();
@@ -340,6 +355,7 @@ void addBenchCommand(CLI::App& app)
     solve->add_option("--out", o->out, "folder for solve.json and solve.svg");
     solve->add_flag("--json", o->json, "machine-readable");
     solve->footer(
+        "\"dispatches\" are those of one cycle, which wait for each other; "
         "\"error\" is against the reference solver on the same grid, up to 257 nodes a side; \"GB/s\" is what the\n"
         "counted work must move at least (20 bytes per node and work unit), beside the device's copies.\n"
         "Examples:\n"

@@ -1,0 +1,159 @@
+// plate_tail.comp - a whole cycle on the coarse levels, from forces to deflection, by one workgroup per load.
+// Domain     x: one workgroup; z: loads
+// Reads      the levels (see tail_level.h), for all of them rigidity [1], inverse divisor [1] and transfer tables; the
+//            inverse of the coarsest level's matrix, column after column; force of the first level
+// Writes     deflection of the first level, 0 on held nodes; deflections put aside on the way down, each invocation its
+//            own nodes'
+//
+// Small levels cost a dispatch what they cost to wait for: here a cycle on all of them is one. Invocations exchange
+// numbers through shared memory only. Sweeps, residual and transfers give what the dispatches one by one give, to the
+// bit; the coarsest level is solved by its inverse, which invocations share better than substitution.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+
+#include "compute_shaders/plate_prelude.glsl"
+#include "compute_shaders/shared/tail_level.h"
+
+layout(constant_id = 3) const int kSweeps = 2; // before and after the correction [1]
+const int kLanes = int(gl_WorkGroupSize.x);
+
+layout(push_constant) uniform Constants { TailPush push; };
+layout(std430, binding = 0) readonly buffer Levels { TailLevel levels[]; };
+layout(std430, binding = 1) readonly buffer Rigidity { float D[]; };
+layout(std430, binding = 2) readonly buffer Divisor { float inverseDivisor[]; };
+layout(std430, binding = 3) readonly buffer TableX { float tablesX[]; };
+layout(std430, binding = 4) readonly buffer TableZ { float tablesZ[]; };
+layout(std430, binding = 5) readonly buffer Inverse { float inverse[]; };
+layout(std430, binding = 6) readonly buffer Force { float force[]; };
+layout(std430, binding = 7) buffer Aside { float aside[]; };
+layout(std430, binding = 8) writeonly buffer Deflection { float w[]; };
+
+shared float pool[kTailPool];
+
+int       load, level;
+TailLevel here;  // the level that is worked on
+TailLevel below; // the next coarser one, if there is one
+
+int   nodesOf(PlateLevel g) { return nodesX(g) * nodesZ(g); }
+int   nodeAt(int i, int j) { return i * nodesZ(here.plate) + j; }
+float rigidity(int i, int j) { return D[here.field + nodeAt(i, j)]; }
+float deflection(int i, int j) { return pool[here.w + nodeAt(i, j)]; }
+float otherColour(int i, int j) { return deflection(i, j); }
+float tableX(int n) { return tablesX[here.tableX + n]; }
+float tableZ(int n) { return tablesZ[here.tableZ + n]; }
+float fineValue(int i, int j) { return deflection(i, j); }
+float coarseValue(int i, int j) { return pool[below.w + i * nodesZ(below.plate) + j]; }
+
+#define PALPATE_PROLONGS
+#define PALPATE_RESTRICTS
+#include "compute_shaders/shared/transfer_layout.h"
+#include "compute_shaders/shared/plate_transfer.h"
+#include "compute_shaders/shared/plate_grid.h"
+#include "compute_shaders/shared/plate_operator.h"
+#include "compute_shaders/shared/plate_relax.h"
+
+void enter(int l)
+{
+    level = l;
+    here = levels[l];
+    if (l + 1 < int(push.levels)) below = levels[l + 1];
+}
+
+float forceAt(int node)
+{
+    return level == int(push.first) ? force[load * nodesOf(here.plate) + node] : pool[here.force + node];
+}
+
+int asideAt(int node) { return load * int(push.nodes) + here.field + node; }
+
+ivec2 nthOfColour(int n, uint colour)
+{
+    int rowHalf = here.plate.cellsZ / 2 + 1, i = n / rowHalf;
+    return ivec2(i, 2 * (n % rowHalf) + int((uint(i) + colour) & 1u));
+}
+
+bool isNode(ivec2 at) { return at.x <= here.plate.cellsX && at.y <= here.plate.cellsZ; }
+
+// All new values are computed before any is written: a node's neighbours of its own colour are those from before.
+void relaxLevel(uint colour)
+{
+    const int kMost = (kTailHalf + kLanes - 1) / kLanes;
+    float fresh[kMost];
+    int lane = int(gl_LocalInvocationID.x);
+    for (int k = 0; k < kMost; ++k) {
+        ivec2 at = nthOfColour(lane + k * kLanes, colour);
+        if (isNode(at)) {
+            int node = nodeAt(at.x, at.y);
+            fresh[k] = relaxed(deflection(at.x, at.y), forceAt(node), operatorAt(here.plate, at.x, at.y),
+                               inverseDivisor[here.field + node]);
+        }
+    }
+    barrier();
+    for (int k = 0; k < kMost; ++k) {
+        ivec2 at = nthOfColour(lane + k * kLanes, colour);
+        if (isNode(at)) pool[here.w + nodeAt(at.x, at.y)] = fresh[k];
+    }
+    barrier();
+}
+
+// Sweeps from zero deflection; then the residual takes the deflection's place, and goes on to the level below as force.
+void goDown()
+{
+    const int kMost = (kTailNodes + kLanes - 1) / kLanes;
+    int lane = int(gl_LocalInvocationID.x), nodes = nodesOf(here.plate), stride = nodesZ(here.plate);
+    for (int n = lane; n < nodes; n += kLanes)
+        pool[here.w + n] = ((n / stride + n % stride) & 1) == 0 ? forceAt(n) * inverseDivisor[here.field + n] : 0.0f;
+    barrier();
+    for (int turn = 1; turn < 2 * kSweeps; ++turn) relaxLevel(uint(turn & 1));
+    float left[kMost];
+    for (int k = 0; k < kMost; ++k) {
+        int n = lane + k * kLanes, i = n / stride, j = n % stride;
+        if (n < nodes) left[k] = isHeld(here.plate, i, j) ? 0.0f : forceAt(n) - operatorAt(here.plate, i, j);
+    }
+    barrier();
+    for (int k = 0; k < kMost; ++k) {
+        int n = lane + k * kLanes;
+        if (n < nodes) {
+            aside[asideAt(n)] = pool[here.w + n];
+            pool[here.w + n] = left[k];
+        }
+    }
+    barrier();
+    for (int n = lane; n < nodesOf(below.plate); n += kLanes)
+        pool[below.force + n] = restrictedAt(n / nodesZ(below.plate), n % nodesZ(below.plate), nodesX(here.plate), stride);
+    barrier();
+}
+
+void goUp()
+{
+    int lane = int(gl_LocalInvocationID.x), stride = nodesZ(here.plate);
+    for (int n = lane; n < nodesOf(here.plate); n += kLanes)
+        pool[here.w + n] = aside[asideAt(n)] + prolongedAt(n / stride, n % stride);
+    barrier();
+    for (int turn = 1; turn <= 2 * kSweeps; ++turn) relaxLevel(uint(turn & 1));
+}
+
+void main()
+{
+    int lane = int(gl_LocalInvocationID.x), first = int(push.first), last = int(push.levels) - 1;
+    load = int(gl_WorkGroupID.z);
+    for (int l = first; l < last; ++l) {
+        enter(l);
+        goDown();
+    }
+    enter(last);
+    int nodes = nodesOf(here.plate);
+    for (int n = lane; n < nodes; n += kLanes) {
+        float sum = 0.0f;
+        for (int m = 0; m < nodes; ++m) sum += inverse[m * nodes + n] * forceAt(m);
+        pool[here.w + n] = sum;
+    }
+    barrier();
+    for (int l = last - 1; l >= first; --l) {
+        enter(l);
+        goUp();
+    }
+    enter(first);
+    nodes = nodesOf(here.plate);
+    for (int n = lane; n < nodes; n += kLanes) w[load * nodes + n] = pool[here.w + n];
+}

@@ -1,0 +1,15 @@
+// region_layout.h - the square regions of plate_down.comp and plate_up.comp (GLSL and C++).
+#ifndef PALPATE_REGION_LAYOUT_H
+#define PALPATE_REGION_LAYOUT_H
+
+#ifdef __cplusplus
+namespace palp::shared {
+#endif
+
+const int kRegion      = 48; // nodes along either side; even
+const int kRimPerSweep = 4;  // nodes along each side that others own: two per half sweep
+
+#ifdef __cplusplus
+} // namespace palp::shared
+#endif
+#endif

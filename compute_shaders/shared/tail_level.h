@@ -1,0 +1,36 @@
+// tail_level.h - the coarse levels that plate_tail.comp does in one dispatch (GLSL and C++).
+#ifndef PALPATE_TAIL_LEVEL_H
+#define PALPATE_TAIL_LEVEL_H
+
+#include "compute_shaders/shared/plate_level.h"
+
+#ifdef __cplusplus
+namespace palp::shared {
+#endif
+
+// What the kernel's shared arrays and loops are made for: levels of 64, 32 and 16 cells a side.
+const int kTailPool    = 8000;    // numbers in shared memory, 32 kB [1]
+const int kTailNodes   = 65 * 65; // of a level [1]
+const int kTailHalf    = 65 * 33; // nodes of one colour of a level, counted as columns times half rows rounded up [1]
+const int kTailLevels  = 8;       // [1]
+
+// Positions are those of the first number of this level in arrays that hold all levels of the tail.
+struct TailLevel {
+    PlateLevel plate;
+    int        field;  // in rigidity, divisor and (per load) the deflections put aside
+    int        tableX; // in the transfer tables, those to the next coarser level
+    int        tableZ;
+    int        w;     // in shared memory: deflection
+    int        force; // in shared memory; the first level's force is not there
+};
+
+struct TailPush {
+    uint first;  // level to begin with; the last one is solved at once [1]
+    uint levels; // of the tail [1]
+    uint nodes;  // of all of them together [1]
+};
+
+#ifdef __cplusplus
+} // namespace palp::shared
+#endif
+#endif
