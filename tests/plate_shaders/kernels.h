@@ -21,6 +21,7 @@
 #include "compute_shaders/plate_copy_tile.spv.h"
 #include "compute_shaders/plate_correct.spv.h"
 #include "compute_shaders/plate_divisor.spv.h"
+#include "compute_shaders/plate_down.spv.h"
 #include "compute_shaders/plate_interpolate_f32.spv.h"
 #include "compute_shaders/plate_interpolate_f64.spv.h"
 #include "compute_shaders/plate_interpolate_first_f32.spv.h"
@@ -34,8 +35,11 @@
 #include "compute_shaders/plate_result_f64.spv.h"
 #include "compute_shaders/plate_start_f32.spv.h"
 #include "compute_shaders/plate_start_f64.spv.h"
+#include "compute_shaders/plate_tail.spv.h"
+#include "compute_shaders/plate_up.spv.h"
 #include "compute_shaders/rigidity_coarsen.spv.h"
 #include "compute_shaders/shared/plate_push.h"
+#include "compute_shaders/shared/tail_level.h"
 #include "engine/gpu/kernel.h"
 
 /// The plate's kernels by name; those of conjugate gradients as code<float>() or code<double>().
@@ -76,6 +80,9 @@ PALPATE_KERNEL(copyTile, plate_copy_tile, RelaxPush, 3)
 PALPATE_KERNEL(residual, plate_residual, LevelPush, 4)
 PALPATE_KERNEL(restriction, plate_restrict, TransferPush, 4)
 PALPATE_KERNEL(correct, plate_correct, TransferPush, 5)
+PALPATE_KERNEL(down, plate_down, LevelPush, 5)
+PALPATE_KERNEL(up, plate_up, TransferPush, 8)
+PALPATE_KERNEL(tail, plate_tail, TailPush, 9)
 
 PALPATE_REAL_KERNEL(start, plate_start, LevelPush, 5)
 PALPATE_REAL_KERNEL(apply, plate_apply, LevelPush, 3)

@@ -94,6 +94,11 @@ struct LevelPair {
     shared::PlateLevel fine{}, coarse{};
     std::vector<float> tableX, tableZ;
 
+    LevelPair(const shared::PlateLevel& fineLevel, const shared::PlateLevel& coarseLevel)
+        : fine(fineLevel), coarse(coarseLevel)
+    {
+    }
+
     LevelPair(const Plate& plate, int coarseX, int coarseZ)
     {
         fine          = gridHierarchy(plate, 1).levels.front().plate;

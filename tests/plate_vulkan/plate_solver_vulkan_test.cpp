@@ -133,6 +133,36 @@ TEST_F(VulkanPlate, AgreesWithTheReferenceSolverForEveryLaw)
         }
 }
 
+/// Sweeps and transfers are the same to the bit; only the coarsest level is solved in another way, by its inverse.
+TEST_F(VulkanPlate, FusedPassesTakeTheSameStepsToTheSameAnswer)
+{
+    if (validation() == gpu::Validation::gpuAssisted) GTEST_SKIP() << "the fused kernels take minutes to compile then";
+    using enum Edge;
+    const PlateKernels onePassEach(context(), Schedule::passByPass), fused(context(), Schedule::fused);
+    const auto         compare = [&](const Plate& plate, const std::string& what) {
+        const std::vector<NodeField> loads{loadOn(plate.grid),
+                                           pointLoad(plate.grid, 1, plate.grid.sizeX() / 2, plate.grid.sizeZ() / 2)};
+        const Settings               settings{.tolerance = 1e-6, .loads = 2};
+        VulkanPlateSolver slow(context(), onePassEach, plate, settings), fast(context(), fused, plate, settings);
+        const auto        expected = slow.solve(loads), found = fast.solve(loads);
+        for (std::size_t n = 0; n < loads.size(); ++n)
+            EXPECT_LT(errorOf(found[n].deflection, expected[n].deflection), 2e-6)
+                << what; // within the tolerance of each
+        EXPECT_NEAR(*found[0].report.iterations, *expected[0].report.iterations, 1) << what;
+        EXPECT_NEAR(*found[0].report.workUnits, *expected[0].report.workUnits, *expected[0].report.workUnits * 0.3);
+        return std::pair(slow.dispatchesPerCycle(), fast.dispatchesPerCycle());
+    };
+    for (const Law& law : kLaws) {
+        if (!law.smooth) continue; // where the rigidity jumps, passes are not fused
+        const auto [slow, fast] = compare(plateOf(128, 128, {}, law), law.name);
+        EXPECT_EQ(slow, 34) << law.name; // 3 levels of 11, and the coarsest one
+        EXPECT_EQ(fast, 4) << law.name;  // 3 for 128 cells, and the tail
+    }
+    (void)compare(plateOf(100, 57, {free, clamped, supported, free}, kLaws[1]), "rectangle");
+    (void)compare(plateOf(24, 24, {supported, clamped, clamped, free}, kLaws[3]), "tail only");
+    (void)compare(plateOf(12, 9, {clamped, clamped, clamped, free}, kLaws[1]), "one level");
+}
+
 TEST_F(VulkanPlate, EveryCombinationOfEdgesAgreesWithTheReferenceSolver)
 {
     constexpr Edge kEdges[] = {Edge::clamped, Edge::supported, Edge::free};
