@@ -61,12 +61,12 @@ inline PointScene scatteredScene(const std::string& name, const PlateGrid& grid,
     return scene;
 }
 
-/// Every third node of a grid, thrice; many nodes are equally far from several points.
+/// Three points at every third place; many nodes are equally far from several places.
 inline PointScene latticeScene(int cellsX, int cellsZ)
 {
     PointScene scene{"a lattice of triples", {cellsX, cellsZ, 0.25, 0.25}, {-2, 1}, {}};
     for (int copy = 0; copy < 3; ++copy)
-        for (int i = cellsX + 3; i >= -3; i -= 3)
+        for (int i = -3; i <= cellsX + 3; i += 3)
             for (int j = cellsZ + 3; j >= -3; j -= 3)
                 scene.positions.push_back({-2 + 0.25 * (i + 0.5), 1 + 0.25 * (j - 0.5)});
     scene.spacing = 0.5;
