@@ -7,7 +7,7 @@
 // pass that writes each node once. No node visits a bucket twice: at worst, all points in one bucket or along one side,
 // a node looks at every bucket and every point.
 //
-// The includer provides  int bucketStart(int n), float pointX(int n), float pointZ(int n)  and  uint pointNumber(int n).
+// The includer provides  int bucketStart(int n), float pointX(int n), float pointZ(int n), uint pointNumber(int n).
 
 struct Nearest {
     float distance2; // [larger spacing^2]
