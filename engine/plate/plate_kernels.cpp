@@ -76,41 +76,41 @@ PlateKernels::PlateKernels(gpu::Context& context)
 #define PALPATE_REAL(Push, name, buffers)                                                                              \
     real(code<Push>(#name "_f32", name##_f32_spv, buffers), code<Push>(#name "_f64", name##_f64_spv, buffers))
 #define PALPATE_FLOAT(Push, name, buffers) code<Push>(#name, name##_spv, buffers)
+    const gpu::KernelCode lift32{"plate_lift_f32", plate_lift_f32_spv, 5},
+        lift64{"plate_lift_f64", plate_lift_f64_spv, 5};
     constexpr gpu::Workgroup jumpTile{kTile, kTile, 1};
     const auto               kernel = [&](const gpu::KernelCode& what, gpu::Workgroup group) {
         return gpu::Kernel(context, what, group);
     };
-    all_.reset(
-        new All{f64,
-                kernel(PALPATE_FLOAT(TransferPush, rigidity_coarsen, 2), shapes.tile),
-                kernel(PALPATE_FLOAT(LevelPush, plate_divisor, 2), shapes.tile),
-                kernel(PALPATE_FLOAT(LevelPush, jump_mark, 2), shapes.tile),
-                kernel(PALPATE_FLOAT(LevelPush, jump_list, 2), shapes.reduce),
-                kernel(PALPATE_FLOAT(LevelPush, coarse_assemble, 2), shapes.tile),
-                kernel(PALPATE_FLOAT(LevelPush, coarse_factor, 2), shapes.alone),
-                kernel(PALPATE_FLOAT(RelaxPush, plate_relax_first, 3), shapes.tile),
-                kernel(PALPATE_FLOAT(RelaxPush, plate_relax, 6), shapes.tile),
-                kernel(PALPATE_FLOAT(RelaxPush, plate_relax_tile, 6), jumpTile),
-                kernel(PALPATE_FLOAT(RelaxPush, plate_copy_tile, 3), jumpTile),
-                kernel(PALPATE_FLOAT(LevelPush, plate_residual, 4), shapes.tile),
-                kernel(PALPATE_FLOAT(TransferPush, plate_restrict, 4), shapes.tile),
-                kernel(PALPATE_FLOAT(TransferPush, plate_correct, 5), shapes.tile),
-                kernel(PALPATE_FLOAT(LevelPush, coarse_solve, 3), shapes.alone),
-                kernel(PALPATE_REAL(LevelPush, plate_start, 5), shapes.tile),
-                kernel(PALPATE_REAL(TransferPush, plate_interpolate, 4), shapes.tile),
-                kernel(PALPATE_REAL(TransferPush, plate_interpolate_first, 4), shapes.tile),
-                kernel(PALPATE_REAL(VectorPush, cg_dots, 5), shapes.line),
-                kernel(PALPATE_REAL(ScalarsPush, cg_beta, 2), shapes.reduce),
-                kernel(PALPATE_REAL(VectorPush, cg_direction, 4), shapes.line),
-                kernel(PALPATE_REAL(LevelPush, plate_apply, 3), shapes.tile),
-                kernel(PALPATE_REAL(VectorPush, cg_step_dots, 3), shapes.line),
-                kernel(PALPATE_REAL(ScalarsPush, cg_step, 3), shapes.reduce),
-                kernel(PALPATE_REAL(VectorPush, cg_update, 6), shapes.line),
-                kernel(PALPATE_REAL(VectorPush, plate_result, 3), shapes.line),
-                kernel({"rigidity_nearest", rigidity_nearest_spv, 5, 0}, shapes.tile),
-                kernel({"rigidity_log_mean", rigidity_log_mean_spv, 5, 0}, shapes.tile),
-                kernel(real({"plate_lift_f32", plate_lift_f32_spv, 5, 0}, {"plate_lift_f64", plate_lift_f64_spv, 5, 0}),
-                       shapes.line)});
+    all_.reset(new All{f64,
+                       kernel(PALPATE_FLOAT(TransferPush, rigidity_coarsen, 2), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, plate_divisor, 2), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, jump_mark, 2), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, jump_list, 2), shapes.reduce),
+                       kernel(PALPATE_FLOAT(LevelPush, coarse_assemble, 2), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, coarse_factor, 2), shapes.alone),
+                       kernel(PALPATE_FLOAT(RelaxPush, plate_relax_first, 3), shapes.tile),
+                       kernel(PALPATE_FLOAT(RelaxPush, plate_relax, 6), shapes.tile),
+                       kernel(PALPATE_FLOAT(RelaxPush, plate_relax_tile, 6), jumpTile),
+                       kernel(PALPATE_FLOAT(RelaxPush, plate_copy_tile, 3), jumpTile),
+                       kernel(PALPATE_FLOAT(LevelPush, plate_residual, 4), shapes.tile),
+                       kernel(PALPATE_FLOAT(TransferPush, plate_restrict, 4), shapes.tile),
+                       kernel(PALPATE_FLOAT(TransferPush, plate_correct, 5), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, coarse_solve, 3), shapes.alone),
+                       kernel(PALPATE_REAL(LevelPush, plate_start, 5), shapes.tile),
+                       kernel(PALPATE_REAL(TransferPush, plate_interpolate, 4), shapes.tile),
+                       kernel(PALPATE_REAL(TransferPush, plate_interpolate_first, 4), shapes.tile),
+                       kernel(PALPATE_REAL(VectorPush, cg_dots, 5), shapes.line),
+                       kernel(PALPATE_REAL(ScalarsPush, cg_beta, 2), shapes.reduce),
+                       kernel(PALPATE_REAL(VectorPush, cg_direction, 4), shapes.line),
+                       kernel(PALPATE_REAL(LevelPush, plate_apply, 3), shapes.tile),
+                       kernel(PALPATE_REAL(VectorPush, cg_step_dots, 3), shapes.line),
+                       kernel(PALPATE_REAL(ScalarsPush, cg_step, 3), shapes.reduce),
+                       kernel(PALPATE_REAL(VectorPush, cg_update, 6), shapes.line),
+                       kernel(PALPATE_REAL(VectorPush, plate_result, 3), shapes.line),
+                       kernel({"rigidity_nearest", rigidity_nearest_spv, 5}, shapes.tile),
+                       kernel({"rigidity_log_mean", rigidity_log_mean_spv, 5}, shapes.tile),
+                       kernel(real(lift32, lift64), shapes.line)});
 #undef PALPATE_REAL
 #undef PALPATE_FLOAT
 }

@@ -11,8 +11,10 @@ struct PlateKernels::All {
     gpu::Kernel relaxFirst, relax, relaxTile, copyTile, residual, restrict, correct,
         coarseSolve; // the cycle, in floats
     gpu::Kernel start, interpolate, interpolateFirst, dots, beta, direction, apply, stepDots, step, update,
-        result;                                         // real
-    gpu::Kernel rigidityNearest, rigidityLogMean, lift; // from points to nodes, and back (real)
+        result; // real
+
+    // Between points and nodes; the lift is real.
+    gpu::Kernel rigidityNearest, rigidityLogMean, lift;
 
     [[nodiscard]] std::size_t realBytes() const noexcept { return doubles ? sizeof(double) : sizeof(float); }
 };
