@@ -10,15 +10,6 @@
 namespace palp {
 namespace {
 
-constexpr double kKernelReach = 4.0; ///< of the Gaussian [standard deviations]; the weight there is 3e-4
-constexpr double kNearby      = 2.5; ///< see resampleRigidity [standard deviations]
-
-/// Standard deviation of the Gaussian [m].
-double kernelWidth(double pointSpacing, double nodeSpacing)
-{
-    return std::max(pointSpacing, nodeSpacing / 2);
-}
-
 /// Range of node numbers within `reach` of `position` along one axis.
 struct NodeRange {
     int first = 0;
@@ -48,7 +39,7 @@ LogMean spread(const Window& window, std::span<const ChartPoint> positions, std:
     const auto          factor = [&](double distance) { return std::exp(-distance * distance / (2 * width * width)); };
     for (std::size_t n = 0; n < positions.size(); ++n) {
         const double    x = positions[n].x - window.corner.x, z = positions[n].z - window.corner.z;
-        const double    reach = kKernelReach * width, logarithm = std::log(rigidities[n]);
+        const double    reach = kSamplingReach * width, logarithm = std::log(rigidities[n]);
         const NodeRange rows(x, reach, grid.spacingX, grid.nodesX()), columns(z, reach, grid.spacingZ, grid.nodesZ());
         factorZ.clear();
         for (int j = columns.first; j <= columns.last; ++j) factorZ.push_back(factor(z - j * grid.spacingZ));
@@ -92,7 +83,7 @@ bool Window::holds(const ChartPoint& p) const noexcept
 
 double kernelReach(double pointSpacing, double nodeSpacing) noexcept
 {
-    return kKernelReach * kernelWidth(pointSpacing, nodeSpacing);
+    return kSamplingReach * samplingWidth(pointSpacing, nodeSpacing);
 }
 
 Resampled resampleRigidity(const Window& window, std::span<const ChartPoint> positions,
@@ -101,7 +92,7 @@ Resampled resampleRigidity(const Window& window, std::span<const ChartPoint> pos
     PALP_EXPECT(!positions.empty() && positions.size() == rigidities.size(),
                 std::to_string(positions.size()) + " positions, " + std::to_string(rigidities.size()) + " rigidities");
     const PlateGrid& grid  = window.grid;
-    const double     width = kernelWidth(pointSpacing, std::max(grid.spacingX, grid.spacingZ));
+    const double     width = samplingWidth(pointSpacing, std::max(grid.spacingX, grid.spacingZ));
 
     const std::vector<std::uint32_t> nearest = nearestPoint(grid, window.corner, positions);
     const LogMean sums = sampling == Sampling::logMean ? spread(window, positions, rigidities, width) : LogMean{};
@@ -112,7 +103,7 @@ Resampled resampleRigidity(const Window& window, std::span<const ChartPoint> pos
             const std::uint32_t point = nearest[std::size_t(i) * std::size_t(grid.nodesZ()) + std::size_t(j)];
             const double        away  = std::hypot(positions[point].x - window.corner.x - i * grid.spacingX,
                                                    positions[point].z - window.corner.z - j * grid.spacingZ);
-            result.nodesWithoutPoint += away > kNearby * width;
+            result.nodesWithoutPoint += away > kSamplingNearby * width;
             const bool averaged   = sampling == Sampling::logMean && sums.weight(i, j) > 0;
             result.rigidity(i, j) = averaged ? std::exp(sums.logarithm(i, j) / sums.weight(i, j)) : rigidities[point];
         }

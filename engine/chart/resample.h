@@ -6,14 +6,9 @@
 
 #include "engine/chart/chart.h"
 #include "engine/core/grid.h"
+#include "engine/core/sampling.h"
 
 namespace palp {
-
-/// How the rigidity of a node follows from the points around it.
-enum class Sampling {
-    logMean, ///< exp of the mean of ln D, Gaussian weights: hardly any jitter while the grid slides over the points
-    nearest  ///< D of the nearest projected point: the paper's; a step wherever the nearest point changes
-};
 
 [[nodiscard]] const char*             name(Sampling sampling) noexcept; ///< "log-mean", "nearest"
 [[nodiscard]] std::optional<Sampling> samplingNamed(std::string_view name);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "engine/core/contract.h"
 #include "engine/gpu/command_list.h"
@@ -140,14 +141,24 @@ Context& Context::operator=(Context&&) noexcept = default;
 
 void Context::run(CommandList& list)
 {
-    PALP_EXPECT(list.ended(), "a command list runs after end()");
-    PALP_EXPECT(&list.handles().context == handles_.get(), "a command list runs on the context it was made from");
+    CommandList* const only = &list;
+    run({&only, 1});
+}
+
+void Context::run(std::span<CommandList* const> lists)
+{
+    std::vector<VkCommandBuffer> commands;
+    for (const CommandList* list : lists) {
+        PALP_EXPECT(list->ended(), "a command list runs after end()");
+        PALP_EXPECT(&list->handles().context == handles_.get(), "a command list runs on the context it was made from");
+        commands.push_back(list->handles().commands);
+    }
     if (handles_->abandoned) throw DeviceLost("the GPU " + device().name + " hung before and is not used any more");
 
     check(vkResetFences(handles_->device, 1, &handles_->fence), "reset a fence");
     auto submit               = typed<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
-    submit.commandBufferCount = 1;
-    submit.pCommandBuffers    = &list.handles().commands;
+    submit.commandBufferCount = std::uint32_t(commands.size());
+    submit.pCommandBuffers    = commands.data();
     check(vkQueueSubmit(handles_->queue, 1, &submit, handles_->fence), "take a command list");
     const auto     nanoseconds = std::uint64_t(std::ceil(handles_->patience * 1e9));
     const VkResult result      = vkWaitForFences(handles_->device, 1, &handles_->fence, VK_TRUE, nanoseconds);
@@ -157,7 +168,7 @@ void Context::run(CommandList& list)
         throw DeviceLost("the GPU " + device().name + " did not finish within " + std::to_string(handles_->patience) +
                          " s; try fewer cells");
     check(result, "finish a command list");
-    list.handles().ran = true;
+    for (const CommandList* list : lists) list->handles().ran = true;
 }
 
 std::vector<std::string> Context::takeMessages()

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,8 @@ public:
     /// using when its owner goes is leaked, not freed.
     /// \throws DeviceLost if the device went away, ran out of memory or hangs
     void run(CommandList& list);
+    /// As above, one after the other in a single submission: no round trip between them.
+    void run(std::span<CommandList* const> lists);
 
     /// Warnings and errors of the validation layer since the last call.
     [[nodiscard]] std::vector<std::string> takeMessages();

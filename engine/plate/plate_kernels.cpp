@@ -31,6 +31,8 @@
 #include "compute_shaders/plate_interpolate_f64.spv.h"
 #include "compute_shaders/plate_interpolate_first_f32.spv.h"
 #include "compute_shaders/plate_interpolate_first_f64.spv.h"
+#include "compute_shaders/plate_lift_f32.spv.h"
+#include "compute_shaders/plate_lift_f64.spv.h"
 #include "compute_shaders/plate_relax.spv.h"
 #include "compute_shaders/plate_relax_first.spv.h"
 #include "compute_shaders/plate_relax_tile.spv.h"
@@ -43,6 +45,8 @@
 #include "compute_shaders/plate_tail.spv.h"
 #include "compute_shaders/plate_up.spv.h"
 #include "compute_shaders/rigidity_coarsen.spv.h"
+#include "compute_shaders/rigidity_log_mean.spv.h"
+#include "compute_shaders/rigidity_nearest.spv.h"
 #include "compute_shaders/shared/plate_push.h"
 #include "compute_shaders/shared/tail_level.h"
 #include "compute_shaders/shared/tile_layout.h"
@@ -106,6 +110,8 @@ PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule)
 #define PALPATE_REAL(Push, name, buffers)                                                                              \
     real(code<Push>(#name "_f32", name##_f32_spv, buffers), code<Push>(#name "_f64", name##_f64_spv, buffers))
 #define PALPATE_FLOAT(Push, name, buffers) code<Push>(#name, name##_spv, buffers)
+    const gpu::KernelCode lift32{"plate_lift_f32", plate_lift_f32_spv, 5},
+        lift64{"plate_lift_f64", plate_lift_f64_spv, 5};
     constexpr gpu::Workgroup jumpTile{kTile, kTile, 1};
     const auto               kernel = [&](const gpu::KernelCode& what, gpu::Workgroup group) {
         return gpu::Kernel(context, what, group);
@@ -136,7 +142,9 @@ PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule)
                        kernel(PALPATE_REAL(ScalarsPush, cg_step, 3), shapes.reduce),
                        kernel(PALPATE_REAL(VectorPush, cg_update, 6), shapes.line),
                        kernel(PALPATE_REAL(VectorPush, plate_result, 3), shapes.line),
-                       {}});
+                       kernel({"rigidity_nearest", rigidity_nearest_spv, 5}, shapes.tile),
+                       kernel({"rigidity_log_mean", rigidity_log_mean_spv, 5}, shapes.tile),
+                       kernel(real(lift32, lift64), shapes.line)});
 #undef PALPATE_REAL
 #undef PALPATE_FLOAT
     if (isFused(context, schedule)) all_->fused.emplace(fusedKernels(context));

@@ -19,8 +19,9 @@ struct PlateKernels::All {
     gpu::Kernel relaxFirst, relax, relaxTile, copyTile, residual, restrict, correct,
         coarseSolve; // the cycle, in floats, pass by pass
     gpu::Kernel start, interpolate, interpolateFirst, dots, beta, direction, apply, stepDots, step, update,
-        result;                 // real
-    std::optional<Fused> fused; ///< if the schedule is Schedule::fused
+        result;                                                  // real
+    gpu::Kernel          rigidityNearest, rigidityLogMean, lift; // between points and nodes; the lift is real
+    std::optional<Fused> fused{};                                ///< if the schedule is Schedule::fused
 
     [[nodiscard]] std::size_t realBytes() const noexcept { return doubles ? sizeof(double) : sizeof(float); }
 };

@@ -5,16 +5,18 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "compute_shaders/shared/cg_state.h"
 #include "compute_shaders/shared/plate_push.h"
 #include "engine/core/contract.h"
-#include "engine/core/quantity.h"
 #include "engine/gpu/command_list.h"
 #include "engine/gpu/context.h"
 #include "engine/plate/grid_hierarchy.h"
 #include "engine/plate/plate_passes.h"
+#include "engine/plate/rigidity_unit.h"
+#include "engine/plate/scattered_points.h"
 
 // One submission is a list of passes, recorded once:
 //
@@ -23,6 +25,8 @@
 //             gradients with V(1,1); then kStepsPerList steps with V(2,2) on the finest level
 //   warm      the residual of the last answer, then kStepsPerList steps
 //   more      kStepsPerList further steps
+//   sample    rigidity from scattered points, then prepare
+//   lift      the answer to those points
 //
 // Lists are recorded once with, or without, extra sweeps of the tiles in which the rigidity jumps. The steps on the
 // finest level are dispatched indirectly: when the estimate is small enough a kernel sets all their sizes to zero, and
@@ -43,6 +47,8 @@ constexpr int kSlots        = 3; ///< results in mapped memory: one is written, 
 constexpr int kStepsPerList = 4; ///< even, because directions take turns in two buffers [1]
 constexpr int kSweeps       = 2; ///< before and after the correction, on the finest level's cycles [1]
 
+constexpr double kJump = 3.0; ///< points that vary by less make no jump, see compute_shaders/shared/jump_tiles.h [1]
+
 } // namespace
 
 struct VulkanPlateSolver::Impl {
@@ -58,6 +64,23 @@ struct VulkanPlateSolver::Impl {
     Buffer              units; ///< metres per unit of the shaders' deflection, per load
     Buffer              hostRigidity, hostLoads, hostUnits, hostState;
     std::vector<Buffer> results;
+
+    /// What scattered points need, once there are some.
+    struct FromPoints {
+        ScatteredPoints                           points;
+        Buffer                                    rigidity; ///< at the nodes, for the host
+        std::array<std::optional<CommandList>, 2> sample;   ///< by Sampling
+        std::optional<CommandList>                lift;
+        CommandList*                              pending   = nullptr; ///< to run before the next solve
+        bool                                      knowJumps = false;   ///< of the points before
+
+        explicit FromPoints(const Impl& of)
+            : points(of.context, of.k, of.plate.grid, of.loads),
+              rigidity(of.context, "sampled rigidity", 4 * of.plate.grid.nodes(), Intent::readback)
+        {
+        }
+    };
+    std::optional<FromPoints> fromPoints; ///< empty while the rigidity is the host's
 
     std::vector<CommandList>                     prepareList; ///< one, or none before it is recorded
     std::array<std::vector<CommandList>, kSlots> coldList, warmList, moreList;
@@ -165,12 +188,41 @@ struct VulkanPlateSolver::Impl {
         return list;
     }
 
-    /// Runs the list of this slot, recording it if need be.
+    CommandList recordSample(Sampling sampling)
+    {
+        CommandList           list(context);
+        PlatePasses::Recorder pass{passes, list};
+        const Buffer&         rigidity = passes.levels[0].rigidity;
+        if (sampling == Sampling::nearest)
+            fromPoints->points.recordNearest(list, rigidity);
+        else
+            fromPoints->points.recordLogMean(list, rigidity);
+        list.copy(rigidity, fromPoints->rigidity);
+        passes.prepare(pass);
+        list.end();
+        return list;
+    }
+
+    CommandList recordLift()
+    {
+        CommandList list(context);
+        fromPoints->points.recordLift(list, passes.levels[0].answer, units);
+        list.end();
+        return list;
+    }
+
+    /// Runs the list of this slot, recording it if need be; what points need goes with it.
     CommandList& run(std::array<std::vector<CommandList>, kSlots>& lists, CommandList (Impl::*record)())
     {
         auto& mine = lists[std::size_t(slot)];
         if (mine.empty()) mine.push_back((this->*record)());
-        context.run(mine.front());
+        std::vector<CommandList*> all{&mine.front()};
+        if (fromPoints) {
+            if (!fromPoints->lift) fromPoints->lift.emplace(recordLift());
+            if (fromPoints->pending) all.insert(all.begin(), std::exchange(fromPoints->pending, nullptr));
+            all.push_back(&*fromPoints->lift);
+        }
+        context.run(all);
         hostState.makeVisibleToHost();
         return mine.front();
     }
@@ -191,6 +243,12 @@ struct VulkanPlateSolver::Impl {
             if (!(value <= most)) most = value; // a NaN is the worst
         }
         return most;
+    }
+
+    [[nodiscard]] const FromPoints& sampled() const
+    {
+        PALP_EXPECT(fromPoints && !fromPoints->pending, "no solve has run with a rigidity from points");
+        return *fromPoints;
     }
 
     void upload(std::span<const NodeField> nodalForces)
@@ -218,16 +276,29 @@ struct VulkanPlateSolver::Impl {
         plate.rigidity = rigidity;
         if (const auto why = whyUnsolvable(plate)) throw Error("plate: " + *why);
         float* to = hostRigidity.as<float>().data();
-        for (std::size_t n = 0; n < plate.grid.nodes(); ++n) to[n] = float(rigidity.values()[n] / unitRigidity);
-        const auto [least, most] = std::minmax_element(to, to + plate.grid.nodes());
-        constexpr float kLeast = 1e-15F, kMost = 1e15F; // products of three rigidities and more stay finite
-        if (!(*least > kLeast && *most < kMost))
-            throw Error("plate: the rigidity spans too many orders of magnitude for 32-bit arithmetic: " +
-                        formatQuantity(double(*least) * unitRigidity, "N m") + " to " +
-                        formatQuantity(double(*most) * unitRigidity, "N m"));
+        for (std::size_t n = 0; n < plate.grid.nodes(); ++n)
+            to[n] = inRigidityUnits(rigidity.values()[n], unitRigidity);
+        fromPoints.reset();
         if (prepareList.empty()) recordPrepare();
         context.run(prepareList.front());
         expectJumps(passes.foundJumps());
+    }
+
+    void samplePoints(PlatePoints given, Sampling sampling)
+    {
+        if (!fromPoints) fromPoints.emplace(*this);
+        given.unit = unitRigidity;
+        if (fromPoints->points.set(given)) {
+            for (auto& list : fromPoints->sample) list.reset();
+            fromPoints->lift.reset();
+        }
+        auto& list = fromPoints->sample[sampling == Sampling::nearest];
+        if (!list) list.emplace(recordSample(sampling));
+        fromPoints->pending      = &*list;
+        const auto [least, most] = std::minmax_element(given.rigidities.begin(), given.rigidities.end());
+        const bool mayJump       = *most > kJump * *least;
+        expectJumps(mayJump && (!fromPoints->knowJumps || passes.foundJumps()));
+        fromPoints->knowJumps = true;
     }
 
     /// Lists are recorded with or without the extra sweeps that jumps want; anew when that changes.
@@ -313,6 +384,38 @@ VulkanPlateSolver& VulkanPlateSolver::operator=(VulkanPlateSolver&&) noexcept = 
 void VulkanPlateSolver::setRigidity(const NodeField& rigidity)
 {
     impl_->uploadRigidity(rigidity);
+}
+
+void VulkanPlateSolver::setRigidity(const PlatePoints& points, Sampling sampling)
+{
+    impl_->samplePoints(points, sampling);
+}
+
+std::span<const float> VulkanPlateSolver::mappedDeflections() const
+{
+    const Buffer& result = impl_->results[std::size_t(impl_->slot)];
+    result.makeVisibleToHost();
+    return result.as<const float>();
+}
+
+std::span<const float> VulkanPlateSolver::pointDeflections(int load) const
+{
+    return impl_->sampled().points.deflection(std::uint32_t(load));
+}
+
+std::size_t VulkanPlateSolver::nodesWithoutPoint() const
+{
+    return impl_->sampled().points.nodesWithoutPoint();
+}
+
+NodeField VulkanPlateSolver::sampledRigidity() const
+{
+    const Buffer& rigidity = impl_->sampled().rigidity;
+    rigidity.makeVisibleToHost();
+    NodeField D(impl_->plate.grid);
+    for (std::size_t n = 0; n < D.values().size(); ++n)
+        D.values()[n] = double(rigidity.as<const float>()[n]) * impl_->unitRigidity;
+    return D;
 }
 
 std::vector<PlateSolution> VulkanPlateSolver::solve(std::span<const NodeField> nodalForces, Start start)

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/sampling.h"
 #include "engine/plate/plate.h"
+#include "engine/plate/point_buckets.h"
 
 namespace palp {
 
@@ -66,6 +68,16 @@ public:
     /// \throws Error if whyUnsolvable() with it
     void setRigidity(const NodeField& rigidity);
 
+    /// Another rigidity, from scattered points: the device brings it to the nodes when the next solve runs, and then
+    /// lifts every answer to the points, in one submission with the solve.
+    ///
+    /// Same results as resampleRigidity() but for float arithmetic (1e-4). Extra sweeps where the rigidity jumps go by
+    /// what the points before had: after a change the first solve may take more steps.
+    /// \param points  their `unit` is not looked at
+    /// \throws Error if there are no points or more than the device can hold, if a position is not finite, or if a
+    ///         rigidity is not positive and finite
+    void setRigidity(const PlatePoints& points, Sampling sampling);
+
     enum class Start {
         cold, ///< by nested iteration
         warm  ///< from the last answer (of each load)
@@ -80,7 +92,17 @@ public:
     [[nodiscard]] std::vector<PlateSolution> solve(std::span<const NodeField> nodalForces, Start start = Start::cold);
     [[nodiscard]] PlateSolution              solve(const NodeField& nodalForce, Start start = Start::cold);
 
-    /// What the device did in the last solve [ms]; empty if it has no clock.
+    /// The last solve's deflections [m] where the device wrote them: mapped memory, one load after the other. They stay
+    /// as they are while two further solves run.
+    [[nodiscard]] std::span<const float> mappedDeflections() const;
+
+    /// What the last solve found at the points of setRigidity(): deflection [m] in their order, mapped as well, until
+    /// the next solve; nodes without a point nearby, see Resampled [1]; the rigidity at the nodes [N m].
+    [[nodiscard]] std::span<const float> pointDeflections(int load = 0) const;
+    [[nodiscard]] std::size_t            nodesWithoutPoint() const;
+    [[nodiscard]] NodeField              sampledRigidity() const;
+
+    /// What the device did in the last solve [ms]; empty if it has no clock. Sampling and lift are not counted.
     [[nodiscard]] std::optional<double> deviceMilliseconds() const noexcept;
     [[nodiscard]] int                   dispatchesPerCycle() const noexcept;
     [[nodiscard]] int                   levels() const noexcept;

@@ -26,6 +26,8 @@
 #include "compute_shaders/plate_interpolate_f64.spv.h"
 #include "compute_shaders/plate_interpolate_first_f32.spv.h"
 #include "compute_shaders/plate_interpolate_first_f64.spv.h"
+#include "compute_shaders/plate_lift_f32.spv.h"
+#include "compute_shaders/plate_lift_f64.spv.h"
 #include "compute_shaders/plate_relax.spv.h"
 #include "compute_shaders/plate_relax_first.spv.h"
 #include "compute_shaders/plate_relax_tile.spv.h"
@@ -38,6 +40,8 @@
 #include "compute_shaders/plate_tail.spv.h"
 #include "compute_shaders/plate_up.spv.h"
 #include "compute_shaders/rigidity_coarsen.spv.h"
+#include "compute_shaders/rigidity_log_mean.spv.h"
+#include "compute_shaders/rigidity_nearest.spv.h"
 #include "compute_shaders/shared/plate_push.h"
 #include "compute_shaders/shared/tail_level.h"
 #include "engine/gpu/kernel.h"
@@ -98,5 +102,23 @@ PALPATE_REAL_KERNEL(step, cg_step, ScalarsPush, 3)
 
 #undef PALPATE_KERNEL
 #undef PALPATE_REAL_KERNEL
+
+// Without push constants.
+inline gpu::KernelCode rigidityNearest()
+{
+    return {"rigidity_nearest", rigidity_nearest_spv, 5, 0};
+}
+inline gpu::KernelCode rigidityLogMean()
+{
+    return {"rigidity_log_mean", rigidity_log_mean_spv, 5, 0};
+}
+template <class Real>
+gpu::KernelCode lift()
+{
+    if constexpr (sizeof(Real) == sizeof(double))
+        return {"plate_lift_f64", plate_lift_f64_spv, 5, 0};
+    else
+        return {"plate_lift_f32", plate_lift_f32_spv, 5, 0};
+}
 
 } // namespace palp::kernels

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/chart/resample.h"
 #include "engine/core/contract.h"
 #include "engine/plate/load.h"
 #include "engine/plate/plate_solver_reference.h"
@@ -161,6 +162,104 @@ TEST_F(VulkanPlate, FusedPassesTakeTheSameStepsToTheSameAnswer)
     (void)compare(plateOf(100, 57, {free, clamped, supported, free}, kLaws[1]), "rectangle");
     (void)compare(plateOf(24, 24, {supported, clamped, clamped, free}, kLaws[3]), "tail only");
     (void)compare(plateOf(12, 9, {clamped, clamped, clamped, free}, kLaws[1]), "one level");
+}
+
+/// Points on a jittered lattice over the plate and beyond it, with a hole, and their rigidities.
+struct Points {
+    std::vector<ChartPoint> positions;
+    std::vector<double>     rigidities;
+    double                  spacing; ///< [m]
+
+    Points(const PlateGrid& grid, const Law& law, double latticeSpacing) : spacing(latticeSpacing)
+    {
+        std::mt19937 bits(7);
+        const auto   jitter = [&] { return spacing * (double(bits()) / 4294967296.0 - 0.5); };
+        for (double x = -0.1; x < grid.sizeX() + 0.1; x += spacing)
+            for (double z = -0.1; z < grid.sizeZ() + 0.1; z += spacing) {
+                const ChartPoint p{x + jitter(), z + jitter()};
+                if (std::hypot(p.x - 0.7, p.z - 0.3) < 0.12) continue; // the hole
+                positions.push_back(p);
+                rigidities.push_back(law.rigidity(std::clamp(p.x, 0.0, 1.0), std::clamp(p.z, 0.0, 1.0)));
+            }
+    }
+
+    [[nodiscard]] PlatePoints view() const { return {positions, rigidities, {0, 0}, spacing}; }
+};
+
+TEST_F(VulkanPlate, PointsGiveTheRigidityAndTakeTheDeflection)
+{
+    const int    cells = sizes().front();
+    const Window window{{cells, cells, 1.0 / cells, 1.0 / cells}, {0, 0}};
+    Plate        plate  = plateOf(cells, cells, {}, kLaws[0]);
+    const auto   loads  = std::vector{loadOn(plate.grid), pointLoad(plate.grid, 1, 0.5, 0.5)};
+    auto         solver = solverFor(plate, {.tolerance = 1e-5, .loads = 2});
+    for (const Law& law : {kLaws[1], kLaws[6]})
+        for (const double spacing : {0.05, 0.011}) // the second ones need more memory than the first
+            for (const Sampling sampling : {Sampling::logMean, Sampling::nearest}) {
+                const std::string what = std::string(law.name) + ", " + name(sampling);
+                const Points      points(plate.grid, law, spacing);
+                const Resampled   sampled =
+                    resampleRigidity(window, points.positions, points.rigidities, sampling, spacing);
+                plate.rigidity = sampled.rigidity;
+                const ReferencePlateSolver reference(plate);
+                solver.setRigidity(points.view(), sampling);
+                const auto found = solver.solve(loads);
+                EXPECT_EQ(solver.nodesWithoutPoint(), sampled.nodesWithoutPoint) << what;
+                EXPECT_EQ(sampled.nodesWithoutPoint > 0, spacing < 0.02) << what; // in the hole
+                for (std::size_t load = 0; load < loads.size(); ++load) {
+                    // Rigidities agree to 1e-4, and a deflection varies with them at most as much.
+                    const NodeField& w = found[load].deflection;
+                    EXPECT_LT(errorOf(w, reference.solve(loads[load]).deflection), 2e-4) << what;
+                    const auto lifted = solver.pointDeflections(int(load));
+                    ASSERT_EQ(lifted.size(), points.positions.size());
+                    for (std::size_t n = 0; n < lifted.size(); ++n) {
+                        const ChartPoint& p        = points.positions[n];
+                        const double      expected = window.holds(p) ? interpolate(plate.grid, w, p.x, p.z) : 0;
+                        ASSERT_NEAR(double(lifted[n]), expected, 1e-6 * largest(w)) << what << ", point " << n;
+                    }
+                }
+                const NodeField D = solver.sampledRigidity();
+                for (std::size_t n = 0; n < D.values().size(); ++n)
+                    ASSERT_NEAR(D.values()[n] / sampled.rigidity.values()[n], 1, 2e-4) << what << ", node " << n;
+            }
+    solver.setRigidity(plateOf(cells, cells, {}, kLaws[3]).rigidity); // the host's again
+    const auto wart = ReferencePlateSolver(plateOf(cells, cells, {}, kLaws[3])).solve(loads[0]);
+    EXPECT_LT(errorOf(solver.solve(loads)[0].deflection, wart.deflection), 2e-5);
+}
+
+TEST_F(VulkanPlate, PointsThatMakeNoSenseAreRefusedAndTheSolverGoesOn)
+{
+    const Plate plate  = plateOf(20, 20, {}, kLaws[0]);
+    auto        solver = solverFor(plate);
+    Points      points(plate.grid, kLaws[1], 0.05);
+    points.rigidities[3] = -1;
+    EXPECT_THROW(solver.setRigidity(points.view(), Sampling::nearest), Error);
+    points.rigidities[3]  = 1;
+    points.positions[5].z = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(solver.setRigidity(points.view(), Sampling::nearest), Error);
+    EXPECT_THROW(solver.setRigidity(PlatePoints{}, Sampling::logMean), Error);
+    const NodeField load = loadOn(plate.grid);
+    EXPECT_LT(errorOf(solver.solve(load).deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-4);
+}
+
+TEST_F(VulkanPlate, ResultsStayMappedWhileTwoFurtherSolvesRun)
+{
+    const Plate              plate  = plateOf(20, 20, {}, kLaws[1]);
+    auto                     solver = solverFor(plate);
+    const NodeField          load = loadOn(plate.grid), other = pointLoad(plate.grid, 1, 0.5, 0.5);
+    const NodeField          w      = solver.solve(load).deflection;
+    const auto               mapped = solver.mappedDeflections();
+    const std::vector<float> before(mapped.begin(), mapped.end());
+    ASSERT_EQ(before.size(), plate.grid.nodes());
+    for (std::size_t n = 0; n < before.size(); ++n) EXPECT_EQ(double(before[n]), w.values()[n]);
+    for (int further = 0; further < 2; ++further) {
+        (void)solver.solve(other);
+        EXPECT_NE(solver.mappedDeflections().data(), mapped.data());
+        EXPECT_TRUE(std::equal(before.begin(), before.end(), mapped.begin()));
+    }
+    (void)solver.solve(other); // the memory's turn has come
+    EXPECT_EQ(solver.mappedDeflections().data(), mapped.data());
+    EXPECT_FALSE(std::equal(before.begin(), before.end(), mapped.begin()));
 }
 
 TEST_F(VulkanPlate, EveryCombinationOfEdgesAgreesWithTheReferenceSolver)

@@ -1,0 +1,18 @@
+#include "engine/plate/rigidity_unit.h"
+
+#include "engine/core/contract.h"
+#include "engine/core/quantity.h"
+
+namespace palp {
+
+float inRigidityUnits(double rigidity, double unit)
+{
+    constexpr double kLeast = 1e-15, kMost = 1e15;
+    const double     relative = rigidity / unit;
+    if (!(relative > kLeast && relative < kMost))
+        throw Error("plate: the rigidity spans too many orders of magnitude for 32-bit arithmetic: there is " +
+                    formatQuantity(rigidity, "N m") + ", the largest being about " + formatQuantity(unit, "N m"));
+    return float(relative);
+}
+
+} // namespace palp

@@ -1,0 +1,10 @@
+#pragma once
+
+namespace palp {
+
+/// A rigidity as the shaders are given it: relative to a unit, in 32 bits.
+/// \param rigidity, unit  [N m], > 0
+/// \throws Error if products of three of them and more would not stay finite
+[[nodiscard]] float inRigidityUnits(double rigidity, double unit);
+
+} // namespace palp
