@@ -15,6 +15,7 @@ layout(std430, binding = 1) readonly buffer Force { float force[]; };
 layout(std430, binding = 2) writeonly buffer Deflection { float w[]; };
 
 shared float right[kMostCoarseNodes], middle[kMostCoarseNodes];
+shared bool moves[kMostCoarseNodes];
 
 int nodeOf(PlateLevel g, int unknown) { return columnOf(g, unknown) * nodesZ(g) + rowOf(g, unknown); }
 
@@ -25,16 +26,21 @@ void main()
     int unknowns = nodesX(g) * nodesZ(g), base = int(gl_WorkGroupID.z) * unknowns;
     int lane = int(gl_LocalInvocationID.x), lanes = int(gl_WorkGroupSize.x);
     for (int n = lane; n < unknowns; n += lanes) {
-        int node = nodeOf(g, n);
-        right[n] = isHeld(g, columnOf(g, n), rowOf(g, n)) ? 0.0f : force[base + node];
+        bool held = isHeld(g, columnOf(g, n), rowOf(g, n));
+        right[n]  = held ? 0.0f : force[base + nodeOf(g, n)];
+        middle[n] = 0.0f;
+        moves[n]  = !held;
     }
+    barrier();
     for (int n = 0; n < unknowns; ++n) {
+        if (!moves[n]) continue; // a held node is 0 and changes nothing: for all invocations alike
         barrier();
         float solved = right[n] * factor[n * slots];
         if (lane == 0) middle[n] = solved;
         for (int d = 1 + lane; d <= reach && n + d < unknowns; d += lanes) right[n + d] -= factor[n * slots + d] * solved;
     }
     for (int n = unknowns - 1; n >= 0; --n) {
+        if (!moves[n]) continue;
         barrier();
         float solved = middle[n] * factor[n * slots];
         if (lane == 0) right[n] = solved;
