@@ -56,7 +56,9 @@ Buffer::Handles::Handles(Context::Handles& owner, std::string called, std::size_
 
 Buffer::Handles::~Handles()
 {
-    if (memory.get()) --context.allocations;
+    if (!memory.get()) return;
+    --context.allocations;
+    context.allocated -= bytes;
 }
 
 Buffer::Buffer(Context& context, std::string name, std::size_t bytes, Intent intent)
@@ -94,6 +96,7 @@ Buffer::Buffer(Context& context, std::string name, std::size_t bytes, Intent int
           ("find " + mebibytes(bytes) + " for the buffer '" + h.name + "'").c_str());
     h.memory = {gpu, memory};
     ++gpu.allocations;
+    gpu.allocated += bytes;
     check(vkBindBufferMemory(gpu.device, buffer, memory, 0), "bind memory to a buffer");
 
     h.coherent = gpu.memory.memoryTypes[*type].propertyFlags & VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;

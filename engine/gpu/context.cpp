@@ -181,6 +181,11 @@ const DeviceDescription& Context::device() const noexcept
     return handles_->description;
 }
 
+std::size_t Context::allocatedBytes() const noexcept
+{
+    return handles_->allocated;
+}
+
 const Limits& Context::limits() const noexcept
 {
     return handles_->limits;

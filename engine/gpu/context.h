@@ -65,6 +65,9 @@ public:
     /// fuses nor re-associates and whose division and square root are correctly rounded.
     [[nodiscard]] bool bitExact() const noexcept;
 
+    /// In all buffers that live now [byte].
+    [[nodiscard]] std::size_t allocatedBytes() const noexcept;
+
     /// For the files of engine/gpu.
     struct Handles;
     [[nodiscard]] Handles& handles() const noexcept { return *handles_; }

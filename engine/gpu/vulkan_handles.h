@@ -43,6 +43,7 @@ struct Context::Handles {
     VkQueue                          queue         = VK_NULL_HANDLE;
     VkFence                          fence         = VK_NULL_HANDLE;
     std::uint32_t                    allocations   = 0;     ///< live ones, of native.maxMemoryAllocationCount
+    std::size_t                      allocated     = 0;     ///< [byte] of the live ones
     bool                             abandoned     = false; ///< a submission outlasted the patience
     PFN_vkSetDebugUtilsObjectNameEXT setObjectName = nullptr;
 
