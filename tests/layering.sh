@@ -4,7 +4,7 @@ set -u
 cd "$1" || exit 1
 
 # From the bottom up; a file may include its own layer and those before it.
-layers='core gpu cloud contact chart force plate pipeline picture program'
+layers='core gpu cloud contact chart force plate pipeline picture bench program'
 level_of() {
     n=0
     for layer in $layers; do
@@ -42,10 +42,12 @@ wall() {
     [ -z "$found" ] || complain "$1 is included outside its wall: $found"
 }
 wall Embree 'embree[34]/' 'cloud/(embree\.h|neighbour_index\.cpp)'
-wall Eigen 'Eigen/' '(chart|plate)/[a-z_]*\.cpp'
+wall Eigen 'Eigen/' '(chart|plate)/[a-z_]*\.cpp|bench/eigen_solver\.cpp'
 wall nlohmann-json 'nlohmann/' '[a-z]*/[a-z_]*\.cpp|program/[a-z_]*\.h'
 wall CLI11 'CLI/' 'program/[a-z_]*\.(h|cpp)'
 wall Vulkan 'vulkan/' 'gpu/vulkan_[a-z]*\.(h|cpp)'
+wall CHOLMOD '(suitesparse/)?cholmod' 'bench/cholmod_solver\.cpp'
+wall nanoflann 'nanoflann' 'bench/nanoflann_search\.cpp'
 wall stb 'stb' 'picture/png\.cpp'
 
 # Public headers name no type of a wrapped library.

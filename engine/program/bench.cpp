@@ -9,6 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/bench/accuracy.h"
+#include "engine/bench/bench_plates.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/progress.h"
@@ -62,27 +64,12 @@ double quantile(std::vector<double> values, double q)
 
 double rigidityAt(const BenchOptions& o, double x, double z)
 {
-    if (o.law == "linear") return 1 + (o.contrast - 1) * x;
-    if (o.law == "hyperbolic") return 1 / (1 - (1 - 1 / o.contrast) * x);
-    if (o.law == "wart") return 1 + (o.contrast - 1) * std::exp(-50 * ((x - 0.5) * (x - 0.5) + (z - 0.5) * (z - 0.5)));
-    if (o.law == "disc") return std::hypot(x - 0.45, z - 0.55) < 0.2 ? o.contrast : 1;
-    throw Error("--law: unknown name \"" + o.law + "\"; known: linear, hyperbolic, wart, disc");
+    return bench::rigidityAt(o.law, o.contrast, x, z);
 }
 
-constexpr double kSoftest = 2e-3; ///< [N m]
-
-/// A clamped plate of 40 mm, as a window of skin is.
 Plate plateOf(const BenchOptions& o, int nodes)
 {
-    constexpr double kSize = 40e-3; // [m]
-    const int        cells = nodes - 1;
-    Plate            plate;
-    plate.grid     = {cells, cells, kSize / cells, kSize / cells};
-    plate.rigidity = NodeField(plate.grid);
-    for (int i = 0; i < nodes; ++i)
-        for (int j = 0; j < nodes; ++j)
-            plate.rigidity(i, j) = kSoftest * rigidityAt(o, double(i) / cells, double(j) / cells);
-    return plate;
+    return bench::plateOf(o.law, o.contrast, nodes);
 }
 
 /// Fingertips of 4 mm, or 1.5 spacings on a very coarse grid, each a little beside the last, as a batch for the force
@@ -97,16 +84,6 @@ std::vector<NodeField> fingertips(const PlateGrid& grid, int count)
         loads.push_back(footprintLoad(grid, 1, grid.sizeX() / 2 + x, grid.sizeZ() / 2 + z, radius));
     }
     return loads;
-}
-
-double errorOf(const NodeField& found, const NodeField& truth)
-{
-    double difference = 0, most = 0;
-    for (std::size_t n = 0; n < truth.values().size(); ++n) {
-        difference = std::max(difference, std::abs(found.values()[n] - truth.values()[n]));
-        most       = std::max(most, std::abs(truth.values()[n]));
-    }
-    return difference / most;
 }
 
 /// How fast the device copies its own memory, reading and writing counted [GB/s]; empty without a clock.
@@ -175,7 +152,7 @@ struct GatheredPoints {
             const double u = (n / kSide + 0.5 + 0.4 * std::sin(12.9 * n)) / kSide; // jitter that repeats
             const double v = (n % kSide + 0.5 + 0.4 * std::sin(78.2 * n)) / kSide;
             positions.push_back({u * plate.grid.sizeX(), v * plate.grid.sizeZ()});
-            rigidities.push_back(kSoftest * rigidityAt(o, u, v));
+            rigidities.push_back(bench::kSoftest * rigidityAt(o, u, v));
         }
     }
 };
@@ -234,7 +211,7 @@ Row measureVulkan(const BenchOptions& o, gpu::Context& context, const PlateKerne
     row.copy               = copy;
     row.dispatchesPerCycle = solver.dispatchesPerCycle();
     if (nodes <= kMostNodesForError)
-        row.error = errorOf(answer, ReferencePlateSolver(plate).solve(forces.front()).deflection);
+        row.error = bench::errorOf(answer, ReferencePlateSolver(plate).solve(forces.front()).deflection);
     return row;
 }
 
@@ -367,6 +344,7 @@ void addBenchCommand(CLI::App& app)
 {
     CLI::App* bench = app.add_subcommand("bench", "how fast this machine is");
     bench->require_subcommand(1);
+    addBenchPlateCommand(*bench);
     CLI::App*  solve = bench->add_subcommand("solve", "time, iterations and error of the plate solvers, size by size");
     const auto o     = std::make_shared<BenchOptions>();
     solve->add_option("--device", o->devices, "devices to measure, as for the command solve; several by commas")
@@ -386,7 +364,8 @@ void addBenchCommand(CLI::App& app)
                                                                             {"fused", Schedule::fused}},
                                             CLI::ignore_case))
         ->option_text("NAME");
-    solve->add_option("--law", o->law, "of the rigidity: linear, hyperbolic, wart or disc")->capture_default_str();
+    solve->add_option("--law", o->law, "of the rigidity: linear, hyperbolic, wart, disc or discs")
+        ->capture_default_str();
     solve->add_option("--contrast", o->contrast, "stiffest over softest")->capture_default_str();
     solve->add_option("--tolerance", o->tolerance, "relative, in the energy norm")->capture_default_str();
     solve->add_option("--repeats", o->repeats, "solves per line")->capture_default_str();

@@ -12,6 +12,7 @@ void addTouchCommand(CLI::App& app);
 void addSolveCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
+void addBenchPlateCommand(CLI::App& bench);
 
 /// \throws Error naming the first option of the command that was given an empty value
 void refuseEmptyValues(const CLI::App& command);

@@ -72,6 +72,7 @@ int main(int argumentCount, char** arguments)
                "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
                "  palpate devices --gpu                          the GPUs of this machine\n"
                "  palpate bench solve                            how fast its solvers are\n"
+               "  palpate bench plate --quick                    and how fast those of others\n"
                "Each command explains itself with --help.");
     palp::addTouchCommand(app);
     palp::addSolveCommand(app);

@@ -1,21 +1,18 @@
 // The nearest of scattered points for every node of a grid, against a plain bucket grid and nanoflann in two
 // dimensions. Times are per node and include everything from the bare points: buckets, trees, memory.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
-#include <nanoflann.hpp>
 
+#include "engine/bench/nanoflann_search.h"
+#include "engine/bench/point_scenes.h"
 #include "engine/chart/nearest_map.h"
-#include "engine/cloud/morton.h"
 #include "tests/benchmarks/peers.h"
 
 namespace {
@@ -23,30 +20,7 @@ namespace {
 using palp::ChartPoint;
 using palp::PlateGrid;
 
-struct Task {
-    PlateGrid               grid;
-    ChartPoint              origin; ///< [m]
-    std::vector<ChartPoint> points; ///< [m] in Morton order, as a radius search over a cloud delivers them
-
-    Task(int nodes, double perCell)
-        : grid{nodes - 1, nodes - 1, 1e-3, 1e-3}, origin{-0.5 * grid.sizeX(), -0.5 * grid.sizeZ()}
-    {
-        // A disc that holds the grid, as a gather radius does.
-        const double                     radius = 0.75 * grid.sizeX();
-        const double                     square = 4 * radius * radius / (grid.spacingX * grid.spacingZ);
-        std::mt19937                     random(4);
-        std::uniform_real_distribution<> along(-radius, radius);
-        const auto cell = [radius](double x) { return std::uint32_t((x / radius + 1) / 2 * (palp::kMortonCells - 1)); };
-        std::vector<std::pair<std::uint64_t, ChartPoint>> keyed;
-        for (std::size_t p = 0; p < std::size_t(square * perCell); ++p) {
-            const ChartPoint at{along(random), along(random)};
-            if (std::hypot(at.x, at.z) > radius) continue;
-            keyed.push_back({palp::mortonCode(cell(at.x), cell(at.z), 0), at});
-        }
-        std::sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-        for (const auto& [code, at] : keyed) points.push_back(at);
-    }
-};
+using Task = palp::bench::GridMapScene;
 
 /// The textbook way: points sorted into square cells of the grid, rings of cells around each node.
 std::vector<std::uint32_t> byPlainBuckets(const Task& task)
@@ -97,37 +71,6 @@ std::vector<std::uint32_t> byPlainBuckets(const Task& task)
     return nearest;
 }
 
-struct FloatPoints {
-    std::vector<std::array<float, 2>> points;
-
-    [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
-    [[nodiscard]] float       kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][axis]; }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const
-    {
-        return false;
-    }
-};
-using KdTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, FloatPoints>, FloatPoints, 2,
-                                                   std::uint32_t>;
-
-std::vector<std::uint32_t> byNanoflann(const Task& task, std::size_t leaf)
-{
-    FloatPoints floats;
-    for (const ChartPoint& p : task.points) floats.points.push_back({float(p.x), float(p.z)});
-    const KdTree               tree(2, floats, nanoflann::KDTreeSingleIndexAdaptorParams(leaf));
-    std::vector<std::uint32_t> nearest(task.grid.nodes());
-    std::size_t                node = 0;
-    for (int i = 0; i < task.grid.nodesX(); ++i)
-        for (int j = 0; j < task.grid.nodesZ(); ++j) {
-            const float place[]{float(task.origin.x + i * task.grid.spacingX),
-                                float(task.origin.z + j * task.grid.spacingZ)};
-            float       distance2 = 0;
-            tree.knnSearch(place, 1, &nearest[node++], &distance2);
-        }
-    return nearest;
-}
-
 template <class Map>
 void add(const std::string& name, const Task& task, Map map)
 {
@@ -152,7 +95,7 @@ int main(int argc, char** argv)
             add(work + "plain buckets", task, byPlainBuckets);
             for (const std::size_t leaf : {5, 10, 20})
                 add(work + "nanoflann leaf " + std::to_string(leaf), task,
-                    [leaf](const Task& t) { return byNanoflann(t, leaf); });
+                    [leaf](const Task& t) { return palp::bench::nanoflannMap(t.grid, t.origin, t.points, leaf); });
         }
     return palp::bench::runPeers(argc, argv);
 }

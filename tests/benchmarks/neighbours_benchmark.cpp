@@ -1,7 +1,5 @@
 // Radius and nearest-point search in a cloud sampled from a surface, against nanoflann. Both get the same points in
 // Morton order and the same random centres; nanoflann works in floats, unsorted, with the best of several leaf sizes.
-#include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -9,59 +7,21 @@
 #include <map>
 #include <memory>
 #include <numbers>
-#include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
-#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
-#include <nanoflann.hpp>
 
-#include "engine/cloud/morton.h"
+#include "engine/bench/nanoflann_search.h"
+#include "engine/bench/point_scenes.h"
 #include "engine/cloud/neighbour_index.h"
 #include "tests/benchmarks/peers.h"
 
 namespace {
 
 using palp::NeighbourIndex;
-
-constexpr double kRadius = 0.1; ///< [m] of the bumpy ball that the points lie on
-
-/// Uniform enough points on a ball with bumps, in Morton order.
-std::vector<glm::dvec3> surfaceCloud(std::size_t points)
-{
-    std::mt19937_64            random(7);
-    std::normal_distribution<> normal;
-    const auto                 cell = [](double x) {
-        return std::uint32_t((x / kRadius + 2) / 4 * palp::kMortonCells); // the bumps stay within 2 radii
-    };
-    std::vector<std::pair<std::uint64_t, glm::dvec3>> keyed(points);
-    for (auto& [code, p] : keyed) {
-        p    = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
-        p    = p * kRadius * (1 + 0.05 * std::sin(9 * p.x) * std::sin(9 * p.y) * std::sin(9 * p.z));
-        code = palp::mortonCode(cell(p.x), cell(p.y), cell(p.z));
-    }
-    std::sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<glm::dvec3> cloud(points);
-    std::transform(keyed.begin(), keyed.end(), cloud.begin(), [](const auto& k) { return k.second; });
-    return cloud;
-}
-
-struct FloatCloud {
-    std::vector<std::array<float, 3>> points;
-
-    [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
-    [[nodiscard]] float       kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][axis]; }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const
-    {
-        return false;
-    }
-};
-using KdTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, FloatCloud>, FloatCloud, 3, std::uint32_t>;
 
 double secondsSince(std::chrono::steady_clock::time_point start)
 {
@@ -72,29 +32,24 @@ double secondsSince(std::chrono::steady_clock::time_point start)
 struct Scene {
     static constexpr std::size_t kCentres = 4096;
 
-    std::vector<glm::dvec3>                        cloud;
-    std::unique_ptr<NeighbourIndex>                ours;
-    FloatCloud                                     floats;
-    std::map<std::size_t, std::unique_ptr<KdTree>> trees; ///< by leaf size
+    std::vector<glm::dvec3>                                           cloud;
+    std::unique_ptr<NeighbourIndex>                                   ours;
+    std::map<std::size_t, std::unique_ptr<palp::bench::RadiusSearch>> trees; ///< by leaf size
     std::vector<glm::dvec3> centres; ///< [m] points of the cloud, moved by less than the mean distance
 
-    explicit Scene(std::size_t points) : cloud(surfaceCloud(points))
+    explicit Scene(std::size_t points) : cloud(palp::bench::bumpyBall(points))
     {
         const auto start = std::chrono::steady_clock::now();
         ours             = std::make_unique<NeighbourIndex>(cloud);
         std::printf("%zu points: palpate builds in %.3f s, spacing %.3g m;", points, secondsSince(start),
                     ours->spacing());
-        for (const glm::dvec3& p : cloud) floats.points.push_back({float(p.x), float(p.y), float(p.z)});
         for (const std::size_t leaf : {10, 20, 30, 50}) {
             const auto begin = std::chrono::steady_clock::now();
-            trees[leaf]      = std::make_unique<KdTree>(3, floats, nanoflann::KDTreeSingleIndexAdaptorParams(leaf));
+            trees[leaf]      = palp::bench::nanoflannSearch(cloud, leaf);
             std::printf(" nanoflann(%zu) %.3f s", leaf, secondsSince(begin));
         }
         std::printf("\n");
-        std::mt19937_64                  random(11);
-        std::uniform_real_distribution<> shift(-0.5 * ours->spacing(), 0.5 * ours->spacing());
-        for (std::size_t i = 0; i < kCentres; ++i)
-            centres.push_back(cloud[random() % points] + glm::dvec3(shift(random), shift(random), shift(random)));
+        centres = palp::bench::searchPlaces(cloud, ours->spacing(), kCentres);
     }
 
     /// [m] of a ball that holds `neighbours` points on average.
@@ -129,9 +84,8 @@ void addScene(const Scene& scene)
             add(work + "nanoflann leaf " + std::to_string(leaf), scene,
                 [&t    = *tree, radius,
                  found = std::vector<std::pair<std::uint32_t, float>>()](const glm::dvec3& c) mutable {
-                    const float place[]{float(c.x), float(c.y), float(c.z)};
-                    const float radius2 = float(radius * radius); // nanoflann's distances are squared
-                    return t.radiusSearch(place, radius2, found, nanoflann::SearchParams(0, 0, false));
+                    t.gather(c, radius, found);
+                    return found.size();
                 });
         }
     }
@@ -141,10 +95,8 @@ void addScene(const Scene& scene)
             [&scene, k](const glm::dvec3& c) { return scene.ours->nearest(c, k).back().point; });
         for (const auto& [leaf, tree] : scene.trees) {
             add(work + "nanoflann leaf " + std::to_string(leaf), scene,
-                [&t = *tree, k, points = std::vector<std::uint32_t>(k),
-                 d2 = std::vector<float>(k)](const glm::dvec3& c) mutable {
-                    const float place[]{float(c.x), float(c.y), float(c.z)};
-                    t.knnSearch(place, k, points.data(), d2.data());
+                [&t = *tree, points = std::vector<std::uint32_t>(k)](const glm::dvec3& c) mutable {
+                    t.nearest(c, points);
                     return points.back();
                 });
         }

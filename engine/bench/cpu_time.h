@@ -1,0 +1,49 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace palp::bench {
+
+/// Processor time of the calling thread [ms], CLOCK_THREAD_CPUTIME_ID: other work on the machine does not count.
+[[nodiscard]] double threadMilliseconds();
+
+/// Processor time of all threads of this process together [ms], CLOCK_PROCESS_CPUTIME_ID. Where one thread works it
+/// grows as fast as the one above; where a library has threads of its own, such as lavapipe's queue, it does not hide
+/// them.
+[[nodiscard]] double processMilliseconds();
+
+[[nodiscard]] double wallMilliseconds();
+
+struct Quartiles {
+    double lower = 0, median = 0, upper = 0;
+};
+
+[[nodiscard]] Quartiles quartiles(std::vector<double> values);
+
+enum class Clock {
+    processor, ///< of all threads, for whatever computes on this machine's processors; one works at a time
+    wall       ///< for a device that computes elsewhere: hardware
+};
+
+[[nodiscard]] double now(Clock clock); ///< [ms]
+
+/// One of those who do the same work; its parts are timed apart.
+struct Contestant {
+    std::string                        name;
+    std::vector<std::function<void()>> parts;
+    Clock                              clock = Clock::processor;
+};
+
+struct Timing {
+    Quartiles              total;  ///< [ms] of the sum of the parts
+    std::vector<Quartiles> parts;  ///< [ms]
+    double                 hidden; ///< share of the processor time that was spent by other threads than the caller [1]
+};
+
+/// Times the contestants in turns, first, second, ..., first, second, ..., so that what else goes on hits them alike,
+/// after one turn each that does not count.
+/// \param runs  turns that count, each
+[[nodiscard]] std::vector<Timing> takeTurns(const std::vector<Contestant>& contestants, int runs);
+
+} // namespace palp::bench
