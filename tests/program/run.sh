@@ -68,6 +68,18 @@ good 'benchmark' bench solve --device lavapipe,reference --nodes 17,33 --loads 1
 for key in '"cold_p50_ms"' '"cold_p99_ms"' '"warm_p50_ms"' '"iterations"' '"work_units"' '"error"' '"copy_gb_per_s"' '"dispatches_per_cycle"'; do holds "$key"; done
 [ -s bench/solve.json ] && [ -s bench/solve.svg ] && passed=$((passed + 1)) || complain 'bench --out wrote nothing'
 
+good 'peers' bench plate --device lavapipe --nodes 33,65 --maps linear,disc_0.1 --cases new_map,contrast,memory --out peers --json
+for key in '"case": "new_map"' '"case": "contrast"' '"case": "memory"' '"peer": "CHOLMOD"' '"peer": "Eigen SimplicialLDLT"' '"accuracy": "discretisation"' '"accuracy": "1e-6"' \
+    '"peer_ms"' '"palpate_ms"' '"ratio"' '"error"' '"peer_error"' '"work_units"' '"iterations"' 'OPENBLAS_NUM_THREADS=1'; do holds "$key"; done
+for file in plate.json plate.txt new_map.svg new_load.svg contrast.svg; do
+    [ -s "peers/$file" ] && passed=$((passed + 1)) || complain "bench plate --out did not write $file"
+done
+good 'the paper'\''s iteration' bench plate --device lavapipe --nodes 33 --cases jacobi
+holds 'Jacobi 0.6, same error'
+mkdir alone && cp "$palpate" alone/palpate
+alone/palpate bench plate --device lavapipe --nodes 33 --cases memory >out.txt 2>err.txt || complain "bench plate without peers: exit $? $(cat err.txt)"
+holds 'install libsuitesparse-dev'
+
 good 'list of GPUs' devices --gpu
 holds 'usable   yes'
 good 'list of GPUs, for scripts' devices --gpu --json
@@ -108,6 +120,13 @@ bad 'tolerance that 32 bits cannot give' '--tolerance' solve plate.json --tolera
 bad 'tolerance that is no number' '--tolerance' touch sample:skin --tolerance nan
 bad 'benchmark of a giant' '--nodes' bench solve --nodes 4097
 bad 'benchmark of an unknown law' 'hyperbolic' bench solve --law cubic
+bad 'peers on an even grid' 'multiple of 4' bench plate --nodes 64
+bad 'peers on a giant' '--nodes' bench plate --nodes 2049
+bad 'peers in an unknown case' 'new_map' bench plate --cases speed
+bad 'peers on an unknown map' 'disc_100' bench plate --maps cubic
+bad 'too few runs for quartiles' '--runs' bench plate --runs 5
+bad 'the reference as its own peer' 'reference' bench plate --device reference
+bad 'peers with an empty device' '--device' bench plate --device ''
 bad 'devices take no argument' 'voodoo' devices voodoo
 "$palpate" solve plate.json --device gpu9000 >out.txt 2>err.txt
 code=$?
