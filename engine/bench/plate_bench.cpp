@@ -328,6 +328,9 @@ private:
                     row.peerMs = theirs->total;
                     for (const Quartiles& part : theirs->parts) row.peerPartsMs.push_back(part.median);
                     row.peerError = errorOf(r.direct->matrix.spread(r.answer), goal.truth->w);
+                    if (*row.peerError > ours[a].target)
+                        row.note += (row.note.empty() ? "" : "; ") + r.name +
+                                    " does not reach this accuracy without refinement";
                 } else {
                     row.note += (row.note.empty() ? "" : "; ") + r.note;
                 }
