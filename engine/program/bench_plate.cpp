@@ -1,16 +1,12 @@
 #include <algorithm>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
-
-#include <unistd.h>
 
 #include "engine/bench/bench_plates.h"
 #include "engine/bench/bench_report.h"
+#include "engine/bench/one_thread.h"
 #include "engine/bench/outside_peers.h"
 #include "engine/bench/plate_bench.h"
 #include "engine/bench/point_bench.h"
@@ -77,46 +73,13 @@ void check(const BenchPlateOptions& o)
                     "part of a name");
 }
 
-// --- one thread each
-
-/// What keeps libraries to one thread. They read it when they are loaded, before main(), so it has to be in the
-/// environment in which the program starts.
-constexpr std::pair<const char*, const char*> kOneThread[]{
-    {"OMP_THREAD_LIMIT", "1"},     // OpenMP, in CHOLMOD
-    {"OMP_NUM_THREADS", "1"},      //
-    {"OPENBLAS_NUM_THREADS", "1"}, //
-    {"LP_NUM_THREADS", "0"},       // lavapipe then computes on the thread that submits: ours
-};
-
-bool isOneThread()
-{
-    return std::ranges::all_of(kOneThread, [](const auto& wanted) {
-        const char* found = std::getenv(wanted.first);
-        return found && std::strcmp(found, wanted.second) == 0;
-    });
-}
-
-/// Becomes the program that has the peers, if it stands beside this one, in an environment of one thread. Returns if
-/// that is what it is already, or if neither can be run: then the environment is set, which Vulkan's drivers still see.
+/// Starts again as the program that has the peers, if it stands beside this one, with one thread for each library.
 void becomeBenchmark()
 {
+    const std::filesystem::path self  = runningProgram();
+    const std::filesystem::path peers = self.parent_path() / "palpate_peers";
     std::error_code             error;
-    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-    if (error) return;
-    const std::filesystem::path peers  = self.parent_path() / "palpate_peers";
-    const std::filesystem::path wanted = std::filesystem::exists(peers, error) ? peers : self;
-    if (wanted == self && isOneThread()) return;
-    for (const auto& [name, value] : kOneThread) setenv(name, value, 1);
-
-    std::ifstream            commandLine("/proc/self/cmdline", std::ios::binary);
-    std::vector<std::string> words(1);
-    for (auto c = std::istreambuf_iterator<char>(commandLine); c != std::istreambuf_iterator<char>(); ++c)
-        *c ? words.back() += *c : words.emplace_back();
-    words.pop_back(); // each word ends with a zero
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    execv(wanted.c_str(), arguments.data());
+    becomeOneThread(!self.empty() && std::filesystem::exists(peers, error) ? peers : self);
 }
 
 std::string processorName()
@@ -132,13 +95,13 @@ std::string processorName()
 BenchReport measure(const BenchPlateOptions& o)
 {
     BenchReport report;
-    report.runs      = o.runs;
-    report.quick     = o.quick;
-    report.processor = processorName();
-    report.cholmod   = outsidePeers().cholmodNote;
-    report.eigen     = eigenVersion();
-    report.nanoflann = outsidePeers().nanoflannNote;
-    for (const auto& [name, value] : kOneThread) report.environment.push_back(std::string(name) + "=" + value);
+    report.runs        = o.runs;
+    report.quick       = o.quick;
+    report.processor   = processorName();
+    report.cholmod     = outsidePeers().cholmodNote;
+    report.eigen       = eigenVersion();
+    report.nanoflann   = outsidePeers().nanoflannNote;
+    report.environment = oneThreadEnvironment();
 
     std::vector<std::string> cases = o.cases;
     if (cases.empty()) cases = o.quick ? plateCases() : allCases();

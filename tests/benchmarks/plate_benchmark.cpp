@@ -7,6 +7,7 @@
 #include <benchmark/benchmark.h>
 
 #include "engine/bench/bench_plates.h"
+#include "engine/bench/one_thread.h"
 #include "engine/bench/outside_peers.h"
 #include "engine/gpu/context.h"
 #include "engine/plate/plate_solver_vulkan.h"
@@ -40,6 +41,7 @@ void addDirect(const std::string& name, const Plate& plate,
 
 int main(int argc, char** argv)
 {
+    bench::becomeOneThread(bench::runningProgram());
     gpu::Context       context;
     const PlateKernels kernels(context);
     for (const int nodes : {65, 129, 257}) {
