@@ -21,15 +21,22 @@ struct Sweep {
 
 inline __attribute__((always_inline)) void sweepBody(const Sweep& s)
 {
-    const double* w         = s.w;
-    double* __restrict next = s.next; // no two of these arrays overlap
-    const auto&   o         = s.offset;
-    const auto&   f         = s.factor;
+    const double* w    = s.w;
+    double*       next = s.next;
+    const auto&   o    = s.offset;
+    const auto&   f    = s.factor;
     const double *f0 = f[0], *f1 = f[1], *f2 = f[2], *f3 = f[3], *f4 = f[4], *f5 = f[5], *f6 = f[6], *f7 = f[7],
                  *f8 = f[8], *f9 = f[9], *f10 = f[10], *f11 = f[11], *f12 = f[12];
     const double *w0 = w + o[0], *w1 = w + o[1], *w2 = w + o[2], *w3 = w + o[3], *w4 = w + o[4], *w5 = w + o[5],
                  *w6 = w + o[6], *w7 = w + o[7], *w8 = w + o[8], *w9 = w + o[9], *w10 = w + o[10], *w11 = w + o[11],
                  *w12 = w + o[12];
+    // The arrays do not overlap, which compilers would have to test for all pairs of them: without this word the loop
+    // is not vectorised and takes three times as long.
+#if defined(__clang__)
+#pragma clang loop vectorize(assume_safety)
+#else
+#pragma GCC ivdep
+#endif
     for (std::size_t n = 0; n < s.nodes; ++n) // sums of pairs, so that additions need not wait for each other
         next[n] = ((s.push[n] + f0[n] * w0[n]) + (f1[n] * w1[n] + f2[n] * w2[n])) +
                   ((f3[n] * w3[n] + f4[n] * w4[n]) + (f5[n] * w5[n] + f6[n] * w6[n])) +
