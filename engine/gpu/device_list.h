@@ -9,6 +9,9 @@
 
 namespace palp::gpu {
 
+/// What the processor of this machine is called as a device; it needs no driver and is not in the list.
+inline constexpr std::string_view kHostDevice = "host";
+
 /// One device as the drivers describe it.
 struct DeviceDescription {
     int                      index = 0;       ///< place in the list of this machine
