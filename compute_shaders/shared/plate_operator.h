@@ -65,6 +65,14 @@ real nodeShare(PlateLevel g, int i, int j)
     return j == 0 || j == g.cellsZ ? real(0.5f) * x : x;
 }
 
+// The sum of a node from the moments around it; `weight` is the foundation's, with the node's share.
+real forceFrom(real mw, real mx, real me, real ms, real mz, real mn, real tsw, real tse, real tnw, real tne, real weight, real c)
+{
+    real bending  = secondDifference(mw, mx, me) + secondDifference(ms, mz, mn);
+    real twisting = (tne - tnw) - (tse - tsw);
+    return (bending + twisting) + weight * c;
+}
+
 //                 i-2    i-1    i     i+1    i+2
 //      j+2                      n2
 //      j+1               nw     n1     ne                 values of w by compass: x runs east, z runs north
@@ -100,7 +108,5 @@ real operatorAt(PlateLevel g, int i, int j)
     real tnw = twistingMoment(g, i - 1, j, (Dw + Dc) + (Dnw + Dn), w1, c, nw, n1);
     real tne = twistingMoment(g, i, j, (Dc + De) + (Dn + Dne), c, e1, n1, ne);
 
-    real bending  = secondDifference(mw, mx, me) + secondDifference(ms, mz, mn);
-    real twisting = (tne - tnw) - (tse - tsw);
-    return (bending + twisting) + real(g.bed) * nodeShare(g, i, j) * c;
+    return forceFrom(mw, mx, me, ms, mz, mn, tsw, tse, tnw, tne, real(g.bed) * nodeShare(g, i, j), c);
 }

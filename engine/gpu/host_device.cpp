@@ -109,7 +109,7 @@ HostContext::HostContext()
     description.name    = std::string(kHostDevice);
     description.kind    = std::string(kHostDevice);
     description.float64 = true;
-    limits              = {std::numeric_limits<std::ptrdiff_t>::max(), 1024, 48 << 10};
+    limits              = {std::numeric_limits<std::ptrdiff_t>::max(), 1024, 0};
     bitExact            = true;
 }
 
