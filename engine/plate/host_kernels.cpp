@@ -1,6 +1,7 @@
 #include "engine/plate/host_kernels.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <string>
 
@@ -37,14 +38,14 @@ const std::vector<HostVariant>& hostVariants()
 
 const HostVariant& hostVariant()
 {
-    const char* const wanted = std::getenv("PALPATE_HOST_ISA");
-    if (!wanted || !*wanted) return hostVariants().back();
-    const auto& all   = hostVariants();
-    const auto  found = std::find_if(all.begin(), all.end(), [&](const HostVariant& v) { return v.isa == wanted; });
-    if (found != all.end()) return *found;
-    std::string known;
-    for (const HostVariant& v : all) known += (known.empty() ? "" : ", ") + std::string(v.isa);
-    throw Error("PALPATE_HOST_ISA: expected one of " + known + ", found \"" + wanted + "\"");
+    constexpr std::array<std::string_view, 3> kNames{"portable", "avx2", "avx512"}; // best last
+    const auto&                               all   = hostVariants();
+    const char* const                         limit = std::getenv("PALPATE_HOST_ISA");
+    if (!limit || !*limit) return all.back();
+    const auto most = std::find(kNames.begin(), kNames.end(), limit);
+    if (most == kNames.end())
+        throw Error("PALPATE_HOST_ISA: expected portable, avx2 or avx512, found \"" + std::string(limit) + "\"");
+    return all[std::min(all.size() - 1, std::size_t(most - kNames.begin()))];
 }
 
 } // namespace palp

@@ -23,8 +23,8 @@ struct HostVariant {
 /// The variants that this processor can run, best last. \thread any
 [[nodiscard]] const std::vector<HostVariant>& hostVariants();
 
-/// The best of them, or the one that the environment variable PALPATE_HOST_ISA names.
-/// \throws Error if it names none of them
+/// The best of them, but none better than the one that the environment variable PALPATE_HOST_ISA names.
+/// \throws Error if there is no instruction set of that name
 [[nodiscard]] const HostVariant& hostVariant();
 
 } // namespace palp

@@ -137,6 +137,7 @@ TEST_F(VulkanPlate, AgreesWithTheReferenceSolverForEveryLaw)
 /// Sweeps and transfers are the same to the bit; only the coarsest level is solved in another way, by its inverse.
 TEST_F(VulkanPlate, FusedPassesTakeTheSameStepsToTheSameAnswer)
 {
+    if (onHost()) GTEST_SKIP() << "the host does not fuse passes";
     if (validation() == gpu::Validation::gpuAssisted) GTEST_SKIP() << "the fused kernels take minutes to compile then";
     using enum Edge;
     const PlateKernels onePassEach(context(), Schedule::passByPass), fused(context(), Schedule::fused);
