@@ -286,9 +286,17 @@ struct VulkanPlateSolver::Impl {
 
     void samplePoints(PlatePoints given, Sampling sampling)
     {
-        if (!fromPoints) fromPoints.emplace(*this);
+        const bool first = !fromPoints;
+        if (first) fromPoints.emplace(*this);
         given.unit = unitRigidity;
-        if (fromPoints->points.set(given)) {
+        bool grew  = false;
+        try {
+            grew = fromPoints->points.set(given);
+        } catch (...) {
+            if (first) fromPoints.reset(); // the rigidity stays the host's
+            throw;
+        }
+        if (grew) {
             for (auto& list : fromPoints->sample) list.reset();
             fromPoints->lift.reset();
         }
