@@ -16,9 +16,12 @@
 #include "compute_shaders/cg_step_f64.spv.h"
 #include "compute_shaders/cg_update_f32.spv.h"
 #include "compute_shaders/cg_update_f64.spv.h"
-#include "compute_shaders/coarse_assemble.spv.h"
-#include "compute_shaders/coarse_factor.spv.h"
-#include "compute_shaders/coarse_solve.spv.h"
+#include "compute_shaders/coarse_assemble_f32.spv.h"
+#include "compute_shaders/coarse_assemble_f64.spv.h"
+#include "compute_shaders/coarse_factor_f32.spv.h"
+#include "compute_shaders/coarse_factor_f64.spv.h"
+#include "compute_shaders/coarse_solve_f32.spv.h"
+#include "compute_shaders/coarse_solve_f64.spv.h"
 #include "compute_shaders/jump_list.spv.h"
 #include "compute_shaders/jump_mark.spv.h"
 #include "compute_shaders/plate_apply_f32.spv.h"
@@ -121,8 +124,8 @@ PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule)
                        kernel(PALPATE_FLOAT(LevelPush, plate_divisor, 2), shapes.tile),
                        kernel(PALPATE_FLOAT(LevelPush, jump_mark, 2), shapes.tile),
                        kernel(PALPATE_FLOAT(LevelPush, jump_list, 2), shapes.reduce),
-                       kernel(PALPATE_FLOAT(LevelPush, coarse_assemble, 2), shapes.tile),
-                       kernel(PALPATE_FLOAT(LevelPush, coarse_factor, 2), shapes.alone),
+                       kernel(PALPATE_REAL(LevelPush, coarse_assemble, 2), shapes.tile),
+                       kernel(PALPATE_REAL(LevelPush, coarse_factor, 3), shapes.alone),
                        kernel(PALPATE_FLOAT(RelaxPush, plate_relax_first, 3), shapes.tile),
                        kernel(PALPATE_FLOAT(RelaxPush, plate_relax, 6), shapes.tile),
                        kernel(PALPATE_FLOAT(RelaxPush, plate_relax_tile, 6), jumpTile),
@@ -130,7 +133,7 @@ PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule)
                        kernel(PALPATE_FLOAT(LevelPush, plate_residual, 4), shapes.tile),
                        kernel(PALPATE_FLOAT(TransferPush, plate_restrict, 4), shapes.tile),
                        kernel(PALPATE_FLOAT(TransferPush, plate_correct, 5), shapes.tile),
-                       kernel(PALPATE_FLOAT(LevelPush, coarse_solve, 3), shapes.alone),
+                       kernel(PALPATE_REAL(LevelPush, coarse_solve, 3), shapes.alone),
                        kernel(PALPATE_REAL(LevelPush, plate_start, 5), shapes.tile),
                        kernel(PALPATE_REAL(TransferPush, plate_interpolate, 4), shapes.tile),
                        kernel(PALPATE_REAL(TransferPush, plate_interpolate_first, 4), shapes.tile),

@@ -47,6 +47,8 @@ constexpr int kSlots        = 3; ///< results in mapped memory: one is written, 
 constexpr int kStepsPerList = 4; ///< even, because directions take turns in two buffers [1]
 constexpr int kSweeps       = 2; ///< before and after the correction, on the finest level's cycles [1]
 
+constexpr double kRounding = 1e-7; ///< of rigidities and answer to floats, twice 6e-8 rounded [1]
+
 constexpr double kJump = 3.0; ///< points that vary by less make no jump, see compute_shaders/shared/jump_tiles.h [1]
 
 } // namespace
@@ -343,7 +345,8 @@ struct VulkanPlateSolver::Impl {
         SolveReport report;
         report.device        = context.device().name;
         report.iterations    = done;
-        report.errorEstimate = worst(shared::kStateEstimate);
+        report.errorEstimate = std::hypot(worst(shared::kStateEstimate), kRounding);
+        report.converged     = worst(shared::kStateEstimate) <= settings.tolerance && !passes.isTooSoft();
         report.workUnits =
             passes.workUnits(warm ? warmWork : coldWork) + done * passes.workUnits(stepsWork) / kStepsPerList;
         report.milliseconds                = std::chrono::duration<double, std::milli>(Clock::now() - began).count();

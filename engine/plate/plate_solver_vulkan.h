@@ -60,7 +60,7 @@ public:
     VulkanPlateSolver(VulkanPlateSolver&&) noexcept;
     VulkanPlateSolver& operator=(VulkanPlateSolver&&) noexcept;
 
-    static constexpr double kLeastTolerance = 1e-9; ///< 32-bit cycles and rigidities give no more [1]
+    static constexpr double kLeastTolerance = 1e-7; ///< rigidities and answers are rounded to floats [1]
     static constexpr double kLeastFloatTolerance =
         1e-5; ///< what conjugate gradients in floats reach at contrast 1000 [1]
 
@@ -85,7 +85,8 @@ public:
 
     /// Deflections under forces at the nodes [N], one field per load.
     ///
-    /// report.errorEstimate: of the error relative to the answer in the energy norm, from the gains of the last steps;
+    /// report.errorEstimate: of the error relative to the answer in the energy norm, from the gains of the last steps,
+    /// and of rounding; converged is false after maxIterations, or if rounding hides how a part of the plate is held;
     /// iterations: steps of conjugate gradients on the finest grid; workUnits include the nested iteration. The same
     /// report, of the whole batch and the worst load, is in every solution.
     /// \throws Error if a load is not finite or the deflection is not; gpu::DeviceLost

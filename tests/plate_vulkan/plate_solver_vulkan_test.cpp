@@ -107,7 +107,11 @@ protected:
         return VulkanPlateSolver(context(), kernels(), plate, settings);
     }
 
-    static double tightest() { return context().device().float64 ? 1e-8 : VulkanPlateSolver::kLeastFloatTolerance; }
+    static double tightest()
+    {
+        return context().device().float64 ? VulkanPlateSolver::kLeastTolerance
+                                          : VulkanPlateSolver::kLeastFloatTolerance;
+    }
 
     /// GPU-assisted validation is 20 times slower: small grids tell as much.
     static std::vector<int> sizes()
