@@ -104,11 +104,11 @@ PlateKernels::All::Fused fusedKernels(gpu::Context& context)
 
 } // namespace
 
-PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule)
+PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule, Precision precision)
 {
     using namespace shared;
     const Shapes& shapes = context.device().kind == "software" ? kSoftware : kHardware;
-    const bool    f64    = context.device().float64;
+    const bool    f64    = context.device().float64 && precision == Precision::best;
     const auto    real   = [&](gpu::KernelCode f32Code, gpu::KernelCode f64Code) { return f64 ? f64Code : f32Code; };
 #define PALPATE_REAL(Push, name, buffers)                                                                              \
     real(code<Push>(#name "_f32", name##_f32_spv, buffers), code<Push>(#name "_f64", name##_f64_spv, buffers))
