@@ -27,11 +27,6 @@ constexpr int           kTileSweeps   = 6; ///< extra ones where the rigidity ju
 constexpr std::uint32_t kMostPartials = 16384; ///< sums that a dot product is split into [1]
 constexpr std::uint32_t kTermsPerSum  = 64;    ///< that a sum has at least, unless there are too few partials [1]
 
-std::size_t nodesOf(const shared::PlateLevel& g)
-{
-    return std::size_t(g.cellsX + 1) * std::size_t(g.cellsZ + 1);
-}
-
 std::size_t tilesOf(const shared::PlateLevel& g)
 {
     return std::size_t(shared::tilesX(g)) * std::size_t(shared::tilesZ(g));
