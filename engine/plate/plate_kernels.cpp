@@ -16,9 +16,12 @@
 #include "compute_shaders/cg_step_f64.spv.h"
 #include "compute_shaders/cg_update_f32.spv.h"
 #include "compute_shaders/cg_update_f64.spv.h"
-#include "compute_shaders/coarse_assemble.spv.h"
-#include "compute_shaders/coarse_factor.spv.h"
-#include "compute_shaders/coarse_solve.spv.h"
+#include "compute_shaders/coarse_assemble_f32.spv.h"
+#include "compute_shaders/coarse_assemble_f64.spv.h"
+#include "compute_shaders/coarse_factor_f32.spv.h"
+#include "compute_shaders/coarse_factor_f64.spv.h"
+#include "compute_shaders/coarse_solve_f32.spv.h"
+#include "compute_shaders/coarse_solve_f64.spv.h"
 #include "compute_shaders/jump_list.spv.h"
 #include "compute_shaders/jump_mark.spv.h"
 #include "compute_shaders/plate_apply_f32.spv.h"
@@ -106,12 +109,12 @@ PlateKernels::All::Fused fusedKernels(gpu::Context& context)
 
 } // namespace
 
-PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule)
+PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule, Precision precision)
 {
     using namespace shared;
     const Shapes&      shapes = isHardware(context) ? kHardware : kSoftware;
     const HostKernels& host   = *hostVariant().kernels;
-    const bool         f64    = context.device().float64;
+    const bool         f64    = context.device().float64 && precision == Precision::best;
     const auto         real = [&](gpu::KernelCode f32Code, gpu::KernelCode f64Code) { return f64 ? f64Code : f32Code; };
 #define PALPATE_REAL(Push, name, function, buffers)                                                                    \
     real(code<Push>(#name "_f32", name##_f32_spv, buffers, host.function##_f32),                                       \
@@ -128,8 +131,8 @@ PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule)
                        kernel(PALPATE_FLOAT(LevelPush, plate_divisor, divisor, 2), shapes.tile),
                        kernel(PALPATE_FLOAT(LevelPush, jump_mark, jumpMark, 2), shapes.tile),
                        kernel(PALPATE_FLOAT(LevelPush, jump_list, jumpList, 2), shapes.reduce),
-                       kernel(PALPATE_FLOAT(LevelPush, coarse_assemble, assemble, 2), shapes.tile),
-                       kernel(PALPATE_FLOAT(LevelPush, coarse_factor, factor, 2), shapes.alone),
+                       kernel(PALPATE_REAL(LevelPush, coarse_assemble, assemble, 2), shapes.tile),
+                       kernel(PALPATE_REAL(LevelPush, coarse_factor, factor, 3), shapes.alone),
                        kernel(PALPATE_FLOAT(RelaxPush, plate_relax_first, relaxFirst, 3), shapes.tile),
                        kernel(PALPATE_FLOAT(RelaxPush, plate_relax, relax, 6), shapes.tile),
                        kernel(PALPATE_FLOAT(RelaxPush, plate_relax_tile, relaxTile, 6), jumpTile),
@@ -137,7 +140,7 @@ PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule)
                        kernel(PALPATE_FLOAT(LevelPush, plate_residual, residual, 4), shapes.tile),
                        kernel(PALPATE_FLOAT(TransferPush, plate_restrict, restrict, 4), shapes.tile),
                        kernel(PALPATE_FLOAT(TransferPush, plate_correct, correct, 5), shapes.tile),
-                       kernel(PALPATE_FLOAT(LevelPush, coarse_solve, coarseSolve, 3), shapes.alone),
+                       kernel(PALPATE_REAL(LevelPush, coarse_solve, coarseSolve, 3), shapes.alone),
                        kernel(PALPATE_REAL(LevelPush, plate_start, start, 5), shapes.tile),
                        kernel(PALPATE_REAL(TransferPush, plate_interpolate, interpolate, 4), shapes.tile),
                        kernel(PALPATE_REAL(TransferPush, plate_interpolate_first, interpolateFirst, 4), shapes.tile),

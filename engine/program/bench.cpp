@@ -211,9 +211,9 @@ Row measureVulkan(const BenchOptions& o, gpu::Context& context, const PlateKerne
         const Stopwatch watch;
         auto            solutions = solver.solve(forces);
         cold.push_back(watch.milliseconds());
-        if (const auto ms = solver.deviceMilliseconds()) device.push_back(*ms);
         row.report = solutions.front().report;
-        answer     = std::move(solutions.front().deflection);
+        if (row.report.deviceMilliseconds) device.push_back(*row.report.deviceMilliseconds);
+        answer = std::move(solutions.front().deflection);
         const Stopwatch again;
         (void)solver.solve(forces, VulkanPlateSolver::Start::warm);
         warm.push_back(again.milliseconds());

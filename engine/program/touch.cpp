@@ -116,7 +116,7 @@ PatchSettings settingsOf(const TouchOptions& options)
     if (!options.forceLaw.empty())
         settings.forceLaw = named(forceLawNamed(options.forceLaw), "--force-law", options.forceLaw, "series, paper");
     if (options.cells) settings.cells = *options.cells;
-    constexpr int kMostCells = 1024; // the reference solver's factor then takes about 4 GB
+    constexpr int kMostCells = 1024; // --device reference: the factor then takes about 4 GB
     if (settings.cells < 8 || settings.cells > kMostCells || settings.cells % 2)
         throw Error("--cells: expected an even number from 8 to " + std::to_string(kMostCells) + ", found " +
                     std::to_string(settings.cells));

@@ -16,3 +16,8 @@ cmake -G "$generator" -S "$source/outside" -B "$place/outside" -DCMAKE_PREFIX_PA
 cmake --build "$place/outside" >"$place/build.log" 2>&1 || { cat "$place/build.log"; exit 1; }
 "$place/outside/outside"
 "$place/moved/bin/palpate" --version
+
+# Every header that was installed finds what it includes.
+(cd "$place/moved/include/palpate" && find engine -name '*.h' | sed 's/.*/#include "&"/') >"$place/all.cpp"
+grep -q plate_solver_vulkan "$place/all.cpp"
+"$compiler" -std=c++20 -fsyntax-only -I "$place/moved/include/palpate" "$place/all.cpp"

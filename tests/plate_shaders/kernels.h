@@ -11,9 +11,12 @@
 #include "compute_shaders/cg_step_f64.spv.h"
 #include "compute_shaders/cg_update_f32.spv.h"
 #include "compute_shaders/cg_update_f64.spv.h"
-#include "compute_shaders/coarse_assemble.spv.h"
-#include "compute_shaders/coarse_factor.spv.h"
-#include "compute_shaders/coarse_solve.spv.h"
+#include "compute_shaders/coarse_assemble_f32.spv.h"
+#include "compute_shaders/coarse_assemble_f64.spv.h"
+#include "compute_shaders/coarse_factor_f32.spv.h"
+#include "compute_shaders/coarse_factor_f64.spv.h"
+#include "compute_shaders/coarse_solve_f32.spv.h"
+#include "compute_shaders/coarse_solve_f64.spv.h"
 #include "compute_shaders/jump_list.spv.h"
 #include "compute_shaders/jump_mark.spv.h"
 #include "compute_shaders/plate_apply_f32.spv.h"
@@ -84,9 +87,6 @@ gpu::KernelCode code(const char* name, const std::uint32_t (&spirv)[N], int buff
 
 PALPATE_KERNEL(coarsen, rigidity_coarsen, TransferPush, 2)
 PALPATE_KERNEL(divisor, plate_divisor, LevelPush, 2)
-PALPATE_KERNEL(assemble, coarse_assemble, LevelPush, 2)
-PALPATE_KERNEL(factor, coarse_factor, LevelPush, 2)
-PALPATE_KERNEL(coarseSolve, coarse_solve, LevelPush, 3)
 PALPATE_KERNEL(relaxFirst, plate_relax_first, RelaxPush, 3)
 PALPATE_KERNEL(relax, plate_relax, RelaxPush, 6)
 PALPATE_KERNEL(jumpMark, jump_mark, LevelPush, 2)
@@ -100,6 +100,9 @@ PALPATE_GPU_KERNEL(down, plate_down, LevelPush, 5)
 PALPATE_GPU_KERNEL(up, plate_up, TransferPush, 8)
 PALPATE_GPU_KERNEL(tail, plate_tail, TailPush, 9)
 
+PALPATE_REAL_KERNEL(assemble, coarse_assemble, LevelPush, 2)
+PALPATE_REAL_KERNEL(factor, coarse_factor, LevelPush, 3)
+PALPATE_REAL_KERNEL(coarseSolve, coarse_solve, LevelPush, 3)
 PALPATE_REAL_KERNEL(start, plate_start, LevelPush, 5)
 PALPATE_REAL_KERNEL(apply, plate_apply, LevelPush, 3)
 PALPATE_REAL_KERNEL(interpolate, plate_interpolate, TransferPush, 4)
