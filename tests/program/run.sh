@@ -58,13 +58,13 @@ for key in '"probes"' '"deflection"' '"max_deflection"' '"report"' '"device"' '"
 good 'solve, finer' solve plate.json --cells 32 --out w.npy
 [ -s w.npy ] || complain 'solve --out wrote nothing'
 
-good 'solve by the reference' solve plate.json --device reference --json
+good 'solve by the reference' solve plate.json --device Reference --json
 holds '"device": "reference"'
-good 'solve tightly' solve plate.json --device lavapipe --tolerance 1e-7 --json
+good 'solve tightly' solve plate.json --device Lavapipe --tolerance 1e-7 --json
 holds '"work_units"'
 good 'touch by the reference' touch sample:skin --points 5000 --cells 32 --device reference
 holds '(reference)'
-good 'benchmark' bench solve --device lavapipe,reference --nodes 17,33 --loads 1,4 --repeats 2 --out bench --json
+good 'benchmark' bench solve --device lavapipe,REFERENCE --schedule Pass-by-pass --nodes 17,33 --loads 1,4 --repeats 2 --out bench --json
 for key in '"cold_p50_ms"' '"cold_p99_ms"' '"warm_p50_ms"' '"iterations"' '"work_units"' '"error"' '"copy_gb_per_s"' '"dispatches_per_cycle"'; do holds "$key"; done
 [ -s bench/solve.json ] && [ -s bench/solve.svg ] && passed=$((passed + 1)) || complain 'bench --out wrote nothing'
 
@@ -109,10 +109,20 @@ bad 'tolerance that is no number' '--tolerance' touch sample:skin --tolerance na
 bad 'benchmark of a giant' '--nodes' bench solve --nodes 4097
 bad 'benchmark of an unknown law' 'hyperbolic' bench solve --law cubic
 bad 'devices take no argument' 'voodoo' devices voodoo
-"$palpate" solve plate.json --device gpu9000 >out.txt 2>err.txt
-code=$?
-[ $code -eq 4 ] && grep -qF "'gpu9000'" err.txt && grep -qF usable err.txt && [ ! -s out.txt ] && passed=$((passed + 1)) ||
-    complain "unknown device: exit $code, expected 4 and the list of devices: $(cat err.txt)"
+for command in 'solve plate.json' 'bench solve'; do
+    # shellcheck disable=SC2086  # a command and its arguments
+    "$palpate" $command --device gpu9000 >out.txt 2>err.txt
+    code=$?
+    [ $code -eq 2 ] && grep -qF "'gpu9000'" err.txt && grep -qF usable err.txt && grep -qF reference err.txt && [ ! -s out.txt ] && passed=$((passed + 1)) ||
+        complain "unknown device: exit $code, expected 2 and the list of devices: $(cat err.txt)"
+done
+for tolerance in 0 1e-12 nan 1; do
+    bad "benchmark with a tolerance of $tolerance" '--tolerance: expected at least 1e-09' bench solve --tolerance $tolerance
+    grep -qF "below 1, found $tolerance" err.txt && passed=$((passed + 1)) || complain "the tolerance's bounds: $(cat err.txt)"
+done
+for schedule in nosuch 0; do
+    bad 'unknown schedule' "--schedule: expected automatic, pass-by-pass or fused, found \"$schedule\"" bench solve --schedule $schedule
+done
 
 # --- bad files
 bad 'missing file' 'No such file' info nowhere.ply
