@@ -256,7 +256,7 @@ std::vector<Row> measure(const BenchOptions& o)
             for (int nodes : o.nodes) rows.push_back(measureReference(o, nodes));
             continue;
         }
-        gpu::Context context = orTheReference([&] { return gpu::Context(gpu::ContextSettings{.device = name}); });
+        gpu::Context       context = orTheReference([&] { return gpu::Context(gpu::ContextSettings{.device = name}); });
         const PlateKernels kernels(context, scheduleNamed(o.schedule));
         const auto         copy = copyBandwidth(context);
         for (int nodes : o.nodes)
@@ -399,6 +399,9 @@ void addBenchCommand(CLI::App& app)
     solve->add_option("--repeats", o->repeats, "solves per line")->capture_default_str();
     solve->add_option("--out", o->out, "folder for solve.json and solve.svg");
     solve->add_flag("--json", o->json, "machine-readable");
+    bench->footer("Examples:\n"
+                  "  palpate bench solve --help\n"
+                  "  palpate bench solve --out bench");
     solve->footer(
         "\"dispatches\" are those of one cycle, which wait for each other; \"update\" is\n"
         "3000 points in, their rigidity at the nodes, a warm solve, and the points' deflections out, in one "

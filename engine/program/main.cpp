@@ -3,6 +3,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <vector>
 
 #include "engine/core/contract.h"
 #include "engine/gpu/device_error.h"
@@ -52,6 +53,16 @@ void refuseUnknownCommand(const CLI::App& app, const std::string& name)
     throw palp::Error("unknown command \"" + name + "\"; known: " + known + "; see --help");
 }
 
+/// "help solve" means "solve --help".
+std::vector<const char*> wordsOf(int argumentCount, char** arguments)
+{
+    std::vector<const char*> words(arguments, arguments + argumentCount);
+    if (words.size() < 2 || std::string(words[1]) != "help") return words;
+    words.erase(words.begin() + 1);
+    words.push_back("--help");
+    return words;
+}
+
 int printHelp(const CLI::App& app, const CLI::ParseError& request)
 {
     app.exit(request);
@@ -80,8 +91,9 @@ int main(int argumentCount, char** arguments)
     palp::addDevicesCommand(app);
     palp::addBenchCommand(app);
     try {
-        if (argumentCount > 1) refuseUnknownCommand(app, arguments[1]);
-        app.parse(argumentCount, arguments);
+        const std::vector<const char*> words = wordsOf(argumentCount, arguments);
+        if (words.size() > 1) refuseUnknownCommand(app, words[1]);
+        app.parse(int(words.size()), words.data());
         if (!printed()) return complain(kUnprinted, kBadInput);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return printHelp(app, error); // or --version

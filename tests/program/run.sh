@@ -31,7 +31,17 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert devices; do good "help of $command" $command --help; holds 'Examples:'; done
+for command in touch solve info convert devices 'bench solve'; do
+    # shellcheck disable=SC2086  # a command, or one within another
+    good "help of $command" $command --help; holds 'Examples:'
+    mv out.txt help.txt
+    # shellcheck disable=SC2086
+    good "help in other words, $command" help $command
+    cmp -s out.txt help.txt && passed=$((passed + 1)) || complain "'help $command' is not '$command --help'"
+done
+good 'help of bench' bench --help
+holds 'bench solve --out bench'
+grep -qF 'palpate touch' out.txt && complain 'the help of bench has the examples of touch' || passed=$((passed + 1))
 good 'list of samples' info --samples
 for sample in ellipsoid sheet hemisphere saddle skin palm ear-lobe; do holds "sample:$sample"; done
 good 'a sample as a file' convert sample:skin skin.ply --points 5000
@@ -174,6 +184,7 @@ bad 'a folder without a name' '--out: expected a value' touch sample:skin --out 
 bad 'a law with a unit' 'SI units' info skin.ply --stiffness constant:value=300kPa
 bad 'the comment says otherwise' 'stiffness_unit Pa' info skin.ply --stiffness-unit N_m
 bad 'an unknown command' 'frob' frob
+bad 'help on an unknown command' 'frob' help frob
 bad 'an answer that is no array' '.npy' solve plate.json --out plate.json
 cp plate.json plate.npy
 bad 'an answer over its problem' 'problem file itself' solve plate.npy --out ./plate.npy
