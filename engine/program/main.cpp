@@ -1,5 +1,7 @@
 // palpate: the command line. Exit codes: 0 good, 1 a fault of ours, 2 bad usage or input, 4 no GPU that can be used.
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -63,6 +65,13 @@ std::vector<const char*> wordsOf(int argumentCount, char** arguments)
     return words;
 }
 
+/// The allocation that failed may have unwound through a driver, which then waits for its own locks in its exit
+/// handlers: there is no way out through them.
+[[noreturn]] void leaveWithoutMemory()
+{
+    std::_Exit(complain("out of memory; try fewer cells or points", kBadInput)); // std::cerr has no buffer
+}
+
 int printHelp(const CLI::App& app, const CLI::ParseError& request)
 {
     app.exit(request);
@@ -90,6 +99,7 @@ int main(int argumentCount, char** arguments)
     palp::addConvertCommand(app);
     palp::addDevicesCommand(app);
     palp::addBenchCommand(app);
+    std::signal(SIGXFSZ, SIG_IGN); // a file beyond the limit on sizes is then a write that fails, with a sentence
     try {
         const std::vector<const char*> words = wordsOf(argumentCount, arguments);
         if (words.size() > 1) refuseUnknownCommand(app, words[1]);
@@ -105,7 +115,7 @@ int main(int argumentCount, char** arguments)
     } catch (const palp::Error& error) {
         return complain(error.what(), kBadInput);
     } catch (const std::bad_alloc&) {
-        return complain("out of memory; try fewer cells or points", kBadInput);
+        leaveWithoutMemory();
     } catch (const std::exception& error) {
         return complain(std::string("internal error, please report it: ") + error.what(), kOurFault);
     }

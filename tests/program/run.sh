@@ -165,6 +165,18 @@ bad 'unknown target format' '.ply' convert skin.ply skin.stl
 printf 'precious' >kept.ply
 bad 'bad input keeps the old target' 'short.ply' convert short.ply kept.ply
 [ "$(cat kept.ply)" = precious ] && passed=$((passed + 1)) || complain 'an old file was lost'
+(
+    ulimit -f 100 && "$palpate" solve plate.json --cells 128 --device reference --out big.npy >out.txt 2>err.txt
+    code=$?
+    [ $code -eq 2 ] && grep -qF 'big.npy: cannot be written: File too large' err.txt
+) && [ ! -e big.npy ] && passed=$((passed + 1)) || complain "a limit on the size of files: $(cat err.txt)"
+# Without memory: the sentence, and no exit handler, where a driver may wait for its own lock. No sanitizer runs so.
+(
+    ulimit -v 400000 && LD_DEBUG=files "$palpate" solve plate.json --cells 512 --device reference >out.txt 2>err.txt
+    code=$?
+    grep -qF Sanitizer err.txt && exit 0
+    [ $code -eq 2 ] && grep -qF 'out of memory' err.txt && ! grep -qF 'calling fini' err.txt
+) && passed=$((passed + 1)) || complain "no memory: $(grep -F -e palpate: -e 'calling fini' err.txt)"
 mkdir full && : >full/out
 bad 'a folder that is a file' 'full/out' touch sample:skin --points 5000 --cells 48 --out full/out
 # --- options that cannot apply
