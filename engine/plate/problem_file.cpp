@@ -86,8 +86,18 @@ struct Setting {
 NodeField readField(const JsonObject& law, const Setting& setting)
 {
     law.allowOnly({"law", "file"});
-    const std::filesystem::path path  = setting.folder / law.text("file");
-    NodeField                   field = readNpy(path);
+    const std::filesystem::path named = law.text("file"), path = setting.folder / named;
+    if (named.empty()) law.refuse("file", "the path of a .npy file");
+    const NodeField field = [&] {
+        try {
+            return readNpy(path);
+        } catch (const Error& error) {
+            std::error_code failure;
+            const bool      lost = named.is_relative() && !std::filesystem::exists(path, failure);
+            throw Error(law.where() + ": key \"file\": " + error.what() +
+                        (lost ? "; paths start at the problem file's folder" : ""));
+        }
+    }();
     if (field.on(setting.fileGrid)) return field;
     std::ostringstream text;
     text << law.where() << ": " << path.string() << ": expected shape (" << setting.fileGrid.nodesX() << ", "

@@ -232,7 +232,9 @@ TEST_F(ProblemFile, APlateThatNothingHoldsIsRefused)
 TEST_F(ProblemFile, GridsOfAnotherShapeOrWithBadNodesAreRefused)
 {
     const std::string law = R"({"law": "grid", "file": "D.npy"})";
-    EXPECT_TRUE(holds(refusal(rigidityOf(law)), {"D.npy", "No such file"}));
+    EXPECT_TRUE(holds(refusal(rigidityOf(law)), {"plate.json", "rigidity", "\"file\"", "D.npy", "No such file", "folder"}));
+    EXPECT_TRUE(holds(refusal(loadOf(R"({"law": "grid", "file": ""})")), {"plate.json", "load", "\"file\"", ".npy"}));
+    EXPECT_EQ(refusal(rigidityOf(R"({"law": "grid", "file": "/no/D.npy"})")).find("start at"), std::string::npos);
 
     writeNpy(folder_ / "D.npy", NodeField(8, 12, 1));
     EXPECT_TRUE(holds(refusal(rigidityOf(law)), {"rigidity", "D.npy", "(9, 13)", "(8, 12)"}));
