@@ -64,7 +64,15 @@ cat >plate.json <<'JSON'
  "rigidity":{"law":"constant","value":1}, "load":{"law":"point","force":1,"at":[0.5,0.75]}, "probes":[[0.25,0.25]]}
 JSON
 good 'solve' solve plate.json --json
-for key in '"probes"' '"deflection"' '"max_deflection"' '"report"' '"device"' '"iterations"' '"error_estimate"' '"work_units"' '"milliseconds"'; do holds "$key"; done
+for key in '"probes"' '"deflection"' '"max_deflection"' '"report"' '"device"' '"iterations"' '"error_estimate"' '"work_units"' '"milliseconds"' '"square_cells": true' '"poisson": 0.3' '"x1": "free"' '"foundation": 0' \
+    '"rigidity_min": 1' '"rigidity_max": 1' '"total_force": 1' '"max_deflection_at"' '"note": null' '"warnings": []'; do holds "$key"; done
+tr -d ' \n' <out.txt >flat.txt
+grep -qF '"size":[1.0,1.5],"cells":[16,24],"spacing":[0.0625,0.0625]' flat.txt && passed=$((passed + 1)) || complain "the plate of solve --json: $(cat flat.txt)"
+sed 's/\[16,24\]/[16,16]/; s/\[0.5,0.75\]/[0,0.75]/' plate.json >odd.json
+good 'cells that are not square, and a load on a clamped edge' solve odd.json --json
+holds '"square_cells": false'
+holds 'bends nothing'
+grep -qF 'palpate: warning: odd.json: load: ' err.txt && passed=$((passed + 1)) || complain "no warning: $(cat err.txt)"
 good 'solve, finer' solve plate.json --cells 32 --out w.npy
 [ -s w.npy ] || complain 'solve --out wrote nothing'
 
@@ -88,7 +96,7 @@ code=$?
     complain "a machine without a GPU: exit $code, expected 4: $(cat out.txt err.txt)"
 VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" solve plate.json --json >out.txt 2>err.txt
 code=$?
-[ $code -eq 0 ] && grep -qF 'reference solver takes over' err.txt && grep -qF '"device": "reference"' out.txt && passed=$((passed + 1)) ||
+[ $code -eq 0 ] && grep -qF 'reference solver takes over' err.txt && grep -qF '"device": "reference"' out.txt && grep -qF '"note": "no GPU can be used' out.txt && passed=$((passed + 1)) ||
     complain "solving without a GPU: exit $code, expected 0 by the reference: $(cat out.txt err.txt)"
 VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" solve plate.json --device lavapipe >out.txt 2>err.txt
 code=$?
