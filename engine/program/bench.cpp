@@ -13,6 +13,7 @@
 #include "engine/core/progress.h"
 #include "engine/gpu/command_list.h"
 #include "engine/gpu/context.h"
+#include "engine/gpu/device_error.h"
 #include "engine/picture/line_plot.h"
 #include "engine/plate/load.h"
 #include "engine/plate/plate_solver_reference.h"
@@ -256,7 +257,15 @@ std::vector<Row> measure(const BenchOptions& o)
             for (int nodes : o.nodes) rows.push_back(measureReference(o, nodes));
             continue;
         }
-        gpu::Context       context = orTheReference([&] { return gpu::Context(gpu::ContextSettings{.device = name}); });
+        std::optional<gpu::Context> opened;
+        try {
+            opened.emplace(orTheReference([&] { return gpu::Context(gpu::ContextSettings{.device = name}); }));
+        } catch (const gpu::DeviceError& error) {
+            if (deviceWord(name) != "auto" || o.devices.size() == 1) throw;
+            std::cerr << "palpate: auto is left out: " << error.what() << "\n";
+            continue;
+        }
+        gpu::Context&      context = *opened;
         const PlateKernels kernels(context, scheduleNamed(o.schedule));
         const auto         copy = copyBandwidth(context);
         for (int nodes : o.nodes)

@@ -57,13 +57,17 @@ PlateSolution solvedWithProgress(PlateDevice& device, const PlateProblem& proble
 Solved solved(const SolveOptions& options)
 {
     Solved s{readProblem(options.problem, options.cells), {}, {}};
-    for (const std::string& warning : s.problem.warnings) std::cerr << "palpate: warning: " << warning << "\n";
 
     PlateDevice device = options.solver.open();
     const bool  told   = !device.note().empty();
     s.solution         = solvedWithProgress(device, s.problem, options.solver.tolerance);
     s.note             = device.note();
     if (!told && !s.note.empty()) std::cerr << "palpate: the reference solver took over: " << s.note << "\n";
+    if (const SolveReport& report = s.solution.report; !report.converged)
+        s.problem.warnings.push_back("the answer is not good: its error is about " +
+                                     std::to_string(std::lround(100 * *report.errorEstimate)) +
+                                     " % or more; try fewer cells or less contrast");
+    for (const std::string& warning : s.problem.warnings) std::cerr << "palpate: warning: " << warning << "\n";
     // One plate, one load: whoever asks for the time of the answer waits for the preparation too.
     s.solution.report.milliseconds += s.solution.report.setUpMilliseconds;
 
@@ -128,8 +132,10 @@ void printJson(const Solved& s)
           {"note", s.note.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(s.note)},
           {"iterations", orNull(report.iterations)},
           {"error_estimate", orNull(report.errorEstimate)},
+          {"converged", report.converged},
           {"work_units", orNull(report.workUnits)},
-          {"milliseconds", report.milliseconds}}},
+          {"milliseconds", report.milliseconds},
+          {"device_milliseconds", orNull(report.deviceMilliseconds)}}},
         {"warnings", s.problem.warnings}};
     std::cout << jsonText(answer);
 }

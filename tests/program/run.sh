@@ -135,7 +135,7 @@ for command in 'solve plate.json' 'bench solve'; do
         complain "unknown device: exit $code, expected 2 and the list of devices: $(cat err.txt)"
 done
 for tolerance in 0 1e-12 nan 1; do
-    bad "benchmark with a tolerance of $tolerance" '--tolerance: expected at least 1e-09' bench solve --tolerance $tolerance
+    bad "benchmark with a tolerance of $tolerance" '--tolerance: expected at least 1e-07' bench solve --tolerance $tolerance
     grep -qF "below 1, found $tolerance" err.txt && passed=$((passed + 1)) || complain "the tolerance's bounds: $(cat err.txt)"
 done
 for schedule in nosuch 0; do
@@ -217,7 +217,7 @@ for option in --thickness --footprint --window; do bad "nothing of $option" "$op
 bad 'a force beyond the world' '--force' touch sample:sheet --force 1e308 --thickness 0.001mm
 bad 'a foundation beyond the world' '--foundation' touch sample:sheet --foundation 1e300
 bad 'a place beyond the world' '--at' touch sample:sheet --at 1e300,0,0
-bad 'a stiffness beyond the world' 'not finite' touch sample:sheet --points 5000 --cells 16 --stiffness constant:value=1e307 --thickness 1e-9m
+bad 'a stiffness beyond the world' 'that 32 bits cannot hold' touch sample:sheet --points 5000 --cells 16 --stiffness constant:value=1e307 --thickness 1e-9m
 
 # --- what is assumed is said
 printf 'x,y,z\n' >bare.csv
