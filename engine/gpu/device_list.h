@@ -31,8 +31,9 @@ struct DeviceDescription {
 ///
 /// \param wanted  "auto": the first usable one of the best kind: discrete, integrated, virtual, software, other;
 ///                "lavapipe": a software device; an INDEX of the list; or part of a NAME, whatever the case, that fits
-///                one usable device only
-/// \throws DeviceError with one line per device if nothing fits
+///                one usable device only. The two words in any case
+/// \throws UnknownDevice if the word is wrong and another one would do; DeviceError if what it names cannot be used, or
+///         no device can. Both with one line per device
 /// \thread pure
 [[nodiscard]] std::size_t chooseDevice(const std::vector<DeviceDescription>& devices, std::string_view wanted);
 

@@ -96,8 +96,7 @@ PlateSolution PlateDevice::solve(const Plate& plate, const NodeField& nodalForce
         try {
             PlateSolution solution = vulkan_->solve(plate, nodalForce, tolerance);
             if (solution.report.converged || !fitsReference(plate.grid)) return solution;
-            note_ = "the multigrid solver stopped at an error of about " +
-                    formatNumber(*solution.report.errorEstimate) + ", so the reference solver took over";
+            note_ = "the multigrid solver stopped at an error of about " + formatNumber(*solution.report.errorEstimate);
         } catch (const gpu::DeviceLost& error) {
             note_ = error.what();
             name_ = "reference";

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <optional>
@@ -55,6 +56,13 @@ constexpr int kMostGroups = 65535; ///< along x of a dispatch, on every device [
 constexpr double kRounding      = 1e-7; ///< of rigidities and answer to floats, twice 6e-8 rounded [1]
 constexpr double kFloatRounding = 5e-5; ///< of conjugate gradients in floats, at contrast 1000 and free sides [1]
 
+std::string shortest(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    return text;
+}
+
 } // namespace
 
 struct VulkanPlateSolver::Impl {
@@ -91,6 +99,7 @@ struct VulkanPlateSolver::Impl {
     /// Recorded when first needed.
     struct Lists {
         std::array<std::optional<CommandList>, kSlots> cold, warm, more;
+        int                                            dispatchesPerCycle = 0;
         PlateWork coldWork, warmWork, stepsWork; ///< before the steps on the finest level; kStepsPerList of these
     };
     std::optional<CommandList> prepareList;
@@ -180,7 +189,8 @@ struct VulkanPlateSolver::Impl {
         }
         now.coldWork = std::exchange(passes.work, {});
         finestSteps(list, 2);
-        now.stepsWork = passes.work;
+        now.stepsWork          = passes.work;
+        now.dispatchesPerCycle = passes.dispatchesPerCycle();
         return list;
     }
 
@@ -194,7 +204,8 @@ struct VulkanPlateSolver::Impl {
         passes.start(pass, 0);
         now.warmWork = std::exchange(passes.work, {});
         finestSteps(list, 2);
-        now.stepsWork = passes.work;
+        now.stepsWork          = passes.work;
+        now.dispatchesPerCycle = passes.dispatchesPerCycle();
         return list;
     }
 
@@ -423,8 +434,8 @@ VulkanPlateSolver::VulkanPlateSolver(gpu::Context& context, const PlateKernels& 
     if (const auto why = whyUnsolvable(plate)) throw Error("plate: " + *why);
     const double least = kernels.all().doubles ? kLeastTolerance : kLeastFloatTolerance;
     if (!(settings.tolerance >= least && settings.tolerance < 1))
-        throw Error("plate: expected a tolerance from " + std::to_string(least) + " to 1, found " +
-                    std::to_string(settings.tolerance));
+        throw Error("plate: expected a tolerance of at least " + shortest(least) + " and below 1, found " +
+                    shortest(settings.tolerance));
     const std::size_t most = std::size_t(kMostGroups) * kernels.all().update.workgroup().x;
     if (plate.grid.nodes() > most)
         throw Error("plate: " + std::to_string(plate.grid.nodes()) + " nodes are more than the " +
@@ -487,7 +498,7 @@ PlateSolution VulkanPlateSolver::solve(const NodeField& nodalForce, Start start)
 
 int VulkanPlateSolver::dispatchesPerCycle() const noexcept
 {
-    return impl_->passes.dispatchesPerCycle();
+    return impl_->lists[std::size_t(impl_->jumps)].dispatchesPerCycle;
 }
 
 int VulkanPlateSolver::levels() const noexcept

@@ -110,7 +110,7 @@ public:
     [[nodiscard]] std::size_t            nodesWithoutPoint() const;
     [[nodiscard]] NodeField              sampledRigidity() const;
 
-    [[nodiscard]] int dispatchesPerCycle() const noexcept;
+    [[nodiscard]] int dispatchesPerCycle() const noexcept; ///< of the finest level, in the last solve [1]
     [[nodiscard]] int levels() const noexcept;
 
 private:

@@ -24,16 +24,26 @@ void SolverChoice::addTo(CLI::App& command)
 
 PlateDevice SolverChoice::open() const
 {
-    if (!(tolerance >= VulkanPlateSolver::kLeastTolerance && tolerance < 1)) {
-        std::ostringstream text;
-        text << "--tolerance: expected " << VulkanPlateSolver::kLeastTolerance
-             << " (what 32-bit rigidities and cycles can give) to 1, found " << tolerance;
-        throw Error(text.str());
-    }
-    PlateDevice opened(device);
+    checkTolerance(tolerance);
+    PlateDevice opened = orTheReference([&] { return PlateDevice(deviceWord(device)); });
     if (!opened.note().empty())
         std::cerr << "palpate: no Vulkan device, so the reference solver takes over: " << opened.note() << "\n";
     return opened;
+}
+
+void checkTolerance(double tolerance)
+{
+    if (tolerance >= VulkanPlateSolver::kLeastTolerance && tolerance < 1) return;
+    std::ostringstream text;
+    text << "--tolerance: expected at least " << VulkanPlateSolver::kLeastTolerance
+         << " (what 32-bit rigidities and cycles can give) and below 1, found " << tolerance;
+    throw Error(text.str());
+}
+
+std::string deviceWord(const std::string& given)
+{
+    const std::string word = CLI::ignore_case(given);
+    return word == "auto" || word == "reference" ? word : given;
 }
 
 } // namespace palp
