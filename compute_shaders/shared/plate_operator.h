@@ -38,16 +38,27 @@ real secondDifference(real before, real middle, real after)
     return (after - middle) - (middle - before);
 }
 
+// Bending moments per rigidity; on a side along which the other one is condensed out, if `onHinge`.
+real bendingX(PlateLevel g, bool onHinge, real p, real q)
+{
+    return onHinge ? real(g.exx) * p : real(g.kxx) * p + real(g.kxz) * q;
+}
+
+real bendingZ(PlateLevel g, bool onHinge, real p, real q)
+{
+    return onHinge ? real(g.ezz) * q : real(g.kzz) * q + real(g.kxz) * p;
+}
+
 // Bending moment along x of the node in column i, row j; zero where none acts, on hinged sides and outside.
 real momentX(PlateLevel g, int i, int j, real nodeRigidity, real p, real q)
 {
-    real m = nodeRigidity * (isHingedZ(g, j) ? real(g.exx) * p : real(g.kxx) * p + real(g.kxz) * q);
+    real m = nodeRigidity * bendingX(g, isHingedZ(g, j), p, q);
     return i < 0 || i > g.cellsX || isHingedX(g, i) ? real(0) : m;
 }
 
 real momentZ(PlateLevel g, int i, int j, real nodeRigidity, real p, real q)
 {
-    real m = nodeRigidity * (isHingedX(g, i) ? real(g.ezz) * q : real(g.kzz) * q + real(g.kxz) * p);
+    real m = nodeRigidity * bendingZ(g, isHingedX(g, i), p, q);
     return j < 0 || j > g.cellsZ || isHingedZ(g, j) ? real(0) : m;
 }
 

@@ -60,57 +60,74 @@ public:
             moments(i + 1);
             twists(i);
         }
-        const Real* mw  = i > 0 ? mx_[(i + 2) % 3] : none_;
-        const Real* mx  = mx_[i % 3];
-        const Real* me  = i < g.cellsX ? mx_[(i + 1) % 3] : none_;
-        const Real* mz  = mz_[i % 3];
-        const Real* tw  = i > 0 ? t_[(i + 1) % 2] : none_;
-        const Real* te  = i < g.cellsX ? t_[i % 2] : none_;
-        const Real* w   = field_.row(i);
-        const Real  bed = Real(g.bed) * rules.nodeShare(middle, i, kMiddle);
-        const auto  row = [&](int j, Real weight) {
-            forces[j] = rules.forceFrom(mw[j], mx[j], me[j], mz[j - 1], mz[j], mz[j + 1], tw[j - 1], te[j - 1], tw[j],
-                                         te[j], weight, w[j]);
-        };
+        const Real* mw   = i > 0 ? mx_[(i + 2) % 3] : none_;
+        const Real* mx   = mx_[i % 3];
+        const Real* me   = i < g.cellsX ? mx_[(i + 1) % 3] : none_;
+        const Real* mz   = mz_[i % 3];
+        const Real* tw   = i > 0 ? t_[(i + 1) % 2] : none_;
+        const Real* te   = i < g.cellsX ? t_[i % 2] : none_;
+        const Real* w    = field_.row(i);
+        const Real  bed  = Real(g.bed) * rules.nodeShare(middle, i, kMiddle);
+        const Real  side = Real(g.bed) * rules.nodeShare(g, i, 0);
+        const int   last = nodes_ - 1;
 #pragma GCC ivdep
-        for (int j = 1; j < nodes_ - 1; ++j) row(j, bed);
-        for (int j : {0, nodes_ - 1}) row(j, Real(g.bed) * rules.nodeShare(g, i, j));
+        for (int j = 0; j <= last; ++j)
+            forces[j] = rules.forceFrom(mw[j], mx[j], me[j], mz[j - 1], mz[j], mz[j + 1], tw[j - 1], te[j - 1], tw[j],
+                                        te[j], bed, w[j]);
+        for (int j : {0, last})
+            forces[j] = rules.forceFrom(mw[j], mx[j], me[j], mz[j - 1], mz[j], mz[j + 1], tw[j - 1], te[j - 1], tw[j],
+                                        te[j], side, w[j]);
     }
 
 private:
     void moments(int i)
     {
-        const Real*  before = field_.row(rules.mirrored(i - 1, g.cellsX));
-        const Real*  w      = field_.row(i);
-        const Real*  after  = field_.row(rules.mirrored(i + 1, g.cellsX));
-        const float* D      = D_ + std::ptrdiff_t(i) * nodes_;
-        Real*        mx     = mx_[i % 3];
-        Real*        mz     = mz_[i % 3];
-        const auto   node   = [&](const PlateLevel& level, int place, int south, int j, int north) {
-            const Real p = rules.secondDifference(before[j], w[j], after[j]);
-            const Real q = rules.secondDifference(w[south], w[j], w[north]);
-            mx[j]        = rules.momentX(level, i, place, Real(D[j]), p, q);
-            mz[j]        = rules.momentZ(level, i, place, Real(D[j]), p, q);
-        };
+        const PlateLevel level  = g; // a copy that no store can change
+        const Real*      before = field_.row(rules.mirrored(i - 1, level.cellsX));
+        const Real*      w      = field_.row(i);
+        const Real*      after  = field_.row(rules.mirrored(i + 1, level.cellsX));
+        const float*     D      = D_ + std::ptrdiff_t(i) * nodes_;
+        Real*            mx     = mx_[i % 3];
+        Real*            mz     = mz_[i % 3];
+        const int        last   = nodes_ - 1;
+        if (rules.isHingedX(level, i))
 #pragma GCC ivdep
-        for (int j = 1; j < nodes_ - 1; ++j) node(middle, kMiddle, j - 1, j, j + 1);
-        for (int j : {0, nodes_ - 1}) node(g, j, rules.mirrored(j - 1, g.cellsZ), j, rules.mirrored(j + 1, g.cellsZ));
+            for (int j = 1; j < last; ++j) {
+                const Real q = rules.secondDifference(w[j - 1], w[j], w[j + 1]);
+                mx[j]        = 0;
+                mz[j]        = Real(D[j]) * rules.bendingZ(level, true, 0, q);
+            }
+        else
+#pragma GCC ivdep
+            for (int j = 1; j < last; ++j) {
+                const Real p = rules.secondDifference(before[j], w[j], after[j]);
+                const Real q = rules.secondDifference(w[j - 1], w[j], w[j + 1]);
+                mx[j]        = Real(D[j]) * rules.bendingX(level, false, p, q);
+                mz[j]        = Real(D[j]) * rules.bendingZ(level, false, p, q);
+            }
+        for (int j : {0, last}) {
+            const Real p = rules.secondDifference(before[j], w[j], after[j]);
+            const Real q = rules.secondDifference(w[rules.mirrored(j - 1, last)], w[j], w[rules.mirrored(j + 1, last)]);
+            mx[j]        = rules.momentX(level, i, j, Real(D[j]), p, q);
+            mz[j]        = rules.momentZ(level, i, j, Real(D[j]), p, q);
+        }
     }
 
     void twists(int i)
     {
-        const Real*  w     = field_.row(i);
-        const Real*  after = field_.row(i + 1);
-        const float *D = D_ + std::ptrdiff_t(i) * nodes_, *E = D + nodes_;
-        Real*        t = t_[i % 2];
+        const PlateLevel level = middle;
+        const Real*      w     = field_.row(i);
+        const Real*      after = field_.row(i + 1);
+        const float *    D = D_ + std::ptrdiff_t(i) * nodes_, *E = D + nodes_;
+        Real*            t    = t_[i % 2];
+        const int        last = nodes_ - 1;
 #pragma GCC ivdep
-        for (int j = 0; j < nodes_ - 1; ++j)
-            t[j] =
-                rules.twistingMoment(middle, i, kMiddle, (Real(D[j]) + Real(E[j])) + (Real(D[j + 1]) + Real(E[j + 1])),
-                                     w[j], after[j], w[j + 1], after[j + 1]);
+        for (int j = 0; j < last; ++j)
+            t[j] = rules.twistingMoment(level, 0, 0, (Real(D[j]) + Real(E[j])) + (Real(D[j + 1]) + Real(E[j + 1])),
+                                        w[j], after[j], w[j + 1], after[j + 1]);
     }
 
-    static inline Rules<Real> rules;
+    static inline Rules<Real> rules{};
 
     const PlateLevel g, middle;
     const float*     D_;
