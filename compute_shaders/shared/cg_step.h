@@ -10,13 +10,14 @@ struct CgStep {
 
 // Largest ratio that the geometric tail is trusted with: beyond it a tail of twenty steps is assumed. A first step has
 // no ratio: what is left is taken to be as much as what was gained. Gains rise and fall where convergence is slow, so a
-// ratio is forgotten by kMemory per step only. A single ratio may be lucky, as small grids with
-// sharp discs have shown: below kSecondRatio it is not believed. Where rounding leaves no positive pq no step is taken,
-// and (r, z), which is about the squared error, says what is left.
+// ratio is forgotten by kMemory per step only. A single ratio may be lucky, as small grids with sharp discs have shown:
+// below kSecondRatio it is not believed. Where rounding leaves no positive pq no step is taken, and (r, z), which is
+// about the squared error, says what is left. Constants have few binary digits, for compilers of shaders round a float
+// in a double sum later than C++ does.
 CgStep stepOf(real pq, real rz, real energy, real lastGain, real lastRatio, real steps)
 {
-    const real kMostRatio = real(0.95f), kLeastRatio = real(0.01f), kFirstRatio = real(0.5f);
-    const real kSecondRatio = real(0.1f), kMemory = real(0.8f);
+    const real kMostRatio = real(0.953125f), kLeastRatio = real(0.0078125f), kFirstRatio = real(0.5f);
+    const real kSecondRatio = real(0.09375f), kMemory = real(0.8125f);
     CgStep     now;
     now.alpha = pq > real(0.0f) ? rz / pq : real(0.0f);
     now.gain  = now.alpha * rz;
