@@ -1,3 +1,5 @@
+#include <type_traits>
+
 #include "engine/plate/host/frame.h"
 #include "engine/plate/host/kernels.h"
 #include "engine/plate/host/operator_rows.h"
@@ -42,6 +44,21 @@ struct Jumps {
 
     float rigidity(int i, int j) const { return D[i * stride + j]; }
 
+    /// Whether the rigidity varies enough for a jump among all nodes that jumpsInTile() looks at: cheaper, and mostly
+    /// no.
+    bool variesInReach(const PlateLevel& g, int tileI, int tileJ) const
+    {
+        const int firstI = max(0, tileI * kTile - 2), lastI = min(g.cellsX, (tileI + 1) * kTile + 1);
+        const int firstJ = max(0, tileJ * kTile - 2), lastJ = min(g.cellsZ, (tileJ + 1) * kTile + 1);
+        float     least = D[firstI * stride + firstJ], most = least;
+        for (int i = firstI; i <= lastI; ++i)
+            for (int j = firstJ; j <= lastJ; ++j) {
+                least = min(least, D[i * stride + j]);
+                most  = max(most, D[i * stride + j]);
+            }
+        return most > kJump * least;
+    }
+
 #include "compute_shaders/shared/jump_tiles.h"
 };
 
@@ -53,23 +70,87 @@ struct Jumps {
     return row.isHeld(g, placeI, placeJ) ? 0.0F : 1.0F / row.divisorAt(g, placeI, placeJ);
 }
 
-/// Row i of the divisors; `level` and `place` say what its columns away from the sides are like.
-[[gnu::flatten]] void divisorsOfRow(const PlateLevel& level, int place, const float* D, int stride, int first, int end,
-                                    float* to)
+/// Divisors of columns of a row; `level` and `place` say what its nodes are like, a constant where it has no sides.
+template <bool kInside>
+[[gnu::flatten]] void divisorsOfRow(PlateLevel level, int place, const float* D, int stride, int first, int end,
+                                    float* __restrict to)
 {
-#pragma GCC ivdep
-    for (int j = first; j < end; ++j) to[j] = inverseDivisor(level, D + j, stride, place, kMiddle);
+    level.cellsZ = kMiddleCells;
+    if (kInside) {
+        level.cellsX = kMiddleCells;
+        place        = kMiddle;
+    }
+    if (!kInside && Rules<float>{}.isHeld(level, place, kMiddle)) {
+        for (int j = first; j < end; ++j) to[j] = 0;
+        return;
+    }
+    // Unit by unit, so that within a loop each deflection is a constant.
+    for (int j = first; j < end; ++j) to[j] = 0;
+    const auto add = [&]<int m>(std::integral_constant<int, m>) {
+        for (int j = first; j < end; ++j)
+            to[j] += Row{D + j, stride, place, kMiddle}.sameColourEntry(level, place, kMiddle, m);
+    };
+    add(std::integral_constant<int, 0>{});
+    add(std::integral_constant<int, 1>{});
+    add(std::integral_constant<int, 2>{});
+    add(std::integral_constant<int, 3>{});
+    add(std::integral_constant<int, 4>{});
+    add(std::integral_constant<int, 5>{});
+    add(std::integral_constant<int, 6>{});
+    add(std::integral_constant<int, 7>{});
+    for (int j = first; j < end; ++j) {
+        Row row{D + j, stride, place, kMiddle};
+        to[j] = 1.0F / row.relaxationDivisor(row.diagonalEntry(level, place, kMiddle), to[j]);
+    }
 }
 
 } // namespace
 
+// The shader takes means along z within means along x; here those along z are made once per fine row.
 void coarsen(const HostDispatch& d)
 {
-    const auto& push   = pushed<TransferPush>(d);
-    auto*       coarse = bound<float>(d, 1);
-    Coarsen     from{bound<const float>(d, 0), push.fine.cellsZ + 1};
-    for (int i = 0; i <= push.coarse.cellsX; ++i)
-        for (int j = 0; j <= push.coarse.cellsZ; ++j) *coarse++ = from.coarseRigidityAt(push.fine, push.coarse, i, j);
+    static thread_local Scratch<int>   placeScratch;
+    static thread_local Scratch<float> rowScratch;
+    const auto&                        push = pushed<TransferPush>(d);
+    const auto &                       from = push.fine, &to = push.coarse;
+    Coarsen                            rules{bound<const float>(d, 0), from.cellsZ + 1};
+    auto*                              coarse = bound<float>(d, 1);
+    const bool                         alongX = to.cellsX != from.cellsX, alongZ = to.cellsZ != from.cellsZ;
+    const int                          nodes  = to.cellsZ + 1;
+    int* const                         before = placeScratch.of(3 * std::ptrdiff_t(nodes));
+    int* const                         at     = before + nodes;
+    int* const                         after  = at + nodes;
+    for (int j = 0; j < nodes; ++j) {
+        at[j]     = rules.finePlace(j, from.cellsZ, to.cellsZ);
+        before[j] = rules.mirrored(at[j] - 1, from.cellsZ);
+        after[j]  = rules.mirrored(at[j] + 1, from.cellsZ);
+    }
+    float* const rows    = rowScratch.of(4 * std::ptrdiff_t(nodes)); // those along z that were made last
+    int          made[4] = {-1, -1, -1, -1};
+    const auto   rowOf   = [&](int i) {
+        float* row = rows + std::ptrdiff_t(i % 4) * nodes;
+        if (made[i % 4] == i) return row;
+        made[i % 4]       = i;
+        const float* fine = rules.fine + std::ptrdiff_t(i) * rules.stride;
+        if (alongZ)
+            for (int j = 0; j < nodes; ++j) row[j] = rules.meanOfThree(fine[before[j]], fine[at[j]], fine[after[j]]);
+        else
+            for (int j = 0; j < nodes; ++j) row[j] = fine[at[j]];
+        return row;
+    };
+    for (int i = 0; i <= to.cellsX; ++i) {
+        const int    place = rules.finePlace(i, from.cellsX, to.cellsX);
+        const float* here  = rowOf(place);
+        float*       out   = coarse + std::ptrdiff_t(i) * nodes;
+        if (!alongX) {
+            for (int j = 0; j < nodes; ++j) out[j] = here[j];
+            continue;
+        }
+        const float* west = rowOf(rules.mirrored(place - 1, from.cellsX));
+        const float* east = rowOf(rules.mirrored(place + 1, from.cellsX));
+#pragma GCC ivdep
+        for (int j = 0; j < nodes; ++j) out[j] = rules.meanOfThree(west[j], here[j], east[j]);
+    }
 }
 
 void divisor(const HostDispatch& d)
@@ -83,17 +164,10 @@ void divisor(const HostDispatch& d)
         const float* row  = D + std::ptrdiff_t(i) * nodes;
         float*       out  = to + std::ptrdiff_t(i) * nodes;
         const bool   wide = nodes > 2 * kNear;
-        if (wide) {
-            PlateLevel like  = middleOfZ(g);
-            int        place = i;
-            if (i >= kNear && i <= g.cellsX - kNear) {
-                like.cellsX = kMiddleCells;
-                place       = kMiddle;
-                divisorsOfRow(like, kMiddle, row, nodes, kNear, nodes - kNear, out);
-            } else {
-                divisorsOfRow(like, place, row, nodes, kNear, nodes - kNear, out);
-            }
-        }
+        if (wide && i >= kNear && i <= g.cellsX - kNear)
+            divisorsOfRow<true>(g, i, row, nodes, kNear, nodes - kNear, out);
+        else if (wide)
+            divisorsOfRow<false>(g, i, row, nodes, kNear, nodes - kNear, out);
         for (int j = 0; j < nodes; ++j)
             if (!wide || j < kNear || j >= nodes - kNear) out[j] = inverseDivisor(g, row + j, nodes, i, j);
     }
@@ -105,7 +179,8 @@ void jumpMark(const HostDispatch& d)
     auto*             marks = bound<uint>(d, 1);
     Jumps             jumps{bound<const float>(d, 0), g.cellsZ + 1};
     for (int i = 0; i < tilesX(g); ++i)
-        for (int j = 0; j < tilesZ(g); ++j) *marks++ = jumps.jumpsInTile(g, i, j) ? 1U : 0U;
+        for (int j = 0; j < tilesZ(g); ++j)
+            *marks++ = jumps.variesInReach(g, i, j) && jumps.jumpsInTile(g, i, j) ? 1U : 0U;
 }
 
 void jumpList(const HostDispatch& d)
