@@ -14,7 +14,8 @@ namespace palp {
 class PlateDevice {
 public:
     /// Opens the device: 40 ms for lavapipe, and its kernels are compiled at their first use, once per machine.
-    /// \param wanted  "reference"; else as gpu::chooseDevice() has it: "auto", "lavapipe", an INDEX or part of a NAME.
+    /// \param wanted  "reference"; "host"; else as gpu::chooseDevice() has it: "auto", "lavapipe", an INDEX or part of a
+    ///                NAME.
     ///                Where "auto" finds no usable device it takes the reference, and name() says so
     /// \throws gpu::DeviceError if a device that is asked for by name cannot be used
     /// \param patience  see gpu::ContextSettings [s]

@@ -43,7 +43,7 @@ private:
     std::unique_ptr<All> all_;
 };
 
-/// Multigrid on a Vulkan device: nested iteration, then conjugate gradients preconditioned by one symmetric V(2,2)
+/// Multigrid on a Vulkan device, or on the host, which gives lavapipe's bits an order of magnitude sooner: nested iteration, then conjugate gradients preconditioned by one symmetric V(2,2)
 /// cycle of red-black relaxation, matrix-free in moment form, stopped by the device itself.
 ///
 /// The cycle is in 32-bit floats and the conjugate gradients are in doubles where the device has them: a cycle only

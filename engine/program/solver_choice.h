@@ -32,7 +32,8 @@ void checkTolerance(double tolerance);
 template <class Open>
 [[nodiscard]] auto orTheReference(const Open& open)
 {
-    constexpr const char* kToo = "\n  or reference: sparse Cholesky in double precision, on the host";
+    constexpr const char* kToo =
+        "\n  or host: the same solver as native code; or reference: sparse Cholesky in double precision";
     try {
         return open();
     } catch (const gpu::UnknownDevice& error) {

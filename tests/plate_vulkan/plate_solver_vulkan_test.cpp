@@ -349,6 +349,34 @@ TEST_F(VulkanPlate, AWarmStartKeepsTheLastAnswerWhenTheLargestForceChanges)
                     1e-3 * 1e5 * largest(cold.deflection));
 }
 
+/// Whole solves, not only kernels: stops, steps and sweeps where the rigidity jumps included.
+TEST_F(VulkanPlate, HostAndLavapipeGiveTheSameBits)
+{
+    if (onHost() || !context().bitExact() || validation() == gpu::Validation::gpuAssisted)
+        GTEST_SKIP() << "lavapipe and the host are compared once";
+    using enum Edge;
+    gpu::Context host({.device = std::string(gpu::kHostDevice)});
+    for (const Precision precision : {Precision::best, Precision::floats}) {
+        const PlateKernels here(context(), Schedule::passByPass, precision),
+            there(host, Schedule::passByPass, precision);
+        for (const Law& law : kLaws)
+            for (const PlateEdges edges : {PlateEdges{}, PlateEdges{supported, free, clamped, free}}) {
+                const Plate       plate = plateOf(70, 45, edges, law);
+                const auto        loads = std::vector{loadOn(plate.grid), pointLoad(plate.grid, 1, 0.5, 0.3)};
+                const Settings    settings{.tolerance = 1e-4, .loads = 2};
+                VulkanPlateSolver a(context(), here, plate, settings), b(host, there, plate, settings);
+                for (const Start start : {Start::cold, Start::warm}) {
+                    const auto onDevice = a.solve(loads, start), onHost = b.solve(loads, start);
+                    for (std::size_t n = 0; n < loads.size(); ++n)
+                        EXPECT_EQ(onDevice[n].deflection.values(), onHost[n].deflection.values()) << law.name;
+                    EXPECT_EQ(onDevice[0].report.errorEstimate, onHost[0].report.errorEstimate) << law.name;
+                    EXPECT_EQ(onDevice[0].report.iterations, onHost[0].report.iterations) << law.name;
+                    EXPECT_EQ(onDevice[0].report.workUnits, onHost[0].report.workUnits) << law.name;
+                }
+            }
+    }
+}
+
 TEST_F(VulkanPlate, EveryCombinationOfEdgesAgreesWithTheReferenceSolver)
 {
     constexpr Edge kEdges[] = {Edge::clamped, Edge::supported, Edge::free};

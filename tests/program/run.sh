@@ -78,6 +78,12 @@ good 'solve, finer' solve plate.json --cells 32 --out w.npy
 
 good 'solve by the reference' solve plate.json --device Reference --json
 holds '"device": "reference"'
+good 'solve on the host' solve plate.json --device Host --json --out host.npy
+holds '"device": "host"'
+good 'solve on lavapipe' solve plate.json --device lavapipe --out lavapipe.npy
+cmp -s host.npy lavapipe.npy && passed=$((passed + 1)) || complain 'the host and lavapipe differ'
+VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" solve plate.json --device host >out.txt 2>err.txt && [ ! -s err.txt ] &&
+    passed=$((passed + 1)) || complain "the host needs a driver: $(cat out.txt err.txt)"
 good 'solve tightly' solve plate.json --device Lavapipe --tolerance 1e-7 --json
 holds '"work_units"'
 good 'touch by the reference' touch sample:skin --points 5000 --cells 32 --device reference
