@@ -1,6 +1,6 @@
 // coarse_solve.comp - deflection of the coarsest level by forward and backward substitution, L L' w = f.
 // Domain     one workgroup per load
-// Reads      columns of L with inverse diagonal, forces of the coarsest level
+// Reads      columns of L with inverse diagonal (real), forces of the coarsest level
 // Writes     deflection of the coarsest level
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -10,11 +10,11 @@
 #include "compute_shaders/shared/plate_grid.h"
 
 layout(push_constant) uniform Constants { LevelPush push; };
-layout(std430, binding = 0) readonly buffer Factor { float factor[]; };
+layout(std430, binding = 0) readonly buffer Factor { real factor[]; };
 layout(std430, binding = 1) readonly buffer Force { float force[]; };
 layout(std430, binding = 2) writeonly buffer Deflection { float w[]; };
 
-shared float right[kMostCoarseNodes], middle[kMostCoarseNodes];
+shared real right[kMostCoarseNodes], middle[kMostCoarseNodes];
 shared bool moves[kMostCoarseNodes];
 
 int nodeOf(PlateLevel g, int unknown) { return columnOf(g, unknown) * nodesZ(g) + rowOf(g, unknown); }
@@ -27,26 +27,26 @@ void main()
     int lane = int(gl_LocalInvocationID.x), lanes = int(gl_WorkGroupSize.x);
     for (int n = lane; n < unknowns; n += lanes) {
         bool held = isHeld(g, columnOf(g, n), rowOf(g, n));
-        right[n]  = held ? 0.0f : force[base + nodeOf(g, n)];
-        middle[n] = 0.0f;
+        right[n]  = held ? real(0.0f) : real(force[base + nodeOf(g, n)]);
+        middle[n] = real(0.0f);
         moves[n]  = !held;
     }
     barrier();
     for (int n = 0; n < unknowns; ++n) {
         if (!moves[n]) continue; // a held node is 0 and changes nothing: for all invocations alike
         barrier();
-        float solved = right[n] * factor[n * slots];
+        real solved = right[n] * factor[n * slots];
         if (lane == 0) middle[n] = solved;
         for (int d = 1 + lane; d <= reach && n + d < unknowns; d += lanes) right[n + d] -= factor[n * slots + d] * solved;
     }
     for (int n = unknowns - 1; n >= 0; --n) {
         if (!moves[n]) continue;
         barrier();
-        float solved = middle[n] * factor[n * slots];
+        real solved = middle[n] * factor[n * slots];
         if (lane == 0) right[n] = solved;
         for (int d = 1 + lane; d <= reach && d <= n; d += lanes)
             middle[n - d] -= factor[(n - d) * slots + d] * solved;
     }
     barrier();
-    for (int n = lane; n < unknowns; n += lanes) w[base + nodeOf(g, n)] = right[n];
+    for (int n = lane; n < unknowns; n += lanes) w[base + nodeOf(g, n)] = float(right[n]);
 }

@@ -4,6 +4,7 @@
 // Writes     deflection and residual, 0 on held nodes
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require // unrolled sweeps take a driver seconds to compile
 
 #include "compute_shaders/plate_prelude.glsl"
 
@@ -28,7 +29,7 @@ void main()
         if (isNode(i, j)) tile[n] = ((i + j) & 1) == 0 ? force[base + nodeAt(i, j)] * inverseDivisor[nodeAt(i, j)] : 0.0f;
     }
     barrier();
-    for (int turn = 1; turn < 2 * kSweeps; ++turn) relaxRegion(uint(turn & 1), 2 * turn);
+    [[dont_unroll]] for (int turn = 1; turn < 2 * kSweeps; ++turn) relaxRegion(uint(turn & 1), 2 * turn);
     for (int n = lane; n < kOwned * kOwned; n += kLanes) {
         int i = cornerI + kRim + n / kOwned, j = cornerJ + kRim + n % kOwned;
         if (isNode(i, j)) {

@@ -10,6 +10,7 @@
 // bit; the coarsest level is solved by its inverse, which invocations share better than substitution.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require // unrolled sweeps take a driver seconds to compile
 
 #include "compute_shaders/plate_prelude.glsl"
 #include "compute_shaders/shared/tail_level.h"
@@ -104,7 +105,7 @@ void goDown()
     for (int n = lane; n < nodes; n += kLanes)
         pool[here.w + n] = ((n / stride + n % stride) & 1) == 0 ? forceAt(n) * inverseDivisor[here.field + n] : 0.0f;
     barrier();
-    for (int turn = 1; turn < 2 * kSweeps; ++turn) relaxLevel(uint(turn & 1));
+    [[dont_unroll]] for (int turn = 1; turn < 2 * kSweeps; ++turn) relaxLevel(uint(turn & 1));
     float left[kMost];
     for (int k = 0; k < kMost; ++k) {
         int n = lane + k * kLanes, i = n / stride, j = n % stride;
@@ -130,7 +131,7 @@ void goUp()
     for (int n = lane; n < nodesOf(here.plate); n += kLanes)
         pool[here.w + n] = aside[asideAt(n)] + prolongedAt(n / stride, n % stride);
     barrier();
-    for (int turn = 1; turn <= 2 * kSweeps; ++turn) relaxLevel(uint(turn & 1));
+    [[dont_unroll]] for (int turn = 1; turn <= 2 * kSweeps; ++turn) relaxLevel(uint(turn & 1));
 }
 
 void main()

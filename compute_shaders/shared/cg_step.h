@@ -3,25 +3,27 @@
 struct CgStep {
     real alpha;    // [1]
     real gain;     // in the squared energy norm of the error
-    real ratio;    // of this gain to the last [1]
+    real ratio;    // of gains to those before them, the largest of late [1]
     real estimate; // of the relative error in the energy norm after this step [1]
     real steps;    // done, this one included [1]
 };
 
 // Largest ratio that the geometric tail is trusted with: beyond it a tail of twenty steps is assumed. A first step has
-// no ratio: what is left is taken to be as much as what was gained. A single ratio may be lucky, as small grids with
-// sharp discs have shown: below kSecondRatio it is not believed. Where rounding leaves no positive pq no step is taken,
-// and (r, z), which is about the squared error, says what is left.
+// no ratio: what is left is taken to be as much as what was gained. Gains rise and fall where convergence is slow, so a
+// ratio is forgotten by kMemory per step only. A single ratio may be lucky, as small grids with sharp discs have shown:
+// below kSecondRatio it is not believed. Where rounding leaves no positive pq no step is taken, and (r, z), which is
+// about the squared error, says what is left. Constants have few binary digits, for compilers of shaders round a float
+// in a double sum later than C++ does.
 CgStep stepOf(real pq, real rz, real energy, real lastGain, real lastRatio, real steps)
 {
-    const real kMostRatio = real(0.95f), kLeastRatio = real(0.01f), kFirstRatio = real(0.5f);
-    const real kSecondRatio = real(0.1f);
+    const real kMostRatio = real(0.953125f), kLeastRatio = real(0.0078125f), kFirstRatio = real(0.5f);
+    const real kSecondRatio = real(0.09375f), kMemory = real(0.8125f);
     CgStep     now;
     now.alpha = pq > real(0.0f) ? rz / pq : real(0.0f);
     now.gain  = now.alpha * rz;
     now.steps = steps + real(1.0f);
-    now.ratio = lastGain > real(0.0f) ? now.gain / lastGain : real(0.0f);
-    real rho  = steps == real(0.0f) && lastGain == real(0.0f) ? kFirstRatio : max(now.ratio, lastRatio);
+    now.ratio = lastGain > real(0.0f) ? max(now.gain / lastGain, kMemory * lastRatio) : real(0.0f);
+    real rho  = steps == real(0.0f) && lastGain == real(0.0f) ? kFirstRatio : now.ratio;
     rho       = min(max(rho, lastRatio > real(0.0f) ? kLeastRatio : kSecondRatio), kMostRatio);
     real left = pq > real(0.0f) ? now.gain * rho / (real(1.0f) - rho) : abs(rz);
     real all  = max(max(energy, real(0.0f)) + now.gain, left); // an estimate is at most 1

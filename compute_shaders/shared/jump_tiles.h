@@ -6,8 +6,6 @@
 //
 // The includer provides  float rigidity(int i, int j).
 
-const float kJump = 3.0f;
-
 bool jumpsAround(PlateLevel g, int i, int j)
 {
     float least = rigidity(i, j), most = least;

@@ -38,16 +38,27 @@ real secondDifference(real before, real middle, real after)
     return (after - middle) - (middle - before);
 }
 
+// Bending moments per rigidity; on a side along which the other one is condensed out, if `onHinge`.
+real bendingX(PlateLevel g, bool onHinge, real p, real q)
+{
+    return onHinge ? real(g.exx) * p : real(g.kxx) * p + real(g.kxz) * q;
+}
+
+real bendingZ(PlateLevel g, bool onHinge, real p, real q)
+{
+    return onHinge ? real(g.ezz) * q : real(g.kzz) * q + real(g.kxz) * p;
+}
+
 // Bending moment along x of the node in column i, row j; zero where none acts, on hinged sides and outside.
 real momentX(PlateLevel g, int i, int j, real nodeRigidity, real p, real q)
 {
-    real m = nodeRigidity * (isHingedZ(g, j) ? real(g.exx) * p : real(g.kxx) * p + real(g.kxz) * q);
+    real m = nodeRigidity * bendingX(g, isHingedZ(g, j), p, q);
     return i < 0 || i > g.cellsX || isHingedX(g, i) ? real(0) : m;
 }
 
 real momentZ(PlateLevel g, int i, int j, real nodeRigidity, real p, real q)
 {
-    real m = nodeRigidity * (isHingedX(g, i) ? real(g.ezz) * q : real(g.kzz) * q + real(g.kxz) * p);
+    real m = nodeRigidity * bendingZ(g, isHingedX(g, i), p, q);
     return j < 0 || j > g.cellsZ || isHingedZ(g, j) ? real(0) : m;
 }
 
@@ -63,6 +74,14 @@ real nodeShare(PlateLevel g, int i, int j)
 {
     real x = i == 0 || i == g.cellsX ? real(0.5f) : real(1.0f);
     return j == 0 || j == g.cellsZ ? real(0.5f) * x : x;
+}
+
+// The sum of a node from the moments around it; `weight` is the foundation's, with the node's share.
+real forceFrom(real mw, real mx, real me, real ms, real mz, real mn, real tsw, real tse, real tnw, real tne, real weight, real c)
+{
+    real bending  = secondDifference(mw, mx, me) + secondDifference(ms, mz, mn);
+    real twisting = (tne - tnw) - (tse - tsw);
+    return (bending + twisting) + weight * c;
 }
 
 //                 i-2    i-1    i     i+1    i+2
@@ -100,7 +119,5 @@ real operatorAt(PlateLevel g, int i, int j)
     real tnw = twistingMoment(g, i - 1, j, (Dw + Dc) + (Dnw + Dn), w1, c, nw, n1);
     real tne = twistingMoment(g, i, j, (Dc + De) + (Dn + Dne), c, e1, n1, ne);
 
-    real bending  = secondDifference(mw, mx, me) + secondDifference(ms, mz, mn);
-    real twisting = (tne - tnw) - (tse - tsw);
-    return (bending + twisting) + real(g.bed) * nodeShare(g, i, j) * c;
+    return forceFrom(mw, mx, me, ms, mz, mn, tsw, tse, tnw, tne, real(g.bed) * nodeShare(g, i, j), c);
 }

@@ -8,6 +8,8 @@
 namespace palp::shared {
 #endif
 
+const float kJump = 3.0f; // a rigidity that varies by more within 3 x 3 nodes jumps [1]
+
 const int kTile = 8; // nodes along either side: a workgroup of plate_relax_tile.comp
 
 // Every device takes so many workgroups along x; tiles beyond get no extra sweeps, which costs steps, not accuracy.

@@ -1,5 +1,6 @@
 #include "engine/core/npy.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -110,19 +111,23 @@ std::size_t numberSize(const Header& header, const std::string& name)
 std::array<int, 2> shapeOf(const Header& header, const std::string& name)
 {
     std::vector<std::uint64_t> sizes;
-    std::string_view           rest = header.shape;
-    bool                       good = rest.starts_with('(') && rest.ends_with(')');
+    std::string_view           rest  = header.shape;
+    bool                       good  = rest.starts_with('(') && rest.ends_with(')');
+    constexpr std::uint64_t    kMost = std::numeric_limits<int>::max();
     while (good) {
         rest.remove_prefix(std::min(rest.find_first_not_of("(, "), rest.size()));
         if (rest.empty() || rest == ")") break;
         std::uint64_t size  = 0;
         const auto [end, e] = std::from_chars(rest.data(), rest.data() + rest.size(), size);
-        good                = e == std::errc();
+        if (e == std::errc::result_out_of_range) size = kMost + 1;
+        good = e != std::errc::invalid_argument;
         rest.remove_prefix(std::size_t(end - rest.data()));
         sizes.push_back(size);
     }
-    constexpr std::uint64_t kMost = std::numeric_limits<int>::max();
-    if (!good || sizes.size() != 2 || sizes[0] < 1 || sizes[1] < 1 || sizes[0] > kMost || sizes[1] > kMost)
+    if (good && sizes.size() == 2 && std::max(sizes[0], sizes[1]) > kMost)
+        throw Error(name + ": the array is too large: expected at most " + std::to_string(kMost) +
+                    " rows and columns, found shape " + shortened(header.shape));
+    if (!good || sizes.size() != 2 || sizes[0] < 1 || sizes[1] < 1)
         throw Error(name + ": expected an array of two dimensions, shape (m, n) with m, n >= 1, found shape " +
                     shortened(header.shape));
     return {int(sizes[0]), int(sizes[1])};

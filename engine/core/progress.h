@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstddef>
 #include <string>
+#include <thread>
 
 namespace palp {
 
@@ -21,12 +22,19 @@ public:
     /// For work that cannot count its steps and is known to last: draws the line at once.
     void lasts(const std::string& howLong);
 
+    /// For work that cannot count its steps and may last: draws the line after two seconds and then the seconds that
+    /// went by, from a thread of its own, until the object goes. No other call may follow.
+    void mayLast();
+
 private:
     using Clock = std::chrono::steady_clock;
+    void draw(const std::string& state);
+
     std::string       what_;
     bool              onTerminal_;
     bool              drawn_ = false;
     Clock::time_point next_;
+    std::jthread      ticker_; ///< of mayLast()
 };
 
 } // namespace palp

@@ -93,6 +93,10 @@ struct Region {
 void readLine(SpatialLaw& law, const JsonObject& object, const Region& region)
 {
     object.allowOnly({"law", "from", "to", "axis", "start", "end"});
+    if (object.has("start") != object.has("end"))
+        throw Error(object.where() + ": give \"start\" and \"end\" or neither, found one of them");
+    if (object.has("axis") && object.has("start"))
+        throw Error(object.where() + ": give \"axis\", or \"start\" and \"end\", not both");
     const bool        plane = region.space == SpatialLaw::Space::plane;
     const std::string axis  = object.has("axis") ? object.text("axis") : "x";
     if (axis != "x" && axis != "z" && (axis != "y" || plane))

@@ -50,7 +50,7 @@ struct SpatialLaw {
 /// | value | constant | the value |
 /// | from, to | all others | see SpatialLaw |
 /// | axis ("x", "y", "z") | linear, hyperbolic, exponential | runs across [low, high] along that axis; "x" if absent |
-/// | start, end | the same three | overrides axis |
+/// | start, end | the same three | the line, instead of an axis: both or neither |
 /// | centre, centres | gaussian, disc | one point, or a list |
 /// | sigma / radius / edge | gaussian / disc / checker | SpatialLaw::width |
 /// | low, high | box | corners |

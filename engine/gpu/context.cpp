@@ -1,140 +1,22 @@
 #include "engine/gpu/context.h"
 
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "engine/core/contract.h"
-#include "engine/gpu/command_list.h"
+#include "engine/gpu/backend.h"
+#include "engine/gpu/host_device.h"
 #include "engine/gpu/vulkan_handles.h"
 
 namespace palp::gpu {
 namespace {
 
-// Hardware: the kernel drivers of AMD, Intel and NVIDIA reset a device that makes no progress for 2 to 10 s; waiting
-// longer only hides that. Software has no such watchdog and is legitimately slow: a validated multigrid cycle on a
-// large grid lasts tens of seconds.
-constexpr double kPatienceHardware = 10;  // [s]
-constexpr double kPatienceSoftware = 300; // [s]
-
-const char* nameOf(VkResult result)
+std::unique_ptr<Context::Handles> open(const ContextSettings& settings)
 {
-    switch (result) {
-    case VK_ERROR_OUT_OF_HOST_MEMORY:
-        return "no host memory left";
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-        return "no device memory left";
-    case VK_ERROR_DEVICE_LOST:
-        return "the device is lost";
-    case VK_ERROR_INITIALIZATION_FAILED:
-        return "initialization failed";
-    case VK_ERROR_MEMORY_MAP_FAILED:
-        return "mapping failed";
-    case VK_ERROR_FEATURE_NOT_PRESENT:
-        return "a feature is not present";
-    case VK_ERROR_TOO_MANY_OBJECTS:
-        return "too many objects";
-    default:
-        return "unexpected result";
-    }
+    if (settings.device == kHostDevice) return std::make_unique<HostContext>();
+    return std::make_unique<VulkanContext>(settings);
 }
 
 } // namespace
 
-void check(VkResult result, const char* what)
-{
-    if (result == VK_SUCCESS) return;
-    const std::string sentence =
-        std::string("the GPU cannot ") + what + ": " + nameOf(result) + " (" + std::to_string(result) + ")";
-    switch (result) {
-    case VK_ERROR_OUT_OF_HOST_MEMORY:
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-        throw DeviceLost(sentence + "; try fewer cells");
-    case VK_ERROR_DEVICE_LOST:
-        throw DeviceLost(sentence);
-    default:
-        throw Error(sentence);
-    }
-}
-
-Context::Handles::Handles(const ContextSettings& settings) : instance(std::make_unique<Instance>(settings.validation))
-{
-    const std::vector<Candidate>   found = candidates(*instance);
-    std::vector<DeviceDescription> list;
-    for (const Candidate& candidate : found) list.push_back(candidate.description);
-    describe(found[chooseDevice(list, settings.device)]);
-    patience = settings.patience > 0 ? settings.patience : software ? kPatienceSoftware : kPatienceHardware;
-    open();
-}
-
-Context::Handles::~Handles()
-{
-    if (atWork()) {
-        (void)instance.release();
-        return;
-    }
-    if (fence) vkDestroyFence(device, fence, nullptr);
-    if (device) vkDestroyDevice(device, nullptr);
-}
-
-void Context::Handles::describe(const Candidate& candidate)
-{
-    description         = candidate.description;
-    physical            = candidate.physical;
-    native              = candidate.limits;
-    family              = candidate.family;
-    timestampBits       = candidate.timestampBits;
-    software            = description.kind == "software";
-    bitExact            = candidate.driver == VK_DRIVER_ID_MESA_LLVMPIPE;
-    limits.buffer       = std::size_t(std::min<VkDeviceSize>(native.maxStorageBufferRange, candidate.maxBufferBytes));
-    limits.invocations  = native.maxComputeWorkGroupInvocations;
-    limits.sharedMemory = native.maxComputeSharedMemorySize;
-    vkGetPhysicalDeviceMemoryProperties(physical, &memory);
-}
-
-void Context::Handles::open()
-{
-    const float priority       = 1;
-    auto        queueInfo      = typed<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
-    queueInfo.queueFamilyIndex = family;
-    queueInfo.queueCount       = 1;
-    queueInfo.pQueuePriorities = &priority;
-
-    auto layout = typed<VkPhysicalDeviceScalarBlockLayoutFeatures>(
-        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES);
-    layout.scalarBlockLayout = VK_TRUE;
-    auto features            = typed<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &layout);
-    features.features.shaderFloat64 = description.float64;
-    auto info                       = typed<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features);
-    info.queueCreateInfoCount       = 1;
-    info.pQueueCreateInfos          = &queueInfo;
-    if (const VkResult result = vkCreateDevice(physical, &info, nullptr, &device); result != VK_SUCCESS) {
-        device = VK_NULL_HANDLE;
-        throw DeviceError("the GPU " + description.name + " cannot be opened: " + nameOf(result) + " (" +
-                          std::to_string(result) + ")");
-    }
-    vkGetDeviceQueue(device, family, 0, &queue);
-    if (instance->hasDebugUtils())
-        setObjectName = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
-            vkGetInstanceProcAddr(instance->get(), "vkSetDebugUtilsObjectNameEXT"));
-    const auto fenceInfo = typed<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
-    if (const VkResult result = vkCreateFence(device, &fenceInfo, nullptr, &fence); result != VK_SUCCESS) {
-        vkDestroyDevice(device, nullptr); // no destructor runs for what was never built
-        check(result, "make a fence");
-    }
-}
-
-void Context::Handles::setName(VkObjectType type, std::uint64_t handle, const std::string& name) const
-{
-    if (!setObjectName) return;
-    auto info         = typed<VkDebugUtilsObjectNameInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT);
-    info.objectType   = type;
-    info.objectHandle = handle;
-    info.pObjectName  = name.c_str();
-    setObjectName(device, &info); // a name that is not kept does no harm
-}
-
-Context::Context(const ContextSettings& settings) : handles_(std::make_unique<Handles>(settings)) {}
+Context::Context(const ContextSettings& settings) : handles_(open(settings)) {}
 Context::~Context()                             = default;
 Context::Context(Context&&) noexcept            = default;
 Context& Context::operator=(Context&&) noexcept = default;
@@ -147,33 +29,17 @@ void Context::run(CommandList& list)
 
 void Context::run(std::span<CommandList* const> lists)
 {
-    std::vector<VkCommandBuffer> commands;
     for (const CommandList* list : lists) {
         PALP_EXPECT(list->ended(), "a command list runs after end()");
         PALP_EXPECT(&list->handles().context == handles_.get(), "a command list runs on the context it was made from");
-        commands.push_back(list->handles().commands);
     }
-    if (handles_->abandoned) throw DeviceLost("the GPU " + device().name + " hung before and is not used any more");
-
-    check(vkResetFences(handles_->device, 1, &handles_->fence), "reset a fence");
-    auto submit               = typed<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
-    submit.commandBufferCount = std::uint32_t(commands.size());
-    submit.pCommandBuffers    = commands.data();
-    check(vkQueueSubmit(handles_->queue, 1, &submit, handles_->fence), "take a command list");
-    const auto     nanoseconds = std::uint64_t(std::ceil(handles_->patience * 1e9));
-    const VkResult result      = vkWaitForFences(handles_->device, 1, &handles_->fence, VK_TRUE, nanoseconds);
-    if (result == VK_TIMEOUT || result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY)
-        handles_->abandoned = true;
-    if (result == VK_TIMEOUT)
-        throw DeviceLost("the GPU " + device().name + " did not finish within " + std::to_string(handles_->patience) +
-                         " s; try fewer cells");
-    check(result, "finish a command list");
+    handles_->run(lists);
     for (const CommandList* list : lists) list->handles().ran = true;
 }
 
 std::vector<std::string> Context::takeMessages()
 {
-    return handles_->instance->takeMessages();
+    return handles_->takeMessages();
 }
 
 const DeviceDescription& Context::device() const noexcept

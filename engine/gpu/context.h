@@ -22,7 +22,7 @@ enum class Validation {
 };
 
 struct ContextSettings {
-    std::string device     = "auto"; ///< see chooseDevice()
+    std::string device     = "auto"; ///< kHostDevice, or see chooseDevice()
     Validation  validation = Validation::off;
     double      patience   = 0; ///< [s] how long a submission may take; 0: 10 s, or 300 s for a device in software
 };
@@ -34,7 +34,8 @@ struct Limits {
     std::size_t   sharedMemory = 0; ///< [byte] per workgroup
 };
 
-/// One device, opened for computing, with one queue. Buffers, kernels and command lists are made from it and must go
+/// One device, opened for computing, with one queue: Vulkan's, or the host, whose kernels are functions and whose lists
+/// run on the calling thread. Buffers, kernels and command lists are made from it and must go
 /// before it does; it may be moved meanwhile. \thread one at a time, together with everything made from it
 class Context {
 public:
@@ -61,7 +62,7 @@ public:
     [[nodiscard]] const DeviceDescription& device() const noexcept;
     [[nodiscard]] const Limits&            limits() const noexcept;
 
-    /// Whether results equal those of C++ without contraction, bit for bit: true for lavapipe, whose compiler neither
+    /// Whether results equal those of C++ without contraction, bit for bit: true for the host, and for lavapipe, whose compiler neither
     /// fuses nor re-associates and whose division and square root are correctly rounded.
     [[nodiscard]] bool bitExact() const noexcept;
 

@@ -28,7 +28,7 @@ std::string joined(const std::vector<std::string>& reasons)
     return text;
 }
 
-[[noreturn]] void refuse(const Devices& devices, const std::string& sentence)
+std::string withDevices(const std::string& sentence, const Devices& devices)
 {
     std::string text = sentence;
     if (devices.empty())
@@ -36,7 +36,20 @@ std::string joined(const std::vector<std::string>& reasons)
     for (const DeviceDescription& device : devices)
         text += "\n  " + std::to_string(device.index) + "  " + device.name + " (" + device.kind +
                 "): " + (device.refusals.empty() ? "usable" : joined(device.refusals));
-    throw DeviceError(text);
+    return text;
+}
+
+[[noreturn]] void refuse(const Devices& devices, const std::string& sentence)
+{
+    throw DeviceError(withDevices(sentence, devices));
+}
+
+/// Where no device can be used, no other word would have done.
+[[noreturn]] void refuseWord(const Devices& devices, const std::string& sentence)
+{
+    if (std::ranges::none_of(devices, [](const DeviceDescription& device) { return device.refusals.empty(); }))
+        refuse(devices, sentence);
+    throw UnknownDevice(withDevices(sentence, devices));
 }
 
 /// The first usable device of a kind.
@@ -66,27 +79,28 @@ std::size_t withName(const Devices& devices, std::string_view wanted)
         if (lower(devices[n].name).find(part) != std::string::npos)
             (devices[n].refusals.empty() ? usable : refused).push_back(n);
     const std::string quoted = std::string("'").append(wanted).append("'");
-    if (usable.size() > 1) refuse(devices, "several GPUs are called " + quoted + "; say which by its index");
+    if (usable.size() > 1) refuseWord(devices, "several GPUs are called " + quoted + "; say which by its index");
     if (usable.size() == 1) return usable.front();
     if (!refused.empty()) refuse(devices, "the GPU " + quoted + " cannot be used");
-    refuse(devices, "no GPU is called " + quoted + "; expected auto, lavapipe, an index or part of a name");
+    refuseWord(devices, "no GPU is called " + quoted + "; expected auto, lavapipe, an index or part of a name");
 }
 
 } // namespace
 
 std::size_t chooseDevice(const Devices& devices, std::string_view wanted)
 {
-    if (wanted == "auto") {
+    const std::string word = lower(wanted);
+    if (word == "auto") {
         for (const std::string_view kind : kKinds)
             if (const auto found = firstOf(devices, kind)) return *found;
         refuse(devices, "no GPU can be used");
     }
-    if (wanted == "lavapipe") {
+    if (word == "lavapipe") {
         if (const auto found = firstOf(devices, "software")) return *found;
         refuse(devices, "no GPU in software can be used (package mesa-vulkan-drivers)");
     }
     if (wanted.empty())
-        refuse(devices, "an empty word names no GPU; expected auto, lavapipe, an index or part of a name");
+        refuseWord(devices, "an empty word names no GPU; expected auto, lavapipe, an index or part of a name");
     if (const auto found = withIndex(devices, wanted)) {
         if (!devices[*found].refusals.empty()) refuse(devices, "GPU " + std::string(wanted) + " cannot be used");
         return *found;

@@ -10,6 +10,13 @@ public:
     using Error::Error;
 };
 
+/// Nothing fits the word that names a device, or too much does, and other devices could be used: bad usage. The
+/// message has one line per device; programs print it and exit with 2.
+class UnknownDevice : public Error {
+public:
+    using Error::Error;
+};
+
 /// The device went away, hangs or has no memory left while it was in use. What lived on it is gone; a new Context may
 /// work, a smaller problem as well.
 class DeviceLost : public Error {

@@ -85,6 +85,22 @@ void describeModern(Candidate& candidate)
         candidate.description.refusals.push_back("it does not lay structs out as C++ does (scalarBlockLayout)");
 }
 
+/// What the kernels of this project need at most; the smallest devices that Vulkan allows have less.
+void refuseSmall(Candidate& candidate)
+{
+    constexpr std::uint32_t kBuffers = 9, kInvocations = 256, kPushBytes = 128, kSharedBytes = 16 << 10;
+    const auto              refuse = [&](const char* what, std::uint32_t has, std::uint32_t needed) {
+        if (has < needed)
+            candidate.description.refusals.push_back("its limit of " + std::to_string(has) + " " + what +
+                                                                  " is below the " + std::to_string(needed) + " needed");
+    };
+    const VkPhysicalDeviceLimits& limits = candidate.limits;
+    refuse("buffers per kernel", limits.maxPerStageDescriptorStorageBuffers, kBuffers);
+    refuse("invocations per workgroup", limits.maxComputeWorkGroupInvocations, kInvocations);
+    refuse("bytes of push constants", limits.maxPushConstantsSize, kPushBytes);
+    refuse("bytes of shared memory", limits.maxComputeSharedMemorySize, kSharedBytes);
+}
+
 Candidate describe(VkPhysicalDevice physical, int index)
 {
     VkPhysicalDeviceProperties properties;
@@ -103,6 +119,7 @@ Candidate describe(VkPhysicalDevice physical, int index)
     else
         candidate.description.refusals.push_back("it speaks Vulkan " + candidate.description.api +
                                                  ", and 1.2 is needed");
+    refuseSmall(candidate);
     findQueue(candidate);
     return candidate;
 }

@@ -9,6 +9,9 @@
 
 namespace palp::gpu {
 
+/// What the processor of this machine is called as a device; it needs no driver and is not in the list.
+inline constexpr std::string_view kHostDevice = "host";
+
 /// One device as the drivers describe it.
 struct DeviceDescription {
     int                      index = 0;       ///< place in the list of this machine
@@ -28,8 +31,9 @@ struct DeviceDescription {
 ///
 /// \param wanted  "auto": the first usable one of the best kind: discrete, integrated, virtual, software, other;
 ///                "lavapipe": a software device; an INDEX of the list; or part of a NAME, whatever the case, that fits
-///                one usable device only
-/// \throws DeviceError with one line per device if nothing fits
+///                one usable device only. The two words in any case
+/// \throws UnknownDevice if the word is wrong and another one would do; DeviceError if what it names cannot be used, or
+///         no device can. Both with one line per device
 /// \thread pure
 [[nodiscard]] std::size_t chooseDevice(const std::vector<DeviceDescription>& devices, std::string_view wanted);
 

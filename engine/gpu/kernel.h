@@ -7,15 +7,6 @@
 
 namespace palp::gpu {
 
-/// A compiled shader and what it expects. The arrays live as long as the program: see palp_shader() in
-/// compute_shaders/CMakeLists.txt.
-struct KernelCode {
-    const char*                    name = "";
-    std::span<const std::uint32_t> spirv;
-    int                            buffers   = 0; ///< storage buffers at bindings 0 .. buffers-1 of set 0
-    int                            pushBytes = 0; ///< [byte] size of the push constants, at most 128
-};
-
 /// Invocations per workgroup; a multiple of 8 along x serves every device known.
 struct Workgroup {
     std::uint32_t x = 64, y = 1, z = 1;
@@ -24,6 +15,28 @@ struct Workgroup {
 /// Workgroups per dispatch.
 struct Groups {
     std::uint32_t x = 1, y = 1, z = 1;
+};
+
+/// One dispatch as a kernel on the host sees it.
+struct HostDispatch {
+    void* const*         buffers;   ///< what is bound, in order
+    const void*          push;      ///< constants, as laid out in the shader
+    const std::uint32_t* constants; ///< specialization constants 3, 4, ...
+    Workgroup            workgroup;
+    Groups               groups; ///< none is 0
+};
+
+/// A kernel for the host: does what all invocations of the dispatch do.
+using HostKernel = void (*)(const HostDispatch&);
+
+/// A compiled shader and what it expects. The arrays live as long as the program: see palp_shader() in
+/// compute_shaders/CMakeLists.txt.
+struct KernelCode {
+    const char*                    name = "";
+    std::span<const std::uint32_t> spirv;
+    int                            buffers   = 0;       ///< storage buffers at bindings 0 .. buffers-1 of set 0
+    int                            pushBytes = 0;       ///< [byte] size of the push constants, at most 128
+    HostKernel                     host      = nullptr; ///< the same for the host, if there is one
 };
 
 /// A shader with its constants fixed, ready to be dispatched. Drivers compile it at construction or, lavapipe, at its

@@ -5,22 +5,27 @@
 
 #include <vulkan/vulkan.h>
 
-#include "engine/gpu/command_list.h"
+#include "engine/gpu/backend.h"
 #include "engine/gpu/vulkan_instance.h"
 
-// What the public classes of engine/gpu hold. Internal to the layer: no other header names a type of Vulkan, except
-// vulkan_instance.h.
+// Devices that Vulkan offers. Internal to the layer: no other header names a type of Vulkan, except vulkan_instance.h.
 
 namespace palp::gpu {
 
 /// \throws DeviceLost for a lost device or missing memory, Error for any other failure; `what` completes "cannot ..."
 void check(VkResult result, const char* what);
 
-struct Context::Handles {
-    explicit Handles(const ContextSettings& settings);
-    ~Handles();
-    Handles(const Handles&)            = delete;
-    Handles& operator=(const Handles&) = delete;
+class VulkanContext : public Context::Handles {
+public:
+    explicit VulkanContext(const ContextSettings& settings);
+    ~VulkanContext() override;
+
+    std::unique_ptr<Buffer::Handles>      makeBuffer(std::string name, std::size_t bytes, Intent intent) override;
+    std::unique_ptr<Kernel::Handles>      makeKernel(const KernelCode& code, Workgroup workgroup,
+                                                     std::span<const std::uint32_t> constants) override;
+    std::unique_ptr<CommandList::Handles> makeList() override;
+    void                                  run(std::span<CommandList* const> lists) override;
+    std::vector<std::string>              takeMessages() override;
 
     /// Whether an abandoned submission still runs: then nothing may be destroyed, and leaking is better than crashing.
     [[nodiscard]] bool atWork() const { return abandoned && vkGetFenceStatus(device, fence) == VK_NOT_READY; }
@@ -29,10 +34,6 @@ struct Context::Handles {
     void setName(VkObjectType type, std::uint64_t handle, const std::string& name) const;
 
     std::unique_ptr<Instance>        instance;
-    DeviceDescription                description;
-    Limits                           limits;
-    bool                             software = false;
-    bool                             bitExact = false;
     double                           patience = 0; ///< [s]
     VkPhysicalDevice                 physical = VK_NULL_HANDLE;
     VkPhysicalDeviceLimits           native{};
@@ -43,7 +44,6 @@ struct Context::Handles {
     VkQueue                          queue         = VK_NULL_HANDLE;
     VkFence                          fence         = VK_NULL_HANDLE;
     std::uint32_t                    allocations   = 0;     ///< live ones, of native.maxMemoryAllocationCount
-    std::size_t                      allocated     = 0;     ///< [byte] of the live ones
     bool                             abandoned     = false; ///< a submission outlasted the patience
     PFN_vkSetDebugUtilsObjectNameEXT setObjectName = nullptr;
 
@@ -57,7 +57,7 @@ template <class Handle, auto Destroy>
 class Owned {
 public:
     Owned() = default;
-    Owned(const Context::Handles& context, Handle handle) : context_(&context), handle_(handle) {}
+    Owned(const VulkanContext& context, Handle handle) : context_(&context), handle_(handle) {}
     ~Owned()
     {
         if (handle_ && !context_->atWork()) Destroy(context_->device, handle_, nullptr);
@@ -73,54 +73,58 @@ public:
     [[nodiscard]] Handle get() const noexcept { return handle_; }
 
 private:
-    const Context::Handles* context_ = nullptr;
-    Handle                  handle_{};
+    const VulkanContext* context_ = nullptr;
+    Handle               handle_{};
 };
 
-struct Buffer::Handles {
-    Handles(Context::Handles& context, std::string name, std::size_t bytes);
-    ~Handles();
-    Handles(const Handles&)            = delete;
-    Handles& operator=(const Handles&) = delete;
+struct VulkanBuffer : Buffer::Handles {
+    VulkanBuffer(VulkanContext& context, std::string name, std::size_t bytes);
+    ~VulkanBuffer() override;
 
-    Context::Handles&                   context;
-    std::string                         name;
-    std::size_t                         bytes;
+    void makeVisibleToHost() override;
+
+    VulkanContext&                      context;
     Owned<VkDeviceMemory, vkFreeMemory> memory; // outlives the buffer that is bound to it
     Owned<VkBuffer, vkDestroyBuffer>    buffer;
-    void*                               mapped   = nullptr;
     bool                                coherent = true;
 };
 
-struct Kernel::Handles {
-    KernelCode                                                 code;
-    Workgroup                                                  workgroup;
+struct VulkanKernel : Kernel::Handles {
+    using Handles::Handles;
+
     Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout> setLayout;
     Owned<VkPipelineLayout, vkDestroyPipelineLayout>           layout;
     Owned<VkPipeline, vkDestroyPipeline>                       pipeline;
 };
 
-struct CommandList::Handles {
-    explicit Handles(Context::Handles& context);
+class VulkanList : public CommandList::Handles {
+public:
+    explicit VulkanList(VulkanContext& context);
 
+    void dispatch(const Kernel& kernel, const Bindings& bindings, const Push& push, Groups groups) override;
+    void dispatchIndirect(const Kernel& kernel, const Bindings& bindings, const Push& push, const Buffer& groups,
+                          std::size_t offset) override;
+    void copy(const Buffer& from, std::size_t fromOffset, const Buffer& to, std::size_t toOffset,
+              std::size_t bytes) override;
+    void fill(const Buffer& buffer, std::uint32_t word) override;
+    void timestamp() override;
+    void end() override;
+
+    [[nodiscard]] std::vector<double> timestampsMilliseconds() const override;
+
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+
+private:
     /// The barrier that every command but the last is followed by: what was written is seen by what comes next.
-    void separate() const;
-    void finish();
-    void bind(const Kernel& kernel, const Bindings& bindings, const Push& push);
-    void timestamp();
+    void            separate() const;
+    void            bind(const Kernel& kernel, const Bindings& bindings, const Push& push);
+    VkDescriptorSet descriptorSet(const Kernel& kernel);
 
-    Context::Handles&                                             context;
+    VulkanContext&                                                gpu;
     Owned<VkCommandPool, vkDestroyCommandPool>                    commandPool; // frees the command buffer with it
-    VkCommandBuffer                                               commands = VK_NULL_HANDLE;
     std::vector<Owned<VkDescriptorPool, vkDestroyDescriptorPool>> descriptorPools;
     std::vector<Owned<VkQueryPool, vkDestroyQueryPool>>           queryPools;
     std::uint32_t                                                 timestamps = 0;
-    int                                                           dispatches = 0;
-    bool                                                          ended      = false;
-    bool                                                          ran        = false;
-
-private:
-    VkDescriptorSet descriptorSet(const Kernel& kernel);
 };
 
 } // namespace palp::gpu

@@ -173,22 +173,31 @@ void drawOverlays(SvgDrawing& svg, const PlotFrame& frame, const HeatMapSettings
     legend.push_back({"contact", drawContactCross});
 }
 
+/// Hollow, and wide enough for the contact's cross: the greatest value is often there.
+void drawHollowTriangle(SvgDrawing& svg, glm::dvec2 at, double radius)
+{
+    const glm::dvec2 left = at + radius * glm::dvec2(-1.05, -0.75), right = at + radius * glm::dvec2(1.05, -0.75);
+    const SvgPath    outline = SvgPath({left, right, at + radius * glm::dvec2(0, 1.15)}).close();
+    svg.path(outline, "none", {"#ffffff", 3.5});
+    svg.path(outline, "none", {"#000000", 1.5});
+}
+
 void drawExtremes(SvgDrawing& svg, const PlotFrame& frame, const HeatMapSettings& s, const FieldFacts& facts,
                   const Axis& values, std::vector<LegendEntry>& legend)
 {
-    constexpr double kAbove =
-        14; // the greatest value is often at the contact: its triangle points there from outside [px]
-    const auto mark = [&](const Extreme& e, Symbol symbol, double above, const std::string& name) {
-        const ChartPoint p    = {s.corner.x + e.i * s.grid.spacingX, s.corner.z + e.j * s.grid.spacingZ};
-        const glm::dvec2 at   = frame.pixel(p.x, p.z);
-        const bool       flip = above > 0 && at.y - above < frame.corner.y;
-        drawSymbol(svg, flip ? Symbol::triangleUp : symbol, at + glm::dvec2(0, flip ? above : -above), 5.5, "#000000");
-        legend.push_back(
-            {name + " " + values.text(e.value) + " at " + placeText(frame, p),
-             [symbol](SvgDrawing& to, glm::dvec2 centre) { drawSymbol(to, symbol, centre, 5, "#000000"); }});
+    const auto placeOf = [&](const Extreme& e) {
+        return ChartPoint{s.corner.x + e.i * s.grid.spacingX, s.corner.z + e.j * s.grid.spacingZ};
     };
-    mark(facts.most, Symbol::triangleDown, kAbove, "max");
-    mark(facts.least, Symbol::diamond, 0, "min");
+    const auto entry = [&](const char* name, const Extreme& e) {
+        return std::string(name) + " " + values.text(e.value) + " at " + placeText(frame, placeOf(e));
+    };
+    const auto pixelOf = [&](const Extreme& e) { return frame.pixel(placeOf(e).x, placeOf(e).z); };
+
+    drawHollowTriangle(svg, pixelOf(facts.most), 12);
+    legend.push_back({entry("max", facts.most), [](SvgDrawing& to, glm::dvec2 at) { drawHollowTriangle(to, at, 6); }});
+    drawSymbol(svg, Symbol::diamond, pixelOf(facts.least), 5.5, "#000000");
+    legend.push_back({entry("min", facts.least),
+                      [](SvgDrawing& to, glm::dvec2 at) { drawSymbol(to, Symbol::diamond, at, 5, "#000000"); }});
 }
 
 void addSwatch(std::vector<LegendEntry>& legend, const std::string& text, Rgb8 colour, bool hatched)

@@ -1,10 +1,17 @@
 #pragma once
+#include <cstddef>
 #include <vector>
 
 #include "compute_shaders/shared/plate_level.h"
 #include "engine/plate/plate.h"
 
 namespace palp {
+
+/// [1] of one load
+[[nodiscard]] inline std::size_t nodesOf(const shared::PlateLevel& g) noexcept
+{
+    return std::size_t(g.cellsX + 1) * std::size_t(g.cellsZ + 1);
+}
 
 /// A grid and ever coarser ones over the same rectangle, with what the multigrid shaders need to know of each.
 ///

@@ -50,7 +50,8 @@ inline constexpr int kFewestPlateCells = 4;
 }
 
 /// Why a plate cannot be solved, in one sentence: wrong shape, rigidity not positive, Poisson's ratio out of range,
-/// or edges that leave it free to move as a rigid body. Empty if it can.
+/// or edges that leave it free to move as a rigid body, but for a foundation that doubles cannot tell from none. Empty
+/// if it can.
 [[nodiscard]] std::optional<std::string> whyUnsolvable(const Plate& plate);
 
 /// What a solver says about one answer; a number that a solver does not have is empty.
@@ -59,8 +60,10 @@ struct SolveReport {
     std::optional<int>    iterations;       ///< [1]
     std::optional<double> errorEstimate;    ///< [1] relative, in the norm the solver documents
     std::optional<double> workUnits;        ///< [1] applications of the operator on the finest grid
+    bool                  converged = true; ///< false: the estimate exceeds what was asked for, or may be too low
     double                setUpMilliseconds = 0; ///< wall time from the rigidity to a ready solver: a factorisation, coarser grids
     double                milliseconds      = 0; ///< wall time of this solve
+    std::optional<double> deviceMilliseconds;    ///< of it, what the device was busy; empty if it has no clock
 };
 
 struct PlateSolution {

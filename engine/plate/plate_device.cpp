@@ -1,6 +1,7 @@
 #include "engine/plate/plate_device.h"
 
 #include <chrono>
+#include <cstdio>
 #include <optional>
 
 #include "engine/gpu/context.h"
@@ -10,6 +11,19 @@
 
 namespace palp {
 namespace {
+
+/// Beyond, factorising takes a minute and gigabytes; an answer that is not good, and says so, is better then.
+bool fitsReference(const PlateGrid& grid)
+{
+    return grid.nodes() <= 513 * 513;
+}
+
+std::string formatNumber(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1e", value);
+    return text;
+}
 
 bool sameButRigidity(const Plate& a, const Plate& b)
 {
@@ -46,16 +60,18 @@ struct PlateDevice::Vulkan {
     }
 };
 
-PlateDevice::PlateDevice(std::string_view wanted)
+PlateDevice::PlateDevice(std::string_view wanted, double patience)
 {
     if (wanted == "reference") return;
     try {
         gpu::ContextSettings settings;
-        settings.device = std::string(wanted);
-        vulkan_         = std::make_unique<Vulkan>(settings);
-        name_           = vulkan_->context.device().name;
-    } catch (const gpu::DeviceError& error) {
+        settings.device   = std::string(wanted);
+        settings.patience = patience;
+        vulkan_           = std::make_unique<Vulkan>(settings);
+        name_             = vulkan_->context.device().name;
+    } catch (const std::exception& error) { // no device, or one that fails while its kernels are compiled
         if (wanted != "auto") throw;
+        vulkan_.reset();
         note_ = error.what();
     }
 }
@@ -78,7 +94,9 @@ PlateSolution PlateDevice::solve(const Plate& plate, const NodeField& nodalForce
 {
     if (vulkan_) {
         try {
-            return vulkan_->solve(plate, nodalForce, tolerance);
+            PlateSolution solution = vulkan_->solve(plate, nodalForce, tolerance);
+            if (solution.report.converged || !fitsReference(plate.grid)) return solution;
+            note_ = "the multigrid solver stopped at an error of about " + formatNumber(*solution.report.errorEstimate);
         } catch (const gpu::DeviceLost& error) {
             note_ = error.what();
             name_ = "reference";

@@ -16,9 +16,12 @@
 #include "compute_shaders/cg_step_f64.spv.h"
 #include "compute_shaders/cg_update_f32.spv.h"
 #include "compute_shaders/cg_update_f64.spv.h"
-#include "compute_shaders/coarse_assemble.spv.h"
-#include "compute_shaders/coarse_factor.spv.h"
-#include "compute_shaders/coarse_solve.spv.h"
+#include "compute_shaders/coarse_assemble_f32.spv.h"
+#include "compute_shaders/coarse_assemble_f64.spv.h"
+#include "compute_shaders/coarse_factor_f32.spv.h"
+#include "compute_shaders/coarse_factor_f64.spv.h"
+#include "compute_shaders/coarse_solve_f32.spv.h"
+#include "compute_shaders/coarse_solve_f64.spv.h"
 #include "compute_shaders/jump_list.spv.h"
 #include "compute_shaders/jump_mark.spv.h"
 #include "compute_shaders/plate_apply_f32.spv.h"
@@ -52,6 +55,7 @@
 #include "compute_shaders/shared/tile_layout.h"
 #include "engine/core/contract.h"
 #include "engine/gpu/context.h"
+#include "engine/plate/host_kernels.h"
 
 namespace palp {
 namespace {
@@ -69,9 +73,14 @@ constexpr Shapes kSoftware{{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}};
 constexpr Shapes kHardware{{32, 4, 1}, {128, 1, 1}, {64, 1, 1}, {256, 1, 1}};
 
 template <class Push, std::size_t N>
-gpu::KernelCode code(const char* name, const std::uint32_t (&spirv)[N], int buffers)
+gpu::KernelCode code(const char* name, const std::uint32_t (&spirv)[N], int buffers, gpu::HostKernel host = nullptr)
 {
-    return {name, spirv, buffers, int(sizeof(Push))};
+    return {name, spirv, buffers, int(sizeof(Push)), host};
+}
+
+bool isHardware(const gpu::Context& context)
+{
+    return context.device().kind != "software" && context.device().kind != gpu::kHostDevice;
 }
 
 constexpr gpu::Workgroup kRegionShape{256, 1, 1}; // of plate_region.glsl
@@ -82,8 +91,7 @@ bool isFused(const gpu::Context& context, Schedule schedule)
     const bool fits = context.limits().sharedMemory >= sizeof(float) * shared::kTailPool &&
                       context.limits().invocations >= kRegionShape.x;
     PALP_EXPECT(fits || schedule != Schedule::fused, "the device's workgroups are too small for fused passes");
-    return schedule == Schedule::fused ||
-           (schedule == Schedule::automatic && fits && context.device().kind != "software");
+    return schedule == Schedule::fused || (schedule == Schedule::automatic && fits && isHardware(context));
 }
 
 PlateKernels::All::Fused fusedKernels(gpu::Context& context)
@@ -101,49 +109,51 @@ PlateKernels::All::Fused fusedKernels(gpu::Context& context)
 
 } // namespace
 
-PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule)
+PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule, Precision precision)
 {
     using namespace shared;
-    const Shapes& shapes = context.device().kind == "software" ? kSoftware : kHardware;
-    const bool    f64    = context.device().float64;
-    const auto    real   = [&](gpu::KernelCode f32Code, gpu::KernelCode f64Code) { return f64 ? f64Code : f32Code; };
-#define PALPATE_REAL(Push, name, buffers)                                                                              \
-    real(code<Push>(#name "_f32", name##_f32_spv, buffers), code<Push>(#name "_f64", name##_f64_spv, buffers))
-#define PALPATE_FLOAT(Push, name, buffers) code<Push>(#name, name##_spv, buffers)
-    const gpu::KernelCode lift32{"plate_lift_f32", plate_lift_f32_spv, 5},
-        lift64{"plate_lift_f64", plate_lift_f64_spv, 5};
+    const Shapes&      shapes = isHardware(context) ? kHardware : kSoftware;
+    const HostKernels& host   = *hostVariant().kernels;
+    const bool         f64    = context.device().float64 && precision == Precision::best;
+    const auto         real = [&](gpu::KernelCode f32Code, gpu::KernelCode f64Code) { return f64 ? f64Code : f32Code; };
+#define PALPATE_REAL(Push, name, function, buffers)                                                                    \
+    real(code<Push>(#name "_f32", name##_f32_spv, buffers, host.function##_f32),                                       \
+         code<Push>(#name "_f64", name##_f64_spv, buffers, host.function##_f64))
+#define PALPATE_FLOAT(Push, name, function, buffers) code<Push>(#name, name##_spv, buffers, host.function)
+    const gpu::KernelCode lift32{"plate_lift_f32", plate_lift_f32_spv, 5, 0, host.lift_f32},
+        lift64{"plate_lift_f64", plate_lift_f64_spv, 5, 0, host.lift_f64};
     constexpr gpu::Workgroup jumpTile{kTile, kTile, 1};
     const auto               kernel = [&](const gpu::KernelCode& what, gpu::Workgroup group) {
         return gpu::Kernel(context, what, group);
     };
     all_.reset(new All{f64,
-                       kernel(PALPATE_FLOAT(TransferPush, rigidity_coarsen, 2), shapes.tile),
-                       kernel(PALPATE_FLOAT(LevelPush, plate_divisor, 2), shapes.tile),
-                       kernel(PALPATE_FLOAT(LevelPush, jump_mark, 2), shapes.tile),
-                       kernel(PALPATE_FLOAT(LevelPush, jump_list, 2), shapes.reduce),
-                       kernel(PALPATE_FLOAT(LevelPush, coarse_assemble, 2), shapes.tile),
-                       kernel(PALPATE_FLOAT(LevelPush, coarse_factor, 2), shapes.alone),
-                       kernel(PALPATE_FLOAT(RelaxPush, plate_relax_first, 3), shapes.tile),
-                       kernel(PALPATE_FLOAT(RelaxPush, plate_relax, 6), shapes.tile),
-                       kernel(PALPATE_FLOAT(RelaxPush, plate_relax_tile, 6), jumpTile),
-                       kernel(PALPATE_FLOAT(RelaxPush, plate_copy_tile, 3), jumpTile),
-                       kernel(PALPATE_FLOAT(LevelPush, plate_residual, 4), shapes.tile),
-                       kernel(PALPATE_FLOAT(TransferPush, plate_restrict, 4), shapes.tile),
-                       kernel(PALPATE_FLOAT(TransferPush, plate_correct, 5), shapes.tile),
-                       kernel(PALPATE_FLOAT(LevelPush, coarse_solve, 3), shapes.alone),
-                       kernel(PALPATE_REAL(LevelPush, plate_start, 5), shapes.tile),
-                       kernel(PALPATE_REAL(TransferPush, plate_interpolate, 4), shapes.tile),
-                       kernel(PALPATE_REAL(TransferPush, plate_interpolate_first, 4), shapes.tile),
-                       kernel(PALPATE_REAL(VectorPush, cg_dots, 5), shapes.line),
-                       kernel(PALPATE_REAL(ScalarsPush, cg_beta, 2), shapes.reduce),
-                       kernel(PALPATE_REAL(VectorPush, cg_direction, 4), shapes.line),
-                       kernel(PALPATE_REAL(LevelPush, plate_apply, 3), shapes.tile),
-                       kernel(PALPATE_REAL(VectorPush, cg_step_dots, 3), shapes.line),
-                       kernel(PALPATE_REAL(ScalarsPush, cg_step, 3), shapes.reduce),
-                       kernel(PALPATE_REAL(VectorPush, cg_update, 6), shapes.line),
-                       kernel(PALPATE_REAL(VectorPush, plate_result, 3), shapes.line),
-                       kernel({"rigidity_nearest", rigidity_nearest_spv, 5}, shapes.tile),
-                       kernel({"rigidity_log_mean", rigidity_log_mean_spv, 5}, shapes.tile),
+                       kernel(PALPATE_FLOAT(TransferPush, rigidity_coarsen, coarsen, 2), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, plate_divisor, divisor, 2), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, jump_mark, jumpMark, 2), shapes.tile),
+                       kernel(PALPATE_FLOAT(LevelPush, jump_list, jumpList, 2), shapes.reduce),
+                       kernel(PALPATE_REAL(LevelPush, coarse_assemble, assemble, 2), shapes.tile),
+                       kernel(PALPATE_REAL(LevelPush, coarse_factor, factor, 3), shapes.alone),
+                       kernel(PALPATE_FLOAT(RelaxPush, plate_relax_first, relaxFirst, 3), shapes.tile),
+                       kernel(PALPATE_FLOAT(RelaxPush, plate_relax, relax, 6), shapes.tile),
+                       kernel(PALPATE_FLOAT(RelaxPush, plate_relax_tile, relaxTile, 6), jumpTile),
+                       kernel(PALPATE_FLOAT(RelaxPush, plate_copy_tile, copyTile, 3), jumpTile),
+                       kernel(PALPATE_FLOAT(LevelPush, plate_residual, residual, 4), shapes.tile),
+                       kernel(PALPATE_FLOAT(TransferPush, plate_restrict, restrict, 4), shapes.tile),
+                       kernel(PALPATE_FLOAT(TransferPush, plate_correct, correct, 5), shapes.tile),
+                       kernel(PALPATE_REAL(LevelPush, coarse_solve, coarseSolve, 3), shapes.alone),
+                       kernel(PALPATE_REAL(LevelPush, plate_start, start, 5), shapes.tile),
+                       kernel(PALPATE_REAL(TransferPush, plate_interpolate, interpolate, 4), shapes.tile),
+                       kernel(PALPATE_REAL(TransferPush, plate_interpolate_first, interpolateFirst, 4), shapes.tile),
+                       kernel(PALPATE_REAL(VectorPush, cg_dots, dots, 5), shapes.line),
+                       kernel(PALPATE_REAL(ScalarsPush, cg_beta, beta, 2), shapes.reduce),
+                       kernel(PALPATE_REAL(VectorPush, cg_direction, direction, 4), shapes.line),
+                       kernel(PALPATE_REAL(LevelPush, plate_apply, apply, 3), shapes.tile),
+                       kernel(PALPATE_REAL(VectorPush, cg_step_dots, stepDots, 3), shapes.line),
+                       kernel(PALPATE_REAL(ScalarsPush, cg_step, step, 3), shapes.reduce),
+                       kernel(PALPATE_REAL(VectorPush, cg_update, update, 6), shapes.line),
+                       kernel(PALPATE_REAL(VectorPush, plate_result, result, 3), shapes.line),
+                       kernel({"rigidity_nearest", rigidity_nearest_spv, 5, 0, host.rigidityNearest}, shapes.tile),
+                       kernel({"rigidity_log_mean", rigidity_log_mean_spv, 5, 0, host.rigidityLogMean}, shapes.tile),
                        kernel(real(lift32, lift64), shapes.line)});
 #undef PALPATE_REAL
 #undef PALPATE_FLOAT

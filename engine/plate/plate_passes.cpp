@@ -27,11 +27,6 @@ constexpr int           kTileSweeps   = 6; ///< extra ones where the rigidity ju
 constexpr std::uint32_t kMostPartials = 16384; ///< sums that a dot product is split into [1]
 constexpr std::uint32_t kTermsPerSum  = 64;    ///< that a sum has at least, unless there are too few partials [1]
 
-std::size_t nodesOf(const shared::PlateLevel& g)
-{
-    return std::size_t(g.cellsX + 1) * std::size_t(g.cellsZ + 1);
-}
-
 std::size_t tilesOf(const shared::PlateLevel& g)
 {
     return std::size_t(shared::tilesX(g)) * std::size_t(shared::tilesZ(g));
@@ -48,8 +43,8 @@ PlatePasses::PlatePasses(gpu::Context& context, const PlateKernels::All& kernels
                          std::uint32_t loads)
     : state(context, "state", kernels.realBytes() * shared::kStateWords * loads, Intent::device), context_(context),
       k(kernels), grids_(std::move(grids)), loads_(loads), partials_(partialsFor(nodesOf(level(0)))),
-      zeroes_(floats("zeroes", fieldSize(0))), band_(floats("band", bandSize())), factor_(floats("factor", bandSize())),
-      sums_(reals("partial sums", 2 * std::size_t(loads_) * partials_)),
+      zeroes_(floats("zeroes", fieldSize(0))), band_(reals("band", bandSize())), factor_(reals("factor", bandSize())),
+      lost_(floats("lost pivots", 1)), sums_(reals("partial sums", 2 * std::size_t(loads_) * partials_)),
       arguments_(context, "groups of dispatches", argumentBytes(), Intent::device),
       hostArguments_(context, "groups from the host", argumentBytes(), Intent::upload),
       hostTiles_(context, "numbers of tiles for the host", 4 * grids_.levels.size(), Intent::readback)
@@ -319,7 +314,8 @@ void PlatePasses::prepare(Recorder& pass)
     pass(k.assemble, {levels.back().rigidity, band_}, coarsest,
          k.assemble.groupsOver(std::uint32_t(shared::halfBand(coarsest.level) + 1),
                                std::uint32_t(nodesOf(coarsest.level))));
-    pass(k.factor, {band_, factor_}, coarsest, {1, 1, 1});
+    pass(k.factor, {band_, factor_, lost_}, coarsest, {1, 1, 1});
+    pass.list.copy(lost_, 0, hostTiles_, 4 * (levels.size() - 1), 4); // the coarsest level has no tiles
     if (!tail_) return;
     for (std::size_t l = tail_->first(); l + 1 < levels.size(); ++l)
         tail_->take(pass.list, l, levels[l].rigidity, levels[l].divisor);
@@ -365,14 +361,20 @@ void PlatePasses::Recorder::operator()(const Kernel& kernel, const gpu::Bindings
 bool PlatePasses::foundJumps() const
 {
     hostTiles_.makeVisibleToHost();
-    return hostTiles_.as<std::uint32_t>()[0] > 0;
+    return levels.size() > 1 && hostTiles_.as<std::uint32_t>()[0] > 0;
+}
+
+bool PlatePasses::isTooSoft() const
+{
+    hostTiles_.makeVisibleToHost();
+    return hostTiles_.as<std::uint32_t>()[levels.size() - 1] > 0;
 }
 
 double PlatePasses::workUnits(const PlateWork& of) const
 {
     double nodes = of.nodes;
     hostTiles_.makeVisibleToHost();
-    for (std::size_t l = 0; l < of.tileSweeps.size(); ++l)
+    for (std::size_t l = 0; l + 1 < of.tileSweeps.size(); ++l)
         nodes += double(of.tileSweeps[l]) * hostTiles_.as<std::uint32_t>()[l] * shared::kTile * shared::kTile;
     return nodes / double(nodesOf(level(0)));
 }

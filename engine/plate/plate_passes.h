@@ -63,6 +63,8 @@ public:
     void expectJumps(bool expected) noexcept { jumps_ = expected; }
     /// Whether the last prepare() that ran found jumps on the finest level.
     [[nodiscard]] bool foundJumps() const;
+    /// Whether the last prepare() that ran found a part of the plate so loosely held that rounding hides it.
+    [[nodiscard]] bool isTooSoft() const;
     /// In applications of the operator on the finest grid, with the tiles of the last prepare() [1].
     [[nodiscard]] double workUnits(const PlateWork& of) const;
     [[nodiscard]] int    dispatchesPerCycle() const noexcept { return dispatchesPerCycle_; } ///< as last recorded [1]
@@ -108,7 +110,7 @@ private:
     GridHierarchy            grids_;
     std::uint32_t            loads_, partials_;
 
-    gpu::Buffer              zeroes_, band_, factor_, sums_, arguments_, hostArguments_, hostTiles_;
+    gpu::Buffer              zeroes_, band_, factor_, lost_, sums_, arguments_, hostArguments_, hostTiles_;
     std::optional<PlateTail> tail_; ///< if the schedule is fused
     bool                     jumps_              = false;
     int                      dispatchesPerCycle_ = 0;

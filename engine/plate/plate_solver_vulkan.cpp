@@ -4,13 +4,17 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "compute_shaders/shared/cg_state.h"
 #include "compute_shaders/shared/plate_push.h"
+#include "compute_shaders/shared/tile_layout.h"
 #include "engine/core/contract.h"
+#include "engine/core/quantity.h"
 #include "engine/gpu/command_list.h"
 #include "engine/gpu/context.h"
 #include "engine/plate/grid_hierarchy.h"
@@ -47,7 +51,17 @@ constexpr int kSlots        = 3; ///< results in mapped memory: one is written, 
 constexpr int kStepsPerList = 4; ///< even, because directions take turns in two buffers [1]
 constexpr int kSweeps       = 2; ///< before and after the correction, on the finest level's cycles [1]
 
-constexpr double kJump = 3.0; ///< points that vary by less make no jump, see compute_shaders/shared/jump_tiles.h [1]
+constexpr int kMostGroups = 65535; ///< along x of a dispatch, on every device [1]
+
+constexpr double kRounding      = 1e-7; ///< of rigidities and answer to floats, twice 6e-8 rounded [1]
+constexpr double kFloatRounding = 5e-5; ///< of conjugate gradients in floats, at contrast 1000 and free sides [1]
+
+std::string shortest(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    return text;
+}
 
 } // namespace
 
@@ -82,14 +96,18 @@ struct VulkanPlateSolver::Impl {
     };
     std::optional<FromPoints> fromPoints; ///< empty while the rigidity is the host's
 
-    std::vector<CommandList>                     prepareList; ///< one, or none before it is recorded
-    std::array<std::vector<CommandList>, kSlots> coldList, warmList, moreList;
-    int                                          slot      = 0;
-    bool                                         jumps     = false; ///< what the lists are recorded for
-    bool                                         hasAnswer = false;
-    std::optional<double>                        deviceMilliseconds;
-
-    PlateWork coldWork, warmWork, stepsWork; ///< before the steps on the finest level; kStepsPerList of these
+    /// Recorded when first needed.
+    struct Lists {
+        std::array<std::optional<CommandList>, kSlots> cold, warm, more;
+        int                                            dispatchesPerCycle = 0;
+        PlateWork coldWork, warmWork, stepsWork; ///< before the steps on the finest level; kStepsPerList of these
+    };
+    std::optional<CommandList> prepareList;
+    std::array<Lists, 2>       lists;             ///< without and with extra sweeps where the rigidity jumps
+    bool                       jumps     = false; ///< which of them are used
+    int                        slot      = 0;
+    bool                       hasAnswer = false;
+    std::vector<double>        forceUnits; ///< of the last answers, per load [N]
 
     Impl(gpu::Context& device, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted)
         : Impl(device, kernels, given, wanted, gridHierarchy(given, largest(given.rigidity)))
@@ -98,7 +116,7 @@ struct VulkanPlateSolver::Impl {
 
     Impl(gpu::Context& device, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted,
          GridHierarchy grids)
-        : context(device), k(kernels), plate(given), settings(wanted), unitRigidity(largest(given.rigidity)),
+        : context(device), k(kernels), plate(given), settings(rounded(wanted)), unitRigidity(largest(given.rigidity)),
           loads(std::uint32_t(wanted.loads)), stiffness(grids.stiffness),
           passes(device, kernels, std::move(grids), loads),
           units(context, "metres per unit", 4 * std::size_t(loads), Intent::device),
@@ -110,6 +128,13 @@ struct VulkanPlateSolver::Impl {
         for (int s = 0; s < kSlots; ++s)
             results.emplace_back(context, "deflection " + std::to_string(s), 4 * plate.grid.nodes() * loads,
                                  Intent::readback);
+    }
+
+    /// The device compares in floats, and host and device must agree on when a solve is finished.
+    static Settings rounded(Settings wanted)
+    {
+        wanted.tolerance = double(float(wanted.tolerance));
+        return wanted;
     }
 
     static double largest(const NodeField& field)
@@ -146,11 +171,12 @@ struct VulkanPlateSolver::Impl {
         list.copy(hostRigidity, passes.levels[0].rigidity);
         passes.prepare(pass);
         list.end();
-        prepareList.push_back(std::move(list));
+        prepareList.emplace(std::move(list));
     }
 
     CommandList recordCold()
     {
+        Lists&                now = lists[std::size_t(jumps)];
         CommandList           list(context);
         PlatePasses::Recorder pass{passes, list};
         beginSolve(list);
@@ -161,22 +187,25 @@ struct VulkanPlateSolver::Impl {
         } else {
             passes.nest(pass);
         }
-        coldWork = std::exchange(passes.work, {});
+        now.coldWork = std::exchange(passes.work, {});
         finestSteps(list, 2);
-        stepsWork = passes.work;
+        now.stepsWork          = passes.work;
+        now.dispatchesPerCycle = passes.dispatchesPerCycle();
         return list;
     }
 
     CommandList recordWarm()
     {
+        Lists&                now = lists[std::size_t(jumps)];
         CommandList           list(context);
         PlatePasses::Recorder pass{passes, list};
         beginSolve(list);
         passes.work = {};
         passes.start(pass, 0);
-        warmWork = std::exchange(passes.work, {});
+        now.warmWork = std::exchange(passes.work, {});
         finestSteps(list, 2);
-        stepsWork = passes.work;
+        now.stepsWork          = passes.work;
+        now.dispatchesPerCycle = passes.dispatchesPerCycle();
         return list;
     }
 
@@ -212,11 +241,11 @@ struct VulkanPlateSolver::Impl {
     }
 
     /// Runs the list of this slot, recording it if need be; what points need goes with it.
-    CommandList& run(std::array<std::vector<CommandList>, kSlots>& lists, CommandList (Impl::*record)())
+    CommandList& run(std::array<std::optional<CommandList>, kSlots> Lists::*which, CommandList (Impl::*record)())
     {
-        auto& mine = lists[std::size_t(slot)];
-        if (mine.empty()) mine.push_back((this->*record)());
-        std::vector<CommandList*> all{&mine.front()};
+        auto& mine = (lists[std::size_t(jumps)].*which)[std::size_t(slot)];
+        if (!mine) mine.emplace((this->*record)());
+        std::vector<CommandList*> all{&*mine};
         if (fromPoints) {
             if (!fromPoints->lift) fromPoints->lift.emplace(recordLift());
             if (fromPoints->pending) all.insert(all.begin(), std::exchange(fromPoints->pending, nullptr));
@@ -224,7 +253,7 @@ struct VulkanPlateSolver::Impl {
         }
         context.run(all);
         hostState.makeVisibleToHost();
-        return mine.front();
+        return *mine;
     }
 
     // --- a solve
@@ -251,24 +280,50 @@ struct VulkanPlateSolver::Impl {
         return *fromPoints;
     }
 
-    void upload(std::span<const NodeField> nodalForces)
+    /// Largest force of each load [N].
+    [[nodiscard]] std::vector<double> largestForces(std::span<const NodeField> nodalForces) const
     {
         PALP_EXPECT(nodalForces.size() == loads,
                     std::to_string(nodalForces.size()) + " loads for a solver of " + std::to_string(loads));
-        const std::size_t nodes = plate.grid.nodes();
-        for (std::size_t n = 0; n < nodalForces.size(); ++n) {
-            PALP_EXPECT(nodalForces[n].on(plate.grid), "the load's grid is not the plate's");
+        std::vector<double> all;
+        for (const NodeField& load : nodalForces) {
+            PALP_EXPECT(load.on(plate.grid), "the load's grid is not the plate's");
             double most = 0;
-            for (double f : nodalForces[n].values()) {
+            for (double f : load.values()) {
                 if (!std::isfinite(f))
                     throw Error("plate: expected finite forces, found a load that is not a number or infinite");
                 most = std::max(most, std::abs(f));
             }
-            const double scale = most > 0 ? 1 / most : 0;
-            float*       to    = hostLoads.as<float>().data() + n * nodes;
-            for (std::size_t m = 0; m < nodes; ++m) to[m] = float(nodalForces[n].values()[m] * scale);
-            hostUnits.as<float>()[n] = float(most / stiffness);
+            all.push_back(most);
         }
+        return all;
+    }
+
+    /// Whether forces like these can be counted in the units of the last answers.
+    [[nodiscard]] bool fitUnits(const std::vector<double>& largest) const
+    {
+        constexpr double kMost = 1e3; // keeps seven digits of the smaller forces far from the ends of floats
+        for (std::size_t n = 0; n < largest.size(); ++n)
+            if (!(largest[n] <= kMost * forceUnits[n] && kMost * largest[n] >= forceUnits[n])) return false;
+        return true;
+    }
+
+    /// Forces in units of each load's largest one; but a start from the last answers keeps their units.
+    void upload(std::span<const NodeField> nodalForces, const std::vector<double>& scales)
+    {
+        const std::size_t nodes = plate.grid.nodes();
+        for (std::size_t n = 0; n < nodalForces.size(); ++n) {
+            const double scale  = scales[n] > 0 ? 1 / scales[n] : 0;
+            const double metres = scales[n] / stiffness;
+            if (scale > 0 && !(metres > double(std::numeric_limits<float>::min()) &&
+                               metres < double(std::numeric_limits<float>::max())))
+                throw Error("plate: forces of " + formatQuantity(scales[n], "N") + " on a rigidity of " +
+                            formatQuantity(unitRigidity, "N m") + " give deflections that 32 bits cannot hold");
+            float* to = hostLoads.as<float>().data() + n * nodes;
+            for (std::size_t m = 0; m < nodes; ++m) to[m] = float(nodalForces[n].values()[m] * scale);
+            hostUnits.as<float>()[n] = float(metres);
+        }
+        forceUnits = scales;
     }
 
     void uploadRigidity(const NodeField& rigidity)
@@ -279,48 +334,54 @@ struct VulkanPlateSolver::Impl {
         for (std::size_t n = 0; n < plate.grid.nodes(); ++n)
             to[n] = inRigidityUnits(rigidity.values()[n], unitRigidity);
         fromPoints.reset();
-        if (prepareList.empty()) recordPrepare();
-        context.run(prepareList.front());
+        if (!prepareList) recordPrepare();
+        context.run(*prepareList);
         expectJumps(passes.foundJumps());
     }
 
     void samplePoints(PlatePoints given, Sampling sampling)
     {
-        if (!fromPoints) fromPoints.emplace(*this);
+        const bool first = !fromPoints;
+        if (first) fromPoints.emplace(*this);
         given.unit = unitRigidity;
-        if (fromPoints->points.set(given)) {
+        bool grew  = false;
+        try {
+            grew = fromPoints->points.set(given);
+        } catch (...) {
+            if (first) fromPoints.reset(); // the rigidity stays the host's
+            throw;
+        }
+        if (grew) {
+            fromPoints->pending = nullptr;
             for (auto& list : fromPoints->sample) list.reset();
             fromPoints->lift.reset();
         }
-        auto& list = fromPoints->sample[sampling == Sampling::nearest];
+        auto& list = fromPoints->sample[std::size_t(sampling)];
         if (!list) list.emplace(recordSample(sampling));
         fromPoints->pending      = &*list;
         const auto [least, most] = std::minmax_element(given.rigidities.begin(), given.rigidities.end());
-        const bool mayJump       = *most > kJump * *least;
+        const bool mayJump       = *most > double(shared::kJump) * *least;
         expectJumps(mayJump && (!fromPoints->knowJumps || passes.foundJumps()));
         fromPoints->knowJumps = true;
     }
 
-    /// Lists are recorded with or without the extra sweeps that jumps want; anew when that changes.
     void expectJumps(bool expected)
     {
-        if (expected == jumps) return;
         jumps = expected;
         passes.expectJumps(expected);
-        for (auto* lists : {&coldList, &warmList, &moreList})
-            for (auto& recorded : *lists) recorded.clear();
     }
 
     [[nodiscard]] std::vector<PlateSolution> solve(std::span<const NodeField> nodalForces, Start how)
     {
-        const auto began = Clock::now();
-        upload(nodalForces);
-        slot               = (slot + 1) % kSlots;
-        const bool warm    = how == Start::warm && hasAnswer;
-        hasAnswer          = false; // whatever happens below
-        CommandList* list  = warm ? &run(warmList, &Impl::recordWarm) : &run(coldList, &Impl::recordCold);
-        int          done  = int(worst(shared::kStateSteps));
-        deviceMilliseconds = 0;
+        const auto                began   = Clock::now();
+        const std::vector<double> largest = largestForces(nodalForces);
+        const bool                warm    = how == Start::warm && hasAnswer && fitUnits(largest);
+        upload(nodalForces, warm ? forceUnits : largest);
+        slot              = (slot + 1) % kSlots;
+        hasAnswer         = false; // whatever happens below
+        CommandList* list = warm ? &run(&Lists::warm, &Impl::recordWarm) : &run(&Lists::cold, &Impl::recordCold);
+        int          done = int(worst(shared::kStateSteps));
+        std::optional<double> deviceMilliseconds = 0;
         for (;;) {
             const auto times = list->timestampsMilliseconds();
             deviceMilliseconds =
@@ -329,15 +390,18 @@ struct VulkanPlateSolver::Impl {
             if (std::isnan(estimate))
                 throw Error("plate: the solver broke down; the rigidity or the load is out of range");
             if (!(estimate > settings.tolerance) || done >= settings.maxIterations) break;
-            list = &run(moreList, &Impl::recordMore);
+            list = &run(&Lists::more, &Impl::recordMore);
             done += int(worst(shared::kStateSteps));
         }
         SolveReport report;
         report.device        = context.device().name;
         report.iterations    = done;
-        report.errorEstimate = worst(shared::kStateEstimate);
-        report.workUnits =
-            passes.workUnits(warm ? warmWork : coldWork) + done * passes.workUnits(stepsWork) / kStepsPerList;
+        report.errorEstimate = std::hypot(worst(shared::kStateEstimate), k.doubles ? kRounding : kFloatRounding);
+        report.converged     = worst(shared::kStateEstimate) <= settings.tolerance && !passes.isTooSoft();
+        const Lists& used    = lists[std::size_t(jumps)];
+        report.workUnits     = passes.workUnits(warm ? used.warmWork : used.coldWork) +
+                           done * passes.workUnits(used.stepsWork) / kStepsPerList;
+        report.deviceMilliseconds          = deviceMilliseconds;
         report.milliseconds                = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
         std::vector<PlateSolution> answers = read(report);
         hasAnswer                          = true;
@@ -370,8 +434,12 @@ VulkanPlateSolver::VulkanPlateSolver(gpu::Context& context, const PlateKernels& 
     if (const auto why = whyUnsolvable(plate)) throw Error("plate: " + *why);
     const double least = kernels.all().doubles ? kLeastTolerance : kLeastFloatTolerance;
     if (!(settings.tolerance >= least && settings.tolerance < 1))
-        throw Error("plate: expected a tolerance from " + std::to_string(least) + " to 1, found " +
-                    std::to_string(settings.tolerance));
+        throw Error("plate: expected a tolerance of at least " + shortest(least) + " and below 1, found " +
+                    shortest(settings.tolerance));
+    const std::size_t most = std::size_t(kMostGroups) * kernels.all().update.workgroup().x;
+    if (plate.grid.nodes() > most)
+        throw Error("plate: " + std::to_string(plate.grid.nodes()) + " nodes are more than the " +
+                    std::to_string(most) + " that the solver takes; try fewer cells");
     PALP_EXPECT(settings.loads >= 1 && settings.maxIterations >= 1, "loads and iterations are at least 1");
     impl_ = std::make_unique<Impl>(context, kernels.all(), plate, settings);
     impl_->uploadRigidity(plate.rigidity);
@@ -428,14 +496,9 @@ PlateSolution VulkanPlateSolver::solve(const NodeField& nodalForce, Start start)
     return std::move(impl_->solve({&nodalForce, 1}, start).front());
 }
 
-std::optional<double> VulkanPlateSolver::deviceMilliseconds() const noexcept
-{
-    return impl_->deviceMilliseconds;
-}
-
 int VulkanPlateSolver::dispatchesPerCycle() const noexcept
 {
-    return impl_->passes.dispatchesPerCycle();
+    return impl_->lists[std::size_t(impl_->jumps)].dispatchesPerCycle;
 }
 
 int VulkanPlateSolver::levels() const noexcept

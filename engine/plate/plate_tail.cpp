@@ -13,20 +13,15 @@ using gpu::Buffer;
 using gpu::CommandList;
 using gpu::Intent;
 
-int nodesOf(const shared::PlateLevel& g)
-{
-    return (g.cellsX + 1) * (g.cellsZ + 1);
-}
-
 bool fitsLoops(const shared::PlateLevel& g)
 {
-    return nodesOf(g) <= shared::kTailNodes && (g.cellsX + 1) * (g.cellsZ / 2 + 1) <= shared::kTailHalf;
+    return nodesOf(g) <= std::size_t(shared::kTailNodes) && (g.cellsX + 1) * (g.cellsZ / 2 + 1) <= shared::kTailHalf;
 }
 
 /// Of the levels from `first` on: deflections of all, forces of all but the first [1].
-int poolOf(const GridHierarchy& grids, std::size_t first)
+std::size_t poolOf(const GridHierarchy& grids, std::size_t first)
 {
-    int numbers = nodesOf(grids.levels[first].plate);
+    std::size_t numbers = nodesOf(grids.levels[first].plate);
     for (std::size_t l = first + 1; l < grids.levels.size(); ++l) numbers += 2 * nodesOf(grids.levels[l].plate);
     return numbers;
 }
@@ -51,12 +46,12 @@ TailLayout tailLayout(const GridHierarchy& grids)
     TailLayout layout;
     layout.first = grids.levels.size() - 1;
     while (layout.first > 0 && grids.levels.size() - layout.first < std::size_t(shared::kTailLevels) &&
-           fitsLoops(grids.levels[layout.first - 1].plate) && poolOf(grids, layout.first - 1) <= shared::kTailPool)
+           fitsLoops(grids.levels[layout.first - 1].plate) && poolOf(grids, layout.first - 1) <= std::size_t(shared::kTailPool))
         --layout.first;
     int field = 0, pool = 0;
     for (std::size_t l = layout.first; l < grids.levels.size(); ++l) {
         const auto& level = grids.levels[l];
-        const int   nodes = nodesOf(level.plate);
+        const int   nodes = int(nodesOf(level.plate));
         const int   force = l == layout.first ? 0 : pool + nodes;
         layout.levels.push_back(
             {level.plate, field, int(layout.tablesX.size()), int(layout.tablesZ.size()), pool, force});

@@ -1,10 +1,12 @@
 #include "engine/plate/problem_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "engine/core/file.h"
 #include "engine/core/json_object.h"
@@ -86,8 +88,18 @@ struct Setting {
 NodeField readField(const JsonObject& law, const Setting& setting)
 {
     law.allowOnly({"law", "file"});
-    const std::filesystem::path path  = setting.folder / law.text("file");
-    NodeField                   field = readNpy(path);
+    const std::filesystem::path named = law.text("file"), path = setting.folder / named;
+    if (named.empty()) law.refuse("file", "the path of a .npy file");
+    const NodeField field = [&] {
+        try {
+            return readNpy(path);
+        } catch (const Error& error) {
+            std::error_code failure;
+            const bool      lost = named.is_relative() && !std::filesystem::exists(path, failure);
+            throw Error(law.where() + ": key \"file\": " + error.what() +
+                        (lost ? "; paths start at the problem file's folder" : ""));
+        }
+    }();
     if (field.on(setting.fileGrid)) return field;
     std::ostringstream text;
     text << law.where() << ": " << path.string() << ": expected shape (" << setting.fileGrid.nodesX() << ", "
@@ -120,7 +132,36 @@ void expectPositive(const NodeField& rigidity, const std::string& where)
             }
 }
 
-NodeField readRigidity(const JsonObject& law, const Setting& setting)
+/// Between nodes a law or a load is not seen.
+double spacingOf(const PlateGrid& grid)
+{
+    return std::max(grid.spacingX, grid.spacingZ);
+}
+
+std::string metres(double length)
+{
+    std::ostringstream text;
+    text << length << " m";
+    return text.str();
+}
+
+/// A law that its nodes do not show.
+std::optional<std::string> lostLaw(const JsonObject& law, const SpatialLaw& rule, const NodeField& rigidity,
+                                   const PlateGrid& grid)
+{
+    if (rule.from == rule.to) return std::nullopt;
+    if (rule.kind == SpatialLaw::Kind::checker && rule.width < spacingOf(grid))
+        return law.where() + ": the checker's edge of " + metres(rule.width) + " is below the spacing of " +
+               metres(spacingOf(grid)) + ", so nodes meet its fields by chance; take more cells or a longer edge";
+    constexpr double kSame   = 1e-6; // [1] relative: no answer shows a smaller difference
+    const auto [least, most] = std::ranges::minmax(rigidity.values());
+    if (most - least > kSame * most) return std::nullopt;
+    return law.where() + ": the law \"" + law.text("law") +
+           "\" gives every node the same value; is its place on the plate, which is " + metres(grid.sizeX()) + " x " +
+           metres(grid.sizeZ()) + " with nodes every " + metres(spacingOf(grid)) + "?";
+}
+
+NodeField readRigidity(const JsonObject& law, const Setting& setting, std::vector<std::string>& warnings)
 {
     if (law.text("law") == "grid") {
         const NodeField given = readField(law, setting);
@@ -133,6 +174,7 @@ NodeField readRigidity(const JsonObject& law, const Setting& setting)
     for (int i = 0; i < grid.nodesX(); ++i)
         for (int j = 0; j < grid.nodesZ(); ++j) rigidity(i, j) = rule({i * grid.spacingX, 0, j * grid.spacingZ});
     expectPositive(rigidity, law.where());
+    if (auto warning = lostLaw(law, rule, rigidity, grid)) warnings.push_back(std::move(*warning));
     return rigidity;
 }
 
@@ -173,6 +215,35 @@ NodeField readLoad(const JsonObject& load, const Setting& setting)
     load.refuse("law", "point, uniform, gaussian or grid");
 }
 
+/// Whether there is a load, and an edge holds every node that gets a share of it.
+bool isHeld(const NodeField& nodalForce, const PlateEdges& edges)
+{
+    const int lastX = nodalForce.nodesX() - 1, lastZ = nodalForce.nodesZ() - 1;
+    bool      loaded = false;
+    for (int i = 0; i <= lastX; ++i)
+        for (int j = 0; j <= lastZ; ++j) {
+            if (nodalForce(i, j) == 0) continue;
+            if (!((i == 0 && edges.x0 != Edge::free) || (i == lastX && edges.x1 != Edge::free) ||
+                  (j == 0 && edges.z0 != Edge::free) || (j == lastZ && edges.z1 != Edge::free)))
+                return false;
+            loaded = true;
+        }
+    return loaded;
+}
+
+std::vector<std::string> warningsOf(const JsonObject& load, const PlateProblem& problem)
+{
+    std::vector<std::string> warnings;
+    if (load.text("law") == "gaussian" && load.number("sigma") < spacingOf(problem.plate.grid))
+        warnings.push_back(load.where() + ": sigma of " + metres(load.number("sigma")) + " is below the spacing of " +
+                           metres(spacingOf(problem.plate.grid)) +
+                           ", so the load acts as a point force does; take more cells or a larger sigma");
+    if (isHeld(problem.nodalForce, problem.plate.edges))
+        warnings.push_back(load.where() + ": acts only where a clamped or supported edge holds the plate, and bends "
+                                          "nothing");
+    return warnings;
+}
+
 std::vector<Probe> readProbes(const JsonObject& problem, const PlateGrid& grid)
 {
     std::vector<Probe> probes;
@@ -204,12 +275,14 @@ PlateProblem readProblem(const std::filesystem::path& path, std::optional<int> c
     problem.plate.edges        = readEdges(file);
     problem.plate.poissonRatio = file.number("poisson");
     problem.plate.foundation   = file.has("foundation") ? file.number("foundation") : 0;
-    problem.plate.rigidity     = readRigidity(file.object("rigidity"), setting);
+    problem.plate.rigidity     = readRigidity(file.object("rigidity"), setting, problem.warnings);
     if (!isPoissonRatio(problem.plate.poissonRatio)) file.refuse("poisson", "a number above -1 and at most 0.5");
     if (!(problem.plate.foundation >= 0)) file.refuse("foundation", "a number [Pa/m] that is not negative");
     if (const auto why = whyUnsolvable(problem.plate)) throw Error(path.string() + ": " + *why);
     problem.nodalForce = readLoad(file.object("load"), setting);
     problem.probes     = readProbes(file, setting.solveGrid);
+    for (std::string& warning : warningsOf(file.object("load"), problem))
+        problem.warnings.push_back(std::move(warning));
     return problem;
 }
 

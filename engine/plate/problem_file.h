@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/plate/plate.h"
@@ -18,6 +19,7 @@ struct PlateProblem {
     Plate              plate;
     NodeField          nodalForce; ///< [N], see load.h
     std::vector<Probe> probes;
+    std::vector<std::string> warnings{}; ///< what is legal and hardly meant, a sentence each
 };
 
 /// Reads a problem file: JSON, in SI units, with comments allowed.

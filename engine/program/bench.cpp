@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <optional>
 
@@ -16,11 +15,13 @@
 #include "engine/core/progress.h"
 #include "engine/gpu/command_list.h"
 #include "engine/gpu/context.h"
+#include "engine/gpu/device_error.h"
 #include "engine/picture/line_plot.h"
 #include "engine/plate/load.h"
 #include "engine/plate/plate_solver_reference.h"
 #include "engine/plate/plate_solver_vulkan.h"
 #include "engine/program/commands.h"
+#include "engine/program/solver_choice.h"
 
 namespace palp {
 namespace {
@@ -29,7 +30,7 @@ struct BenchOptions {
     std::vector<std::string> devices  = {"auto", "reference"};
     std::vector<int>         nodes    = {65, 129, 257};
     std::vector<int>         loads    = {1};
-    Schedule                 schedule = Schedule::automatic;
+    std::string              schedule = "automatic";
     std::string              law      = "linear";
     double                   contrast = 10, tolerance = 1e-4;
     int                      repeats = 21;
@@ -65,6 +66,15 @@ double quantile(std::vector<double> values, double q)
 double rigidityAt(const BenchOptions& o, double x, double z)
 {
     return bench::rigidityAt(o.law, o.contrast, x, z);
+}
+
+Schedule scheduleNamed(const std::string& name)
+{
+    const std::string word = CLI::ignore_case(name);
+    if (word == "automatic") return Schedule::automatic;
+    if (word == "pass-by-pass") return Schedule::passByPass;
+    if (word == "fused") return Schedule::fused;
+    throw Error("--schedule: expected automatic, pass-by-pass or fused, found \"" + name + "\"");
 }
 
 Plate plateOf(const BenchOptions& o, int nodes)
@@ -188,9 +198,9 @@ Row measureVulkan(const BenchOptions& o, gpu::Context& context, const PlateKerne
         const Stopwatch watch;
         auto            solutions = solver.solve(forces);
         cold.push_back(watch.milliseconds());
-        if (const auto ms = solver.deviceMilliseconds()) device.push_back(*ms);
         row.report = solutions.front().report;
-        answer     = std::move(solutions.front().deflection);
+        if (row.report.deviceMilliseconds) device.push_back(*row.report.deviceMilliseconds);
+        answer = std::move(solutions.front().deflection);
         const Stopwatch again;
         (void)solver.solve(forces, VulkanPlateSolver::Start::warm);
         warm.push_back(again.milliseconds());
@@ -220,12 +230,20 @@ std::vector<Row> measure(const BenchOptions& o)
     std::vector<Row> rows;
     Progress         progress("measuring");
     for (const std::string& name : o.devices) {
-        if (name == "reference") {
+        if (deviceWord(name) == "reference") {
             for (int nodes : o.nodes) rows.push_back(measureReference(o, nodes));
             continue;
         }
-        gpu::Context       context(gpu::ContextSettings{.device = name});
-        const PlateKernels kernels(context, o.schedule);
+        std::optional<gpu::Context> opened;
+        try {
+            opened.emplace(orTheReference([&] { return gpu::Context(gpu::ContextSettings{.device = name}); }));
+        } catch (const gpu::DeviceError& error) {
+            if (deviceWord(name) != "auto" || o.devices.size() == 1) throw;
+            std::cerr << "palpate: auto is left out: " << error.what() << "\n";
+            continue;
+        }
+        gpu::Context&      context = *opened;
+        const PlateKernels kernels(context, scheduleNamed(o.schedule));
         const auto         copy = copyBandwidth(context);
         for (int nodes : o.nodes)
             for (int loads : o.loads) rows.push_back(measureVulkan(o, context, kernels, nodes, loads, copy));
@@ -318,7 +336,9 @@ void check(const BenchOptions& o)
     if (o.repeats < 1 || o.repeats > 10000)
         throw Error("--repeats: expected 1 to 10000, found " + std::to_string(o.repeats));
     if (!(o.contrast >= 1 && o.contrast <= 1e6))
-        throw Error("--contrast: expected 1 to 1e6, found " + std::to_string(o.contrast));
+        throw Error("--contrast: expected 1 to 1e6, found " + cell(o.contrast, "%g"));
+    checkTolerance(o.tolerance);
+    (void)scheduleNamed(o.schedule);
     (void)rigidityAt(o, 0, 0); // the name of the law
 }
 
@@ -359,11 +379,7 @@ void addBenchCommand(CLI::App& app)
     solve
         ->add_option("--schedule", o->schedule,
                      "of the cycle's dispatches: automatic (fused on hardware), pass-by-pass or fused")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, Schedule>{{"automatic", Schedule::automatic},
-                                                                            {"pass-by-pass", Schedule::passByPass},
-                                                                            {"fused", Schedule::fused}},
-                                            CLI::ignore_case))
-        ->option_text("NAME");
+        ->capture_default_str();
     solve->add_option("--law", o->law, "of the rigidity: linear, hyperbolic, wart, disc or discs")
         ->capture_default_str();
     solve->add_option("--contrast", o->contrast, "stiffest over softest")->capture_default_str();
@@ -371,6 +387,9 @@ void addBenchCommand(CLI::App& app)
     solve->add_option("--repeats", o->repeats, "solves per line")->capture_default_str();
     solve->add_option("--out", o->out, "folder for solve.json and solve.svg");
     solve->add_flag("--json", o->json, "machine-readable");
+    bench->footer("Examples:\n"
+                  "  palpate bench solve --help\n"
+                  "  palpate bench solve --out bench");
     solve->footer(
         "\"dispatches\" are those of one cycle, which wait for each other; \"update\" is\n"
         "3000 points in, their rigidity at the nodes, a warm solve, and the points' deflections out, in one "

@@ -1,8 +1,11 @@
 // palpate: the command line. Exit codes: 0 good, 1 a fault of ours, 2 bad usage or input, 4 no GPU that can be used.
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <new>
+#include <vector>
 
 #include "engine/core/contract.h"
 #include "engine/gpu/device_error.h"
@@ -52,6 +55,23 @@ void refuseUnknownCommand(const CLI::App& app, const std::string& name)
     throw palp::Error("unknown command \"" + name + "\"; known: " + known + "; see --help");
 }
 
+/// "help solve" means "solve --help".
+std::vector<const char*> wordsOf(int argumentCount, char** arguments)
+{
+    std::vector<const char*> words(arguments, arguments + argumentCount);
+    if (words.size() < 2 || std::string(words[1]) != "help") return words;
+    words.erase(words.begin() + 1);
+    words.push_back("--help");
+    return words;
+}
+
+/// The allocation that failed may have unwound through a driver, which then waits for its own locks in its exit
+/// handlers: there is no way out through them.
+[[noreturn]] void leaveWithoutMemory()
+{
+    std::_Exit(complain("out of memory; try fewer cells or points", kBadInput)); // std::cerr has no buffer
+}
+
 int printHelp(const CLI::App& app, const CLI::ParseError& request)
 {
     app.exit(request);
@@ -80,9 +100,11 @@ int main(int argumentCount, char** arguments)
     palp::addConvertCommand(app);
     palp::addDevicesCommand(app);
     palp::addBenchCommand(app);
+    std::signal(SIGXFSZ, SIG_IGN); // a file beyond the limit on sizes is then a write that fails, with a sentence
     try {
-        if (argumentCount > 1) refuseUnknownCommand(app, arguments[1]);
-        app.parse(argumentCount, arguments);
+        const std::vector<const char*> words = wordsOf(argumentCount, arguments);
+        if (words.size() > 1) refuseUnknownCommand(app, words[1]);
+        app.parse(int(words.size()), words.data());
         if (!printed()) return complain(kUnprinted, kBadInput);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return printHelp(app, error); // or --version
@@ -94,7 +116,7 @@ int main(int argumentCount, char** arguments)
     } catch (const palp::Error& error) {
         return complain(error.what(), kBadInput);
     } catch (const std::bad_alloc&) {
-        return complain("out of memory; try fewer cells or points", kBadInput);
+        leaveWithoutMemory();
     } catch (const std::exception& error) {
         return complain(std::string("internal error, please report it: ") + error.what(), kOurFault);
     }

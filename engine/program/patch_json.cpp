@@ -59,7 +59,7 @@ Json windowJson(const Patch& patch)
 
 Json timesJson(const StageTimes& t)
 {
-    return {{"gather", t.gather},       {"fit", t.fit},     {"project", t.project}, {"resample", t.resample},
+    return {{"gather", t.gather},   {"fit", t.fit},     {"project", t.project}, {"resample", t.resample},
             {"prepare", t.prepare}, {"solve", t.solve}, {"lift", t.lift},       {"total", t.total()}};
 }
 
@@ -102,6 +102,8 @@ Json patchJson(const Patch& patch, const PatchSettings& settings, double force, 
     report["error"]        = {{"discretisation", orNull(discretisationError(patch, settings, device))},
                               {"solver", orNull(patch.report.errorEstimate)}};
     report["solver"]       = {{"device", patch.report.device},
+                              {"note", device.note().empty() ? Json(nullptr) : Json(device.note())},
+                              {"converged", patch.report.converged},
                               {"iterations", orNull(patch.report.iterations)},
                               {"work_units", orNull(patch.report.workUnits)},
                               {"tolerance", settings.tolerance}};

@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
 #include "engine/core/npy.h"
+#include "engine/core/progress.h"
 #include "engine/core/quantity.h"
 #include "engine/plate/load.h"
 #include "engine/plate/problem_file.h"
@@ -33,14 +35,39 @@ struct Solved {
     PlateSolution       solution;
     std::vector<double> probeDeflections; ///< [m] one per probe
     std::size_t         largestNode = 0;  ///< of the deflection of largest magnitude
+    std::string         note{};           ///< why the reference solver took over; or empty
+
+    [[nodiscard]] double largest() const { return solution.deflection.values()[largestNode]; } ///< [m] with its sign
+    [[nodiscard]] Probe  largestPlace() const
+    {
+        const PlateGrid& grid = problem.plate.grid;
+        const int        node = int(largestNode);
+        return {node / grid.nodesZ() * grid.spacingX, node % grid.nodesZ() * grid.spacingZ};
+    }
 };
+
+/// The reference solver draws a line of its own.
+PlateSolution solvedWithProgress(PlateDevice& device, const PlateProblem& problem, double tolerance)
+{
+    Progress progress("solving " + std::to_string(problem.plate.grid.nodes()) + " nodes on " + device.name());
+    if (device.name() != "reference") progress.mayLast();
+    return device.solve(problem.plate, problem.nodalForce, tolerance);
+}
 
 Solved solved(const SolveOptions& options)
 {
-    Solved s{readProblem(options.problem, options.cells), {}, {}, 0};
+    Solved s{readProblem(options.problem, options.cells), {}, {}};
 
     PlateDevice device = options.solver.open();
-    s.solution         = device.solve(s.problem.plate, s.problem.nodalForce, options.solver.tolerance);
+    const bool  told   = !device.note().empty();
+    s.solution         = solvedWithProgress(device, s.problem, options.solver.tolerance);
+    s.note             = device.note();
+    if (!told && !s.note.empty()) std::cerr << "palpate: the reference solver took over: " << s.note << "\n";
+    if (const SolveReport& report = s.solution.report; !report.converged)
+        s.problem.warnings.push_back("the answer is not good: its error is about " +
+                                     std::to_string(std::lround(100 * *report.errorEstimate)) +
+                                     " % or more; try fewer cells or less contrast");
+    for (const std::string& warning : s.problem.warnings) std::cerr << "palpate: warning: " << warning << "\n";
     // One plate, one load: whoever asks for the time of the answer waits for the preparation too.
     s.solution.report.milliseconds += s.solution.report.setUpMilliseconds;
 
@@ -58,62 +85,87 @@ nlohmann::ordered_json orNull(const std::optional<T>& value)
     return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
+bool hasSquareCells(const PlateGrid& grid)
+{
+    constexpr double kRounding = 1e-9; // [1] relative: above the rounding of size / cells
+    return std::abs(grid.spacingX - grid.spacingZ) <= kRounding * grid.spacingX;
+}
+
+/// [N] in all.
+double totalForce(const PlateProblem& problem)
+{
+    return std::accumulate(problem.nodalForce.values().begin(), problem.nodalForce.values().end(), 0.0);
+}
+
+nlohmann::ordered_json plateJson(const Plate& plate)
+{
+    const PlateGrid& grid          = plate.grid;
+    const auto& [x0, x1, z0, z1]   = plate.edges;
+    const auto [softest, stiffest] = std::ranges::minmax(plate.rigidity.values());
+    return {{"size", {grid.sizeX(), grid.sizeZ()}},
+            {"cells", {grid.cellsX, grid.cellsZ}},
+            {"spacing", {grid.spacingX, grid.spacingZ}},
+            {"square_cells", hasSquareCells(grid)},
+            {"poisson", plate.poissonRatio},
+            {"edges", {{"x0", name(x0)}, {"x1", name(x1)}, {"z0", name(z0)}, {"z1", name(z1)}}},
+            {"foundation", plate.foundation},
+            {"rigidity_min", softest},
+            {"rigidity_max", stiffest}};
+}
+
 void printJson(const Solved& s)
 {
     const SolveReport&     report = s.solution.report;
+    const Probe            place  = s.largestPlace();
     nlohmann::ordered_json probes = nlohmann::ordered_json::array();
     for (std::size_t k = 0; k < s.problem.probes.size(); ++k)
         probes.push_back(
             {{"x", s.problem.probes[k].x}, {"z", s.problem.probes[k].z}, {"deflection", s.probeDeflections[k]}});
-    const nlohmann::ordered_json answer{{"probes", probes},
-                                        {"max_deflection", s.solution.deflection.values()[s.largestNode]},
-                                        {"report",
-                                         {{"device", report.device},
-                                          {"iterations", orNull(report.iterations)},
-                                          {"error_estimate", orNull(report.errorEstimate)},
-                                          {"work_units", orNull(report.workUnits)},
-                                          {"milliseconds", report.milliseconds}}}};
+    const nlohmann::ordered_json answer{
+        {"plate", plateJson(s.problem.plate)},
+        {"total_force", totalForce(s.problem)},
+        {"probes", probes},
+        {"max_deflection", s.largest()},
+        {"max_deflection_at", {place.x, place.z}},
+        {"report",
+         {{"device", report.device},
+          {"note", s.note.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(s.note)},
+          {"iterations", orNull(report.iterations)},
+          {"error_estimate", orNull(report.errorEstimate)},
+          {"converged", report.converged},
+          {"work_units", orNull(report.workUnits)},
+          {"milliseconds", report.milliseconds},
+          {"device_milliseconds", orNull(report.deviceMilliseconds)}}},
+        {"warnings", s.problem.warnings}};
     std::cout << jsonText(answer);
-}
-
-/// "" where both spacings agree up to rounding.
-std::string spacingNote(const PlateGrid& grid)
-{
-    constexpr double kRounding = 1e-9; // [1] relative: above the rounding of size / cells
-    const bool       square    = std::abs(grid.spacingX - grid.spacingZ) <= kRounding * grid.spacingX;
-    return square ? "" : " (cells are not square)";
 }
 
 void printText(const Solved& s, const std::string& name)
 {
-    const Plate&     plate       = s.problem.plate;
-    const PlateGrid& grid        = plate.grid;
-    const auto& [x0, x1, z0, z1] = plate.edges;
-    const auto [softest, stiffest] =
-        std::minmax_element(plate.rigidity.values().begin(), plate.rigidity.values().end());
-    double force = 0; // [N]
-    for (const double share : s.problem.nodalForce.values()) force += share;
-    const int i = int(s.largestNode) / grid.nodesZ(), j = int(s.largestNode) % grid.nodesZ();
+    const Plate&     plate         = s.problem.plate;
+    const PlateGrid& grid          = plate.grid;
+    const auto& [x0, x1, z0, z1]   = plate.edges;
+    const auto [softest, stiffest] = std::ranges::minmax(plate.rigidity.values());
+    const Probe place              = s.largestPlace();
 
     std::printf("%s\n", name.c_str());
     std::printf("  plate       %s x %s, %d x %d cells of %s x %s%s, Poisson's ratio %g\n",
                 formatQuantity(grid.sizeX(), "m").c_str(), formatQuantity(grid.sizeZ(), "m").c_str(), grid.cellsX,
                 grid.cellsZ, formatQuantity(grid.spacingX, "m").c_str(), formatQuantity(grid.spacingZ, "m").c_str(),
-                spacingNote(grid).c_str(), plate.poissonRatio);
+                hasSquareCells(grid) ? "" : " (cells are not square)", plate.poissonRatio);
     std::printf("  edges       x0 %s, x1 %s, z0 %s, z1 %s\n", palp::name(x0), palp::name(x1), palp::name(z0),
                 palp::name(z1));
-    std::printf("  rigidity    %s to %s\n", formatQuantity(*softest, "N m").c_str(),
-                formatQuantity(*stiffest, "N m").c_str());
+    std::printf("  rigidity    %s to %s\n", formatQuantity(softest, "N m").c_str(),
+                formatQuantity(stiffest, "N m").c_str());
     if (plate.foundation > 0) std::printf("  foundation  %s\n", formatQuantity(plate.foundation, "Pa/m").c_str());
-    std::printf("  load        %s in all\n", formatQuantity(force, "N").c_str());
-    std::printf("  deflection  largest %s, at x %s, z %s\n",
-                formatQuantity(s.solution.deflection.values()[s.largestNode], "m").c_str(),
-                formatQuantity(i * grid.spacingX, "m").c_str(), formatQuantity(j * grid.spacingZ, "m").c_str());
+    std::printf("  load        %s in all\n", formatQuantity(totalForce(s.problem), "N").c_str());
+    std::printf("  deflection  largest %s, at x %s, z %s\n", formatQuantity(s.largest(), "m").c_str(),
+                formatQuantity(place.x, "m").c_str(), formatQuantity(place.z, "m").c_str());
     std::printf("  solver      %s, %.0f ms", s.solution.report.device.c_str(), s.solution.report.milliseconds);
-    if (s.solution.report.errorEstimate)
-        std::printf(", error about %.1e", *s.solution.report.errorEstimate);
+    if (s.solution.report.errorEstimate) std::printf(", error about %.1e", *s.solution.report.errorEstimate);
     if (s.solution.report.iterations)
-        std::printf(", %d steps, %.0f work units", *s.solution.report.iterations, s.solution.report.workUnits.value_or(0));
+        std::printf(", %d steps, %.0f work units", *s.solution.report.iterations,
+                    s.solution.report.workUnits.value_or(0));
     std::printf("\n");
     if (!s.problem.probes.empty()) std::printf("\n  %12s %12s %16s\n", "x [m]", "z [m]", "deflection [m]");
     for (std::size_t k = 0; k < s.problem.probes.size(); ++k)
@@ -149,9 +201,10 @@ void addSolveCommand(CLI::App& app)
     CLI::App*  command = app.add_subcommand("solve", "deflection of one plate from a problem file");
     const auto options = std::make_shared<SolveOptions>();
     command->add_option("PROBLEM", options->problem, "problem file (JSON, SI units)")->required();
-    command->add_option("--cells", options->cells,
-                        "solve on this many cells along x, those along z in proportion (at least 4; the reference solver "
-                        "takes 1050625 nodes in all, such as 1024 x 1024 cells)");
+    command->add_option(
+        "--cells", options->cells,
+        "solve on this many cells along x, those along z in proportion (at least 4; the reference solver "
+        "takes 1050625 nodes in all, such as 1024 x 1024 cells)");
     options->solver.addTo(*command);
     command->add_flag("--json", options->json,
                       "machine-readable, full precision; max_deflection is the deflection of "

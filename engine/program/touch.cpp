@@ -23,8 +23,8 @@ namespace {
 struct TouchOptions {
     CloudSource  source;
     SolverChoice solver;
-    std::string at, from, force = "0.5N", preset = "palpate";
-    std::string map, sampling, edges, forceLaw, foundation, thickness, poisson, window,
+    std::string  at, from, force = "0.5N", preset = "palpate";
+    std::string  map, sampling, edges, forceLaw, foundation, thickness, poisson, window,
         footprint;            // empty: the preset's
     std::optional<int> cells; ///< empty: the default
     std::string        out;
@@ -116,7 +116,7 @@ PatchSettings settingsOf(const TouchOptions& options)
     if (!options.forceLaw.empty())
         settings.forceLaw = named(forceLawNamed(options.forceLaw), "--force-law", options.forceLaw, "series, paper");
     if (options.cells) settings.cells = *options.cells;
-    constexpr int kMostCells = 1024; // the reference solver's factor then takes about 4 GB
+    constexpr int kMostCells = 1024; // --device reference: the factor then takes about 4 GB
     if (settings.cells < 8 || settings.cells > kMostCells || settings.cells % 2)
         throw Error("--cells: expected an even number from 8 to " + std::to_string(kMostCells) + ", found " +
                     std::to_string(settings.cells));
@@ -188,8 +188,7 @@ void printTouch(const TouchOptions& options, const PatchSettings& settings, cons
                 name(settings.forceLaw));
     std::printf("  error              discretisation %s, solver %s (%s)\n",
                 error["discretisation"].is_null() ? "unknown" : percent(error["discretisation"].get<double>()).c_str(),
-                percent(error["solver"].get<double>()).c_str(),
-                r["solver"]["device"].get<std::string>().c_str());
+                percent(error["solver"].get<double>()).c_str(), r["solver"]["device"].get<std::string>().c_str());
     std::printf("  time               %.1f ms:", r["milliseconds"]["total"].get<double>());
     for (const char* stage : {"gather", "fit", "project", "resample", "prepare", "solve", "lift"})
         std::printf(" %s %.2f", stage, r["milliseconds"][stage].get<double>());
@@ -275,7 +274,10 @@ void touch(const TouchOptions& options)
     const NeighbourIndex index(loaded.cloud.positions());
     const Contact        contact = contactOf(options, loaded.cloud, index, settings.window);
     PlateDevice          device  = options.solver.open();
+    const bool           told    = !device.note().empty();
     const Patch          patch   = deform(loaded.cloud, index, contact, settings, device);
+    if (!told && !device.note().empty())
+        std::cerr << "palpate: the reference solver took over: " << device.note() << "\n";
     if (!patch.deformed())
         throw Error("touch: the " + std::to_string(patch.gathered.size()) +
                     " points around the contact do not determine a "

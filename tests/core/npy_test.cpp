@@ -118,8 +118,10 @@ TEST(Npy, AShapeOfABillionNumbersIsRefusedBeforeMemoryIsTaken)
 
     EXPECT_TRUE(holds(array("(1000000, 1000000)"), {"1000000 x 1000000", "8 bytes"}));
     EXPECT_TRUE(holds(array("(2147483647, 2147483647)"), {"2147483647"})); // 2^65 bytes: must not wrap around
-    EXPECT_TRUE(holds(array("(2147483648, 2147483648)"), {"two dimensions"}));
-    EXPECT_TRUE(holds(array("(99999999999999999999, 1)"), {"two dimensions"}));
+    EXPECT_TRUE(holds(array("(2147483648, 2147483648)"), {"too large", "2147483648"}));
+    EXPECT_TRUE(holds(array("(99999999999999999999, 1)"), {"too large", "99999999999999999999"}));
+    EXPECT_TRUE(holds(array("(1, 99999999999)"), {"too large", "99999999999"}));
+    EXPECT_TRUE(holds(array("(99999999999, 0, 1)"), {"two dimensions"}));
     EXPECT_TRUE(holds(array("(536870913, 4)"), {"536870913 x 4"}));
 }
 

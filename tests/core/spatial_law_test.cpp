@@ -55,7 +55,7 @@ TEST(SpatialLaw, GradedLawsRunAcrossTheRegionAndHoldBeyond)
     EXPECT_DOUBLE_EQ(exponential({0, 0, 5}), 10);
 }
 
-TEST(SpatialLaw, TheAxisIsXIfNotGivenAndStartAndEndOverrideIt)
+TEST(SpatialLaw, TheAxisIsXIfNeitherItNorALineIsGiven)
 {
     EXPECT_DOUBLE_EQ(volumeLaw("linear:from=1,to=5")({1, 0, 0}), 3);
     const SpatialLaw slanted = volumeLaw("linear:from=1,to=3,start=0;0;0,end=2;2;0");
@@ -137,6 +137,9 @@ TEST(SpatialLaw, RefusalsNameWhatWasFoundAndWhatIsKnown)
     EXPECT_TRUE(holds(refusal("linear:from=nan,to=2"), {"from", "number"}));
     EXPECT_TRUE(holds(refusal("linear:from=1,to=2,axis=w"), {"axis", "\"w\"", "\"y\""}));
     EXPECT_TRUE(holds(refusal("linear:from=1,to=2,start=0;0;0,end=0;0;0"), {"must differ"}));
+    EXPECT_TRUE(holds(refusal("linear:from=1,to=2,axis=x,start=0;0;0,end=1;0;0"), {"axis", "start", "not both"}));
+    for (const char* half : {"linear:from=1,to=2,start=0;0;0", "exponential:from=1,to=2,axis=x,end=1;0;0"})
+        EXPECT_TRUE(holds(refusal(half), {"\"start\" and \"end\" or neither"})) << half;
     EXPECT_TRUE(holds(refusal("gaussian:from=1,to=2,centre=0;0,sigma=1"), {"centre", "3 numbers", "[0,0]"}));
     EXPECT_TRUE(holds(refusal("gaussian:from=1,to=2,centre=0;0;0,sigma=0"), {"sigma", "positive"}));
     EXPECT_TRUE(holds(refusal("gaussian:from=1,to=2,centre=0;0;0,radius=1"), {"radius", "sigma"}));

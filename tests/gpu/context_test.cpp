@@ -28,7 +28,7 @@ TEST_F(ContextTest, ADeviceThatIsNotThereIsRefusedAndEachDeviceNamed)
     gpu::ContextSettings settings;
     settings.device = "no such device";
 
-    EXPECT_THROW(gpu::Context{settings}, gpu::DeviceError);
+    EXPECT_THROW(gpu::Context{settings}, gpu::UnknownDevice);
     const std::string sentence = refusalOf([&] { gpu::Context{settings}; });
     EXPECT_TRUE(holds(sentence, {"'no such device'"})) << sentence;
     for (const gpu::DeviceDescription& device : gpu::listDevices())

@@ -48,6 +48,25 @@ TEST(DeviceChoice, LavapipeIsTheDeviceInSoftware)
     EXPECT_TRUE(holds(refusal({device(0, "GeForce", "discrete")}, "lavapipe"), {"mesa-vulkan-drivers", "GeForce"}));
 }
 
+TEST(DeviceChoice, WordsAreKnownInAnyCase)
+{
+    EXPECT_EQ(chooseDevice(desk(), "Lavapipe"), 0u);
+    EXPECT_EQ(chooseDevice(desk(), "AUTO"), 3u);
+}
+
+TEST(DeviceChoice, AWrongWordIsBadUsageUnlessNoOtherWouldDo)
+{
+    const Devices useless{device(0, "Old", "discrete", {"it speaks Vulkan 1.1.0, and 1.2 is needed"})};
+
+    for (const char* wrong : {"voodoo", "99", "", "e"}) { // the last one is part of several names
+        EXPECT_THROW((void)chooseDevice(desk(), wrong), UnknownDevice) << wrong;
+        EXPECT_THROW((void)chooseDevice({}, wrong), DeviceError) << wrong;
+    }
+    EXPECT_THROW((void)chooseDevice(useless, "voodoo"), DeviceError);
+    EXPECT_THROW((void)chooseDevice(desk(), "Arc"), DeviceError) << "it is there and cannot be used";
+    EXPECT_THROW((void)chooseDevice(desk(), "2"), DeviceError) << "it is there and cannot be used";
+}
+
 TEST(DeviceChoice, AnIndexIsThatOfTheListNotThePlaceInIt)
 {
     Devices devices = desk();

@@ -20,3 +20,8 @@ cmake --build "$place/outside" >"$place/build.log" 2>&1 || { cat "$place/build.l
 # CHOLMOD is in part under the GPL: it must not be in what is passed on, see third_party_notes.md.
 [ ! -e "$place/moved/bin/palpate_peers" ] || { echo 'palpate_peers was installed'; exit 1; }
 if ldd "$place/moved/bin/palpate" | grep -E 'cholmod|openblas'; then echo 'palpate is linked with it'; exit 1; fi
+
+# Every header that was installed finds what it includes.
+(cd "$place/moved/include/palpate" && find engine -name '*.h' | sed 's/.*/#include "&"/') >"$place/all.cpp"
+grep -q plate_solver_vulkan "$place/all.cpp"
+"$compiler" -std=c++20 -fsyntax-only -I "$place/moved/include/palpate" "$place/all.cpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -66,6 +67,32 @@ TEST(HeatMap, LegendGivesExtremesWithUnitAndPlace)
     EXPECT_TRUE(hasText(svg, "east [mm]"));
     EXPECT_TRUE(hasText(svg, settings.title));
     EXPECT_EQ(heatMapSvg(field, settings), svg);
+}
+
+TEST(HeatMap, TheTriangleIsWhereItsLegendSaysEvenAtTheContact)
+{
+    const PlateGrid grid{20, 20, 1e-3, 1e-3};
+    NodeField       field(grid, 0);
+    field(10, 20)            = 1; // at the upper edge
+    HeatMapSettings settings = settingsOn(grid);
+    settings.nodeStyle       = NodeStyle::smooth;
+    settings.contact         = ChartPoint{10e-3, 20e-3};
+
+    const std::string svg   = heatMapSvg(field, settings);
+    const auto        image = test::elementsOf(svg, "image").at(0).attributes;
+    const double      x = std::stod(image.at("x")) + std::stod(image.at("width")) / 2, y = std::stod(image.at("y"));
+    const auto        paths = test::elementsOf(svg, "path");
+    const bool        found = std::ranges::any_of(paths, [&](const test::SvgElement& path) {
+        std::istringstream corners(path.attributes.at("d"));
+        double             sumX = 0, sumY = 0, cornerX = 0, cornerY = 0;
+        char               letter = 0;
+        int                count  = 0;
+        for (; corners >> letter >> cornerX >> cornerY; ++count) sumX += cornerX, sumY += cornerY;
+        return letter == 'Z' && count == 3 &&
+               std::hypot(sumX / 3 - x, sumY / 3 - y) < 2; // [px] its tip is longer than its corners
+    });
+
+    EXPECT_TRUE(found) << "no triangle around (" << x << ", " << y << ")";
 }
 
 TEST(HeatMap, ValuesThatCannotBeDrawnAreHatchedAndCounted)

@@ -232,7 +232,10 @@ TEST_F(ProblemFile, APlateThatNothingHoldsIsRefused)
 TEST_F(ProblemFile, GridsOfAnotherShapeOrWithBadNodesAreRefused)
 {
     const std::string law = R"({"law": "grid", "file": "D.npy"})";
-    EXPECT_TRUE(holds(refusal(rigidityOf(law)), {"D.npy", "No such file"}));
+    EXPECT_TRUE(
+        holds(refusal(rigidityOf(law)), {"plate.json", "rigidity", "\"file\"", "D.npy", "No such file", "folder"}));
+    EXPECT_TRUE(holds(refusal(loadOf(R"({"law": "grid", "file": ""})")), {"plate.json", "load", "\"file\"", ".npy"}));
+    EXPECT_EQ(refusal(rigidityOf(R"({"law": "grid", "file": "/no/D.npy"})")).find("start at"), std::string::npos);
 
     writeNpy(folder_ / "D.npy", NodeField(8, 12, 1));
     EXPECT_TRUE(holds(refusal(rigidityOf(law)), {"rigidity", "D.npy", "(9, 13)", "(8, 12)"}));
@@ -247,6 +250,36 @@ TEST_F(ProblemFile, GridsOfAnotherShapeOrWithBadNodesAreRefused)
     field(3, 11) = std::nan("");
     writeNpy(folder_ / "D.npy", field);
     EXPECT_TRUE(holds(refusal(rigidityOf(law)), {"D.npy", "NaN", "[3, 11]"}));
+}
+
+TEST_F(ProblemFile, WhatIsLegalAndHardlyMeantIsWarnedOf)
+{
+    const auto warning = [&](const std::string& text, std::optional<int> cells = {}) {
+        const std::vector<std::string> warnings = read(text, cells).warnings;
+        return warnings.size() == 1 ? warnings.front() : std::to_string(warnings.size()) + " warnings";
+    };
+    const auto none = [&](const std::string& text) { return read(text).warnings.empty(); };
+
+    for (const char* shape : {R"("disc", "centre": [3, 3], "radius": 0.2)", R"("box", "low": [2, 2], "high": [3, 3])",
+                              R"("gaussian", "centre": [30, 3], "sigma": 0.2)"}) {
+        const std::string law = R"({"from": 1, "to": 10, "law": )" + std::string(shape) + "}";
+        EXPECT_TRUE(holds(warning(rigidityOf(law)), {"plate.json", "rigidity", "same value", "1 m x 1.5 m"})) << law;
+    }
+    const std::string checker = rigidityOf(R"({"law": "checker", "from": 1, "to": 10, "edge": 0.06})");
+    EXPECT_TRUE(holds(warning(checker), {"rigidity", "edge of 0.06 m", "spacing of 0.125 m"}));
+    EXPECT_TRUE(holds(warning(loadOf(R"({"law": "gaussian", "force": 1, "centre": [0.5, 0.5], "sigma": 0.01})")),
+                      {"load", "sigma of 0.01 m", "spacing of 0.125 m"}));
+    for (const char* at : {"[0, 0.75]", "[0.3, 1.5]", "[1, 0]"}) // clamped, clamped, the corner of a supported edge
+        EXPECT_TRUE(holds(warning(loadOf(R"({"law": "point", "force": 1, "at": )" + std::string(at) + "}")),
+                          {"load", "bends nothing"}))
+            << at;
+
+    EXPECT_TRUE(none(kProblem));
+    EXPECT_TRUE(none(loadOf(R"({"law": "point", "force": 1, "at": [1, 0.75]})"))) << "a free edge";
+    EXPECT_TRUE(none(loadOf(R"({"law": "point", "force": 1, "at": [0.01, 0.75]})"))) << "a share reaches a free node";
+    EXPECT_TRUE(none(loadOf(R"({"law": "uniform", "pressure": 0})")));
+    EXPECT_TRUE(none(rigidityOf(R"({"law": "disc", "from": 1, "to": 1, "centre": [3, 3], "radius": 0.2})")));
+    EXPECT_EQ(read(checker, 32).warnings.size(), 0u) << "the spacing is that of the grid that is solved on";
 }
 
 TEST_F(ProblemFile, CellsAskedForBeyondTheBoundsAreRefused)

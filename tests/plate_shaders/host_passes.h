@@ -113,35 +113,44 @@ inline std::vector<float> coarsened(const LevelPair& pair, const std::vector<flo
 
 // --- the coarsest level; \return columns of halfBand + 1 numbers, see coarse_band.h
 
-inline std::vector<float> assembled(const PlateLevel& g, const std::vector<float>& rigidity)
+template <class Real>
+std::vector<Real> assembled(const PlateLevel& g, const std::vector<float>& rigidity)
 {
-    const int          unknowns = int(nodesOf(g)), slots = halfBand(g) + 1;
-    std::vector<float> band(std::size_t(unknowns) * std::size_t(slots));
-    Row                row{rigidity.data(), g.cellsZ + 1};
+    const int         unknowns = int(nodesOf(g)), slots = halfBand(g) + 1;
+    std::vector<Real> band(std::size_t(unknowns) * std::size_t(slots));
+    RowOf<Real>       row{rigidity.data(), g.cellsZ + 1};
     for (int column = 0; column < unknowns; ++column)
         for (int offset = 0; offset < slots; ++offset) {
-            float&    entry = band[std::size_t(column * slots + offset)];
+            Real&     entry = band[std::size_t(column * slots + offset)];
             const int n     = column + offset;
             const int i = columnOf(g, n), j = rowOf(g, n);
             row.unitI = columnOf(g, column);
             row.unitJ = rowOf(g, column);
-            entry     = offset == 0 ? 1.0F : 0.0F;
+            entry     = offset == 0 ? Real(1) : Real(0);
             if (n < unknowns && !row.isHeld(g, i, j) && !row.isHeld(g, row.unitI, row.unitJ)) {
                 const bool near = abs(i - row.unitI) + abs(j - row.unitJ) <= 2;
-                entry           = near ? row.operatorAt(g, i, j) : 0.0F;
+                entry           = near ? row.operatorAt(g, i, j) : Real(0);
             }
         }
     return band;
 }
 
-inline std::vector<float> factored(const PlateLevel& g, const std::vector<float>& matrix)
+/// Below this share of the diagonal a pivot is lost.
+template <class Real>
+Real leastPivot()
 {
-    const std::size_t  unknowns = nodesOf(g), slots = std::size_t(halfBand(g) + 1);
-    std::vector<float> band = matrix, factor(band.size());
+    return Real(sizeof(Real) == sizeof(double) ? kLeastPivotDouble : kLeastPivot);
+}
+
+template <class Real>
+std::vector<Real> factored(const PlateLevel& g, const std::vector<Real>& matrix)
+{
+    const std::size_t unknowns = nodesOf(g), slots = std::size_t(halfBand(g) + 1);
+    std::vector<Real> band = matrix, factor(band.size());
     for (std::size_t n = 0; n < unknowns; ++n) {
-        const float  pivot   = band[n * slots];
-        const float  inverse = pivot > kLeastPivot * matrix[n * slots] ? 1.0F / sqrt(pivot) : 0.0F;
-        float* const column  = factor.data() + n * slots;
+        const Real  pivot   = band[n * slots];
+        const Real  inverse = pivot > leastPivot<Real>() * matrix[n * slots] ? Real(1) / sqrt(pivot) : Real(0);
+        Real* const column  = factor.data() + n * slots;
         for (std::size_t d = 0; d < slots; ++d) column[d] = band[n * slots + d] * inverse;
         for (std::size_t d = 1; d < slots && n + d < unknowns; ++d)
             for (std::size_t e = d; e < slots; ++e) band[(n + d) * slots + e - d] -= column[d] * column[e];
@@ -150,17 +159,18 @@ inline std::vector<float> factored(const PlateLevel& g, const std::vector<float>
     return factor;
 }
 
-inline std::vector<float> coarseSolved(const PlateLevel& g, const std::vector<float>& factor,
-                                       const std::vector<float>& force)
+template <class Real>
+std::vector<float> coarseSolved(const PlateLevel& g, const std::vector<Real>& factor, const std::vector<float>& force)
 {
     const std::size_t  unknowns = nodesOf(g), slots = std::size_t(halfBand(g) + 1);
-    std::vector<float> w(force.size()), right(unknowns);
+    std::vector<float> w(force.size());
+    std::vector<Real>  right(unknowns);
     const auto         nodeOf = [&](std::size_t n) {
         return std::size_t(columnOf(g, int(n)) * (g.cellsZ + 1) + rowOf(g, int(n)));
     };
     for (std::size_t first = 0; first < force.size(); first += unknowns) {
         for (std::size_t n = 0; n < unknowns; ++n)
-            right[n] = holds(g, columnOf(g, int(n)), rowOf(g, int(n))) ? 0.0F : force[first + nodeOf(n)];
+            right[n] = holds(g, columnOf(g, int(n)), rowOf(g, int(n))) ? Real(0) : Real(force[first + nodeOf(n)]);
         for (std::size_t n = 0; n < unknowns; ++n) {
             right[n] *= factor[n * slots];
             for (std::size_t d = 1; d < slots && n + d < unknowns; ++d)
@@ -170,7 +180,7 @@ inline std::vector<float> coarseSolved(const PlateLevel& g, const std::vector<fl
             right[n] *= factor[n * slots];
             for (std::size_t d = 1; d < slots && d <= n; ++d) right[n - d] -= factor[(n - d) * slots + d] * right[n];
         }
-        for (std::size_t n = 0; n < unknowns; ++n) w[first + nodeOf(n)] = right[n];
+        for (std::size_t n = 0; n < unknowns; ++n) w[first + nodeOf(n)] = float(right[n]);
     }
     return w;
 }

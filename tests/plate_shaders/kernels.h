@@ -11,9 +11,12 @@
 #include "compute_shaders/cg_step_f64.spv.h"
 #include "compute_shaders/cg_update_f32.spv.h"
 #include "compute_shaders/cg_update_f64.spv.h"
-#include "compute_shaders/coarse_assemble.spv.h"
-#include "compute_shaders/coarse_factor.spv.h"
-#include "compute_shaders/coarse_solve.spv.h"
+#include "compute_shaders/coarse_assemble_f32.spv.h"
+#include "compute_shaders/coarse_assemble_f64.spv.h"
+#include "compute_shaders/coarse_factor_f32.spv.h"
+#include "compute_shaders/coarse_factor_f64.spv.h"
+#include "compute_shaders/coarse_solve_f32.spv.h"
+#include "compute_shaders/coarse_solve_f64.spv.h"
 #include "compute_shaders/jump_list.spv.h"
 #include "compute_shaders/jump_mark.spv.h"
 #include "compute_shaders/plate_apply_f32.spv.h"
@@ -45,36 +48,45 @@
 #include "compute_shaders/shared/plate_push.h"
 #include "compute_shaders/shared/tail_level.h"
 #include "engine/gpu/kernel.h"
+#include "engine/plate/host_kernels.h"
 
 /// The plate's kernels by name; those of conjugate gradients as code<float>() or code<double>().
 namespace palp::kernels {
 
-template <class Constants, std::size_t N>
-gpu::KernelCode code(const char* name, const std::uint32_t (&spirv)[N], int buffers)
+inline const HostKernels& host()
 {
-    return {name, spirv, buffers, int(sizeof(Constants))};
+    return *hostVariant().kernels;
+}
+
+template <class Constants, std::size_t N>
+gpu::KernelCode code(const char* name, const std::uint32_t (&spirv)[N], int buffers, gpu::HostKernel host)
+{
+    return {name, spirv, buffers, int(sizeof(Constants)), host};
 }
 
 #define PALPATE_KERNEL(function, name, Constants, buffers)                                                             \
     inline gpu::KernelCode function()                                                                                  \
     {                                                                                                                  \
-        return code<shared::Constants>(#name, name##_spv, buffers);                                                    \
+        return code<shared::Constants>(#name, name##_spv, buffers, host().function);                                   \
+    }
+/// One that the host does without.
+#define PALPATE_GPU_KERNEL(function, name, Constants, buffers)                                                         \
+    inline gpu::KernelCode function()                                                                                  \
+    {                                                                                                                  \
+        return code<shared::Constants>(#name, name##_spv, buffers, nullptr);                                           \
     }
 #define PALPATE_REAL_KERNEL(function, name, Constants, buffers)                                                        \
     template <class Real>                                                                                              \
     gpu::KernelCode function()                                                                                         \
     {                                                                                                                  \
         if constexpr (sizeof(Real) == sizeof(double))                                                                  \
-            return code<shared::Constants>(#name "_f64", name##_f64_spv, buffers);                                     \
+            return code<shared::Constants>(#name "_f64", name##_f64_spv, buffers, host().function##_f64);              \
         else                                                                                                           \
-            return code<shared::Constants>(#name "_f32", name##_f32_spv, buffers);                                     \
+            return code<shared::Constants>(#name "_f32", name##_f32_spv, buffers, host().function##_f32);              \
     }
 
 PALPATE_KERNEL(coarsen, rigidity_coarsen, TransferPush, 2)
 PALPATE_KERNEL(divisor, plate_divisor, LevelPush, 2)
-PALPATE_KERNEL(assemble, coarse_assemble, LevelPush, 2)
-PALPATE_KERNEL(factor, coarse_factor, LevelPush, 2)
-PALPATE_KERNEL(coarseSolve, coarse_solve, LevelPush, 3)
 PALPATE_KERNEL(relaxFirst, plate_relax_first, RelaxPush, 3)
 PALPATE_KERNEL(relax, plate_relax, RelaxPush, 6)
 PALPATE_KERNEL(jumpMark, jump_mark, LevelPush, 2)
@@ -82,12 +94,15 @@ PALPATE_KERNEL(jumpList, jump_list, LevelPush, 2)
 PALPATE_KERNEL(relaxTile, plate_relax_tile, RelaxPush, 6)
 PALPATE_KERNEL(copyTile, plate_copy_tile, RelaxPush, 3)
 PALPATE_KERNEL(residual, plate_residual, LevelPush, 4)
-PALPATE_KERNEL(restriction, plate_restrict, TransferPush, 4)
+PALPATE_KERNEL(restrict, plate_restrict, TransferPush, 4)
 PALPATE_KERNEL(correct, plate_correct, TransferPush, 5)
-PALPATE_KERNEL(down, plate_down, LevelPush, 5)
-PALPATE_KERNEL(up, plate_up, TransferPush, 8)
-PALPATE_KERNEL(tail, plate_tail, TailPush, 9)
+PALPATE_GPU_KERNEL(down, plate_down, LevelPush, 5)
+PALPATE_GPU_KERNEL(up, plate_up, TransferPush, 8)
+PALPATE_GPU_KERNEL(tail, plate_tail, TailPush, 9)
 
+PALPATE_REAL_KERNEL(assemble, coarse_assemble, LevelPush, 2)
+PALPATE_REAL_KERNEL(factor, coarse_factor, LevelPush, 3)
+PALPATE_REAL_KERNEL(coarseSolve, coarse_solve, LevelPush, 3)
 PALPATE_REAL_KERNEL(start, plate_start, LevelPush, 5)
 PALPATE_REAL_KERNEL(apply, plate_apply, LevelPush, 3)
 PALPATE_REAL_KERNEL(interpolate, plate_interpolate, TransferPush, 4)
@@ -101,24 +116,25 @@ PALPATE_REAL_KERNEL(beta, cg_beta, ScalarsPush, 2)
 PALPATE_REAL_KERNEL(step, cg_step, ScalarsPush, 3)
 
 #undef PALPATE_KERNEL
+#undef PALPATE_GPU_KERNEL
 #undef PALPATE_REAL_KERNEL
 
 // Without push constants.
 inline gpu::KernelCode rigidityNearest()
 {
-    return {"rigidity_nearest", rigidity_nearest_spv, 5, 0};
+    return {"rigidity_nearest", rigidity_nearest_spv, 5, 0, host().rigidityNearest};
 }
 inline gpu::KernelCode rigidityLogMean()
 {
-    return {"rigidity_log_mean", rigidity_log_mean_spv, 5, 0};
+    return {"rigidity_log_mean", rigidity_log_mean_spv, 5, 0, host().rigidityLogMean};
 }
 template <class Real>
 gpu::KernelCode lift()
 {
     if constexpr (sizeof(Real) == sizeof(double))
-        return {"plate_lift_f64", plate_lift_f64_spv, 5, 0};
+        return {"plate_lift_f64", plate_lift_f64_spv, 5, 0, host().lift_f64};
     else
-        return {"plate_lift_f32", plate_lift_f32_spv, 5, 0};
+        return {"plate_lift_f32", plate_lift_f32_spv, 5, 0, host().lift_f32};
 }
 
 } // namespace palp::kernels

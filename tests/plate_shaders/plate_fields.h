@@ -27,11 +27,6 @@ std::vector<Real> roughValues(std::size_t count, std::uint32_t seed)
     return values;
 }
 
-inline std::size_t nodesOf(const shared::PlateLevel& g)
-{
-    return std::size_t(g.cellsX + 1) * std::size_t(g.cellsZ + 1);
-}
-
 /// A plate of random rigidity in 0.5 .. 1.5 N m with a block in it that is a thousand times as stiff.
 inline Plate roughPlate(int cellsX, int cellsZ, const PlateEdges& edges, double spacingX = 1, double spacingZ = 1)
 {

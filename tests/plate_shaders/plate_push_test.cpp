@@ -4,9 +4,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "compute_shaders/shared/point_layout.h"
+#include "compute_shaders/shared/tail_level.h"
 #include "tests/plate_shaders/push_echo_level.spv.h"
+#include "tests/plate_shaders/push_echo_points.spv.h"
 #include "tests/plate_shaders/push_echo_relax.spv.h"
 #include "tests/plate_shaders/push_echo_scalars.spv.h"
+#include "tests/plate_shaders/push_echo_tail.spv.h"
 #include "tests/plate_shaders/push_echo_transfer.spv.h"
 #include "tests/plate_shaders/push_echo_vector.spv.h"
 #include "tests/support/shader_fixture.h"
@@ -62,6 +66,7 @@ protected:
 
 TEST_F(PlatePushTest, EveryFieldArrivesInItsPlace)
 {
+    if (onHost()) GTEST_SKIP() << "the host has no such kernel";
     const LevelPush    level{kFine};
     const RelaxPush    relax{kFine, 1U};
     const TransferPush transfer{kFine, kCoarse};
@@ -74,6 +79,31 @@ TEST_F(PlatePushTest, EveryFieldArrivesInItsPlace)
     EXPECT_EQ(echoed(push_echo_vector_spv, vector), Words(vector.nodes, vector.partials, vector.iteration));
     EXPECT_EQ(echoed(push_echo_scalars_spv, scalars),
               Words(scalars.loads, scalars.partials, scalars.begins, scalars.argumentWords, scalars.tolerance));
+}
+
+TEST_F(PlatePushTest, EveryFieldOfAnArrayArrivesInItsPlace)
+{
+    if (onHost()) GTEST_SKIP() << "the host has no such kernel";
+    const TailPush                 tail{1U, 3U, 5603U};
+    const std::vector<TailLevel>   levels{{}, {kCoarse, 11, -12, 13, 14, -15}};
+    const std::vector<PointLayout> grid{
+        {33, -17, 3000U, 12, -13, 14, -15, 0.5F, 2.0F, 1.5F, -1.25F, 4.5F, 8.25F, -0.125F, 6.25F}};
+    const std::vector<ScatteredPoint> points{{}, {1.5F, -2.5F, 3.5F, -4.5F, 7U}};
+    std::vector<std::uint32_t>        words((sizeof(TailPush) + sizeof(TailLevel)) / 4);
+    const gpu::Kernel echoTail(context(), {"push_echo_tail", push_echo_tail_spv, 2, int(sizeof(TailPush))}, {8, 8, 1});
+    dispatchOnce(echoTail, {out(words), in(levels)}, tail, {1, 1, 1});
+    const TailLevel& level = levels[1];
+    EXPECT_EQ(words, Words(tail.first, tail.levels, tail.nodes, level.plate, level.field, level.tableX, level.tableZ,
+                           level.w, level.force));
+
+    words.resize((sizeof(PointLayout) + sizeof(ScatteredPoint)) / 4);
+    const gpu::Kernel echoPoints(context(), {"push_echo_points", push_echo_points_spv, 3, 0}, {8, 8, 1});
+    dispatchOnce(echoPoints, {out(words), in(grid), in(points)}, {}, {1, 1, 1});
+    const PointLayout&    g = grid[0];
+    const ScatteredPoint& p = points[1];
+    EXPECT_EQ(words, Words(g.cellsX, g.cellsZ, g.points, g.bucketsX, g.bucketsZ, g.firstX, g.firstZ, g.side, g.perSide,
+                           g.scaleX, g.scaleZ, g.reachX, g.reachZ, g.falloff, g.nearby2, p.x, p.z, p.rigidity,
+                           p.logarithm, p.number));
 }
 
 } // namespace

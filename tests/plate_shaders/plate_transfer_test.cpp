@@ -25,7 +25,7 @@ protected:
 TEST_F(PlateTransferTest, RestrictionGathersForcesAsCxxDoes)
 {
     for (const gpu::Workgroup shape : tiles()) {
-        const gpu::Kernel restriction(context(), kernels::restriction(), shape);
+        const gpu::Kernel restriction(context(), kernels::restrict(), shape);
         for (const LevelPair& pair : pairs()) {
             SCOPED_TRACE(describe(pair) + " by " + describe(shape));
             const std::vector<float> fine = roughValues<float>(kLoads * nodesOf(pair.fine), 21);
@@ -132,7 +132,7 @@ TEST_F(PlateTransferTest, RigidityIsCoarsenedAsInCxx)
 TEST_F(PlateTransferTest, RepeatsAreEqualToTheBit)
 {
     const LevelPair          pair = pairs()[1];
-    const gpu::Kernel        restriction(context(), kernels::restriction(), {64, 1, 1});
+    const gpu::Kernel        restriction(context(), kernels::restrict(), {64, 1, 1});
     const std::vector<float> fine = roughValues<float>(kLoads * nodesOf(pair.fine), 26);
     std::vector<float>       first(kLoads * nodesOf(pair.coarse)), again(first.size());
     const auto               run = [&](std::vector<float>& coarse) {

@@ -1,12 +1,14 @@
-// push_echo.comp - writes every field of a push-constant struct back, one word each in the order of declaration.
+// push_echo.comp - writes every field of a struct back, one word each in the order of declaration.
 // Domain     one invocation
 // Reads      push
 // Writes     bits of the fields
-// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS
+// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS; ECHO_TAIL and ECHO_POINTS with arrays of structs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #include "compute_shaders/shared/plate_push.h"
+#include "compute_shaders/shared/point_layout.h"
+#include "compute_shaders/shared/tail_level.h"
 
 layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
 layout(set = 0, binding = 0) writeonly buffer Words { uint words[]; };
@@ -19,6 +21,12 @@ layout(push_constant) uniform Constants { RelaxPush push; };
 layout(push_constant) uniform Constants { TransferPush push; };
 #elif defined(ECHO_VECTOR)
 layout(push_constant) uniform Constants { VectorPush push; };
+#elif defined(ECHO_TAIL)
+layout(push_constant) uniform Constants { TailPush push; };
+layout(std430, binding = 1) readonly buffer Levels { TailLevel levels[]; };
+#elif defined(ECHO_POINTS)
+layout(std430, binding = 1) readonly buffer Layout { PointLayout grid; };
+layout(std430, binding = 2) readonly buffer Points { ScatteredPoint points[]; };
 #else // ECHO_SCALARS
 layout(push_constant) uniform Constants { ScalarsPush push; };
 #endif
@@ -58,6 +66,37 @@ void main()
     echo(push.nodes);
     echo(push.partials);
     echo(push.iteration);
+#elif defined(ECHO_TAIL)
+    echo(push.first);
+    echo(push.levels);
+    echo(push.nodes);
+    echo(levels[1].plate);
+    echo(levels[1].field);
+    echo(levels[1].tableX);
+    echo(levels[1].tableZ);
+    echo(levels[1].w);
+    echo(levels[1].force);
+#elif defined(ECHO_POINTS)
+    echo(grid.cellsX);
+    echo(grid.cellsZ);
+    echo(grid.points);
+    echo(grid.bucketsX);
+    echo(grid.bucketsZ);
+    echo(grid.firstX);
+    echo(grid.firstZ);
+    echo(grid.side);
+    echo(grid.perSide);
+    echo(grid.scaleX);
+    echo(grid.scaleZ);
+    echo(grid.reachX);
+    echo(grid.reachZ);
+    echo(grid.falloff);
+    echo(grid.nearby2);
+    echo(points[1].x);
+    echo(points[1].z);
+    echo(points[1].rigidity);
+    echo(points[1].logarithm);
+    echo(points[1].number);
 #else
     echo(push.loads);
     echo(push.partials);

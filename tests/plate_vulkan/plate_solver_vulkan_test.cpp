@@ -107,7 +107,11 @@ protected:
         return VulkanPlateSolver(context(), kernels(), plate, settings);
     }
 
-    static double tightest() { return context().device().float64 ? 1e-8 : VulkanPlateSolver::kLeastFloatTolerance; }
+    static double tightest()
+    {
+        return context().device().float64 ? VulkanPlateSolver::kLeastTolerance
+                                          : VulkanPlateSolver::kLeastFloatTolerance;
+    }
 
     /// GPU-assisted validation is 20 times slower: small grids tell as much.
     static std::vector<int> sizes()
@@ -137,6 +141,7 @@ TEST_F(VulkanPlate, AgreesWithTheReferenceSolverForEveryLaw)
 /// Sweeps and transfers are the same to the bit; only the coarsest level is solved in another way, by its inverse.
 TEST_F(VulkanPlate, FusedPassesTakeTheSameStepsToTheSameAnswer)
 {
+    if (onHost()) GTEST_SKIP() << "the host does not fuse passes";
     if (validation() == gpu::Validation::gpuAssisted) GTEST_SKIP() << "the fused kernels take minutes to compile then";
     using enum Edge;
     const PlateKernels onePassEach(context(), Schedule::passByPass), fused(context(), Schedule::fused);
@@ -150,7 +155,8 @@ TEST_F(VulkanPlate, FusedPassesTakeTheSameStepsToTheSameAnswer)
             EXPECT_LT(errorOf(found[n].deflection, expected[n].deflection), 2e-6)
                 << what; // within the tolerance of each
         EXPECT_NEAR(*found[0].report.iterations, *expected[0].report.iterations, 1) << what;
-        EXPECT_NEAR(*found[0].report.workUnits, *expected[0].report.workUnits, *expected[0].report.workUnits * 0.3);
+        const double step = *expected[0].report.workUnits / *expected[0].report.iterations;
+        EXPECT_NEAR(*found[0].report.workUnits, *expected[0].report.workUnits, 1.5 * step) << what;
         return std::pair(slow.dispatchesPerCycle(), fast.dispatchesPerCycle());
     };
     for (const Law& law : kLaws) {
@@ -260,6 +266,115 @@ TEST_F(VulkanPlate, ResultsStayMappedWhileTwoFurtherSolvesRun)
     (void)solver.solve(other); // the memory's turn has come
     EXPECT_EQ(solver.mappedDeflections().data(), mapped.data());
     EXPECT_FALSE(std::equal(before.begin(), before.end(), mapped.begin()));
+}
+
+/// Under a load in proportion to its foundation a free plate sinks without bending, whatever its rigidity: w = q / k.
+/// The softer the foundation, the more the plate moves as a rigid body, of which floats see nothing beside its bending.
+TEST_F(VulkanPlate, AFreePlateOnAFoundationSinksAsAWhole)
+{
+    if (!context().device().float64) GTEST_SKIP() << "in floats such a plate is refused or said not to be solved";
+    constexpr PlateEdges kFree{Edge::free, Edge::free, Edge::free, Edge::free};
+    for (const int cells : sizes())
+        for (const double contrast : {1.0, 30.0, 1e4})
+            for (const double foundation : {0.1, 1.0, 1e3}) {
+                const Law law{"linear", [=](double x, double) { return 1 + (contrast - 1) * x; }, true};
+                Plate     plate                = plateOf(cells, cells, kFree, law);
+                plate.foundation               = foundation;
+                const NodeField     pressure   = NodeField(plate.grid, foundation);
+                const PlateSolution found      = solverFor(plate).solve(gridLoad(plate.grid, pressure));
+                double              difference = 0;
+                for (const double w : found.deflection.values()) difference = std::max(difference, std::abs(w - 1));
+                EXPECT_LT(difference, 1e-4)
+                    << cells << " cells, contrast " << contrast << ", " << foundation << " Pa/m";
+                EXPECT_TRUE(found.report.converged);
+            }
+}
+
+/// A stiff disc of a million in a plate that few sides hold moves nearly as a rigid body.
+TEST_F(VulkanPlate, AHugeContrastIsSolvedOrSaidNotToBeWhateverTheSides)
+{
+    using enum Edge;
+    const int cells = sizes().front();
+    const Law law{"disc 1e6", [](double x, double z) { return disc(x, z, 1e6); }, false};
+    for (const PlateEdges edges : {PlateEdges{clamped, free, free, free}, PlateEdges{clamped, clamped, free, free},
+                                   PlateEdges{supported, supported, free, free}, PlateEdges{}}) {
+        const Plate         plate = plateOf(cells, cells, edges, law);
+        const NodeField     load  = loadOn(plate.grid);
+        const PlateSolution found = solverFor(plate).solve(load);
+        const double        error = errorOf(found.deflection, ReferencePlateSolver(plate).solve(load).deflection);
+        EXPECT_LT(error, 3 * *found.report.errorEstimate) << *found.report.iterations << " steps";
+        EXPECT_TRUE(error < 3e-4 || !found.report.converged) << error;
+    }
+}
+
+TEST_F(VulkanPlate, FloatsAloneReachWhatIsAskedOfThem)
+{
+    using enum Edge;
+    const PlateKernels floats(context(), Schedule::automatic, Precision::floats);
+    constexpr double   kTolerance = VulkanPlateSolver::kLeastFloatTolerance;
+    for (const Law& law : kLaws)
+        for (const PlateEdges edges :
+             {PlateEdges{}, PlateEdges{supported, clamped, free, clamped}, PlateEdges{free, clamped, free, free}}) {
+            const Plate         plate = plateOf(sizes().front(), sizes().front(), edges, law);
+            const NodeField     load  = loadOn(plate.grid);
+            VulkanPlateSolver   solver(context(), floats, plate, {.tolerance = kTolerance});
+            const PlateSolution found = solver.solve(load);
+            const double        error = errorOf(found.deflection, ReferencePlateSolver(plate).solve(load).deflection);
+            EXPECT_LT(error, 3 * *found.report.errorEstimate) << law.name;
+            EXPECT_LT(error, 3 * kTolerance) << law.name;
+        }
+    EXPECT_THROW(VulkanPlateSolver(context(), floats, plateOf(20, 20, {}, kLaws[0]), {.tolerance = 1e-6}), Error);
+}
+
+TEST_F(VulkanPlate, AWarmStartKeepsTheLastAnswerWhenTheLargestForceChanges)
+{
+    const Plate     plate  = plateOf(sizes().front(), sizes().front(), {}, kLaws[1]);
+    auto            solver = solverFor(plate);
+    const NodeField load   = loadOn(plate.grid);
+    NodeField       half   = load;
+    (void)solver.solve(load);
+    for (double& f : half.values()) f *= 0.5;
+    half(plate.grid.cellsX / 2, plate.grid.cellsZ / 2) += 1e-3 * largest(load); // nearly half the answer
+    const PlateSolution cold = solverFor(plate).solve(half);
+    NodeField           same = load;
+    same(plate.grid.cellsX / 2, plate.grid.cellsZ / 2) += 4 * largest(load); // another largest force
+    const PlateSolution warm = solver.solve(same, Start::warm), coldSame = solverFor(plate).solve(same);
+    EXPECT_LT(errorOf(warm.deflection, coldSame.deflection), 2e-4);
+    EXPECT_LE(*warm.report.iterations, *coldSame.report.iterations);
+    // A thousand times the force is another story: the solve is cold, and as good.
+    for (double& f : half.values()) f *= 1e5;
+    const PlateSolution far = solver.solve(half, Start::warm);
+    for (std::size_t n = 0; n < far.deflection.values().size(); ++n)
+        ASSERT_NEAR(far.deflection.values()[n], 1e5 * cold.deflection.values()[n],
+                    1e-3 * 1e5 * largest(cold.deflection));
+}
+
+/// Whole solves, not only kernels: stops, steps and sweeps where the rigidity jumps included.
+TEST_F(VulkanPlate, HostAndLavapipeGiveTheSameBits)
+{
+    if (onHost() || !context().bitExact() || validation() == gpu::Validation::gpuAssisted)
+        GTEST_SKIP() << "lavapipe and the host are compared once";
+    using enum Edge;
+    gpu::Context host({.device = std::string(gpu::kHostDevice)});
+    for (const Precision precision : {Precision::best, Precision::floats}) {
+        const PlateKernels here(context(), Schedule::passByPass, precision),
+            there(host, Schedule::passByPass, precision);
+        for (const Law& law : kLaws)
+            for (const PlateEdges edges : {PlateEdges{}, PlateEdges{supported, free, clamped, free}}) {
+                const Plate       plate = plateOf(70, 45, edges, law);
+                const auto        loads = std::vector{loadOn(plate.grid), pointLoad(plate.grid, 1, 0.5, 0.3)};
+                const Settings    settings{.tolerance = 1e-4, .loads = 2};
+                VulkanPlateSolver a(context(), here, plate, settings), b(host, there, plate, settings);
+                for (const Start start : {Start::cold, Start::warm}) {
+                    const auto onDevice = a.solve(loads, start), onHost = b.solve(loads, start);
+                    for (std::size_t n = 0; n < loads.size(); ++n)
+                        EXPECT_EQ(onDevice[n].deflection.values(), onHost[n].deflection.values()) << law.name;
+                    EXPECT_EQ(onDevice[0].report.errorEstimate, onHost[0].report.errorEstimate) << law.name;
+                    EXPECT_EQ(onDevice[0].report.iterations, onHost[0].report.iterations) << law.name;
+                    EXPECT_EQ(onDevice[0].report.workUnits, onHost[0].report.workUnits) << law.name;
+                }
+            }
+    }
 }
 
 TEST_F(VulkanPlate, EveryCombinationOfEdgesAgreesWithTheReferenceSolver)

@@ -31,7 +31,17 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert devices; do good "help of $command" $command --help; holds 'Examples:'; done
+for command in touch solve info convert devices 'bench solve'; do
+    # shellcheck disable=SC2086  # a command, or one within another
+    good "help of $command" $command --help; holds 'Examples:'
+    mv out.txt help.txt
+    # shellcheck disable=SC2086
+    good "help in other words, $command" help $command
+    cmp -s out.txt help.txt && passed=$((passed + 1)) || complain "'help $command' is not '$command --help'"
+done
+good 'help of bench' bench --help
+holds 'bench solve --out bench'
+grep -qF 'palpate touch' out.txt && complain 'the help of bench has the examples of touch' || passed=$((passed + 1))
 good 'list of samples' info --samples
 for sample in ellipsoid sheet hemisphere saddle skin palm ear-lobe; do holds "sample:$sample"; done
 good 'a sample as a file' convert sample:skin skin.ply --points 5000
@@ -54,17 +64,31 @@ cat >plate.json <<'JSON'
  "rigidity":{"law":"constant","value":1}, "load":{"law":"point","force":1,"at":[0.5,0.75]}, "probes":[[0.25,0.25]]}
 JSON
 good 'solve' solve plate.json --json
-for key in '"probes"' '"deflection"' '"max_deflection"' '"report"' '"device"' '"iterations"' '"error_estimate"' '"work_units"' '"milliseconds"'; do holds "$key"; done
+for key in '"probes"' '"deflection"' '"max_deflection"' '"report"' '"device"' '"iterations"' '"error_estimate"' '"work_units"' '"milliseconds"' '"square_cells": true' '"poisson": 0.3' '"x1": "free"' '"foundation": 0' \
+    '"rigidity_min": 1' '"rigidity_max": 1' '"total_force": 1' '"max_deflection_at"' '"note": null' '"warnings": []'; do holds "$key"; done
+tr -d ' \n' <out.txt >flat.txt
+grep -qF '"size":[1.0,1.5],"cells":[16,24],"spacing":[0.0625,0.0625]' flat.txt && passed=$((passed + 1)) || complain "the plate of solve --json: $(cat flat.txt)"
+sed 's/\[16,24\]/[16,16]/; s/\[0.5,0.75\]/[0,0.75]/' plate.json >odd.json
+good 'cells that are not square, and a load on a clamped edge' solve odd.json --json
+holds '"square_cells": false'
+holds 'bends nothing'
+grep -qF 'palpate: warning: odd.json: load: ' err.txt && passed=$((passed + 1)) || complain "no warning: $(cat err.txt)"
 good 'solve, finer' solve plate.json --cells 32 --out w.npy
 [ -s w.npy ] || complain 'solve --out wrote nothing'
 
-good 'solve by the reference' solve plate.json --device reference --json
+good 'solve by the reference' solve plate.json --device Reference --json
 holds '"device": "reference"'
-good 'solve tightly' solve plate.json --device lavapipe --tolerance 1e-7 --json
+good 'solve on the host' solve plate.json --device Host --json --out host.npy
+holds '"device": "host"'
+good 'solve on lavapipe' solve plate.json --device lavapipe --out lavapipe.npy
+cmp -s host.npy lavapipe.npy && passed=$((passed + 1)) || complain 'the host and lavapipe differ'
+VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" solve plate.json --device host >out.txt 2>err.txt && [ ! -s err.txt ] &&
+    passed=$((passed + 1)) || complain "the host needs a driver: $(cat out.txt err.txt)"
+good 'solve tightly' solve plate.json --device Lavapipe --tolerance 1e-7 --json
 holds '"work_units"'
 good 'touch by the reference' touch sample:skin --points 5000 --cells 32 --device reference
 holds '(reference)'
-good 'benchmark' bench solve --device lavapipe,reference --nodes 17,33 --loads 1,4 --repeats 2 --out bench --json
+good 'benchmark' bench solve --device lavapipe,REFERENCE --schedule Pass-by-pass --nodes 17,33 --loads 1,4 --repeats 2 --out bench --json
 for key in '"cold_p50_ms"' '"cold_p99_ms"' '"warm_p50_ms"' '"iterations"' '"work_units"' '"error"' '"copy_gb_per_s"' '"dispatches_per_cycle"'; do holds "$key"; done
 [ -s bench/solve.json ] && [ -s bench/solve.svg ] && passed=$((passed + 1)) || complain 'bench --out wrote nothing'
 
@@ -90,7 +114,7 @@ code=$?
     complain "a machine without a GPU: exit $code, expected 4: $(cat out.txt err.txt)"
 VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" solve plate.json --json >out.txt 2>err.txt
 code=$?
-[ $code -eq 0 ] && grep -qF 'reference solver takes over' err.txt && grep -qF '"device": "reference"' out.txt && passed=$((passed + 1)) ||
+[ $code -eq 0 ] && grep -qF 'reference solver takes over' err.txt && grep -qF '"device": "reference"' out.txt && grep -qF '"note": "no GPU can be used' out.txt && passed=$((passed + 1)) ||
     complain "solving without a GPU: exit $code, expected 0 by the reference: $(cat out.txt err.txt)"
 VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" solve plate.json --device lavapipe >out.txt 2>err.txt
 code=$?
@@ -128,10 +152,20 @@ bad 'too few runs for quartiles' '--runs' bench plate --runs 5
 bad 'the reference as its own peer' 'reference' bench plate --device reference
 bad 'peers with an empty device' '--device' bench plate --device ''
 bad 'devices take no argument' 'voodoo' devices voodoo
-"$palpate" solve plate.json --device gpu9000 >out.txt 2>err.txt
-code=$?
-[ $code -eq 4 ] && grep -qF "'gpu9000'" err.txt && grep -qF usable err.txt && [ ! -s out.txt ] && passed=$((passed + 1)) ||
-    complain "unknown device: exit $code, expected 4 and the list of devices: $(cat err.txt)"
+for command in 'solve plate.json' 'bench solve'; do
+    # shellcheck disable=SC2086  # a command and its arguments
+    "$palpate" $command --device gpu9000 >out.txt 2>err.txt
+    code=$?
+    [ $code -eq 2 ] && grep -qF "'gpu9000'" err.txt && grep -qF usable err.txt && grep -qF reference err.txt && [ ! -s out.txt ] && passed=$((passed + 1)) ||
+        complain "unknown device: exit $code, expected 2 and the list of devices: $(cat err.txt)"
+done
+for tolerance in 0 1e-12 nan 1; do
+    bad "benchmark with a tolerance of $tolerance" '--tolerance: expected at least 1e-07' bench solve --tolerance $tolerance
+    grep -qF "below 1, found $tolerance" err.txt && passed=$((passed + 1)) || complain "the tolerance's bounds: $(cat err.txt)"
+done
+for schedule in nosuch 0; do
+    bad 'unknown schedule' "--schedule: expected automatic, pass-by-pass or fused, found \"$schedule\"" bench solve --schedule $schedule
+done
 
 # --- bad files
 bad 'missing file' 'No such file' info nowhere.ply
@@ -164,6 +198,18 @@ bad 'unknown target format' '.ply' convert skin.ply skin.stl
 printf 'precious' >kept.ply
 bad 'bad input keeps the old target' 'short.ply' convert short.ply kept.ply
 [ "$(cat kept.ply)" = precious ] && passed=$((passed + 1)) || complain 'an old file was lost'
+(
+    ulimit -f 100 && "$palpate" solve plate.json --cells 128 --device reference --out big.npy >out.txt 2>err.txt
+    code=$?
+    [ $code -eq 2 ] && grep -qF 'big.npy: cannot be written: File too large' err.txt
+) && [ ! -e big.npy ] && passed=$((passed + 1)) || complain "a limit on the size of files: $(cat err.txt)"
+# Without memory: the sentence, and no exit handler, where a driver may wait for its own lock. No sanitizer runs so.
+(
+    ulimit -v 400000 && LD_DEBUG=files "$palpate" solve plate.json --cells 512 --device reference >out.txt 2>err.txt
+    code=$?
+    grep -qF Sanitizer err.txt && exit 0
+    [ $code -eq 2 ] && grep -qF 'out of memory' err.txt && ! grep -qF 'calling fini' err.txt
+) && passed=$((passed + 1)) || complain "no memory: $(grep -F -e palpate: -e 'calling fini' err.txt)"
 mkdir full && : >full/out
 bad 'a folder that is a file' 'full/out' touch sample:skin --points 5000 --cells 48 --out full/out
 # --- options that cannot apply
@@ -183,6 +229,7 @@ bad 'a folder without a name' '--out: expected a value' touch sample:skin --out 
 bad 'a law with a unit' 'SI units' info skin.ply --stiffness constant:value=300kPa
 bad 'the comment says otherwise' 'stiffness_unit Pa' info skin.ply --stiffness-unit N_m
 bad 'an unknown command' 'frob' frob
+bad 'help on an unknown command' 'frob' help frob
 bad 'an answer that is no array' '.npy' solve plate.json --out plate.json
 cp plate.json plate.npy
 bad 'an answer over its problem' 'problem file itself' solve plate.npy --out ./plate.npy
@@ -195,7 +242,7 @@ for option in --thickness --footprint --window; do bad "nothing of $option" "$op
 bad 'a force beyond the world' '--force' touch sample:sheet --force 1e308 --thickness 0.001mm
 bad 'a foundation beyond the world' '--foundation' touch sample:sheet --foundation 1e300
 bad 'a place beyond the world' '--at' touch sample:sheet --at 1e300,0,0
-bad 'a stiffness beyond the world' 'not finite' touch sample:sheet --points 5000 --cells 16 --stiffness constant:value=1e307 --thickness 1e-9m
+bad 'a stiffness beyond the world' 'that 32 bits cannot hold' touch sample:sheet --points 5000 --cells 16 --stiffness constant:value=1e307 --thickness 1e-9m
 
 # --- what is assumed is said
 printf 'x,y,z\n' >bare.csv

@@ -39,14 +39,15 @@ struct Operator {
 };
 
 /// The operator's row, by unit deflections.
-struct Row {
-    using real = float;
+template <class Real>
+struct RowOf {
+    using real = Real;
     const float* D;
     int          stride;
     int          unitI = 0, unitJ = 0;
 
     real rigidity(int i, int j) const { return D[i * stride + j]; }
-    real deflection(int i, int j) const { return i == unitI && j == unitJ ? 1.0F : 0.0F; }
+    real deflection(int i, int j) const { return i == unitI && j == unitJ ? real(1) : real(0); }
     real otherColour(int i, int j) const { return deflection(i, j); }
 
 #include "compute_shaders/shared/plate_divisor.h"
@@ -54,6 +55,7 @@ struct Row {
 #include "compute_shaders/shared/plate_operator.h"
 #include "compute_shaders/shared/plate_relax.h"
 };
+using Row = RowOf<float>;
 
 struct Coarsen {
     const float* fine;

@@ -37,7 +37,12 @@ gpu::Validation wantedValidation()
 /// The device of the process. GoogleTest closes it before the drivers' own statics go.
 class DeviceEnvironment : public ::testing::Environment {
 public:
-    void          TearDown() override { context_.reset(); }
+    void TearDown() override
+    {
+        if (!context_) return;
+        for (const std::string& message : context_->takeMessages()) ADD_FAILURE() << "validation, after: " << message;
+        context_.reset();
+    }
     gpu::Context& context()
     {
         if (!context_) {
@@ -181,7 +186,7 @@ std::vector<std::uint32_t> ShaderTest::sides()
 
 void ShaderTest::SetUp()
 {
-    (void)context().takeMessages();
+    for (const std::string& message : context().takeMessages()) ADD_FAILURE() << "validation, before: " << message;
 }
 
 void ShaderTest::TearDown()

@@ -65,6 +65,9 @@ protected:
     /// Of the process; it is closed after the last test.
     static gpu::Context& context();
 
+    /// Whether the device is the host, which has functions for the plate's kernels only.
+    static bool onHost() { return context().device().kind == gpu::kHostDevice; }
+
     /// What PALPATE_VALIDATION asks for.
     static gpu::Validation validation();
 

@@ -1,0 +1,117 @@
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "compute_shaders/shared/cg_state.h"
+#include "compute_shaders/shared/coarse_band.h"
+#include "compute_shaders/shared/plate_push.h"
+#include "compute_shaders/shared/tile_layout.h"
+#include "compute_shaders/shared/transfer_layout.h"
+#include "engine/gpu/kernel.h"
+
+// What the kernels of the host have in common. Their files are compiled once per instruction set, each time in another
+// namespace: whatever they define must be in it, or a linker might give a processor code that it does not have.
+//
+// The arithmetic is that of the shaders' headers, node by node and in the same order; contraction is off. So the
+// results are those of the shaders, to the bit, on every instruction set. Only the loops are ours: along rows, without
+// branches, so that compilers make vector instructions of them.
+
+#ifndef PALPATE_ISA
+#error "set PALPATE_ISA, the namespace of an instruction set"
+#endif
+
+namespace palp::PALPATE_ISA {
+
+using namespace shared;
+using gpu::HostDispatch;
+
+inline float min(float a, float b)
+{
+    return b < a ? b : a;
+}
+inline float max(float a, float b)
+{
+    return a < b ? b : a;
+}
+inline double min(double a, double b)
+{
+    return b < a ? b : a;
+}
+inline double max(double a, double b)
+{
+    return a < b ? b : a;
+}
+inline int min(int a, int b)
+{
+    return b < a ? b : a;
+}
+inline int max(int a, int b)
+{
+    return a < b ? b : a;
+}
+inline float abs(float a)
+{
+    return __builtin_fabsf(a);
+}
+inline double abs(double a)
+{
+    return __builtin_fabs(a);
+}
+inline int abs(int a)
+{
+    return a < 0 ? -a : a;
+}
+inline float sqrt(float a)
+{
+    return __builtin_sqrtf(a);
+}
+inline double sqrt(double a)
+{
+    return __builtin_sqrt(a);
+}
+
+template <class T>
+T* bound(const HostDispatch& d, int n)
+{
+    return static_cast<T*>(d.buffers[n]);
+}
+
+template <class Push>
+const Push& pushed(const HostDispatch& d)
+{
+    return *static_cast<const Push*>(d.push);
+}
+
+inline std::ptrdiff_t nodesOf(const PlateLevel& g)
+{
+    return std::ptrdiff_t(g.cellsX + 1) * (g.cellsZ + 1);
+}
+
+/// Numbers of one kind that a kernel needs while it runs, kept from run to run. \thread each has its own
+template <class T>
+class Scratch {
+public:
+    Scratch()                          = default;
+    Scratch(const Scratch&)            = delete;
+    Scratch& operator=(const Scratch&) = delete;
+    ~Scratch() { delete[] data_; }
+
+    T* of(std::ptrdiff_t count)
+    {
+        if (count > size_) {
+            delete[] data_;
+            data_ = nullptr;
+            size_ = 0;
+            data_ = new T[std::size_t(count)]();
+            size_ = count;
+        }
+        return data_;
+    }
+
+private:
+    T*             data_ = nullptr;
+    std::ptrdiff_t size_ = 0;
+};
+
+} // namespace palp::PALPATE_ISA

@@ -1,0 +1,90 @@
+#include "engine/plate/plate_device.h"
+
+#include <cmath>
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+
+#include "engine/core/contract.h"
+#include "engine/gpu/device_list.h"
+#include "engine/plate/load.h"
+#include "engine/plate/plate_solver_reference.h"
+
+namespace palp {
+namespace {
+
+Plate plateOf(int cells, double contrast)
+{
+    Plate plate;
+    plate.grid     = {cells, cells, 1.0 / cells, 1.0 / cells};
+    plate.rigidity = NodeField(plate.grid, 1);
+    for (int i = 0; i <= cells; ++i)
+        for (int j = 0; j <= cells; ++j)
+            if (std::hypot(double(i) / cells - 0.45, double(j) / cells - 0.55) < 0.2) plate.rigidity(i, j) = contrast;
+    return plate;
+}
+
+std::string deviceOfTests()
+{
+    const char* wanted = std::getenv("PALPATE_DEVICE");
+    return wanted ? wanted : "auto";
+}
+
+double difference(const NodeField& a, const NodeField& b)
+{
+    double most = 0, largest = 0;
+    for (std::size_t n = 0; n < a.values().size(); ++n) {
+        most    = std::max(most, std::abs(a.values()[n] - b.values()[n]));
+        largest = std::max(largest, std::abs(b.values()[n]));
+    }
+    return most / largest;
+}
+
+TEST(PlateDevice, SolvesOnTheDeviceOneGridAfterTheOther)
+{
+    PlateDevice device(deviceOfTests());
+    EXPECT_EQ(device.note(), "");
+    for (const int cells : {20, 30, 20}) {
+        const Plate         plate = plateOf(cells, 10);
+        const NodeField     load  = pointLoad(plate.grid, 1, 0.5, 0.5);
+        const PlateSolution found = device.solve(plate, load);
+        EXPECT_EQ(found.report.device, device.name());
+        EXPECT_NE(found.report.device, "reference");
+        EXPECT_LT(difference(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-4);
+    }
+}
+
+TEST(PlateDevice, ADeviceThatIsLostIsReplacedByTheReference)
+{
+    if (deviceOfTests() == gpu::kHostDevice) GTEST_SKIP() << "the host is not lost";
+    PlateDevice         device(deviceOfTests(), 1e-9); // [s] of patience: every submission counts as a hang
+    const Plate         plate = plateOf(64, 10);
+    const NodeField     load  = pointLoad(plate.grid, 1, 0.5, 0.5);
+    const PlateSolution found = device.solve(plate, load);
+    EXPECT_EQ(found.report.device, "reference");
+    EXPECT_EQ(device.name(), "reference");
+    EXPECT_NE(device.note(), "");
+    EXPECT_LT(difference(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-12);
+    EXPECT_EQ(device.solve(plate, load).report.device, "reference"); // from now on
+}
+
+TEST(PlateDevice, WhatTheDeviceCannotConvergeTheReferenceSolves)
+{
+    PlateDevice         device(deviceOfTests());
+    const Plate         plate = plateOf(64, 1e9);
+    const NodeField     load  = pointLoad(plate.grid, 1, 0.5, 0.5);
+    const PlateSolution found = device.solve(plate, load);
+    EXPECT_EQ(found.report.device, "reference");
+    EXPECT_TRUE(found.report.converged);
+    EXPECT_NE(device.note().find("stopped at an error of about"), std::string::npos) << device.note();
+    EXPECT_NE(device.solve(plateOf(64, 10), load).report.device, "reference") << "for that plate only";
+}
+
+TEST(PlateDevice, OneThatIsNotThereIsRefusedByNameAndReplacedOnAuto)
+{
+    EXPECT_THROW(PlateDevice("no such device"), Error);
+    EXPECT_EQ(PlateDevice("reference").name(), "reference");
+}
+
+} // namespace
+} // namespace palp
