@@ -258,6 +258,29 @@ TEST_F(CgStepTest, TheEstimateIsAGeometricTail)
     });
 }
 
+/// What is left after a gain, by the ratio that the tail is taken to have.
+double tail(double gain, double ratio)
+{
+    return std::sqrt(gain * ratio / (1 - ratio) / (1 + gain));
+}
+
+TEST_F(CgStepTest, ALuckyRatioIsNotBelievedAtOnceAndASlowOneIsNotForgottenAtOnce)
+{
+    inEachPrecision([](auto number) {
+        using Real               = decltype(number);
+        std::vector<Real> second = stateOf<Real>({Real(0.125)}); // gain 1/64 of a last gain of 64: ratio 1/4096
+        second[kStateGain]       = 64;
+        const auto        lucky  = stepped<Real>({1}, second, 1e-3F);
+        std::vector<Real> later  = second;
+        later[kStateRatio]       = Real(0.5);
+        const auto afterOne      = stepped<Real>({1}, later, 1e-3F);
+        EXPECT_NEAR(double(lucky.state[kStateEstimate]), tail(1.0 / 64, 0.09375), 1e-6)
+            << "3/32 is the least of a second step";
+        EXPECT_EQ(afterOne.state[kStateRatio], Real(0.40625)) << "13/16 of it is kept";
+        EXPECT_NEAR(double(afterOne.state[kStateEstimate]), tail(1.0 / 64, 0.40625), 1e-6);
+    });
+}
+
 TEST_F(CgStepTest, DispatchesAreEmptiedOnlyWhenEveryLoadIsFinished)
 {
     inEachPrecision([](auto number) {

@@ -109,18 +109,8 @@ void coarseSolveOf(const HostDispatch& d)
 
 } // namespace
 
-#define PALPATE_BOTH(name)                                                                                             \
-    void name##_f32(const HostDispatch& d)                                                                             \
-    {                                                                                                                  \
-        name##Of<float>(d);                                                                                            \
-    }                                                                                                                  \
-    void name##_f64(const HostDispatch& d)                                                                             \
-    {                                                                                                                  \
-        name##Of<double>(d);                                                                                           \
-    }
-PALPATE_BOTH(assemble)
-PALPATE_BOTH(factor)
-PALPATE_BOTH(coarseSolve)
-#undef PALPATE_BOTH
+PALPATE_IN_BOTH_PRECISIONS(assemble)
+PALPATE_IN_BOTH_PRECISIONS(factor)
+PALPATE_IN_BOTH_PRECISIONS(coarseSolve)
 
 } // namespace palp::PALPATE_ISA

@@ -88,6 +88,17 @@ inline std::ptrdiff_t nodesOf(const PlateLevel& g)
     return std::ptrdiff_t(g.cellsX + 1) * (g.cellsZ + 1);
 }
 
+/// The kernels name_f32 and name_f64, of the template nameOf.
+#define PALPATE_IN_BOTH_PRECISIONS(name)                                                                               \
+    void name##_f32(const HostDispatch& d)                                                                             \
+    {                                                                                                                  \
+        name##Of<float>(d);                                                                                            \
+    }                                                                                                                  \
+    void name##_f64(const HostDispatch& d)                                                                             \
+    {                                                                                                                  \
+        name##Of<double>(d);                                                                                           \
+    }
+
 /// Numbers of one kind that a kernel needs while it runs, kept from run to run. \thread each has its own
 template <class T>
 class Scratch {

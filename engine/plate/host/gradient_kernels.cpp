@@ -168,22 +168,12 @@ void resultOf(const HostDispatch& d)
 
 } // namespace
 
-#define PALPATE_BOTH(name)                                                                                             \
-    void name##_f32(const HostDispatch& d)                                                                             \
-    {                                                                                                                  \
-        name##Of<float>(d);                                                                                            \
-    }                                                                                                                  \
-    void name##_f64(const HostDispatch& d)                                                                             \
-    {                                                                                                                  \
-        name##Of<double>(d);                                                                                           \
-    }
-PALPATE_BOTH(dots)
-PALPATE_BOTH(stepDots)
-PALPATE_BOTH(beta)
-PALPATE_BOTH(step)
-PALPATE_BOTH(direction)
-PALPATE_BOTH(update)
-PALPATE_BOTH(result)
-#undef PALPATE_BOTH
+PALPATE_IN_BOTH_PRECISIONS(dots)
+PALPATE_IN_BOTH_PRECISIONS(stepDots)
+PALPATE_IN_BOTH_PRECISIONS(beta)
+PALPATE_IN_BOTH_PRECISIONS(step)
+PALPATE_IN_BOTH_PRECISIONS(direction)
+PALPATE_IN_BOTH_PRECISIONS(update)
+PALPATE_IN_BOTH_PRECISIONS(result)
 
 } // namespace palp::PALPATE_ISA

@@ -26,7 +26,7 @@ bool isHeldRow(const PlateLevel& g, int i)
 }
 
 template <class Real>
-void applyTo(const HostDispatch& d)
+void applyOf(const HostDispatch& d)
 {
     const PlateLevel& g      = pushed<LevelPush>(d).level;
     const auto*       D      = bound<const float>(d, 0);
@@ -104,15 +104,7 @@ struct TwoColours {
 
 } // namespace
 
-void apply_f32(const HostDispatch& d)
-{
-    applyTo<float>(d);
-}
-
-void apply_f64(const HostDispatch& d)
-{
-    applyTo<double>(d);
-}
+PALPATE_IN_BOTH_PRECISIONS(apply)
 
 void residual(const HostDispatch& d)
 {

@@ -86,14 +86,6 @@ void rigidityLogMean(const HostDispatch& d)
         }
 }
 
-void lift_f32(const HostDispatch& d)
-{
-    liftOf<float>(d);
-}
-
-void lift_f64(const HostDispatch& d)
-{
-    liftOf<double>(d);
-}
+PALPATE_IN_BOTH_PRECISIONS(lift)
 
 } // namespace palp::PALPATE_ISA
