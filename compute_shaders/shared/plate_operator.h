@@ -9,8 +9,9 @@
 // the curvature across is condensed out, which leaves (1 - nu^2)/2 D of the curvature along it, half because a side's
 // node stands for half a cell.
 //
-// A second difference is written as a difference of first differences: between neighbours of a smooth field those are
-// exact in floating point, so that the rounding of a curvature is relative to the slope and not to the deflection.
+// A second difference is written as a change of changes: changes between neighbours of a smooth field are exact in
+// floating point, so that the rounding of a curvature is relative to the slope and not to the deflection. Whoever goes
+// along rows can keep changes for the next row.
 //
 // All loads come first and nothing branches round them: a compiler can then share them, and a software device, which
 // pays for each, loads 13 deflections and 9 rigidities.
@@ -33,9 +34,14 @@ bool isHingedZ(PlateLevel g, int j)
     return (j == 0 && (g.hinged & kSideZ0) != 0u) || (j == g.cellsZ && (g.hinged & kSideZ1) != 0u);
 }
 
+real change(real from, real to)
+{
+    return to - from;
+}
+
 real secondDifference(real before, real middle, real after)
 {
-    return (after - middle) - (middle - before);
+    return change(change(before, middle), change(middle, after));
 }
 
 // Bending moments per rigidity; on a side along which the other one is condensed out, if `onHinge`.
@@ -62,10 +68,10 @@ real momentZ(PlateLevel g, int i, int j, real nodeRigidity, real p, real q)
     return j < 0 || j > g.cellsZ || isHingedZ(g, j) ? real(0) : m;
 }
 
-// Twisting moment of the cell whose first corner is (i, j); zero outside.
-real twistingMoment(PlateLevel g, int i, int j, real sumOfRigidities, real w00, real w10, real w01, real w11)
+// Twisting moment of the cell whose first corner is (i, j), from the changes of w along x on its two sides; zero outside.
+real twistingMoment(PlateLevel g, int i, int j, real sumOfRigidities, real change0, real change1)
 {
-    real m = real(g.twist) * sumOfRigidities * ((w00 - w10) - (w01 - w11));
+    real m = real(g.twist) * sumOfRigidities * change(change0, change1);
     return i < 0 || j < 0 || i >= g.cellsX || j >= g.cellsZ ? real(0) : m;
 }
 
@@ -76,12 +82,10 @@ real nodeShare(PlateLevel g, int i, int j)
     return j == 0 || j == g.cellsZ ? real(0.5f) * x : x;
 }
 
-// The sum of a node from the moments around it; `weight` is the foundation's, with the node's share.
-real forceFrom(real mw, real mx, real me, real ms, real mz, real mn, real tsw, real tse, real tnw, real tne, real weight, real c)
+// The force of a node from second differences of the moments; `weight` is the foundation's, with the node's share.
+real forceFrom(real bendingX2, real bendingZ2, real twisting2, real weight, real c)
 {
-    real bending  = secondDifference(mw, mx, me) + secondDifference(ms, mz, mn);
-    real twisting = (tne - tnw) - (tse - tsw);
-    return (bending + twisting) + weight * c;
+    return ((bendingX2 + bendingZ2) + twisting2) + weight * c;
 }
 
 //                 i-2    i-1    i     i+1    i+2
@@ -114,10 +118,12 @@ real operatorAt(PlateLevel g, int i, int j)
     real mz = momentZ(g, i, j, Dc, p, q);
     real mn = momentZ(g, i, j + 1, Dn, secondDifference(nw, n1, ne), secondDifference(c, n1, n2));
 
-    real tsw = twistingMoment(g, i - 1, j - 1, (Dsw + Ds) + (Dw + Dc), sw, s1, w1, c);
-    real tse = twistingMoment(g, i, j - 1, (Ds + Dse) + (Dc + De), s1, se, c, e1);
-    real tnw = twistingMoment(g, i - 1, j, (Dw + Dc) + (Dnw + Dn), w1, c, nw, n1);
-    real tne = twistingMoment(g, i, j, (Dc + De) + (Dn + Dne), c, e1, n1, ne);
+    real tsw = twistingMoment(g, i - 1, j - 1, (Dsw + Ds) + (Dw + Dc), change(sw, s1), change(w1, c));
+    real tse = twistingMoment(g, i, j - 1, (Ds + Dse) + (Dc + De), change(s1, se), change(c, e1));
+    real tnw = twistingMoment(g, i - 1, j, (Dw + Dc) + (Dnw + Dn), change(w1, c), change(nw, n1));
+    real tne = twistingMoment(g, i, j, (Dc + De) + (Dn + Dne), change(c, e1), change(n1, ne));
 
-    return forceFrom(mw, mx, me, ms, mz, mn, tsw, tse, tnw, tne, real(g.bed) * nodeShare(g, i, j), c);
+    real twisting = change(change(tsw, tse), change(tnw, tne));
+    return forceFrom(secondDifference(mw, mx, me), secondDifference(ms, mz, mn), twisting,
+                     real(g.bed) * nodeShare(g, i, j), c);
 }

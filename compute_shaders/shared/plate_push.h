@@ -19,6 +19,12 @@ struct RelaxPush {
     uint       colour; // parity of i + j of the nodes to relax
 };
 
+struct SmoothPush {
+    PlateLevel level;
+    float      ahead; // share of the last step that is taken again [1]; 0 in the first step, which has none before it
+    float      step;  // of the residual over the divisor [1]
+};
+
 struct TransferPush {
     PlateLevel fine;
     PlateLevel coarse;

@@ -11,7 +11,16 @@ real relaxationDivisor(real diagonal, real sameColour)
     return max(diagonal / real(1.1f), real(0.51f) * (diagonal + sameColour));
 }
 
+// The same divisor d serves Chebyshev's iteration, which takes all nodes at once: of a symmetric matrix in two colours no
+// eigenvalue exceeds twice the largest of its colours' own (for every pair of numbers (x + y)^2 <= 2 (x^2 + y^2)), and
+// these are at most 1/0.51 relative to d, so that all eigenvalues of A relative to d are positive and at most 2/0.51.
 real relaxed(real before, real load, real forceOfBefore, real inverse)
 {
     return before + (load - forceOfBefore) * inverse;
+}
+
+// One step of Chebyshev's iteration: `ahead` of the way that the last step took, and `step` along the residual.
+real smoothed(real before, real beforeThat, real load, real forceOfBefore, real inverse, real ahead, real step)
+{
+    return (before + ahead * (before - beforeThat)) + step * ((load - forceOfBefore) * inverse);
 }

@@ -6,6 +6,9 @@
 // transpose, because residuals are forces; a symmetric cycle can then precondition conjugate gradients. Include
 // transfer_layout.h first.
 //
+// The inner sums are those that can be shared: of a coarse row of nodes with all fine rows that it gives to, of a coarse
+// row with all fine rows that it takes from. A weight of 0 may be left out, as deflections and forces are finite.
+//
 // The includer provides  float tableX(int n), float tableZ(int n)  and  real coarseValue(int i, int j)  or
 // float fineValue(int i, int j).
 
@@ -31,11 +34,11 @@ float restrictedAt(int i, int j, int fineNodesX, int fineNodesZ)
     int   atX = kFineStride * fineNodesX + kCoarseStride * i, atZ = kFineStride * fineNodesZ + kCoarseStride * j;
     int   firstX = int(tableX(atX)), firstZ = int(tableZ(atZ));
     float sum = 0.0f;
-    for (int m = 0; m < kCoarseWeights; ++m) {
-        float row = 0.0f;
-        for (int n = 0; n < kCoarseWeights; ++n)
-            row += tableZ(atZ + 1 + n) * fineValue(min(firstX + m, fineNodesX - 1), min(firstZ + n, fineNodesZ - 1));
-        sum += tableX(atX + 1 + m) * row;
+    for (int n = 0; n < kCoarseWeights; ++n) {
+        float column = 0.0f;
+        for (int m = 0; m < kCoarseWeights; ++m)
+            column += tableX(atX + 1 + m) * fineValue(min(firstX + m, fineNodesX - 1), min(firstZ + n, fineNodesZ - 1));
+        sum += tableZ(atZ + 1 + n) * column;
     }
     return sum;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "engine/core/extremes.h"
+
 namespace palp {
 namespace {
 
@@ -37,8 +39,9 @@ std::optional<std::string> whyRigidityIsBad(const Plate& plate)
     if (!rigidity.on(plate.grid))
         return sentence("the rigidity must have one value per node, expected ", plate.grid.nodesX(), " x ",
                         plate.grid.nodesZ(), ", found ", rigidity.nodesX(), " x ", rigidity.nodesZ());
+    const Extremes of = extremesOf(rigidity.values());
+    if (of.finite && of.least > 0) return std::nullopt;
     const auto bad = std::find_if_not(rigidity.values().begin(), rigidity.values().end(), isPositive);
-    if (bad == rigidity.values().end()) return std::nullopt;
     const auto index = bad - rigidity.values().begin();
     return sentence("the rigidity must be positive and finite, found ", *bad, " N m at node [",
                     index / rigidity.nodesZ(), ", ", index % rigidity.nodesZ(), "]");
@@ -57,7 +60,7 @@ bool isHeldBySides(const Plate& plate)
 std::optional<std::string> whyFoundationIsTooSoft(const Plate& plate)
 {
     constexpr double kLeast = 1e-14; // [1]
-    const double     most   = *std::ranges::max_element(plate.rigidity.values());
+    const double     most   = extremesOf(plate.rigidity.values()).most;
     const double     area   = plate.grid.spacingX * plate.grid.spacingZ;
     if (plate.foundation * area * area >= kLeast * most) return std::nullopt;
     return sentence("only its foundation holds the plate, and ", plate.foundation,

@@ -43,6 +43,8 @@
 #include "compute_shaders/plate_restrict.spv.h"
 #include "compute_shaders/plate_result_f32.spv.h"
 #include "compute_shaders/plate_result_f64.spv.h"
+#include "compute_shaders/plate_smooth.spv.h"
+#include "compute_shaders/plate_smooth_first.spv.h"
 #include "compute_shaders/plate_start_f32.spv.h"
 #include "compute_shaders/plate_start_f64.spv.h"
 #include "compute_shaders/plate_tail.spv.h"
@@ -83,15 +85,25 @@ bool isHardware(const gpu::Context& context)
     return context.device().kind != "software" && context.device().kind != gpu::kHostDevice;
 }
 
+/// Where an operator row by row costs the same for all nodes as for half of them, half sweeps are dear.
+Smoothing smoothingBy(Smoother smoother, const gpu::Context& context)
+{
+    if (smoother == Smoother::automatic)
+        smoother = context.device().kind == gpu::kHostDevice ? Smoother::chebyshev : Smoother::redBlack;
+    return smoother == Smoother::redBlack ? Smoothing{smoother, 1, 2, 6} : Smoothing{smoother, 2, 2, 2};
+}
+
 constexpr gpu::Workgroup kRegionShape{256, 1, 1}; // of plate_region.glsl
 
 /// Fused passes compute the rims of regions several times: worth it where waiting for a dispatch costs more.
-bool isFused(const gpu::Context& context, Schedule schedule)
+bool isFused(const gpu::Context& context, Schedule schedule, Smoother smoother)
 {
+    PALP_EXPECT(smoother == Smoother::redBlack || schedule != Schedule::fused, "fused passes smooth in red and black");
     const bool fits = context.limits().sharedMemory >= sizeof(float) * shared::kTailPool &&
                       context.limits().invocations >= kRegionShape.x;
     PALP_EXPECT(fits || schedule != Schedule::fused, "the device's workgroups are too small for fused passes");
-    return schedule == Schedule::fused || (schedule == Schedule::automatic && fits && isHardware(context));
+    return schedule == Schedule::fused ||
+           (schedule == Schedule::automatic && fits && isHardware(context) && smoother == Smoother::redBlack);
 }
 
 PlateKernels::All::Fused fusedKernels(gpu::Context& context)
@@ -109,7 +121,7 @@ PlateKernels::All::Fused fusedKernels(gpu::Context& context)
 
 } // namespace
 
-PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule, Precision precision)
+PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule, Precision precision, Smoother smoother)
 {
     using namespace shared;
     const Shapes&      shapes = isHardware(context) ? kHardware : kSoftware;
@@ -127,6 +139,7 @@ PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule, Precision p
         return gpu::Kernel(context, what, group);
     };
     all_.reset(new All{f64,
+                       smoothingBy(smoother, context),
                        kernel(PALPATE_FLOAT(TransferPush, rigidity_coarsen, coarsen, 2), shapes.tile),
                        kernel(PALPATE_FLOAT(LevelPush, plate_divisor, divisor, 2), shapes.tile),
                        kernel(PALPATE_FLOAT(LevelPush, jump_mark, jumpMark, 2), shapes.tile),
@@ -135,6 +148,8 @@ PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule, Precision p
                        kernel(PALPATE_REAL(LevelPush, coarse_factor, factor, 3), shapes.alone),
                        kernel(PALPATE_FLOAT(RelaxPush, plate_relax_first, relaxFirst, 3), shapes.tile),
                        kernel(PALPATE_FLOAT(RelaxPush, plate_relax, relax, 6), shapes.tile),
+                       kernel(PALPATE_FLOAT(SmoothPush, plate_smooth_first, smoothFirst, 4), shapes.tile),
+                       kernel(PALPATE_FLOAT(SmoothPush, plate_smooth, smooth, 5), shapes.tile),
                        kernel(PALPATE_FLOAT(RelaxPush, plate_relax_tile, relaxTile, 6), jumpTile),
                        kernel(PALPATE_FLOAT(RelaxPush, plate_copy_tile, copyTile, 3), jumpTile),
                        kernel(PALPATE_FLOAT(LevelPush, plate_residual, residual, 4), shapes.tile),
@@ -157,7 +172,7 @@ PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule, Precision p
                        kernel(real(lift32, lift64), shapes.line)});
 #undef PALPATE_REAL
 #undef PALPATE_FLOAT
-    if (isFused(context, schedule)) all_->fused.emplace(fusedKernels(context));
+    if (isFused(context, schedule, all_->smoothing.by)) all_->fused.emplace(fusedKernels(context));
 }
 
 PlateKernels::~PlateKernels()                                  = default;

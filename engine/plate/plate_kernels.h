@@ -7,6 +7,15 @@
 
 namespace palp {
 
+/// How much is smoothed before and after each correction: sweeps in red and black, or steps of Chebyshev's iteration
+/// [1].
+struct Smoothing {
+    Smoother by;     ///< not automatic
+    int      nested; ///< on the coarser levels of the nested iteration
+    int      finest; ///< in the cycles of the finest level
+    int      tiles;  ///< extra sweeps, in red and black, of the tiles where the rigidity jumps
+};
+
 /// One kernel per shader and variant; `real` ones compute in doubles where the device has them.
 struct PlateKernels::All {
     /// The cycle in fewer and larger passes; [n] has n + 1 sweeps before and after the correction.
@@ -15,8 +24,9 @@ struct PlateKernels::All {
     };
 
     bool        doubles = false;
+    Smoothing   smoothing;
     gpu::Kernel coarsen, divisor, jumpMark, jumpList, assemble, factor; // once per rigidity
-    gpu::Kernel relaxFirst, relax, relaxTile, copyTile, residual, restrict, correct,
+    gpu::Kernel relaxFirst, relax, smoothFirst, smooth, relaxTile, copyTile, residual, restrict, correct,
         coarseSolve; // the cycle, in floats, pass by pass
     gpu::Kernel start, interpolate, interpolateFirst, dots, beta, direction, apply, stepDots, step, update,
         result;                                                  // real

@@ -21,11 +21,13 @@ using gpu::Groups;
 using gpu::Intent;
 using gpu::Kernel;
 
-constexpr int           kNestedSteps  = 2; ///< on each coarser level of the nested iteration [1]
-constexpr int           kNestedSweeps = 1; ///< of its cycles [1]
-constexpr int           kTileSweeps   = 6; ///< extra ones where the rigidity jumps, before and after the correction [1]
+constexpr int           kNestedSteps  = 2;     ///< on each coarser level of the nested iteration [1]
 constexpr std::uint32_t kMostPartials = 16384; ///< sums that a dot product is split into [1]
 constexpr std::uint32_t kTermsPerSum  = 64;    ///< that a sum has at least, unless there are too few partials [1]
+
+/// Eigenvalues that Chebyshev's iteration sees to, relative to the divisor: none is larger (see plate_relax.h), and
+/// those below a sixteenth of the largest a coarser grid represents: (1 - cos(pi/2))^2 to (2 (1 - cos(pi)))^2.
+constexpr double kLargest = 2 / 0.51, kSmallest = kLargest / 16;
 
 std::size_t tilesOf(const shared::PlateLevel& g)
 {
@@ -181,12 +183,48 @@ int PlatePasses::sweep(Recorder& pass, std::size_t l, int at, std::uint32_t firs
     return 1 - at;
 }
 
+// `sweeps` sweeps in red and black or steps of Chebyshev's iteration, from zero; returns which w holds the result.
+int PlatePasses::smooth(Recorder& pass, std::size_t l, int sweeps)
+{
+    const LevelBuffers& b  = levels[l];
+    int                 at = 0;
+    if (k.smoothing.by == Smoother::redBlack) {
+        for (int n = 0; n < sweeps; ++n) at = sweep(pass, l, at, 0, n == 0);
+        return at;
+    }
+    const auto steps = chebyshevSteps(sweeps, kSmallest, kLargest);
+    pass(k.smoothFirst, {b.divisor, b.force, b.w[0], b.w[1]}, shared::SmoothPush{level(l), 0, steps.front().step},
+         everyNode(k.smoothFirst, l));
+    for (std::size_t n = 1; n < steps.size(); ++n) at = step(pass, l, int(n) % 2, steps[n]);
+    return at;
+}
+
+// From w[at], in the reverse order.
+int PlatePasses::smoothAgain(Recorder& pass, std::size_t l, int at, int sweeps)
+{
+    if (k.smoothing.by == Smoother::redBlack)
+        for (int n = 0; n < sweeps; ++n) at = sweep(pass, l, at, 1, false);
+    else
+        for (const ChebyshevStep& one : chebyshevSteps(sweeps, kSmallest, kLargest)) at = step(pass, l, at, one);
+    return at;
+}
+
+// A step of Chebyshev's iteration from w[at]; returns which w holds the result.
+int PlatePasses::step(Recorder& pass, std::size_t l, int at, const ChebyshevStep& how)
+{
+    const LevelBuffers& b = levels[l];
+    pass(k.smooth, {b.rigidity, b.divisor, b.force, b.w[at], b.w[1 - at]},
+         shared::SmoothPush{level(l), how.ahead, how.step}, everyNode(k.smooth, l));
+    countWork(l, 1);
+    return 1 - at;
+}
+
 // Extra sweeps of w[at] in the tiles where the rigidity jumps. The residual's memory is free while they run.
 void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first)
 {
-    if (!jumps_) return;
+    if (!jumps_ || getenv("NOJ")) return;
     const LevelBuffers& b = levels[l];
-    for (int n = 0; n < kTileSweeps; ++n)
+    for (int n = 0; n < k.smoothing.tiles; ++n)
         for (std::uint32_t colour : {first, 1 - first}) {
             const shared::RelaxPush push{level(l), colour};
             pass.list.dispatchIndirect(k.relaxTile, {b.rigidity, b.divisor, b.force, b.w[at], b.tiles, b.residual},
@@ -194,7 +232,7 @@ void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_
             pass.list.dispatchIndirect(k.copyTile, {b.tiles, b.residual, b.w[at]}, push, arguments_, tileArgument(l));
         }
     work.tileSweeps.resize(levels.size());
-    work.tileSweeps[l] += kTileSweeps;
+    work.tileSweeps[l] += k.smoothing.tiles;
 }
 
 // One symmetric cycle for the forces of level l; returns which of its w holds the answer.
@@ -206,8 +244,7 @@ int PlatePasses::cycle(Recorder& pass, std::size_t l, int sweeps)
         solveCoarsest(pass, b.force);
         return 0;
     }
-    int at = 0;
-    for (int n = 0; n < sweeps; ++n) at = sweep(pass, l, at, 0, n == 0);
+    int at = smooth(pass, l, sweeps);
     sweepTiles(pass, l, at, 0);
     const LevelBuffers&        below = levels[l + 1];
     const shared::TransferPush transfer{level(l), level(l + 1)};
@@ -218,8 +255,7 @@ int PlatePasses::cycle(Recorder& pass, std::size_t l, int sweeps)
     pass(k.correct, {b.tableX, b.tableZ, below.w[from], b.w[1 - at], b.w[at]}, transfer, everyNode(k.correct, l));
     at = 1 - at;
     sweepTiles(pass, l, at, 1);
-    for (int n = 0; n < sweeps; ++n) at = sweep(pass, l, at, 1, false);
-    return at;
+    return smoothAgain(pass, l, at, sweeps);
 }
 
 // The same cycle in fewer dispatches.
@@ -345,7 +381,7 @@ void PlatePasses::nest(Recorder& pass)
         else
             pass(k.interpolate, {b.tableX, b.tableZ, below.answer, b.answer}, transfer, everyNode(k.interpolate, l));
         start(pass, l);
-        if (l > 0) steps(pass, l, kNestedSteps, kNestedSweeps, 2, 0);
+        if (l > 0) steps(pass, l, kNestedSteps, k.smoothing.nested, 2, 0);
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include "engine/gpu/buffer.h"
 #include "engine/gpu/command_list.h"
+#include "engine/plate/chebyshev.h"
 #include "engine/plate/grid_hierarchy.h"
 #include "engine/plate/plate_kernels.h"
 #include "engine/plate/plate_tail.h"
@@ -98,7 +99,10 @@ private:
     [[nodiscard]] std::size_t tileArgument(std::size_t l) const { return kSizeBytes * (kSizes + l); }
     [[nodiscard]] bool        isFused() const noexcept { return tail_ && !jumps_; }
 
+    [[nodiscard]] int smooth(Recorder& pass, std::size_t l, int sweeps);
+    [[nodiscard]] int smoothAgain(Recorder& pass, std::size_t l, int at, int sweeps);
     [[nodiscard]] int sweep(Recorder& pass, std::size_t l, int at, std::uint32_t first, bool fromZero);
+    [[nodiscard]] int step(Recorder& pass, std::size_t l, int at, const ChebyshevStep& how);
     void              sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first);
     [[nodiscard]] int cycle(Recorder& pass, std::size_t l, int sweeps);
     [[nodiscard]] int fusedCycle(Recorder& pass, std::size_t l, int sweeps);

@@ -14,6 +14,7 @@
 #include "compute_shaders/shared/plate_push.h"
 #include "compute_shaders/shared/tile_layout.h"
 #include "engine/core/contract.h"
+#include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
 #include "engine/gpu/command_list.h"
 #include "engine/gpu/context.h"
@@ -49,7 +50,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kSlots        = 3; ///< results in mapped memory: one is written, one is read, one is in between [1]
 constexpr int kStepsPerList = 4; ///< even, because directions take turns in two buffers [1]
-constexpr int kSweeps       = 2; ///< before and after the correction, on the finest level's cycles [1]
 
 constexpr int kMostGroups = 65535; ///< along x of a dispatch, on every device [1]
 
@@ -139,7 +139,7 @@ struct VulkanPlateSolver::Impl {
 
     static double largest(const NodeField& field)
     {
-        return *std::max_element(field.values().begin(), field.values().end());
+        return extremesOf(field.values()).most;
     }
 
     // --- lists
@@ -147,7 +147,7 @@ struct VulkanPlateSolver::Impl {
     void finestSteps(CommandList& list, std::uint32_t begins)
     {
         PlatePasses::Recorder pass{passes, list, true};
-        passes.steps(pass, 0, kStepsPerList, kSweeps, begins, settings.tolerance);
+        passes.steps(pass, 0, kStepsPerList, k.smoothing.finest, begins, settings.tolerance);
         list.dispatch(k.result, {passes.levels[0].answer, units, results[std::size_t(slot)]},
                       shared::VectorPush{std::uint32_t(passes.nodes()), passes.partials(), 0},
                       passes.inOrder(k.result, 0));
@@ -288,13 +288,10 @@ struct VulkanPlateSolver::Impl {
         std::vector<double> all;
         for (const NodeField& load : nodalForces) {
             PALP_EXPECT(load.on(plate.grid), "the load's grid is not the plate's");
-            double most = 0;
-            for (double f : load.values()) {
-                if (!std::isfinite(f))
-                    throw Error("plate: expected finite forces, found a load that is not a number or infinite");
-                most = std::max(most, std::abs(f));
-            }
-            all.push_back(most);
+            const Extremes of = extremesOf(load.values());
+            if (!of.finite)
+                throw Error("plate: expected finite forces, found a load that is not a number or infinite");
+            all.push_back(std::max(std::abs(of.least), std::abs(of.most)));
         }
         return all;
     }
@@ -319,8 +316,9 @@ struct VulkanPlateSolver::Impl {
                                metres < double(std::numeric_limits<float>::max())))
                 throw Error("plate: forces of " + formatQuantity(scales[n], "N") + " on a rigidity of " +
                             formatQuantity(unitRigidity, "N m") + " give deflections that 32 bits cannot hold");
-            float* to = hostLoads.as<float>().data() + n * nodes;
-            for (std::size_t m = 0; m < nodes; ++m) to[m] = float(nodalForces[n].values()[m] * scale);
+            float*        to   = hostLoads.as<float>().data() + n * nodes;
+            const double* from = nodalForces[n].values().data();
+            for (std::size_t m = 0; m < nodes; ++m) to[m] = float(from[m] * scale);
             hostUnits.as<float>()[n] = float(metres);
         }
         forceUnits = scales;
@@ -330,9 +328,7 @@ struct VulkanPlateSolver::Impl {
     {
         plate.rigidity = rigidity;
         if (const auto why = whyUnsolvable(plate)) throw Error("plate: " + *why);
-        float* to = hostRigidity.as<float>().data();
-        for (std::size_t n = 0; n < plate.grid.nodes(); ++n)
-            to[n] = inRigidityUnits(rigidity.values()[n], unitRigidity);
+        inRigidityUnits(rigidity.values(), unitRigidity, hostRigidity.as<float>());
         fromPoints.reset();
         if (!prepareList) recordPrepare();
         context.run(*prepareList);
@@ -417,11 +413,10 @@ struct VulkanPlateSolver::Impl {
         for (std::uint32_t load = 0; load < loads; ++load) {
             NodeField    w(plate.grid);
             const float* from = result.as<float>().data() + load * nodes;
-            for (std::size_t n = 0; n < nodes; ++n) {
-                w.values()[n] = double(from[n]);
-                if (!std::isfinite(from[n]))
-                    throw Error("plate: the deflection is not finite; the rigidity or the load is out of range");
-            }
+            double*      to   = w.values().data();
+            for (std::size_t n = 0; n < nodes; ++n) to[n] = double(from[n]);
+            if (!extremesOf(w.values()).finite)
+                throw Error("plate: the deflection is not finite; the rigidity or the load is out of range");
             answers.push_back({std::move(w), report});
         }
         return answers;

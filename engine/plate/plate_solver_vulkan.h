@@ -27,11 +27,19 @@ enum class Precision {
     floats ///< as on a device without doubles
 };
 
+/// What evens out the errors that coarser grids cannot see. One sweep in red and black and two steps of Chebyshev's
+/// iteration do that about as well as each other.
+enum class Smoother {
+    automatic, ///< Chebyshev's on the host, else red and black
+    redBlack,  ///< each colour from the newest values of the other: half the work for an invocation per node
+    chebyshev  ///< all nodes from the values before: half the work for rows of nodes
+};
+
 /// The plate's shaders, compiled for one device; solvers of any size share them. \thread as its context
 class PlateKernels {
 public:
     explicit PlateKernels(gpu::Context& context, Schedule schedule = Schedule::automatic,
-                          Precision precision = Precision::best);
+                          Precision precision = Precision::best, Smoother smoother = Smoother::automatic);
     ~PlateKernels();
     PlateKernels(PlateKernels&&) noexcept;
     PlateKernels& operator=(PlateKernels&&) noexcept;

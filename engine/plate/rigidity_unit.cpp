@@ -1,6 +1,7 @@
 #include "engine/plate/rigidity_unit.h"
 
 #include "engine/core/contract.h"
+#include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
 
 namespace palp {
@@ -13,6 +14,13 @@ float inRigidityUnits(double rigidity, double unit)
         throw Error("plate: the rigidity spans too many orders of magnitude for 32-bit arithmetic: there is " +
                     formatQuantity(rigidity, "N m") + ", the largest being about " + formatQuantity(unit, "N m"));
     return float(relative);
+}
+
+void inRigidityUnits(std::span<const double> rigidities, double unit, std::span<float> relative)
+{
+    const Extremes of = extremesOf(rigidities);
+    for (const double end : {of.least, of.most}) static_cast<void>(inRigidityUnits(end, unit));
+    for (std::size_t n = 0; n < rigidities.size(); ++n) relative[n] = float(rigidities[n] / unit);
 }
 
 } // namespace palp

@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 
 namespace palp {
 
@@ -6,5 +7,6 @@ namespace palp {
 /// \param rigidity, unit  [N m], > 0
 /// \throws Error if products of three of them and more would not stay finite
 [[nodiscard]] float inRigidityUnits(double rigidity, double unit);
+void                inRigidityUnits(std::span<const double> rigidities, double unit, std::span<float> relative);
 
 } // namespace palp

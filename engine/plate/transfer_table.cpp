@@ -25,11 +25,24 @@ std::array<double, 4> cubicWeights(double t)
             (t + 1) * t * (t - 1) / 6};
 }
 
-/// Adds a weight of the node `distance` beyond a side to the weights of nodes at distances 0 and 1 inside it.
-void addGhost(Edge edge, double weight, double& onSide, double& inside)
+/// Adds a weight of the node beyond a side to the weights of the nodes on the side, next to it and one further.
+///
+/// Beyond a clamped side the plate would go on as x^2 (a + b x): 3 w1 - w2/2. (As its mirror image, which is what the
+/// operator takes, b |x|^3 has a kink; the correction then comes out up to 1.7 times too large along the side, and a
+/// solve takes a quarter more steps.) Beyond a supported one it is odd; beyond a free one, straight.
+void addGhost(Edge edge, double weight, double& onSide, double& next, double& further)
 {
-    if (edge == Edge::free) onSide += 2 * weight;
-    inside += edge == Edge::clamped ? weight : -weight;
+    switch (edge) {
+    case Edge::clamped:
+        next += 3 * weight;
+        further -= weight / 2;
+        break;
+    case Edge::supported: next -= weight; break;
+    case Edge::free:
+        onSide += 2 * weight;
+        next -= weight;
+        break;
+    }
 }
 
 Row rowOf(int fine, int fineCells, int coarseCells, Edge first, Edge last)
@@ -48,9 +61,9 @@ Row rowOf(int fine, int fineCells, int coarseCells, Edge first, Edge last)
         const double w    = cubic[std::size_t(m)];
         if (w == 0) continue;
         if (node < 0)
-            addGhost(first, w, weight(0), weight(1));
+            addGhost(first, w, weight(0), weight(1), weight(2));
         else if (node > coarseCells)
-            addGhost(last, w, weight(coarseCells), weight(coarseCells - 1));
+            addGhost(last, w, weight(coarseCells), weight(coarseCells - 1), weight(coarseCells - 2));
         else
             weight(node) += w;
     }

@@ -78,6 +78,26 @@ inline std::vector<float> relaxed(const RoughLevel& level, const HalfSweep& fiel
     return after;
 }
 
+/// What a step of Chebyshev's iteration reads and writes.
+struct SmoothStep {
+    std::vector<float> inverseDivisor, force, before, after;
+    float              ahead, step;
+};
+
+inline std::vector<float> smoothed(const RoughLevel& level, const SmoothStep& fields)
+{
+    const PlateLevel&  g     = level.g;
+    std::vector<float> after = fields.after;
+    forEachNode(g, after.size() / nodesOf(g), [&](int i, int j, std::size_t n, std::size_t node) {
+        const float* of = fields.before.data() + (n - node);
+        auto         A  = operatorOf(g, level.rigidity, of, of);
+        const float  w  = fields.before[n];
+        after[n]        = A.smoothed(w, fields.ahead == 0 ? w : fields.after[n], fields.force[n], A.operatorAt(g, i, j),
+                                     fields.inverseDivisor[node], fields.ahead, fields.step);
+    });
+    return after;
+}
+
 template <class Real>
 std::vector<Real> interpolated(const LevelPair& pair, const std::vector<Real>& coarse)
 {

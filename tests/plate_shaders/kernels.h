@@ -38,6 +38,8 @@
 #include "compute_shaders/plate_restrict.spv.h"
 #include "compute_shaders/plate_result_f32.spv.h"
 #include "compute_shaders/plate_result_f64.spv.h"
+#include "compute_shaders/plate_smooth.spv.h"
+#include "compute_shaders/plate_smooth_first.spv.h"
 #include "compute_shaders/plate_start_f32.spv.h"
 #include "compute_shaders/plate_start_f64.spv.h"
 #include "compute_shaders/plate_tail.spv.h"
@@ -89,6 +91,8 @@ PALPATE_KERNEL(coarsen, rigidity_coarsen, TransferPush, 2)
 PALPATE_KERNEL(divisor, plate_divisor, LevelPush, 2)
 PALPATE_KERNEL(relaxFirst, plate_relax_first, RelaxPush, 3)
 PALPATE_KERNEL(relax, plate_relax, RelaxPush, 6)
+PALPATE_KERNEL(smoothFirst, plate_smooth_first, SmoothPush, 4)
+PALPATE_KERNEL(smooth, plate_smooth, SmoothPush, 5)
 PALPATE_KERNEL(jumpMark, jump_mark, LevelPush, 2)
 PALPATE_KERNEL(jumpList, jump_list, LevelPush, 2)
 PALPATE_KERNEL(relaxTile, plate_relax_tile, RelaxPush, 6)

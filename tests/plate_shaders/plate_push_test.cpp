@@ -10,6 +10,7 @@
 #include "tests/plate_shaders/push_echo_points.spv.h"
 #include "tests/plate_shaders/push_echo_relax.spv.h"
 #include "tests/plate_shaders/push_echo_scalars.spv.h"
+#include "tests/plate_shaders/push_echo_smooth.spv.h"
 #include "tests/plate_shaders/push_echo_tail.spv.h"
 #include "tests/plate_shaders/push_echo_transfer.spv.h"
 #include "tests/plate_shaders/push_echo_vector.spv.h"
@@ -24,6 +25,7 @@ constexpr std::size_t kMostPushBytes = 128; ///< that every device allows
 static_assert(sizeof(PlateLevel) == 44);
 static_assert(sizeof(LevelPush) == 44 && sizeof(LevelPush) <= kMostPushBytes);
 static_assert(sizeof(RelaxPush) == 48 && sizeof(RelaxPush) <= kMostPushBytes);
+static_assert(sizeof(SmoothPush) == 52 && sizeof(SmoothPush) <= kMostPushBytes);
 static_assert(sizeof(TransferPush) == 88 && sizeof(TransferPush) <= kMostPushBytes);
 static_assert(sizeof(VectorPush) == 12 && sizeof(VectorPush) <= kMostPushBytes);
 static_assert(sizeof(ScalarsPush) == 20 && sizeof(ScalarsPush) <= kMostPushBytes);
@@ -69,12 +71,14 @@ TEST_F(PlatePushTest, EveryFieldArrivesInItsPlace)
     if (onHost()) GTEST_SKIP() << "the host has no such kernel";
     const LevelPush    level{kFine};
     const RelaxPush    relax{kFine, 1U};
+    const SmoothPush   smooth{kFine, 0.375F, 0.625F};
     const TransferPush transfer{kFine, kCoarse};
     const VectorPush   vector{1000U, 64U, 7U};
     const ScalarsPush  scalars{3U, 64U, 2U, 768U, 1e-6F};
 
     EXPECT_EQ(echoed(push_echo_level_spv, level), Words(level.level));
     EXPECT_EQ(echoed(push_echo_relax_spv, relax), Words(relax.level, relax.colour));
+    EXPECT_EQ(echoed(push_echo_smooth_spv, smooth), Words(smooth.level, smooth.ahead, smooth.step));
     EXPECT_EQ(echoed(push_echo_transfer_spv, transfer), Words(transfer.fine, transfer.coarse));
     EXPECT_EQ(echoed(push_echo_vector_spv, vector), Words(vector.nodes, vector.partials, vector.iteration));
     EXPECT_EQ(echoed(push_echo_scalars_spv, scalars),

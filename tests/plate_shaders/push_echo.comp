@@ -2,7 +2,7 @@
 // Domain     one invocation
 // Reads      push
 // Writes     bits of the fields
-// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS; ECHO_TAIL and ECHO_POINTS with arrays of structs
+// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_SMOOTH, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS; ECHO_TAIL and ECHO_POINTS with arrays of structs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -17,6 +17,8 @@ layout(set = 0, binding = 0) writeonly buffer Words { uint words[]; };
 layout(push_constant) uniform Constants { LevelPush push; };
 #elif defined(ECHO_RELAX)
 layout(push_constant) uniform Constants { RelaxPush push; };
+#elif defined(ECHO_SMOOTH)
+layout(push_constant) uniform Constants { SmoothPush push; };
 #elif defined(ECHO_TRANSFER)
 layout(push_constant) uniform Constants { TransferPush push; };
 #elif defined(ECHO_VECTOR)
@@ -59,6 +61,10 @@ void main()
 #elif defined(ECHO_RELAX)
     echo(push.level);
     echo(push.colour);
+#elif defined(ECHO_SMOOTH)
+    echo(push.level);
+    echo(push.ahead);
+    echo(push.step);
 #elif defined(ECHO_TRANSFER)
     echo(push.fine);
     echo(push.coarse);

@@ -207,6 +207,35 @@ TEST(SharedRelaxationTest, EveryHalfSweepLowersTheEnergy)
     });
 }
 
+// Chebyshev's iteration lives on it: beyond the largest eigenvalue that it expects it diverges.
+TEST(SharedRelaxationTest, NoEigenvalueRelativeToTheDivisorIsLargerThanTwiceThatOfAColour)
+{
+    double most = 0;
+    forAllEdges([&](const PlateEdges& edges) {
+        for (const double contrast : {1.0, 10.0, 1e4}) {
+            Plate      plate  = exactPlate(7, 6, edges);
+            const auto values = roughValues<double>(plate.grid.nodes(), 79);
+            for (std::size_t n = 0; n < values.size(); ++n)
+                plate.rigidity.values()[n] = std::pow(contrast, (values[n] + 1) / 2);
+            const ExactLevel         level(plate);
+            const std::vector<float> inverse = host::inverseDivisor(level.g, level.rigidity);
+            std::vector<double>      v       = roughDeflection<double>(level.g, 1, 80);
+            double                   found   = 0;
+            for (int n = 0; n < 300; ++n) { // the largest eigenvalue by powers, from below
+                v           = host::applied(level.g, level.rigidity, v);
+                double size = 0;
+                for (std::size_t m = 0; m < v.size(); ++m) size = std::max(size, std::abs(v[m] *= double(inverse[m])));
+                for (double& value : v) value /= size;
+                found = size;
+            }
+            EXPECT_LE(found, 2 / 0.51 * 1.00001)
+                << describe(plate) << ", contrast " << contrast << "; divisors are floats";
+            most = std::max(most, found);
+        }
+    });
+    EXPECT_GT(most, 3.2) << "the bound is not idle: 64/(20/1.1) = 3.5 for a large plate of one rigidity";
+}
+
 // --- transfers
 
 struct Sizes {
@@ -317,6 +346,7 @@ TEST(SharedTransferTest, SidesKeepTheirConditions)
             };
             if (sizes.coarse < 5) continue; // the other side is too near
             fits(Edge::clamped, square);
+            fits(Edge::clamped, cube);
             fits(Edge::supported, line);
             fits(Edge::supported, cube);
             fits(Edge::free, one);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <new>
 
 #include "compute_shaders/shared/cg_state.h"
 #include "compute_shaders/shared/coarse_band.h"
@@ -106,21 +107,28 @@ public:
     Scratch()                          = default;
     Scratch(const Scratch&)            = delete;
     Scratch& operator=(const Scratch&) = delete;
-    ~Scratch() { delete[] data_; }
+    ~Scratch() { free(); }
 
     T* of(std::ptrdiff_t count)
     {
         if (count > size_) {
-            delete[] data_;
-            data_ = nullptr;
-            size_ = 0;
-            data_ = new T[std::size_t(count)]();
+            free();
+            data_ = static_cast<T*>(::operator new(sizeof(T) * std::size_t(count), kLine));
             size_ = count;
         }
         return data_;
     }
 
 private:
+    static constexpr std::align_val_t kLine{64}; ///< of the cache [bytes]
+
+    void free()
+    {
+        ::operator delete(data_, kLine);
+        data_ = nullptr;
+        size_ = 0;
+    }
+
     T*             data_ = nullptr;
     std::ptrdiff_t size_ = 0;
 };

@@ -6,24 +6,33 @@
 namespace palp::PALPATE_ISA {
 namespace {
 
-/// Calls visit(i, forces of row i) for every row of A w.
-template <class Real, class Field, class Visit>
-void forEachRow(const PlateLevel& g, const float* D, Field& field, Visit&& visit)
-{
-    static thread_local Scratch<Real> scratch;
-    Real*                             forces = scratch.of(g.cellsZ + 1);
-    OperatorRows<Real, Field>         rows(g, D, field);
-    for (int i = 0; i <= g.cellsX; ++i) {
-        rows.next(i, forces);
-        visit(i, forces);
-    }
-}
-
 /// Whether all nodes of a row but perhaps its ends are held.
 bool isHeldRow(const PlateLevel& g, int i)
 {
     return Rules<float>{}.isHeld(middleOfZ(g), i, kMiddle);
 }
+
+/// Calls visit(row i)(j, A w) for every node; 0 instead for held ones.
+template <class Real, class Field, class VisitRow>
+void forEachRow(const PlateLevel& g, const float* D, Field& field, VisitRow&& visitRow)
+{
+    OperatorRows<Real, Field> rows(g, D, field);
+    const int                 last = g.cellsZ;
+    for (int i = 0; i <= g.cellsX; ++i) {
+        const auto visit = visitRow(i);
+        rows.next(i, visit.moves);
+        if (isHeldRow(g, i))
+            for (int j = 1; j < last; ++j) visit.isHeld(j);
+        for (int j : {0, last})
+            if (Rules<Real>{}.isHeld(g, i, j)) visit.isHeld(j);
+    }
+}
+
+template <class Moves, class IsHeld>
+struct Visit {
+    Moves  moves;
+    IsHeld isHeld;
+};
 
 template <class Real>
 void applyOf(const HostDispatch& d)
@@ -35,45 +44,36 @@ void applyOf(const HostDispatch& d)
     const int         nodes  = g.cellsZ + 1;
     for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
         PlainField<Real> field{w + load * nodesOf(g), nodes};
-        Real*            out = result + load * nodesOf(g);
-        forEachRow<Real>(g, D, field, [&](int i, const Real* forces) {
-            Real* to = out + std::ptrdiff_t(i) * nodes;
-            if (isHeldRow(g, i))
-                for (int j = 0; j < nodes; ++j) to[j] = 0;
-            else
-                for (int j = 0; j < nodes; ++j) to[j] = forces[j];
-            for (int j : {0, nodes - 1})
-                if (Rules<Real>{}.isHeld(g, i, j)) to[j] = 0;
+        forEachRow<Real>(g, D, field, [&](int i) {
+            Real* to = result + load * nodesOf(g) + std::ptrdiff_t(i) * nodes;
+            return Visit{[=](int j, Real force) { to[j] = force; }, [=](int j) { to[j] = 0; }};
         });
     }
 }
 
 /// \param rounded  the same in floats, or null
-template <class Real>
-void residualOf(const HostDispatch& d, float* rounded)
+template <class Real, bool kRounds>
+void residualOf(const HostDispatch& d)
 {
-    const PlateLevel& g      = pushed<LevelPush>(d).level;
-    const auto*       D      = bound<const float>(d, 0);
-    const auto*       force  = bound<const float>(d, 1);
-    const auto*       w      = bound<const Real>(d, 2);
-    auto*             result = bound<Real>(d, 3);
-    const int         nodes  = g.cellsZ + 1;
+    const PlateLevel& g       = pushed<LevelPush>(d).level;
+    const auto*       D       = bound<const float>(d, 0);
+    const auto*       force   = bound<const float>(d, 1);
+    const auto*       w       = bound<const Real>(d, 2);
+    auto*             result  = bound<Real>(d, 3);
+    auto*             rounded = kRounds ? bound<float>(d, 4) : nullptr;
+    const int         nodes   = g.cellsZ + 1;
     for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
         PlainField<Real> field{w + load * nodesOf(g), nodes};
-        forEachRow<Real>(g, D, field, [&](int i, const Real* forces) {
-            const std::ptrdiff_t at = load * nodesOf(g) + std::ptrdiff_t(i) * nodes;
-            const float*         f  = force + at;
-            Real*                to = result + at;
-            if (isHeldRow(g, i))
-                for (int j = 0; j < nodes; ++j) to[j] = 0;
-            else
-#pragma GCC ivdep
-                for (int j = 0; j < nodes; ++j) to[j] = Real(f[j]) - forces[j];
-            for (int j : {0, nodes - 1})
-                if (Rules<Real>{}.isHeld(g, i, j)) to[j] = 0;
-            if (rounded)
-#pragma GCC ivdep
-                for (int j = 0; j < nodes; ++j) rounded[at + j] = float(to[j]);
+        forEachRow<Real>(g, D, field, [&](int i) {
+            const std::ptrdiff_t at   = load * nodesOf(g) + std::ptrdiff_t(i) * nodes;
+            const float*         f    = force + at;
+            Real*                to   = result + at;
+            float*               also = rounded + at;
+            const auto           put  = [=](int j, Real left) {
+                to[j] = left;
+                if (kRounds) also[j] = float(left);
+            };
+            return Visit{[=](int j, Real a) { put(j, Real(f[j]) - a); }, [=](int j) { put(j, 0); }};
         });
     }
 }
@@ -108,17 +108,17 @@ PALPATE_IN_BOTH_PRECISIONS(apply)
 
 void residual(const HostDispatch& d)
 {
-    residualOf<float>(d, nullptr);
+    residualOf<float, false>(d);
 }
 
 void start_f32(const HostDispatch& d)
 {
-    residualOf<float>(d, bound<float>(d, 4));
+    residualOf<float, true>(d);
 }
 
 void start_f64(const HostDispatch& d)
 {
-    residualOf<double>(d, bound<float>(d, 4));
+    residualOf<double, true>(d);
 }
 
 void relax(const HostDispatch& d)
@@ -136,17 +136,17 @@ void relax(const HostDispatch& d)
     for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
         const std::ptrdiff_t first = load * nodesOf(g);
         TwoColours           field{same + first, other + first, nodes, colour, scratch.of(6 * std::ptrdiff_t(nodes))};
-        forEachRow<float>(g, D, field, [&, parity = colour](int i, const float* forces) {
+        OperatorRows<float, TwoColours> rows(g, D, field);
+        for (int i = 0; i <= g.cellsX; ++i) {
             const std::ptrdiff_t at  = std::ptrdiff_t(i) * nodes;
             const float *        inv = inverse + at, *f = force + first + at, *w = field.row(i);
             float*               to  = after + first + at;
-            const int            odd = int((unsigned(i) + parity) & 1U);
-#pragma GCC ivdep
-            for (int j = 0; j < nodes; ++j) {
-                const float relaxed = Rules<float>{}.relaxed(w[j], f[j], forces[j], inv[j]);
+            const int            odd = int((unsigned(i) + colour) & 1U);
+            rows.next(i, [=](int j, float a) { // the inverse divisor of a held node is 0
+                const float relaxed = Rules<float>{}.relaxed(w[j], f[j], a, inv[j]);
                 to[j]               = (j & 1) == odd ? relaxed : to[j];
-            }
-        });
+            });
+        }
     }
 }
 
@@ -165,6 +165,51 @@ void relaxFirst(const HostDispatch& d)
             const int            odd = int((unsigned(i) + colour) & 1U);
 #pragma GCC ivdep
             for (int j = 0; j < nodes; ++j) to[j] = (j & 1) == odd ? f[j] * inv[j] : to[j];
+        }
+}
+
+void smooth(const HostDispatch& d)
+{
+    const auto& [g, ahead, step] = pushed<SmoothPush>(d);
+    const auto* D                = bound<const float>(d, 0);
+    const auto* inverse          = bound<const float>(d, 1);
+    const auto* force            = bound<const float>(d, 2);
+    const auto* before           = bound<const float>(d, 3);
+    auto*       after            = bound<float>(d, 4);
+    const int   nodes            = g.cellsZ + 1;
+    for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
+        const std::ptrdiff_t                   first = load * nodesOf(g);
+        PlainField<float>                      field{before + first, nodes};
+        OperatorRows<float, PlainField<float>> rows(g, D, field);
+        for (int i = 0; i <= g.cellsX; ++i) {
+            const std::ptrdiff_t at  = std::ptrdiff_t(i) * nodes;
+            const float *        inv = inverse + at, *f = force + first + at, *w = field.row(i);
+            float*               to = after + first + at;
+            if (ahead == 0)
+                rows.next(i, [=, by = step](int j, float a) {
+                    to[j] = Rules<float>{}.smoothed(w[j], w[j], f[j], a, inv[j], 0, by);
+                });
+            else
+                rows.next(i, [=, more = ahead, by = step](int j, float a) {
+                    to[j] = Rules<float>{}.smoothed(w[j], to[j], f[j], a, inv[j], more, by);
+                });
+        }
+    }
+}
+
+void smoothFirst(const HostDispatch& d)
+{
+    const auto&          push    = pushed<SmoothPush>(d);
+    const auto*          inverse = bound<const float>(d, 0);
+    const auto*          force   = bound<const float>(d, 1);
+    auto*                before  = bound<float>(d, 2);
+    auto*                after   = bound<float>(d, 3);
+    const std::ptrdiff_t nodes   = nodesOf(push.level);
+    for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load)
+#pragma GCC ivdep
+        for (std::ptrdiff_t n = 0; n < nodes; ++n) {
+            before[load * nodes + n] = 0;
+            after[load * nodes + n]  = push.step * (force[load * nodes + n] * inverse[n]);
         }
 }
 

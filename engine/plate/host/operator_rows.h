@@ -1,15 +1,21 @@
 #pragma once
 #include "engine/plate/host/frame.h"
 
-// The operator row by row. Bending and twisting moments are computed once per node and cell, in rows that follow each
-// other, where an invocation of a shader computes those around its node anew: the same numbers, with a third of the
-// work.
+// The operator row by row. Moments, and changes from row to row, are computed once per node and cell and kept, where an
+// invocation of a shader computes those around its node anew: the same numbers, with a third of the work.
 
 namespace palp::PALPATE_ISA {
 
 // Rules of the sides depend on how near a side is. A column far from both is like the middle one of eight cells, which
 // is a constant: so loops along a row have no branch.
 inline constexpr int kMiddle = 4, kMiddleCells = 8;
+
+inline PlateLevel middleOf(PlateLevel g)
+{
+    g.cellsX = kMiddleCells;
+    g.cellsZ = kMiddleCells;
+    return g;
+}
 
 inline PlateLevel middleOfZ(PlateLevel g)
 {
@@ -31,109 +37,176 @@ struct Rules {
 #include "compute_shaders/shared/plate_relax.h"
 };
 
-/// Rows of A w, from the first to the last. Call next() once per row.
+/// Nodes of a row, from the first to the last of them.
+struct Columns {
+    int first, last;
+};
+
+/// Rows of A w in a window of the grid, one after the other. Call next() once per row.
 ///
 /// \tparam Field  gives row i of the deflection as `const Real* row(int i)`, valid while rows up to i + 2 are asked for
 template <class Real, class Field>
 class OperatorRows {
 public:
     OperatorRows(const PlateLevel& level, const float* rigidity, Field& field)
-        : g(level), middle(middleOfZ(level)), D_(rigidity), field_(field), nodes_(level.cellsZ + 1)
+        : OperatorRows(level, rigidity, field, 0, {0, level.cellsZ})
     {
-        static thread_local Scratch<Real> scratch;
-        const std::ptrdiff_t              stride = nodes_ + 2; // one more at either end, where no moment acts
-        Real*                             at     = scratch.of(9 * stride);
-        for (std::ptrdiff_t n = 0; n < 9 * stride; ++n) at[n] = 0;
-        for (int n = 0; n < 3; ++n) {
-            mx_[n] = at + (2 * n) * stride + 1;
-            mz_[n] = at + (2 * n + 1) * stride + 1;
-        }
-        for (int n = 0; n < 2; ++n) t_[n] = at + (6 + n) * stride + 1;
-        none_ = at + 8 * stride + 1;
-        moments(0);
     }
 
-    /// Writes row i of A w, i = 0, 1, ... in turn.
-    void next(int i, Real* forces)
+    OperatorRows(const PlateLevel& level, const float* rigidity, Field& field, int firstRow, Columns wanted)
+        : g(level), middle(middleOfZ(level)), field_(field), nodes_(level.cellsZ + 1), wanted_(wanted),
+          first_(max(wanted.first - 1, 0)), count_(min(wanted.last + 1, level.cellsZ) - first_ + 1),
+          D_(rigidity + first_)
     {
-        if (i < g.cellsX) {
-            moments(i + 1);
-            twists(i);
+        static thread_local Scratch<Real> scratch;
+        // Room at either end, where no moment acts. The second node lies on a cache line: loops begin there.
+        const std::ptrdiff_t line = 64 / sizeof(Real), stride = (count_ + 1 + line + line - 1) / line * line;
+        Real*                at = scratch.of(kRows * stride);
+        for (std::ptrdiff_t n = 0; n < kRows * stride; ++n) at[n] = 0;
+        for (Real** row : {&slope_[0], &slope_[1], &mz_[0], &mz_[1], &bending_.moment, &bending_.change,
+                           &bending_.second, &twisting_.moment, &twisting_.change}) {
+            *row = at + line - 1;
+            at += stride;
         }
-        const Real* mw   = i > 0 ? mx_[(i + 2) % 3] : none_;
-        const Real* mx   = mx_[i % 3];
-        const Real* me   = i < g.cellsX ? mx_[(i + 1) % 3] : none_;
-        const Real* mz   = mz_[i % 3];
-        const Real* tw   = i > 0 ? t_[(i + 1) % 2] : none_;
-        const Real* te   = i < g.cellsX ? t_[i % 2] : none_;
-        const Real* w    = field_.row(i);
-        const Real  bed  = Real(g.bed) * rules.nodeShare(middle, i, kMiddle);
-        const Real  side = Real(g.bed) * rules.nodeShare(g, i, 0);
-        const int   last = nodes_ - 1;
+        const int   before = max(firstRow - 1, 0);
+        const Real *w = row(before), *outside = row(rules.mirrored(before - 1, g.cellsX));
+        for (int n = 0; n < count_; ++n) slope_[(before + 1) & 1][n] = rules.change(outside[n], w[n]);
+        moments<false>(before);
+        if (firstRow > 0) moments<true>(firstRow);
+    }
+
+    /// Calls visit(j, A w) for the wanted nodes of row i; i goes up by 1 from the first row.
+    template <class Visit>
+    void next(int i, Visit&& visit)
+    {
+        if (i < g.cellsX)
+            moments<true>(i + 1);
+        else
+            afterTheLast();
+        const Real *mz = mz_[i & 1], *second = bending_.second, *twist = twisting_.change, *w = row(i);
+        const Real  bed        = Real(g.bed) * rules.nodeShare(middle, i, kMiddle);
+        const Real  bedAtSides = Real(g.bed) * rules.nodeShare(g, i, 0);
+        const auto  force      = [&](int n, Real weight) {
+            return rules.forceFrom(second[n], rules.secondDifference(mz[n - 1], mz[n], mz[n + 1]),
+                                         rules.change(twist[n - 1], twist[n]), weight, w[n]);
+        };
+        const int first = first_, begin = max(wanted_.first, 1) - first, end = min(wanted_.last, nodes_ - 2) - first;
+        if (wanted_.first == 0) visit(0, force(0, bedAtSides));
 #pragma GCC ivdep
-        for (int j = 0; j <= last; ++j)
-            forces[j] = rules.forceFrom(mw[j], mx[j], me[j], mz[j - 1], mz[j], mz[j + 1], tw[j - 1], te[j - 1], tw[j],
-                                        te[j], bed, w[j]);
-        for (int j : {0, last})
-            forces[j] = rules.forceFrom(mw[j], mx[j], me[j], mz[j - 1], mz[j], mz[j + 1], tw[j - 1], te[j - 1], tw[j],
-                                        te[j], side, w[j]);
+        for (int n = begin; n <= end; ++n) visit(first + n, force(n, bed));
+        if (wanted_.last == nodes_ - 1) visit(nodes_ - 1, force(count_ - 1, bedAtSides));
     }
 
 private:
+    static constexpr int kRows = 9;
+
+    const Real* row(int i) const
+    {
+        return field_.row(i) + first_;
+    }
+
+    // Bending moments of row i and, of the cells between it and the row before, twisting moments.
+    template <bool kCells>
     void moments(int i)
     {
-        const PlateLevel level  = g; // a copy that no store can change
-        const Real*      before = field_.row(rules.mirrored(i - 1, level.cellsX));
-        const Real*      w      = field_.row(i);
-        const Real*      after  = field_.row(rules.mirrored(i + 1, level.cellsX));
-        const float*     D      = D_ + std::ptrdiff_t(i) * nodes_;
-        Real*            mx     = mx_[i % 3];
-        Real*            mz     = mz_[i % 3];
-        const int        last   = nodes_ - 1;
-        if (rules.isHingedX(level, i))
-#pragma GCC ivdep
-            for (int j = 1; j < last; ++j) {
-                const Real q = rules.secondDifference(w[j - 1], w[j], w[j + 1]);
-                mx[j]        = 0;
-                mz[j]        = Real(D[j]) * rules.bendingZ(level, true, 0, q);
-            }
+        if (rules.isHingedX(g, i))
+            moments<kCells, true>(i);
         else
+            moments<kCells, false>(i);
+    }
+
+    template <bool kCells, bool kHinged>
+    void moments(int i)
+    {
+        const PlateLevel level = g; // a copy that no store can change
+        const Real *     w = row(i), *after = row(rules.mirrored(i + 1, level.cellsX));
+        const Real*      was   = slope_[(i + 1) & 1];
+        Real *           slope = slope_[i & 1], *mz = mz_[i & 1];
+        const float*     D     = D_ + std::ptrdiff_t(i) * nodes_;
+        const Bending    x     = bending_;
+        const Twisting   cells = twisting_;
+
+        const auto atSide = [&](int j) {
+            const int n = j - first_, south = rules.mirrored(j - 1, level.cellsZ) - first_,
+                      north = rules.mirrored(j + 1, level.cellsZ) - first_;
+            slope[n]        = rules.change(w[n], after[n]);
+            const Real p    = rules.change(was[n], slope[n]);
+            const Real q    = rules.secondDifference(w[south], w[n], w[north]);
+            mz[n]           = rules.momentZ(level, i, j, Real(D[n]), p, q);
+            x.goOn(n, rules.momentX(level, i, j, Real(D[n]), p, q));
+        };
+        const bool atFirst = first_ == 0, atLast = first_ + count_ == nodes_;
+        if (atFirst) {
+            atSide(0);
+            if (kCells) cells.goOn(0, twistOf(D, was, 0));
+        }
+        const int end = atLast ? count_ - 1 : count_;
 #pragma GCC ivdep
-            for (int j = 1; j < last; ++j) {
-                const Real p = rules.secondDifference(before[j], w[j], after[j]);
-                const Real q = rules.secondDifference(w[j - 1], w[j], w[j + 1]);
-                mx[j]        = Real(D[j]) * rules.bendingX(level, false, p, q);
-                mz[j]        = Real(D[j]) * rules.bendingZ(level, false, p, q);
-            }
-        for (int j : {0, last}) {
-            const Real p = rules.secondDifference(before[j], w[j], after[j]);
-            const Real q = rules.secondDifference(w[rules.mirrored(j - 1, last)], w[j], w[rules.mirrored(j + 1, last)]);
-            mx[j]        = rules.momentX(level, i, j, Real(D[j]), p, q);
-            mz[j]        = rules.momentZ(level, i, j, Real(D[j]), p, q);
+        for (int n = atFirst ? 1 : 0; n < end; ++n) {
+            const Real along = rules.change(w[n], after[n]);
+            const Real p     = rules.change(was[n], along);
+            const Real q     = rules.secondDifference(w[n - 1], w[n], w[n + 1]);
+            slope[n]         = along;
+            mz[n]            = Real(D[n]) * rules.bendingZ(level, kHinged, p, q);
+            x.goOn(n, kHinged ? Real(0) : Real(D[n]) * rules.bendingX(level, false, p, q));
+            if (kCells) cells.goOn(n, twistOf(D, was, n));
+        }
+        if (atLast) atSide(level.cellsZ);
+    }
+
+    void afterTheLast()
+    {
+        for (int n = 0; n < count_; ++n) {
+            bending_.goOn(n, 0);
+            twisting_.goOn(n, 0);
         }
     }
 
-    void twists(int i)
+    // Twisting moment of the cell between a row of the rigidity and the one before.
+    Real twistOf(const float* D, const Real* changes, int n) const
     {
-        const PlateLevel level = middle;
-        const Real*      w     = field_.row(i);
-        const Real*      after = field_.row(i + 1);
-        const float *    D = D_ + std::ptrdiff_t(i) * nodes_, *E = D + nodes_;
-        Real*            t    = t_[i % 2];
-        const int        last = nodes_ - 1;
-#pragma GCC ivdep
-        for (int j = 0; j < last; ++j)
-            t[j] = rules.twistingMoment(level, 0, 0, (Real(D[j]) + Real(E[j])) + (Real(D[j + 1]) + Real(E[j + 1])),
-                                        w[j], after[j], w[j + 1], after[j + 1]);
+        const float* Dw = D - nodes_;
+        return rules.twistingMoment(middleOf(g), kMiddle, kMiddle,
+                                    (Real(Dw[n]) + Real(D[n])) + (Real(Dw[n + 1]) + Real(D[n + 1])), changes[n],
+                                    changes[n + 1]);
     }
+
+    /// Twisting moments of a row of cells and how they differ from the row before.
+    struct Twisting {
+        Real *moment, *change;
+
+        void goOn(int j, Real now) const
+        {
+            change[j] = rules.change(moment[j], now);
+            moment[j] = now;
+        }
+    };
+
+    /// Bending moments along x of a row of nodes, how they differ from the row before, and how that differs.
+    struct Bending {
+        Real *moment, *change, *second;
+
+        void goOn(int j, Real now) const
+        {
+            const Real moved = rules.change(moment[j], now);
+            second[j]        = rules.change(change[j], moved);
+            moment[j]        = now;
+            change[j]        = moved;
+        }
+    };
 
     static inline Rules<Real> rules{};
 
     const PlateLevel g, middle;
-    const float*     D_;
     Field&           field_;
-    int              nodes_;
-    Real *           mx_[3], *mz_[3], *t_[2], *none_;
+    int              nodes_; ///< of a row of the grid [1]
+    Columns          wanted_;
+    int              first_, count_; ///< columns that are looked at: those wanted and one to either side
+    const float*     D_;
+    Real*            slope_[2]; ///< change of w from a row to the next, of two rows
+    Real*            mz_[2];
+    Bending          bending_;
+    Twisting         twisting_;
 };
 
 /// A field as it lies in memory.

@@ -1,73 +1,151 @@
 #include "engine/plate/host/frame.h"
 #include "engine/plate/host/kernels.h"
 
-// plate_restrict.comp and plate_prolong.comp: along z row by row, then along x rows with rows. The shaders nest the
-// same sums node by node, so each sum along z is theirs, computed once.
+// plate_restrict.comp and plate_prolong.comp. The shaders nest sums along x and z node by node; each inner sum is made
+// once here, a row at a time. Weights of 0 are left out, and away from the sides all entries of a table are alike.
 
 namespace palp::PALPATE_ISA {
 namespace {
 
-/// The entries of a transfer table, each weight of all nodes together, so that a row of nodes is a loop.
-template <class Real>
-struct Weights {
-    const int*  first;
-    const Real* weights; ///< weight n of node j at [n nodes + j]
-    int         nodes;
+/// The part of a transfer table that is about one of the two levels: per node a first node and weights.
+struct Table {
+    const float* entries;
+    int          count;   ///< nodes
+    int          weights; ///< of each
 
-    /// \param table   of one axis, from the entry of the first node
-    Weights(const float* table, int count, int stride, int perNode, Scratch<int>& firsts, Scratch<Real>& scratch)
-        : nodes(count)
+    const float* entry(int node) const { return entries + std::ptrdiff_t(node) * (weights + 1); }
+    int          first(int node) const { return int(entry(node)[0]); }
+
+    bool areAlike(int node, int next, int move) const
     {
-        int*  f = firsts.of(count);
-        Real* w = scratch.of(std::ptrdiff_t(count) * perNode);
-        for (int j = 0; j < count; ++j) {
-            f[j] = int(table[j * stride]);
-            for (int n = 0; n < perNode; ++n) w[n * count + j] = Real(table[j * stride + 1 + n]);
-        }
-        first   = f;
-        weights = w;
+        bool same = first(next) == first(node) + move;
+        for (int n = 1; n <= weights; ++n) same = same && entry(node)[n] == entry(next)[n];
+        return same;
     }
 };
 
-/// Row (firstX + m) along z times the m-th weight along x, summed as the shader does.
+/// Nodes from begin to before end, of which each has the weights of the one `period` before it, `move` further on.
+struct Run {
+    int begin = 0, end = 0;
+
+    Run(const Table& table, int period, int move)
+    {
+        while (begin < table.count / 2 && !table.areAlike(begin, begin + period, move)) ++begin;
+        end = begin;
+        while (end + period < table.count && table.areAlike(end, end + period, move)) ++end;
+    }
+};
+
+/// A sum of rows times weights.
 template <class Real>
-void addRow(Real weight, const Real* row, Real* sum, int nodes)
-{
+struct Terms {
+    static constexpr int kMost = kCoarseWeights;
+    int                  count = 0;
+    Real                 weights[kMost];
+    const Real*          rows[kMost];
+
+    void add(Real weight, const Real* row)
+    {
+        if (weight == 0) return;
+        weights[count] = weight;
+        rows[count++]  = row;
+    }
+
+    /// Calls put(j, sum) for every place of the rows.
+    template <class Put>
+    void sum(int nodes, Put&& put) const
+    {
+        switch (count) {
+        case 0:
+            for (int j = 0; j < nodes; ++j) put(j, Real(0));
+            return;
+        case 1:
+            return sumOf<1>(nodes, put); // a coarse row on a fine one
+        case 4:
+            return sumOf<4>(nodes, put); // between coarse rows
+        case 5:
+            return sumOf<5>(nodes, put); // the transpose of both
+        default:
+            return padded().template sumOf<kMost>(nodes, put);
+        }
+    }
+
+private:
+    template <int kCount, class Put>
+    void sumOf(int nodes, Put&& put) const
+    {
+        Real        w[kCount];
+        const Real* r[kCount];
+        for (int n = 0; n < kCount; ++n) {
+            w[n] = weights[n];
+            r[n] = rows[n];
+        }
 #pragma GCC ivdep
-    for (int j = 0; j < nodes; ++j) sum[j] += weight * row[j];
+        for (int j = 0; j < nodes; ++j) {
+            Real value = w[0] * r[0][j];
+#pragma GCC unroll 8
+            for (int n = 1; n < kCount; ++n) value += w[n] * r[n][j];
+            put(j, value);
+        }
+    }
+
+    Terms padded() const
+    {
+        Terms all = *this;
+        for (; all.count < kMost; ++all.count) {
+            all.weights[all.count] = 0;
+            all.rows[all.count]    = rows[0];
+        }
+        return all;
+    }
+};
+
+/// A coarse row interpolated at the fine nodes of table z.
+template <class Real, class Coarse>
+void prolongRow(const Table& z, const Run& run, const Coarse* from, Real* to)
+{
+    const auto one = [&](int j) {
+        const float* entry = z.entry(j);
+        Real         value = 0;
+        for (int n = 0; n < kFineWeights; ++n) value += Real(entry[1 + n]) * Real(from[int(entry[0]) + n]);
+        to[j] = value;
+    };
+    const int     pairs = (run.end - run.begin) / 2, end = run.begin + 2 * pairs;
+    const float * a = z.entry(run.begin), *b = z.entry(run.begin + 1);
+    const Coarse *ofA = from + int(a[0]), *ofB = from + int(b[0]);
+    Real*         out = to + run.begin;
+    for (int j = 0; j < run.begin; ++j) one(j);
+    if (pairs > 0) {
+        const Real a0(a[1]), a1(a[2]), a2(a[3]), a3(a[4]), b0(b[1]), b1(b[2]), b2(b[3]), b3(b[4]);
+#pragma GCC ivdep
+        for (int n = 0; n < pairs; ++n) {
+            out[2 * n] = ((a0 * Real(ofA[n]) + a1 * Real(ofA[n + 1])) + a2 * Real(ofA[n + 2])) + a3 * Real(ofA[n + 3]);
+            out[2 * n + 1] =
+                ((b0 * Real(ofB[n]) + b1 * Real(ofB[n + 1])) + b2 * Real(ofB[n + 2])) + b3 * Real(ofB[n + 3]);
+        }
+    }
+    for (int j = end; j < z.count; ++j) one(j);
 }
 
-/// Interpolates a coarse field; visit(i, values of fine row i).
-template <class Real, class Coarse, class Visit>
-void prolong(const TransferPush& push, const float* tableX, const float* tableZ, const Coarse* coarse, Visit&& visit)
+/// Interpolates a coarse field; visitRow(i) gives what to call with (j, value) for every node of fine row i.
+template <class Real, class Coarse, class VisitRow>
+void prolong(const TransferPush& push, const float* tableX, const float* tableZ, const Coarse* coarse,
+             VisitRow&& visitRow)
 {
-    static thread_local Scratch<int>  firsts;
-    static thread_local Scratch<Real> weightScratch, rowScratch, sumScratch;
+    static thread_local Scratch<Real> scratch;
     const int                         fineNodes = push.fine.cellsZ + 1, coarseNodes = push.coarse.cellsZ + 1;
-    const Weights<Real>               z(tableZ, fineNodes, kFineStride, kFineWeights, firsts, weightScratch);
-
-    // Coarse rows interpolated along z, the last kFineWeights of them.
-    Real*      rows   = rowScratch.of(std::ptrdiff_t(kFineWeights) * fineNodes);
-    Real*      sum    = sumScratch.of(fineNodes);
-    int        made   = 0;
-    const auto alongZ = [&](int row) {
-        const Coarse* from = coarse + std::ptrdiff_t(row) * coarseNodes;
-        Real*         to   = rows + std::ptrdiff_t(row % kFineWeights) * fineNodes;
-        for (int j = 0; j < fineNodes; ++j) {
-            const Coarse* at    = from + z.first[j];
-            Real          value = 0;
-            for (int n = 0; n < kFineWeights; ++n) value += z.weights[n * fineNodes + j] * Real(at[n]);
-            to[j] = value;
-        }
-    };
-    for (int i = 0; i <= push.fine.cellsX; ++i) {
-        const float* entry = tableX + i * kFineStride;
-        const int    first = int(entry[0]);
-        for (; made < first + kFineWeights; ++made) alongZ(made);
-        for (int j = 0; j < fineNodes; ++j) sum[j] = 0;
-        for (int m = 0; m < kFineWeights; ++m)
-            addRow(Real(entry[1 + m]), rows + std::ptrdiff_t((first + m) % kFineWeights) * fineNodes, sum, fineNodes);
-        visit(i, sum);
+    const Table                       x{tableX, push.fine.cellsX + 1, kFineWeights}, z{tableZ, fineNodes, kFineWeights};
+    const Run                         run(z, 2, 1);
+    Real*                             rows = scratch.of(std::ptrdiff_t(kFineWeights) * fineNodes); // made last
+    int                               made = 0;
+    const auto rowOf = [&](int row) { return rows + std::ptrdiff_t(row % kFineWeights) * fineNodes; };
+    for (int i = 0; i < x.count; ++i) {
+        const float* entry = x.entry(i);
+        for (; made < x.first(i) + kFineWeights; ++made)
+            prolongRow(z, run, coarse + std::ptrdiff_t(made) * coarseNodes, rowOf(made));
+        Terms<Real> terms;
+        for (int m = 0; m < kFineWeights; ++m) terms.add(Real(entry[1 + m]), rowOf(x.first(i) + m));
+        terms.sum(fineNodes, visitRow(i));
     }
 }
 
@@ -80,10 +158,39 @@ void interpolateFrom(const HostDispatch& d)
     const int   nodes  = push.fine.cellsZ + 1;
     for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load)
         prolong<Real>(push, bound<const float>(d, 0), bound<const float>(d, 1), coarse + load * nodesOf(push.coarse),
-                      [&](int i, const Real* row) {
+                      [&](int i) {
                           Real* to = fine + load * nodesOf(push.fine) + std::ptrdiff_t(i) * nodes;
-                          for (int j = 0; j < nodes; ++j) to[j] = row[j];
+                          return [=](int j, Real value) { to[j] = value; };
                       });
+}
+
+/// A row of column sums gathered at the coarse nodes of table z. \param halves  room for as many numbers
+void restrictRow(const Table& z, const Run& run, const float* column, int fineNodes, float* halves, float* to)
+{
+    const auto one = [&](int j) {
+        const float* entry = z.entry(j);
+        float        value = 0;
+        for (int n = 0; n < kCoarseWeights; ++n) value += entry[1 + n] * column[min(int(entry[0]) + n, fineNodes - 1)];
+        to[j] = value;
+    };
+    for (int j = 0; j < run.begin; ++j) one(j);
+    for (int j = run.end; j < z.count; ++j) one(j);
+    if (run.end <= run.begin) return;
+
+    // Of every second number a row, so that what coarse nodes take lies side by side.
+    const float* from = column + z.first(run.begin);
+    const int    each = (fineNodes - z.first(run.begin)) / 2, uneven = (fineNodes - z.first(run.begin)) % 2;
+    float *      even = halves, *odd = halves + each + 1;
+#pragma GCC ivdep
+    for (int n = 0; n < each; ++n) {
+        even[n] = from[2 * n];
+        odd[n]  = from[2 * n + 1];
+    }
+    if (uneven) even[each] = from[2 * each];
+    Terms<float> terms;
+    for (int n = 0; n < kCoarseWeights; ++n) terms.add(z.entry(run.begin)[1 + n], (n % 2 ? odd : even) + n / 2);
+    float* out = to + run.begin;
+    terms.sum(run.end - run.begin, [=](int j, float value) { out[j] = value; });
 }
 
 } // namespace
@@ -97,10 +204,11 @@ void correct(const HostDispatch& d)
     const int   nodes  = push.fine.cellsZ + 1;
     for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load)
         prolong<float>(push, bound<const float>(d, 0), bound<const float>(d, 1), coarse + load * nodesOf(push.coarse),
-                       [&](int i, const float* row) {
+                       [&](int i) {
                            const std::ptrdiff_t at = load * nodesOf(push.fine) + std::ptrdiff_t(i) * nodes;
-#pragma GCC ivdep
-                           for (int j = 0; j < nodes; ++j) after[at + j] = before[at + j] + row[j];
+                           const float*         w  = before + at;
+                           float*               to = after + at;
+                           return [=](int j, float value) { to[j] = w[j] + value; };
                        });
 }
 
@@ -126,39 +234,24 @@ void interpolateFirst_f64(const HostDispatch& d)
 
 void restrict(const HostDispatch& d)
 {
-    static thread_local Scratch<int>   firsts;
-    static thread_local Scratch<float> weightScratch, rowScratch;
+    static thread_local Scratch<float> scratch;
     const auto&                        push      = pushed<TransferPush>(d);
     const int                          fineNodes = push.fine.cellsZ + 1, coarseNodes = push.coarse.cellsZ + 1;
-    const int                          fineRows = push.fine.cellsX + 1, coarseRows = push.coarse.cellsX + 1;
-    const auto*                        tableX = bound<const float>(d, 0) + std::ptrdiff_t(kFineStride) * fineRows;
-    const auto*                        tableZ = bound<const float>(d, 1) + std::ptrdiff_t(kFineStride) * fineNodes;
-    const Weights<float>               z(tableZ, coarseNodes, kCoarseStride, kCoarseWeights, firsts, weightScratch);
-    float*                             rows = rowScratch.of(std::ptrdiff_t(kCoarseWeights) * coarseNodes);
+    const int                          fineRows = push.fine.cellsX + 1;
+    const Table x{bound<const float>(d, 0) + std::ptrdiff_t(kFineStride) * fineRows, push.coarse.cellsX + 1,
+                  kCoarseWeights};
+    const Table z{bound<const float>(d, 1) + std::ptrdiff_t(kFineStride) * fineNodes, coarseNodes, kCoarseWeights};
+    const Run   run(z, 1, 2);
+    float*      column = scratch.of(2 * std::ptrdiff_t(fineNodes) + 2);
     for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
         const float* fine   = bound<const float>(d, 2) + load * nodesOf(push.fine);
         float*       coarse = bound<float>(d, 3) + load * nodesOf(push.coarse);
-        int          made   = 0;
-        const auto   alongZ = [&](int row) {
-            const float* from = fine + std::ptrdiff_t(row) * fineNodes;
-            float*       to   = rows + std::ptrdiff_t(row % kCoarseWeights) * coarseNodes;
-            for (int j = 0; j < coarseNodes; ++j) {
-                float value = 0;
-                for (int n = 0; n < kCoarseWeights; ++n)
-                    value += z.weights[n * coarseNodes + j] * from[min(z.first[j] + n, fineNodes - 1)];
-                to[j] = value;
-            }
-        };
-        for (int i = 0; i < coarseRows; ++i) {
-            const float* entry = tableX + std::ptrdiff_t(i) * kCoarseStride;
-            const int    first = int(entry[0]);
-            if (made < first) made = first;
-            for (; made < min(first + kCoarseWeights, fineRows); ++made) alongZ(made);
-            float* sum = coarse + std::ptrdiff_t(i) * coarseNodes;
-            for (int j = 0; j < coarseNodes; ++j) sum[j] = 0;
+        for (int i = 0; i < x.count; ++i) {
+            Terms<float> terms;
             for (int m = 0; m < kCoarseWeights; ++m)
-                addRow(entry[1 + m], rows + std::ptrdiff_t(min(first + m, fineRows - 1) % kCoarseWeights) * coarseNodes,
-                       sum, coarseNodes);
+                terms.add(x.entry(i)[1 + m], fine + std::ptrdiff_t(min(x.first(i) + m, fineRows - 1)) * fineNodes);
+            terms.sum(fineNodes, [=](int j, float value) { column[j] = value; });
+            restrictRow(z, run, column, fineNodes, column + fineNodes, coarse + std::ptrdiff_t(i) * coarseNodes);
         }
     }
 }
