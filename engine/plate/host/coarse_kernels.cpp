@@ -1,115 +1,195 @@
 #include "engine/plate/host/frame.h"
 #include "engine/plate/host/kernels.h"
 
-// The coarsest level: coarse_assemble.comp, coarse_factor.comp and coarse_solve.comp.
+// The coarsest level: coarse_factor.comp and coarse_solve.comp.
+//
+// The shaders update all unknowns within reach of the one that they have just done. Here an unknown is updated by all
+// those before it, which needs its numbers once: they stay in registers. Every number has the same terms subtracted in
+// the same order, so its bits are the same.
 
 namespace palp::PALPATE_ISA {
 namespace {
 
 template <class Real>
-struct Row {
+struct Sides {
     using real = Real;
 
-    const float* D;
-    int          stride;
-    int          unitI = 0, unitJ = 0;
-
-    real rigidity(int i, int j) const { return real(D[i * stride + j]); }
-    real deflection(int i, int j) const { return i == unitI && j == unitJ ? real(1) : real(0); }
-    real otherColour(int i, int j) const { return deflection(i, j); }
-
 #include "compute_shaders/shared/plate_grid.h"
-#include "compute_shaders/shared/plate_operator.h"
 };
 
+// Of a register [bytes]. A compiler makes slow code of longer vectors, and columns of at most 35 entries gain nothing
+// by registers of 64.
+#if defined(__AVX__)
+constexpr int kRegister = 32;
+#else
+constexpr int kRegister = 16;
+#endif
+
+/// Some numbers side by side, a register full.
 template <class Real>
-void assembleOf(const HostDispatch& d)
-{
-    const PlateLevel& g    = pushed<LevelPush>(d).level;
-    auto*             band = bound<Real>(d, 1);
-    Row<Real>         row{bound<const float>(d, 0), g.cellsZ + 1};
-    const int         unknowns = int(nodesOf(g));
-    for (int column = 0; column < unknowns; ++column)
-        for (int offset = 0; offset <= halfBand(g); ++offset) {
-            const int n = column + offset, i = columnOf(g, n), j = rowOf(g, n);
-            row.unitI  = columnOf(g, column);
-            row.unitJ  = rowOf(g, column);
-            Real entry = offset == 0 ? Real(1) : Real(0);
-            if (n < unknowns && !row.isHeld(g, i, j) && !row.isHeld(g, row.unitI, row.unitJ))
-                entry = abs(i - row.unitI) + abs(j - row.unitJ) <= 2 ? row.operatorAt(g, i, j) : Real(0);
-            *band++ = entry;
+struct Lanes {
+    static constexpr int kLanes = kRegister / int(sizeof(Real));
+    typedef Real         Vector __attribute__((vector_size(kRegister)));
+
+    static Vector load(const Real* from)
+    {
+        Vector v;
+        __builtin_memcpy(&v, from, sizeof v);
+        return v;
+    }
+    static void store(Real* to, Vector v) { __builtin_memcpy(to, &v, sizeof v); }
+
+    /// The lanes up to one, and 0 in the others.
+    static Vector upTo(int last, Vector v)
+    {
+        Vector number;
+        for (int t = 0; t < kLanes; ++t) number[t] = Real(t);
+        return number <= Real(last) ? v : Vector{};
+    }
+};
+
+/// Columns of L while they are made, in vectors with zeros behind them.
+template <class Real>
+struct Columns : Lanes<Real> {
+    using typename Lanes<Real>::Vector;
+    using Lanes<Real>::kLanes;
+    using Lanes<Real>::load;
+    static constexpr int kVectors = (kMostHalfBand + kLanes) / kLanes;
+    static constexpr int kStride  = (kVectors + 1) * kLanes + kMostHalfBand; ///< read from any of its entries on
+
+    /// Subtracts from column n what those up to `reach` before it take from it; `column` is L's, n the one asked for.
+    ///
+    /// The one that is a columns before reaches the first reach + 1 - a entries: those in at most kCount vectors first.
+    template <int kCount>
+    static void subtract(Vector* sums, const Real* column, int reach, int before)
+    {
+        const int first = min(before, reach - (kCount - 1) * kLanes), last = max(1, reach - kCount * kLanes + 1);
+        for (int a = first; a >= last; --a) {
+            const Real* other = column - std::ptrdiff_t(a) * kStride + a;
+            for (int v = 0; v < kCount; ++v) sums[v] -= other[0] * load(other + v * kLanes);
         }
-}
+        if constexpr (kCount < kVectors) subtract<kCount + 1>(sums, column, reach, before);
+    }
+};
 
 template <class Real>
 void factorOf(const HostDispatch& d)
 {
-    const PlateLevel& g      = pushed<LevelPush>(d).level;
-    const auto*       band   = bound<const Real>(d, 0);
-    auto*             result = bound<Real>(d, 1);
-    const int         reach = halfBand(g), slots = reach + 1, unknowns = int(nodesOf(g));
+    using C = Columns<Real>;
+    static thread_local Scratch<Real> scratch;
+    const PlateLevel&                 g      = pushed<LevelPush>(d).level;
+    const auto*                       band   = bound<const Real>(d, 0);
+    auto*                             result = bound<Real>(d, 1);
+    const int                         reach = halfBand(g), slots = reach + 1;
+    const int                         unknowns = int(nodesOf(g));
 
-    const Real least = Real(sizeof(Real) == sizeof(double) ? kLeastPivotDouble : kLeastPivot);
-    uint       lost  = 0;
-    Real       window[kMostHalfBand + 1][kMostHalfBand + 1], column[kMostHalfBand + 1];
-    for (int n = 0; n < slots; ++n)
-        for (int e = 0; e < slots; ++e) window[n][e] = n < unknowns ? band[n * slots + e] : Real(0);
+    const Real  least = Real(sizeof(Real) == sizeof(double) ? kLeastPivotDouble : kLeastPivot);
+    uint        lost  = 0;
+    Real* const L     = scratch.of(std::ptrdiff_t(kMostCoarseNodes) * C::kStride);
     for (int n = 0; n < unknowns; ++n) {
-        Real*      mine    = window[n % slots];
-        const Real pivot   = mine[0];
-        const Real inverse = pivot > least * band[n * slots] ? Real(1) / sqrt(pivot) : Real(0);
+        const Real* entries = band + n * slots;
+        Real*       column  = L + std::ptrdiff_t(n) * C::kStride;
+        for (int e = 0; e < C::kVectors * C::kLanes; ++e) column[e] = e <= reach ? entries[e] : Real(0);
+        typename C::Vector sums[C::kVectors];
+        for (int v = 0; v < C::kVectors; ++v) sums[v] = C::load(column + v * C::kLanes);
+        C::template subtract<1>(sums, column, reach, min(n, reach));
+        const Real pivot   = sums[0][0];
+        const Real inverse = pivot > least * entries[0] ? Real(1) / sqrt(pivot) : Real(0);
         if (inverse == 0) ++lost;
-        for (int e = 0; e <= reach; ++e) {
-            column[e]             = mine[e] * inverse;
-            result[n * slots + e] = e == 0 ? inverse : column[e];
-        }
-        for (int a = 1; a <= reach; ++a) {
-            Real*      other = window[(n + a) % slots];
-            const Real along = column[a];
-#pragma GCC ivdep
-            for (int e = a; e <= reach; ++e) other[e - a] -= along * column[e];
-        }
-        const int next = n + slots;
-        for (int e = 0; e <= reach; ++e) mine[e] = next < unknowns ? band[next * slots + e] : Real(0);
+        for (int v = 0; v < C::kVectors; ++v) C::store(column + v * C::kLanes, sums[v] * inverse);
+        for (int e = 0; e <= reach; ++e) result[n * slots + e] = column[e];
+        result[n * slots] = inverse;
     }
     *bound<uint>(d, 2) = lost;
+}
+
+/// Unknowns n to n + kLanes - 1 of L y = f, given those before them; reach must be at least kLanes.
+template <class Real>
+void forwardTogether(const Real* factor, int reach, int n, Real* y)
+{
+    using C         = Lanes<Real>;
+    const int slots = reach + 1;
+    auto      sums  = C::load(y + n);
+    // The farthest columns reach only the first lanes; what lies behind their end is the next column's.
+    for (int last = max(0, reach - n); last < C::kLanes - 1; ++last) {
+        const int k = n - reach + last;
+        sums -= C::upTo(last, C::load(factor + k * slots + reach - last)) * y[k];
+    }
+    for (int k = max(0, n - reach + C::kLanes - 1); k < n; ++k) sums -= C::load(factor + k * slots + n - k) * y[k];
+#pragma GCC unroll 16
+    for (int t = 0; t < C::kLanes; ++t) {
+        const Real* column = factor + (n + t) * slots;
+        y[n + t]           = sums[t] * column[0];
+        sums -= C::load(column - t) * y[n + t]; // lanes up to t are done
+    }
+}
+
+template <class Real>
+void forward(const Real* factor, int reach, int unknowns, Real* y)
+{
+    constexpr int kLanes = Lanes<Real>::kLanes;
+    const int     slots  = reach + 1;
+    int           n      = 0;
+    for (; reach >= kLanes && n + kLanes <= unknowns; n += kLanes) forwardTogether(factor, reach, n, y);
+    for (; n < unknowns; ++n) {
+        for (int k = max(0, n - reach); k < n; ++k) y[n] -= factor[k * slots + n - k] * y[k];
+        y[n] *= factor[n * slots];
+    }
+}
+
+/// Unknowns of L' w = y, from the last. \param w  y, then the result; zeros behind
+template <class Real>
+void backward(const Real* factor, int reach, int unknowns, Real* w)
+{
+    // Some side by side, as long as they do not need each other: one alone would wait for each of its sums.
+    constexpr int kTogether = 8;
+    const int     slots     = reach + 1;
+    int           n         = unknowns;
+    for (; reach >= kTogether && n >= kTogether; n -= kTogether) {
+        Real*       here   = w + n - kTogether;
+        const Real* column = factor + (n - kTogether) * slots;
+        Real        sums[kTogether];
+        for (int t = 0; t < kTogether; ++t) sums[t] = here[t];
+        for (int e = reach; e >= kTogether; --e)
+            for (int t = 0; t < kTogether; ++t) sums[t] -= column[t * slots + e] * here[t + e];
+#pragma GCC unroll 8
+        for (int t = kTogether - 1; t >= 0; --t) {
+#pragma GCC unroll 8
+            for (int e = kTogether - 1; e >= 1; --e) sums[t] -= column[t * slots + e] * here[t + e];
+            here[t] = sums[t] * column[t * slots];
+        }
+    }
+    for (n = n - 1; n >= 0; --n) {
+        for (int e = reach; e >= 1; --e) w[n] -= factor[n * slots + e] * w[n + e];
+        w[n] *= factor[n * slots];
+    }
 }
 
 template <class Real>
 void coarseSolveOf(const HostDispatch& d)
 {
-    const PlateLevel& g      = pushed<LevelPush>(d).level;
-    const auto*       factor = bound<const Real>(d, 0);
-    const int         reach = halfBand(g), slots = reach + 1, unknowns = int(nodesOf(g));
-    Row<Real>         row{};
+    const PlateLevel& g        = pushed<LevelPush>(d).level;
+    const auto*       factor   = bound<const Real>(d, 0);
+    const int         unknowns = int(nodesOf(g)), nodes = g.cellsZ + 1;
+    const int         perI = zIsShorter(g) ? nodes : 1, perJ = zIsShorter(g) ? 1 : g.cellsX + 1;
+    Sides<Real>       sides;
 
-    Real right[kMostCoarseNodes + kMostHalfBand], middle[kMostHalfBand + kMostCoarseNodes];
+    Real right[kMostCoarseNodes + kMostHalfBand] = {};
     for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
         const float* force = bound<const float>(d, 1) + load * unknowns;
         float*       w     = bound<float>(d, 2) + load * unknowns;
-        const auto   node  = [&](int n) { return columnOf(g, n) * (g.cellsZ + 1) + rowOf(g, n); };
-        for (int n = 0; n < unknowns; ++n)
-            right[n] = row.isHeld(g, columnOf(g, n), rowOf(g, n)) ? Real(0) : Real(force[node(n)]);
-        for (int n = 0; n < unknowns; ++n) {
-            const Real  solved = right[n] * factor[n * slots];
-            const Real* column = factor + n * slots;
-            middle[n]          = solved;
-            const int end      = min(reach, unknowns - 1 - n);
-#pragma GCC ivdep
-            for (int e = 1; e <= end; ++e) right[n + e] -= column[e] * solved;
-        }
-        for (int n = unknowns - 1; n >= 0; --n) {
-            const Real solved = middle[n] * factor[n * slots];
-            right[n]          = solved;
-            for (int e = 1; e <= reach && e <= n; ++e) middle[n - e] -= factor[(n - e) * slots + e] * solved;
-        }
-        for (int n = 0; n < unknowns; ++n) w[node(n)] = float(right[n]);
+        for (int i = 0; i <= g.cellsX; ++i)
+            for (int j = 0; j < nodes; ++j)
+                right[i * perI + j * perJ] = sides.isHeld(g, i, j) ? Real(0) : Real(force[i * nodes + j]);
+        forward(factor, halfBand(g), unknowns, right);
+        backward(factor, halfBand(g), unknowns, right);
+        for (int i = 0; i <= g.cellsX; ++i)
+            for (int j = 0; j < nodes; ++j) w[i * nodes + j] = float(right[i * perI + j * perJ]);
     }
 }
 
 } // namespace
 
-PALPATE_IN_BOTH_PRECISIONS(assemble)
 PALPATE_IN_BOTH_PRECISIONS(factor)
 PALPATE_IN_BOTH_PRECISIONS(coarseSolve)
 
