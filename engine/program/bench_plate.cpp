@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 
@@ -12,6 +11,7 @@
 #include "engine/bench/point_bench.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
+#include "engine/core/processor.h"
 #include "engine/core/progress.h"
 #include "engine/gpu/context.h"
 #include "engine/plate/plate_solver_vulkan.h"
@@ -80,14 +80,6 @@ void becomeBenchmark()
     const std::filesystem::path peers = self.parent_path() / "palpate_peers";
     std::error_code             error;
     becomeOneThread(!self.empty() && std::filesystem::exists(peers, error) ? peers : self);
-}
-
-std::string processorName()
-{
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);)
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-    return "unknown processor";
 }
 
 // --- the command
