@@ -16,6 +16,7 @@
 #include "engine/gpu/context.h"
 #include "engine/plate/plate_solver_vulkan.h"
 #include "engine/program/commands.h"
+#include "engine/program/solver_choice.h"
 
 namespace palp {
 namespace {
@@ -68,9 +69,10 @@ void check(const BenchPlateOptions& o)
                         std::to_string(nodes));
     if (o.runs < kFewestRuns || o.runs > 1000)
         throw Error("--runs: expected " + std::to_string(kFewestRuns) + " to 1000, found " + std::to_string(o.runs));
-    if (o.device == "reference")
-        throw Error("--device: the reference is a direct solver like its peers; expected auto, lavapipe, an index or "
-                    "part of a name");
+    if (gpu::isDeviceWord(o.device, PlateDevice::kReference))
+        throw Error(
+            "--device: the reference is a direct solver like its peers; expected auto, host, lavapipe, an index "
+            "or part of a name");
 }
 
 /// Starts again as the program that has the peers, if it stands beside this one, with one thread for each library.
@@ -116,6 +118,7 @@ BenchReport measure(const BenchPlateOptions& o)
     }
     {
         gpu::Context context(gpu::ContextSettings{.device = o.device});
+        sayPassedOver(context.device().name, context.note());
         report.device = context.device().name;
         if (wants(plateCases())) {
             const PlateKernels kernels(context);
