@@ -1,5 +1,5 @@
 // A Vulkan driver that does not work, for tests of what "auto" does then. PALPATE_BROKEN says where it fails: "start",
-// "list" or, as a discrete GPU that has everything that is needed until it is used, "open".
+// "list" or, as an integrated and a discrete GPU that have all that is needed until they are used, "open".
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -10,7 +10,7 @@
 
 namespace {
 
-VK_LOADER_DATA theInstance, theGpu; // the loader writes its table there
+VK_LOADER_DATA theInstance, theGpus[2]; // the loader writes its tables there
 
 bool failsAt(std::string_view where)
 {
@@ -51,19 +51,22 @@ VKAPI_ATTR void VKAPI_CALL destroyInstance(VkInstance, const VkAllocationCallbac
 VKAPI_ATTR VkResult VKAPI_CALL enumerateDevices(VkInstance, std::uint32_t* count, VkPhysicalDevice* devices)
 {
     if (failsAt("list")) return VK_ERROR_OUT_OF_HOST_MEMORY;
-    *count = 1;
-    set_loader_magic_value(&theGpu);
-    if (devices) *devices = reinterpret_cast<VkPhysicalDevice>(&theGpu);
+    *count = 2;
+    for (std::uint32_t n = 0; devices && n < *count; ++n) {
+        set_loader_magic_value(&theGpus[n]);
+        devices[n] = reinterpret_cast<VkPhysicalDevice>(&theGpus[n]);
+    }
     return VK_SUCCESS;
 }
 
-VKAPI_ATTR void VKAPI_CALL properties(VkPhysicalDevice, VkPhysicalDeviceProperties* all)
+VKAPI_ATTR void VKAPI_CALL properties(VkPhysicalDevice device, VkPhysicalDeviceProperties* all)
 {
-    constexpr std::uint32_t kPlenty = 1 << 20;
-    *all                            = {};
-    all->apiVersion                 = VK_API_VERSION_1_2;
-    all->deviceType                 = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
-    std::strcpy(all->deviceName, "Broken GPU");
+    constexpr std::uint32_t kPlenty    = 1 << 20;
+    const bool              isDiscrete = reinterpret_cast<VK_LOADER_DATA*>(device) == &theGpus[1];
+    *all                               = {};
+    all->apiVersion                    = VK_API_VERSION_1_2;
+    all->deviceType = isDiscrete ? VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU : VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
+    std::strcpy(all->deviceName, isDiscrete ? "Broken Large" : "Broken Small");
     all->limits.maxPerStageDescriptorStorageBuffers = kPlenty;
     all->limits.maxComputeWorkGroupInvocations      = kPlenty;
     all->limits.maxPushConstantsSize                = kPlenty;
