@@ -333,7 +333,8 @@ std::string skinSection(const std::filesystem::path& folder)
 void run(const std::filesystem::path& folder)
 {
     makeFolder(folder);
-    PlateDevice         device;
+    PlateDevice device;
+    if (!device.note().empty()) std::cerr << "palpate: auto takes " << device.name() << ": " << device.note() << "\n";
     std::vector<Series> all;
     Progress            progress("pressing");
     for (const auto& [law, kind] :

@@ -25,6 +25,7 @@ struct Context::Handles {
     virtual std::vector<std::string>              takeMessages() { return {}; }
 
     DeviceDescription description;
+    std::string       note; ///< see Context::note()
     Limits            limits;
     bool              bitExact  = false;
     std::size_t       allocated = 0; ///< [byte] of all live buffers

@@ -8,10 +8,62 @@
 namespace palp::gpu {
 namespace {
 
-std::unique_ptr<Context::Handles> open(const ContextSettings& settings)
+using Handles = std::unique_ptr<Context::Handles>;
+
+std::vector<DeviceDescription> descriptionsOf(const std::vector<Candidate>& candidates)
 {
-    if (settings.device == kHostDevice) return std::make_unique<HostContext>();
-    return std::make_unique<VulkanContext>(settings);
+    std::vector<DeviceDescription> list;
+    for (const Candidate& candidate : candidates) list.push_back(candidate.description);
+    return list;
+}
+
+Handles openHost(const ContextSettings& settings)
+{
+    if (settings.validation != Validation::off)
+        throw DeviceError(
+            "validation was asked for, and the host has no shaders; name a Vulkan device, such as lavapipe");
+    return std::make_unique<HostContext>();
+}
+
+Handles openWanted(const ContextSettings& settings)
+{
+    auto                         instance = std::make_unique<Instance>(settings.validation);
+    const std::vector<Candidate> found    = candidates(*instance);
+    if (const auto place = chooseDevice(descriptionsOf(found), settings.device))
+        return std::make_unique<VulkanContext>(instance, found[*place], settings.patience);
+    return openHost(settings);
+}
+
+/// What is broken keeps nobody from what works: the next best GPU, and in the end the host.
+Handles openBest(const ContextSettings& settings)
+{
+    Handles     opened;
+    std::string note;
+    try {
+        auto                           instance = std::make_unique<Instance>(Validation::off);
+        const std::vector<Candidate>   found    = candidates(*instance);
+        std::vector<DeviceDescription> list     = descriptionsOf(found);
+        for (auto place = chooseDevice(list, kAutoDevice); place && !opened; place = chooseDevice(list, kAutoDevice)) {
+            try {
+                opened = std::make_unique<VulkanContext>(instance, found[*place], settings.patience);
+            } catch (const Error& error) {
+                list[*place].refusals.emplace_back(error.what());
+                note += (note.empty() ? "" : "; ") + std::string(error.what());
+            }
+        }
+    } catch (const DeviceError& error) { // no device can even be listed
+        note = error.what();
+    }
+    if (!opened) opened = openHost(settings);
+    opened->note = note;
+    return opened;
+}
+
+Handles open(const ContextSettings& settings)
+{
+    if (isDeviceWord(settings.device, kHostDevice)) return openHost(settings); // loads no driver
+    const bool best = isDeviceWord(settings.device, kAutoDevice) && settings.validation == Validation::off;
+    return best ? openBest(settings) : openWanted(settings);
 }
 
 } // namespace
@@ -45,6 +97,11 @@ std::vector<std::string> Context::takeMessages()
 const DeviceDescription& Context::device() const noexcept
 {
     return handles_->description;
+}
+
+const std::string& Context::note() const noexcept
+{
+    return handles_->note;
 }
 
 std::size_t Context::allocatedBytes() const noexcept

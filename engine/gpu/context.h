@@ -22,7 +22,7 @@ enum class Validation {
 };
 
 struct ContextSettings {
-    std::string device     = "auto"; ///< kHostDevice, or see chooseDevice()
+    std::string device     = "auto"; ///< see chooseDevice()
     Validation  validation = Validation::off;
     double      patience   = 0; ///< [s] how long a submission may take; 0: 10 s, or 300 s for a device in software
 };
@@ -39,8 +39,12 @@ struct Limits {
 /// before it does; it may be moved meanwhile. \thread one at a time, together with everything made from it
 class Context {
 public:
-    /// Takes 30 to 50 ms on lavapipe.
-    /// \throws DeviceError if no device fits the settings, or if validation is asked for and not installed
+    /// Takes 30 to 50 ms where it loads drivers, which it does except for the host.
+    ///
+    /// "auto" always opens: a GPU that does not is passed over for the next best, and where all of Vulkan fails there
+    /// is the host; note() tells. With validation it finds a GPU or throws, as nothing is validated on the host.
+    /// \throws UnknownDevice or DeviceError if no device fits the settings; DeviceError also if validation is asked for
+    ///         and not installed, or on the host
     explicit Context(const ContextSettings& settings = {});
     ~Context();
     Context(Context&&) noexcept;
@@ -60,10 +64,15 @@ public:
     [[nodiscard]] std::vector<std::string> takeMessages();
 
     [[nodiscard]] const DeviceDescription& device() const noexcept;
-    [[nodiscard]] const Limits&            limits() const noexcept;
 
-    /// Whether results equal those of C++ without contraction, bit for bit: true for the host, and for lavapipe, whose compiler neither
-    /// fuses nor re-associates and whose division and square root are correctly rounded.
+    /// What "auto" found broken and passed over, in a sentence without a full stop; else empty. A machine without a
+    /// Vulkan driver, or whose GPUs lack a feature, is not broken: listDevices() tells of those.
+    [[nodiscard]] const std::string& note() const noexcept;
+
+    [[nodiscard]] const Limits& limits() const noexcept;
+
+    /// Whether results equal those of C++ without contraction, bit for bit: true for the host, and for lavapipe, whose
+    /// compiler neither fuses nor re-associates and whose division and square root are correctly rounded.
     [[nodiscard]] bool bitExact() const noexcept;
 
     /// In all buffers that live now [byte].

@@ -11,8 +11,10 @@ namespace {
 
 using Devices = std::vector<DeviceDescription>;
 
-/// Best first.
-constexpr std::array<std::string_view, 5> kKinds{"discrete", "integrated", "virtual", "software", "other"};
+/// What "auto" takes, best first. Not what drivers call "other", of which nothing is known, nor software.
+constexpr std::array<std::string_view, 3> kGpus{"discrete", "integrated", "virtual"};
+
+constexpr const char* kExpected = "expected auto, host, lavapipe, an index or part of a name";
 
 std::string lower(std::string_view text)
 {
@@ -36,7 +38,7 @@ std::string withDevices(const std::string& sentence, const Devices& devices)
     for (const DeviceDescription& device : devices)
         text += "\n  " + std::to_string(device.index) + "  " + device.name + " (" + device.kind +
                 "): " + (device.refusals.empty() ? "usable" : joined(device.refusals));
-    return text;
+    return text + "\n  host  (this machine's processor): usable";
 }
 
 [[noreturn]] void refuse(const Devices& devices, const std::string& sentence)
@@ -44,7 +46,7 @@ std::string withDevices(const std::string& sentence, const Devices& devices)
     throw DeviceError(withDevices(sentence, devices));
 }
 
-/// Where no device can be used, no other word would have done.
+/// Where no GPU can be used, the machine is to blame and not the word.
 [[noreturn]] void refuseWord(const Devices& devices, const std::string& sentence)
 {
     if (std::ranges::none_of(devices, [](const DeviceDescription& device) { return device.refusals.empty(); }))
@@ -82,25 +84,29 @@ std::size_t withName(const Devices& devices, std::string_view wanted)
     if (usable.size() > 1) refuseWord(devices, "several GPUs are called " + quoted + "; say which by its index");
     if (usable.size() == 1) return usable.front();
     if (!refused.empty()) refuse(devices, "the GPU " + quoted + " cannot be used");
-    refuseWord(devices, "no GPU is called " + quoted + "; expected auto, lavapipe, an index or part of a name");
+    refuseWord(devices, "no GPU is called " + quoted + "; " + kExpected);
 }
 
 } // namespace
 
-std::size_t chooseDevice(const Devices& devices, std::string_view wanted)
+bool isDeviceWord(std::string_view given, std::string_view word)
 {
-    const std::string word = lower(wanted);
-    if (word == "auto") {
-        for (const std::string_view kind : kKinds)
-            if (const auto found = firstOf(devices, kind)) return *found;
-        refuse(devices, "no GPU can be used");
+    return lower(given) == word;
+}
+
+std::optional<std::size_t> chooseDevice(const Devices& devices, std::string_view wanted)
+{
+    if (isDeviceWord(wanted, kHostDevice)) return std::nullopt;
+    if (isDeviceWord(wanted, kAutoDevice)) {
+        for (const std::string_view kind : kGpus)
+            if (const auto found = firstOf(devices, kind)) return found;
+        return std::nullopt;
     }
-    if (word == "lavapipe") {
-        if (const auto found = firstOf(devices, "software")) return *found;
+    if (isDeviceWord(wanted, kLavapipeDevice)) {
+        if (const auto found = firstOf(devices, "software")) return found;
         refuse(devices, "no GPU in software can be used (package mesa-vulkan-drivers)");
     }
-    if (wanted.empty())
-        refuseWord(devices, "an empty word names no GPU; expected auto, lavapipe, an index or part of a name");
+    if (wanted.empty()) refuseWord(devices, std::string("an empty word names no device; ") + kExpected);
     if (const auto found = withIndex(devices, wanted)) {
         if (!devices[*found].refusals.empty()) refuse(devices, "GPU " + std::string(wanted) + " cannot be used");
         return *found;

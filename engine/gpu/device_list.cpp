@@ -130,10 +130,13 @@ std::vector<Candidate> candidates(const Instance& instance)
 {
     std::vector<Candidate> found;
     if (!instance.get()) return found;
-    std::uint32_t count = 0;
-    vkEnumeratePhysicalDevices(instance.get(), &count, nullptr);
+    std::uint32_t                 count  = 0;
+    VkResult                      result = vkEnumeratePhysicalDevices(instance.get(), &count, nullptr);
     std::vector<VkPhysicalDevice> devices(count);
-    if (count && vkEnumeratePhysicalDevices(instance.get(), &count, devices.data()) != VK_SUCCESS) return found;
+    if (result == VK_SUCCESS && count) result = vkEnumeratePhysicalDevices(instance.get(), &count, devices.data());
+    if (result != VK_SUCCESS)
+        throw DeviceError("Vulkan cannot list its devices (error " + std::to_string(result) +
+                          "); does vulkaninfo run?");
     for (std::uint32_t n = 0; n < count; ++n) found.push_back(describe(devices[n], int(n)));
     return found;
 }

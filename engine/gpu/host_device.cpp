@@ -7,6 +7,8 @@
 #include <limits>
 #include <new>
 
+#include <unistd.h>
+
 #include "engine/core/contract.h"
 #include "engine/gpu/device_error.h"
 
@@ -103,14 +105,22 @@ private:
 
 } // namespace
 
+DeviceDescription describeHost()
+{
+    DeviceDescription host;
+    host.index   = -1;
+    host.name    = std::string(kHostDevice);
+    host.kind    = std::string(kHostDevice);
+    host.float64 = true;
+    host.memory  = std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE));
+    return host;
+}
+
 HostContext::HostContext()
 {
-    description.index   = -1;
-    description.name    = std::string(kHostDevice);
-    description.kind    = std::string(kHostDevice);
-    description.float64 = true;
-    limits              = {std::numeric_limits<std::ptrdiff_t>::max(), 1024, 0};
-    bitExact            = true;
+    description = describeHost();
+    limits      = {std::numeric_limits<std::ptrdiff_t>::max(), 1024, 0};
+    bitExact    = true;
 }
 
 std::unique_ptr<Buffer::Handles> HostContext::makeBuffer(std::string name, std::size_t bytes, Intent)

@@ -55,16 +55,13 @@ void check(VkResult result, const char* what)
     }
 }
 
-VulkanContext::VulkanContext(const ContextSettings& settings)
-    : instance(std::make_unique<Instance>(settings.validation))
+VulkanContext::VulkanContext(std::unique_ptr<Instance>& entrance, const Candidate& candidate, double wantedPatience)
 {
-    const std::vector<Candidate>   found = candidates(*instance);
-    std::vector<DeviceDescription> list;
-    for (const Candidate& candidate : found) list.push_back(candidate.description);
-    describe(found[chooseDevice(list, settings.device)]);
+    describe(candidate);
     const double usual = description.kind == "software" ? kPatienceSoftware : kPatienceHardware;
-    patience           = settings.patience > 0 ? settings.patience : usual;
-    open();
+    patience           = wantedPatience > 0 ? wantedPatience : usual;
+    open(*entrance);
+    instance = std::move(entrance);
 }
 
 VulkanContext::~VulkanContext()
@@ -91,7 +88,7 @@ void VulkanContext::describe(const Candidate& candidate)
     vkGetPhysicalDeviceMemoryProperties(physical, &memory);
 }
 
-void VulkanContext::open()
+void VulkanContext::open(const Instance& entrance)
 {
     const float priority       = 1;
     auto        queueInfo      = typed<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
@@ -113,9 +110,9 @@ void VulkanContext::open()
                           std::to_string(result) + ")");
     }
     vkGetDeviceQueue(device, family, 0, &queue);
-    if (instance->hasDebugUtils())
+    if (entrance.hasDebugUtils())
         setObjectName = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
-            vkGetInstanceProcAddr(instance->get(), "vkSetDebugUtilsObjectNameEXT"));
+            vkGetInstanceProcAddr(entrance.get(), "vkSetDebugUtilsObjectNameEXT"));
     const auto fenceInfo = typed<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
     if (const VkResult result = vkCreateFence(device, &fenceInfo, nullptr, &fence); result != VK_SUCCESS) {
         vkDestroyDevice(device, nullptr); // no destructor runs for what was never built

@@ -17,7 +17,10 @@ void check(VkResult result, const char* what);
 
 class VulkanContext : public Context::Handles {
 public:
-    explicit VulkanContext(const ContextSettings& settings);
+    /// \param entrance  is taken over only if the device opens
+    /// \param patience  see ContextSettings [s]
+    /// \throws DeviceError if the device does not open
+    VulkanContext(std::unique_ptr<Instance>& entrance, const Candidate& candidate, double patience);
     ~VulkanContext() override;
 
     std::unique_ptr<Buffer::Handles>      makeBuffer(std::string name, std::size_t bytes, Intent intent) override;
@@ -49,7 +52,7 @@ public:
 
 private:
     void describe(const Candidate& candidate);
-    void open();
+    void open(const Instance& entrance);
 };
 
 /// A handle that is destroyed with its owner, unless the device hangs and is still using it.

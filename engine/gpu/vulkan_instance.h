@@ -61,7 +61,7 @@ struct Candidate {
     VkDeviceSize           maxBufferBytes = 0; ///< [byte]
 };
 
-/// Every device, in the order of the drivers.
+/// Every device, in the order of the drivers. \throws DeviceError if they cannot be listed
 [[nodiscard]] std::vector<Candidate> candidates(const Instance& instance);
 
 } // namespace palp::gpu

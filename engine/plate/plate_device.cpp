@@ -32,14 +32,14 @@ bool sameButRigidity(const Plate& a, const Plate& b)
 
 } // namespace
 
-struct PlateDevice::Vulkan {
+struct PlateDevice::Multigrid {
     gpu::Context                     context;
     PlateKernels                     kernels;
     std::optional<VulkanPlateSolver> solver;
     Plate                            plate; ///< of the solver
     double                           tolerance = 0;
 
-    explicit Vulkan(const gpu::ContextSettings& settings) : context(settings), kernels(context) {}
+    explicit Multigrid(const gpu::ContextSettings& settings) : context(settings), kernels(context) {}
 
     [[nodiscard]] PlateSolution solve(const Plate& wanted, const NodeField& nodalForce, double wantedTolerance)
     {
@@ -62,18 +62,20 @@ struct PlateDevice::Vulkan {
 
 PlateDevice::PlateDevice(std::string_view wanted, double patience)
 {
-    if (wanted == "reference") return;
+    if (gpu::isDeviceWord(wanted, kReference)) return;
+    gpu::ContextSettings settings;
+    settings.device   = std::string(wanted);
+    settings.patience = patience;
     try {
-        gpu::ContextSettings settings;
-        settings.device   = std::string(wanted);
-        settings.patience = patience;
-        vulkan_           = std::make_unique<Vulkan>(settings);
-        name_             = vulkan_->context.device().name;
-    } catch (const std::exception& error) { // no device, or one that fails while its kernels are compiled
-        if (wanted != "auto") throw;
-        vulkan_.reset();
-        note_ = error.what();
+        multigrid_ = std::make_unique<Multigrid>(settings);
+        note_      = multigrid_->context.note();
+    } catch (const std::exception& error) { // the kernels do not compile, or the device that is asked for is refused
+        if (!gpu::isDeviceWord(wanted, gpu::kAutoDevice)) throw;
+        note_           = error.what();
+        settings.device = gpu::kHostDevice;
+        multigrid_      = std::make_unique<Multigrid>(settings);
     }
+    name_ = multigrid_->context.device().name;
 }
 
 PlateDevice::~PlateDevice()                                 = default;
@@ -92,15 +94,15 @@ const std::string& PlateDevice::note() const noexcept
 
 PlateSolution PlateDevice::solve(const Plate& plate, const NodeField& nodalForce, double tolerance)
 {
-    if (vulkan_) {
+    if (multigrid_) {
         try {
-            PlateSolution solution = vulkan_->solve(plate, nodalForce, tolerance);
+            PlateSolution solution = multigrid_->solve(plate, nodalForce, tolerance);
             if (solution.report.converged || !fitsReference(plate.grid)) return solution;
             note_ = "the multigrid solver stopped at an error of about " + formatNumber(*solution.report.errorEstimate);
         } catch (const gpu::DeviceLost& error) {
             note_ = error.what();
-            name_ = "reference";
-            vulkan_.reset();
+            name_ = kReference;
+            multigrid_.reset();
         }
     }
     const ReferencePlateSolver solver(plate);

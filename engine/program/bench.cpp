@@ -176,8 +176,8 @@ double update(VulkanPlateSolver& solver, const GatheredPoints& points, const std
     return watch.milliseconds();
 }
 
-Row measureVulkan(const BenchOptions& o, gpu::Context& context, const PlateKernels& kernels, int nodes, int loads,
-                  std::optional<double> copy)
+Row measureMultigrid(const BenchOptions& o, gpu::Context& context, const PlateKernels& kernels, int nodes, int loads,
+                     std::optional<double> copy)
 {
     const Plate                  plate  = plateOf(o, nodes);
     const std::vector<NodeField> forces = fingertips(plate.grid, loads);
@@ -230,23 +230,16 @@ std::vector<Row> measure(const BenchOptions& o)
     std::vector<Row> rows;
     Progress         progress("measuring");
     for (const std::string& name : o.devices) {
-        if (deviceWord(name) == "reference") {
+        if (gpu::isDeviceWord(name, PlateDevice::kReference)) {
             for (int nodes : o.nodes) rows.push_back(measureReference(o, nodes));
             continue;
         }
-        std::optional<gpu::Context> opened;
-        try {
-            opened.emplace(orTheReference([&] { return gpu::Context(gpu::ContextSettings{.device = name}); }));
-        } catch (const gpu::DeviceError& error) {
-            if (deviceWord(name) != "auto" || o.devices.size() == 1) throw;
-            std::cerr << "palpate: auto is left out: " << error.what() << "\n";
-            continue;
-        }
-        gpu::Context&      context = *opened;
+        gpu::Context context = orTheReference([&] { return gpu::Context(gpu::ContextSettings{.device = name}); });
+        sayPassedOver(context.device().name, context.note());
         const PlateKernels kernels(context, scheduleNamed(o.schedule));
         const auto         copy = copyBandwidth(context);
         for (int nodes : o.nodes)
-            for (int loads : o.loads) rows.push_back(measureVulkan(o, context, kernels, nodes, loads, copy));
+            for (int loads : o.loads) rows.push_back(measureMultigrid(o, context, kernels, nodes, loads, copy));
     }
     return rows;
 }
@@ -373,7 +366,7 @@ void addBenchCommand(CLI::App& app)
     solve->add_option("--nodes", o->nodes, "nodes a side of the square grids, 9 to 2049")
         ->delimiter(',')
         ->capture_default_str();
-    solve->add_option("--loads", o->loads, "solved together in one batch (Vulkan devices)")
+    solve->add_option("--loads", o->loads, "solved together in one batch (not by the reference)")
         ->delimiter(',')
         ->capture_default_str();
     solve
@@ -398,7 +391,7 @@ void addBenchCommand(CLI::App& app)
         "counted work must move at least (20 bytes per node and work unit), beside the device's copies.\n"
         "Examples:\n"
         "  palpate bench solve --out bench\n"
-        "  palpate bench solve --device lavapipe --nodes 65,129 --loads 1,9,25,49\n"
+        "  palpate bench solve --device host,lavapipe --nodes 65,129 --loads 1,9,25,49\n"
         "  palpate bench solve --law disc --contrast 1000 --tolerance 1e-6 --json");
     solve->callback([solve, o] {
         refuseEmptyValues(*solve);

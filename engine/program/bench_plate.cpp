@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 
@@ -12,10 +11,12 @@
 #include "engine/bench/point_bench.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
+#include "engine/core/processor.h"
 #include "engine/core/progress.h"
 #include "engine/gpu/context.h"
 #include "engine/plate/plate_solver_vulkan.h"
 #include "engine/program/commands.h"
+#include "engine/program/solver_choice.h"
 
 namespace palp {
 namespace {
@@ -68,9 +69,10 @@ void check(const BenchPlateOptions& o)
                         std::to_string(nodes));
     if (o.runs < kFewestRuns || o.runs > 1000)
         throw Error("--runs: expected " + std::to_string(kFewestRuns) + " to 1000, found " + std::to_string(o.runs));
-    if (o.device == "reference")
-        throw Error("--device: the reference is a direct solver like its peers; expected auto, lavapipe, an index or "
-                    "part of a name");
+    if (gpu::isDeviceWord(o.device, PlateDevice::kReference))
+        throw Error(
+            "--device: the reference is a direct solver like its peers; expected auto, host, lavapipe, an index "
+            "or part of a name");
 }
 
 /// Starts again as the program that has the peers, if it stands beside this one, with one thread for each library.
@@ -80,14 +82,6 @@ void becomeBenchmark()
     const std::filesystem::path peers = self.parent_path() / "palpate_peers";
     std::error_code             error;
     becomeOneThread(!self.empty() && std::filesystem::exists(peers, error) ? peers : self);
-}
-
-std::string processorName()
-{
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);)
-        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-    return "unknown processor";
 }
 
 // --- the command
@@ -124,6 +118,7 @@ BenchReport measure(const BenchPlateOptions& o)
     }
     {
         gpu::Context context(gpu::ContextSettings{.device = o.device});
+        sayPassedOver(context.device().name, context.note());
         report.device = context.device().name;
         if (wants(plateCases())) {
             const PlateKernels kernels(context);

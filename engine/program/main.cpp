@@ -1,4 +1,5 @@
-// palpate: the command line. Exit codes: 0 good, 1 a fault of ours, 2 bad usage or input, 4 no GPU that can be used.
+// palpate: the command line. Exit codes: 0 good, 1 a fault of ours, 2 bad usage or input, 4 a GPU that is asked for
+// cannot be used.
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -90,7 +91,7 @@ int main(int argumentCount, char** arguments)
                "  palpate info scan.ply --unit mm                what a file holds and how it is understood\n"
                "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
                "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
-               "  palpate devices --gpu                          the GPUs of this machine\n"
+               "  palpate devices                                what this machine can compute on\n"
                "  palpate bench solve                            how fast its solvers are\n"
                "  palpate bench plate --quick                    and how fast those of others\n"
                "Each command explains itself with --help.");

@@ -35,7 +35,7 @@ struct Solved {
     PlateSolution       solution;
     std::vector<double> probeDeflections; ///< [m] one per probe
     std::size_t         largestNode = 0;  ///< of the deflection of largest magnitude
-    std::string         note{};           ///< why the reference solver took over; or empty
+    std::string         note{};           ///< of the device
 
     [[nodiscard]] double largest() const { return solution.deflection.values()[largestNode]; } ///< [m] with its sign
     [[nodiscard]] Probe  largestPlace() const
@@ -50,7 +50,7 @@ struct Solved {
 PlateSolution solvedWithProgress(PlateDevice& device, const PlateProblem& problem, double tolerance)
 {
     Progress progress("solving " + std::to_string(problem.plate.grid.nodes()) + " nodes on " + device.name());
-    if (device.name() != "reference") progress.mayLast();
+    if (device.name() != PlateDevice::kReference) progress.mayLast();
     return device.solve(problem.plate, problem.nodalForce, tolerance);
 }
 
@@ -59,10 +59,10 @@ Solved solved(const SolveOptions& options)
     Solved s{readProblem(options.problem, options.cells), {}, {}};
 
     PlateDevice device = options.solver.open();
-    const bool  told   = !device.note().empty();
+    const auto  told   = device.note();
     s.solution         = solvedWithProgress(device, s.problem, options.solver.tolerance);
     s.note             = device.note();
-    if (!told && !s.note.empty()) std::cerr << "palpate: the reference solver took over: " << s.note << "\n";
+    if (s.note != told) std::cerr << "palpate: the reference solver took over: " << s.note << "\n";
     if (const SolveReport& report = s.solution.report; !report.converged)
         s.problem.warnings.push_back("the answer is not good: its error is about " +
                                      std::to_string(std::lround(100 * *report.errorEstimate)) +
@@ -234,7 +234,7 @@ void addSolveCommand(CLI::App& app)
         "A grid names a .npy file of values at the nodes, of shape (cells_x + 1, cells_z + 1).\n\n"
         "Examples:\n"
         "  palpate solve plate.json\n"
-        "  palpate solve plate.json --cells 256 --device lavapipe --tolerance 1e-6 --json\n"
+        "  palpate solve plate.json --cells 256 --device host --tolerance 1e-6 --json\n"
         "  palpate solve plate.json --out deflection.npy");
     command->callback([command, options] {
         refuseEmptyValues(*command);

@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "engine/core/contract.h"
-#include "engine/gpu/device_list.h"
 #include "engine/plate/plate_solver_vulkan.h"
 
 namespace palp {
@@ -14,9 +13,10 @@ void SolverChoice::addTo(CLI::App& command)
     command
         .add_option(
             "--device", device,
-            "where the plate is solved: auto (the best Vulkan device), host (the same kernels as native code on this "
-            "processor), lavapipe (Vulkan in software), an index or part of a name from \"palpate devices\", or "
-            "reference (sparse Cholesky in double precision)")
+            "where the plate is solved: auto (the best GPU, else the host), host (the shaders' arithmetic as native "
+            "code "
+            "on this processor), lavapipe (Vulkan in software: the same bits, much slower), an index or part of a name "
+            "from \"palpate devices\", or reference (sparse Cholesky in double precision)")
         ->capture_default_str();
     command
         .add_option("--tolerance", tolerance,
@@ -27,10 +27,14 @@ void SolverChoice::addTo(CLI::App& command)
 PlateDevice SolverChoice::open() const
 {
     checkTolerance(tolerance);
-    PlateDevice opened = orTheReference([&] { return PlateDevice(deviceWord(device)); });
-    if (!opened.note().empty())
-        std::cerr << "palpate: no Vulkan device, so the reference solver takes over: " << opened.note() << "\n";
+    PlateDevice opened = orTheReference([&] { return PlateDevice(device); });
+    sayPassedOver(opened.name(), opened.note());
     return opened;
+}
+
+void sayPassedOver(const std::string& name, const std::string& note)
+{
+    if (!note.empty()) std::cerr << "palpate: auto takes " << name << ": " << note << "\n";
 }
 
 void checkTolerance(double tolerance)
@@ -40,12 +44,6 @@ void checkTolerance(double tolerance)
     text << "--tolerance: expected at least " << VulkanPlateSolver::kLeastTolerance
          << " (what 32-bit rigidities and cycles can give) and below 1, found " << tolerance;
     throw Error(text.str());
-}
-
-std::string deviceWord(const std::string& given)
-{
-    const std::string word = CLI::ignore_case(given);
-    return word == "auto" || word == "reference" || word == gpu::kHostDevice ? word : given;
 }
 
 } // namespace palp

@@ -15,25 +15,23 @@ struct SolverChoice {
 
     void addTo(CLI::App& command);
 
-    /// Says on standard error why "auto" is not a Vulkan device.
+    /// Says on standard error what "auto" found broken.
     /// \throws Error for a tolerance out of range, gpu::UnknownDevice for a name that no device has, gpu::DeviceError
-    /// for
-    ///         a device that cannot be used
+    ///         for a device that cannot be used
     [[nodiscard]] PlateDevice open() const;
 };
 
 /// \throws Error that names --tolerance and its bounds
 void checkTolerance(double tolerance);
 
-/// A value of --device as PlateDevice spells it: "auto" and "reference" may be given in any case.
-[[nodiscard]] std::string deviceWord(const std::string& given);
+/// Says on standard error which device "auto" took in place of a broken one, if there is a note of that.
+void sayPassedOver(const std::string& name, const std::string& note);
 
 /// Returns open(); where the device is refused, the sentence adds that --device takes the reference solver too.
 template <class Open>
 [[nodiscard]] auto orTheReference(const Open& open)
 {
-    constexpr const char* kToo =
-        "\n  or host: the same solver as native code; or reference: sparse Cholesky in double precision";
+    constexpr const char* kToo = "\n  reference  (sparse Cholesky in double precision): usable";
     try {
         return open();
     } catch (const gpu::UnknownDevice& error) {

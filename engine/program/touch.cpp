@@ -274,10 +274,9 @@ void touch(const TouchOptions& options)
     const NeighbourIndex index(loaded.cloud.positions());
     const Contact        contact = contactOf(options, loaded.cloud, index, settings.window);
     PlateDevice          device  = options.solver.open();
-    const bool           told    = !device.note().empty();
+    const auto           told    = device.note();
     const Patch          patch   = deform(loaded.cloud, index, contact, settings, device);
-    if (!told && !device.note().empty())
-        std::cerr << "palpate: the reference solver took over: " << device.note() << "\n";
+    if (device.note() != told) std::cerr << "palpate: the reference solver took over: " << device.note() << "\n";
     if (!patch.deformed())
         throw Error("touch: the " + std::to_string(patch.gathered.size()) +
                     " points around the contact do not determine a "

@@ -1,5 +1,6 @@
 // A new map of rigidity and one solve, against direct solvers whose symbolic analysis is made before. Times are per
 // plate. `palpate bench plate` has the same comparison with the error of each beside it; this one is for profiling.
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,7 +43,8 @@ void addDirect(const std::string& name, const Plate& plate,
 int main(int argc, char** argv)
 {
     bench::becomeOneThread(bench::runningProgram());
-    gpu::Context       context;
+    gpu::Context context;
+    std::fprintf(stderr, "palpate on %s\n", context.device().name.c_str());
     const PlateKernels kernels(context);
     for (const int nodes : {65, 129, 257}) {
         const std::string work  = std::to_string(nodes) + " nodes/";

@@ -23,6 +23,13 @@ TEST_F(ContextTest, TheOpenedDeviceIsOneOfTheList)
     EXPECT_GE(context().limits().invocations, 128u);
 }
 
+TEST_F(ContextTest, ShadersAreTestedInSoftwareUnlessAnotherDeviceIsNamed)
+{
+    EXPECT_TRUE(!gpu::isDeviceWord(deviceOfTests(), gpu::kLavapipeDevice) || context().device().kind == "software");
+    EXPECT_FALSE(gpu::isDeviceWord(deviceOfTests(), gpu::kAutoDevice)) << "which may be the host";
+    EXPECT_EQ(onHost(), gpu::isDeviceWord(deviceOfTests(), gpu::kHostDevice));
+}
+
 TEST_F(ContextTest, ADeviceThatIsNotThereIsRefusedAndEachDeviceNamed)
 {
     gpu::ContextSettings settings;

@@ -8,6 +8,8 @@ namespace {
 
 using Devices = std::vector<DeviceDescription>;
 
+constexpr std::optional<std::size_t> kHost{};
+
 DeviceDescription device(int index, std::string name, std::string kind, std::vector<std::string> refusals = {})
 {
     DeviceDescription description;
@@ -30,16 +32,33 @@ std::string refusal(const Devices& devices, std::string_view wanted)
     return refusalOf([&] { (void)chooseDevice(devices, wanted); });
 }
 
-TEST(DeviceChoice, AutoTakesTheFirstUsableDeviceOfTheBestKind)
+TEST(DeviceChoice, AutoTakesTheFirstUsableGpuOfTheBestKind)
 {
     Devices devices = desk();
     EXPECT_EQ(chooseDevice(devices, "auto"), 3u);
     devices.erase(devices.begin() + 3);
     EXPECT_EQ(chooseDevice(devices, "auto"), 1u);
     devices.erase(devices.begin() + 1);
-    EXPECT_EQ(chooseDevice(devices, "auto"), 2u); // virtual before software
+    EXPECT_EQ(chooseDevice(devices, "auto"), 2u) << "virtual is left";
     devices.pop_back();
-    EXPECT_EQ(chooseDevice(devices, "auto"), 0u);
+    EXPECT_EQ(chooseDevice(devices, "auto"), kHost) << "what is left is in software, or cannot be used";
+}
+
+TEST(DeviceChoice, AutoTakesTheHostWhereThereIsNoGpu)
+{
+    const DeviceDescription software = device(0, "llvmpipe", "software");
+    EXPECT_EQ(chooseDevice({}, "auto"), kHost);
+    EXPECT_EQ(chooseDevice({software}, "auto"), kHost);
+    EXPECT_EQ(chooseDevice({device(0, "Venus", "other")}, "auto"), kHost) << "only when asked for";
+    EXPECT_EQ(chooseDevice({software, device(1, "Old", "discrete", {"it is too old"})}, "auto"), kHost);
+    EXPECT_EQ(chooseDevice({software, device(1, "Intel UHD 770", "integrated")}, "auto"), 1u);
+}
+
+TEST(DeviceChoice, TheHostAndSoftwareAreThereWhenAskedFor)
+{
+    EXPECT_EQ(chooseDevice(desk(), "host"), kHost);
+    EXPECT_EQ(chooseDevice({}, "host"), kHost);
+    for (const char* wanted : {"lavapipe", "0", "llvmpipe"}) EXPECT_EQ(chooseDevice(desk(), wanted), 0u) << wanted;
 }
 
 TEST(DeviceChoice, LavapipeIsTheDeviceInSoftware)
@@ -52,6 +71,7 @@ TEST(DeviceChoice, WordsAreKnownInAnyCase)
 {
     EXPECT_EQ(chooseDevice(desk(), "Lavapipe"), 0u);
     EXPECT_EQ(chooseDevice(desk(), "AUTO"), 3u);
+    EXPECT_EQ(chooseDevice(desk(), "Host"), kHost);
 }
 
 TEST(DeviceChoice, AWrongWordIsBadUsageUnlessNoOtherWouldDo)
@@ -98,18 +118,18 @@ TEST(DeviceChoice, ARefusedDeviceIsRefusedWithItsReason)
 TEST(DeviceChoice, AnUnknownNameNamesEveryDevice)
 {
     const std::string sentence = refusal(desk(), "voodoo");
-    EXPECT_TRUE(holds(sentence, {"'voodoo'", "auto", "lavapipe"})) << sentence;
+    EXPECT_TRUE(holds(sentence, {"'voodoo'", "auto, host, lavapipe", "an index or part of a name", "\n  host  "}))
+        << sentence;
     for (const DeviceDescription& one : desk()) EXPECT_TRUE(holds(sentence, {one.name, one.kind})) << sentence;
     EXPECT_NE(refusal(desk(), ""), "");
     EXPECT_NE(refusal(desk(), "99"), "");
     EXPECT_NE(refusal(desk(), "-1"), "");
 }
 
-TEST(DeviceChoice, WithoutAnyDeviceThePackageIsNamed)
+TEST(DeviceChoice, WithoutAnyGpuThePackageIsNamed)
 {
-    for (const char* wanted : {"auto", "lavapipe", "0", "geforce"})
-        EXPECT_TRUE(holds(refusal({}, wanted), {"mesa-vulkan-drivers"})) << wanted;
-    EXPECT_THROW((void)chooseDevice({}, "auto"), DeviceError);
+    for (const char* wanted : {"lavapipe", "0", "geforce"})
+        EXPECT_TRUE(holds(refusal({}, wanted), {"mesa-vulkan-drivers", "\n  host  "})) << wanted;
 }
 
 } // namespace

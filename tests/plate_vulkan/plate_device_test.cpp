@@ -1,7 +1,6 @@
 #include "engine/plate/plate_device.h"
 
 #include <cmath>
-#include <cstdlib>
 
 #include <gtest/gtest.h>
 
@@ -9,6 +8,7 @@
 #include "engine/gpu/device_list.h"
 #include "engine/plate/load.h"
 #include "engine/plate/plate_solver_reference.h"
+#include "tests/support/shader_fixture.h"
 
 namespace palp {
 namespace {
@@ -22,12 +22,6 @@ Plate plateOf(int cells, double contrast)
         for (int j = 0; j <= cells; ++j)
             if (std::hypot(double(i) / cells - 0.45, double(j) / cells - 0.55) < 0.2) plate.rigidity(i, j) = contrast;
     return plate;
-}
-
-std::string deviceOfTests()
-{
-    const char* wanted = std::getenv("PALPATE_DEVICE");
-    return wanted ? wanted : "auto";
 }
 
 double difference(const NodeField& a, const NodeField& b)
@@ -80,10 +74,24 @@ TEST(PlateDevice, WhatTheDeviceCannotConvergeTheReferenceSolves)
     EXPECT_NE(device.solve(plateOf(64, 10), load).report.device, "reference") << "for that plate only";
 }
 
-TEST(PlateDevice, OneThatIsNotThereIsRefusedByNameAndReplacedOnAuto)
+TEST(PlateDevice, OneThatIsNotThereIsRefusedByName)
 {
     EXPECT_THROW(PlateDevice("no such device"), Error);
-    EXPECT_EQ(PlateDevice("reference").name(), "reference");
+}
+
+TEST(PlateDevice, WordsAreKnownInAnyCase)
+{
+    EXPECT_EQ(PlateDevice("Reference").name(), "reference");
+    EXPECT_EQ(PlateDevice("HOST").name(), "host");
+}
+
+TEST(PlateDevice, AutoNeverTakesSoftware)
+{
+    const std::vector<gpu::DeviceDescription> list  = gpu::listDevices();
+    const auto                                place = gpu::chooseDevice(list, "auto");
+    const PlateDevice                         device("auto");
+    EXPECT_EQ(device.name(), place ? list[*place].name : "host");
+    EXPECT_EQ(device.note(), "");
 }
 
 } // namespace

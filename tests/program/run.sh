@@ -1,8 +1,8 @@
 #!/bin/sh
 # The command line as a user meets it: good runs, bad input (exit code 2, one sentence, no half-written file).
-# Argument: the program.
+# Arguments: the program, and the manifest of a Vulkan driver that fails (tests/gpu/broken_driver.cpp).
 set -u
-palpate=$1
+palpate=$1 broken=$2
 place=$(mktemp -d "${TMPDIR:-/tmp}/palpate program XXXXXX") || exit 1
 trap 'chmod -R u+w "$place"; rm -rf "$place"' EXIT
 cd "$place" || exit 1
@@ -82,8 +82,25 @@ good 'solve on the host' solve plate.json --device Host --json --out host.npy
 holds '"device": "host"'
 good 'solve on lavapipe' solve plate.json --device lavapipe --out lavapipe.npy
 cmp -s host.npy lavapipe.npy && passed=$((passed + 1)) || complain 'the host and lavapipe differ'
-VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" solve plate.json --device host >out.txt 2>err.txt && [ ! -s err.txt ] &&
-    passed=$((passed + 1)) || complain "the host needs a driver: $(cat out.txt err.txt)"
+without() { env VK_DRIVER_FILES="$place/none.json" VK_ICD_FILENAMES="$place/none.json" "$@" >out.txt 2>err.txt; } # any Vulkan driver
+failing() { where=$1; shift; env PALPATE_BROKEN="$where" VK_DRIVER_FILES="$broken" VK_ICD_FILENAMES="$broken" "$@" >out.txt 2>err.txt; }
+without "$palpate" solve plate.json --device host && [ ! -s err.txt ] && passed=$((passed + 1)) || complain "the host needs a driver: $(cat out.txt err.txt)"
+good 'solve where there is only software' solve plate.json --json --out auto.npy
+holds '"device": "host"'
+holds '"note": null'
+[ ! -s err.txt ] && cmp -s auto.npy host.npy && passed=$((passed + 1)) || complain "auto is not the host: $(cat err.txt)"
+PALPATE_HOST_ISA=sse9
+export PALPATE_HOST_ISA
+for command in 'solve plate.json' devices; do
+    # shellcheck disable=SC2086  # a command and its arguments
+    bad 'an instruction set that is none' 'PALPATE_HOST_ISA: expected portable, avx2 or avx512, found "sse9"' $command
+done
+PALPATE_HOST_ISA=portable
+good 'another instruction set' solve plate.json --out portable.npy
+cmp -s portable.npy host.npy && passed=$((passed + 1)) || complain 'instruction sets differ'
+good 'its name' devices --json
+holds '"instruction_set": "portable"'
+unset PALPATE_HOST_ISA
 good 'solve tightly' solve plate.json --device Lavapipe --tolerance 1e-7 --json
 holds '"work_units"'
 good 'touch by the reference' touch sample:skin --points 5000 --cells 32 --device reference
@@ -104,27 +121,49 @@ mkdir alone && cp "$palpate" alone/palpate
 alone/palpate bench plate --device lavapipe --nodes 33 --cases memory >out.txt 2>err.txt || complain "bench plate without peers: exit $? $(cat err.txt)"
 holds 'install libsuitesparse-dev'
 
+good 'list of devices' devices
+holds 'host  '
+holds 'usable   yes; auto takes it'
 good 'list of GPUs' devices --gpu
 holds 'usable   yes'
-good 'list of GPUs, for scripts' devices --gpu --json
-for key in '"index": 0' '"name"' '"kind"' '"driver"' '"api"' '"memory"' '"float64"' '"usable": true' '"refusals": []'; do holds "$key"; done
-VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" devices --gpu --json >out.txt 2>err.txt
+grep -q host out.txt && complain "the host is no GPU: $(cat out.txt)" || passed=$((passed + 1))
+good 'list of devices, for scripts' devices --json
+for key in '"index": 0' '"index": null' '"name": "host"' '"kind": "software"' '"kind": "host"' '"driver"' '"api"' '"memory"' '"float64"' '"usable": true' '"refusals": []' '"processor": "' \
+    '"instruction_set": "' '"auto": false'; do holds "$key"; done
+tr -d ' \n' <out.txt | grep -q '"auto":true}\]$' && passed=$((passed + 1)) || complain "auto is not the host, the last of: $(cat out.txt)"
+without "$palpate" devices --gpu --json
 code=$?
 [ $code -eq 4 ] && grep -qF 'mesa-vulkan-drivers' err.txt && [ "$(cat out.txt)" = '[]' ] && passed=$((passed + 1)) ||
     complain "a machine without a GPU: exit $code, expected 4: $(cat out.txt err.txt)"
-VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" solve plate.json --json >out.txt 2>err.txt
-code=$?
-[ $code -eq 0 ] && grep -qF 'reference solver takes over' err.txt && grep -qF '"device": "reference"' out.txt && grep -qF '"note": "no GPU can be used' out.txt && passed=$((passed + 1)) ||
-    complain "solving without a GPU: exit $code, expected 0 by the reference: $(cat out.txt err.txt)"
-VK_DRIVER_FILES=$place/none.json VK_ICD_FILENAMES=$place/none.json "$palpate" solve plate.json --device lavapipe >out.txt 2>err.txt
+without "$palpate" devices && grep -qF 'auto takes it' out.txt && [ ! -s err.txt ] && passed=$((passed + 1)) ||
+    complain "a machine without a GPU has its host: $(cat out.txt err.txt)"
+without "$palpate" solve plate.json --json && grep -qF '"device": "host"' out.txt && grep -qF '"note": null' out.txt && [ ! -s err.txt ] && passed=$((passed + 1)) ||
+    complain "solving without a GPU, on the host: $(cat out.txt err.txt)"
+without "$palpate" solve plate.json --device lavapipe
 code=$?
 [ $code -eq 4 ] && [ ! -s out.txt ] && passed=$((passed + 1)) ||
     complain "a GPU that is asked for and is not there: exit $code, expected 4: $(cat out.txt err.txt)"
+for where in start list open; do
+    for command in 'solve plate.json' 'touch sample:sheet --points 5000 --cells 16' 'bench solve --device auto --nodes 17 --repeats 1' 'bench plate --nodes 33 --cases memory'; do
+        # shellcheck disable=SC2086  # a command and its arguments
+        failing $where "$palpate" $command --json && grep -qF '"device": "host"' out.txt && [ "$(wc -l <err.txt)" -eq 1 ] &&
+            grep -qF 'palpate: auto takes host: ' err.txt && passed=$((passed + 1)) || complain "$command, Vulkan broken at $where: $(cat out.txt err.txt)"
+        case $command in bench*) continue ;; esac
+        grep -qE '"note": "(Vulkan|the GPU) ' out.txt && passed=$((passed + 1)) || complain "$command does not report it: $(cat out.txt)"
+    done
+    failing $where "$palpate" devices && grep -qF 'host  ' out.txt && passed=$((passed + 1)) || complain "devices, Vulkan broken at $where: $(cat out.txt err.txt)"
+    failing $where "$palpate" solve plate.json --device lavapipe
+    code=$?
+    [ $code -eq 4 ] && [ ! -s out.txt ] && passed=$((passed + 1)) || complain "asked for, Vulkan broken at $where: exit $code: $(cat err.txt)"
+done
 
 # --- the same numbers every time
-"$palpate" touch sample:palm --points 8000 --cells 32 --out one --json >/dev/null && "$palpate" touch sample:palm --points 8000 --cells 32 --out two --json >/dev/null
+for run in one two; do "$palpate" touch sample:palm --points 8000 --cells 32 --out $run --json >/dev/null; done
+"$palpate" touch sample:palm --points 8000 --cells 32 --device lavapipe --out three --json >lavapipe.json
+grep -qF '"device": "llvmpipe' lavapipe.json && passed=$((passed + 1)) || complain "that was not lavapipe: $(cat lavapipe.json)"
 for file in deformed.ply rigidity.npy deflection.npy rigidity.svg surface.svg; do
     cmp -s one/$file two/$file && passed=$((passed + 1)) || complain "$file differs between two equal runs"
+    cmp -s one/$file three/$file && passed=$((passed + 1)) || complain "$file differs between the host and lavapipe"
 done
 
 # --- bad usage
@@ -156,7 +195,7 @@ for command in 'solve plate.json' 'bench solve'; do
     # shellcheck disable=SC2086  # a command and its arguments
     "$palpate" $command --device gpu9000 >out.txt 2>err.txt
     code=$?
-    [ $code -eq 2 ] && grep -qF "'gpu9000'" err.txt && grep -qF usable err.txt && grep -qF reference err.txt && [ ! -s out.txt ] && passed=$((passed + 1)) ||
+    [ $code -eq 2 ] && grep -qF "'gpu9000'; expected auto, host, lavapipe, an index or part of a name" err.txt && grep -qF usable err.txt && grep -qF '  host  ' err.txt && grep -qF '  reference  ' err.txt && [ ! -s out.txt ] && passed=$((passed + 1)) ||
         complain "unknown device: exit $code, expected 2 and the list of devices: $(cat err.txt)"
 done
 for tolerance in 0 1e-12 nan 1; do

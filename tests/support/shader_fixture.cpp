@@ -47,7 +47,7 @@ public:
     {
         if (!context_) {
             gpu::ContextSettings settings;
-            if (const std::string wanted = environment("PALPATE_DEVICE"); !wanted.empty()) settings.device = wanted;
+            settings.device     = deviceOfTests();
             settings.validation = wantedValidation();
             context_            = std::make_unique<gpu::Context>(settings);
         }
@@ -145,6 +145,12 @@ template <class T>
 }
 
 } // namespace
+
+std::string deviceOfTests()
+{
+    const std::string wanted = environment("PALPATE_DEVICE");
+    return wanted.empty() ? std::string(gpu::kLavapipeDevice) : wanted;
+}
 
 std::vector<std::string> dispatchGuarded(gpu::Context& context, const gpu::Kernel& kernel,
                                          const std::vector<ShaderArray>& arrays, const gpu::Push& push,

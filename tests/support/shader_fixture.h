@@ -57,9 +57,14 @@ struct UlpTolerance {
     const char* because; ///< printed on failure
 };
 
+/// What PALPATE_DEVICE names; lavapipe if it is not set. Never what "auto" takes by itself: that may be the host, which
+/// runs no shader.
+[[nodiscard]] std::string deviceOfTests();
+
 /// A test of one shader. The device is opened once per process; any message of the validation layer fails the test.
 ///
-/// Environment: PALPATE_DEVICE, see chooseDevice(); PALPATE_VALIDATION off, core, synchronization or gpu.
+/// Environment: PALPATE_DEVICE, see deviceOfTests() and gpu::chooseDevice(); PALPATE_VALIDATION off, core,
+/// synchronization or gpu.
 class ShaderTest : public ::testing::Test {
 protected:
     /// Of the process; it is closed after the last test.
