@@ -1,31 +1,58 @@
 #include "engine/core/extremes.h"
 
-#include <array>
+#include <cstring>
 #include <limits>
 
 namespace palp {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Pairs, which every processor of the last twenty years has in a register: loops of plain minima stay scalar, for the
+// sake of numbers that are none.
+constexpr std::size_t kPair = 2;
+using Pair [[gnu::vector_size(kPair * sizeof(double))]] = double;
+
+struct Running {
+    Pair least = Pair{} + kInfinity, most = Pair{} - kInfinity;
+    Pair broken{}; ///< 0 while all values are finite, or else not a number
+
+    void take(const Pair& v)
+    {
+        least = v < least ? v : least;
+        most  = v > most ? v : most;
+        broken += v - v;
+    }
+
+    void take(const Running& of)
+    {
+        least = of.least < least ? of.least : least;
+        most  = of.most > most ? of.most : most;
+        broken += of.broken;
+    }
+};
+
+} // namespace
 
 Extremes extremesOf(std::span<const double> values) noexcept
 {
-    constexpr std::size_t     kLanes = 8; // independent of each other, so that compilers make vectors of them
-    std::array<double, kLanes> least, most, broken{};
-    least.fill(std::numeric_limits<double>::infinity());
-    most.fill(-std::numeric_limits<double>::infinity());
-    const auto take = [&](std::size_t lane, double value) {
-        least[lane] = value < least[lane] ? value : least[lane];
-        most[lane]  = value > most[lane] ? value : most[lane];
-        broken[lane] += value - value; // 0 for finite numbers, or else not a number
-    };
+    Running     one, other; // independent of each other: neither waits for the other's sums
     std::size_t n = 0;
-    for (; n + kLanes <= values.size(); n += kLanes)
-        for (std::size_t lane = 0; lane < kLanes; ++lane) take(lane, values[n + lane]);
-    for (; n < values.size(); ++n) take(0, values[n]);
+    for (; n + 2 * kPair <= values.size(); n += 2 * kPair) {
+        Pair v[2];
+        std::memcpy(v, values.data() + n, sizeof v);
+        one.take(v[0]);
+        other.take(v[1]);
+    }
+    for (; n < values.size(); ++n) one.take(Pair{} + values[n]);
+    one.broken += other.broken;
+    one.take(other);
 
-    Extremes all{least[0], most[0], true};
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        all.least  = least[lane] < all.least ? least[lane] : all.least;
-        all.most   = most[lane] > all.most ? most[lane] : all.most;
-        all.finite = all.finite && broken[lane] == 0;
+    Extremes all{kInfinity, -kInfinity, true};
+    for (std::size_t lane = 0; lane < kPair; ++lane) {
+        all.least  = one.least[lane] < all.least ? one.least[lane] : all.least;
+        all.most   = one.most[lane] > all.most ? one.most[lane] : all.most;
+        all.finite = all.finite && one.broken[lane] == 0;
     }
     return all;
 }
