@@ -24,27 +24,37 @@ struct Table {
     }
 };
 
-/// Nodes from begin to before end, of which each has the weights of the one `period` before it, `move` further on.
+/// Nodes from begin to before end, of which each has the weights of the one `period` before it, `move` further on; the
+/// first there are.
 struct Run {
     int begin = 0, end = 0;
 
     Run(const Table& table, int period, int move)
     {
-        while (begin < table.count / 2 && !table.areAlike(begin, begin + period, move)) ++begin;
-        end = begin;
-        while (end + period < table.count && table.areAlike(end, end + period, move)) ++end;
+        const auto goesOn = [&](int node) {
+            return node + period < table.count && table.areAlike(node, node + period, move);
+        };
+        int alike = 0; // nodes in a row that are so
+        for (; end < table.count && alike < period; ++end) alike = goesOn(end) ? alike + 1 : 0;
+        if (alike < period) {
+            end = 0;
+            return;
+        }
+        begin = end - period;
+        while (goesOn(end)) ++end;
+        end += period;
     }
 };
 
 /// A sum of rows times weights.
-template <class Real>
+template <class Real, class Term = Real>
 struct Terms {
     static constexpr int kMost = kCoarseWeights;
     int                  count = 0;
     Real                 weights[kMost];
-    const Real*          rows[kMost];
+    const Term*          rows[kMost];
 
-    void add(Real weight, const Real* row)
+    void add(Real weight, const Term* row)
     {
         if (weight == 0) return;
         weights[count] = weight;
@@ -75,16 +85,16 @@ private:
     void sumOf(int nodes, Put&& put) const
     {
         Real        w[kCount];
-        const Real* r[kCount];
+        const Term* r[kCount];
         for (int n = 0; n < kCount; ++n) {
             w[n] = weights[n];
             r[n] = rows[n];
         }
 #pragma GCC ivdep
         for (int j = 0; j < nodes; ++j) {
-            Real value = w[0] * r[0][j];
+            Real value = w[0] * Real(r[0][j]);
 #pragma GCC unroll 8
-            for (int n = 1; n < kCount; ++n) value += w[n] * r[n][j];
+            for (int n = 1; n < kCount; ++n) value += w[n] * Real(r[n][j]);
             put(j, value);
         }
     }
@@ -100,9 +110,9 @@ private:
     }
 };
 
-/// A coarse row interpolated at the fine nodes of table z.
+/// A coarse row interpolated at the fine nodes of table z. \param halves  room for as many numbers, and two
 template <class Real, class Coarse>
-void prolongRow(const Table& z, const Run& run, const Coarse* from, Real* to)
+void prolongRow(const Table& z, const Run& run, const Coarse* from, Real* halves, Real* to)
 {
     const auto one = [&](int j) {
         const float* entry = z.entry(j);
@@ -110,21 +120,25 @@ void prolongRow(const Table& z, const Run& run, const Coarse* from, Real* to)
         for (int n = 0; n < kFineWeights; ++n) value += Real(entry[1 + n]) * Real(from[int(entry[0]) + n]);
         to[j] = value;
     };
-    const int     pairs = (run.end - run.begin) / 2, end = run.begin + 2 * pairs;
-    const float * a = z.entry(run.begin), *b = z.entry(run.begin + 1);
-    const Coarse *ofA = from + int(a[0]), *ofB = from + int(b[0]);
-    Real*         out = to + run.begin;
+    const int pairs = max((run.end - run.begin) / 2, 0), end = run.begin + 2 * pairs;
     for (int j = 0; j < run.begin; ++j) one(j);
-    if (pairs > 0) {
-        const Real a0(a[1]), a1(a[2]), a2(a[3]), a3(a[4]), b0(b[1]), b1(b[2]), b2(b[3]), b3(b[4]);
-#pragma GCC ivdep
-        for (int n = 0; n < pairs; ++n) {
-            out[2 * n] = ((a0 * Real(ofA[n]) + a1 * Real(ofA[n + 1])) + a2 * Real(ofA[n + 2])) + a3 * Real(ofA[n + 3]);
-            out[2 * n + 1] =
-                ((b0 * Real(ofB[n]) + b1 * Real(ofB[n + 1])) + b2 * Real(ofB[n + 2])) + b3 * Real(ofB[n + 3]);
-        }
-    }
     for (int j = end; j < z.count; ++j) one(j);
+    if (pairs == 0) return;
+
+    Real* const half[2] = {halves, halves + pairs};
+    for (int odd : {0, 1}) {
+        const float*        entry = z.entry(run.begin + odd);
+        Terms<Real, Coarse> terms;
+        for (int n = 0; n < kFineWeights; ++n) terms.add(Real(entry[1 + n]), from + int(entry[0]) + n);
+        terms.sum(pairs, [put = half[odd]](int n, Real value) { put[n] = value; });
+    }
+    const Real *even = half[0], *odd = half[1];
+    Real*       out = to + run.begin;
+#pragma GCC ivdep
+    for (int n = 0; n < pairs; ++n) {
+        out[2 * n]     = even[n];
+        out[2 * n + 1] = odd[n];
+    }
 }
 
 /// Interpolates a coarse field; visitRow(i) gives what to call with (j, value) for every node of fine row i.
@@ -136,13 +150,14 @@ void prolong(const TransferPush& push, const float* tableX, const float* tableZ,
     const int                         fineNodes = push.fine.cellsZ + 1, coarseNodes = push.coarse.cellsZ + 1;
     const Table                       x{tableX, push.fine.cellsX + 1, kFineWeights}, z{tableZ, fineNodes, kFineWeights};
     const Run                         run(z, 2, 1);
-    Real*                             rows = scratch.of(std::ptrdiff_t(kFineWeights) * fineNodes); // made last
-    int                               made = 0;
+    Real*                             rows   = scratch.of(std::ptrdiff_t(kFineWeights + 1) * fineNodes + 2);
+    Real*                             halves = rows + std::ptrdiff_t(kFineWeights) * fineNodes;
+    int                               made   = 0;
     const auto rowOf = [&](int row) { return rows + std::ptrdiff_t(row % kFineWeights) * fineNodes; };
     for (int i = 0; i < x.count; ++i) {
         const float* entry = x.entry(i);
         for (; made < x.first(i) + kFineWeights; ++made)
-            prolongRow(z, run, coarse + std::ptrdiff_t(made) * coarseNodes, rowOf(made));
+            prolongRow(z, run, coarse + std::ptrdiff_t(made) * coarseNodes, halves, rowOf(made));
         Terms<Real> terms;
         for (int m = 0; m < kFineWeights; ++m) terms.add(Real(entry[1 + m]), rowOf(x.first(i) + m));
         terms.sum(fineNodes, visitRow(i));
