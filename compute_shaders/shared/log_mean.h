@@ -6,6 +6,17 @@
 //
 // The includer also provides  float pointLogarithm(int n).
 
+// Whether a node's square holds a point, along one axis.
+bool isInReach(float position, float node, float reach)
+{
+    return position >= node - reach && position <= node + reach;
+}
+
+float weightAt(PointLayout g, float distance2)
+{
+    return exp(distance2 * g.falloff);
+}
+
 struct LogMean {
     float weight;    // sum of w [1]; 0: no point in the square
     float logarithm; // sum of w ln D_n [1]
@@ -29,9 +40,9 @@ LogMean logMeanAt(PointLayout g, int i, int j)
         int end = bucketStart(row * g.bucketsZ + last + 1);
         for (int n = bucketStart(row * g.bucketsZ + first); n < end; ++n) {
             float x = pointX(n), z = pointZ(n);
-            if (x >= lowX && x <= highX && z >= lowZ && z <= highZ) {
+            if (isInReach(x, float(i), g.reachX) && isInReach(z, float(j), g.reachZ)) {
                 float distance2 = squared(g, x - float(i), z - float(j));
-                float weight    = exp(distance2 * g.falloff);
+                float weight    = weightAt(g, distance2);
                 sum.weight += weight;
                 sum.logarithm += weight * pointLogarithm(n);
                 sum.nearest2 = min(sum.nearest2, distance2);

@@ -2,57 +2,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "engine/chart/log_mean.h"
 #include "engine/chart/nearest_map.h"
 
 namespace palp {
 namespace {
 
-/// Range of node numbers within `reach` of `position` along one axis.
-struct NodeRange {
-    int first = 0;
-    int last  = -1;
-
-    NodeRange(double position, double reach, double spacing, int nodes)
-        : first(int(std::max(0.0, std::ceil((position - reach) / spacing)))),
-          last(int(std::min(nodes - 1.0, std::floor((position + reach) / spacing))))
-    {
-    }
-};
-
-/// Gaussian-weighted mean of ln D; where no point reaches, the sum of the weights stays 0.
-struct LogMean {
-    NodeField weight;    ///< sum of w [1]
-    NodeField logarithm; ///< sum of w ln(D / 1 N m) [1]
-};
-
-/// Spreads every point over the nodes around it. The weight is a product of one factor a side, so that the
-/// exponentials are computed per row and column rather than per node.
-LogMean spread(const Window& window, std::span<const ChartPoint> positions, std::span<const double> rigidities,
-               double width)
+/// The rigidity of the nearest point where there is no mean yet, and the number of nodes without a point nearby.
+void takeNearest(const Window& window, std::span<const ChartPoint> positions, std::span<const double> rigidities,
+                 double nearby, Resampled& result)
 {
-    const PlateGrid&    grid = window.grid;
-    LogMean             sums{NodeField(grid), NodeField(grid)};
-    std::vector<double> factorZ;
-    const auto          factor = [&](double distance) { return std::exp(-distance * distance / (2 * width * width)); };
-    for (std::size_t n = 0; n < positions.size(); ++n) {
-        const double    x = positions[n].x - window.corner.x, z = positions[n].z - window.corner.z;
-        const double    reach = kSamplingReach * width, logarithm = std::log(rigidities[n]);
-        const NodeRange rows(x, reach, grid.spacingX, grid.nodesX()), columns(z, reach, grid.spacingZ, grid.nodesZ());
-        factorZ.clear();
-        for (int j = columns.first; j <= columns.last; ++j) factorZ.push_back(factor(z - j * grid.spacingZ));
-        for (int i = rows.first; i <= rows.last; ++i) {
-            const double factorX = factor(x - i * grid.spacingX);
-            for (int j = columns.first; j <= columns.last; ++j) {
-                const double weight = factorX * factorZ[std::size_t(j - columns.first)];
-                sums.weight(i, j) += weight;
-                sums.logarithm(i, j) += weight * logarithm;
-            }
+    const PlateGrid&                 grid    = window.grid;
+    const std::vector<std::uint32_t> nearest = nearestPoint(grid, window.corner, positions);
+    std::size_t                      n       = 0;
+    for (int i = 0; i < grid.nodesX(); ++i)
+        for (int j = 0; j < grid.nodesZ(); ++j, ++n) {
+            const ChartPoint& point = positions[nearest[n]];
+            const double      x     = point.x - window.corner.x - i * grid.spacingX;
+            const double      z     = point.z - window.corner.z - j * grid.spacingZ;
+            result.nodesWithoutPoint += x * x + z * z > nearby * nearby;
+            double& rigidity = result.rigidity.values()[n];
+            if (std::isnan(rigidity)) rigidity = rigidities[nearest[n]];
         }
-    }
-    return sums;
+}
+
+bool areFinite(std::span<const ChartPoint> positions)
+{
+    double zero = 0; // not a number as soon as one is not finite
+    for (const ChartPoint& p : positions) zero += (p.x - p.x) + (p.z - p.z);
+    return zero == 0;
 }
 
 } // namespace
@@ -94,19 +76,17 @@ Resampled resampleRigidity(const Window& window, std::span<const ChartPoint> pos
     const PlateGrid& grid  = window.grid;
     const double     width = samplingWidth(pointSpacing, std::max(grid.spacingX, grid.spacingZ));
 
-    const std::vector<std::uint32_t> nearest = nearestPoint(grid, window.corner, positions);
-    const LogMean sums = sampling == Sampling::logMean ? spread(window, positions, rigidities, width) : LogMean{};
+    PALP_EXPECT(areFinite(positions), "a point is not finite");
 
-    Resampled result{NodeField(grid), 0};
-    for (int i = 0; i < grid.nodesX(); ++i)
-        for (int j = 0; j < grid.nodesZ(); ++j) {
-            const std::uint32_t point = nearest[std::size_t(i) * std::size_t(grid.nodesZ()) + std::size_t(j)];
-            const double        away  = std::hypot(positions[point].x - window.corner.x - i * grid.spacingX,
-                                                   positions[point].z - window.corner.z - j * grid.spacingZ);
-            result.nodesWithoutPoint += away > kSamplingNearby * width;
-            const bool averaged   = sampling == Sampling::logMean && sums.weight(i, j) > 0;
-            result.rigidity(i, j) = averaged ? std::exp(sums.logarithm(i, j) / sums.weight(i, j)) : rigidities[point];
-        }
+    Resampled result{NodeField(grid, std::numeric_limits<double>::quiet_NaN()), 0};
+    if (sampling == Sampling::logMean) {
+        const LogMeanSums sums(window, positions, rigidities, width);
+        const auto        nodes = std::size_t(grid.nodesZ());
+        for (int i = 0; i < grid.nodesX(); ++i)
+            sums.means(i, std::span(result.rigidity.values()).subspan(std::size_t(i) * nodes, nodes));
+        if (surelyCovered(window, positions, width)) return result;
+    }
+    takeNearest(window, positions, rigidities, kSamplingNearby * width, result);
     return result;
 }
 

@@ -155,5 +155,33 @@ TEST(Resample, HolesAndBordersAreCountedAndFilledFromTheNearestPoint)
     EXPECT_NEAR(r.rigidity(20, 10), 2, 1e-12) << "filled from the border, where D is 2";
 }
 
+/// What is covered at a glance and what only distances tell, node by node: coarse and fine grids over clouds that leave
+/// anything from nothing to most of the nodes bare.
+TEST(Resample, NodesWithoutPointAreThoseThatTheDistancesTell)
+{
+    std::size_t bare = 0, covered = 0;
+    for (const int cells : {4, 12, 31, 60})
+        for (const std::size_t points : {2, 9, 40, 150, 1500}) {
+            const Window  window{{cells, cells + 3, 1.0 / cells, 1.1 / cells}, {-0.5, -0.5}};
+            const Scatter s = scatter(1, points, unsigned(points), [](const ChartPoint&) { return 1.0; });
+            for (const double spacing : {0.6 * s.spacing, s.spacing}) {
+                const double nearby   = 2.5 * std::max(spacing, window.grid.spacingZ / 2);
+                std::size_t  expected = 0;
+                for (int i = 0; i < window.grid.nodesX(); ++i)
+                    for (int j = 0; j < window.grid.nodesZ(); ++j) {
+                        const ChartPoint node = nodeOf(window, i, j);
+                        expected += std::none_of(s.positions.begin(), s.positions.end(), [&](const ChartPoint& p) {
+                            return std::hypot(p.x - node.x, p.z - node.z) <= nearby;
+                        });
+                    }
+                const Resampled r = resampleRigidity(window, s.positions, s.rigidities, Sampling::logMean, spacing);
+                EXPECT_EQ(r.nodesWithoutPoint, expected) << cells << " cells, " << points << " points";
+                ++(expected > 0 ? bare : covered);
+            }
+        }
+    EXPECT_GT(bare, 5u);
+    EXPECT_GT(covered, 5u);
+}
+
 } // namespace
 } // namespace palp

@@ -1,0 +1,34 @@
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/chart/resample.h"
+
+namespace palp {
+
+/// Gaussian-weighted sums at the nodes of a window, of the points in the square of half side kSamplingReach widths
+/// about each; see resampleRigidity().
+class LogMeanSums {
+public:
+    /// \param width  standard deviation of the Gaussian [m]
+    LogMeanSums(const Window& window, std::span<const ChartPoint> positions, std::span<const double> rigidities,
+                double width);
+
+    /// exp of the mean of ln D [N m] of one row of nodes; not a number where no point reaches.
+    void means(int i, std::span<double> row) const;
+
+private:
+    PlateGrid           grid_;
+    std::size_t         stride_; ///< of a row of one sum, with a margin that whole registers may run into
+    std::vector<double> sums_;   ///< for each row of nodes those of w [1], then those of w ln(D / 1 N m)
+};
+
+/// Whether a glance shows that every node of a window has a point nearby, as resampleRigidity() counts it. False where
+/// one has none, or where only the distances themselves can tell.
+///
+/// A point lies within half a spacing of its nearest node along either axis. So it is near to all nodes around that one
+/// which are near to the farthest corner of its cell: cells are marked, and the marks grown.
+[[nodiscard]] bool surelyCovered(const Window& window, std::span<const ChartPoint> positions, double width);
+
+} // namespace palp
