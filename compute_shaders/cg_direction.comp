@@ -1,7 +1,7 @@
 // cg_direction.comp - next direction of conjugate gradients, p = z + beta p.
 // Domain     x: one invocation per node; z: loads
 // Reads      preconditioned residual z (float), last direction (real), beta (real)
-// Writes     direction (real), another buffer than the last one's
+// Writes     direction (real), perhaps over the last one
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -30,7 +30,7 @@ public:
     Buffer(Buffer&&) noexcept;
     Buffer& operator=(Buffer&&) noexcept;
 
-    /// The bytes as the host sees them, mapped for good; null for Intent::device.
+    /// The bytes as the host sees them, mapped for good; null for Intent::device, unless the host is the device.
     [[nodiscard]] void* mapped() const noexcept;
 
     /// As above, as an array. Not for Intent::device.

@@ -33,15 +33,14 @@ std::optional<std::string> whyGridIsBad(const PlateGrid& grid)
     return std::nullopt;
 }
 
-std::optional<std::string> whyRigidityIsBad(const Plate& plate)
+std::optional<std::string> whyRigidityIsBad(const PlateGrid& grid, const NodeField& rigidity)
 {
-    const NodeField& rigidity = plate.rigidity;
-    if (!rigidity.on(plate.grid))
-        return sentence("the rigidity must have one value per node, expected ", plate.grid.nodesX(), " x ",
-                        plate.grid.nodesZ(), ", found ", rigidity.nodesX(), " x ", rigidity.nodesZ());
+    if (!rigidity.on(grid))
+        return sentence("the rigidity must have one value per node, expected ", grid.nodesX(), " x ", grid.nodesZ(),
+                        ", found ", rigidity.nodesX(), " x ", rigidity.nodesZ());
     const Extremes of = extremesOf(rigidity.values());
     if (of.finite && of.least > 0) return std::nullopt;
-    const auto bad = std::find_if_not(rigidity.values().begin(), rigidity.values().end(), isPositive);
+    const auto bad   = std::find_if_not(rigidity.values().begin(), rigidity.values().end(), isPositive);
     const auto index = bad - rigidity.values().begin();
     return sentence("the rigidity must be positive and finite, found ", *bad, " N m at node [",
                     index / rigidity.nodesZ(), ", ", index % rigidity.nodesZ(), "]");
@@ -57,10 +56,10 @@ bool isHeldBySides(const Plate& plate)
 /// A foundation stops every motion, unless its force vanishes beside the forces of bending between neighbouring nodes:
 /// with less than this share of them (and 2e-16 is the rounding of doubles) answers were found to be off by a tenth
 /// and more.
-std::optional<std::string> whyFoundationIsTooSoft(const Plate& plate)
+std::optional<std::string> whyFoundationIsTooSoft(const Plate& plate, const NodeField& rigidity)
 {
     constexpr double kLeast = 1e-14; // [1]
-    const double     most   = extremesOf(plate.rigidity.values()).most;
+    const double     most   = extremesOf(rigidity.values()).most;
     const double     area   = plate.grid.spacingX * plate.grid.spacingZ;
     if (plate.foundation * area * area >= kLeast * most) return std::nullopt;
     return sentence("only its foundation holds the plate, and ", plate.foundation,
@@ -84,16 +83,21 @@ std::optional<Edge> edgeNamed(std::string_view text)
 
 std::optional<std::string> whyUnsolvable(const Plate& plate)
 {
+    return whyUnsolvable(plate, plate.rigidity);
+}
+
+std::optional<std::string> whyUnsolvable(const Plate& plate, const NodeField& rigidity)
+{
     if (auto why = whyGridIsBad(plate.grid)) return why;
     if (!isPoissonRatio(plate.poissonRatio))
         return sentence("Poisson's ratio must be above -1 and at most 0.5, found ", plate.poissonRatio);
     if (!(std::isfinite(plate.foundation) && plate.foundation >= 0))
         return sentence("the foundation must be finite and not negative, found ", plate.foundation, " Pa/m");
-    if (auto why = whyRigidityIsBad(plate)) return why;
+    if (auto why = whyRigidityIsBad(plate.grid, rigidity)) return why;
     if (isHeldBySides(plate)) return std::nullopt;
     if (plate.foundation == 0)
         return "the plate is free to move as a rigid body: clamp one side, support two, or give it a foundation";
-    return whyFoundationIsTooSoft(plate);
+    return whyFoundationIsTooSoft(plate, rigidity);
 }
 
 } // namespace palp

@@ -53,6 +53,8 @@ inline constexpr int kFewestPlateCells = 4;
 /// or edges that leave it free to move as a rigid body, but for a foundation that doubles cannot tell from none. Empty
 /// if it can.
 [[nodiscard]] std::optional<std::string> whyUnsolvable(const Plate& plate);
+/// The same of the plate with this rigidity [N m] instead of its own.
+[[nodiscard]] std::optional<std::string> whyUnsolvable(const Plate& plate, const NodeField& rigidity);
 
 /// What a solver says about one answer; a number that a solver does not have is empty.
 struct SolveReport {

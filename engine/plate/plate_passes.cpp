@@ -45,13 +45,14 @@ PlatePasses::PlatePasses(gpu::Context& context, const PlateKernels::All& kernels
                          std::uint32_t loads)
     : state(context, "state", kernels.realBytes() * shared::kStateWords * loads, Intent::device), context_(context),
       k(kernels), grids_(std::move(grids)), loads_(loads), partials_(partialsFor(nodesOf(level(0)))),
-      zeroes_(floats("zeroes", fieldSize(0))), band_(reals("band", bandSize())), factor_(reals("factor", bandSize())),
-      lost_(floats("lost pivots", 1)), sums_(reals("partial sums", 2 * std::size_t(loads_) * partials_)),
+      band_(reals("band", bandSize())), factor_(reals("factor", bandSize())), lost_(floats("lost pivots", 1)),
+      sums_(reals("partial sums", 2 * std::size_t(loads_) * partials_)),
       arguments_(context, "groups of dispatches", argumentBytes(), Intent::device),
       hostArguments_(context, "groups from the host", argumentBytes(), Intent::upload),
       hostTiles_(context, "numbers of tiles for the host", 4 * grids_.levels.size(), Intent::readback)
 {
     levels = makeLevels();
+    if (k.smoothing.by == Smoother::redBlack) zeroes_.emplace(floats("zeroes", fieldSize(0)));
     std::memset(hostArguments_.mapped(), 0, argumentBytes());
     for (std::size_t l = 0; l < grids_.levels.size(); ++l)
         setGroups(tileArgument(l), {0, 1, loads_}); // how many tiles, allow() takes from where prepare() counts them
@@ -98,13 +99,12 @@ std::vector<LevelBuffers> PlatePasses::makeLevels() const
                         floats("table z" + of, std::max<std::size_t>(1, tables.tableZ.size())),
                         floats("force" + of, field),
                         {floats("w0" + of, field), floats("w1" + of, field)},
-                        floats("residual" + of, field),
                         floats("marks" + of, tilesOf(level(l))),
                         floats("tiles" + of, 1 + tilesOf(level(l))),
                         floats("load" + of, field),
                         reals("answer" + of, field),
                         reals("left" + of, field),
-                        {reals("direction 0" + of, field), reals("direction 1" + of, field)},
+                        reals("direction" + of, field),
                         reals("forces" + of, field)});
     }
     return made;
@@ -124,7 +124,7 @@ void PlatePasses::uploadTables()
         upload(grids_.levels[l].tableX, levels[l].tableX);
         upload(grids_.levels[l].tableZ, levels[l].tableZ);
     }
-    list.fill(zeroes_, 0);
+    if (zeroes_) list.fill(*zeroes_, 0);
     for (const LevelBuffers& b : levels)
         for (const Buffer* w : {&b.w[0], &b.w[1]}) list.fill(*w, 0); // held nodes stay at 0
     list.end();
@@ -172,7 +172,7 @@ int PlatePasses::sweep(Recorder& pass, std::size_t l, int at, std::uint32_t firs
     const LevelBuffers& b = levels[l];
     for (std::uint32_t n = 0; n < 2; ++n) {
         const shared::RelaxPush push{level(l), n == 0 ? first : 1 - first};
-        const Buffer&           old = fromZero ? zeroes_ : b.w[at];
+        const Buffer&           old = fromZero ? *zeroes_ : b.w[at];
         if (fromZero && n == 0)
             pass(k.relaxFirst, {b.divisor, b.force, b.w[1 - at]}, push, everySecondNode(k.relaxFirst, l));
         else
@@ -227,9 +227,9 @@ void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_
     for (int n = 0; n < k.smoothing.tiles; ++n)
         for (std::uint32_t colour : {first, 1 - first}) {
             const shared::RelaxPush push{level(l), colour};
-            pass.list.dispatchIndirect(k.relaxTile, {b.rigidity, b.divisor, b.force, b.w[at], b.tiles, b.residual},
+            pass.list.dispatchIndirect(k.relaxTile, {b.rigidity, b.divisor, b.force, b.w[at], b.tiles, b.residual()},
                                        push, arguments_, tileArgument(l));
-            pass.list.dispatchIndirect(k.copyTile, {b.tiles, b.residual, b.w[at]}, push, arguments_, tileArgument(l));
+            pass.list.dispatchIndirect(k.copyTile, {b.tiles, b.residual(), b.w[at]}, push, arguments_, tileArgument(l));
         }
     work.tileSweeps.resize(levels.size());
     work.tileSweeps[l] += k.smoothing.tiles;
@@ -248,9 +248,10 @@ int PlatePasses::cycle(Recorder& pass, std::size_t l, int sweeps)
     sweepTiles(pass, l, at, 0);
     const LevelBuffers&        below = levels[l + 1];
     const shared::TransferPush transfer{level(l), level(l + 1)};
-    pass(k.residual, {b.rigidity, b.force, b.w[at], b.residual}, shared::LevelPush{level(l)}, everyNode(k.residual, l));
+    pass(k.residual, {b.rigidity, b.force, b.w[at], b.residual()}, shared::LevelPush{level(l)},
+         everyNode(k.residual, l));
     countWork(l, 1);
-    pass(k.restrict, {b.tableX, b.tableZ, b.residual, below.force}, transfer, everyNode(k.restrict, l + 1));
+    pass(k.restrict, {b.tableX, b.tableZ, b.residual(), below.force}, transfer, everyNode(k.restrict, l + 1));
     const int from = cycle(pass, l + 1, sweeps);
     pass(k.correct, {b.tableX, b.tableZ, below.w[from], b.w[1 - at], b.w[at]}, transfer, everyNode(k.correct, l));
     at = 1 - at;
@@ -272,9 +273,9 @@ int PlatePasses::fusedCycle(Recorder& pass, std::size_t l, int sweeps)
     const auto                 owned   = std::uint32_t(shared::kRegion - 2 * shared::kRimPerSweep * sweeps);
     const auto                 regions = [&](int cells) { return (std::uint32_t(cells) + owned) / owned; };
     const Groups               groups{regions(level(l).cellsZ), regions(level(l).cellsX), loads_};
-    pass(k.fused->down[kernel], {b.rigidity, b.divisor, b.force, b.w[0], b.residual}, shared::LevelPush{level(l)},
+    pass(k.fused->down[kernel], {b.rigidity, b.divisor, b.force, b.w[0], b.residual()}, shared::LevelPush{level(l)},
          groups);
-    pass(k.restrict, {b.tableX, b.tableZ, b.residual, below.force}, transfer, everyNode(k.restrict, l + 1));
+    pass(k.restrict, {b.tableX, b.tableZ, b.residual(), below.force}, transfer, everyNode(k.restrict, l + 1));
     const int from = fusedCycle(pass, l + 1, sweeps);
     pass(k.fused->up[kernel], {b.rigidity, b.divisor, b.force, b.tableX, b.tableZ, below.w[from], b.w[0], b.w[1]},
          transfer, groups);
@@ -317,16 +318,16 @@ void PlatePasses::steps(Recorder& pass, std::size_t l, int count, int sweeps, st
         const int                 before = pass.list.dispatches();
         const Buffer&             z      = b.w[cycle(pass, l, sweeps)];
         if (l == 0) dispatchesPerCycle_ = pass.list.dispatches() - before;
-        const Buffer &now = b.direction[n % 2], &last = b.direction[(n + 1) % 2];
         pass(k.dots, {b.left, z, b.answer, b.load, sums_}, vector, k.dots.groupsOver(partials_, 1, loads_));
         pass(k.beta, {sums_, state}, scalars, {1, 1, 1});
-        pass(k.direction, {state, z, last, now}, vector, inOrder(k.direction, l));
-        pass(k.apply, {b.rigidity, now, b.forces}, shared::LevelPush{level(l)}, everyNode(k.apply, l));
+        pass(k.direction, {state, z, b.direction, b.direction}, vector, inOrder(k.direction, l));
+        pass(k.apply, {b.rigidity, b.direction, b.forces}, shared::LevelPush{level(l)}, everyNode(k.apply, l));
         countWork(l, 1);
-        pass(k.stepDots, {now, b.forces, sums_}, vector, k.stepDots.groupsOver(partials_, 1, loads_));
+        pass(k.stepDots, {b.direction, b.forces, sums_}, vector, k.stepDots.groupsOver(partials_, 1, loads_));
         pass(k.step, {sums_, state, arguments_}, scalars, {1, 1, 1});
         // Not stoppable: the step that finds the estimate small enough must still be taken. It looks at the count.
-        pass.list.dispatch(k.update, {state, now, b.forces, b.answer, b.left, b.force}, vector, inOrder(k.update, l));
+        pass.list.dispatch(k.update, {state, b.direction, b.forces, b.answer, b.left, b.force}, vector,
+                           inOrder(k.update, l));
     }
 }
 

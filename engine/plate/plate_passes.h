@@ -18,10 +18,13 @@ namespace palp {
 /// Everything a level keeps on the device. `real` arrays are doubles where the device has them.
 struct LevelBuffers {
     gpu::Buffer rigidity, divisor, tableX, tableZ;
-    gpu::Buffer force, w[2], residual; ///< of the cycle, floats
+    gpu::Buffer force, w[2];  ///< of the cycle, floats
     gpu::Buffer marks, tiles; ///< where the rigidity jumps: a flag per tile; how many tiles, then their numbers
     gpu::Buffer load;         ///< of the nested iteration, floats
-    gpu::Buffer answer, left, direction[2], forces; ///< x, r, p, A p of conjugate gradients, real
+    gpu::Buffer answer, left, direction, forces; ///< x, r, p, A p of conjugate gradients, real
+
+    /// In a cycle A p is not there yet: its memory holds the residual, in floats, or deflections that are set aside.
+    [[nodiscard]] const gpu::Buffer& residual() const noexcept { return forces; }
 };
 
 /// What recorded passes cost.
@@ -114,10 +117,11 @@ private:
     GridHierarchy            grids_;
     std::uint32_t            loads_, partials_;
 
-    gpu::Buffer              zeroes_, band_, factor_, lost_, sums_, arguments_, hostArguments_, hostTiles_;
-    std::optional<PlateTail> tail_; ///< if the schedule is fused
-    bool                     jumps_              = false;
-    int                      dispatchesPerCycle_ = 0;
+    std::optional<gpu::Buffer> zeroes_; ///< a deflection of nothing, for the first sweep in red and black
+    gpu::Buffer                band_, factor_, lost_, sums_, arguments_, hostArguments_, hostTiles_;
+    std::optional<PlateTail>   tail_; ///< if the schedule is fused
+    bool                       jumps_              = false;
+    int                        dispatchesPerCycle_ = 0;
     std::map<std::array<std::uint32_t, 3>, std::size_t> argumentAt_; ///< groups -> byte offset in `arguments_`
 };
 

@@ -49,7 +49,7 @@ using gpu::Kernel;
 using Clock = std::chrono::steady_clock;
 
 constexpr int kSlots        = 3; ///< results in mapped memory: one is written, one is read, one is in between [1]
-constexpr int kStepsPerList = 4; ///< even, because directions take turns in two buffers [1]
+constexpr int kStepsPerList = 4; ///< [1]
 
 constexpr int kMostGroups = 65535; ///< along x of a dispatch, on every device [1]
 
@@ -62,6 +62,26 @@ std::string shortest(double value)
     std::snprintf(text, sizeof text, "%g", value);
     return text;
 }
+
+/// What the host writes for a buffer of the device: into it where it can, or else into memory that a list copies.
+class Staging {
+public:
+    Staging(gpu::Context& context, const Buffer& target) : target_(&target)
+    {
+        if (!target.mapped()) own_.emplace(context, target.name() + " from the host", target.bytes(), Intent::upload);
+    }
+
+    [[nodiscard]] std::span<float> floats() const { return (own_ ? *own_ : *target_).as<float>(); }
+
+    void record(CommandList& list) const
+    {
+        if (own_) list.copy(*own_, *target_);
+    }
+
+private:
+    const Buffer*         target_;
+    std::optional<Buffer> own_;
+};
 
 } // namespace
 
@@ -76,7 +96,8 @@ struct VulkanPlateSolver::Impl {
     PlatePasses              passes;
 
     Buffer              units; ///< metres per unit of the shaders' deflection, per load
-    Buffer              hostRigidity, hostLoads, hostUnits, hostState;
+    Staging             hostRigidity, hostLoads, hostUnits;
+    Buffer              hostState;
     std::vector<Buffer> results;
 
     /// What scattered points need, once there are some.
@@ -116,14 +137,12 @@ struct VulkanPlateSolver::Impl {
 
     Impl(gpu::Context& device, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted,
          GridHierarchy grids)
-        : context(device), k(kernels), plate(given), settings(rounded(wanted)), unitRigidity(largest(given.rigidity)),
+        : context(device), k(kernels), plate(withoutRigidity(given)), settings(rounded(wanted)), unitRigidity(largest(given.rigidity)),
           loads(std::uint32_t(wanted.loads)), stiffness(grids.stiffness),
           passes(device, kernels, std::move(grids), loads),
           units(context, "metres per unit", 4 * std::size_t(loads), Intent::device),
-          hostRigidity(context, "rigidity from the host", 4 * plate.grid.nodes(), Intent::upload),
-          hostLoads(context, "loads from the host", 4 * plate.grid.nodes() * loads, Intent::upload),
-          hostUnits(context, "units from the host", 4 * std::size_t(loads), Intent::upload),
-          hostState(context, "state for the host", passes.state.bytes(), Intent::readback)
+          hostRigidity(context, passes.levels[0].rigidity), hostLoads(context, passes.levels[0].load),
+          hostUnits(context, units), hostState(context, "state for the host", passes.state.bytes(), Intent::readback)
     {
         for (int s = 0; s < kSlots; ++s)
             results.emplace_back(context, "deflection " + std::to_string(s), 4 * plate.grid.nodes() * loads,
@@ -137,10 +156,13 @@ struct VulkanPlateSolver::Impl {
         return wanted;
     }
 
-    static double largest(const NodeField& field)
+        /// The device has it.
+    static Plate withoutRigidity(const Plate& given)
     {
-        return extremesOf(field.values()).most;
+        return {given.grid, given.edges, given.poissonRatio, given.foundation, {}};
     }
+
+    static double largest(const NodeField& field) { return extremesOf(field.values()).most; }
 
     // --- lists
 
@@ -159,8 +181,8 @@ struct VulkanPlateSolver::Impl {
     void beginSolve(CommandList& list)
     {
         list.timestamp();
-        list.copy(hostLoads, passes.levels[0].load);
-        list.copy(hostUnits, units);
+        hostLoads.record(list);
+        hostUnits.record(list);
         passes.allow(list);
     }
 
@@ -168,7 +190,7 @@ struct VulkanPlateSolver::Impl {
     {
         CommandList           list(context);
         PlatePasses::Recorder pass{passes, list};
-        list.copy(hostRigidity, passes.levels[0].rigidity);
+        hostRigidity.record(list);
         passes.prepare(pass);
         list.end();
         prepareList.emplace(std::move(list));
@@ -289,8 +311,7 @@ struct VulkanPlateSolver::Impl {
         for (const NodeField& load : nodalForces) {
             PALP_EXPECT(load.on(plate.grid), "the load's grid is not the plate's");
             const Extremes of = extremesOf(load.values());
-            if (!of.finite)
-                throw Error("plate: expected finite forces, found a load that is not a number or infinite");
+            if (!of.finite) throw Error("plate: expected finite forces, found a load that is not a number or infinite");
             all.push_back(std::max(std::abs(of.least), std::abs(of.most)));
         }
         return all;
@@ -316,19 +337,18 @@ struct VulkanPlateSolver::Impl {
                                metres < double(std::numeric_limits<float>::max())))
                 throw Error("plate: forces of " + formatQuantity(scales[n], "N") + " on a rigidity of " +
                             formatQuantity(unitRigidity, "N m") + " give deflections that 32 bits cannot hold");
-            float*        to   = hostLoads.as<float>().data() + n * nodes;
+            float*        to   = hostLoads.floats().data() + n * nodes;
             const double* from = nodalForces[n].values().data();
             for (std::size_t m = 0; m < nodes; ++m) to[m] = float(from[m] * scale);
-            hostUnits.as<float>()[n] = float(metres);
+            hostUnits.floats()[n] = float(metres);
         }
         forceUnits = scales;
     }
 
     void uploadRigidity(const NodeField& rigidity)
     {
-        plate.rigidity = rigidity;
-        if (const auto why = whyUnsolvable(plate)) throw Error("plate: " + *why);
-        inRigidityUnits(rigidity.values(), unitRigidity, hostRigidity.as<float>());
+        if (const auto why = whyUnsolvable(plate, rigidity)) throw Error("plate: " + *why);
+        inRigidityUnits(rigidity.values(), unitRigidity, hostRigidity.floats());
         fromPoints.reset();
         if (!prepareList) recordPrepare();
         context.run(*prepareList);

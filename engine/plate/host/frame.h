@@ -100,7 +100,8 @@ inline std::ptrdiff_t nodesOf(const PlateLevel& g)
         name##Of<double>(d);                                                                                           \
     }
 
-/// Numbers of one kind that a kernel needs while it runs, kept from run to run. \thread each has its own
+/// Numbers of one kind that a kernel needs while it runs, kept from run to run; zeros where they are new. \thread each
+/// has its own
 template <class T>
 class Scratch {
 public:
@@ -115,6 +116,7 @@ public:
             free();
             data_ = static_cast<T*>(::operator new(sizeof(T) * std::size_t(count), kLine));
             size_ = count;
+            for (std::ptrdiff_t n = 0; n < count; ++n) data_[n] = 0;
         }
         return data_;
     }

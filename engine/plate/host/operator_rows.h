@@ -38,7 +38,7 @@ struct Rules {
 };
 
 /// Nodes of a row, from the first to the last of them.
-struct Columns {
+struct ColumnRange {
     int first, last;
 };
 
@@ -53,7 +53,7 @@ public:
     {
     }
 
-    OperatorRows(const PlateLevel& level, const float* rigidity, Field& field, int firstRow, Columns wanted)
+    OperatorRows(const PlateLevel& level, const float* rigidity, Field& field, int firstRow, ColumnRange wanted)
         : g(level), middle(middleOfZ(level)), field_(field), nodes_(level.cellsZ + 1), wanted_(wanted),
           first_(max(wanted.first - 1, 0)), count_(min(wanted.last + 1, level.cellsZ) - first_ + 1),
           D_(rigidity + first_)
@@ -200,7 +200,7 @@ private:
     const PlateLevel g, middle;
     Field&           field_;
     int              nodes_; ///< of a row of the grid [1]
-    Columns          wanted_;
+    ColumnRange      wanted_;
     int              first_, count_; ///< columns that are looked at: those wanted and one to either side
     const float*     D_;
     Real*            slope_[2]; ///< change of w from a row to the next, of two rows

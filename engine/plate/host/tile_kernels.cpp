@@ -18,7 +18,8 @@ void forEachRun(const HostDispatch& d, const uint* list, Visit&& visit)
             int       lastJ = firstJ - 1;
             do lastJ += kTile;
             while (++n < d.groups.x && list[1 + n] == list[n] + 1 && lastJ < g.cellsZ);
-            visit(load * nodesOf(g), firstI, min(firstI + kTile - 1, g.cellsX), Columns{firstJ, min(lastJ, g.cellsZ)});
+            visit(load * nodesOf(g), firstI, min(firstI + kTile - 1, g.cellsX),
+                  ColumnRange{firstJ, min(lastJ, g.cellsZ)});
         }
 }
 
@@ -34,7 +35,7 @@ void relaxTile(const HostDispatch& d)
     auto*       aside       = bound<float>(d, 5);
     const int   nodes       = g.cellsZ + 1;
     forEachRun(d, bound<const uint>(d, 4),
-               [&, level = g, parity = colour](std::ptrdiff_t first, int i, int lastI, Columns columns) {
+               [&, level = g, parity = colour](std::ptrdiff_t first, int i, int lastI, ColumnRange columns) {
                    PlainField<float>                      field{w + first, nodes};
                    OperatorRows<float, PlainField<float>> rows(level, D, field, i, columns);
                    for (; i <= lastI; ++i) {
@@ -57,7 +58,7 @@ void copyTile(const HostDispatch& d)
     const auto& [g, colour] = pushed<RelaxPush>(d);
     const int nodes         = g.cellsZ + 1;
     forEachRun(d, bound<const uint>(d, 0),
-               [&, parity = colour](std::ptrdiff_t first, int i, int lastI, Columns columns) {
+               [&, parity = colour](std::ptrdiff_t first, int i, int lastI, ColumnRange columns) {
                    for (; i <= lastI; ++i) {
                        const float* from = aside + first + std::ptrdiff_t(i) * nodes;
                        float*       to   = w + first + std::ptrdiff_t(i) * nodes;
