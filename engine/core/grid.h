@@ -1,5 +1,7 @@
 #pragma once
 #include <cstddef>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/core/contract.h"
@@ -38,6 +40,15 @@ public:
     NodeField(int nodesX, int nodesZ, double value = 0)
         : nodesX_(nodesX), nodesZ_(nodesZ), values_(std::size_t(nodesX) * std::size_t(nodesZ), value)
     {
+    }
+
+    /// \param values  one per node, those of a row along z together
+    NodeField(int nodesX, int nodesZ, std::vector<double> values)
+        : nodesX_(nodesX), nodesZ_(nodesZ), values_(std::move(values))
+    {
+        PALP_EXPECT(values_.size() == std::size_t(nodesX) * std::size_t(nodesZ),
+                    std::to_string(values_.size()) + " values for " + std::to_string(nodesX) + " x " +
+                        std::to_string(nodesZ) + " nodes");
     }
 
     [[nodiscard]] int  nodesX() const noexcept { return nodesX_; }

@@ -19,15 +19,25 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kAlignment = 64; ///< of a cache line, and of the widest vector registers [byte]
 
+/// Before and behind each buffer: kernels work on whole vectors, and may look at numbers there that they do not use.
+constexpr std::size_t kMargin = kAlignment;
+
 struct HostBuffer : Buffer::Handles {
     HostBuffer(HostContext& owner, std::string called, std::size_t size) : Handles(owner, std::move(called), size)
     {
-        mapped = std::aligned_alloc(kAlignment, (size + kAlignment - 1) / kAlignment * kAlignment);
-        if (!mapped)
+        const std::size_t whole = (size + kAlignment - 1) / kAlignment * kAlignment + 2 * kMargin;
+        memory_                 = static_cast<std::byte*>(std::aligned_alloc(kAlignment, whole));
+        if (!memory_)
             throw DeviceLost("this machine has no " + std::to_string(size >> 20) + " MiB for the buffer '" + name +
                              "'; try fewer cells");
+        std::memset(memory_, 0, kMargin);
+        std::memset(memory_ + whole - 2 * kMargin, 0, 2 * kMargin);
+        mapped = memory_ + kMargin;
     }
-    ~HostBuffer() override { std::free(mapped); }
+    ~HostBuffer() override { std::free(memory_); }
+
+private:
+    std::byte* memory_;
 };
 
 struct HostKernelHandles : Kernel::Handles {

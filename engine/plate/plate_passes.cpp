@@ -21,7 +21,8 @@ using gpu::Groups;
 using gpu::Intent;
 using gpu::Kernel;
 
-constexpr int           kNestedSteps  = 2;     ///< on each coarser level of the nested iteration [1]
+constexpr int           kNestedSteps  = 1;     ///< on each coarser level of the nested iteration but the last [1]
+constexpr int           kLastSteps    = 2;     ///< on that: two further up change the answer by less than its error [1]
 constexpr std::uint32_t kMostPartials = 16384; ///< sums that a dot product is split into [1]
 constexpr std::uint32_t kTermsPerSum  = 64;    ///< that a sum has at least, unless there are too few partials [1]
 
@@ -382,7 +383,7 @@ void PlatePasses::nest(Recorder& pass)
         else
             pass(k.interpolate, {b.tableX, b.tableZ, below.answer, b.answer}, transfer, everyNode(k.interpolate, l));
         start(pass, l);
-        if (l > 0) steps(pass, l, kNestedSteps, k.smoothing.nested, 2, 0);
+        if (l > 0) steps(pass, l, l == 1 ? kLastSteps : kNestedSteps, k.smoothing.nested, 2, 0);
     }
 }
 

@@ -431,10 +431,8 @@ struct VulkanPlateSolver::Impl {
         std::vector<PlateSolution> answers;
         const std::size_t          nodes = plate.grid.nodes();
         for (std::uint32_t load = 0; load < loads; ++load) {
-            NodeField    w(plate.grid);
             const float* from = result.as<float>().data() + load * nodes;
-            double*      to   = w.values().data();
-            for (std::size_t n = 0; n < nodes; ++n) to[n] = double(from[n]);
+            NodeField    w(plate.grid.nodesX(), plate.grid.nodesZ(), std::vector<double>(from, from + nodes));
             if (!extremesOf(w.values()).finite)
                 throw Error("plate: the deflection is not finite; the rigidity or the load is out of range");
             answers.push_back({std::move(w), report});

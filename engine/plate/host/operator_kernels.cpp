@@ -12,27 +12,21 @@ bool isHeldRow(const PlateLevel& g, int i)
     return Rules<float>{}.isHeld(middleOfZ(g), i, kMiddle);
 }
 
-/// Calls visit(row i)(j, A w) for every node; 0 instead for held ones.
-template <class Real, class Field, class VisitRow>
-void forEachRow(const PlateLevel& g, const float* D, Field& field, VisitRow&& visitRow)
+/// Gives each row of A w to rowTo(i), and value(j, A w) is 0 for held nodes.
+template <class Real, class Field, class ToRow>
+void forEachRow(const PlateLevel& g, const float* D, Field& field, ToRow&& rowTo)
 {
     OperatorRows<Real, Field> rows(g, D, field);
     const int                 last = g.cellsZ;
     for (int i = 0; i <= g.cellsX; ++i) {
-        const auto visit = visitRow(i);
-        rows.next(i, visit.moves);
+        const auto to = rowTo(i);
+        rows.next(i, to);
         if (isHeldRow(g, i))
-            for (int j = 1; j < last; ++j) visit.isHeld(j);
+            for (int j = 1; j < last; ++j) to.put(j, Real(0));
         for (int j : {0, last})
-            if (Rules<Real>{}.isHeld(g, i, j)) visit.isHeld(j);
+            if (Rules<Real>{}.isHeld(g, i, j)) to.put(j, Real(0));
     }
 }
-
-template <class Moves, class IsHeld>
-struct Visit {
-    Moves  moves;
-    IsHeld isHeld;
-};
 
 template <class Real>
 void applyOf(const HostDispatch& d)
@@ -46,7 +40,7 @@ void applyOf(const HostDispatch& d)
         PlainField<Real> field{w + load * nodesOf(g), nodes};
         forEachRow<Real>(g, D, field, [&](int i) {
             Real* to = result + load * nodesOf(g) + std::ptrdiff_t(i) * nodes;
-            return Visit{[=](int j, Real force) { to[j] = force; }, [=](int j) { to[j] = 0; }};
+            return RowTo{[](int, Real force) { return force; }, [=](int j, Real force) { to[j] = force; }};
         });
     }
 }
@@ -69,11 +63,11 @@ void residualOf(const HostDispatch& d)
             const float*         f    = force + at;
             Real*                to   = result + at;
             float*               also = rounded + at;
-            const auto           put  = [=](int j, Real left) {
-                to[j] = left;
-                if (kRounds) also[j] = float(left);
-            };
-            return Visit{[=](int j, Real a) { put(j, Real(f[j]) - a); }, [=](int j) { put(j, 0); }};
+            return RowTo{[=](int j, Real a) { return Real(f[j]) - a; },
+                         [=](int j, Real left) {
+                             to[j] = left;
+                             if (kRounds) also[j] = float(left);
+                         }};
         });
     }
 }
@@ -135,17 +129,18 @@ void relax(const HostDispatch& d)
     static thread_local Scratch<float> scratch;
     for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
         const std::ptrdiff_t first = load * nodesOf(g);
-        TwoColours           field{same + first, other + first, nodes, colour, scratch.of(6 * std::ptrdiff_t(nodes))};
+        TwoColours field{same + first, other + first, nodes, colour, scratch.of(6 * std::ptrdiff_t(nodes) + 1) + 1};
         OperatorRows<float, TwoColours> rows(g, D, field);
         for (int i = 0; i <= g.cellsX; ++i) {
             const std::ptrdiff_t at  = std::ptrdiff_t(i) * nodes;
             const float *        inv = inverse + at, *f = force + first + at, *w = field.row(i);
             float*               to  = after + first + at;
             const int            odd = int((unsigned(i) + colour) & 1U);
-            rows.next(i, [=](int j, float a) { // the inverse divisor of a held node is 0
-                const float relaxed = Rules<float>{}.relaxed(w[j], f[j], a, inv[j]);
-                to[j]               = (j & 1) == odd ? relaxed : to[j];
-            });
+            rows.next(i, RowTo{[=](int j, float a) { // the inverse divisor of a held node is 0
+                                   const float relaxed = Rules<float>{}.relaxed(w[j], f[j], a, inv[j]);
+                                   return (j & 1) == odd ? relaxed : to[j];
+                               },
+                               [=](int j, float value) { to[j] = value; }});
         }
     }
 }
@@ -184,15 +179,18 @@ void smooth(const HostDispatch& d)
         for (int i = 0; i <= g.cellsX; ++i) {
             const std::ptrdiff_t at  = std::ptrdiff_t(i) * nodes;
             const float *        inv = inverse + at, *f = force + first + at, *w = field.row(i);
-            float*               to = after + first + at;
+            float*               to  = after + first + at;
+            const auto           put = [=](int j, float value) { to[j] = value; };
             if (ahead == 0)
-                rows.next(i, [=, by = step](int j, float a) {
-                    to[j] = Rules<float>{}.smoothed(w[j], w[j], f[j], a, inv[j], 0, by);
-                });
+                rows.next(i, RowTo{[=, by = step](int j, float a) {
+                                       return Rules<float>{}.smoothed(w[j], w[j], f[j], a, inv[j], 0, by);
+                                   },
+                                   put});
             else
-                rows.next(i, [=, more = ahead, by = step](int j, float a) {
-                    to[j] = Rules<float>{}.smoothed(w[j], to[j], f[j], a, inv[j], more, by);
-                });
+                rows.next(i, RowTo{[=, more = ahead, by = step](int j, float a) {
+                                       return Rules<float>{}.smoothed(w[j], to[j], f[j], a, inv[j], more, by);
+                                   },
+                                   put});
         }
     }
 }

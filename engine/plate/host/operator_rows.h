@@ -44,7 +44,9 @@ struct ColumnRange {
 
 /// Rows of A w in a window of the grid, one after the other. Call next() once per row.
 ///
-/// \tparam Field  gives row i of the deflection as `const Real* row(int i)`, valid while rows up to i + 2 are asked for
+/// \tparam Field  gives row i of the deflection as `const Real* row(int i)`, valid while rows up to i + 2 are asked
+/// for; the
+///                number before its first may be looked at
 template <class Real, class Field>
 class OperatorRows {
 public:
@@ -59,13 +61,13 @@ public:
           D_(rigidity + first_)
     {
         static thread_local Scratch<Real> scratch;
-        // Room at either end, where no moment acts. The second node lies on a cache line: loops begin there.
+        // Room at either end, where no moment acts. The first node lies on a cache line: loops begin there.
         const std::ptrdiff_t line = 64 / sizeof(Real), stride = (count_ + 1 + line + line - 1) / line * line;
         Real*                at = scratch.of(kRows * stride);
         for (std::ptrdiff_t n = 0; n < kRows * stride; ++n) at[n] = 0;
         for (Real** row : {&slope_[0], &slope_[1], &mz_[0], &mz_[1], &bending_.moment, &bending_.change,
                            &bending_.second, &twisting_.moment, &twisting_.change}) {
-            *row = at + line - 1;
+            *row = at + line;
             at += stride;
         }
         const int   before = max(firstRow - 1, 0);
@@ -75,9 +77,12 @@ public:
         if (firstRow > 0) moments<true>(firstRow);
     }
 
-    /// Calls visit(j, A w) for the wanted nodes of row i; i goes up by 1 from the first row.
-    template <class Visit>
-    void next(int i, Visit&& visit)
+    /// Calls to.put(j, to.value(j, A w)) for the wanted nodes of row i; i goes up by 1 from the first row.
+    ///
+    /// So that loops begin where the row does and end with a whole vector, put(0, ...) is called twice, at last with
+    /// what is right; it must not change what value() reads elsewhere.
+    template <class To>
+    void next(int i, To&& to)
     {
         if (i < g.cellsX)
             moments<true>(i + 1);
@@ -90,11 +95,13 @@ public:
             return rules.forceFrom(second[n], rules.secondDifference(mz[n - 1], mz[n], mz[n + 1]),
                                          rules.change(twist[n - 1], twist[n]), weight, w[n]);
         };
-        const int first = first_, begin = max(wanted_.first, 1) - first, end = min(wanted_.last, nodes_ - 2) - first;
-        if (wanted_.first == 0) visit(0, force(0, bedAtSides));
+        const int  first = first_, begin = wanted_.first - first, end = min(wanted_.last, nodes_ - 2) - first;
+        const bool atFirst = wanted_.first == 0, atLast = wanted_.last == nodes_ - 1;
+        const auto atSide0 = atFirst ? to.value(0, force(0, bedAtSides)) : Real(0);
 #pragma GCC ivdep
-        for (int n = begin; n <= end; ++n) visit(first + n, force(n, bed));
-        if (wanted_.last == nodes_ - 1) visit(nodes_ - 1, force(count_ - 1, bedAtSides));
+        for (int n = begin; n <= end; ++n) to.put(first + n, to.value(first + n, force(n, bed)));
+        if (atFirst) to.put(0, atSide0);
+        if (atLast) to.put(nodes_ - 1, to.value(nodes_ - 1, force(count_ - 1, bedAtSides)));
     }
 
 private:
@@ -136,13 +143,10 @@ private:
             x.goOn(n, rules.momentX(level, i, j, Real(D[n]), p, q));
         };
         const bool atFirst = first_ == 0, atLast = first_ + count_ == nodes_;
-        if (atFirst) {
-            atSide(0);
-            if (kCells) cells.goOn(0, twistOf(D, was, 0));
-        }
-        const int end = atLast ? count_ - 1 : count_;
+        const Real moment0 = x.moment[0], change0 = x.change[0]; // the loop takes node 0 for one inside
+        const int  end = atLast ? count_ - 1 : count_;
 #pragma GCC ivdep
-        for (int n = atFirst ? 1 : 0; n < end; ++n) {
+        for (int n = 0; n < end; ++n) {
             const Real along = rules.change(w[n], after[n]);
             const Real p     = rules.change(was[n], along);
             const Real q     = rules.secondDifference(w[n - 1], w[n], w[n + 1]);
@@ -150,6 +154,11 @@ private:
             mz[n]            = Real(D[n]) * rules.bendingZ(level, kHinged, p, q);
             x.goOn(n, kHinged ? Real(0) : Real(D[n]) * rules.bendingX(level, false, p, q));
             if (kCells) cells.goOn(n, twistOf(D, was, n));
+        }
+        if (atFirst) {
+            x.moment[0] = moment0;
+            x.change[0] = change0;
+            atSide(0);
         }
         if (atLast) atSide(level.cellsZ);
     }
@@ -208,6 +217,15 @@ private:
     Bending          bending_;
     Twisting         twisting_;
 };
+
+/// What to do with a row of A w.
+template <class Value, class Put>
+struct RowTo {
+    Value value; ///< (j, A w)
+    Put   put;   ///< (j, what value gave)
+};
+template <class Value, class Put>
+RowTo(Value, Put) -> RowTo<Value, Put>;
 
 /// A field as it lies in memory.
 template <class Real>

@@ -43,10 +43,11 @@ void relaxTile(const HostDispatch& d)
                        const float *        inv = inverse + at, *f = force + first + at, *before = field.row(i);
                        float*               to  = aside + first + at;
                        const int            odd = int((unsigned(i) + parity) & 1U);
-                       rows.next(i, [=](int j, float a) {
-                           const float relaxed = Rules<float>{}.relaxed(before[j], f[j], a, inv[j]);
-                           to[j]               = (j & 1) == odd ? relaxed : to[j];
-                       });
+                       rows.next(i, RowTo{[=](int j, float a) {
+                                              const float relaxed = Rules<float>{}.relaxed(before[j], f[j], a, inv[j]);
+                                              return (j & 1) == odd ? relaxed : to[j];
+                                          },
+                                          [=](int j, float value) { to[j] = value; }});
                    }
                });
 }
