@@ -164,7 +164,8 @@ BenchRow measureGridMap(int nodes, int runs)
 // --- a whole update
 
 /// The paper's object: an ellipsoid of 40 000 points, and a window that gathers some 3000 of them.
-BenchRow measureUpdate(int nodes, int runs, PlateDevice& device)
+/// \param tolerance  of the solver; "coarse" in the table, unless it is the default one
+BenchRow measureUpdate(int nodes, double tolerance, int runs, PlateDevice& device)
 {
     constexpr std::size_t kPoints   = 40'000;
     constexpr double      kGathered = 3000;
@@ -178,6 +179,7 @@ BenchRow measureUpdate(int nodes, int runs, PlateDevice& device)
     settings.window          = sample.window;
     settings.footprintRadius = sample.footprintRadius;
     settings.cells           = nodes - 1;
+    settings.tolerance       = tolerance;
 
     Patch patch;
     for (int n = 0; n < 4; ++n) { // points gathered grow with the square of the window
@@ -198,7 +200,7 @@ BenchRow measureUpdate(int nodes, int runs, PlateDevice& device)
     row.kind       = "update";
     row.map        = "ellipsoid";
     row.nodes      = nodes;
-    row.accuracy   = "tolerance 1e-4";
+    row.accuracy   = tolerance == PatchSettings{}.tolerance ? "default" : "coarse";
     row.peer       = "paper (published)";
     row.peerMs     = Quartiles{160, 160, 160}; // Kumari & Chaudhuri 2016, section 3; on their machine, error not stated
     row.palpateMs  = timing.front().total;
@@ -247,7 +249,8 @@ std::vector<BenchRow> measurePoints(const std::vector<std::string>& cases, const
     if (has("update")) {
         PlateDevice opened(device);
         for (const int n : nodes)
-            if (n >= 65 && n <= 129) rows.push_back(measureUpdate(n, runs, opened));
+            for (const double tolerance : {1e-2, 1e-4}) // just below the grid's own error; the default
+                if (n >= 65 && n <= 129) rows.push_back(measureUpdate(n, tolerance, runs, opened));
     }
     onStep(1, total);
     if (has("gather"))

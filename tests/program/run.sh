@@ -59,6 +59,13 @@ good 'touch a file' touch skin.ply --at 0,0,0.0015 --window 40mm --cells 32
 holds 'felt stiffness'
 good 'touch as the paper' touch skin.ply --at 0,0,0.0015 --preset paper --window 40mm --cells 32 --json
 holds '"differences_from_paper": []'
+# agree KEY FILE FILE SHARE: the number of that key differs by no more than a share, here the tolerance that solves have;
+# devices smooth each in its own way, so only the tests of the solver, which choose the way, compare bits
+agree() {
+    value=$(sed -n "s/.*\"$1\": \([-+.0-9e]*\).*/\1/p" "$2") other=$(sed -n "s/.*\"$1\": \([-+.0-9e]*\).*/\1/p" "$3")
+    awk -v a="$value" -v b="$other" -v share="$4" 'BEGIN { d = a - b; if (d < 0) d = -d; m = a < 0 ? -a : a; exit !(m > 0 && d <= share * m) }' &&
+        passed=$((passed + 1)) || complain "$1: $2 has $value, $3 $other"
+}
 cat >plate.json <<'JSON'
 {"size":[1,1.5], "cells":[16,24], "poisson":0.3, "edges":{"x0":"clamped","x1":"free","z0":"supported","z1":"clamped"}, "foundation":0,
  "rigidity":{"law":"constant","value":1}, "load":{"law":"point","force":1,"at":[0.5,0.75]}, "probes":[[0.25,0.25]]}
@@ -80,8 +87,9 @@ good 'solve by the reference' solve plate.json --device Reference --json
 holds '"device": "reference"'
 good 'solve on the host' solve plate.json --device Host --json --out host.npy
 holds '"device": "host"'
-good 'solve on lavapipe' solve plate.json --device lavapipe --out lavapipe.npy
-cmp -s host.npy lavapipe.npy && passed=$((passed + 1)) || complain 'the host and lavapipe differ'
+cp out.txt host.json
+good 'solve on lavapipe' solve plate.json --device lavapipe --json
+agree max_deflection host.json out.txt 1e-4
 without() { env VK_DRIVER_FILES="$place/none.json" VK_ICD_FILENAMES="$place/none.json" "$@" >out.txt 2>err.txt; } # any Vulkan driver
 failing() { where=$1; shift; env PALPATE_BROKEN="$where" VK_DRIVER_FILES="$broken" VK_ICD_FILENAMES="$broken" "$@" >out.txt 2>err.txt; }
 without "$palpate" solve plate.json --device host && [ ! -s err.txt ] && passed=$((passed + 1)) || complain "the host needs a driver: $(cat out.txt err.txt)"
@@ -158,12 +166,13 @@ for where in start list open; do
 done
 
 # --- the same numbers every time
-for run in one two; do "$palpate" touch sample:palm --points 8000 --cells 32 --out $run --json >/dev/null; done
+for run in one two; do "$palpate" touch sample:palm --points 8000 --cells 32 --out $run --json >touch.json; done
 "$palpate" touch sample:palm --points 8000 --cells 32 --device lavapipe --out three --json >lavapipe.json
 grep -qF '"device": "llvmpipe' lavapipe.json && passed=$((passed + 1)) || complain "that was not lavapipe: $(cat lavapipe.json)"
+agree compliance touch.json lavapipe.json 1e-4
+cmp -s one/rigidity.npy three/rigidity.npy && passed=$((passed + 1)) || complain 'the host and lavapipe sample differently'
 for file in deformed.ply rigidity.npy deflection.npy rigidity.svg surface.svg; do
     cmp -s one/$file two/$file && passed=$((passed + 1)) || complain "$file differs between two equal runs"
-    cmp -s one/$file three/$file && passed=$((passed + 1)) || complain "$file differs between the host and lavapipe"
 done
 
 # --- bad usage
