@@ -442,8 +442,7 @@ TEST_F(VulkanPlate, TheEstimateIsNeverBelowTheErrorByMoreThanAFactorOfThree)
 
 /// To a true error, not to an estimate: each tolerance stops after one more step, until the error is small enough.
 /// The bars are those of the issue that asked for the solver; measured 3 and 5, 5 and 9, 9 and 13 up to 129 nodes. The
-/// host's steps smooth less (8 work units where the rigidity jumps, against 14), so that very sharp discs take it more of
-/// them: 15 and 22.
+/// host's steps smooth less, so that very sharp discs take it more of them: 15 and 22.
 TEST_F(VulkanPlate, StepsToATrueErrorAreFewWhateverTheSize)
 {
     const auto allowed = [](const Law& law) -> std::pair<int, int> { // to 1e-4 and to 1e-6
