@@ -146,9 +146,11 @@ void benchPlate(const BenchPlateOptions& o)
         };
         write("plate.json", jsonOf(report));
         writeFileWhole(folder / "plate.txt", [&](std::ostream& file) { printText(file, report); });
-        write("new_map.svg", plotOf(report, "new_map", "linear"));
-        write("new_load.svg", plotOf(report, "new_load", "linear"));
-        write("contrast.svg", plotOf(report, "contrast", "disc_100"));
+        for (const auto& [kind, map] :
+             {std::pair("new_map", "linear"), {"new_load", "linear"}, {"contrast", "disc_100"}})
+            if (std::ranges::any_of(report.rows,
+                                    [&](const BenchRow& row) { return row.kind == kind && row.map == map; }))
+                write((std::string(kind) + ".svg").c_str(), plotOf(report, kind, map));
     }
     if (o.json)
         std::cout << jsonOf(report);
