@@ -1,7 +1,7 @@
 // cg_direction.comp - next direction of conjugate gradients, p = z + beta p.
 // Domain     x: one invocation per node; z: loads
 // Reads      preconditioned residual z (float), last direction (real), beta (real)
-// Writes     direction (real), perhaps over the last one
+// Writes     direction (real), over the last one: each invocation reads and writes only its own number
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -11,8 +11,7 @@
 layout(push_constant) uniform Constants { VectorPush push; };
 layout(std430, binding = 0) readonly buffer State { real state[]; };
 layout(std430, binding = 1) readonly buffer Preconditioned { float z[]; };
-layout(std430, binding = 2) readonly buffer Last { real last[]; };
-layout(std430, binding = 3) writeonly buffer Direction { real p[]; };
+layout(std430, binding = 2) buffer Direction { real p[]; };
 
 void main()
 {
@@ -20,5 +19,5 @@ void main()
     if (n >= push.nodes) return;
     real beta = state[int(load) * kStateWords + kStateBeta];
     n += load * push.nodes;
-    p[n] = beta == real(0.0f) ? real(z[n]) : real(z[n]) + beta * last[n]; // the first last is whatever memory held
+    p[n] = beta == real(0.0f) ? real(z[n]) : real(z[n]) + beta * p[n]; // before the first, p is whatever memory held
 }

@@ -11,9 +11,9 @@ real relaxationDivisor(real diagonal, real sameColour)
     return max(diagonal / real(1.1f), real(0.51f) * (diagonal + sameColour));
 }
 
-// The same divisor d serves Chebyshev's iteration, which takes all nodes at once: of a symmetric matrix in two colours no
-// eigenvalue exceeds twice the largest of its colours' own (for every pair of numbers (x + y)^2 <= 2 (x^2 + y^2)), and
-// these are at most 1/0.51 relative to d, so that all eigenvalues of A relative to d are positive and at most 2/0.51.
+// The same divisor d serves Chebyshev's iteration, which takes all nodes at once. A is positive definite, so with u the
+// part of w on one colour and v that on the other  w'Aw <= w'Aw + (u-v)'A(u-v) = 2 (u'Au + v'Av),  and within a colour
+// u'Au <= u'du / 0.51 by Gershgorin: all eigenvalues of A relative to d are positive and at most 2/0.51.
 real relaxed(real before, real load, real forceOfBefore, real inverse)
 {
     return before + (load - forceOfBefore) * inverse;

@@ -45,7 +45,7 @@ PALPATE_PART double exponential(double x)
     series                  = series * r + 0.5;
     series                  = series * r + 1.0;
     series                  = series * r + 1.0;
-    return std::bit_cast<double>(std::bit_cast<std::int64_t>(series) + (std::bit_cast<std::int64_t>(whole) << 52));
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(series) + (std::bit_cast<std::uint64_t>(whole) << 52));
 }
 
 /// Numbers exp(factor t).
@@ -73,7 +73,7 @@ struct Reach {
             const double high     = std::min(nodes - 1.0, std::floor((position + reach) / spacing));
             first[n]              = int(std::min(low, double(nodes)));
             count[n]              = int(std::max(high - low + 1, 0.0));
-            from[n]               = position - low * spacing;
+            from[n]               = count[n] > 0 ? position - low * spacing : 0;
         }
         exponentials(spacing / (width * width), from.data(), ratio.data(), first.size());
     }

@@ -137,4 +137,11 @@ std::string formatQuantity(double value, std::string_view siUnit)
     return text;
 }
 
+std::string formatNumber(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1e", value);
+    return text;
+}
+
 } // namespace palp

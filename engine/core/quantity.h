@@ -28,4 +28,7 @@ enum class Dimension { length, force, pressure, rigidity, foundation, angle, non
 /// the prefixes from p to T it is "1.0e+300 Pa", and zero is "0 m".
 [[nodiscard]] std::string formatQuantity(double value, std::string_view siUnit);
 
+/// Two digits of a small number without a unit, such as an error: "7.4e-05".
+[[nodiscard]] std::string formatNumber(double value);
+
 } // namespace palp

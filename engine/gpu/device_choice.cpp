@@ -70,7 +70,9 @@ std::optional<std::size_t> withIndex(const Devices& devices, std::string_view wa
     if (ok != std::errc() || stop != end) return std::nullopt;
     for (std::size_t n = 0; n < devices.size(); ++n)
         if (devices[n].index == index) return n;
-    return std::nullopt; // may still be part of a name, such as 4090
+    constexpr int kMostIndex = 99; // a larger number may be part of a name, such as 4090
+    if (index <= kMostIndex) refuseWord(devices, "there is no GPU " + std::string(wanted) + "; " + kExpected);
+    return std::nullopt;
 }
 
 std::size_t withName(const Devices& devices, std::string_view wanted)
@@ -107,6 +109,10 @@ std::optional<std::size_t> chooseDevice(const Devices& devices, std::string_view
         refuse(devices, "no GPU in software can be used (package mesa-vulkan-drivers)");
     }
     if (wanted.empty()) refuseWord(devices, std::string("an empty word names no device; ") + kExpected);
+    constexpr std::size_t kShortest = 2; // part of a name: a full stop or a space is in most of them
+    const bool            hasLetter = std::ranges::any_of(wanted, [](unsigned char c) { return std::isalnum(c) != 0; });
+    if (!hasLetter || (wanted.size() < kShortest && !std::isdigit(static_cast<unsigned char>(wanted.front()))))
+        refuseWord(devices, "'" + std::string(wanted) + "' names no device; " + kExpected);
     if (const auto found = withIndex(devices, wanted)) {
         if (!devices[*found].refusals.empty()) refuse(devices, "GPU " + std::string(wanted) + " cannot be used");
         return *found;

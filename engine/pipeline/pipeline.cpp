@@ -287,9 +287,9 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     std::vector<std::string> result;
     if (!patch.deformed()) return result;
     if (!patch.report.converged)
-        result.push_back("the plate's solution is not good: its error is about " +
-                         std::to_string(std::lround(100 * patch.report.errorEstimate.value_or(1))) +
-                         " % or more; try fewer cells or less contrast");
+        result.push_back("the plate's solution is not as good as asked for: its error is about " +
+                         formatNumber(patch.report.errorEstimate.value_or(1)) +
+                         " or more, relative; try fewer cells or less contrast");
     const double deepest = std::abs(force) * largest(patch.response);
     const double half    = settings.material.thickness / 2;
     if (deepest > half)

@@ -63,9 +63,9 @@ struct SolveReport {
     std::optional<double> errorEstimate;    ///< [1] relative, in the norm the solver documents
     std::optional<double> workUnits;        ///< [1] applications of the operator on the finest grid
     bool                  converged = true; ///< false: the estimate exceeds what was asked for, or may be too low
-    double                setUpMilliseconds = 0; ///< wall time from the rigidity to a ready solver: a factorisation, coarser grids
-    double                milliseconds      = 0; ///< wall time of this solve
-    std::optional<double> deviceMilliseconds;    ///< of it, what the device was busy; empty if it has no clock
+    double setUpMilliseconds = 0; ///< wall time from the rigidity to a ready solver: a factorisation, coarser grids
+    double milliseconds      = 0; ///< wall time of this solve
+    std::optional<double> deviceMilliseconds; ///< of it, what the device was busy; empty if it has no clock
 };
 
 struct PlateSolution {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "engine/core/quantity.h"
 #include "engine/gpu/context.h"
 #include "engine/gpu/device_error.h"
 #include "engine/plate/plate_solver_reference.h"
@@ -16,13 +17,6 @@ namespace {
 bool fitsReference(const PlateGrid& grid)
 {
     return grid.nodes() <= 513 * 513;
-}
-
-std::string formatNumber(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1e", value);
-    return text;
 }
 
 bool sameButRigidity(const Plate& a, const Plate& b)
@@ -108,6 +102,9 @@ PlateSolution PlateDevice::solve(const Plate& plate, const NodeField& nodalForce
     const ReferencePlateSolver solver(plate);
     PlateSolution              solution = solver.solve(nodalForce);
     solution.report.setUpMilliseconds   = solver.factoriseMilliseconds();
+    // The estimate is of the error before the step of refinement, which takes off as large a share again.
+    const double before       = solution.report.errorEstimate.value_or(0);
+    solution.report.converged = before * before <= tolerance;
     return solution;
 }
 

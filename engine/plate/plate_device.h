@@ -35,7 +35,8 @@ public:
     ///
     /// If the device is lost or runs out of memory, this and all later plates are solved by the reference; if it does
     /// not reach the tolerance, this one is, up to 513 x 513 nodes. note() says so. See report.converged.
-    /// \param tolerance  of the error estimate, relative [1]; the reference solver is as accurate as doubles allow
+    /// \param tolerance  of the error estimate, relative [1]; the reference solver is as accurate as doubles allow, and says
+    ///                   whether that is enough
     /// \throws Error if the plate, the load or the tolerance are not acceptable
     [[nodiscard]] PlateSolution solve(const Plate& plate, const NodeField& nodalForce, double tolerance = 1e-4);
 

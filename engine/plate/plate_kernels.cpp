@@ -86,11 +86,13 @@ bool isHardware(const gpu::Context& context)
 }
 
 /// Where an operator row by row costs the same for all nodes as for half of them, half sweeps are dear.
-Smoothing smoothingBy(Smoother smoother, const gpu::Context& context)
+Smoothing smoothingBy(Smoother smoother, Schedule schedule, const gpu::Context& context)
 {
-    if (smoother == Smoother::automatic)
-        smoother = context.device().kind == gpu::kHostDevice ? Smoother::chebyshev : Smoother::redBlack;
-    return smoother == Smoother::redBlack ? Smoothing{smoother, 1, 2, 6} : Smoothing{smoother, 2, 2, 2};
+    if (smoother == Smoother::automatic) {
+        const bool byRows = context.device().kind == gpu::kHostDevice && schedule != Schedule::fused;
+        smoother          = byRows ? Smoother::chebyshev : Smoother::redBlack;
+    }
+    return smoother == Smoother::redBlack ? Smoothing{smoother, 1, 2, 6, 16} : Smoothing{smoother, 2, 2, 2, 16};
 }
 
 constexpr gpu::Workgroup kRegionShape{256, 1, 1}; // of plate_region.glsl
@@ -99,6 +101,8 @@ constexpr gpu::Workgroup kRegionShape{256, 1, 1}; // of plate_region.glsl
 bool isFused(const gpu::Context& context, Schedule schedule, Smoother smoother)
 {
     PALP_EXPECT(smoother == Smoother::redBlack || schedule != Schedule::fused, "fused passes smooth in red and black");
+    if (schedule == Schedule::fused && context.device().kind == gpu::kHostDevice)
+        throw Error("the host has no fused passes: they spare dispatches, of which it has none");
     const bool fits = context.limits().sharedMemory >= sizeof(float) * shared::kTailPool &&
                       context.limits().invocations >= kRegionShape.x;
     PALP_EXPECT(fits || schedule != Schedule::fused, "the device's workgroups are too small for fused passes");
@@ -139,7 +143,7 @@ PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule, Precision p
         return gpu::Kernel(context, what, group);
     };
     all_.reset(new All{f64,
-                       smoothingBy(smoother, context),
+                       smoothingBy(smoother, schedule, context),
                        kernel(PALPATE_FLOAT(TransferPush, rigidity_coarsen, coarsen, 2), shapes.tile),
                        kernel(PALPATE_FLOAT(LevelPush, plate_divisor, divisor, 2), shapes.tile),
                        kernel(PALPATE_FLOAT(LevelPush, jump_mark, jumpMark, 2), shapes.tile),
@@ -161,7 +165,7 @@ PlateKernels::PlateKernels(gpu::Context& context, Schedule schedule, Precision p
                        kernel(PALPATE_REAL(TransferPush, plate_interpolate_first, interpolateFirst, 4), shapes.tile),
                        kernel(PALPATE_REAL(VectorPush, cg_dots, dots, 5), shapes.line),
                        kernel(PALPATE_REAL(ScalarsPush, cg_beta, beta, 2), shapes.reduce),
-                       kernel(PALPATE_REAL(VectorPush, cg_direction, direction, 4), shapes.line),
+                       kernel(PALPATE_REAL(VectorPush, cg_direction, direction, 3), shapes.line),
                        kernel(PALPATE_REAL(LevelPush, plate_apply, apply, 3), shapes.tile),
                        kernel(PALPATE_REAL(VectorPush, cg_step_dots, stepDots, 3), shapes.line),
                        kernel(PALPATE_REAL(ScalarsPush, cg_step, step, 3), shapes.reduce),

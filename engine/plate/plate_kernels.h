@@ -10,10 +10,11 @@ namespace palp {
 /// How much is smoothed before and after each correction: sweeps in red and black, or steps of Chebyshev's iteration
 /// [1].
 struct Smoothing {
-    Smoother by;     ///< not automatic
-    int      nested; ///< on the coarser levels of the nested iteration
-    int      finest; ///< in the cycles of the finest level
-    int      tiles;  ///< extra sweeps, in red and black, of the tiles where the rigidity jumps
+    Smoother by;          ///< not automatic
+    int      nested;      ///< on the coarser levels of the nested iteration
+    int      finest;      ///< in the cycles of the finest level
+    int      tiles;       ///< extra sweeps, in red and black, of the tiles where the rigidity jumps
+    int      strongTiles; ///< the same where it varies by more than 3000
 };
 
 /// One kernel per shader and variant; `real` ones compute in doubles where the device has them.

@@ -26,8 +26,10 @@ constexpr int           kLastSteps    = 2;     ///< on that: two further up chan
 constexpr std::uint32_t kMostPartials = 16384; ///< sums that a dot product is split into [1]
 constexpr std::uint32_t kTermsPerSum  = 64;    ///< that a sum has at least, unless there are too few partials [1]
 
-/// Eigenvalues that Chebyshev's iteration sees to, relative to the divisor: none is larger (see plate_relax.h), and
-/// those below a sixteenth of the largest a coarser grid represents: (1 - cos(pi/2))^2 to (2 (1 - cos(pi)))^2.
+/// Eigenvalues that Chebyshev's iteration sees to, relative to the divisor: none is larger (see plate_relax.h), and on
+/// equal spacings those below a sixteenth of the largest a coarser grid represents: (1 - cos(pi/2))^2 to (2 (1 -
+/// cos(pi)))^2. On unequal ones the range is up to 38 wide, and no two steps cover it: made wider the interval gives
+/// one step more, not fewer.
 constexpr double kLargest = 2 / 0.51, kSmallest = kLargest / 16;
 
 std::size_t tilesOf(const shared::PlateLevel& g)
@@ -179,7 +181,7 @@ int PlatePasses::sweep(Recorder& pass, std::size_t l, int at, std::uint32_t firs
         else
             pass(k.relax, {b.rigidity, b.divisor, b.force, old, n == 0 ? old : b.w[1 - at], b.w[1 - at]}, push,
                  everySecondNode(k.relax, l));
-        countWork(l, 0.5);
+        if (!fromZero || n > 0) countWork(l, 0.5);
     }
     return 1 - at;
 }
@@ -223,9 +225,10 @@ int PlatePasses::step(Recorder& pass, std::size_t l, int at, const ChebyshevStep
 // Extra sweeps of w[at] in the tiles where the rigidity jumps. The residual's memory is free while they run.
 void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first)
 {
-    if (!jumps_ || getenv("NOJ")) return;
+    const int sweeps = jumps_ == Jumps::none ? 0 : jumps_ == Jumps::some ? k.smoothing.tiles : k.smoothing.strongTiles;
+    if (sweeps == 0) return;
     const LevelBuffers& b = levels[l];
-    for (int n = 0; n < k.smoothing.tiles; ++n)
+    for (int n = 0; n < sweeps; ++n)
         for (std::uint32_t colour : {first, 1 - first}) {
             const shared::RelaxPush push{level(l), colour};
             pass.list.dispatchIndirect(k.relaxTile, {b.rigidity, b.divisor, b.force, b.w[at], b.tiles, b.residual()},
@@ -233,7 +236,7 @@ void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_
             pass.list.dispatchIndirect(k.copyTile, {b.tiles, b.residual(), b.w[at]}, push, arguments_, tileArgument(l));
         }
     work.tileSweeps.resize(levels.size());
-    work.tileSweeps[l] += k.smoothing.tiles;
+    work.tileSweeps[l] += sweeps;
 }
 
 // One symmetric cycle for the forces of level l; returns which of its w holds the answer.
@@ -321,7 +324,7 @@ void PlatePasses::steps(Recorder& pass, std::size_t l, int count, int sweeps, st
         if (l == 0) dispatchesPerCycle_ = pass.list.dispatches() - before;
         pass(k.dots, {b.left, z, b.answer, b.load, sums_}, vector, k.dots.groupsOver(partials_, 1, loads_));
         pass(k.beta, {sums_, state}, scalars, {1, 1, 1});
-        pass(k.direction, {state, z, b.direction, b.direction}, vector, inOrder(k.direction, l));
+        pass(k.direction, {state, z, b.direction}, vector, inOrder(k.direction, l));
         pass(k.apply, {b.rigidity, b.direction, b.forces}, shared::LevelPush{level(l)}, everyNode(k.apply, l));
         countWork(l, 1);
         pass(k.stepDots, {b.direction, b.forces, sums_}, vector, k.stepDots.groupsOver(partials_, 1, loads_));
@@ -363,7 +366,7 @@ void PlatePasses::prepare(Recorder& pass)
 void PlatePasses::allow(CommandList& list) const
 {
     list.copy(hostArguments_, arguments_);
-    if (!jumps_) return;
+    if (jumps_ == Jumps::none) return;
     for (std::size_t l = 0; l + 1 < levels.size(); ++l) list.copy(levels[l].tiles, 0, arguments_, tileArgument(l), 4);
 }
 

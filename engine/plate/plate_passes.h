@@ -33,6 +33,9 @@ struct PlateWork {
     std::vector<int> tileSweeps; ///< per level, sweeps of the tiles where the rigidity jumps [1]
 };
 
+/// How sharply the rigidity varies from node to node.
+enum class Jumps { none, some, strong };
+
 /// The multigrid method as passes over the levels' memory, which the solver puts together to command lists.
 ///
 /// Recording changes nothing but `work` and the table of sizes; the memory changes when a list runs. With or without
@@ -63,8 +66,9 @@ public:
     /// To be first in a list with steps: they are not stopped yet, and sweep the tiles that prepare() found.
     void allow(gpu::CommandList& list) const;
 
-    /// Whether lists recorded from now on have extra sweeps where the rigidity jumps; without, jumps take more steps.
-    void expectJumps(bool expected) noexcept { jumps_ = expected; }
+    /// How many extra sweeps lists recorded from now on have where the rigidity jumps; with fewer, jumps take more
+    /// steps.
+    void expectJumps(Jumps expected) noexcept { jumps_ = expected; }
     /// Whether the last prepare() that ran found jumps on the finest level.
     [[nodiscard]] bool foundJumps() const;
     /// Whether the last prepare() that ran found a part of the plate so loosely held that rounding hides it.
@@ -100,7 +104,7 @@ private:
     void                      countWork(std::size_t l, double applications);
     [[nodiscard]] std::size_t argumentBytes() const { return kSizeBytes * (kSizes + grids_.levels.size()); }
     [[nodiscard]] std::size_t tileArgument(std::size_t l) const { return kSizeBytes * (kSizes + l); }
-    [[nodiscard]] bool        isFused() const noexcept { return tail_ && !jumps_; }
+    [[nodiscard]] bool        isFused() const noexcept { return tail_ && jumps_ == Jumps::none; }
 
     [[nodiscard]] int smooth(Recorder& pass, std::size_t l, int sweeps);
     [[nodiscard]] int smoothAgain(Recorder& pass, std::size_t l, int at, int sweeps);
@@ -120,7 +124,7 @@ private:
     std::optional<gpu::Buffer> zeroes_; ///< a deflection of nothing, for the first sweep in red and black
     gpu::Buffer                band_, factor_, lost_, sums_, arguments_, hostArguments_, hostTiles_;
     std::optional<PlateTail>   tail_; ///< if the schedule is fused
-    bool                       jumps_              = false;
+    Jumps                      jumps_              = Jumps::none;
     int                        dispatchesPerCycle_ = 0;
     std::map<std::array<std::uint32_t, 3>, std::size_t> argumentAt_; ///< groups -> byte offset in `arguments_`
 };

@@ -26,8 +26,8 @@
 // One submission is a list of passes, recorded once:
 //
 //   prepare   rigidity -> coarser rigidities -> divisors, tiles where it jumps -> factor of the coarsest level
-//   cold      loads -> coarser loads; coarsest answer; level by level upwards: interpolate, two steps of conjugate
-//             gradients with V(1,1); then kStepsPerList steps with V(2,2) on the finest level
+//   cold      loads -> coarser loads; coarsest answer; level by level upwards: interpolate, a step or two of conjugate
+//             gradients; then kStepsPerList steps on the finest level
 //   warm      the residual of the last answer, then kStepsPerList steps
 //   more      kStepsPerList further steps
 //   sample    rigidity from scattered points, then prepare
@@ -124,8 +124,8 @@ struct VulkanPlateSolver::Impl {
         PlateWork coldWork, warmWork, stepsWork; ///< before the steps on the finest level; kStepsPerList of these
     };
     std::optional<CommandList> prepareList;
-    std::array<Lists, 2>       lists;             ///< without and with extra sweeps where the rigidity jumps
-    bool                       jumps     = false; ///< which of them are used
+    std::array<Lists, 3>       lists;                   ///< by how the rigidity jumps
+    Jumps                      jumps     = Jumps::none; ///< which of them are used
     int                        slot      = 0;
     bool                       hasAnswer = false;
     std::vector<double>        forceUnits; ///< of the last answers, per load [N]
@@ -137,8 +137,8 @@ struct VulkanPlateSolver::Impl {
 
     Impl(gpu::Context& device, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted,
          GridHierarchy grids)
-        : context(device), k(kernels), plate(withoutRigidity(given)), settings(rounded(wanted)), unitRigidity(largest(given.rigidity)),
-          loads(std::uint32_t(wanted.loads)), stiffness(grids.stiffness),
+        : context(device), k(kernels), plate(withoutRigidity(given)), settings(rounded(wanted)),
+          unitRigidity(largest(given.rigidity)), loads(std::uint32_t(wanted.loads)), stiffness(grids.stiffness),
           passes(device, kernels, std::move(grids), loads),
           units(context, "metres per unit", 4 * std::size_t(loads), Intent::device),
           hostRigidity(context, passes.levels[0].rigidity), hostLoads(context, passes.levels[0].load),
@@ -156,7 +156,7 @@ struct VulkanPlateSolver::Impl {
         return wanted;
     }
 
-        /// The device has it.
+    /// The device has it.
     static Plate withoutRigidity(const Plate& given)
     {
         return {given.grid, given.edges, given.poissonRatio, given.foundation, {}};
@@ -348,11 +348,11 @@ struct VulkanPlateSolver::Impl {
     void uploadRigidity(const NodeField& rigidity)
     {
         if (const auto why = whyUnsolvable(plate, rigidity)) throw Error("plate: " + *why);
-        inRigidityUnits(rigidity.values(), unitRigidity, hostRigidity.floats());
+        const Extremes of = inRigidityUnits(rigidity.values(), unitRigidity, hostRigidity.floats());
         fromPoints.reset();
         if (!prepareList) recordPrepare();
         context.run(*prepareList);
-        expectJumps(passes.foundJumps());
+        expectJumps(passes.foundJumps() ? jumpsOf(of.most / of.least) : Jumps::none);
     }
 
     void samplePoints(PlatePoints given, Sampling sampling)
@@ -377,11 +377,20 @@ struct VulkanPlateSolver::Impl {
         fromPoints->pending      = &*list;
         const auto [least, most] = std::minmax_element(given.rigidities.begin(), given.rigidities.end());
         const bool mayJump       = *most > double(shared::kJump) * *least;
-        expectJumps(mayJump && (!fromPoints->knowJumps || passes.foundJumps()));
+        const bool jump          = mayJump && (!fromPoints->knowJumps || passes.foundJumps());
+        expectJumps(jump ? jumpsOf(*most / *least) : Jumps::none);
         fromPoints->knowJumps = true;
     }
 
-    void expectJumps(bool expected)
+    /// \param contrast  largest over least rigidity [1]
+    static Jumps jumpsOf(double contrast)
+    {
+        constexpr double kStrong =
+            3000; // from where on more sweeps of the tiles cost less time than the steps they save
+        return contrast > kStrong ? Jumps::strong : Jumps::some;
+    }
+
+    void expectJumps(Jumps expected)
     {
         jumps = expected;
         passes.expectJumps(expected);

@@ -17,7 +17,7 @@ class Context;
 /// How a cycle is cut into dispatches; the answers are the same.
 enum class Schedule {
     automatic,  ///< fused on hardware, pass by pass in software
-    passByPass, ///< 11 dispatches per level: nothing is computed twice
+    passByPass, ///< 7 to 11 dispatches per level: nothing is computed twice
     fused       ///< 3 per level, and one for all levels of up to 64 cells together: few dispatches to wait for
 };
 
@@ -27,8 +27,8 @@ enum class Precision {
     floats ///< as on a device without doubles
 };
 
-/// What evens out the errors that coarser grids cannot see. One sweep in red and black and two steps of Chebyshev's
-/// iteration do that about as well as each other.
+/// What evens out the errors that coarser grids cannot see. Two steps of Chebyshev's iteration do that better than one
+/// sweep in red and black, and not as well as two.
 enum class Smoother {
     automatic, ///< Chebyshev's on the host, else red and black
     redBlack,  ///< each colour from the newest values of the other: half the work for an invocation per node
@@ -51,8 +51,9 @@ private:
     std::unique_ptr<All> all_;
 };
 
-/// Multigrid on a Vulkan device, or on the host, which gives lavapipe's bits an order of magnitude sooner: nested iteration, then conjugate gradients preconditioned by one symmetric V(2,2)
-/// cycle of red-black relaxation, matrix-free in moment form, stopped by the device itself.
+/// Multigrid on a Vulkan device, or on the host by the same kernels as native code: nested iteration, then conjugate
+/// gradients preconditioned by one symmetric V cycle, smoothed as PlateKernels say, matrix-free in moment form, stopped
+/// by the device itself.
 ///
 /// The cycle is in 32-bit floats and the conjugate gradients are in doubles where the device has them: a cycle only
 /// needs to be roughly right, but rounding the residual to floats leaves an error that grows with the contrast of the

@@ -46,7 +46,8 @@ TailLayout tailLayout(const GridHierarchy& grids)
     TailLayout layout;
     layout.first = grids.levels.size() - 1;
     while (layout.first > 0 && grids.levels.size() - layout.first < std::size_t(shared::kTailLevels) &&
-           fitsLoops(grids.levels[layout.first - 1].plate) && poolOf(grids, layout.first - 1) <= std::size_t(shared::kTailPool))
+           fitsLoops(grids.levels[layout.first - 1].plate) &&
+           poolOf(grids, layout.first - 1) <= std::size_t(shared::kTailPool))
         --layout.first;
     int field = 0, pool = 0;
     for (std::size_t l = layout.first; l < grids.levels.size(); ++l) {

@@ -16,9 +16,9 @@ struct Probe {
 
 /// A plate, its load and the questions about it.
 struct PlateProblem {
-    Plate              plate;
-    NodeField          nodalForce; ///< [N], see load.h
-    std::vector<Probe> probes;
+    Plate                    plate;
+    NodeField                nodalForce; ///< [N], see load.h
+    std::vector<Probe>       probes;
     std::vector<std::string> warnings{}; ///< what is legal and hardly meant, a sentence each
 };
 

@@ -1,7 +1,6 @@
 #include "engine/plate/rigidity_unit.h"
 
 #include "engine/core/contract.h"
-#include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
 
 namespace palp {
@@ -16,11 +15,12 @@ float inRigidityUnits(double rigidity, double unit)
     return float(relative);
 }
 
-void inRigidityUnits(std::span<const double> rigidities, double unit, std::span<float> relative)
+Extremes inRigidityUnits(std::span<const double> rigidities, double unit, std::span<float> relative)
 {
     const Extremes of = extremesOf(rigidities);
     for (const double end : {of.least, of.most}) static_cast<void>(inRigidityUnits(end, unit));
     for (std::size_t n = 0; n < rigidities.size(); ++n) relative[n] = float(rigidities[n] / unit);
+    return of;
 }
 
 } // namespace palp

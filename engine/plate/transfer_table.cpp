@@ -37,7 +37,9 @@ void addGhost(Edge edge, double weight, double& onSide, double& next, double& fu
         next += 3 * weight;
         further -= weight / 2;
         break;
-    case Edge::supported: next -= weight; break;
+    case Edge::supported:
+        next -= weight;
+        break;
     case Edge::free:
         onSide += 2 * weight;
         next -= weight;

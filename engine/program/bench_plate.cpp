@@ -67,6 +67,11 @@ void check(const BenchPlateOptions& o)
                         " nodes a side and a multiple of 4 and 1 (the error of the grid is found from one twice as "
                         "coarse), found " +
                         std::to_string(nodes));
+    constexpr int kMostQuick = 257;
+    for (const int nodes : o.nodes)
+        if (o.quick && nodes > kMostQuick)
+            throw Error("--nodes: with --quick at most " + std::to_string(kMostQuick) + ", found " +
+                        std::to_string(nodes));
     if (o.runs < kFewestRuns || o.runs > 1000)
         throw Error("--runs: expected " + std::to_string(kFewestRuns) + " to 1000, found " + std::to_string(o.runs));
     if (gpu::isDeviceWord(o.device, PlateDevice::kReference))
@@ -138,6 +143,9 @@ void benchPlate(const BenchPlateOptions& o)
     check(o);
     becomeBenchmark();
     const BenchReport report = measure(o);
+    if (report.rows.empty())
+        throw Error(
+            "--nodes: nothing to measure: new_map, new_load and contrast begin at 65 nodes, update is for 65 to 129");
     if (!o.out.empty()) {
         makeFolder(o.out);
         const std::filesystem::path folder = o.out;

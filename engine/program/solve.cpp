@@ -64,9 +64,9 @@ Solved solved(const SolveOptions& options)
     s.note             = device.note();
     if (s.note != told) std::cerr << "palpate: the reference solver took over: " << s.note << "\n";
     if (const SolveReport& report = s.solution.report; !report.converged)
-        s.problem.warnings.push_back("the answer is not good: its error is about " +
-                                     std::to_string(std::lround(100 * *report.errorEstimate)) +
-                                     " % or more; try fewer cells or less contrast");
+        s.problem.warnings.push_back("the answer is not as good as asked for: its error is about " +
+                                     formatNumber(*report.errorEstimate) +
+                                     " or more, relative; try fewer cells, less contrast or --device reference");
     for (const std::string& warning : s.problem.warnings) std::cerr << "palpate: warning: " << warning << "\n";
     // One plate, one load: whoever asks for the time of the answer waits for the preparation too.
     s.solution.report.milliseconds += s.solution.report.setUpMilliseconds;

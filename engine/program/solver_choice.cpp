@@ -15,7 +15,7 @@ void SolverChoice::addTo(CLI::App& command)
             "--device", device,
             "where the plate is solved: auto (the best GPU, else the host), host (the shaders' arithmetic as native "
             "code "
-            "on this processor), lavapipe (Vulkan in software: the same bits, much slower), an index or part of a name "
+            "on this processor), lavapipe (Vulkan in software: much slower), an index or part of a name "
             "from \"palpate devices\", or reference (sparse Cholesky in double precision)")
         ->capture_default_str();
     command

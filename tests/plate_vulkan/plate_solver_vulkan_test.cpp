@@ -471,6 +471,21 @@ TEST_F(VulkanPlate, StepsToATrueErrorAreFewWhateverTheSize)
         }
 }
 
+/// Extra sweeps where the rigidity jumps must grow with the contrast: with those for a contrast of 1000 this one does
+/// not end within 200 steps on the host.
+TEST_F(VulkanPlate, ADiscOfAMillionConverges)
+{
+    if (validation() != gpu::Validation::off) GTEST_SKIP() << "time";
+    const Law           million{"disc 1e6", [](double x, double z) { return disc(x, z, 1e6); }, false};
+    const Plate         plate = plateOf(64, 64, {}, million);
+    const NodeField     load  = loadOn(plate.grid);
+    const PlateSolution truth = ReferencePlateSolver(plate).solve(load), found = solverFor(plate).solve(load);
+    EXPECT_TRUE(found.report.converged);
+    EXPECT_LE(*found.report.iterations, 120);
+    EXPECT_LT(errorOf(found.deflection, truth.deflection), 1e-3)
+        << "ten times the tolerance, which is in the energy norm";
+}
+
 TEST_F(VulkanPlate, NestedIterationReachesTheAccuracyOfTheGridInFifteenWorkUnits)
 {
     if (validation() != gpu::Validation::off) GTEST_SKIP() << "needs a grid that is fine enough to have an order";

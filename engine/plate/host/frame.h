@@ -15,7 +15,7 @@
 // namespace: whatever they define must be in it, or a linker might give a processor code that it does not have.
 //
 // The arithmetic is that of the shaders' headers, node by node and in the same order; contraction is off. So the
-// results are those of the shaders, to the bit, on every instruction set. Only the loops are ours: along rows, without
+// results are those of the shaders, to the bit (but for the sign of a zero), on every instruction set. Only the loops are ours: along rows, without
 // branches, so that compilers make vector instructions of them.
 
 #ifndef PALPATE_ISA

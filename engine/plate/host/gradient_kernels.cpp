@@ -119,13 +119,12 @@ void directionOf(const HostDispatch& d)
     for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
         const Real  beta = state[load * kStateWords + kStateBeta];
         const auto* z    = bound<const float>(d, 1) + load * nodes;
-        const auto* last = bound<const Real>(d, 2) + load * nodes;
-        auto*       p    = bound<Real>(d, 3) + load * nodes;
+        auto*       p    = bound<Real>(d, 2) + load * nodes;
         if (beta == 0)
             for (std::ptrdiff_t n = 0; n < nodes; ++n) p[n] = Real(z[n]);
         else
 #pragma GCC ivdep
-            for (std::ptrdiff_t n = 0; n < nodes; ++n) p[n] = Real(z[n]) + beta * last[n];
+            for (std::ptrdiff_t n = 0; n < nodes; ++n) p[n] = Real(z[n]) + beta * p[n];
     }
 }
 
