@@ -1,0 +1,57 @@
+#include "engine/session/real_time.h"
+
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+
+#ifdef __linux__
+#include <pthread.h>
+#include <sys/mman.h>
+#endif
+
+namespace palp {
+
+std::string askForRealTime()
+{
+#ifdef __linux__
+    constexpr int kPriority = 80; // above the kernel's threads for interrupts, which have 50
+    sched_param   wanted{};
+    wanted.sched_priority = kPriority;
+    const int  scheduling = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
+    const bool locked     = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+    const int  locking    = locked ? 0 : errno;
+    if (scheduling == 0 && locked) return {};
+    std::string refused;
+    if (scheduling != 0) refused = std::string("SCHED_FIFO (") + std::strerror(scheduling) + ")";
+    if (!locked) refused += std::string(refused.empty() ? "" : " and ") + "mlockall (" + std::strerror(locking) + ")";
+    return "no real-time rights: " + refused +
+           " refused; ticks may be late. Allow it with a line \"@realtime - rtprio 90\" and one \"@realtime - memlock "
+           "unlimited\" in /etc/security/limits.conf and membership of that group";
+#else
+    return "real-time scheduling is only asked for on Linux; ticks may be late";
+#endif
+}
+
+Metronome::Clock::time_point Metronome::wait() noexcept
+{
+    next_ += period_;
+    const auto now = Clock::now();
+    if (now > next_ + period_) {
+        const auto late = (now - next_) / period_;
+        next_ += late * period_;
+        leftOut_ += std::uint64_t(late);
+    }
+#ifdef __linux__ // std::this_thread::sleep_until() is this, but not noexcept
+    const auto     since = next_.time_since_epoch();
+    const auto     whole = std::chrono::duration_cast<std::chrono::seconds>(since);
+    const timespec until{time_t(whole.count()), long(std::chrono::nanoseconds(since - whole).count())};
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+    }
+#else
+    while (Clock::now() < next_) {
+    }
+#endif
+    return Clock::now();
+}
+
+} // namespace palp
