@@ -173,7 +173,8 @@ void ForceGovernor::release() noexcept
 
 void ForceGovernor::believe(const GovernorInput& in) noexcept
 {
-    if (!finite(in.force)) latch(GovernorFault::forceNotFinite, in.time);
+    if (!finite(in.force) || !std::isfinite(in.admittedEnergy) || std::isnan(in.storedEnergy))
+        latch(GovernorFault::forceNotFinite, in.time);
     if (!finite(in.position)) latch(GovernorFault::positionNotFinite, in.time);
     if (!finite(in.velocity)) latch(GovernorFault::velocityNotFinite, in.time);
     if (!std::isfinite(in.dt)) latch(GovernorFault::clockNotFinite, in.time);
@@ -202,9 +203,8 @@ void ForceGovernor::observe(const GovernorInput& in, double dt) noexcept
         energy_ += settings_.creditedDamping * glm::dot(in.velocity, in.velocity) * dt + in.admittedEnergy;
         if (in.force == glm::dvec3(0)) energy_ -= energy_ * std::min(1.0, dt / settings_.passivityLeak);
         // A contact gives back at most what it stores; the rest was dissipated and is gone.
-        const double most = std::min(settings_.energyLimit, in.storedEnergy + settings_.energyReserve);
+        const double most = std::min(settings_.energyLimit, std::max(in.storedEnergy, 0.0) + settings_.energyReserve);
         energy_           = std::max(-settings_.energyLimit, std::min(energy_, most));
-        if (!std::isfinite(energy_)) energy_ = 0;
     }
     hasPosition_ = known;
     if (known) lastPosition_ = in.position;

@@ -27,8 +27,8 @@ struct GovernorSettings {
     /// K (T/2 + delay) = 1000 (0.5 ms + 1 ms). The tank counts another 1; the arm has 3.2.
     double creditedDamping = 1.5;
     double energyReserve   = 2e-3; ///< [J] that E may exceed what the contact stores: what was dissipated is forgotten
-    double energyLimit =
-        0.2; ///< [J] most of E where the stored energy is unknown: 6 N in a spring of 100 N/m hold 0.18
+    /// [J] most of E where the stored energy is unknown: 6 N in a spring of 100 N/m hold 0.18
+    double energyLimit = 0.2;
     /// [J] E may be below zero by this without being called active: an encoder step of 48 um against 6 N.
     double energyTolerance = 0.3e-3;
 
@@ -51,7 +51,7 @@ struct GovernorSettings {
 /// Why no force flows. The numbers are recorded: never reuse one.
 enum class GovernorFault : std::uint8_t {
     none              = 0,
-    forceNotFinite    = 1, ///< the render force
+    forceNotFinite    = 1, ///< the render force, or an energy that comes with it
     positionNotFinite = 2,
     velocityNotFinite = 3,
     clockNotFinite    = 4, ///< dt

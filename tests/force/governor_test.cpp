@@ -116,6 +116,17 @@ TEST(ForceGovernor, WhatIsNotFiniteIsAFaultWithItsOwnReason)
         }
 }
 
+TEST(ForceGovernor, AnEnergyThatIsNotANumberIsTheForcesFault)
+{
+    for (double GovernorInput::*field : {&GovernorInput::admittedEnergy, &GovernorInput::storedEnergy}) {
+        Servo servo;
+        servo.pushing({0, 0, 5});
+        servo.in.*field = kNan;
+        EXPECT_EQ(servo.tick().fault, GovernorFault::forceNotFinite);
+        expectGoneIn20Ticks(servo, "energy");
+    }
+}
+
 TEST(ForceGovernor, AFaultStaysUntilTheOperatorResetsItAndThenEngagesAnew)
 {
     Servo servo;
