@@ -42,8 +42,8 @@ struct GovernorSettings {
     double engageTime = 1.5; ///< [s] from nothing to all of it; 1 to 2
 
     double maximumStiffness = 1000; ///< [N/m] where the loop is not the limit
-    /// [N/m] at a period of 1 ms and one sample of delay. The released arm is stable there up to 2120 and passive up to
-    /// 2130, so this is a margin of two.
+    /// [N/m] at a period of 1 ms and one sample of delay. The released arm is stable there up to 2137 and passive up to
+    /// 2133, so this is a margin of two.
     double stiffnessAtOneMillisecond = 1000;
     int    delaySamples              = 1; ///< [1] from a position to the effect of its force, beside the hold; 0 to 7
 };

@@ -281,7 +281,7 @@ TEST(ArmLoop, ShakingAcrossAStepDoesNotPump)
     EXPECT_LE(forced, once) << "though whoever forces the grip sideways pays through the brake";
 }
 
-/// A wall of 3000 N/m, beyond the released arm's limit of 2120, under an undamped hand: the depth's swing in the end
+/// A wall of 3000 N/m, beyond the released arm's limit of 2137, under an undamped hand: the depth's swing in the end
 /// [m].
 double onTooStiffAWall(Loop loop)
 {
