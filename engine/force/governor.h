@@ -119,8 +119,8 @@ struct GovernorOutput {
 ///   7  at most 1.2 m/s                                                             else fault, to zero in 20 ms
 ///   8  engaged: below 0.2 N for 10 ticks in the box, then from nothing to all in 1.5 s
 ///
-/// While it waits (8) no force can flow, and a fast hand (7) only restarts the wait. A fault stays until reset(). Every failure ends at exactly zero within 20 ms of ticks. Scaling to the motors'
-/// torques is the device's.
+/// While it waits (8) no force can flow, and a fast hand (7) only restarts the wait. A fault stays until reset(). Every
+/// failure ends at exactly zero within 20 ms of ticks. Scaling to the motors' torques is the device's.
 ///
 /// Invariants: the force is finite and at most maximumForce; nothing is allocated, locked or thrown.
 /// \source Hannaford & Ryu 2002 for step 4. \differs (a) E is taken from the force that acted, damping, limits and the
