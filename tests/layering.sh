@@ -36,9 +36,13 @@ for folder in engine/*/; do
     done
 done
 
+# A device knows forces and positions, nothing of objects.
+others=$(grep -nE '^ *# *include *"' device/*.h device/*.cpp | grep -vE '"(device|engine/core)/')
+[ -z "$others" ] || complain "device/ includes more than engine/core: $others"
+
 # library: pattern of its includes: folders that may hold them
 wall() {
-    found=$(grep -rlE "^ *# *include *[<\"]$2" engine --include='*.h' --include='*.cpp' | grep -vE "^engine/($3)$")
+    found=$(grep -rlE "^ *# *include *[<\"]$2" engine device --include='*.h' --include='*.cpp' | grep -vE "^engine/($3)$")
     [ -z "$found" ] || complain "$1 is included outside its wall: $found"
 }
 wall Embree 'embree[34]/' 'cloud/(embree\.h|neighbour_index\.cpp)'
@@ -51,7 +55,7 @@ wall nanoflann 'nanoflann' 'bench/nanoflann_search\.cpp'
 wall stb 'stb' 'picture/png\.cpp'
 
 # Public headers name no type of a wrapped library.
-grep -rnE 'RTC[A-Z]|Eigen::|nlohmann::|stbi_|Vk[A-Z]|VK_' engine --include='*.h' | grep -vE '^engine/(cloud/embree\.h|gpu/vulkan_[a-z]*\.h|program/)' | grep -vE ':[0-9]+: *//' && complain 'a header names a type of a wrapped library'
+grep -rnE 'RTC[A-Z]|Eigen::|nlohmann::|stbi_|Vk[A-Z]|VK_' engine device --include='*.h' | grep -vE '^engine/(cloud/embree\.h|gpu/vulkan_[a-z]*\.h|program/)' | grep -vE ':[0-9]+: *//' && complain 'a header names a type of a wrapped library'
 
 [ $bad -eq 0 ] && echo 'every include points downward'
 exit $bad

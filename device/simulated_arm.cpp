@@ -1,0 +1,127 @@
+#include "device/simulated_arm.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+constexpr double kPiece = 125e-6; ///< [s] longest piece of the integration: friction turns with the motion that often
+constexpr int    kOrder = 10;     ///< of the Taylor series; the rest is below 1e-12 for a hand of 1e6 N/m
+
+void demand(const char* what, double value, double least, double most)
+{
+    if (!(value >= least && value <= most))
+        throw Error("simulated arm: " + std::string(what) + " must be from " + std::to_string(least) + " to " +
+                    std::to_string(most) + ", found " + std::to_string(value));
+}
+
+} // namespace
+
+SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, const glm::dvec3& position, const glm::dvec3& velocity)
+    : settings_(settings), position_(position), velocity_(velocity)
+{
+    demand("mass", settings.mass, 1e-3, 1e3);
+    demand("damping", settings.damping, 0, 1e3);
+    demand("friction", settings.friction, 0, 1e3);
+    demand("encoderStep", settings.encoderStep, 0, 1e-2);
+    demand("velocityWindow", settings.velocityWindow, 0, 1);
+    demand("halfWorkspace", settings.halfWorkspace, 1e-3, 1e3);
+    demand("boxRadius", settings.boxRadius, 0, 1e3);
+    demand("delaySamples", settings.delaySamples, 0, int(kDelays) - 1);
+    past_[0] = {time_, encoded()};
+}
+
+ArmSample SimulatedArm::step(const glm::dvec3& force, double period) noexcept
+{
+    if (!(period > 0) || !std::isfinite(period)) return sample();
+    const double whole       = force.x + force.y + force.z;
+    forces_[tick_ % kDelays] = std::isfinite(whole) ? force : glm::dvec3(0);
+    const glm::dvec3 held    = forces_[(tick_ + kDelays - std::size_t(settings_.delaySamples)) % kDelays];
+    ++tick_;
+
+    const double pieces = std::ceil(period / kPiece * (1 - 1e-12));
+    for (double piece = 0; piece < pieces; ++piece) move(held, period / pieces);
+    time_ += period;
+
+    newest_        = (newest_ + 1) % kPast;
+    pasts_         = std::min(pasts_ + 1, kPast);
+    past_[newest_] = {time_, encoded()};
+    return sample();
+}
+
+ArmSample SimulatedArm::sample() const noexcept
+{
+    const Past& now = past_[newest_];
+    ArmSample   out{now.time, now.position, {}, glm::length(now.position) <= settings_.boxRadius};
+
+    // Back to the first sample that is a window old, or the oldest; at least one sample.
+    std::size_t back = 1;
+    while (back + 1 < pasts_ &&
+           now.time - past_[(newest_ + kPast - back) % kPast].time < settings_.velocityWindow * (1 - 1e-9))
+        ++back;
+    const Past& then = past_[(newest_ + kPast - back) % kPast];
+    if (pasts_ > 1) out.velocity = (now.position - then.position) / (now.time - then.time);
+    return out;
+}
+
+glm::dvec3 SimulatedArm::encoded() const noexcept
+{
+    const double step = settings_.encoderStep;
+    return step > 0 ? glm::floor(position_ / step + 0.5) * step : position_;
+}
+
+void SimulatedArm::move(const glm::dvec3& force, double dt) noexcept
+{
+    const double m = settings_.mass, b = settings_.damping + hand_.damping, k = hand_.stiffness;
+
+    // m x'' = push + drag - k x - b x', where the hand pulls towards where it is and goes. Friction acts against the
+    // motion; at rest it holds what it can.
+    const glm::dvec3 push   = force + k * hand_.target + hand_.damping * hand_.targetVelocity;
+    const glm::dvec3 pull   = push - k * position_;
+    const bool       rests  = velocity_ == glm::dvec3(0);
+    const bool       sticks = rests && glm::length(pull) <= settings_.friction;
+    glm::dvec3       drag{};
+    if (settings_.friction > 0 && !sticks) drag = -settings_.friction * glm::normalize(rests ? pull : velocity_);
+
+    // Derivatives of x one after the other by the equation, each with its power of dt over its factorial.
+    const glm::dvec3 before = velocity_;
+    if (!sticks) {
+        glm::dvec3 lower = position_, upper = velocity_; // the n-th and the next derivative
+        glm::dvec3 position = position_, velocity = velocity_;
+        double     power = 1; // dt^n / n!
+        for (int n = 0; n < kOrder; ++n) {
+            glm::dvec3 next = (-b * upper - k * lower) / m;
+            if (n == 0) next += (push + drag) / m;
+            if (n == 1) next += k * hand_.targetVelocity / m;
+            position += upper * (power * dt / (n + 1));
+            velocity += next * (power * dt / (n + 1));
+            power *= dt / (n + 1);
+            lower = upper;
+            upper = next;
+        }
+        position_ = position;
+        velocity_ = velocity;
+    }
+    if (settings_.friction > 0 && glm::dot(before, velocity_) < 0) velocity_ = {}; // it reversed: it came to rest
+    hand_.target += hand_.targetVelocity * dt;
+    stopAtWalls();
+}
+
+void SimulatedArm::stopAtWalls() noexcept
+{
+    for (int axis = 0; axis < 3; ++axis) {
+        const double side = std::copysign(settings_.halfWorkspace, position_[axis]);
+        if (std::abs(position_[axis]) <= settings_.halfWorkspace) continue;
+        position_[axis] = side;
+        if (velocity_[axis] * side > 0) velocity_[axis] = 0;
+    }
+}
+
+} // namespace palp

@@ -1,0 +1,92 @@
+#pragma once
+#include <array>
+#include <cstddef>
+
+#include <glm/vec3.hpp>
+
+namespace palp {
+
+/// An arm like the Novint Falcon. Mass and damping: one published free-oscillation measurement (0.459 kg; 2.8 N s/m
+/// net, 3.2 to 4.0 with the loss of sampling added back), friction lumped into the damping. Encoder: 320 slots x 4 on a
+/// drive of 7.72 move the grip by 25 to 55 um a count, 48 um sideways at the centre. Workspace: a cube of 4 inches.
+struct SimulatedArmSettings {
+    double mass           = 0.46;  ///< [kg]
+    double damping        = 3.2;   ///< [N s/m]
+    double friction       = 0;     ///< [N] Coulomb's, against the motion; a few 0.01 N are plausible
+    double encoderStep    = 48e-6; ///< [m] per axis; 0 is continuous
+    double velocityWindow = 15e-3; ///< [s] over which positions are differenced; drivers take 15 to 20 ms
+    double halfWorkspace  = 0.05;  ///< [m] per axis; the arm stops dead there
+    double boxRadius      = 0.045; ///< [m] sphere about the origin, inside which ArmSample::inBox holds
+    int    delaySamples   = 1;     ///< [1] from a force to its effect, 0 to 7; beside the hold until the next one
+};
+
+/// A hand that holds the grip by a spring and a damper to a place that moves evenly.
+struct SimulatedHand {
+    double     stiffness = 0;    ///< [N/m] 0 lets go; a relaxed hand 150, a firm one 500
+    double     damping   = 0;    ///< [N s/m] 0 to 5
+    glm::dvec3 target{};         ///< [m] now
+    glm::dvec3 targetVelocity{}; ///< [m/s]
+};
+
+/// What the device's driver would know.
+struct ArmSample {
+    double     time = 0;     ///< [s]
+    glm::dvec3 position{};   ///< [m] in whole encoder steps
+    glm::dvec3 velocity{};   ///< [m/s] of those positions, over the window
+    bool       inBox = true; ///< the grip is inside the box
+};
+
+/// An arm and the hand that holds it, in virtual time: what a stability test needs of a device. The same steps give the
+/// same samples, bit for bit.
+///
+///     force --delay--> hold over the tick --> mass, damper, friction, hand --> encoder --> sample
+///
+/// Between ticks the motion is that of the differential equation to rounding (a Taylor series of order 10 over at most
+/// 125 us, good for hand springs up to 1e6 N/m); friction acts along the last velocity of each such piece, and the arm
+/// comes to rest where it reverses.
+/// \thread one
+class SimulatedArm {
+public:
+    /// \throws Error naming a setting out of its range
+    explicit SimulatedArm(const SimulatedArmSettings& settings = {}, const glm::dvec3& position = {},
+                          const glm::dvec3& velocity = {});
+
+    /// The place and the strength of the hand from now on; between ticks its target moves on evenly.
+    void hold(const SimulatedHand& hand) noexcept { hand_ = hand; }
+
+    /// One tick: the motors take over `force` (after the delay) and hold it while `period` goes by.
+    /// \param force   [N] on the hand; one that is not finite counts as none
+    /// \param period  [s] not above zero or not finite: no time goes by
+    /// \return the sample at the end of the period
+    ArmSample step(const glm::dvec3& force, double period) noexcept;
+
+    [[nodiscard]] ArmSample         sample() const noexcept;
+    [[nodiscard]] const glm::dvec3& position() const noexcept { return position_; } ///< [m] true, between encoder steps
+    [[nodiscard]] const glm::dvec3& velocity() const noexcept { return velocity_; } ///< [m/s] true
+
+private:
+    static constexpr std::size_t kDelays = 8;   ///< a ring of forces on their way
+    static constexpr std::size_t kPast   = 128; ///< a ring of samples for the velocity
+
+    struct Past {
+        double     time = 0;   ///< [s]
+        glm::dvec3 position{}; ///< [m] in encoder steps
+    };
+
+    [[nodiscard]] glm::dvec3 encoded() const noexcept;
+    void                     move(const glm::dvec3& force, double dt) noexcept;
+    void                     stopAtWalls() noexcept;
+
+    SimulatedArmSettings            settings_;
+    SimulatedHand                   hand_{};
+    double                          time_ = 0; ///< [s]
+    glm::dvec3                      position_;
+    glm::dvec3                      velocity_;
+    std::array<glm::dvec3, kDelays> forces_{};
+    std::size_t                     tick_ = 0;
+    std::array<Past, kPast>         past_{};
+    std::size_t                     newest_ = 0; ///< in past_
+    std::size_t                     pasts_  = 1; ///< how many of past_ there are
+};
+
+} // namespace palp

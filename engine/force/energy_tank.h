@@ -1,0 +1,62 @@
+#pragma once
+
+namespace palp {
+
+/// Numbers of the tank. Origin of all: simulation of press, slide and release on an arm of 0.46 kg and 3.2 N s/m, with
+/// edges 6 mm wide, 2 to 5 mm deep, at 0.05 and 0.2 m/s, and stiffness from 100 to 1000 N/m.
+struct EnergyTankSettings {
+    double limit = 2e-3;   ///< [J] the most it holds; what one step of stiffness may inject at once
+    double start = 0.2e-3; ///< [J] at the beginning
+    /// [N s/m] of the arm's own damping that fills it. An arm of 3.2 spends 1.5 on the sampled spring at the cap,
+    /// K (T/2 + delay) = 1000 (0.5 ms + 1 ms); 1 of the remaining 1.7.
+    double damping = 1;
+    double power   = 1e-3; ///< [W] fills it at rest too; 0 is strict, and a still finger never feels a spot harden
+    double brake   = 0.3;  ///< [1] the tangential brake's limit as a part of the normal force; 0.3 to 0.5, 0 is none
+};
+
+struct EnergyTankInput {
+    double stiffness       = 0; ///< [N/m] wanted: min(force law, ForceGovernor::stiffnessCap())
+    double depth           = 0; ///< [m] of the hand in the surface; 0 or less is no contact
+    double normalSpeed     = 0; ///< [m/s] along the surface's normal; the sign does not matter
+    double tangentialSpeed = 0; ///< [m/s] along the surface; the sign does not matter
+    double dt              = 0; ///< [s] since the last tick
+};
+
+struct EnergyTankOutput {
+    double stiffness = 0; ///< [N/m] to render; at most the wanted one
+    double brake     = 0; ///< [N] against the tangential velocity; at most settings.brake times the normal force
+    double used      = 0; ///< [J] that the tank let into the hand: GovernorInput::admittedEnergy
+    double stored    = 0; ///< [J] in the rendered spring, K depth^2 / 2: GovernorInput::storedEnergy
+};
+
+/// Pays for stiffness that rises under a loaded finger. A contact of depth d stores d^2 K / 2: sliding onto a stiffer
+/// spot puts d^2 (K2 - K1) / 2 into the hand, every time it goes round; shaking across an edge pumps. Here a rise is
+/// paid by the hand itself, through a brake along the surface, and the rest from a small store that the arm's damping
+/// fills; what cannot be paid waits, and the stiffness lags.
+///
+/// The servo calls it, once a tick, between the force law and the governor:
+///
+///     K = min(law, governor.stiffnessCap()) -> tank.step() -> force = K depth normal - brake -> governor.step()
+///
+/// Invariants: 0 <= energy() <= limit; the stiffness rises in contact only by what was paid. A bound on growth, not
+/// strict passivity: damping and power let in a few mJ per second.
+/// \differs the exact cure is the lateral force -(d^2/2) dK/ds along the slope of K, which needs that slope without
+/// noise \thread one
+class EnergyTank {
+public:
+    /// \throws Error naming a setting that is negative or not finite
+    explicit EnergyTank(const EnergyTankSettings& settings = {});
+
+    /// Values that are not finite end the contact with stiffness 0 and an empty tank; a negative dt counts as 0.
+    EnergyTankOutput step(const EnergyTankInput& in) noexcept;
+
+    [[nodiscard]] double energy() const noexcept { return energy_; }       ///< [J] in the tank
+    [[nodiscard]] double stiffness() const noexcept { return stiffness_; } ///< [N/m] in use
+
+private:
+    EnergyTankSettings settings_;
+    double             energy_;
+    double             stiffness_ = 0;
+};
+
+} // namespace palp

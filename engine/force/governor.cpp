@@ -1,0 +1,277 @@
+#include "engine/force/governor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <glm/geometric.hpp>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+bool finite(const glm::dvec3& v) noexcept
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+void mark(GovernorOutput& out, GovernorAction action) noexcept
+{
+    out.actions |= static_cast<std::uint32_t>(action);
+}
+
+void demand(const char* what, double value, double least, double most)
+{
+    if (!(value >= least && value <= most))
+        throw Error("force governor: " + std::string(what) + " must be from " + std::to_string(least) + " to " +
+                    std::to_string(most) + ", found " + std::to_string(value));
+}
+
+void check(const GovernorSettings& s)
+{
+    demand("nominalPeriod", s.nominalPeriod, 1e-5, 1e-2);
+    demand("longestTick", s.longestTick, 1e-5, 2e-2);
+    demand("stall", s.stall, 1e-3, 0.1);
+    demand("missedTicks", s.missedTicks, 1, 20);
+    demand("staleAfter", s.staleAfter, 0, 0.02);
+    demand("staleRamp", s.staleRamp, 1e-3, 0.02);
+    demand("passivitySpeed", s.passivitySpeed, 0, 0.1);
+    demand("passivityDamping", s.passivityDamping, 0, 20);
+    demand("passivityLeak", s.passivityLeak, 1e-3, 100);
+    demand("creditedDamping", s.creditedDamping, 0, 3.2);
+    demand("energyReserve", s.energyReserve, 0, 0.1);
+    demand("energyLimit", s.energyLimit, 0, 10);
+    demand("energyTolerance", s.energyTolerance, 0, 0.01);
+    demand("maximumForce", s.maximumForce, 0, 8);
+    demand("slew", s.slew, 8 / 0.02, 1e5); // slower, and 8 N would not be gone in 20 ms
+    demand("maximumSpeed", s.maximumSpeed, 0, 5);
+    demand("faultRamp", s.faultRamp, 1e-3, 0.02);
+    demand("calmForce", s.calmForce, 0, 1);
+    demand("calmTicks", s.calmTicks, 1, 1000);
+    demand("engageTime", s.engageTime, 0.1, 10);
+    demand("maximumStiffness", s.maximumStiffness, 0, 1e4);
+    demand("stiffnessAtOneMillisecond", s.stiffnessAtOneMillisecond, 0, 2000);
+    demand("delaySamples", s.delaySamples, 0, 7);
+}
+
+} // namespace
+
+const char* name(GovernorFault fault) noexcept
+{
+    switch (fault) {
+    case GovernorFault::none:
+        return "none";
+    case GovernorFault::forceNotFinite:
+        return "force-not-finite";
+    case GovernorFault::positionNotFinite:
+        return "position-not-finite";
+    case GovernorFault::velocityNotFinite:
+        return "velocity-not-finite";
+    case GovernorFault::clockNotFinite:
+        return "clock-not-finite";
+    case GovernorFault::clockStopped:
+        return "clock-stopped";
+    case GovernorFault::loopStalled:
+        return "loop-stalled";
+    case GovernorFault::deviceLost:
+        return "device-lost";
+    case GovernorFault::tooFast:
+        return "too-fast";
+    }
+    return "unknown";
+}
+
+ForceGovernor::ForceGovernor(const GovernorSettings& settings) : settings_(settings)
+{
+    check(settings_);
+    cap_ = capFor(settings_.nominalPeriod);
+}
+
+GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
+{
+    GovernorOutput out;
+    const Elapsed  passed = elapsed(in.dt);
+    cap_                  = capFor(in.loopPeriod);
+
+    believe(in); // 1
+    glm::dvec3 force = fault_ == GovernorFault::none ? in.force : glm::dvec3(0);
+
+    if (!in.homed) mark(out, GovernorAction::notHomed); // 2
+    if (!in.inBox) mark(out, GovernorAction::outsideBox);
+    if (!in.homed || !in.inBox) release();
+
+    const double fresh = freshness(in.forceAge); // 3
+    if (fresh < 1) mark(out, GovernorAction::stale);
+    if (fresh == 0) release();
+    force *= fresh;
+    if (engagement_ == Engagement::releasing || !in.homed || !in.inBox) force = glm::dvec3(0);
+
+    observe(in, passed.fall); // 4
+    force = passive(force, in, passed.fall, out);
+
+    force = clamped(force, out); // 5
+    slewTo(force, passed, out);  // 6
+
+    const bool slow = glm::length(in.velocity) <= settings_.maximumSpeed; // 7; a wait sees to it itself
+    if (!slow && engagement_ != Engagement::waiting) latch(GovernorFault::tooFast, in.time);
+    if (fault_ != GovernorFault::none) faultGain_ = std::max(0.0, faultGain_ - passed.fall / settings_.faultRamp);
+
+    engage(in, passed.rise, out); // 8
+
+    out.gain   = faultGain_ * engageGain_;
+    out.force  = slewed_ * out.gain;
+    out.fault  = fault_;
+    out.energy = energy_;
+
+    sent_[tick_ % kDelays] = out.force;
+    ++tick_;
+    return out;
+}
+
+void ForceGovernor::reset() noexcept
+{
+    if (fault_ == GovernorFault::none) return;
+    fault_        = GovernorFault::none;
+    faultGain_    = 1;
+    engagement_   = Engagement::waiting;
+    engageGain_   = 0;
+    calmTicks_    = 0;
+    stoppedTicks_ = 0;
+    energy_       = 0;
+    slewed_       = glm::dvec3(0);
+    sent_         = {};
+    hasPosition_  = false;
+}
+
+ForceGovernor::Elapsed ForceGovernor::elapsed(double dt) const noexcept
+{
+    if (!(dt > 0) || !std::isfinite(dt)) return {0, settings_.nominalPeriod};
+    return {std::min(dt, settings_.longestTick), dt};
+}
+
+double ForceGovernor::capFor(double period) const noexcept
+{
+    if (!(period > 0) || !std::isfinite(period)) return 0;
+    const double lag = period * (0.5 + settings_.delaySamples);
+    return std::min(settings_.maximumStiffness, settings_.stiffnessAtOneMillisecond * 1.5e-3 / lag);
+}
+
+void ForceGovernor::latch(GovernorFault fault, double time) noexcept
+{
+    if (fault_ != GovernorFault::none) return; // the first one is the cause
+    fault_     = fault;
+    faultTime_ = time;
+    release();
+}
+
+void ForceGovernor::release() noexcept
+{
+    calmTicks_ = 0;
+    if (engagement_ == Engagement::engaging || engagement_ == Engagement::engaged) engagement_ = Engagement::releasing;
+}
+
+void ForceGovernor::believe(const GovernorInput& in) noexcept
+{
+    if (!finite(in.force) || !std::isfinite(in.admittedEnergy) || std::isnan(in.storedEnergy))
+        latch(GovernorFault::forceNotFinite, in.time);
+    if (!finite(in.position)) latch(GovernorFault::positionNotFinite, in.time);
+    if (!finite(in.velocity)) latch(GovernorFault::velocityNotFinite, in.time);
+    if (!std::isfinite(in.dt)) latch(GovernorFault::clockNotFinite, in.time);
+    if (in.dt > settings_.stall) latch(GovernorFault::loopStalled, in.time);
+    stoppedTicks_ = in.dt > 0 ? 0 : std::min(stoppedTicks_ + 1, settings_.missedTicks + 1);
+    if (stoppedTicks_ > settings_.missedTicks) latch(GovernorFault::clockStopped, in.time);
+    if (in.missedExchanges > settings_.missedTicks) latch(GovernorFault::deviceLost, in.time);
+}
+
+double ForceGovernor::freshness(double age) const noexcept
+{
+    if (age <= settings_.staleAfter) return 1;
+    if (!(age < settings_.staleAfter + settings_.staleRamp)) return 0; // nor if it is not a number
+    return 1 - (age - settings_.staleAfter) / settings_.staleRamp;
+}
+
+void ForceGovernor::observe(const GovernorInput& in, double dt) noexcept
+{
+    const bool known = in.homed && finite(in.position);
+    if (engagement_ == Engagement::waiting) {
+        energy_ = 0;
+    } else if (known && hasPosition_) {
+        // What the force that acted on the way here did, and what others answer for.
+        const std::size_t acting = tick_ + kDelays - 1 - std::size_t(settings_.delaySamples);
+        energy_ -= glm::dot(sent_[acting % kDelays], in.position - lastPosition_);
+        energy_ += settings_.creditedDamping * glm::dot(in.velocity, in.velocity) * dt + in.admittedEnergy;
+        if (in.force == glm::dvec3(0)) energy_ -= energy_ * std::min(1.0, dt / settings_.passivityLeak);
+        // A contact gives back at most what it stores; the rest was dissipated and is gone.
+        const double most = std::min(settings_.energyLimit, std::max(in.storedEnergy, 0.0) + settings_.energyReserve);
+        energy_           = std::max(-settings_.energyLimit, std::min(energy_, most));
+    }
+    hasPosition_ = known;
+    if (known) lastPosition_ = in.position;
+}
+
+glm::dvec3 ForceGovernor::passive(glm::dvec3 force, const GovernorInput& in, double dt,
+                                  GovernorOutput& out) const noexcept
+{
+    if (energy_ < -settings_.energyTolerance) mark(out, GovernorAction::active);
+    const double speed = glm::length(in.velocity);
+    const bool   flows = engagement_ == Engagement::engaging || engagement_ == Engagement::engaged;
+    if (!flows || energy_ >= 0 || !(speed > settings_.passivitySpeed)) return force;
+    out.damping = std::min(-energy_ / (speed * speed * dt), settings_.passivityDamping);
+    mark(out, GovernorAction::damped);
+    return force - out.damping * in.velocity;
+}
+
+glm::dvec3 ForceGovernor::clamped(glm::dvec3 force, GovernorOutput& out) const noexcept
+{
+    const double size = glm::length(force);
+    if (size <= settings_.maximumForce) return force;
+    mark(out, GovernorAction::clamped);
+    return force * (settings_.maximumForce / size);
+}
+
+void ForceGovernor::slewTo(glm::dvec3 force, Elapsed passed, GovernorOutput& out) noexcept
+{
+    // A late tick may take a force down by all the time that went by, but let it grow only by one long tick.
+    const glm::dvec3 change = force - slewed_;
+    const bool       falls  = glm::length(force) < glm::length(slewed_);
+    const double     most   = settings_.slew * (falls ? passed.fall : passed.rise);
+    const double     wanted = glm::length(change);
+    if (wanted <= most) {
+        slewed_ = force;
+    } else {
+        mark(out, GovernorAction::slewed);
+        slewed_ += change * (most / wanted);
+    }
+}
+
+void ForceGovernor::engage(const GovernorInput& in, double rise, GovernorOutput& out) noexcept
+{
+    const bool calm = fault_ == GovernorFault::none && in.homed && in.inBox && in.forceAge <= settings_.staleAfter &&
+                      glm::length(in.velocity) <= settings_.maximumSpeed && glm::length(slewed_) < settings_.calmForce;
+    switch (engagement_) {
+    case Engagement::waiting:
+        mark(out, GovernorAction::waiting);
+        engageGain_ = 0;
+        calmTicks_  = calm ? calmTicks_ + 1 : 0;
+        if (calmTicks_ >= settings_.calmTicks) engagement_ = Engagement::engaging;
+        break;
+    case Engagement::engaging:
+        mark(out, GovernorAction::engaging);
+        engageGain_ = std::min(1.0, engageGain_ + rise / settings_.engageTime);
+        if (engageGain_ == 1) engagement_ = Engagement::engaged;
+        break;
+    case Engagement::engaged:
+        break;
+    case Engagement::releasing:
+        mark(out, GovernorAction::releasing);
+        if (slewed_ == glm::dvec3(0)) {
+            engagement_ = Engagement::waiting;
+            engageGain_ = 0;
+            calmTicks_  = 0;
+        }
+        break;
+    }
+}
+
+} // namespace palp

@@ -1,0 +1,189 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include <glm/vec3.hpp>
+
+namespace palp {
+
+/// Limits of the ForceGovernor. Sources: Hannaford & Ryu, time-domain passivity control (observer, controller);
+/// Colgate & Brown and Hulin et al. (stiffness of a sampled spring); OpenHaptics, CHAI3D and the Force Dimension SDK
+/// (what drivers limit by default); the Falcon's mass 0.46 kg and damping 3.2 N s/m are one published measurement.
+struct GovernorSettings {
+    double nominalPeriod = 1e-3; ///< [s] of the servo; stands in where a tick says that no time went by
+    double longestTick   = 4e-3; ///< [s] a later tick lets a force grow by no more than this one
+    double stall         = 0.1;  ///< [s] without a tick is a fault
+    int    missedTicks   = 20;   ///< [1] more exchanges without an answer, or ticks without time, in a row are a fault
+
+    double staleAfter = 5e-3;  ///< [s] age up to which the last render force is held
+    double staleRamp  = 20e-3; ///< [s] from there to zero
+
+    double passivitySpeed   = 0.01; ///< [m/s] below it no damping: two encoder steps of 48 um in 15 ms are 0.006
+    double passivityDamping = 20;   ///< [N s/m] the most that the controller adds
+    double passivityLeak    = 1;    ///< [s] time constant with which the energy is forgotten out of contact
+    /// [N s/m] of the arm's own damping that the observer counts: the loss of the sampled spring at the cap,
+    /// K (T/2 + delay) = 1000 (0.5 ms + 1 ms). The tank counts another 1; the arm has 3.2.
+    double creditedDamping = 1.5;
+    double energyReserve   = 2e-3; ///< [J] that E may exceed what the contact stores: what was dissipated is forgotten
+    /// [J] most of E where the stored energy is unknown: 6 N in a spring of 100 N/m hold 0.18
+    double energyLimit = 0.2;
+    /// [J] E may be below zero by this without being called active: an encoder step of 48 um against 6 N.
+    double energyTolerance = 0.3e-3;
+
+    double maximumForce = 6;     ///< [N] at most 8, what the Falcon holds (published: more than 8.9 N for short)
+    double slew         = 1000;  ///< [N/s] an honest contact of 1000 N/m at 0.5 m/s needs 500
+    double maximumSpeed = 1.2;   ///< [m/s] beyond it is a fault (OpenHaptics: 1.2)
+    double faultRamp    = 20e-3; ///< [s] from a fault to zero force, at the latest
+
+    double calmForce  = 0.2; ///< [N] below it ... (CHAI3D's "wait for small force")
+    int    calmTicks  = 10;  ///< [1] ... for so many ticks, the force may come on
+    double engageTime = 1.5; ///< [s] from nothing to all of it; 1 to 2
+
+    double maximumStiffness = 1000; ///< [N/m] where the loop is not the limit
+    /// [N/m] at a period of 1 ms and one sample of delay. The released arm is stable there up to 2137 and passive up to
+    /// 2133, so this is a margin of two.
+    double stiffnessAtOneMillisecond = 1000;
+    int    delaySamples              = 1; ///< [1] from a position to the effect of its force, beside the hold; 0 to 7
+};
+
+/// Why no force flows. The numbers are recorded: never reuse one.
+enum class GovernorFault : std::uint8_t {
+    none              = 0,
+    forceNotFinite    = 1, ///< the render force, or an energy that comes with it
+    positionNotFinite = 2,
+    velocityNotFinite = 3,
+    clockNotFinite    = 4, ///< dt
+    clockStopped      = 5, ///< dt is not above zero, for more than settings.missedTicks ticks
+    loopStalled       = 6, ///< dt is above settings.stall
+    deviceLost        = 7, ///< more than settings.missedTicks exchanges without an answer
+    tooFast           = 8  ///< faster than settings.maximumSpeed
+};
+[[nodiscard]] const char* name(GovernorFault fault) noexcept; ///< "none", "force-not-finite", ...
+
+/// What a tick did to the force; GovernorOutput::actions is a sum of these.
+enum class GovernorAction : std::uint32_t {
+    notHomed   = 1,
+    outsideBox = 2,
+    stale      = 4,  ///< held beyond its time, and less than wanted
+    damped     = 8,  ///< by the passivity controller
+    active     = 16, ///< the observed energy is below minus settings.energyTolerance
+    clamped    = 32,
+    slewed     = 64,
+    waiting    = 128, ///< no force until it was small for a while
+    engaging   = 256, ///< coming on
+    releasing  = 512  ///< going down to zero, to wait again
+};
+
+/// One tick. Vectors share one frame.
+struct GovernorInput {
+    glm::dvec3 force{};             ///< [N] on the hand, wanted; the newest there is, however old
+    double     forceAge = 0;        ///< [s] since it was computed; infinity if there has never been one
+    glm::dvec3 position{};          ///< [m] of the grip
+    glm::dvec3 velocity{};          ///< [m/s] of the grip, filtered
+    bool       homed      = false;  ///< the position is known
+    bool       inBox      = false;  ///< the grip is where the device's kinematics are good, and they could be solved
+    double     time       = 0;      ///< [s] of this tick; only noted with a fault
+    double     dt         = 0;      ///< [s] since the last tick
+    double     loopPeriod = 0;      ///< [s] measured, as a mean over some 0.1 s; sets stiffnessCap()
+    int        missedExchanges = 0; ///< [1] with the device, in a row
+
+    double admittedEnergy = 0; ///< [J] that the tank let in this tick: EnergyTankOutput::used
+    /// [J] in the contact's spring: EnergyTankOutput::stored. Infinity: unknown.
+    double storedEnergy = std::numeric_limits<double>::infinity();
+};
+
+struct GovernorOutput {
+    glm::dvec3    force{}; ///< [N] to the device
+    GovernorFault fault   = GovernorFault::none;
+    std::uint32_t actions = 0; ///< see GovernorAction
+    double        energy  = 0; ///< [J] E of the observer: what the hand has put in and not got back
+    double        damping = 0; ///< [N s/m] of the passivity controller
+    double        gain    = 0; ///< [1] of engagement and fault ramp
+
+    [[nodiscard]] bool did(GovernorAction action) const noexcept
+    {
+        return (actions & static_cast<std::uint32_t>(action)) != 0;
+    }
+};
+
+/// The last word on every force before a device: no force leaves without it. Each tick, in this order:
+///
+///   1  what came in can be believed: finite, the clock runs, the device answers    else fault, 0
+///   2  homed and in the box                                                        else 0, then engage anew
+///   3  fresh: held for 5 ms, to zero in 20 ms                                      then engage anew
+///   4  passivity: E -= f (x - x'); if E < 0, f -= alpha v
+///   5  at most 6 N
+///   6  at most 1 N/ms
+///   7  at most 1.2 m/s                                                             else fault, to zero in 20 ms
+///   8  engaged: below 0.2 N for 10 ticks in the box, then from nothing to all in 1.5 s
+///
+/// While it waits (8) no force can flow, and a fast hand (7) only restarts the wait. A fault stays until reset(). Every
+/// failure ends at exactly zero within 20 ms of ticks. Scaling to the motors' torques is the device's.
+///
+/// Invariants: the force is finite and at most maximumForce; nothing is allocated, locked or thrown.
+/// \source Hannaford & Ryu 2002 for step 4. \differs (a) E is taken from the force that acted, damping, limits and the
+/// device's delay included, so what the controller dissipates is not credited once more; (b) part of the arm's own
+/// damping is counted, without which an honest sampled spring looks active; (c) E is at most what the contact stores
+/// plus a reserve, so that energy that was dissipated does not hide what comes later. \thread the servo's
+class ForceGovernor {
+public:
+    /// \throws Error naming a setting out of its range
+    explicit ForceGovernor(const GovernorSettings& settings = {});
+
+    GovernorOutput step(const GovernorInput& in) noexcept;
+
+    /// The operator has seen the fault. A cause that lasts is found again by the next tick; the force engages anew.
+    void reset() noexcept;
+
+    /// The most that a force law may render [N/m], for the loop period of the last tick:
+    /// min(maximum, stiffnessAtOneMillisecond 1.5 ms / (T/2 + delaySamples T)); 0 if that period makes no sense. Falls
+    /// at once, rises at once: pass the result through the tank, which pays for a rise.
+    [[nodiscard]] double stiffnessCap() const noexcept { return cap_; }
+
+    [[nodiscard]] GovernorFault           fault() const noexcept { return fault_; }
+    [[nodiscard]] double                  faultTime() const noexcept { return faultTime_; } ///< [s] GovernorInput::time
+    [[nodiscard]] const GovernorSettings& settings() const noexcept { return settings_; }
+
+private:
+    static constexpr std::size_t kDelays = 8;
+
+    enum class Engagement : std::uint8_t { waiting, engaging, engaged, releasing };
+
+    struct Elapsed {
+        double rise; ///< [s] for what lets a force grow
+        double fall; ///< [s] for what takes it down
+    };
+
+    [[nodiscard]] Elapsed    elapsed(double dt) const noexcept;
+    [[nodiscard]] double     capFor(double period) const noexcept;
+    void                     latch(GovernorFault fault, double time) noexcept;
+    void                     release() noexcept;
+    void                     believe(const GovernorInput& in) noexcept;
+    [[nodiscard]] double     freshness(double age) const noexcept;
+    void                     observe(const GovernorInput& in, double dt) noexcept;
+    [[nodiscard]] glm::dvec3 passive(glm::dvec3 force, const GovernorInput& in, double dt,
+                                     GovernorOutput& out) const noexcept;
+    [[nodiscard]] glm::dvec3 clamped(glm::dvec3 force, GovernorOutput& out) const noexcept;
+    void                     slewTo(glm::dvec3 force, Elapsed passed, GovernorOutput& out) noexcept;
+    void                     engage(const GovernorInput& in, double rise, GovernorOutput& out) noexcept;
+
+    GovernorSettings                settings_;
+    double                          cap_;
+    GovernorFault                   fault_        = GovernorFault::none;
+    double                          faultTime_    = 0;
+    double                          faultGain_    = 1;
+    Engagement                      engagement_   = Engagement::waiting;
+    double                          engageGain_   = 0;
+    int                             calmTicks_    = 0;
+    int                             stoppedTicks_ = 0;
+    double                          energy_       = 0;
+    glm::dvec3                      slewed_{};       ///< [N] after step 6
+    std::array<glm::dvec3, kDelays> sent_{};         ///< [N] by the last ticks, a ring
+    std::size_t                     tick_ = 0;       ///< of the ring
+    glm::dvec3                      lastPosition_{}; ///< [m]
+    bool                            hasPosition_ = false;
+};
+
+} // namespace palp

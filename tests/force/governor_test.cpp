@@ -1,0 +1,752 @@
+#include "engine/force/governor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+constexpr double kNan      = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRounding = 1e-12;
+
+static_assert(std::is_trivially_copyable_v<ForceGovernor>, "it owns nothing, so it cannot allocate");
+static_assert(noexcept(std::declval<ForceGovernor&>().step({})) && noexcept(std::declval<ForceGovernor&>().reset()));
+
+/// A governor and the input of a healthy tick, which a test then spoils.
+struct Servo {
+    ForceGovernor governor;
+    GovernorInput in;
+
+    explicit Servo(const GovernorSettings& settings = {}) : governor(settings)
+    {
+        in.homed = in.inBox = true;
+        in.dt = in.loopPeriod = 1e-3;
+    }
+
+    GovernorOutput tick()
+    {
+        in.time += in.dt > 0 && in.dt < 10 ? in.dt : 0;
+        return governor.step(in);
+    }
+
+    GovernorOutput ticks(int count)
+    {
+        GovernorOutput out;
+        for (int n = 0; n < count; ++n) out = tick();
+        return out;
+    }
+
+    Servo& engaged()
+    {
+        EXPECT_EQ(ticks(6 + 10 + 1500).gain, 1) << "6 ms of slew, 10 calm ticks, 1.5 s";
+        return *this;
+    }
+
+    /// Engaged, and pushing with a force that has been there for long.
+    Servo& pushing(const glm::dvec3& force)
+    {
+        engaged();
+        in.force = force;
+        EXPECT_EQ(ticks(20).force, force);
+        return *this;
+    }
+};
+
+/// From the next tick on: never larger, no step above 1 N beside the first one, exactly zero after 20 ticks.
+void expectGoneIn20Ticks(Servo& servo, const std::string& what)
+{
+    double last = 6;
+    for (int n = 0; n < 20; ++n) {
+        const double force = glm::length(servo.tick().force);
+        EXPECT_LE(force, last + kRounding) << what << ", tick " << n;
+        last = force;
+    }
+    EXPECT_EQ(last, 0) << what;
+}
+
+// ---- 1: what came in can be believed
+
+TEST(ForceGovernor, PassesAnHonestForceUnchanged)
+{
+    Servo servo;
+    servo.engaged();
+
+    for (int n = 0; n < 100; ++n) {
+        servo.in.force = {0.03 * n, -0.01 * n, 0.02 * n};
+        EXPECT_EQ(servo.tick().force, servo.in.force);
+    }
+    EXPECT_EQ(servo.tick().actions, 0U);
+}
+
+TEST(ForceGovernor, WhatIsNotFiniteIsAFaultWithItsOwnReason)
+{
+    for (double bad : {kNan, kInfinity, -kInfinity})
+        for (int axis = 0; axis < 3; ++axis) {
+            for (auto [field, reason] : {std::pair{&GovernorInput::force, GovernorFault::forceNotFinite},
+                                         {&GovernorInput::position, GovernorFault::positionNotFinite},
+                                         {&GovernorInput::velocity, GovernorFault::velocityNotFinite}}) {
+                Servo servo;
+                servo.pushing({0, 0, 5});
+                (servo.in.*field)[axis] = bad;
+
+                const GovernorOutput first = servo.tick();
+                (servo.in.*field)[axis]    = 0;
+
+                EXPECT_EQ(first.fault, reason);
+                EXPECT_NEAR(first.force.z, 4 * 0.95, kRounding) << "one tick of slew and of the fault ramp";
+                expectGoneIn20Ticks(servo, name(reason));
+            }
+            Servo servo;
+            servo.pushing({0, 0, 5});
+            servo.in.dt = bad;
+            EXPECT_EQ(servo.tick().fault, GovernorFault::clockNotFinite);
+            expectGoneIn20Ticks(servo, "clock");
+        }
+}
+
+TEST(ForceGovernor, AnEnergyThatIsNotANumberIsTheForcesFault)
+{
+    for (double GovernorInput::*field : {&GovernorInput::admittedEnergy, &GovernorInput::storedEnergy}) {
+        Servo servo;
+        servo.pushing({0, 0, 5});
+        servo.in.*field = kNan;
+        EXPECT_EQ(servo.tick().fault, GovernorFault::forceNotFinite);
+        expectGoneIn20Ticks(servo, "energy");
+    }
+}
+
+TEST(ForceGovernor, AFaultStaysUntilTheOperatorResetsItAndThenEngagesAnew)
+{
+    Servo servo;
+    servo.pushing({0, 0, 5});
+    servo.in.force.x  = kNan;
+    const double when = servo.in.time + 1e-3;
+    servo.tick();
+    servo.in.force = {0, 0, 5};
+
+    EXPECT_EQ(servo.ticks(5000).force, glm::dvec3(0)) << "the cause has gone, the fault has not";
+    servo.in.force = {};
+    EXPECT_EQ(servo.ticks(5000).fault, GovernorFault::forceNotFinite);
+    EXPECT_NEAR(servo.governor.faultTime(), when, 1e-9);
+
+    servo.governor.reset();
+    EXPECT_EQ(servo.governor.fault(), GovernorFault::none);
+    servo.in.force = {0, 0, 5};
+    EXPECT_EQ(servo.ticks(5000).force, glm::dvec3(0)) << "still pressed in";
+    servo.in.force = {};
+    servo.engaged();
+}
+
+TEST(ForceGovernor, ACauseThatLastsIsFoundAgainAfterAReset)
+{
+    Servo servo;
+    servo.in.force.x = kNan;
+    servo.tick();
+    servo.governor.reset();
+    EXPECT_EQ(servo.tick().fault, GovernorFault::forceNotFinite);
+}
+
+TEST(ForceGovernor, ResetWithoutAFaultChangesNothing)
+{
+    Servo servo;
+    servo.pushing({0, 0, 5});
+    servo.governor.reset();
+    EXPECT_EQ(servo.tick().force.z, 5);
+}
+
+TEST(ForceGovernor, TheFirstReasonIsKept)
+{
+    Servo servo;
+    servo.engaged();
+    servo.in.position.y = kNan;
+    servo.tick();
+    servo.in.force.x = kNan;
+    EXPECT_EQ(servo.tick().fault, GovernorFault::positionNotFinite);
+}
+
+TEST(ForceGovernor, AClockThatStopsIsAFaultAfter20TicksAndLetsNoForceGrow)
+{
+    Servo servo;
+    servo.pushing({0, 0, 1});
+    servo.in.dt    = 0;
+    servo.in.force = {0, 0, 5};
+
+    for (int n = 0; n < 20; ++n) {
+        const GovernorOutput out = servo.tick();
+        EXPECT_EQ(out.force.z, 1) << "no time, no growth";
+        EXPECT_EQ(out.fault, GovernorFault::none);
+    }
+    EXPECT_EQ(servo.tick().fault, GovernorFault::clockStopped);
+    expectGoneIn20Ticks(servo, "though dt stays 0");
+}
+
+TEST(ForceGovernor, AClockThatRunsBackwardsCountsAsStopped)
+{
+    Servo servo;
+    servo.pushing({0, 0, 1});
+    servo.in.dt = -1e-3;
+    EXPECT_EQ(servo.ticks(21).fault, GovernorFault::clockStopped);
+    expectGoneIn20Ticks(servo, "dt below 0");
+}
+
+TEST(ForceGovernor, FiveSecondsWithoutATickAreAFaultAndZeroAtOnce)
+{
+    Servo servo;
+    servo.pushing({0, 0, 5});
+    servo.in.dt = 5;
+
+    const GovernorOutput out = servo.tick();
+
+    EXPECT_EQ(out.fault, GovernorFault::loopStalled);
+    EXPECT_EQ(out.force, glm::dvec3(0));
+}
+
+TEST(ForceGovernor, ALateTickIsNoFaultAndLetsAForceGrowByFourMilliseconds)
+{
+    Servo servo;
+    servo.pushing({0, 0, 1});
+    servo.in.dt    = 0.09;
+    servo.in.force = {0, 0, 6};
+
+    const GovernorOutput out = servo.tick();
+
+    EXPECT_EQ(out.fault, GovernorFault::none);
+    EXPECT_NEAR(out.force.z, 5, kRounding);
+    servo.in.force = {};
+    EXPECT_EQ(servo.tick().force.z, 0) << "but fall by all of it";
+}
+
+TEST(ForceGovernor, MoreThan20MissedExchangesAreALostDevice)
+{
+    Servo servo;
+    servo.pushing({0, 0, 5});
+    servo.in.missedExchanges = 20;
+    EXPECT_EQ(servo.tick().fault, GovernorFault::none);
+    servo.in.missedExchanges = 21;
+    EXPECT_EQ(servo.tick().fault, GovernorFault::deviceLost);
+    expectGoneIn20Ticks(servo, "lost");
+}
+
+// ---- 2: homed and in the box
+
+TEST(ForceGovernor, NotHomedOrOutsideTheBoxIsZeroWithoutAFaultAndEngagesAnew)
+{
+    for (auto [flag, action] : {std::pair{&GovernorInput::homed, GovernorAction::notHomed},
+                                {&GovernorInput::inBox, GovernorAction::outsideBox}}) {
+        Servo servo;
+        servo.pushing({0, 0, 5});
+        servo.in.*flag = false;
+
+        const GovernorOutput first = servo.tick();
+        EXPECT_TRUE(first.did(action));
+        EXPECT_EQ(first.fault, GovernorFault::none);
+        EXPECT_NEAR(first.force.z, 4, kRounding) << "it leaves at 1 N/ms";
+
+        servo.in.*flag = true; // one tick was enough
+        expectGoneIn20Ticks(servo, "outside");
+        EXPECT_EQ(servo.ticks(1000).force, glm::dvec3(0)) << "pressed in";
+        servo.in.force = {};
+        servo.engaged();
+    }
+}
+
+TEST(ForceGovernor, APositionThatJumpsWhileHomingIsNotCountedAsWork)
+{
+    Servo servo;
+    servo.pushing({0, 0, 5});
+    servo.in.homed    = false;
+    servo.in.position = {0, 0, 0.1};
+    EXPECT_NEAR(servo.tick().energy, 0, kRounding);
+    servo.in.homed    = true;
+    servo.in.position = {0, 0, -0.1};
+    EXPECT_NEAR(servo.tick().energy, 0, kRounding);
+}
+
+// ---- 3: fresh
+
+TEST(ForceGovernor, AStaleForceIsHeldFor5MillisecondsAndGoneIn20More)
+{
+    Servo servo;
+    servo.pushing({0, 0, 5});
+
+    for (int age = 0; age <= 30; ++age) { // [ms]
+        servo.in.forceAge          = age * 1e-3;
+        const GovernorOutput out   = servo.tick();
+        const double         share = age <= 5 ? 1 : std::max(0.0, 1 - (age - 5) / 20.0);
+        EXPECT_NEAR(out.force.z, 5 * share, kRounding) << age << " ms";
+        EXPECT_EQ(out.did(GovernorAction::stale), age > 5) << age << " ms";
+        EXPECT_EQ(out.fault, GovernorFault::none);
+    }
+}
+
+TEST(ForceGovernor, AForceThatComesBackInTimeSlewsBack)
+{
+    Servo servo;
+    servo.pushing({0, 0, 5});
+    servo.in.forceAge = 15e-3;
+    EXPECT_NEAR(servo.ticks(10).force.z, 2.5, kRounding);
+    servo.in.forceAge = 0;
+    EXPECT_NEAR(servo.tick().force.z, 3.5, kRounding);
+    EXPECT_NEAR(servo.ticks(2).force.z, 5, kRounding);
+}
+
+TEST(ForceGovernor, AfterFiveSecondsWithoutANewForceItEngagesAnew)
+{
+    Servo servo;
+    servo.pushing({0, 0, 5});
+    for (int n = 0; n < 5000; ++n) {
+        servo.in.forceAge = n * 1e-3;
+        const double z    = servo.tick().force.z;
+        ASSERT_TRUE(z >= 0 && z <= 5);
+        if (n >= 25) {
+            ASSERT_EQ(z, 0);
+        }
+    }
+    servo.in.forceAge = 0;
+    EXPECT_EQ(servo.ticks(1000).force.z, 0) << "the hand has sunk in: 5 N would throw it out";
+    servo.in.force = {};
+    servo.engaged();
+}
+
+TEST(ForceGovernor, AForceThatNeverWasOrWhoseAgeIsUnknownIsStale)
+{
+    for (double age : {kInfinity, kNan}) {
+        Servo servo;
+        servo.pushing({0, 0, 5});
+        servo.in.forceAge = age;
+        EXPECT_TRUE(servo.tick().did(GovernorAction::stale));
+        expectGoneIn20Ticks(servo, "age");
+    }
+}
+
+// ---- 4: passivity
+
+/// Without the terms that a test does not look at.
+GovernorSettings strictObserver()
+{
+    GovernorSettings settings;
+    settings.creditedDamping = 0;
+    return settings;
+}
+
+TEST(ForceGovernor, TheEnergyIsTheWorkOfTheForceThatActed)
+{
+    for (int delay : {0, 1, 3}) {
+        GovernorSettings settings = strictObserver();
+        settings.delaySamples     = delay;
+        Servo servo(settings);
+        servo.pushing({0, 0, 2});
+
+        servo.in.position.z = -1e-3; // the hand goes in against 2 N
+        servo.in.force.z    = 1;
+        EXPECT_NEAR(servo.tick().energy, 2e-3, 1e-15) << "1 N is sent only now";
+        for (int n = 0; n < delay; ++n) EXPECT_NEAR(servo.tick().energy, 2e-3, 1e-15) << "nothing moved";
+        servo.in.position.z = 0;
+        EXPECT_NEAR(servo.tick().energy, 1e-3, 1e-15) << "1 N acts, delay " << delay;
+
+        servo.in.force.z = 2;
+        servo.tick();
+        servo.in.position.z = -1e-3;
+        EXPECT_NEAR(servo.tick().energy, delay == 0 ? 3e-3 : 2e-3, 1e-15) << "2 N acts at once or not yet";
+    }
+}
+
+TEST(ForceGovernor, TheTanksEnergyAndTheArmsDampingAreCredited)
+{
+    Servo servo;
+    servo.pushing({0, 0, 1});
+    servo.in.admittedEnergy = 0.4e-3;
+    servo.in.velocity       = {0.1, 0, 0};
+
+    EXPECT_NEAR(servo.tick().energy, 0.4e-3 + 1.5 * 0.01 * 1e-3, 1e-15);
+}
+
+TEST(ForceGovernor, DissipatedEnergyIsForgotten)
+{
+    // 10 s of sliding against 1 N would leave 1 J behind which any amount of activity could hide.
+    Servo servo;
+    servo.pushing({1, 0, 0});
+    servo.in.storedEnergy = 3e-3;
+    servo.in.velocity     = {-0.1, 0, 0};
+    GovernorOutput out;
+    for (int n = 1; n <= 10000; ++n) {
+        servo.in.position.x = -1e-4 * n;
+        out                 = servo.tick();
+    }
+    EXPECT_NEAR(out.energy, 3e-3 + 2e-3, 1e-15) << "what is stored and the reserve";
+
+    servo.in.storedEnergy = kInfinity;
+    for (int n = 1; n <= 10000; ++n) {
+        servo.in.position.x = -1 - 1e-4 * n;
+        out                 = servo.tick();
+    }
+    EXPECT_EQ(out.energy, 0.2) << "unknown: the limit";
+}
+
+TEST(ForceGovernor, EnergyIsForgottenOutOfContactWithinASecond)
+{
+    Servo servo(strictObserver());
+    servo.pushing({0, 0, 2});
+    servo.in.position.z = -1e-3;
+    servo.tick();
+    servo.in.force = {};
+    servo.ticks(3);
+    const double before = servo.tick().energy;
+
+    EXPECT_NEAR(servo.ticks(1000).energy / before, std::exp(-1), 1e-3) << "leak of 1 s in steps of 1 ms";
+}
+
+TEST(ForceGovernor, TheControllerTakesBackWhatWasGenerated)
+{
+    Servo servo(strictObserver());
+    servo.pushing({0, 0, 1});
+    servo.in.position.z = 20e-6; // 1 N along 20 um: 20 uJ out of nothing
+    servo.in.velocity.z = 0.1;
+
+    const GovernorOutput out = servo.tick();
+
+    EXPECT_NEAR(out.energy, -20e-6, 1e-15);
+    EXPECT_NEAR(out.damping, 20e-6 / (0.01 * 1e-3), 1e-9) << "-E / (v^2 T)";
+    EXPECT_NEAR(out.force.z, 1 - 2 * 0.1, kRounding);
+    EXPECT_TRUE(out.did(GovernorAction::damped));
+    EXPECT_FALSE(out.did(GovernorAction::active)) << "below the tolerance";
+}
+
+TEST(ForceGovernor, TheControllerStopsAtItsLargestDampingAndBelowItsSpeed)
+{
+    Servo servo(strictObserver());
+    servo.pushing({0, 0, 1});
+    servo.in.position.z       = 1e-3;
+    servo.in.velocity.z       = 0.009;
+    const GovernorOutput slow = servo.tick();
+    EXPECT_EQ(slow.damping, 0);
+    EXPECT_TRUE(slow.did(GovernorAction::active)) << "1 mJ is beyond the tolerance";
+
+    servo.in.velocity.z = 0.02;
+    EXPECT_EQ(servo.tick().damping, 20);
+}
+
+/// A wall that pushes along the velocity with 8 N s/m, on an arm of 0.46 kg and 3.2 N s/m: it would run away.
+double speedOfPushedMass(const GovernorSettings& settings)
+{
+    Servo servo(settings);
+    servo.engaged();
+    double x = 0, v = 0.05, fastest = 0;
+    for (int n = 0; n < 3000 && servo.governor.fault() == GovernorFault::none; ++n) {
+        servo.in.position.x = x;
+        servo.in.velocity.x = v;
+        servo.in.force      = {8 * v, 0, 0};
+        v += (servo.tick().force.x - 3.2 * v) / 0.46 * 1e-3;
+        x += v * 1e-3;
+        fastest = std::max(fastest, std::abs(v));
+    }
+    return fastest;
+}
+
+TEST(ForceGovernor, AnActiveWallIsHeldByTheControllerOnly)
+{
+    GovernorSettings without;
+    without.passivityDamping = 0;
+    EXPECT_GT(speedOfPushedMass(without), 1.2) << "the test must bite";
+    EXPECT_LE(speedOfPushedMass({}), 0.052) << "what the first ticks add";
+}
+
+// ---- 5: clamp, 6: slew
+
+TEST(ForceGovernor, ALargeForceIsCutTo6NewtonsAndKeepsItsDirection)
+{
+    Servo servo;
+    servo.engaged();
+    servo.in.force = {300, -400, 0};
+
+    const GovernorOutput out = servo.ticks(20);
+
+    EXPECT_NEAR(out.force.x, 3.6, kRounding);
+    EXPECT_NEAR(out.force.y, -4.8, kRounding);
+    EXPECT_TRUE(out.did(GovernorAction::clamped));
+    servo.in.force = {1e200, 1e200, 0};
+    EXPECT_LE(glm::length(servo.ticks(20).force), 6 + kRounding) << "the length overflows";
+    servo.in.force = {std::numeric_limits<double>::max(), 0, 0};
+    EXPECT_LE(glm::length(servo.ticks(20).force), 6 + kRounding);
+}
+
+TEST(ForceGovernor, AForceChangesByAtMostANewtonPerMillisecond)
+{
+    Servo servo;
+    servo.engaged();
+    servo.in.force = {0, 0, 5};
+    for (int n = 1; n <= 5; ++n) {
+        const GovernorOutput out = servo.tick();
+        EXPECT_NEAR(out.force.z, n, kRounding);
+        EXPECT_EQ(out.did(GovernorAction::slewed), n < 5);
+    }
+    glm::dvec3 last = servo.tick().force;
+    servo.in.force  = {-4, 3, 0}; // turned as a whole
+    for (int n = 0; n < 10; ++n) {
+        const glm::dvec3 now = servo.tick().force;
+        EXPECT_LE(glm::length(now - last), 1 + kRounding);
+        last = now;
+    }
+    EXPECT_EQ(last, servo.in.force);
+}
+
+TEST(ForceGovernor, TheSlewIsPerSecondNotPerTick)
+{
+    Servo servo;
+    servo.engaged();
+    servo.in.dt    = 0.5e-3;
+    servo.in.force = {0, 0, 5};
+    EXPECT_NEAR(servo.ticks(2).force.z, 1, kRounding);
+}
+
+// ---- 7: speed
+
+TEST(ForceGovernor, TooFastIsAFaultAndRampsToZeroIn20Milliseconds)
+{
+    Servo servo;
+    servo.pushing({0, 0, 5});
+    servo.in.velocity = {1.2, 0, 0};
+    EXPECT_EQ(servo.tick().fault, GovernorFault::none) << "at the limit";
+
+    servo.in.velocity        = {0.9, 0.9, 0}; // 1.27
+    const GovernorOutput out = servo.tick();
+
+    EXPECT_EQ(out.fault, GovernorFault::tooFast);
+    EXPECT_NEAR(out.force.z, 5 * 0.95, kRounding);
+    expectGoneIn20Ticks(servo, "too fast");
+}
+
+TEST(ForceGovernor, AHugeSpeedIsTheSameFault)
+{
+    for (double speed : {1e3, 1e200, std::numeric_limits<double>::max()}) {
+        Servo servo;
+        servo.pushing({0, 0, 5});
+        servo.in.velocity = {speed, speed, -speed};
+        servo.in.position = {speed, 0, 0};
+        EXPECT_EQ(servo.tick().fault, GovernorFault::tooFast);
+        expectGoneIn20Ticks(servo, "huge");
+    }
+}
+
+TEST(ForceGovernor, AFastHandOnlyRestartsTheWait)
+{
+    Servo servo;
+    servo.in.velocity = {2, 0, 0};
+    EXPECT_EQ(servo.ticks(100).fault, GovernorFault::none) << "no force can flow";
+    EXPECT_TRUE(servo.tick().did(GovernorAction::waiting));
+}
+
+// ---- 8: engagement
+
+TEST(ForceGovernor, NoForceUntilItWasSmallFor10TicksInTheBox)
+{
+    Servo servo;
+    servo.in.force = {0, 0, 3};
+    for (int n = 0; n < 5000; ++n) ASSERT_EQ(servo.tick().force, glm::dvec3(0)) << "started inside the object";
+
+    servo.in.force = {0, 0, 0.19};
+    servo.ticks(2 + 9); // two of slew, 3 to 1 N; then nine calm ones
+    servo.in.inBox = false;
+    EXPECT_TRUE(servo.tick().did(GovernorAction::waiting)) << "one outside starts the count again";
+    servo.in.inBox = true;
+    EXPECT_TRUE(servo.ticks(10).did(GovernorAction::waiting));
+    EXPECT_TRUE(servo.tick().did(GovernorAction::engaging));
+}
+
+TEST(ForceGovernor, TheForceComesOnEvenlyIn1500Milliseconds)
+{
+    Servo servo;
+    servo.ticks(10);
+    servo.in.force = {0, 0, 2};
+    servo.ticks(2);
+    for (int n = 3; n <= 1500; ++n) EXPECT_NEAR(servo.tick().force.z, 2 * n / 1500.0, 1e-9) << n;
+    EXPECT_EQ(servo.tick().gain, 1);
+}
+
+// ---- the order
+
+TEST(ForceGovernorOrder, BeliefComesBeforeTheBox)
+{
+    Servo servo;
+    servo.in.homed = servo.in.inBox = false;
+    servo.in.force.x                = kNan;
+    EXPECT_EQ(servo.tick().fault, GovernorFault::forceNotFinite) << "a NaN is a fault even where it would be zeroed";
+}
+
+TEST(ForceGovernorOrder, TheBoxComesBeforePassivity)
+{
+    Servo servo(strictObserver());
+    servo.pushing({0, 0, 1});
+    servo.in.position.z      = 1e-3;
+    servo.in.velocity.z      = 0.1;
+    servo.in.inBox           = false;
+    const GovernorOutput out = servo.tick();
+    EXPECT_LT(out.energy, 0);
+    EXPECT_EQ(out.damping, 0) << "outside not even damping is added";
+}
+
+TEST(ForceGovernorOrder, StalenessComesBeforePassivity)
+{
+    Servo servo(strictObserver());
+    servo.pushing({0, 0, 1});
+    servo.in.forceAge   = 15e-3; // half
+    servo.in.position.z = 20e-6;
+    servo.in.velocity.z = 0.1;
+    EXPECT_NEAR(servo.tick().force.z, 0.5 - 2 * 0.1, kRounding) << "the damping is not halved";
+}
+
+TEST(ForceGovernorOrder, PassivityComesBeforeTheClamp)
+{
+    Servo servo(strictObserver());
+    servo.pushing({0, 0, 6});
+    servo.in.position.z      = 2e-3;
+    servo.in.velocity.z      = -0.5; // damping of up to 20 N s/m adds 10 N
+    const GovernorOutput out = servo.ticks(3);
+    EXPECT_TRUE(out.did(GovernorAction::damped));
+    EXPECT_TRUE(out.did(GovernorAction::clamped));
+    EXPECT_LE(glm::length(out.force), 6 + kRounding);
+}
+
+TEST(ForceGovernorOrder, TheClampComesBeforeTheSlew)
+{
+    Servo servo;
+    servo.engaged();
+    servo.in.force = {0, 0, 100};
+    servo.ticks(50);
+    servo.in.force = {};
+    EXPECT_NEAR(servo.tick().force.z, 5, kRounding) << "a slew first would have 50 N to come down from";
+}
+
+TEST(ForceGovernorOrder, TheSlewComesBeforeTheSpeed)
+{
+    Servo servo;
+    servo.engaged();
+    servo.in.force    = {0, 0, 5};
+    servo.in.velocity = {2, 0, 0};
+    EXPECT_NEAR(servo.tick().force.z, 1 * 0.95, kRounding) << "slewed to 1 N, then the first tick of the ramp";
+}
+
+TEST(ForceGovernorOrder, TheSlewComesBeforeTheEngagement)
+{
+    Servo servo;
+    servo.ticks(10 + 750); // half on
+    servo.in.force = {0, 0, 5};
+    EXPECT_NEAR(servo.tick().force.z, 751 / 1500.0, 1e-9) << "1 N of slew, half of it let through";
+}
+
+// ---- the cap, reasons, settings
+
+TEST(ForceGovernor, TheStiffnessCapFollowsTheLoopPeriod)
+{
+    Servo      servo;
+    const auto cap = [&](double period) {
+        servo.in.loopPeriod = period;
+        servo.tick();
+        return servo.governor.stiffnessCap();
+    };
+    EXPECT_EQ(ForceGovernor().stiffnessCap(), 1000) << "before the first tick: the nominal period";
+    EXPECT_NEAR(cap(1e-3), 1000, 1e-9);
+    EXPECT_NEAR(cap(2e-3), 500, 1e-9);
+    EXPECT_NEAR(cap(4e-3), 250, 1e-9);
+    EXPECT_EQ(cap(0.5e-3), 1000) << "the maximum";
+    for (double senseless : {0.0, -1e-3, kNan, kInfinity}) EXPECT_EQ(cap(senseless), 0) << senseless;
+
+    GovernorSettings late;
+    late.delaySamples = 2;
+    EXPECT_NEAR(ForceGovernor(late).stiffnessCap(), 600, 1e-9) << "1.5 of 2.5 ms";
+    late.delaySamples     = 1;
+    late.maximumStiffness = 5000;
+    Servo fast(late);
+    fast.in.loopPeriod = 0.5e-3;
+    fast.tick();
+    EXPECT_NEAR(fast.governor.stiffnessCap(), 2000, 1e-9);
+}
+
+TEST(ForceGovernor, EveryFaultHasItsOwnName)
+{
+    std::set<std::string> names;
+    for (int n = 0; n <= 8; ++n) names.insert(name(static_cast<GovernorFault>(n)));
+    EXPECT_EQ(names.size(), 9U);
+    EXPECT_FALSE(names.contains("unknown"));
+}
+
+TEST(ForceGovernor, RefusesSettingsOutOfRangeByName)
+{
+    const auto complaint = [](auto set) -> std::string {
+        GovernorSettings settings;
+        set(settings);
+        try {
+            ForceGovernor governor(settings);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_NE(complaint([](auto& s) { s.maximumForce = 8.1; }).find("maximumForce"), std::string::npos);
+    EXPECT_NE(complaint([](auto& s) { s.faultRamp = 0.05; }).find("faultRamp"), std::string::npos);
+    EXPECT_NE(complaint([](auto& s) { s.slew = 100; }).find("slew"), std::string::npos) << "8 N would take 80 ms to go";
+    EXPECT_NE(complaint([](auto& s) { s.engageTime = kNan; }).find("engageTime"), std::string::npos);
+}
+
+// ---- anything at all
+
+TEST(ForceGovernor, StaysFiniteAndBoundedOnHostileInput)
+{
+    std::mt19937                           random(11);
+    std::uniform_int_distribution<int>     dice(0, 9999);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const double rare[]  = {kNan, kInfinity, -kInfinity, std::numeric_limits<double>::max(), -1e300, 1e-310, 5, 0};
+    const auto   spoiled = [&](double value) { return dice(random) < 3 ? rare[dice(random) % 8] : value; };
+
+    Servo servo;
+    int   faults = 0, afterFault = 0, flowing = 0;
+    for (int n = 0; n < 1000000; ++n) {
+        GovernorInput& in = servo.in;
+        for (int axis = 0; axis < 3; ++axis) {
+            in.force[axis]    = spoiled(n % 4000 < 2500 ? 0 : 8 * unit(random));
+            in.position[axis] = spoiled(0.001 * unit(random));
+            in.velocity[axis] = spoiled(0.2 * unit(random));
+        }
+        in.dt              = spoiled(1e-3 * (1 + 0.5 * unit(random)));
+        in.loopPeriod      = spoiled(1e-3);
+        in.forceAge        = spoiled(5e-3 * std::abs(unit(random)));
+        in.admittedEnergy  = spoiled(1e-6);
+        in.storedEnergy    = spoiled(1e-3);
+        in.homed           = dice(random) > 0;
+        in.inBox           = dice(random) > 0;
+        in.missedExchanges = dice(random) == 0 ? 1000000 : 0;
+
+        const GovernorOutput out = servo.tick();
+
+        ASSERT_TRUE(std::isfinite(out.force.x + out.force.y + out.force.z) && std::isfinite(out.energy) &&
+                    std::isfinite(out.damping) && std::isfinite(out.gain) &&
+                    std::isfinite(servo.governor.stiffnessCap()));
+        ASSERT_LE(glm::length(out.force), 6 + kRounding);
+        flowing += out.force != glm::dvec3(0);
+        afterFault = out.fault == GovernorFault::none ? 0 : afterFault + 1;
+        if (afterFault > 45) {
+            ASSERT_EQ(out.force, glm::dvec3(0));
+        } // ticks of 0.5 ms take 40 for 20 ms
+        if (afterFault == 60) {
+            servo.governor.reset();
+            ++faults;
+        }
+    }
+    EXPECT_GT(faults, 100) << "or the test says nothing";
+    EXPECT_GT(flowing, 1000) << "or the test says nothing";
+}
+
+} // namespace
+} // namespace palp
