@@ -126,7 +126,8 @@ done
 [ ! -e peers/new_load.svg ] && passed=$((passed + 1)) || complain 'bench plate --out wrote a picture of nothing'
 bad 'nothing to measure' 'begin at 65 nodes' bench plate --device host --nodes 33 --cases new_map
 bad 'quick and large' 'with --quick at most 257' bench plate --quick --nodes 513
-bad 'no such index' 'there is no GPU 77' solve plate.json --device 77
+"$palpate" solve plate.json --device 77 >out.txt 2>err.txt
+[ $? -eq 2 ] && grep -qF 'there is no GPU 77' err.txt && passed=$((passed + 1)) || complain "no such index: $(cat err.txt)"
 good 'the paper'\''s iteration' bench plate --device lavapipe --nodes 33 --cases jacobi
 holds 'Jacobi 0.6, same error'
 mkdir alone && cp "$palpate" alone/palpate
