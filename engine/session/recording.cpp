@@ -31,9 +31,9 @@ using Clock = std::chrono::steady_clock;
 
 static_assert(std::endian::native == std::endian::little, ".npy numbers are written as they lie in memory");
 
-constexpr std::size_t kRing   = 4096; // [1] samples: 4 s at 1 kHz, longer than a disk should ever make us wait
-constexpr auto        kVisits = std::chrono::milliseconds(2); // of the writer; a kill may cost 10 ms
-constexpr std::size_t kBatch  = 256; // [1] samples written at once, all or none: what the end of a disk may cost
+constexpr std::size_t kRing       = 4096; // [1] samples: 4 s at 1 kHz, longer than a disk should ever make us wait
+constexpr auto        kVisits     = std::chrono::milliseconds(2); // of the writer; a kill may cost 10 ms
+constexpr std::size_t kBatch      = 256;  // [1] samples written at once, all or none: what the end of a disk may cost
 constexpr std::size_t kHeader     = 128;  // [bytes] of each .npy file, for every count below 2^64; a multiple of 64
 constexpr std::size_t kMostOfLine = 1024; // [bytes] of samples.csv: 23 numbers of up to 25 characters
 
