@@ -70,6 +70,15 @@ private:
     }
 };
 
+/// A file's own word in a complaint.
+std::string plain(std::string_view word)
+{
+    constexpr std::size_t kMost = 60; // [bytes]
+    std::string           shown;
+    for (const char c : word.substr(0, kMost)) shown += c >= ' ' && c <= '~' ? c : '?'; // a terminal would obey it
+    return word.size() > kMost ? shown + "..." : shown;
+}
+
 constexpr std::string_view kBetween = ",; \t\r"; // what may stand between numbers
 
 /// The first four words of a line; empty where there are fewer.
@@ -93,7 +102,7 @@ HandSample sampleOf(const std::array<std::string_view, 4>& words, const std::str
         const auto number = parseNumber(words[k]);
         if (!number)
             throw Error(where + ": expected a number in column " + std::to_string(k + 1) + ", found \"" +
-                        std::string(words[k].substr(0, 60)) + "\"");
+                        plain(words[k]) + "\"");
         numbers[k] = *number;
     }
     return {numbers[0], {numbers[1], numbers[2], numbers[3]}};
@@ -104,7 +113,7 @@ bool isHeader(const std::array<std::string_view, 4>& words, const std::string& w
     if (parseNumber(words[0])) return false;
     if (words[0].starts_with('t') || words[0].starts_with('T')) return true;
     throw Error(where + ": expected the columns time, x, y, z in this order, found a first column \"" +
-                std::string(words[0].substr(0, 60)) + "\"");
+                plain(words[0]) + "\"");
 }
 
 HandPath handOf(const NodeField& rows, const std::string& name)
@@ -192,18 +201,19 @@ glm::dvec3 HandPath::position(double time) const noexcept
 
 HandPath parseHand(std::istream& in, const std::string& name)
 {
-    constexpr std::size_t kLongestLine = 1 << 16; // [bytes] a file without line ends is no text
+    constexpr std::size_t kLongestLine = 1 << 16; // [bytes] a file without line ends is no text, and may be endless
     Checked               checked;
-    std::string           line;
-    for (std::size_t number = 1; std::getline(in, line); ++number) {
+    std::vector<char>     line(kLongestLine);
+    for (std::size_t number = 1; in.getline(line.data(), std::streamsize(line.size())); ++number) {
         const std::string where = name + ": line " + std::to_string(number);
-        if (line.size() > kLongestLine)
-            throw Error(where + ": expected numbers, found a line of " + std::to_string(line.size()) + " bytes");
-        const auto words = wordsOf(line);
+        const auto        words = wordsOf(line.data());
         if (words[0].empty() || words[0].starts_with('#')) continue;
         if (checked.samples.empty() && isHeader(words, where)) continue;
         checked.add(sampleOf(words, where), where);
     }
+    if (!in.eof())
+        throw Error(name + ": expected lines of numbers, found one longer than " + std::to_string(kLongestLine) +
+                    " bytes; is it a text file?");
     checked.finish(name);
     return HandPath(std::move(checked.samples), name);
 }

@@ -85,9 +85,10 @@ TEST(HandPath, WhatNoHandCanDoIsRefusedWithItsLine)
     EXPECT_TRUE(holds(refusal(good + "1,0,0,0\nend\n"), {"line 4"}));
     EXPECT_TRUE(holds(refusal("x,y,z,time\n0,0,0,0\n"), {"line 1", "\"x\"", "time, x, y, z"}));
     EXPECT_TRUE(holds(refusal(good + "0.001,5,0,0\n"), {"line 3", "5000 m/s", "metres"}));
+    EXPECT_TRUE(holds(refusal(good + "1,0,\x1b[2J,0\n"), {"found \"?[2J\""})) << "no commands for a terminal";
     EXPECT_TRUE(holds(refusal(good), {"hand.csv", "two samples", "found 1"}));
     EXPECT_TRUE(holds(refusal(""), {"found 0"}));
-    EXPECT_TRUE(holds(refusal(good + std::string(100'000, '1')), {"line 3", "100000 bytes"}));
+    EXPECT_TRUE(holds(refusal(good + std::string(100'000, '1')), {"hand.csv", "longer than 65536 bytes"}));
     EXPECT_TRUE(holds(refusal(good + "1,1e308,0,0\n"), {"line 3", "m/s"})) << "beyond what doubles can square";
 }
 
@@ -109,6 +110,8 @@ TEST(HandPath, ReadsAnArrayOfNumpyAndRefusesWhatIsWrongInIt)
     EXPECT_TRUE(holds(read("back.npy"), {"back.npy: row 2", "must rise"}));
     EXPECT_TRUE(holds(read("nan.npy"), {"nan.npy", "[2, 0]", "NaN"}));
     EXPECT_TRUE(holds(read("narrow.npy"), {"four columns", "3"}));
+    EXPECT_TRUE(holds(refusalOf([] { static_cast<void>(readHand("/dev/zero")); }), {"longer than"})) << "endless";
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(readHand(folder.path())); }), {"is a folder"}));
     EXPECT_TRUE(holds(read("none.csv"), {"none.csv", "No such file"}));
 }
 
