@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+#include <cstdlib>
 #include <sstream>
 #include <vector>
 
@@ -509,6 +509,11 @@ std::string variableOf(std::string_view key)
     std::string variable = "PALPATE_";
     for (const char c : key) variable += c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c;
     return variable;
+}
+
+Environment processEnvironment()
+{
+    return [](const char* variable) -> const char* { return std::getenv(variable); };
 }
 
 Scene parseScene(std::string_view text, const std::string& name, const std::filesystem::path& folder,

@@ -95,11 +95,16 @@ struct SceneKey {
 [[nodiscard]] std::string flagOf(std::string_view key);
 [[nodiscard]] std::string variableOf(std::string_view key);
 
+/// The value of an environment variable, or nullptr; an empty value counts as none.
+using Environment = std::function<const char*(const char*)>;
+
+/// That of this process.
+[[nodiscard]] Environment processEnvironment();
+
 /// What the user says beside the file.
 struct SceneOverrides {
-    std::map<std::string, std::string, std::less<>> flags; ///< text per key ("max_force": "4 N")
-    /// The value of an environment variable or nullptr; an empty value counts as none.
-    std::function<const char*(const char*)> environment;
+    std::map<std::string, std::string, std::less<>> flags;       ///< text per key ("max_force": "4 N")
+    Environment                                     environment; ///< none: no variable counts, as in replays
 };
 
 /// Reads a scene file: JSON, comments allowed, SI unless a text says its unit. samples/scenes/scene.schema.json

@@ -1,6 +1,7 @@
 #include "engine/session/scene.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <string>
@@ -87,6 +88,16 @@ TEST(Scene, AnotherCloudFromAFlagBringsItsOwnConstants)
     EXPECT_EQ(scene.patch.material.thickness, 3e-3);
     EXPECT_EQ(scene.origins.at("thickness").where, "sample:ear-lobe");
     EXPECT_FALSE(scene.from) << "closed";
+}
+
+TEST(Scene, TheEnvironmentOfTheProcessCountsOnlyWhereItIsAskedFor)
+{
+    ::setenv("PALPATE_START_HEIGHT", "7mm", 1);
+    const std::string file = R"({"cloud": "sample:skin"})";
+
+    EXPECT_EQ(parsed(file, {{}, processEnvironment()}).startHeight, 7e-3);
+    EXPECT_EQ(parsed(file).startHeight, 10e-3);
+    ::unsetenv("PALPATE_START_HEIGHT");
 }
 
 TEST(Scene, AnEmptyVariableSaysNothing)
