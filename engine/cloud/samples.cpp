@@ -34,6 +34,7 @@ double bump(double dx, double dy, double sigma)
 constexpr glm::dvec3 kEllipsoid{60e-3, 45e-3, 35e-3};
 constexpr double     kHemisphere = 50e-3;  ///< radius [m]
 constexpr double     kSheet      = 150e-3; ///< edge [m]
+constexpr double     kPad        = 240e-3; ///< edge [m]: a window of 150 mm stays on it 45 mm around its middle
 constexpr double     kSaddle     = 120e-3; ///< edge [m]
 constexpr double     kSkin       = 120e-3; ///< edge [m]
 constexpr double     kPalm       = 110e-3; ///< edge [m]
@@ -118,6 +119,11 @@ double sheetModulus(const glm::dvec3&)
 {
     return 1.5e6;
 }
+/// A tendon 8 mm wide, ten times as stiff, along y.
+double padModulus(const glm::dvec3& p)
+{
+    return std::abs(p.x) <= 4e-3 ? 3.5e6 : 0.35e6;
+}
 double saddleModulus(const glm::dvec3&)
 {
     return 1e6;
@@ -154,10 +160,10 @@ struct Shape {
     double (*modulus)(const glm::dvec3& p); ///< where the user names no law [Pa]
 };
 
-const std::array<Shape, 7>& shapes()
+const std::array<Shape, 8>& shapes()
 {
     constexpr glm::dvec3              kUp{0, 0, 1};
-    static const std::array<Shape, 7> kShapes = {{
+    static const std::array<Shape, 8> kShapes = {{
         {{"ellipsoid",
           "the paper's object: semi-axes 60, 45, 35 mm, modulus rising along x from 0.3 to 3 MPa",
           40'000,
@@ -174,6 +180,18 @@ const std::array<Shape, 7>& shapes()
          square(kSheet, 0, 0),
          [](Uniform& u) { return onHeightField(u, kSheet, flat); },
          sheetModulus},
+        {{"pad",
+          "flat pad on soft tissue, 240 mm square, 0.35 MPa, crossed by a tendon ten times as stiff",
+          60'000,
+          {6e-3, 0.45},
+          0.3e6,
+          150e-3,
+          6e-3,
+          {0, 0, 0},
+          kUp},
+         square(kPad, 0, 0),
+         [](Uniform& u) { return onHeightField(u, kPad, flat); },
+         padModulus},
         {{"hemisphere",
           "half a sphere of radius 50 mm, 0.6 MPa with a soft and a stiff spot",
           40'000,

@@ -35,6 +35,17 @@ std::ifstream openForReading(const std::filesystem::path& path)
     return file;
 }
 
+std::string readWhole(const std::filesystem::path& path, std::size_t most, const std::string& expected)
+{
+    std::ifstream in = openForReading(path);
+    std::string   text;
+    for (char part[65536]; text.size() <= most && in; text.append(part, std::size_t(in.gcount())))
+        in.read(part, sizeof part);
+    if (text.size() > most)
+        throw Error(path.string() + ": longer than " + std::to_string(most) + " bytes; expected " + expected);
+    return text;
+}
+
 void writeFileWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write)
 {
     std::error_code status;

@@ -12,6 +12,11 @@ namespace palp {
 /// \throws Error "PATH: cannot be read: REASON" (missing, a folder, no permission)
 [[nodiscard]] std::ifstream openForReading(const std::filesystem::path& path);
 
+/// The whole of a small file.
+/// \param expected  what such a file is, for the complaint about one that is longer than `most` bytes
+/// \throws Error naming the path and the reason
+[[nodiscard]] std::string readWhole(const std::filesystem::path& path, std::size_t most, const std::string& expected);
+
 /// Writes a file whole or not at all: `write` fills a temporary file beside `path`, which is then renamed over it.
 /// Whatever goes wrong (an exception in `write`, a full disk), an older file at `path` stays as it was and nothing
 /// half-written remains.

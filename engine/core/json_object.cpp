@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/nearest_name.h"
 
 namespace palp {
 namespace {
@@ -54,7 +55,7 @@ std::string reasonOf(const Json::exception& failure)
     return shortened(tag == std::string::npos ? text : text.substr(tag + 2));
 }
 
-std::string listed(std::initializer_list<std::string_view> names)
+std::string listed(std::span<const std::string_view> names)
 {
     std::string text;
     for (const std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
@@ -108,9 +109,31 @@ JsonObject JsonObject::parse(std::string_view text, std::string where)
 
 void JsonObject::allowOnly(std::initializer_list<std::string_view> known) const
 {
-    for (const auto& [key, value] : node_->value.items())
-        if (std::ranges::find(known, key) == known.end())
-            throw Error(where_ + ": unknown key " + shortened(inQuotes(key)) + "; known keys: " + listed(known));
+    allowOnly(std::span(known.begin(), known.size()));
+}
+
+void JsonObject::allowOnly(std::span<const std::string_view> known) const
+{
+    for (const auto& [key, value] : node_->value.items()) {
+        if (std::ranges::find(known, key) != known.end()) continue;
+        const auto meant = nearestName(key, known);
+        throw Error(where_ + ": unknown key " + shortened(inQuotes(key)) +
+                    (meant ? ", did you mean " + inQuotes(*meant) + "?" : "") + "; known keys: " + listed(known));
+    }
+}
+
+JsonObject::Kind JsonObject::kind(std::string_view key) const
+{
+    const Json& value = node_->at(key, where_);
+    if (value.is_string()) return Kind::text;
+    if (value.is_number()) return Kind::number;
+    if (value.is_array()) return Kind::list;
+    return value.is_object() ? Kind::object : Kind::other;
+}
+
+std::string JsonObject::json(std::string_view key) const
+{
+    return node_->at(key, where_).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 bool JsonObject::has(std::string_view key) const
@@ -120,8 +143,7 @@ bool JsonObject::has(std::string_view key) const
 
 void JsonObject::refuse(std::string_view key, const std::string& expected) const
 {
-    const std::string found = node_->at(key, where_).dump(-1, ' ', false, Json::error_handler_t::replace);
-    throw Error(where_ + ": key " + inQuotes(key) + ": expected " + expected + ", found " + shortened(found));
+    throw Error(where_ + ": key " + inQuotes(key) + ": expected " + expected + ", found " + shortened(json(key)));
 }
 
 JsonObject JsonObject::object(std::string_view key) const

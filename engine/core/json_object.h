@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <initializer_list>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,12 +17,17 @@ public:
     /// \throws Error with line and column if the text is not JSON or not an object
     static JsonObject parse(std::string_view text, std::string where);
 
-    /// \throws Error naming the first key that is not `known`, and the known ones
+    enum class Kind { text, number, list, object, other };
+
+    /// \throws Error naming the first key that is not `known`, the one that was likely meant, and the known ones
     void allowOnly(std::initializer_list<std::string_view> known) const;
+    void allowOnly(std::span<const std::string_view> known) const;
 
     [[nodiscard]] bool has(std::string_view key) const;
 
     // All below throw Error if the key is missing or its value has another type.
+    [[nodiscard]] Kind                kind(std::string_view key) const;
+    [[nodiscard]] std::string         json(std::string_view key) const; ///< the value as JSON on one line
     [[nodiscard]] JsonObject          object(std::string_view key) const;
     [[nodiscard]] std::string         text(std::string_view key) const;
     [[nodiscard]] double              number(std::string_view key) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "engine/core/contract.h"
 #include "engine/core/extremes.h"
 
 namespace palp {
@@ -79,6 +80,36 @@ std::optional<Edge> edgeNamed(std::string_view text)
     for (Edge edge : {Edge::clamped, Edge::supported, Edge::free})
         if (name(edge) == text) return edge;
     return {};
+}
+
+PlateEdges parseEdges(std::string_view text, const std::string& what)
+{
+    const auto edgeOf = [&](std::string_view word) {
+        if (const auto edge = edgeNamed(word)) return *edge;
+        throw Error(what + ": unknown name \"" + std::string(word) + "\"; known: clamped, supported, free");
+    };
+    if (text.find('=') == std::string_view::npos) {
+        const Edge all = edgeOf(text);
+        return {all, all, all, all};
+    }
+    PlateEdges edges;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t      end  = std::min(text.find(',', begin), text.size());
+        const std::string_view part = text.substr(begin, end - begin), side = part.substr(0, 2);
+        if (part.size() < 4 || part[2] != '=' || (side != "x0" && side != "x1" && side != "z0" && side != "z1"))
+            throw Error(what + ": expected SIDE=EDGE with side x0, x1, z0 or z1, found \"" + std::string(part) + "\"");
+        Edge& edge = side == "x0" ? edges.x0 : side == "x1" ? edges.x1 : side == "z0" ? edges.z0 : edges.z1;
+        edge       = edgeOf(part.substr(3));
+        begin      = end + 1;
+    }
+    return edges;
+}
+
+std::string edgesText(const PlateEdges& edges)
+{
+    if (edges == PlateEdges{edges.x0, edges.x0, edges.x0, edges.x0}) return name(edges.x0);
+    return std::string("x0=") + name(edges.x0) + ",x1=" + name(edges.x1) + ",z0=" + name(edges.z0) +
+           ",z1=" + name(edges.z1);
 }
 
 std::optional<std::string> whyUnsolvable(const Plate& plate)

@@ -26,6 +26,12 @@ struct PlateEdges {
     bool operator==(const PlateEdges&) const = default;
 };
 
+/// Reads "free", or "x0=free,z1=supported" with the other sides clamped.
+/// \throws Error naming `what`, the part that is wrong and what is known
+[[nodiscard]] PlateEdges parseEdges(std::string_view text, const std::string& what);
+/// The same the other way: one name if all sides are alike.
+[[nodiscard]] std::string edgesText(const PlateEdges& edges);
+
 /// A Kirchhoff plate of varying flexural rigidity on an elastic foundation: everything but the load.
 ///
 ///     E(w) = 1/2 int D [ (w_xx + w_zz)^2 - 2 (1-nu)(w_xx w_zz - w_xz^2) ] + 1/2 int k w^2 - int q w

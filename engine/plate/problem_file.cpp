@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -21,18 +20,6 @@ constexpr int kMostCells = 4096; // [1] a side: one field of nodes is then 134 M
 
 /// The largest problem file that is read [bytes]: some 400 000 probes.
 constexpr std::size_t kLargestFile = std::size_t(16) << 20;
-
-std::string textOf(const std::filesystem::path& path)
-{
-    std::ifstream in = openForReading(path);
-    std::string   text;
-    for (char part[65536]; text.size() <= kLargestFile && in; text.append(part, std::size_t(in.gcount())))
-        in.read(part, sizeof part);
-    if (text.size() > kLargestFile)
-        throw Error(path.string() + ": longer than " + std::to_string(kLargestFile) +
-                    " bytes; expected a problem file, with grids in .npy files beside it");
-    return text;
-}
 
 PlateGrid gridOf(double sizeX, double sizeZ, int cellsX, int cellsZ)
 {
@@ -264,7 +251,8 @@ std::vector<Probe> readProbes(const JsonObject& problem, const PlateGrid& grid)
 
 PlateProblem readProblem(const std::filesystem::path& path, std::optional<int> cells)
 {
-    const JsonObject file = JsonObject::parse(textOf(path), path.string());
+    const JsonObject file = JsonObject::parse(
+        readWhole(path, kLargestFile, "a problem file, with grids in .npy files beside it"), path.string());
     file.allowOnly({"size", "cells", "poisson", "edges", "foundation", "rigidity", "load", "probes"});
 
     const PlateGrid fileGrid = readGrid(file);

@@ -63,29 +63,6 @@ double lengthOf(const TouchOptions& options, const std::string& text, const std:
 }
 
 constexpr const char* kSummary = "touch.json";
-constexpr const char* kEdges   = "clamped, supported, free";
-
-/// "free", or "x0=free,z1=supported" with the others clamped.
-PlateEdges edgesOf(const std::string& text)
-{
-    if (text.find('=') == std::string::npos) {
-        const Edge all = named(edgeNamed(text), "--edges", text, kEdges);
-        return {all, all, all, all};
-    }
-    PlateEdges edges;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end  = std::min(text.find(',', begin), text.size());
-        const std::string part = text.substr(begin, end - begin), side = part.substr(0, 2);
-        if (part.size() < 4 || part[2] != '=' || (side != "x0" && side != "x1" && side != "z0" && side != "z1"))
-            throw Error("--edges: expected SIDE=EDGE with side x0, x1, z0 or z1, found \"" + part + "\"");
-        (side == "x0"   ? edges.x0
-         : side == "x1" ? edges.x1
-         : side == "z0" ? edges.z0
-                        : edges.z1) = named(edgeNamed(part.substr(3)), "--edges", part.substr(3), kEdges);
-        begin                       = end + 1;
-    }
-    return edges;
-}
 
 /// Settings in order of precedence: defaults, the sample's constants, the preset, the options.
 PatchSettings settingsOf(const TouchOptions& options)
@@ -107,7 +84,7 @@ PatchSettings settingsOf(const TouchOptions& options)
                                       "--foundation", options.foundation);
     if (!options.window.empty()) settings.window = lengthOf(options, options.window, "--window");
     if (!options.footprint.empty()) settings.footprintRadius = lengthOf(options, options.footprint, "--footprint");
-    if (!options.edges.empty()) settings.edges = edgesOf(options.edges);
+    if (!options.edges.empty()) settings.edges = parseEdges(options.edges, "--edges");
     if (!options.map.empty())
         settings.map =
             named(mapNamed(options.map), "--map", options.map, "lambert-azimuthal, lambert-cylindrical, gall-peters");

@@ -43,7 +43,7 @@ good 'help of bench' bench --help
 holds 'bench solve --out bench'
 grep -qF 'palpate touch' out.txt && complain 'the help of bench has the examples of touch' || passed=$((passed + 1))
 good 'list of samples' info --samples
-for sample in ellipsoid sheet hemisphere saddle skin palm ear-lobe; do holds "sample:$sample"; done
+for sample in ellipsoid sheet pad hemisphere saddle skin palm ear-lobe; do holds "sample:$sample"; done
 good 'a sample as a file' convert sample:skin skin.ply --points 5000
 good 'info' info skin.ply --json
 holds '"points": 5000'

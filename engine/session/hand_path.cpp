@@ -1,0 +1,305 @@
+#include "engine/session/hand_path.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "engine/chart/chart.h"
+#include "engine/cloud/tokens.h"
+#include "engine/contact/contact.h"
+#include "engine/core/contract.h"
+#include "engine/core/file.h"
+#include "engine/core/npy.h"
+
+namespace palp {
+namespace {
+
+constexpr double      kTick        = 1e-3;       // [s] of generated hands: the servo's period
+constexpr std::size_t kMostSamples = 10'000'000; // [1] 2.8 hours at 1 kHz; a larger file is no hand
+
+std::string text(double value)
+{
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%.9g", value);
+    return buffer;
+}
+
+/// Takes samples one by one and refuses the first that no hand can make.
+class Checked {
+public:
+    /// \param sampleName  "line 4", "row 3", for complaints
+    void add(const HandSample& sample, const std::string& where)
+    {
+        const std::array<double, 4> numbers = {sample.time, sample.position.x, sample.position.y, sample.position.z};
+        for (const double number : numbers)
+            if (!std::isfinite(number))
+                throw Error(where + ": expected finite numbers, time [s] and x, y, z [m], found " +
+                            (std::isnan(number) ? "NaN" : "infinity"));
+        if (samples.size() >= kMostSamples)
+            throw Error(where + ": expected at most " + std::to_string(kMostSamples) + " samples; cut the file");
+        if (!samples.empty()) step(samples.back(), sample, where);
+        samples.push_back(sample);
+    }
+
+    void finish(const std::string& name) const
+    {
+        if (samples.size() < 2)
+            throw Error(name + ": expected at least two samples time, x, y, z, found " +
+                        std::to_string(samples.size()));
+    }
+
+    std::vector<HandSample> samples;
+    double                  fastest = 0; ///< [m/s]
+
+private:
+    void step(const HandSample& from, const HandSample& to, const std::string& where)
+    {
+        if (!(to.time > from.time))
+            throw Error(where + ": expected a time after " + text(from.time) + " s, found " + text(to.time) +
+                        " s: time must rise from sample to sample");
+        const double speed = glm::length(to.position - from.position) / (to.time - from.time);
+        if (!(speed <= HandPath::kFastest))
+            throw Error(where + ": expected a hand slower than " + text(HandPath::kFastest) + " m/s, found " +
+                        text(speed) + " m/s; are the times seconds and the positions metres?");
+        fastest = std::max(fastest, speed);
+    }
+};
+
+/// A file's own word in a complaint.
+std::string plain(std::string_view word)
+{
+    constexpr std::size_t kMost = 60; // [bytes]
+    std::string           shown;
+    for (const char c : word.substr(0, kMost)) shown += c >= ' ' && c <= '~' ? c : '?'; // a terminal would obey it
+    return word.size() > kMost ? shown + "..." : shown;
+}
+
+constexpr std::string_view kBetween = ",; \t\r"; // what may stand between numbers
+
+/// The first four words of a line; empty where there are fewer.
+std::array<std::string_view, 4> wordsOf(std::string_view line)
+{
+    std::array<std::string_view, 4> words{};
+    for (std::string_view& word : words) {
+        line.remove_prefix(std::min(line.find_first_not_of(kBetween), line.size()));
+        word = line.substr(0, line.find_first_of(kBetween));
+        line.remove_prefix(word.size());
+    }
+    return words;
+}
+
+HandSample sampleOf(const std::array<std::string_view, 4>& words, const std::string& where)
+{
+    std::array<double, 4> numbers{};
+    for (std::size_t k = 0; k < 4; ++k) {
+        if (words[k].empty())
+            throw Error(where + ": expected four columns, time [s], x, y, z [m], found " + std::to_string(k));
+        const auto number = parseNumber(words[k]);
+        if (!number)
+            throw Error(where + ": expected a number in column " + std::to_string(k + 1) + ", found \"" +
+                        plain(words[k]) + "\"");
+        numbers[k] = *number;
+    }
+    return {numbers[0], {numbers[1], numbers[2], numbers[3]}};
+}
+
+bool isHeader(const std::array<std::string_view, 4>& words, const std::string& where)
+{
+    if (parseNumber(words[0])) return false;
+    if (words[0].starts_with('t') || words[0].starts_with('T')) return true;
+    throw Error(where + ": expected the columns time, x, y, z in this order, found a first column \"" +
+                plain(words[0]) + "\"");
+}
+
+HandPath handOf(const NodeField& rows, const std::string& name)
+{
+    if (rows.nodesZ() < 4)
+        throw Error(name + ": expected an array of four columns, time [s], x, y, z [m], found " +
+                    std::to_string(rows.nodesZ()));
+    std::vector<HandSample> samples;
+    for (int i = 0; i < rows.nodesX(); ++i) samples.push_back({rows(i, 0), {rows(i, 1), rows(i, 2), rows(i, 3)}});
+    return HandPath(std::move(samples), name);
+}
+
+/// Integral of the smooth step u^2 (3 - 2u) from 0 to u, for u clamped to [0, 1]; beyond 1 it rises by 1 per u.
+double rampedTime(double u)
+{
+    const double v = std::clamp(u, 0.0, 1.0);
+    return v * v * v - v * v * v * v / 2 + std::max(u - 1, 0.0);
+}
+
+void expectPositive(std::initializer_list<std::pair<const char*, double>> values)
+{
+    for (const auto& [what, value] : values)
+        if (!(value > 0 && std::isfinite(value)))
+            throw Error(std::string("hand: ") + what + ": expected a positive number, found " + text(value));
+}
+
+/// The generated hands in the coordinates east, north, up of the place.
+class Script {
+public:
+    explicit Script(const HandScript& script)
+        : s_(script), fall_(script.height + script.depth), descent_(std::numbers::pi * fall_ / (2 * script.speed))
+    {
+    }
+
+    [[nodiscard]] glm::dvec3 at(double t) const
+    {
+        switch (s_.motion) {
+        case HandMotion::press:
+            return {0, 0, up(t)};
+        case HandMotion::circle: {
+            constexpr double kRamp = 0.2; // [s] from rest to full speed: a person takes about as long
+            const double     angle = kRamp * rampedTime((t - descent_) / kRamp) * s_.speed / s_.radius;
+            return {s_.radius * std::cos(angle), s_.radius * std::sin(angle), up(std::min(t, descent_))};
+        }
+        case HandMotion::scan:
+            break;
+        }
+        const double phase = std::max(t - descent_, 0.0) * s_.speed / s_.radius;
+        return {-s_.radius * std::cos(phase), 0, up(std::min(t, descent_))};
+    }
+
+private:
+    [[nodiscard]] double up(double t) const
+    {
+        return s_.height - fall_ * (1 - std::cos(std::numbers::pi * t / descent_)) / 2;
+    }
+
+    HandScript s_;
+    double     fall_;    ///< [m]
+    double     descent_; ///< [s]
+};
+
+} // namespace
+
+HandPath::HandPath(std::vector<HandSample> samples, const std::string& name)
+{
+    Checked checked;
+    checked.samples.reserve(samples.size());
+    for (const HandSample& sample : samples)
+        checked.add(sample, name + ": row " + std::to_string(checked.samples.size()));
+    checked.finish(name);
+    samples_ = std::move(checked.samples);
+    fastest_ = checked.fastest;
+}
+
+glm::dvec3 HandPath::position(double time) const noexcept
+{
+    if (!(time > samples_.front().time)) return samples_.front().position; // NaN too
+    if (time >= samples_.back().time) return samples_.back().position;
+    const auto        next = std::ranges::upper_bound(samples_, time, {}, &HandSample::time);
+    const HandSample &b = *next, &a = *(next - 1);
+    if (time == a.time) return a.position; // bit for bit: -0 + 0 would be 0
+    return a.position + (time - a.time) / (b.time - a.time) * (b.position - a.position);
+}
+
+HandPath parseHand(std::istream& in, const std::string& name)
+{
+    constexpr std::size_t kLongestLine = 1 << 16; // [bytes] a file without line ends is no text, and may be endless
+    Checked               checked;
+    std::vector<char>     line(kLongestLine);
+    for (std::size_t number = 1; in.getline(line.data(), std::streamsize(line.size())); ++number) {
+        const std::string where = name + ": line " + std::to_string(number);
+        const auto        words = wordsOf(line.data());
+        if (words[0].empty() || words[0].starts_with('#')) continue;
+        if (checked.samples.empty() && isHeader(words, where)) continue;
+        checked.add(sampleOf(words, where), where);
+    }
+    if (!in.eof())
+        throw Error(name + ": expected lines of numbers, found one longer than " + std::to_string(kLongestLine) +
+                    " bytes; is it a text file?");
+    checked.finish(name);
+    return HandPath(std::move(checked.samples), name);
+}
+
+HandPath readHand(const std::filesystem::path& path)
+{
+    if (path.extension() == ".npy") return handOf(readNpy(path), path.string());
+    std::ifstream in = openForReading(path);
+    return parseHand(in, path.string());
+}
+
+HandPlace handPlace(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
+{
+    const Contact contact = touchAt(cloud, index, scene.place, scene.from, scene.patch.window / 4);
+    return {contact.point, contact.outward};
+}
+
+const char* name(HandMotion motion) noexcept
+{
+    return motion == HandMotion::press ? "press" : motion == HandMotion::circle ? "circle" : "scan";
+}
+
+std::optional<HandMotion> motionNamed(std::string_view text)
+{
+    for (const HandMotion motion : {HandMotion::press, HandMotion::circle, HandMotion::scan})
+        if (name(motion) == text) return motion;
+    return {};
+}
+
+HandPath makeHand(const HandScript& script, const HandPlace& place)
+{
+    expectPositive({{"speed", script.speed},
+                    {"radius", script.radius},
+                    {"height + depth", script.height + script.depth},
+                    {"duration", script.duration}});
+    const Frame             frame = Frame::about(place.outward);
+    const Script            motion(script);
+    const double            ticks = std::ceil(script.duration / kTick);
+    std::vector<HandSample> samples;
+    if (!(ticks < double(kMostSamples)))
+        throw Error("hand: duration: expected at most " + text(double(kMostSamples) * kTick) + " s, found " +
+                    text(script.duration) + " s");
+    samples.reserve(std::size_t(ticks) + 1);
+    for (std::size_t i = 0; i <= std::size_t(ticks); ++i) {
+        const double     t = double(i) * kTick;
+        const glm::dvec3 p = motion.at(t);
+        samples.push_back({t, place.point + p.x * frame.east + p.y * frame.north + p.z * frame.normal});
+    }
+    return HandPath(std::move(samples), std::string("hand ") + name(script.motion));
+}
+
+HandPath draped(const HandPath& hand, const HandPlace& place, const PointCloud& cloud, const NeighbourIndex& index)
+{
+    constexpr double           kReach  = 3; // [1] spacings: some 28 points, so that the height is smooth
+    const double               radius  = kReach * index.spacing();
+    std::vector<HandSample>    samples = hand.samples();
+    std::vector<std::uint32_t> near;
+    // Heights are looked for around the last one: where the hand has come from the surface is known. It starts at the
+    // place and walks to the first sample in steps of a spacing.
+    double     height = 0; // [m] above the plane through the place
+    const auto follow = [&](const glm::dvec3& inPlane) {
+        index.gather(place.point + inPlane + height * place.outward, radius, near);
+        double sum = 0, weights = 0;
+        for (const std::uint32_t point : near) {
+            const glm::dvec3 d      = cloud.positions()[point] - place.point;
+            const double     h      = glm::dot(d, place.outward);
+            const glm::dvec3 beside = d - h * place.outward - inPlane;
+            const double     share  = 1 - glm::dot(beside, beside) / (radius * radius);
+            if (share <= 0) continue;
+            weights += share * share;
+            sum += share * share * h;
+        }
+        if (weights > 0) height = sum / weights;
+    };
+    const auto inPlaneOf = [&](const glm::dvec3& p) {
+        const glm::dvec3 d = p - place.point;
+        return d - glm::dot(d, place.outward) * place.outward;
+    };
+    const glm::dvec3 first = inPlaneOf(samples.front().position);
+    const double     steps = radius > 0 ? std::ceil(glm::length(first) / index.spacing()) : 0;
+    for (int i = 0; i < int(steps); ++i) follow(double(i) / steps * first);
+    for (HandSample& sample : samples) {
+        if (radius > 0) follow(inPlaneOf(sample.position));
+        sample.position += height * place.outward;
+    }
+    return HandPath(std::move(samples), "hand");
+}
+
+} // namespace palp

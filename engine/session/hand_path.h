@@ -1,0 +1,112 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/cloud/neighbour_index.h"
+#include "engine/session/scene.h"
+
+namespace palp {
+
+/// Where a scripted hand is at one time.
+struct HandSample {
+    double     time = 0;   ///< [s]
+    glm::dvec3 position{}; ///< of the HIP [m]
+};
+
+/// A scripted hand: straight lines between samples.
+///
+/// Lines, not a cubic through the samples: a cubic overshoots, into the object if it must, and is faster in places than
+/// the hand was; a line is never faster than fastest(), and at the time of a sample gives that sample bit for bit.
+/// Invariant: at least two samples, all finite, times rising.
+/// \thread immutable; pure
+class HandPath {
+public:
+    /// Faster is no hand, but a wrong unit [m/s]: a thrown ball has 40.
+    static constexpr double kFastest = 100;
+
+    /// \param name  opens complaints
+    /// \throws Error naming the first sample that is wrong (counted from 0)
+    explicit HandPath(std::vector<HandSample> samples, const std::string& name = "hand");
+
+    /// The hand at a time [s]: at rest at the first sample before it begins, at the last after it has ended.
+    [[nodiscard]] glm::dvec3 position(double time) const noexcept;
+
+    [[nodiscard]] double begin() const noexcept { return samples_.front().time; }             ///< [s]
+    [[nodiscard]] double duration() const noexcept { return samples_.back().time - begin(); } ///< [s]
+    [[nodiscard]] double fastest() const noexcept { return fastest_; }                        ///< [m/s]
+    [[nodiscard]] const std::vector<HandSample>& samples() const noexcept { return samples_; }
+
+private:
+    std::vector<HandSample> samples_;
+    double                  fastest_ = 0; ///< [m/s]
+};
+
+/// Reads a hand from a file of rows time [s], x, y, z [m]; further columns are skipped, so that samples.csv of a
+/// recorded session is a hand too.
+///
+/// .npy: an array of shape (n, 4) or wider. Any other extension: text, one sample a line, numbers between commas,
+/// semicolons, blanks or tabs; lines that start with '#' are comments; a header line is skipped if its first name
+/// begins with "t", as in "time".
+/// \throws Error naming the file and the line: NaN, infinity, time that does not rise, too few columns, a hand faster
+///         than HandPath::kFastest (millimetres?)
+[[nodiscard]] HandPath readHand(const std::filesystem::path& path);
+
+/// The same of text, from a stream; `name` stands in messages.
+[[nodiscard]] HandPath parseHand(std::istream& in, const std::string& name);
+
+/// A place on an object and the side of the hand there.
+struct HandPlace {
+    glm::dvec3 point{};          ///< [m] on the surface
+    glm::dvec3 outward{0, 0, 1}; ///< [1] unit vector to the hand
+};
+
+/// Where the scene's hand works: the cloud's point nearest to Scene::place, and the direction Scene::from.
+/// \throws Error if the place is farther than a quarter of the window from the cloud
+[[nodiscard]] HandPlace handPlace(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index);
+
+enum class HandMotion {
+    press,  ///< down and up again at one place
+    circle, ///< down, then round the place
+    scan    ///< down beside the place, then to and fro across it
+};
+
+[[nodiscard]] const char*               name(HandMotion motion) noexcept;   ///< "press", "circle", "scan"
+[[nodiscard]] std::optional<HandMotion> motionNamed(std::string_view name); ///< empty if unknown
+
+/// What a generated hand does.
+struct HandScript {
+    HandMotion motion   = HandMotion::press;
+    double     speed    = 0.05;  ///< the highest it has [m/s]
+    double     depth    = 2e-3;  ///< below the surface [m]
+    double     radius   = 10e-3; ///< of the circle; half the length of a scan [m]
+    double     height   = 10e-3; ///< above the place, where it starts [m]
+    double     duration = 5;     ///< [s]
+};
+
+/// A generated hand in the plane through the place, perpendicular to its outward direction: sampled every millisecond
+/// from time 0 on, without a jump in velocity, never faster than the script's speed. Same script, same bits.
+///
+///     press   outward height  h - (h + d)(1 - cos(pi t / T))/2,  T = pi (h + d) / (2 speed), again and again
+///     circle  press's first half beside the place, then round it, the speed rising smoothly within a fifth of a second
+///     scan    press's first half, then along the line as -r cos(speed t / r)
+///
+/// \throws Error naming what is not positive
+[[nodiscard]] HandPath makeHand(const HandScript& script, const HandPlace& place);
+
+/// A hand that keeps its depth over a curved object: each sample moves along `outward` by the height of the cloud above
+/// the plane through the place, there.
+///
+/// The height is the weighted mean of the near points' heights, weights (1 - r^2/R^2)^2 by their distance r in the
+/// plane, R three spacings of the cloud: smooth where the hand is, whatever the points. Where the cloud ends the last
+/// height stays. The result may be faster than makeHand's by the slope of the surface.
+[[nodiscard]] HandPath draped(const HandPath& hand, const HandPlace& place, const PointCloud& cloud,
+                              const NeighbourIndex& index);
+
+} // namespace palp

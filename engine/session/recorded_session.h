@@ -1,0 +1,54 @@
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/session/hand_path.h"
+#include "engine/session/scene.h"
+#include "engine/session/session_sample.h"
+
+namespace palp {
+
+/// A session as it lies in its folder.
+struct RecordedSession {
+    std::filesystem::path      folder;
+    std::string                clock;            ///< "real", "virtual"
+    std::string                device;           ///< as it was called then
+    std::string                command;          ///< that recorded it
+    std::string                scene;            ///< JSON for parseScene()
+    bool                       finished = false; ///< false: killed, or still running
+    std::vector<SessionSample> samples;
+};
+
+/// Reads what Recording wrote, also of a session that was killed: then the samples that all columns have.
+/// \throws Error naming the file, what was expected and found
+[[nodiscard]] RecordedSession readSession(const std::filesystem::path& folder);
+
+/// The scene as it was run. \throws Error, also if its cloud is not where it was
+[[nodiscard]] Scene sceneOf(const RecordedSession& session);
+
+/// The hand of a session: at the time of each sample exactly where it was.
+/// \throws Error if it has fewer than two samples
+[[nodiscard]] HandPath handOf(const RecordedSession& session);
+
+/// The first place where two sessions differ.
+struct SessionDifference {
+    std::size_t sample = 0;    ///< counted from 0
+    double      time   = 0;    ///< of that sample [s]
+    std::string column;        ///< empty: one session ends here
+    std::size_t component = 0; ///< of a vector: 0, 1, 2
+    std::string first;         ///< value in the first session; its bits too where the values print alike
+    std::string second;
+};
+
+/// Compares sample by sample and, within one, column by column, bit for bit: NaN equals the same NaN, and 0 is not -0.
+/// What the wall clock measured (SessionColumn::measured) is left out. Empty if nothing differs.
+[[nodiscard]] std::optional<SessionDifference> compareSessions(const RecordedSession& a, const RecordedSession& b);
+
+/// One sentence: "sample 412 (0.412 s): force z is 0.8312 in run1 and 0.8313 in run2".
+[[nodiscard]] std::string describe(const SessionDifference& difference, const RecordedSession& a,
+                                   const RecordedSession& b);
+
+} // namespace palp

@@ -1,0 +1,133 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <glm/vec3.hpp>
+
+#include "engine/cloud/point_cloud_io.h"
+#include "engine/pipeline/pipeline.h"
+
+namespace palp {
+
+/// How the servo bridges the time between two answers of the plate.
+enum class HandOver {
+    table, ///< compliances around the place where the hand will be, interpolated by position
+    hold,  ///< the last compliance, for comparison: steps when a new one comes
+    blend  ///< from the last to the newest over a period, for comparison: lags
+};
+
+/// Which proxy stands for the finger.
+enum class ProxyForm {
+    hybrid,    ///< a local fit of the surface: no tunnelling, smooth on sheets
+    regulated, ///< radial overshoot with a step that is regulated
+    plain      ///< radial overshoot as the paper has it
+};
+
+/// Where a value of a scene came from; a later one wins.
+enum class Origin {
+    standard,    ///< what this program takes if nobody says anything
+    sample,      ///< what suits the procedural cloud
+    scene,       ///< the scene file
+    environment, ///< PALPATE_<KEY>
+    flag         ///< the command line
+};
+
+[[nodiscard]] const char* name(HandOver law) noexcept;   ///< "table", "hold", "blend"
+[[nodiscard]] const char* name(ProxyForm form) noexcept; ///< "hybrid", "regulated", "plain"
+[[nodiscard]] const char* name(Origin origin) noexcept;  ///< "default", "sample", ...
+
+struct ValueOrigin {
+    Origin      origin = Origin::standard;
+    std::string where; ///< "sample:skin", a file, "PALPATE_THICKNESS", "--thickness"; empty for a default
+};
+
+/// Everything that decides a session but the hand: what is touched, how it bends, how that becomes a force.
+///
+/// Invariant of what readScene() returns: every value is within the bounds that sceneKeys() state, and a cloud's file
+/// existed when the scene was read.
+struct Scene {
+    std::string   cloud;      ///< "sample:NAME", or the path of a cloud file
+    std::size_t   points = 0; ///< of a sample [1]; 0: a file's own
+    std::uint64_t seed   = 1; ///< of a sample [1]
+    std::string   lengthUnit; ///< of a file's coordinates; empty: its comment, else m
+    std::string   stiffness;  ///< law of the modulus over the cloud, see parseSpatialLaw [Pa]; empty: the cloud's own
+    PatchSettings patch;      ///< material, foundation, window, map, force law, ...
+
+    HandOver handOver        = HandOver::table;
+    int      tableSize       = 3;  ///< footprints a side of the table, odd [1]; reaches (size - 1)/2 footprint radii
+    double   deformationRate = 60; ///< of the plate's thread [Hz]
+
+    ProxyForm proxy           = ProxyForm::hybrid;
+    double    staticFriction  = 0.5;  ///< mu_s [1]; skin on skin 0.5 to 1
+    double    dynamicFriction = 0.3;  ///< mu_d [1], at most mu_s
+    double    maxForce        = 6;    ///< beyond it the governor clamps [N]
+    double    stiffnessCap    = 1000; ///< of what the device renders at a period of 1 ms [N/m]
+
+    std::string device = "auto"; ///< of the plate, as `--device` takes it
+
+    glm::dvec3                place{};             ///< [m] on the cloud, where there is something to feel
+    std::optional<glm::dvec3> from{};              ///< [1] the hand's side there; empty: away from the cloud's middle
+    double                    startHeight = 10e-3; ///< [m] of the hand above `place` when the session starts
+
+    std::map<std::string, ValueOrigin, std::less<>> origins; ///< of every key that has a value
+};
+
+/// One value of a scene, under the same name in a file ("max_force"), the environment (PALPATE_MAX_FORCE) and as a
+/// flag (--max-force). Quantities may be plain numbers in `unit` or texts with a unit of the same dimension ("4 mm").
+struct SceneKey {
+    std::string_view name;
+    std::string_view unit;     ///< of plain numbers; "1" for a ratio or a count, empty for names and texts
+    std::string_view means;    ///< one line
+    std::string_view expected; ///< its bounds, as complaints state them
+};
+
+/// All keys, in the order in which help texts and printConfig() list them.
+[[nodiscard]] std::span<const SceneKey> sceneKeys();
+
+/// "--max-force" and "PALPATE_MAX_FORCE".
+[[nodiscard]] std::string flagOf(std::string_view key);
+[[nodiscard]] std::string variableOf(std::string_view key);
+
+/// The value of an environment variable, or nullptr; an empty value counts as none.
+using Environment = std::function<const char*(const char*)>;
+
+/// That of this process.
+[[nodiscard]] Environment processEnvironment();
+
+/// What the user says beside the file.
+struct SceneOverrides {
+    std::map<std::string, std::string, std::less<>> flags;       ///< text per key ("max_force": "4 N")
+    Environment                                     environment; ///< none: no variable counts, as in replays
+};
+
+/// Reads a scene file: JSON, comments allowed, SI unless a text says its unit. samples/scenes/scene.schema.json
+/// describes every key. Precedence: default < sample < scene < environment < flag.
+///
+/// A relative path of a cloud starts at the scene file's folder; in the environment or a flag at the current one.
+/// \throws Error, one sentence: the file, variable or flag, the key, what was expected and found, what to try
+[[nodiscard]] Scene readScene(const std::filesystem::path& file, const SceneOverrides& overrides = {});
+
+/// The same from the text of a file that is called `name` and lies in `folder`.
+[[nodiscard]] Scene parseScene(std::string_view text, const std::string& name, const std::filesystem::path& folder,
+                               const SceneOverrides& overrides = {});
+
+/// The scene as one JSON object that parseScene() reads back to the same values; a file's path is absolute in it.
+[[nodiscard]] std::string sceneJson(const Scene& scene);
+
+enum class ConfigFormat { text, json };
+
+/// Every key with its value, its unit and where the value came from: what `--print-config` shows.
+[[nodiscard]] std::string printConfig(const Scene& scene, ConfigFormat format);
+
+/// The cloud with the scene's law, if it has one.
+/// \throws Error as readCloud() does
+[[nodiscard]] LoadedCloud loadCloud(const Scene& scene);
+
+} // namespace palp

@@ -1,0 +1,234 @@
+#include "engine/session/hand_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "engine/cloud/samples.h"
+#include "engine/core/npy.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palp {
+namespace {
+
+HandPath parsed(const std::string& text)
+{
+    std::istringstream in(text);
+    return parseHand(in, "hand.csv");
+}
+
+std::string refusal(const std::string& text)
+{
+    return refusalOf([&] { static_cast<void>(parsed(text)); });
+}
+
+TEST(HandPath, ReadsNumbersBetweenAnythingUsualWithOrWithoutAHeader)
+{
+    for (const char* text :
+         {"0,1e-3,2e-3,3e-3\n0.5,2e-3,2e-3,3e-3\n", "0 1e-3 2e-3 3e-3\n\n0.5\t2e-3  2e-3 3e-3",
+          "time,x,y,z\n0;1e-3;2e-3;3e-3\n0.5;2e-3;2e-3;3e-3\n",
+          "# a comment\nt,hip_x,hip_y,hip_z,proxy_x\r\n0,1e-3,2e-3,3e-3,9\r\n0.5,2e-3,2e-3,3e-3,9\r\n"}) {
+        const HandPath hand = parsed(text);
+
+        EXPECT_EQ(hand.samples().size(), 2u) << text;
+        EXPECT_EQ(hand.duration(), 0.5);
+        EXPECT_DOUBLE_EQ(hand.position(0.25).x, 1.5e-3);
+        EXPECT_DOUBLE_EQ(hand.fastest(), 2e-3);
+    }
+}
+
+TEST(HandPath, AtTheTimeOfASampleItIsThatSampleBitForBitAndBeyondTheEndsItRests)
+{
+    std::vector<HandSample> samples;
+    for (int i = 0; i < 1000; ++i) {
+        const double t = 0.1 + i * 1e-3;
+        samples.push_back({t, {std::sin(t) / 3, std::cos(t) / 7, t / 11}});
+    }
+    const HandPath hand(samples);
+
+    for (const HandSample& sample : samples) EXPECT_EQ(hand.position(sample.time), sample.position) << sample.time;
+    EXPECT_EQ(hand.position(-1), samples.front().position);
+    EXPECT_EQ(hand.position(99), samples.back().position);
+    EXPECT_EQ(hand.position(std::nan("")), samples.front().position);
+}
+
+TEST(HandPath, IsContinuousAndNeverFasterThanItSays)
+{
+    const HandPath hand = parsed("0,0,0,0\n0.1,0.01,0,0\n0.3,0.01,0.05,0\n0.31,0.01,0.05,0.002\n");
+
+    glm::dvec3 last = hand.position(-0.01);
+    for (double t = -0.01; t < 0.35; t += 1e-5) {
+        const glm::dvec3 here = hand.position(t);
+        ASSERT_LE(glm::length(here - last), hand.fastest() * 1e-5 * (1 + 1e-6)) << t;
+        last = here;
+    }
+}
+
+TEST(HandPath, WhatNoHandCanDoIsRefusedWithItsLine)
+{
+    const std::string good = "t,x,y,z\n0,0,0,0\n";
+
+    EXPECT_TRUE(holds(refusal(good + "1,0,nan,0\n"), {"hand.csv: line 3", "NaN"}));
+    EXPECT_TRUE(holds(refusal(good + "1,inf,0,0\n"), {"line 3", "infinity"}));
+    EXPECT_TRUE(holds(refusal(good + "nan,0,0,0\n"), {"line 3", "NaN"}));
+    EXPECT_TRUE(holds(refusal(good + "1,0,0,0\n0.5,0,0,0\n"), {"line 4", "after 1 s", "found 0.5 s", "must rise"}));
+    EXPECT_TRUE(holds(refusal(good + "0,0,0,0\n"), {"line 3", "must rise"}));
+    EXPECT_TRUE(holds(refusal(good + "1,0,0\n"), {"line 3", "four columns", "found 3"}));
+    EXPECT_TRUE(holds(refusal(good + "1,0,zero,0\n"), {"line 3", "column 3", "zero"}));
+    EXPECT_TRUE(holds(refusal(good + "1,0,0,0\nend\n"), {"line 4"}));
+    EXPECT_TRUE(holds(refusal("x,y,z,time\n0,0,0,0\n"), {"line 1", "\"x\"", "time, x, y, z"}));
+    EXPECT_TRUE(holds(refusal(good + "0.001,5,0,0\n"), {"line 3", "5000 m/s", "metres"}));
+    EXPECT_TRUE(holds(refusal(good + "1,0,\x1b[2J,0\n"), {"found \"?[2J\""})) << "no commands for a terminal";
+    EXPECT_TRUE(holds(refusal(good), {"hand.csv", "two samples", "found 1"}));
+    EXPECT_TRUE(holds(refusal(""), {"found 0"}));
+    EXPECT_TRUE(holds(refusal(good + std::string(100'000, '1')), {"hand.csv", "longer than 65536 bytes"}));
+    EXPECT_TRUE(holds(refusal(good + "1,1e308,0,0\n"), {"line 3", "m/s"})) << "beyond what doubles can square";
+}
+
+TEST(HandPath, ReadsAnArrayOfNumpyAndRefusesWhatIsWrongInIt)
+{
+    const TemporaryFolder folder;
+    NodeField             rows(3, 5);
+    for (int i = 0; i < 3; ++i) rows(i, 0) = i * 0.1;
+    rows(2, 3) = 0.01;
+    writeNpy(folder / "hand.npy", rows);
+    EXPECT_EQ(readHand(folder / "hand.npy").position(0.2).z, 0.01);
+
+    rows(2, 0) = 0.05;
+    writeNpy(folder / "back.npy", rows);
+    rows(2, 0) = std::nan("");
+    writeNpy(folder / "nan.npy", rows);
+    writeNpy(folder / "narrow.npy", NodeField(3, 3));
+    const auto read = [&](const char* name) { return refusalOf([&] { static_cast<void>(readHand(folder / name)); }); };
+    EXPECT_TRUE(holds(read("back.npy"), {"back.npy: row 2", "must rise"}));
+    EXPECT_TRUE(holds(read("nan.npy"), {"nan.npy", "[2, 0]", "NaN"}));
+    EXPECT_TRUE(holds(read("narrow.npy"), {"four columns", "3"}));
+    EXPECT_TRUE(holds(refusalOf([] { static_cast<void>(readHand("/dev/zero")); }), {"longer than"})) << "endless";
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(readHand(folder.path())); }), {"is a folder"}));
+    EXPECT_TRUE(holds(read("none.csv"), {"none.csv", "No such file"}));
+}
+
+const HandPlace kPlace{{0.1, -0.2, 0.3}, glm::normalize(glm::dvec3(1, 2, 3))};
+
+HandScript script(HandMotion motion)
+{
+    return {.motion = motion, .speed = 0.05, .depth = 2e-3, .radius = 8e-3, .height = 5e-3, .duration = 3};
+}
+
+TEST(GeneratedHand, NeverExceedsItsSpeedAndHasNoJumpInVelocity)
+{
+    for (const HandMotion motion : {HandMotion::press, HandMotion::circle, HandMotion::scan}) {
+        const HandPath hand = makeHand(script(motion), kPlace);
+
+        EXPECT_LE(hand.fastest(), 0.05 * (1 + 1e-9)) << name(motion);
+        EXPECT_GT(hand.fastest(), 0.049) << name(motion);
+        EXPECT_DOUBLE_EQ(hand.duration(), 3);
+        const auto& s = hand.samples();
+        for (std::size_t i = 1; i + 1 < s.size(); ++i) {
+            const glm::dvec3 change = s[i + 1].position - 2.0 * s[i].position + s[i - 1].position;
+            // The sharpest turn: from fall to rest, speed pi^2 / (4 * 7 mm) * 2 speed, 0.9 m/s2; a jump would be 50.
+            ASSERT_LT(glm::length(change) / 1e-6, 2.0) << name(motion) << " at " << s[i].time;
+        }
+    }
+}
+
+TEST(GeneratedHand, StartsAboveThePlaceGoesToItsDepthAndDoesWhatItIsCalled)
+{
+    const auto   up      = [](const glm::dvec3& p) { return glm::dot(p - kPlace.point, kPlace.outward); };
+    const auto   beside  = [&](const glm::dvec3& p) { return glm::length(p - kPlace.point - up(p) * kPlace.outward); };
+    const double descent = std::numbers::pi * 7e-3 / (2 * 0.05);
+    for (const HandMotion motion : {HandMotion::press, HandMotion::circle, HandMotion::scan}) {
+        const HandPath hand = makeHand(script(motion), kPlace);
+        EXPECT_NEAR(up(hand.position(0)), 5e-3, 1e-12) << name(motion);
+        EXPECT_NEAR(up(hand.position(descent)), -2e-3, 1e-6) << name(motion);
+    }
+    const HandPath press = makeHand(script(HandMotion::press), kPlace);
+    EXPECT_NEAR(up(press.position(2 * descent)), 5e-3, 1e-6) << "up again";
+    EXPECT_LT(beside(press.position(1.234)), 1e-12);
+    const HandPath circle = makeHand(script(HandMotion::circle), kPlace);
+    const HandPath scan   = makeHand(script(HandMotion::scan), kPlace);
+    double         least = 1, most = 0;
+    for (double t = descent; t < 3; t += 1e-3) {
+        EXPECT_NEAR(beside(circle.position(t)), 8e-3, 1e-7) << "chords of a millisecond";
+        EXPECT_NEAR(up(circle.position(t)), -2e-3, 1e-6);
+        EXPECT_NEAR(up(scan.position(t)), -2e-3, 1e-6);
+        least = std::min(least, beside(scan.position(t)));
+        most  = std::max(most, beside(scan.position(t)));
+    }
+    EXPECT_LT(least, 0.05e-3) << "across the place";
+    EXPECT_NEAR(most, 8e-3, 1e-6);
+}
+
+TEST(GeneratedHand, TheSameScriptGivesTheSameBits)
+{
+    const HandPath one = makeHand(script(HandMotion::circle), kPlace),
+                   two = makeHand(script(HandMotion::circle), kPlace);
+
+    for (std::size_t i = 0; i < one.samples().size(); ++i)
+        EXPECT_EQ(one.samples()[i].position, two.samples()[i].position);
+}
+
+TEST(GeneratedHand, SenselessScriptsAreRefused)
+{
+    const auto refused = [](HandScript s) { return refusalOf([&] { static_cast<void>(makeHand(s, kPlace)); }); };
+
+    EXPECT_TRUE(holds(refused({.speed = 0}), {"speed", "positive"}));
+    EXPECT_TRUE(holds(refused({.speed = std::nan("")}), {"speed"}));
+    EXPECT_TRUE(holds(refused({.motion = HandMotion::circle, .radius = -1}), {"radius", "-1"}));
+    EXPECT_TRUE(holds(refused({.depth = -1, .height = 0.5}), {"height + depth"}));
+    EXPECT_TRUE(holds(refused({.duration = 1e9}), {"duration"}));
+    EXPECT_EQ(motionNamed("scan"), HandMotion::scan);
+    EXPECT_EQ(motionNamed("wave"), std::nullopt);
+}
+
+TEST(GeneratedHand, DrapedOverASphereKeepsItsDepth)
+{
+    const SpatialLaw     constant{.kind = SpatialLaw::Kind::constant, .from = 1e6};
+    const PointCloud     cloud = makeSample(sampleNamed("hemisphere"), 40'000, 3, constant);
+    const NeighbourIndex index(cloud.positions());
+    const HandPlace      top{{0, 0, 50e-3}, {0, 0, 1}};
+    HandScript           s = script(HandMotion::scan);
+    s.radius               = 20e-3;
+    const HandPath flat = makeHand(s, top), hand = draped(flat, top, cloud, index);
+
+    for (double t = 0.5; t < 3; t += 0.01) {
+        const glm::dvec3 p       = hand.position(t);
+        const double     surface = std::sqrt(50e-3 * 50e-3 - p.x * p.x - p.y * p.y);
+        // The mean over a radius R of 3 x 0.9 mm lies R^2/8 of the curvature below the surface, 20 um at this slope.
+        EXPECT_NEAR(p.z, surface - 2e-3, 0.15e-3) << "without draping it would be 4 mm off, at " << p.x;
+    }
+    EXPECT_LT(hand.fastest(), 2 * flat.fastest());
+}
+
+TEST(GeneratedHand, DrapedBeyondABorderItKeepsTheLastHeight)
+{
+    const PointCloud     cloud = makeSample(sampleNamed("sheet"), 20'000, 3);
+    const NeighbourIndex index(cloud.positions());
+    const HandPlace      edge{{70e-3, 0, 0}, {0, 0, 1}};
+    const HandPath       hand = draped(makeHand(script(HandMotion::scan), edge), edge, cloud, index);
+
+    for (double t = 0.5; t < 3; t += 0.01) EXPECT_NEAR(hand.position(t).z, -2e-3, 1e-6);
+}
+
+TEST(GeneratedHand, ThePlaceOfASceneIsOnItsCloudOnTheHandsSide)
+{
+    const Scene          scene  = parseScene(R"({"cloud": "sample:ellipsoid", "points": 5000})", "s.json", ".");
+    const LoadedCloud    loaded = loadCloud(scene);
+    const NeighbourIndex index(loaded.cloud.positions());
+
+    const HandPlace place = handPlace(scene, loaded.cloud, index);
+
+    EXPECT_LT(glm::length(place.point - scene.place), 3e-3);
+    EXPECT_GT(place.outward.z, 0.9);
+    EXPECT_NEAR(glm::length(place.outward), 1, 1e-12);
+}
+
+} // namespace
+} // namespace palp

@@ -1,0 +1,197 @@
+#include "engine/session/recorded_session.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "engine/session/recording.h"
+#include "tests/session/sessions.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palp {
+namespace {
+
+RecordedSession made(const std::string& name, int count)
+{
+    RecordedSession session;
+    session.folder = name;
+    for (int i = 0; i < count; ++i) session.samples.push_back(sampleNumber(i));
+    return session;
+}
+
+TEST(RecordedSession, EqualSessionsDoNotDiffer)
+{
+    EXPECT_FALSE(compareSessions(made("a", 500), made("b", 500)));
+    EXPECT_FALSE(compareSessions(made("a", 0), made("b", 0)));
+}
+
+TEST(RecordedSession, TheLastBitOfAnyColumnIsFoundWithSampleColumnAndValues)
+{
+    const RecordedSession a = made("a", 100);
+    for (const SessionColumn& column : sessionColumns()) {
+        const std::size_t each = column.bytes() / column.components;
+        for (std::size_t k = 0; k < column.components; ++k) {
+            RecordedSession b     = made("b", 100);
+            char* const     place = reinterpret_cast<char*>(&b.samples[42]) + column.offset + k * each;
+            *place                = char(*place ^ 1);
+
+            const auto difference = compareSessions(a, b);
+
+            ASSERT_EQ(difference.has_value(), !column.measured) << column.name;
+            if (!difference) continue;
+            EXPECT_EQ(difference->sample, 42u);
+            EXPECT_EQ(difference->column, column.name);
+            EXPECT_EQ(difference->component, k);
+            EXPECT_NE(difference->first, difference->second);
+        }
+    }
+}
+
+TEST(RecordedSession, TheFirstDifferenceWinsAndIsDescribedInOneSentence)
+{
+    const RecordedSession a = made("run1", 100);
+    RecordedSession       b = made("run2", 100);
+    b.samples[50].force.y   = 0.25;
+    b.samples[60].time      = 9;
+
+    const auto difference = compareSessions(a, b);
+
+    ASSERT_TRUE(difference);
+    EXPECT_EQ(describe(*difference, a, b), "sample 50 (0.05 s): force y is 0 in run1 and 0.25 in run2");
+}
+
+TEST(RecordedSession, BitsCountNotValues)
+{
+    const RecordedSession a = made("a", 10);
+    RecordedSession       b = made("b", 10);
+    b.samples[3].hip.z      = 0.0; // was -0
+    EXPECT_EQ(compareSessions(a, b)->column, "hip");
+    EXPECT_EQ(compareSessions(a, b)->first, "-0");
+
+    RecordedSession c = made("c", 10), d = made("d", 10);
+    c.samples[3].rigidity = d.samples[3].rigidity = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(compareSessions(c, d)) << "the same NaN";
+    char* const bits = reinterpret_cast<char*>(&d.samples[3].rigidity);
+    bits[0]          = char(bits[0] ^ 1);
+    const auto nans  = compareSessions(c, d);
+    ASSERT_TRUE(nans);
+    EXPECT_TRUE(holds(nans->first, {"nan", "bits 0x"})) << nans->first;
+    EXPECT_NE(nans->first, nans->second);
+}
+
+TEST(RecordedSession, AShorterSessionDiffersWhereItEnds)
+{
+    const RecordedSession a = made("a", 100), b = made("b", 90);
+
+    const auto difference = compareSessions(a, b);
+
+    ASSERT_TRUE(difference);
+    EXPECT_EQ(difference->sample, 90u);
+    EXPECT_EQ(difference->column, "");
+    EXPECT_EQ(describe(*difference, a, b), "a has 100 samples and b has 90");
+    EXPECT_TRUE(compareSessions(b, a));
+}
+
+/// A folder with a finished session of 100 samples.
+class SessionFolder : public testing::Test {
+protected:
+    SessionFolder()
+    {
+        Recording recording(run, someInfo());
+        for (int i = 0; i < 100; ++i) recording.pushWaiting(sampleNumber(i));
+        static_cast<void>(recording.finish());
+    }
+
+    [[nodiscard]] std::string refusal() const
+    {
+        return refusalOf([&] { static_cast<void>(readSession(run)); });
+    }
+    void put(const std::string& name, const std::string& bytes) const
+    {
+        std::ofstream(run / name, std::ios::binary) << bytes;
+    }
+
+    TemporaryFolder             folder;
+    const std::filesystem::path run = folder / "run";
+};
+
+TEST_F(SessionFolder, ItsSceneAndItsHandComeBack)
+{
+    const RecordedSession session = readSession(run);
+
+    const Scene    scene = sceneOf(session);
+    const HandPath hand  = handOf(session);
+
+    EXPECT_EQ(sceneJson(scene), sceneJson(someInfo().scene));
+    EXPECT_EQ(session.command, someInfo().command);
+    for (int i = 0; i < 100; ++i) {
+        const SessionSample sample = sampleNumber(i);
+        const glm::dvec3    there  = hand.position(sample.time);
+        EXPECT_EQ(std::memcmp(&there, &sample.hip, sizeof there), 0) << i;
+    }
+}
+
+TEST_F(SessionFolder, ColumnsThatAKillLeftLongerAreCutToTheShortest)
+{
+    std::string force = contentsOf(run / "force.npy");
+    force.replace(force.find("(100, 3)"), 8, "(98, 3) ");
+    put("force.npy", force);
+
+    EXPECT_EQ(readSession(run).samples.size(), 98u);
+}
+
+TEST_F(SessionFolder, DataBeyondWhatTheHeaderCountsIsIgnored)
+{
+    put("time.npy", contentsOf(run / "time.npy") + "half");
+
+    EXPECT_EQ(readSession(run).samples.size(), 100u);
+}
+
+TEST_F(SessionFolder, BrokenFilesAreNamed)
+{
+    const std::string time = contentsOf(run / "time.npy"), hip = contentsOf(run / "hip.npy"),
+                      json = contentsOf(run / "session.json");
+
+    put("time.npy", time.substr(0, time.size() - 1));
+    EXPECT_TRUE(holds(refusal(), {"time.npy", "counts 100", "799 bytes"})) << refusal();
+    put("time.npy", time.substr(0, 40));
+    EXPECT_TRUE(holds(refusal(), {"time.npy", "ends within its header"})) << refusal();
+    put("time.npy", hip);
+    EXPECT_TRUE(holds(refusal(), {"time.npy", "expected {'descr': '<f8'", "(100, 3)"})) << refusal();
+    put("time.npy", "not numpy");
+    EXPECT_TRUE(holds(refusal(), {"time.npy", "expected a .npy file"})) << refusal();
+    std::string wild = time;
+    wild.replace(wild.find("(100,)"), 6, "(99999999999999999999,)");
+    put("time.npy", wild);
+    EXPECT_TRUE(holds(refusal(), {"time.npy"})) << refusal();
+    wild = time;
+    wild.replace(wild.find("(100,), }        "), 17, "(9999999999999,),");
+    put("time.npy", wild);
+    EXPECT_TRUE(holds(refusal(), {"time.npy", "9999999999999", "800 bytes"})) << refusal();
+    std::filesystem::remove(run / "time.npy");
+    EXPECT_TRUE(holds(refusal(), {"time.npy", "No such file"})) << refusal();
+    put("time.npy", time);
+
+    std::string later = json;
+    later.replace(later.find("\"format\": 1"), 11, "\"format\": 2");
+    put("session.json", later);
+    EXPECT_TRUE(holds(refusal(), {"session.json", "format", "later palpate"})) << refusal();
+    put("session.json", json.substr(0, 50));
+    EXPECT_TRUE(holds(refusal(), {"session.json", "JSON"})) << refusal();
+    std::filesystem::remove(run / "session.json");
+    EXPECT_TRUE(holds(refusal(), {"session.json", "No such file"})) << refusal();
+}
+
+TEST_F(SessionFolder, AHandNeedsTwoSamples)
+{
+    RecordedSession session = readSession(run);
+    session.samples.resize(1);
+
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(handOf(session)); }), {"run", "two samples"}));
+}
+
+} // namespace
+} // namespace palp

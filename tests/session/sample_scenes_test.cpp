@@ -1,0 +1,161 @@
+// The scenes in samples/scenes: each reads, its README's numbers hold, and the schema knows what the reader knows.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/contact/contact.h"
+#include "engine/session/scene.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palp {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::filesystem::path kScenes = PALPATE_SCENES;
+
+/// A row of the README's table.
+struct Row {
+    std::string name;
+    glm::dvec3  soft{}, stiff{};                       ///< [m]
+    double      softStiffness = 0, stiffStiffness = 0; ///< felt K [N/m]
+    double      forceAtHalf = 0;                       ///< deflects the soft place by half the thickness [N]
+    double      steps       = 0;                       ///< J [1]
+};
+
+std::vector<Row> readme()
+{
+    std::vector<Row>   rows;
+    std::istringstream text(contentsOf(kScenes / "README.md"));
+    for (std::string line; std::getline(text, line);) {
+        if (!line.starts_with("| ") || line.starts_with("| scene")) continue;
+        std::ranges::replace(line, '|', ' ');
+        std::ranges::replace(line, ',', ' ');
+        std::istringstream words(line);
+        Row                row;
+        words >> row.name;
+        for (glm::dvec3* place : {&row.soft, &row.stiff}) words >> place->x >> place->y >> place->z;
+        words >> row.softStiffness >> row.stiffStiffness >> row.forceAtHalf >> row.steps;
+        EXPECT_TRUE(words) << line;
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+std::vector<std::filesystem::path> sceneFiles()
+{
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(kScenes))
+        if (entry.path().extension() == ".json" && entry.path().filename() != "scene.schema.json")
+            files.push_back(entry.path());
+    return files;
+}
+
+TEST(SampleScenes, EveryFileHasARowInTheReadmeAndNoRowIsWithoutAFile)
+{
+    std::set<std::string> files, rows;
+    for (const auto& file : sceneFiles()) files.insert(file.stem().string());
+    for (const Row& row : readme()) rows.insert(row.name);
+
+    EXPECT_EQ(files, rows);
+    EXPECT_EQ(files.size(), 9u);
+}
+
+TEST(SampleScenes, TheFingerFeelsWhatTheReadmeSays)
+{
+    constexpr double kRounding = 0.005; // relative: the README gives two or three digits, and seeds are fixed
+    for (const Row& row : readme()) {
+        SCOPED_TRACE(row.name);
+        const Scene          scene  = readScene(kScenes / (row.name + ".json"));
+        const LoadedCloud    loaded = loadCloud(scene);
+        const NeighbourIndex index(loaded.cloud.positions());
+        const auto           touch = [&](const glm::dvec3& place) {
+            return deform(loaded.cloud, index, touchAt(loaded.cloud, index, place, scene.from, 10e-3), scene.patch);
+        };
+
+        const Patch soft = touch(row.soft), stiff = touch(row.stiff);
+
+        EXPECT_NEAR(soft.feltStiffness, row.softStiffness, kRounding * row.softStiffness);
+        EXPECT_NEAR(stiff.feltStiffness, row.stiffStiffness, kRounding * row.stiffStiffness);
+        EXPECT_NEAR(scene.patch.material.thickness / 2 / soft.compliance, row.forceAtHalf,
+                    kRounding * row.forceAtHalf + 0.005);
+        EXPECT_NEAR(std::log(stiff.feltStiffness / soft.feltStiffness) / std::log(1.07), row.steps, 0.05);
+        EXPECT_LT(stiff.feltStiffness, scene.stiffnessCap) << "a contrast that the cap clips is not felt";
+    }
+}
+
+TEST(SampleScenes, ThePlaceOfEachSceneIsOnItsCloud)
+{
+    for (const auto& file : sceneFiles()) {
+        const Scene          scene  = readScene(file);
+        const LoadedCloud    loaded = loadCloud(scene);
+        const NeighbourIndex index(loaded.cloud.positions());
+
+        EXPECT_LT(index.nearest(scene.place, 1).front().distance, 2 * index.spacing()) << file;
+    }
+}
+
+TEST(SampleScenes, TheSchemaAndTheReaderKnowTheSameKeysUnitsAndMeanings)
+{
+    const Json            schema     = Json::parse(contentsOf(kScenes / "scene.schema.json"));
+    const Json            properties = schema["properties"];
+    std::set<std::string> described;
+    for (const auto& [key, value] : properties.items()) described.insert(key);
+    described.erase("$schema");
+
+    std::set<std::string> read;
+    for (const SceneKey& key : sceneKeys()) {
+        const std::string name(key.name);
+        read.insert(name);
+        if (!properties.contains(name)) continue;
+        EXPECT_EQ(properties[name]["unit"], key.unit) << name;
+        EXPECT_EQ(properties[name]["description"], key.means) << name;
+    }
+
+    EXPECT_EQ(described, read);
+    EXPECT_EQ(schema["additionalProperties"], false);
+    EXPECT_EQ(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+}
+
+TEST(SampleScenes, EveryNameInTheSchemaIsReadAndBoundsAreThoseOfTheReader)
+{
+    const Json properties = Json::parse(contentsOf(kScenes / "scene.schema.json"))["properties"];
+    const auto scene      = [](const std::string& key, const Json& value) {
+        Json object = {{"cloud", "sample:skin"}, {"static_friction", 10}, {"dynamic_friction", 0}};
+        object[key] = value;
+        return refusalOf([&] { static_cast<void>(parseScene(object.dump(), "s.json", ".")); });
+    };
+    for (const auto& [key, property] : properties.items()) {
+        if (key == "cloud" || key == "$schema" || key == "length_unit") continue; // no bounds; not of a sample
+        if (property.contains("enum")) {
+            for (const Json& value : property["enum"]) EXPECT_EQ(scene(key, value), "") << key;
+        }
+        const Json& bounds = property.contains("anyOf") ? property["anyOf"][0] : property;
+        for (const char* bound : {"minimum", "maximum"}) {
+            if (!bounds.contains(bound)) continue;
+            const double value = bounds[bound], beyond = bound == std::string("minimum") ? -1 : 1;
+            if (key == "window" && beyond < 0) continue;           // narrower than the footprint
+            if (key == "footprint_radius" && beyond > 0) continue; // wider than the window
+            const bool counts  = bounds["type"] == "integer";
+            const Json outside = value + beyond * std::max(1e-9, std::abs(value) * 1e-3);
+            EXPECT_EQ(scene(key, bounds[bound]), "") << key << " at its " << bound;
+            EXPECT_NE(scene(key, counts ? Json(std::int64_t(value + 2 * beyond)) : outside), "")
+                << key << " beyond its " << bound;
+        }
+        for (const char* bound : {"exclusiveMinimum", "exclusiveMaximum"}) {
+            if (!bounds.contains(bound)) continue;
+            EXPECT_NE(scene(key, bounds[bound]), "") << key << " at its " << bound;
+        }
+    }
+}
+
+} // namespace
+} // namespace palp

@@ -1,0 +1,37 @@
+#pragma once
+#include <cmath>
+
+#include "engine/session/recording.h"
+
+namespace palp {
+
+/// A sample whose every number tells its place.
+inline SessionSample sampleNumber(int i)
+{
+    SessionSample s;
+    s.time          = i * 1e-3;
+    s.hip           = {std::sin(i * 0.01) / 3, i * 1e-5, -0.0};
+    s.proxy         = {std::sin(i * 0.01) / 7, i * 1e-5, 1e-3};
+    s.force         = {0, 0, i / 3.0};
+    s.normal        = {0, 0.6, 0.8};
+    s.rigidity      = 2e-3 + i * 1e-9;
+    s.compliance    = 1.88e-3;
+    s.maxDeflection = 1e-3 / (i + 1);
+    s.errorEstimate = 1e-5;
+    s.patchAge      = (i % 17) * 1e-3;
+    s.tickTime      = 5e-6;
+    s.iterations    = i % 7 - 1;
+    s.faults        = i % 5 == 0 ? 0x80000001u : 0;
+    return s;
+}
+
+inline SessionInfo someInfo()
+{
+    return {.scene    = parseScene(R"({"cloud": "sample:skin", "thickness": "3 mm"})", "skin.json", "."),
+            .versions = {{"palpate", "0.1.0"}},
+            .device   = "host",
+            .clock    = SessionClock::virtualTime,
+            .command  = "palpate run skin.json --hand press"};
+}
+
+} // namespace palp
