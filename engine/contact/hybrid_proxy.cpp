@@ -24,7 +24,7 @@ namespace {
 
 // Lengths are in local spacings unless noted.
 constexpr int    kIterations     = 24;   // [1] per tick
-constexpr double kTolerance      = 1e-4; // nothing moves by more: done
+constexpr double kTolerance      = 2e-5; // nothing moves by more: done
 constexpr double kFadePerTick    = 0.05; // [1] 20 ms from all of the force to none
 constexpr double kLookAfter      = 0.25; // travel after which a new surface may have come into sight
 constexpr double kLostHeight     = 1.5;  // one of several surfaces this far below is no longer felt

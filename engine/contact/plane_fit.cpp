@@ -21,6 +21,7 @@ constexpr double      kNoiseCurve    = 0.06; // [1/spacing] K below it is shrunk
 constexpr double      kMostCurve     = 0.15; // [1/spacing]
 constexpr double      kSlopeRidge    = 0.01; // [spacing^2] added to the variances of a and b
 constexpr double      kCurveRidge    = 0.05; // [spacing^4] added to the variance of q
+constexpr double      kBetween       = 0.2;  // points in a groove that are so little nearer to one side are neither's
 constexpr double      kSteepest      = 1;    // [1] slope against the given plane
 
 /// Weight of a height: 1 up to kFullHeight, a smoothstep down to 0 at kNoHeight.
@@ -73,6 +74,19 @@ struct Moments {
     }
 };
 
+/// Of all points, those of other surfaces too: a groove is not a border.
+struct Centroid {
+    double weight = 0, a = 0, b = 0; // sums
+
+    void add(double w, double ai, double bi) noexcept
+    {
+        weight += w;
+        a += w * ai;
+        b += w * bi;
+    }
+    [[nodiscard]] double offset() const noexcept { return std::hypot(a, b) / weight; } ///< [m]
+};
+
 /// K of the quadratic fit, by eliminating beta and gamma; then what noise could have made is taken away.
 double curvature(const Moments& m, double spacing) noexcept
 {
@@ -99,14 +113,17 @@ PlaneFitter::PlaneFitter(NearPoints& points) : points_(points)
 void PlaneFitter::collect(const Frame& frame, double radius)
 {
     samples_.clear();
+    owned_ = 0;
     points_.inside(frame.place, radius, [&](const NearPoint& point, double d2) {
         const glm::dvec3 d = point.position - frame.place;
         const double     h = glm::dot(frame.normal, d);
         if (!(std::abs(h) < kNoHeight * frame.spacing)) return;
+        bool own = true;
         for (const SurfacePlane& other : frame.others)
-            if (glm::dot(other.normal, frame.normal) < kSameSurface && std::abs(other.height(point.position)) < std::abs(h))
-                return;
-        samples_.push_back({glm::dot(frame.u, d), glm::dot(frame.v, d), h, d2, point.spacing});
+            own = own && (glm::dot(other.normal, frame.normal) >= kSameSurface ||
+                          std::abs(other.height(point.position)) >= std::abs(h) + kBetween * frame.spacing);
+        samples_.push_back({glm::dot(frame.u, d), glm::dot(frame.v, d), h, d2, point.spacing, own});
+        owned_ += own;
     });
 }
 
@@ -116,11 +133,12 @@ double PlaneFitter::collectEnough(const Frame& frame)
     const double most  = kMostRadius * frame.spacing;
     double       least = kLeastRadius * frame.spacing;
     collect(frame, least);
-    if (samples_.size() < kEnoughPoints) collect(frame, most);
-    if (samples_.size() < kEnoughPoints) return most;
+    if (owned_ < kEnoughPoints) collect(frame, most);
+    if (owned_ < kEnoughPoints) return most;
 
     squares_.clear();
-    for (const Sample& sample : samples_) squares_.push_back(sample.d2);
+    for (const Sample& sample : samples_)
+        if (sample.own) squares_.push_back(sample.d2);
     const auto twelfth = squares_.begin() + (kEnoughPoints - 1);
     std::nth_element(squares_.begin(), twelfth, squares_.end());
     const double radius = std::clamp(kEnoughReach * std::sqrt(*twelfth), least, most);
@@ -134,17 +152,23 @@ std::optional<PlaneFit> PlaneFitter::fit(const glm::dvec3& place, const glm::dve
     const glm::dvec3 u = across(normal);
     const glm::dvec3 v = glm::cross(normal, u);
     const double     r = collectEnough({place, normal, u, v, spacing, others});
-    if (samples_.size() < kFewestPoints) return {};
+    if (owned_ < kFewestPoints) return {};
 
     Moments    m;
     const auto weightOf = [&](const Sample& s) {
         const double fall = std::max(0.0, 1 - s.d2 / (r * r));
         return fall * fall * heightWeight(std::abs(s.h) / spacing);
     };
-    for (const Sample& s : samples_) m.addFirst(weightOf(s), s.a, s.b, s.h, s.spacing);
+    Centroid   all;
+    for (const Sample& s : samples_) {
+        const double w = weightOf(s);
+        all.add(w, s.a, s.b);
+        if (s.own) m.addFirst(w, s.a, s.b, s.h, s.spacing);
+    }
     if (!(m.weight > 0)) return {};
     m.toMeans();
-    for (const Sample& s : samples_) m.addSecond(weightOf(s), s.a, s.b, s.h);
+    for (const Sample& s : samples_)
+        if (s.own) m.addSecond(weightOf(s), s.a, s.b, s.h);
     m.aa += kSlopeRidge * spacing * spacing;
     m.bb += kSlopeRidge * spacing * spacing;
     m.qq += kCurveRidge * spacing * spacing * spacing * spacing;
@@ -166,7 +190,7 @@ std::optional<PlaneFit> PlaneFitter::fit(const glm::dvec3& place, const glm::dve
     fit.plane.normal  = glm::normalize(normal - beta * u - gamma * v);
     fit.raised        = std::clamp(raised, -kStepCap * spacing, kStepCap * spacing);
     fit.plane.foot    = place + fit.raised * fit.plane.normal;
-    const double off  = std::hypot(m.a, m.b) / r;
+    const double off  = all.offset() / r;
     fit.plane.support = 1 - std::clamp((off - kFullSupport) / (kNoSupport - kFullSupport), 0.0, 1.0);
     fit.spacing       = m.spacing;
     return fit;

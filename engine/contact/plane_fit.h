@@ -58,6 +58,7 @@ private:
         double a = 0, b = 0, h = 0; ///< [m]
         double d2      = 0;         ///< [m^2]
         double spacing = 0;         ///< [m]
+        bool   own     = true;      ///< of this surface, not of another known one
     };
     struct Frame {
         glm::dvec3 place, normal, u, v;
@@ -70,6 +71,7 @@ private:
 
     NearPoints&         points_;
     std::vector<Sample> samples_;
+    std::size_t         owned_ = 0; ///< how many of them are own
     std::vector<double> squares_; ///< [m^2] scratch of collectEnough
 };
 

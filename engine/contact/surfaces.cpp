@@ -124,7 +124,7 @@ SurfaceTracker::Sight SurfaceTracker::look(const Surfaces& surfaces, const glm::
                                                : points_.largestSpacing();
     const auto   visible  = [&](const NearPoint& point) {
         for (const SurfacePlane& plane : surfaces.all())
-            if (plane.height(point.position) <= kNoHeight * surfaces.spacing) return false;
+            if (plane.height(point.position) <= kFullHeight * surfaces.spacing) return false;
         return true;
     };
     Sight  sight;
