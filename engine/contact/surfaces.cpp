@@ -17,6 +17,9 @@ constexpr int kFitsAtPoint = 3;
 /// While surfaces are known, the ball counts on points at most this much sparser than here [1].
 constexpr double kSparser = 2;
 
+/// A plane that opposes a known one as much, and passes through it here, is the known one from below [1]: cosine.
+constexpr double kFromBelow = -0.5;
+
 /// Planes nearer to parallel than this do not define an edge or a corner [1]: determinant of their Gram matrix.
 constexpr double kParallel = 1e-6;
 
@@ -159,12 +162,15 @@ bool SurfaceTracker::accept(Surfaces& surfaces, const NearPoint& nearest, const 
         if (!found) return false;
         plane = found->plane;
     }
-    // A plane below the point that was seen is that of a sheet hidden behind it.
-    if (!(plane.support > 0 && plane.height(nearest.position) < kFullHeight * spacing &&
+    // A plane that misses the point that was seen is another's: of a sheet hidden behind it, or the floor from below.
+    if (!(plane.support > 0 && std::abs(plane.height(nearest.position)) < kFullHeight * spacing &&
           plane.height(place) > -kFullHeight * spacing))
         return false;
-    for (const SurfacePlane& known : surfaces.all())
-        if (glm::dot(known.normal, plane.normal) > kSameSurface) return false;
+    for (const SurfacePlane& known : surfaces.all()) {
+        const double c = glm::dot(known.normal, plane.normal);
+        if (c > kSameSurface) return false;
+        if (c < kFromBelow && known.height(plane.foot) < kFullHeight * spacing) return false;
+    }
     surfaces.planes[std::size_t(surfaces.count++)] = plane;
     return true;
 }

@@ -61,11 +61,9 @@ TEST(ProxyFriction, HoldsBelowTheConeAndLagsBehindBeyondIt)
     EXPECT_EQ(hybrid.rightLag, 24);
 }
 
-TEST(ProxyFriction, ThePapersFormCreepsAndLags)
+TEST(ProxyFriction, ThePapersFormLagsWrongly)
 {
-    const FrictionCount sphere = runs(ProxyForm::sphere);
-    EXPECT_LT(sphere.held, 24) << "prototype: 17";
-    EXPECT_LT(sphere.rightLag, 24) << "prototype: 11";
+    EXPECT_LT(runs(ProxyForm::sphere).rightLag, 20) << "of 24; prototype: 11";
 }
 
 TEST(ProxyFriction, SlidesWhenPulledBeyondTheConeAndSaysSo)

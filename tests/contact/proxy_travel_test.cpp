@@ -71,14 +71,14 @@ TEST(ProxyTravel, InFreeSpaceTheProxyIsTheHand)
     Touch touch(smallSheets(Layout::random, 1, 0, 15));
     touch.start({0, 0, 30});
     touch.move({0, 0, 1.0}, 0.3, [&] {
-        EXPECT_EQ(touch.at(), touch.hip());
+        EXPECT_LT(glm::length(touch.at() - touch.hip()), 1e-12);
         EXPECT_EQ(touch.state().fade, 0);
     });
     touch.move({0, 0, -1.0}, 0.3);
     EXPECT_TRUE(touch.touching());
     touch.move({0, 0, 1.0}, 0.3);
     EXPECT_FALSE(touch.touching()) << "lifted off";
-    EXPECT_EQ(touch.at(), touch.hip());
+    EXPECT_LT(glm::length(touch.at() - touch.hip()), 1e-12);
 }
 
 TEST(ProxyTravel, BothSidesOfASheetAreFelt)
@@ -129,12 +129,13 @@ TEST(ProxyTravel, NothingIsAllocatedAfterConstruction)
     Sheet  sheet(Layout::random, 4);
     Points points = sheet.over(-15, 15, -15, 15);
     addNoise(points, 0.2, sheet.random());
+    const std::vector<glm::dvec3> hips = longMotion();
     for (const ProxyForm form : {ProxyForm::hybrid, ProxyForm::sphere, ProxyForm::plainSphere}) {
         Touch touch(points, {form});
         touch.start({0, 0, 60});
         const std::size_t before = allocations();
         int               felt   = 0;
-        for (const glm::dvec3& hip : longMotion()) {
+        for (const glm::dvec3& hip : hips) {
             touch.step(hip);
             felt += touch.touching();
         }
