@@ -8,10 +8,10 @@ namespace palp {
 
 /// Where a way through free space ended.
 struct Arrival {
-    glm::dvec3 position{};       ///< [m]
-    bool       touched  = false; ///< a surface lies between here and the goal; `position` is within one step of it
-    bool       arrived  = false; ///< at the goal
-    double     support  = 0;     ///< [1] of the surface touched
+    glm::dvec3 position{};      ///< [m]
+    bool       touched = false; ///< a surface lies between here and the goal; `position` is within one step of it
+    bool       arrived = false; ///< at the goal
+    double     support = 0;     ///< [1] of the surface touched
 };
 
 /// Carries a proxy from place to place without passing through the surface, however long the way.

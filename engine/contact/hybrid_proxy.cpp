@@ -23,19 +23,21 @@ namespace palp {
 namespace {
 
 // Lengths are in local spacings unless noted.
-constexpr int    kIterations     = 24;   // [1] per tick
-constexpr double kTolerance      = 2e-5; // nothing moves by more: done
-constexpr double kFadePerTick    = 0.05; // [1] 20 ms from all of the force to none
-constexpr double kLookAfter      = 0.25; // travel after which a new surface may have come into sight
-constexpr double kLostHeight     = 1.5;  // one of several surfaces this far below is no longer felt
-constexpr double kSlipOfDepth    = 0.1;  // [1] way per tick beyond the hand's own, of the depth, ...
-constexpr double kLeastSlip      = 0.05; // ... at least
-constexpr double kMostSlip       = 0.5;  // ... and at most: bounds the force step when the proxy slides off something
-constexpr double kSlipOfHand     = 2;    // [1] way per tick, of the way of the HIP
-constexpr double kTurned         = 0.5;  // [1] share of the way turned round that makes a step too long
-constexpr double kShorter        = 0.35; // [1] it is taken again with this share
-constexpr double kLeastShare     = 0.05; // [1] bounds of b
-constexpr double kMostShare      = 3;    // [1]
+constexpr int    kIterations  = 24;   // [1] per tick
+constexpr double kTolerance   = 2e-5; // nothing moves by more: done
+constexpr double kFadePerTick = 0.05; // [1] 20 ms from all of the force to none
+constexpr double kLookAfter   = 0.25; // travel after which a new surface may have come into sight
+constexpr double kLostHeight  = 1.5;  // one of several surfaces this far below is no longer felt
+constexpr double kSlipOfDepth = 0.1;  // [1] way per tick beyond the hand's own, of the depth, ...
+constexpr double kLeastSlip   = 0.05; // ... at least
+constexpr double kMostSlip    = 0.5;  // ... and at most: bounds the force step when the proxy slides off something
+constexpr double kSlipOfHand  = 2;    // [1] way per tick, of the way of the HIP
+constexpr double kPullPerTick = 0.1;  // [1] change of the pull per tick beyond the way of the HIP, of the pull, ...
+constexpr double kLeastPull   = 0.02; // ... at least
+constexpr double kTurned      = 0.5;  // [1] share of the way turned round that makes a step too long
+constexpr double kShorter     = 0.35; // [1] it is taken again with this share
+constexpr double kLeastShare  = 0.05; // [1] bounds of b
+constexpr double kMostShare   = 3;    // [1]
 
 glm::dvec3 capped(const glm::dvec3& step, double longest) noexcept
 {
@@ -46,9 +48,10 @@ glm::dvec3 capped(const glm::dvec3& step, double longest) noexcept
 class HybridProxy final : public Proxy::Impl {
 public:
     HybridProxy(std::span<const glm::dvec3> positions, const NeighbourIndex& index, const ProxySettings& settings)
-        : points_(positions, index), tracker_(points_), travel_(points_, tracker_),
-          friction_{settings.staticFriction, settings.dynamicFriction, false}
-    {}
+        : points_(positions, index), tracker_(points_),
+          travel_(points_, tracker_), friction_{settings.staticFriction, settings.dynamicFriction, false}
+    {
+    }
 
     void step(const glm::dvec3& hip) noexcept override;
     void reset(const glm::dvec3& hip) noexcept override;
@@ -58,8 +61,8 @@ private:
     struct Descent {
         glm::dvec3 fromPlace{}, fromWay{}, step{}; ///< [m] before the last step, and that step
         Surfaces   fromSurfaces{};
-        bool       stepped  = false;
-        double     budget   = 0; ///< [m] that may still be slid in this tick
+        bool       stepped   = false;
+        double     budget    = 0;  ///< [m] that may still be slid in this tick
         double     sinceLook = -1; ///< [m] travelled since the last look for new surfaces; negative: look now
     };
 
@@ -69,6 +72,7 @@ private:
     double               look(const glm::dvec3& hip, Descent& descent) noexcept;
     bool                 takeStep(Descent& descent, const glm::dvec3& way, double corrected) noexcept;
     void                 fade() noexcept;
+    void                 pull(const glm::dvec3& hip) noexcept;
     void                 forget(const glm::dvec3& hip) noexcept;
     [[nodiscard]] double spacing() const noexcept { return surfaces_.spacing; }
 
@@ -108,7 +112,8 @@ void HybridProxy::step(const glm::dvec3& hip) noexcept
     if (state.touching) fade();
     if (state.touching && state.fade <= 0) forget(hip);
     state.slipping = friction_.slipping;
-    lastHip_       = hip;
+    pull(hip);
+    lastHip_ = hip;
 }
 
 /// Goes on to the HIP, or to the first surface on the way.
@@ -170,8 +175,8 @@ bool HybridProxy::iterate(const glm::dvec3& hip, Descent& descent, bool& decided
         descent.sinceLook = -1;
         return !state.touching;
     }
-    const glm::dvec3 onto = capped(ontoLoaded(surfaces_.all(), rest_, state.position) - state.position,
-                                   kStepCap * spacing());
+    const glm::dvec3 onto =
+        capped(ontoLoaded(surfaces_.all(), rest_, state.position) - state.position, kStepCap * spacing());
     state.position += onto;
     corrected = std::max(corrected, glm::length(onto));
 
@@ -206,7 +211,7 @@ bool HybridProxy::takeStep(Descent& descent, const glm::dvec3& way, double corre
     descent.step         = capped(share * way, std::min(kStepCap * spacing(), descent.budget));
     descent.stepped      = true;
     const double length  = glm::length(descent.step);
-    descent.budget -= length;
+    descent.budget       = std::max(0.0, descent.budget - length);
     descent.sinceLook += length;
     state.position += descent.step;
     return std::max(length, corrected) < kTolerance * spacing();
@@ -220,6 +225,14 @@ void HybridProxy::fade() noexcept
         if (rest_.load[std::size_t(j)] > 0) support = std::max(support, surfaces_.planes[std::size_t(j)].support);
     state.support = support;
     state.fade += std::clamp(support - state.fade, -kFadePerTick, kFadePerTick);
+}
+
+/// A press, a slide, a curve or a stop of the HIP change the pull by no more than the HIP moves; the rest is a jump.
+void HybridProxy::pull(const glm::dvec3& hip) noexcept
+{
+    const glm::dvec3 jump  = state.fade * (state.position - hip) - state.pull;
+    const double     least = kLeastPull * state.spacing;
+    state.pull += capped(jump, glm::length(hip - lastHip_) + std::max(kPullPerTick * glm::length(state.pull), least));
 }
 
 } // namespace

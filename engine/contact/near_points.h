@@ -45,7 +45,7 @@ public:
         for (const std::uint32_t p : found_) visit(NearPoint{positions_[p], spacings_[p]});
     }
 
-    [[nodiscard]] double largestSpacing() const noexcept { return largest_; } ///< [m]
+    [[nodiscard]] double largestSpacing() const noexcept { return largest_; }       ///< [m]
     [[nodiscard]] double usualSpacing() const noexcept { return index_.spacing(); } ///< [m]
 
     /// As many points are held at most; of more, every second, third and so on. Bounds the time of a tick where the
@@ -61,7 +61,7 @@ private:
     double                      largest_;  ///< [m]
     std::vector<std::uint32_t>  found_;    ///< capacity: the whole cloud
     std::vector<NearPoint>      held_;
-    glm::dvec3                  centre_{}; ///< [m] of the ball that is held
+    glm::dvec3                  centre_{};    ///< [m] of the ball that is held
     double                      radius_ = -1; ///< [m] of it; negative: none
 };
 

@@ -10,19 +10,19 @@ namespace {
 
 // Lengths are in local spacings unless noted. About 24 points count within the least radius: noise of 0.2 then leaves
 // an error of 0.04 in height and of 2 degrees in the normal.
-constexpr double      kLeastRadius   = 3.75;
-constexpr double      kMostRadius    = 8;
-constexpr std::size_t kEnoughPoints  = 12;  // [1] the radius is kEnoughReach times the distance of this one
-constexpr double      kEnoughReach   = 1.9; // [1]
-constexpr std::size_t kFewestPoints  = 6;   // [1] four unknowns, and two to spare
-constexpr double      kFullSupport   = 0.34; // [1] centroid's offset over the radius; random clouds have 0.08 (sd), ...
-constexpr double      kNoSupport     = 0.50; // ... a straight border 0.29
-constexpr double      kNoiseCurve    = 0.06; // [1/spacing] K below it is shrunk away
-constexpr double      kMostCurve     = 0.15; // [1/spacing]
-constexpr double      kSlopeRidge    = 0.01; // [spacing^2] added to the variances of a and b
-constexpr double      kCurveRidge    = 0.05; // [spacing^4] added to the variance of q
-constexpr double      kBetween       = 0.2;  // points in a groove that are so little nearer to one side are neither's
-constexpr double      kSteepest      = 1;    // [1] slope against the given plane
+constexpr double      kLeastRadius  = 3.75;
+constexpr double      kMostRadius   = 8;
+constexpr std::size_t kEnoughPoints = 12;   // [1] the radius is kEnoughReach times the distance of this one
+constexpr double      kEnoughReach  = 1.9;  // [1]
+constexpr std::size_t kFewestPoints = 6;    // [1] four unknowns, and two to spare
+constexpr double      kFullSupport  = 0.34; // [1] centroid's offset over the radius; random clouds have 0.08 (sd), ...
+constexpr double      kNoSupport    = 0.50; // ... a straight border 0.29
+constexpr double      kNoiseCurve   = 0.06; // [1/spacing] K below it is shrunk away
+constexpr double      kMostCurve    = 0.15; // [1/spacing]
+constexpr double      kSlopeRidge   = 0.01; // [spacing^2] added to the variances of a and b
+constexpr double      kCurveRidge   = 0.05; // [spacing^4] added to the variance of q
+constexpr double      kBetween      = 0.2;  // points in a groove that are so little nearer to one side are neither's
+constexpr double      kSteepest     = 1;    // [1] slope against the given plane
 
 /// Weight of a height: 1 up to kFullHeight, a smoothstep down to 0 at kNoHeight.
 double heightWeight(double height) noexcept
@@ -102,7 +102,10 @@ double curvature(const Moments& m, double spacing) noexcept
 
 } // namespace
 
-double SurfacePlane::height(const glm::dvec3& place) const noexcept { return glm::dot(normal, place - foot); }
+double SurfacePlane::height(const glm::dvec3& place) const noexcept
+{
+    return glm::dot(normal, place - foot);
+}
 
 PlaneFitter::PlaneFitter(NearPoints& points) : points_(points)
 {
@@ -159,7 +162,7 @@ std::optional<PlaneFit> PlaneFitter::fit(const glm::dvec3& place, const glm::dve
         const double fall = std::max(0.0, 1 - s.d2 / (r * r));
         return fall * fall * heightWeight(std::abs(s.h) / spacing);
     };
-    Centroid   all;
+    Centroid all;
     for (const Sample& s : samples_) {
         const double w = weightOf(s);
         all.add(w, s.a, s.b);

@@ -33,10 +33,10 @@ struct PlaneFit {
 ///
 ///     h ~ alpha + beta a + gamma b + K q,    weights (1 - d^2/r^2)^2 psi(|h|)
 ///
-/// psi falls from 1 to 0 between two heights: a second sheet does not count. K is shrunk to K (K s)^2 / ((K s)^2 + k0^2)
-/// and clamped, s the spacing, and the rest is solved again: curvature that noise could have made is taken for none. The
-/// new normal is that of the given plane, tilted by (beta, gamma): its side cannot flip. The radius r grows in holes.
-/// Support falls where the centroid of the points is off centre, as at a border.
+/// psi falls from 1 to 0 between two heights: a second sheet does not count. K is shrunk to K (K s)^2 / ((K s)^2 +
+/// k0^2) and clamped, s the spacing, and the rest is solved again: curvature that noise could have made is taken for
+/// none. The new normal is that of the given plane, tilted by (beta, gamma): its side cannot flip. The radius r grows
+/// in holes. Support falls where the centroid of the points is off centre, as at a border.
 ///
 /// \thread one; allocates nothing after construction
 /// \source our own reconstruction; constants chosen by our own prototype on 8 to 40 random clouds a case
@@ -61,8 +61,8 @@ private:
         bool   own     = true;      ///< of this surface, not of another known one
     };
     struct Frame {
-        glm::dvec3 place, normal, u, v;
-        double     spacing;
+        glm::dvec3                    place, normal, u, v;
+        double                        spacing;
         std::span<const SurfacePlane> others;
     };
 
@@ -72,7 +72,7 @@ private:
     NearPoints&         points_;
     std::vector<Sample> samples_;
     std::size_t         owned_ = 0; ///< how many of them are own
-    std::vector<double> squares_; ///< [m^2] scratch of collectEnough
+    std::vector<double> squares_;   ///< [m^2] scratch of collectEnough
 };
 
 /// Surfaces whose normals differ by less are one surface [1]: cosine of 32 degrees.

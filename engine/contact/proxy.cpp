@@ -37,6 +37,9 @@ void Proxy::reset(const glm::dvec3& hip) noexcept
     impl_->placed = true;
 }
 
-const ProxyState& Proxy::state() const noexcept { return impl_->state; }
+const ProxyState& Proxy::state() const noexcept
+{
+    return impl_->state;
+}
 
 } // namespace palp

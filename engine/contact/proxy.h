@@ -23,23 +23,29 @@ struct ProxySettings {
 
 /// Where the proxy is after a tick.
 struct ProxyState {
-    glm::dvec3 position{};        ///< [m] on the surface in contact, at the HIP in free space
-    glm::dvec3 normal{0, 0, 1};   ///< [1] unit, towards the hand, of the surface that carries most; of the last touch if free
-    bool       touching = false;  ///< the surface lies between the HIP and where it came from
-    double     fade     = 0;      ///< [1] share of the force to be shown: falls to 0 in 20 ms past a border
-    double     spacing  = 0;      ///< [m] of the points around here
-    double     support  = 0;      ///< [1] 1: points all around; 0: past a border
-    bool       slipping = false;  ///< dynamic friction acts
-    bool       limited  = false;  ///< the tick ran out of iterations; the next goes on from here
+    glm::dvec3 position{}; ///< [m] on the surface in contact, at the HIP in free space
+    glm::dvec3 normal{0, 0,
+                      1}; ///< [1] unit, towards the hand, of the surface that carries most; of the last touch if free
+    glm::dvec3 pull{};    ///< [m] what is felt, from the HIP: fade * (position - HIP), but never jumping
+    bool       touching = false; ///< the surface lies between the HIP and where it came from
+    double     fade     = 0;     ///< [1] share of the force to be shown: falls to 0 in 20 ms past a border
+    double     spacing  = 0;     ///< [m] of the points around here
+    double     support  = 0;     ///< [1] 1: points all around; 0: past a border
+    bool       slipping = false; ///< dynamic friction acts
+    bool       limited  = false; ///< the tick ran out of iterations; the next goes on from here
 };
 
 /// The point of the surface nearest to the hand that the hand has not passed through.
 ///
 /// In free space it is the HIP (haptic interface point, where the hand is). In contact it stays on the surface, and the
-/// HIP behind it: the force is fade * k * (position - hip), which is the business of the force law. The cloud needs
-/// neither normals nor a mesh; the side of a sheet is the one that the hand came from, so start in free space.
+/// HIP behind it: the force is k * pull, which is the business of the force law. The cloud needs neither normals nor a
+/// mesh; the side of a sheet is the one that the hand came from, so start in free space.
 ///
-/// One tick is one millisecond: fade and slip are bounded per call.
+/// Where the object is sharper than its points are close, at an edge, a rim or when a second wall comes into sight, the
+/// position jumps, and so it does on the ideal surface. The pull follows by at most a tenth of itself and the way of
+/// the HIP per tick: after an abrupt end it dies away within 30 ms, in free space. The spheres' pull is not held back.
+///
+/// One tick is one millisecond: fade, slip and pull are bounded per call.
 /// \thread one, the servo; step() allocates, locks and throws nothing, and the same input gives the same bits
 /// \source Kumari & Chaudhuri, section 2.1, for the sphere; the hybrid is our own reconstruction
 /// \differs the paper's "dynamic function", which keeps the proxy on the surface, is not published: the sphere's push

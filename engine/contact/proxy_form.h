@@ -12,7 +12,7 @@ namespace palp {
 /// One form of the proxy. Internal to the contact layer.
 /// \thread one; step and reset allocate nothing
 struct Proxy::Impl {
-    virtual ~Impl()                                  = default;
+    virtual ~Impl()                                    = default;
     virtual void step(const glm::dvec3& hip) noexcept  = 0;
     virtual void reset(const glm::dvec3& hip) noexcept = 0;
 

@@ -12,14 +12,14 @@
 namespace palp {
 namespace {
 
-constexpr double kRadius      = 3;    // [spacings] random clouds have holes up to 1.9 in radius, and it must not sink in
-constexpr int    kSteps       = 100;  // [1] per tick
-constexpr double kSubStep     = 0.25; // [radius] no step is longer
-constexpr double kApproach    = 0.05; // [radius] step of the regulated form while it is alone
-constexpr double kOverlap     = 0.1;  // [radius] largest overshoot that the regulated form keeps
-constexpr double kSlideGain   = 0.1;  // [1]
-constexpr double kTolerance   = 1e-5; // [spacings]
-constexpr double kTinyNormal  = 1e-9; // [radius] mean overshoot of a sphere that is buried evenly: keep the last normal
+constexpr double kRadius     = 3;    // [spacings] random clouds have holes up to 1.9 in radius, and it must not sink in
+constexpr int    kSteps      = 100;  // [1] per tick
+constexpr double kSubStep    = 0.25; // [radius] no step is longer
+constexpr double kApproach   = 0.05; // [radius] step of the regulated form while it is alone
+constexpr double kOverlap    = 0.1;  // [radius] largest overshoot that the regulated form keeps
+constexpr double kSlideGain  = 0.1;  // [1]
+constexpr double kTolerance  = 1e-5; // [spacings]
+constexpr double kTinyNormal = 1e-9; // [radius] mean overshoot of a sphere that is buried evenly: keep the last normal
 
 glm::dvec3 capped(const glm::dvec3& step, double longest) noexcept
 {
@@ -32,7 +32,8 @@ public:
     SphereProxy(std::span<const glm::dvec3> positions, const NeighbourIndex& index, const ProxySettings& settings)
         : points_(positions, index), friction_{settings.staticFriction, settings.dynamicFriction, false},
           regulated_(settings.form == ProxyForm::sphere)
-    {}
+    {
+    }
 
     void step(const glm::dvec3& hip) noexcept override;
     void reset(const glm::dvec3& hip) noexcept override;
@@ -103,7 +104,8 @@ void SphereProxy::step(const glm::dvec3& hip) noexcept
     for (int k = 0; k < kSteps && state.limited; ++k) {
         const Overshoot over   = overshoot();
         const double    radius = kRadius * state.spacing;
-        if (const double length = glm::length(over.mean); length > kTinyNormal * radius) state.normal = over.mean / length;
+        if (const double length = glm::length(over.mean); length > kTinyNormal * radius)
+            state.normal = over.mean / length;
         state.touching = over.count > 0 && glm::dot(state.normal, hip - state.position) < 0;
         if (over.count > 0) state.spacing += 0.5 * (over.spacing - state.spacing);
         if (state.touching) {
@@ -123,6 +125,7 @@ void SphereProxy::step(const glm::dvec3& hip) noexcept
     state.slipping = friction_.slipping;
     state.fade     = state.touching ? 1 : 0;
     state.support  = state.fade;
+    state.pull     = state.position - hip;
 }
 
 } // namespace

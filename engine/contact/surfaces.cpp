@@ -28,9 +28,9 @@ constexpr double kParallel = 1e-6;
 bool multipliers(std::span<const SurfacePlane> planes, unsigned set, const glm::dvec3& place,
                  std::array<double, Surfaces::kMost>& lambda) noexcept
 {
-    int        member[Surfaces::kMost];
-    double     missing[Surfaces::kMost];
-    int        count = 0;
+    int    member[Surfaces::kMost];
+    double missing[Surfaces::kMost];
+    int    count = 0;
     for (int j = 0; j < int(planes.size()); ++j) {
         if (!(set >> j & 1U)) continue;
         missing[count]  = -planes[std::size_t(j)].height(place);
@@ -123,9 +123,9 @@ glm::dvec3 ontoLoaded(std::span<const SurfacePlane> planes, const Rest& rest, co
 
 SurfaceTracker::Sight SurfaceTracker::look(const Surfaces& surfaces, const glm::dvec3& place)
 {
-    const double sparsest = surfaces.count > 0 ? std::min(points_.largestSpacing(), kSparser * surfaces.spacing)
-                                               : points_.largestSpacing();
-    const auto   visible  = [&](const NearPoint& point) {
+    const double sparsest =
+        surfaces.count > 0 ? std::min(points_.largestSpacing(), kSparser * surfaces.spacing) : points_.largestSpacing();
+    const auto visible = [&](const NearPoint& point) {
         for (const SurfacePlane& plane : surfaces.all())
             if (plane.height(point.position) <= kFullHeight * surfaces.spacing) return false;
         return true;
@@ -157,8 +157,8 @@ bool SurfaceTracker::accept(Surfaces& surfaces, const NearPoint& nearest, const 
     SurfacePlane plane{seed / length, nearest.position, 0};
     double       spacing = surfaces.spacing;
     for (int fit = 0; fit <= kFitsAtPoint; ++fit) {
-        const glm::dvec3 at    = fit < kFitsAtPoint ? nearest.position : place;
-        const auto       found = fitter_.fit(at - plane.height(at) * plane.normal, plane.normal, spacing, surfaces.all());
+        const glm::dvec3 at = fit < kFitsAtPoint ? nearest.position : place;
+        const auto found    = fitter_.fit(at - plane.height(at) * plane.normal, plane.normal, spacing, surfaces.all());
         if (!found) return false;
         plane = found->plane;
     }
@@ -192,9 +192,9 @@ double SurfaceTracker::refresh(Surfaces& surfaces, const glm::dvec3& place) noex
     double spacing  = 0;
     int    fitted   = 0;
     for (int j = 0; j < surfaces.count; ++j) {
-        SurfacePlane&                               plane = surfaces.planes[std::size_t(j)];
-        std::array<SurfacePlane, Surfaces::kMost>   others;
-        std::size_t                                 count = 0;
+        SurfacePlane&                             plane = surfaces.planes[std::size_t(j)];
+        std::array<SurfacePlane, Surfaces::kMost> others;
+        std::size_t                               count = 0;
         for (int k = 0; k < surfaces.count; ++k)
             if (k != j) others[count++] = surfaces.planes[std::size_t(k)];
         const auto found = fitter_.fit(place - plane.height(place) * plane.normal, plane.normal, surfaces.spacing,

@@ -23,8 +23,8 @@ struct Surfaces {
 
 /// Where a tool pulled to the HIP comes to rest on some planes.
 struct Rest {
-    glm::dvec3                            point{}; ///< [m] nearest to the HIP that is behind no plane
-    std::array<double, Surfaces::kMost>   load{};  ///< [m] how hard each plane holds, along its normal; 0: not touched
+    glm::dvec3                          point{}; ///< [m] nearest to the HIP that is behind no plane
+    std::array<double, Surfaces::kMost> load{};  ///< [m] how hard each plane holds, along its normal; 0: not touched
 
     [[nodiscard]] bool touching() const noexcept { return load[0] > 0 || load[1] > 0 || load[2] > 0; }
 };
@@ -74,8 +74,8 @@ private:
     PlaneFitter fitter_;
 };
 
-/// Radius of the ball in spacings of the point [1]: the largest empty circle in a random cloud of 10^4 points has a radius
-/// of 1.9.
+/// Radius of the ball in spacings of the point [1]: the largest empty circle in a random cloud of 10^4 points has a
+/// radius of 1.9.
 inline constexpr double kBall = 2.5;
 
 } // namespace palp

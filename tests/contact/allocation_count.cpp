@@ -22,17 +22,56 @@ void* counted(std::size_t bytes, std::align_val_t alignment)
 }
 } // namespace
 
-std::size_t palp::allocations() noexcept { return count; }
+std::size_t palp::allocations() noexcept
+{
+    return count;
+}
 
-void* operator new(std::size_t bytes) { return counted(bytes); }
-void* operator new[](std::size_t bytes) { return counted(bytes); }
-void* operator new(std::size_t bytes, std::align_val_t alignment) { return counted(bytes, alignment); }
-void* operator new[](std::size_t bytes, std::align_val_t alignment) { return counted(bytes, alignment); }
-void  operator delete(void* memory) noexcept { std::free(memory); }
-void  operator delete[](void* memory) noexcept { std::free(memory); }
-void  operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void  operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-void  operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void  operator delete[](void* memory, std::align_val_t) noexcept { std::free(memory); }
-void  operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
-void  operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void* operator new(std::size_t bytes)
+{
+    return counted(bytes);
+}
+void* operator new[](std::size_t bytes)
+{
+    return counted(bytes);
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment)
+{
+    return counted(bytes, alignment);
+}
+void* operator new[](std::size_t bytes, std::align_val_t alignment)
+{
+    return counted(bytes, alignment);
+}
+void operator delete(void* memory) noexcept
+{
+    std::free(memory);
+}
+void operator delete[](void* memory) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept
+{
+    std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept
+{
+    std::free(memory);
+}
+void operator delete[](void* memory, std::align_val_t) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept
+{
+    std::free(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept
+{
+    std::free(memory);
+}

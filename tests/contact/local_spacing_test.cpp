@@ -18,7 +18,10 @@ std::vector<double> spacingsOf(const Points& points)
     return localSpacings(points, index);
 }
 
-bool inside(const glm::dvec3& p, double x0, double x1) { return p.x > x0 && p.x < x1 && std::abs(p.y) < 30; }
+bool inside(const glm::dvec3& p, double x0, double x1)
+{
+    return p.x > x0 && p.x < x1 && std::abs(p.y) < 30;
+}
 
 TEST(LocalSpacing, IsTheMeanDistanceOfARandomSheetAndOfTwo)
 {

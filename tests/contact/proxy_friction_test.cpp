@@ -42,7 +42,7 @@ FrictionCount runs(ProxyForm form)
             for (int tick = 0; tick < 500; ++tick) touch.step(touch.hip());
             count.held += glm::length(touch.at() - before) < 1e-3;
 
-            double lag = 0;
+            double lag   = 0;
             int    ticks = 0;
             touch.move({12, 0.3, -kDepth}, 0.1, [&] {
                 if (touch.hip().x < 2) return;
@@ -68,7 +68,7 @@ TEST(ProxyFriction, ThePapersFormLagsWrongly)
 
 TEST(ProxyFriction, SlidesWhenPulledBeyondTheConeAndSaysSo)
 {
-    Touch touch = pressed(Layout::random, 0, 1, ProxyForm::hybrid);
+    Touch        touch = pressed(Layout::random, 0, 1, ProxyForm::hybrid);
     const double start = touch.at().x;
     touch.move(touch.hip() + glm::dvec3(0.95 * kHold * kDepth, 0, 0), 0.05);
     EXPECT_NEAR(touch.at().x, start, 1e-3);

@@ -108,10 +108,11 @@ public:
 
     void step(const glm::dvec3& hip)
     {
-        const glm::dvec3 before = force();
-        hip_                    = hip;
+        const glm::dvec3 before = force(), pullBefore = pull();
+        hip_ = hip;
         proxy_->step(kSpacing * (hip + shift_));
         forceStep_ = glm::length(force() - before);
+        pullStep_  = glm::length(pull() - pullBefore);
     }
 
     /// Straight to a place in ticks of at most `speed`, calling `after` after each.
@@ -140,7 +141,9 @@ public:
     [[nodiscard]] glm::dvec3        hip() const { return hip_; }
     [[nodiscard]] bool              touching() const { return state().touching; }
     [[nodiscard]] glm::dvec3        force() const { return touching() ? state().fade * (at() - hip_) : glm::dvec3(0); }
+    [[nodiscard]] glm::dvec3        pull() const { return state().pull / kSpacing; }
     [[nodiscard]] double            forceStep() const { return forceStep_; } ///< [spacings] of depth, in the last tick
+    [[nodiscard]] double            pullStep() const { return pullStep_; }   ///< [spacings] of depth, in the last tick
 
 private:
     Points                          positions_; ///< [m]
@@ -149,6 +152,7 @@ private:
     std::unique_ptr<Proxy>          proxy_;
     glm::dvec3                      hip_{};
     double                          forceStep_ = 0;
+    double                          pullStep_  = 0;
 };
 
 /// What a slide showed.
@@ -157,7 +161,8 @@ struct Slide {
     double angle2 = 0, height = 0, height2 = 0; ///< sums
     double lag = 0, forceStep = 0;              ///< largest
 
-    /// \param normal, height, lag  of the true surface below the proxy, the proxy over it, and behind where it should be
+    /// \param normal, height, lag  of the true surface below the proxy, the proxy over it, and behind where it should
+    /// be
     void add(const Touch& touch, const glm::dvec3& normal, double heightNow, double lagNow)
     {
         const double c = glm::dot(touch.state().normal, normal);
@@ -190,8 +195,8 @@ struct Slide {
 
 /// Several runs of one kind.
 struct Runs {
-    int   count = 0, popped = 0; ///< runs
-    Slide all;
+    int    count = 0, popped = 0; ///< runs
+    Slide  all;
     double worstAngle = 0, worstRipple = 0, worstBias = 0, worstLag = 0; ///< of one run
 
     void add(const Slide& slide)

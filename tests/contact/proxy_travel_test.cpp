@@ -49,9 +49,9 @@ TEST(ProxyTravel, NoWayIsTooFast)
         const double                     gaps[] = {0, 2, 3};
         std::mt19937_64                  random(7000 + std::uint64_t(run));
         std::uniform_real_distribution<> unit(0, 1);
-        const double gap   = gaps[run % 3];
-        const double angle = unit(random) * 69 * std::numbers::pi / 180, turn = 2 * std::numbers::pi * unit(random);
-        const double far   = 10 + 50 * unit(random);
+        const double                     gap = gaps[run % 3];
+        const double     angle = unit(random) * 69 * std::numbers::pi / 180, turn = 2 * std::numbers::pi * unit(random);
+        const double     far = 10 + 50 * unit(random);
         const glm::dvec3 back(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), std::cos(angle));
         const glm::dvec3 end(unit(random), unit(random), -gap - 5);
         Touch touch(smallSheets(run % 2 ? Layout::random : Layout::lattice, 7000 + std::uint64_t(run), gap, 30));
@@ -73,6 +73,7 @@ TEST(ProxyTravel, InFreeSpaceTheProxyIsTheHand)
     touch.move({0, 0, 1.0}, 0.3, [&] {
         EXPECT_LT(glm::length(touch.at() - touch.hip()), 1e-12);
         EXPECT_EQ(touch.state().fade, 0);
+        EXPECT_LT(glm::length(touch.pull()), 1e-12);
     });
     touch.move({0, 0, -1.0}, 0.3);
     EXPECT_TRUE(touch.touching());
@@ -156,6 +157,53 @@ TEST(ProxyTravel, AHandThatIsNowhereMovesNothing)
     EXPECT_NEAR(glm::length(touch.at() - before), 0, 1e-6);
     touch.step({1e300, 0, -2});
     EXPECT_TRUE(std::isfinite(touch.at().x));
+}
+
+/// Clouds that no one should send, and some do.
+std::vector<Points> strangeClouds()
+{
+    std::mt19937_64            random(11);
+    std::normal_distribution<> normal;
+    const auto any = [&](double size) { return size * glm::dvec3(normal(random), normal(random), normal(random)); };
+    std::vector<Points> clouds(6);
+    for (int i = 0; i < 3000; ++i) clouds[0].push_back(any(5));               // a volume
+    for (int i = 0; i < 300; ++i) clouds[1].emplace_back(0.1 * i - 15, 0, 0); // a line
+    for (const glm::dvec3& p : smallSheets(Layout::lattice, 1, 0, 8))
+        clouds[2].insert(clouds[2].end(), 3, p); // pairs of pairs
+    clouds[3] = smallSheets(Layout::random, 1, 0, 8);
+    for (int i = 0; i < 20; ++i) clouds[3].push_back(any(30)); // strays
+    clouds[4] = smallSheets(Layout::random, 1, 0, 8);
+    for (int i = 0; i < 20000; ++i) clouds[4].push_back(any(0.05)); // a clot
+    for (int i = 0; i < 7; ++i) clouds[5].push_back(any(3));        // hardly any
+    return clouds;
+}
+
+TEST(ProxyTravel, WhateverTheCloudTheProxyStaysFinite)
+{
+    int number = 0;
+    for (const Points& cloud : strangeClouds())
+        for (const ProxyForm form : {ProxyForm::hybrid, ProxyForm::sphere, ProxyForm::plainSphere}) {
+            SCOPED_TRACE("cloud " + std::to_string(number++ / 3));
+            std::unique_ptr<Touch> touch;
+            try {
+                touch = std::make_unique<Touch>(cloud, ProxySettings{form, 0.4, 0.2});
+            } catch (const Error&) { // most points coincide
+                continue;
+            }
+            std::mt19937_64            random(5);
+            std::normal_distribution<> normal;
+            touch->start({0, 0, 40});
+            for (int way = 0; way < 60; ++way) {
+                const glm::dvec3 goal = 6.0 * glm::dvec3(normal(random), normal(random), normal(random));
+                touch->move(goal, std::exp(2 * normal(random) - 1) + 0.02, [&] {
+                    const ProxyState& state = touch->state();
+                    ASSERT_LT(glm::length(touch->at()), 1e3);
+                    ASSERT_NEAR(glm::length(state.normal), 1, 1e-9);
+                    ASSERT_TRUE(state.fade >= 0 && state.fade <= 1);
+                    ASSERT_LT(glm::length(touch->pull()), 1e3);
+                });
+            }
+        }
 }
 
 TEST(ProxyTravel, WrongFrictionAndCloudsWithoutASurfaceAreRefused)

@@ -8,7 +8,10 @@
 namespace palp {
 namespace {
 
-SurfacePlane plane(const glm::dvec3& normal, const glm::dvec3& foot) { return {glm::normalize(normal), foot, 1}; }
+SurfacePlane plane(const glm::dvec3& normal, const glm::dvec3& foot)
+{
+    return {glm::normalize(normal), foot, 1};
+}
 
 TEST(RestOn, AHandInFrontOfAllPlanesRestsOnNone)
 {
@@ -21,7 +24,8 @@ TEST(RestOn, AHandInFrontOfAllPlanesRestsOnNone)
 
 TEST(RestOn, OnePlaneTwoPlanesThreePlanes)
 {
-    const SurfacePlane planes[] = {plane({0, 0, 1}, {0, 0, 0}), plane({1, 0, 0}, {0, 0, 0}), plane({0, 1, 0}, {0, 0, 0})};
+    const SurfacePlane planes[] = {plane({0, 0, 1}, {0, 0, 0}), plane({1, 0, 0}, {0, 0, 0}),
+                                   plane({0, 1, 0}, {0, 0, 0})};
     EXPECT_EQ(restOn(planes, {1, 2, -3}).point, glm::dvec3(1, 2, 0));
     EXPECT_EQ(restOn(planes, {-1, 2, -3}).point, glm::dvec3(0, 2, 0));
     EXPECT_EQ(restOn(planes, {-1, -2, -3}).point, glm::dvec3(0, 0, 0));
