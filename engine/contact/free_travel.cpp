@@ -85,7 +85,10 @@ Arrival FreeTravel::go(const glm::dvec3& from, const glm::dvec3& to, Surfaces& s
             const SurfacePlane& plane = surfaces.planes[std::size_t(j)];
             if (plane.support == 0 || plane.height(place) > kHoldHeight * surfaces.spacing) surfaces.remove(j);
         }
-        if (const SurfacePlane* plane = passed(surfaces, place)) return {place, true, false, plane->support};
+        if (const SurfacePlane* plane = passed(surfaces, place)) {
+            surfaces.seen = {};
+            return {place, true, false, plane->support};
+        }
     }
     return {place, false, place == to, 0};
 }

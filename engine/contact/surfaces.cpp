@@ -20,6 +20,9 @@ constexpr double kSparser = 2;
 /// A plane that opposes a known one as much, and passes through it here, is the known one from below [1]: cosine.
 constexpr double kFromBelow = -0.5;
 
+/// What was seen from afar must have points all around, or it is the past of a border or an edge [1]: support.
+constexpr double kSureSupport = 0.9;
+
 /// Planes nearer to parallel than this do not define an edge or a corner [1]: determinant of their Gram matrix.
 constexpr double kParallel = 1e-6;
 
@@ -171,6 +174,7 @@ bool SurfaceTracker::accept(Surfaces& surfaces, const NearPoint& nearest, const 
         if (c > kSameSurface) return false;
         if (c < kFromBelow && known.height(plane.foot) < kFullHeight * spacing) return false;
     }
+    if (surfaces.count == 0) surfaces.seen = plane.normal;
     surfaces.planes[std::size_t(surfaces.count++)] = plane;
     return true;
 }
@@ -179,8 +183,17 @@ bool SurfaceTracker::discover(Surfaces& surfaces, const glm::dvec3& place, const
 {
     if (surfaces.count == Surfaces::kMost) return false;
     const Sight sight = look(surfaces, place);
-    if (!sight.any) return false;
+    if (!sight.any) {
+        if (surfaces.count == 0) surfaces.seen = {};
+        return false;
+    }
     if (surfaces.count == 0) surfaces.spacing = sight.nearest.spacing;
+    // What was seen from further away was seen better: near a hole the nearest points are all on one side.
+    const Surfaces before = surfaces;
+    if (surfaces.count == 0 && accept(surfaces, sight.nearest, place, surfaces.seen)) {
+        if (surfaces.planes[0].support >= kSureSupport) return true;
+        surfaces = before;
+    }
     for (const glm::dvec3& seed : {sight.outward, place - towards, place - sight.nearest.position})
         if (accept(surfaces, sight.nearest, place, seed)) break;
     return true;

@@ -16,6 +16,7 @@ struct Surfaces {
     std::array<SurfacePlane, kMost> planes{};
     int                             count   = 0;
     double                          spacing = 0; ///< [m] around here
+    glm::dvec3                      seen{};      ///< [1] normal of the first, as last seen from afar; 0: nothing was
 
     [[nodiscard]] std::span<const SurfacePlane> all() const noexcept { return {planes.data(), std::size_t(count)}; }
     void                                        remove(int which) noexcept;

@@ -11,6 +11,7 @@
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <gtest/gtest.h>
 
 #include "engine/cloud/neighbour_index.h"
 #include "engine/contact/proxy.h"
@@ -216,6 +217,17 @@ inline void PrintTo(const Runs& runs, std::ostream* out)
     *out << runs.popped << " of " << runs.count << " popped; normal " << runs.all.angle() << " deg RMS (worst run "
          << runs.worstAngle << "), ripple " << runs.all.ripple() << " (" << runs.worstRipple << "), bias "
          << runs.all.bias() << ", lag " << runs.worstLag << ", force step " << runs.all.forceStep;
+}
+
+/// Leaves what was measured in the report of the tests (--gtest_output=json:FILE), whether or not they pass.
+inline std::string record(const std::string& measured, const std::string& of = "measured")
+{
+    testing::Test::RecordProperty(of, measured);
+    return of + ": " + measured;
+}
+inline std::string record(const Runs& runs, const std::string& of = "measured")
+{
+    return record(testing::PrintToString(runs), of);
 }
 
 /// Presses down at `from` to `depth` below z = 0 and slides `way` to the side, on a flat object.

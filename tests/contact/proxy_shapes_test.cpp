@@ -51,7 +51,7 @@ Runs slidesOnBall(double radius, double cap, double depth, double way, ProxyForm
 TEST(ProxyShapes, ALargeBallIsSmooth)
 {
     const Runs runs = slidesOnBall(60, 0.7, 5, 20);
-    SCOPED_TRACE(testing::PrintToString(runs));
+    SCOPED_TRACE(record(runs));
     EXPECT_EQ(runs.popped, 0);
     EXPECT_LT(runs.all.angle(), 0.5) << "prototype: 0.19";
     EXPECT_LT(runs.worstLag, 0.1) << "prototype: 0.04";
@@ -60,7 +60,7 @@ TEST(ProxyShapes, ALargeBallIsSmooth)
 TEST(ProxyShapes, ALargeBallHoldsADeepHand)
 {
     const Runs runs = slidesOnBall(60, 0.7, 40, 20);
-    SCOPED_TRACE(testing::PrintToString(runs));
+    SCOPED_TRACE(record(runs));
     EXPECT_EQ(runs.popped, 0);
     EXPECT_LT(runs.worstLag, 2) << "prototype: 1.2";
 }
@@ -68,7 +68,7 @@ TEST(ProxyShapes, ALargeBallHoldsADeepHand)
 TEST(ProxyShapes, ABallOfFiveSpacingsIsRound)
 {
     const Runs runs = slidesOnBall(5, std::numbers::pi, 2.5, 10);
-    SCOPED_TRACE(testing::PrintToString(runs));
+    SCOPED_TRACE(record(runs));
     EXPECT_EQ(runs.popped, 0);
     EXPECT_LT(runs.all.angle(), 1.5) << "prototype: 0.66";
     EXPECT_LT(std::abs(runs.all.bias()), 0.12) << "prototype: -0.08";
@@ -78,7 +78,7 @@ TEST(ProxyShapes, ABallOfFiveSpacingsIsRound)
 TEST(ProxyShapes, ThePapersFormRattlesOnASmallBall)
 {
     const Runs runs = slidesOnBall(5, std::numbers::pi, 2.5, 10, ProxyForm::sphere);
-    SCOPED_TRACE(testing::PrintToString(runs));
+    SCOPED_TRACE(record(runs));
     EXPECT_GT(runs.all.angle(), 1.5) << "prototype: 10.7";
     EXPECT_GT(runs.worstLag, 0.25) << "prototype: 7.2";
 }
@@ -173,7 +173,7 @@ TEST(ProxyShapes, InAGrooveTheProxyRestsInTheCorner)
                 EXPECT_EQ(touch.at(), touch.hip());
             }
     EXPECT_LT(largest, 0.3) << "of the force, when the wall comes into sight; prototype: 0.23";
-    RecordProperty("largestForceStep", std::to_string(largest));
+    record("largest force step " + std::to_string(largest));
 }
 
 struct EdgeRecord {
@@ -234,7 +234,7 @@ Points plate(Layout layout, std::uint64_t seed)
 TEST(ProxyShapes, OverASharpEdgeThePullDoesNotJump)
 {
     const EdgeRecord slow = slideOff(box, 0.1), fast = slideOff(box, 0.5);
-    SCOPED_TRACE("slow: " + text(slow) + "; fast: " + text(fast));
+    SCOPED_TRACE(record("slow: " + text(slow) + "; fast: " + text(fast)));
     EXPECT_LT(slow.step, 0.13) << "prototype: 0.41";
     EXPECT_LT(fast.step, 0.21) << "prototype: 0.42";
     EXPECT_LT(std::max(slow.jump, fast.jump), 0.42) << "recorded: 0.37";
@@ -244,7 +244,7 @@ TEST(ProxyShapes, OverASharpEdgeThePullDoesNotJump)
 TEST(ProxyShapes, OverAThinRimThePullDoesNotJump)
 {
     const EdgeRecord slow = slideOff(plate, 0.1), fast = slideOff(plate, 0.5);
-    SCOPED_TRACE("slow: " + text(slow) + "; fast: " + text(fast));
+    SCOPED_TRACE(record("slow: " + text(slow) + "; fast: " + text(fast)));
     EXPECT_LT(slow.step, 0.13) << "prototype: 0.90";
     EXPECT_LT(fast.step, 0.21);
     EXPECT_LT(std::max(slow.jump, fast.jump), 1.1) << "recorded: 1.01, as the hand is outside on three sides";

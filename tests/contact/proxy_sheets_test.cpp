@@ -50,7 +50,7 @@ TEST(ProxySheets, APlaneIsAPlaneAtEveryDepth)
     for (const Layout layout : {Layout::lattice, Layout::random})
         for (const double depth : {5.0, 10.0, 40.0}) {
             const Runs runs = slides({layout, 0, 0, 0, depth});
-            SCOPED_TRACE(testing::PrintToString(runs));
+            SCOPED_TRACE(record(runs, "depth " + std::to_string(depth)));
             EXPECT_EQ(runs.popped, 0);
             EXPECT_LT(runs.worstAngle, 0.1);
             EXPECT_LT(runs.worstRipple, 0.001);
@@ -61,7 +61,7 @@ TEST(ProxySheets, APlaneIsAPlaneAtEveryDepth)
 TEST(ProxySheets, NoiseIsSmoothedAndLeftBehindLittle)
 {
     const Runs runs = slides({Layout::random, 0.2, 0, 0, 5});
-    SCOPED_TRACE(testing::PrintToString(runs));
+    SCOPED_TRACE(record(runs));
     EXPECT_EQ(runs.popped, 0);
     EXPECT_LT(runs.all.angle(), 3) << "prototype: 2.0";
     EXPECT_LT(runs.worstRipple, 0.06) << "prototype: 0.039";
@@ -71,7 +71,7 @@ TEST(ProxySheets, NoiseIsSmoothedAndLeftBehindLittle)
 TEST(ProxySheets, NoiseDoesNotLetADeepHandThrough)
 {
     const Runs runs = slides({Layout::random, 0.2, 0, 0, 40});
-    SCOPED_TRACE(testing::PrintToString(runs));
+    SCOPED_TRACE(record(runs));
     EXPECT_EQ(runs.popped, 0);
     EXPECT_LT(runs.worstLag, 5) << "depth times the error of the slope; prototype: 3.6";
 }
@@ -99,7 +99,7 @@ TEST(ProxySheets, TheNearOneOfTwoIsFelt)
     for (const double gap : {2.0, 3.0})
         for (const double beyond : {5.0, 20.0}) {
             const Runs runs = slides({Layout::random, 0, gap, 0, gap + beyond});
-            SCOPED_TRACE(testing::PrintToString(runs) + ", gap " + std::to_string(gap));
+            SCOPED_TRACE(record(runs, "gap " + std::to_string(gap) + ", " + std::to_string(beyond) + " beyond"));
             EXPECT_EQ(runs.popped, 0);
             EXPECT_LT(runs.worstRipple, 0.001);
         }
@@ -113,7 +113,7 @@ TEST(ProxySheets, AHoleIsBridged)
         for (const SheetCase& scene : {SheetCase{layout, 0, 0, 3, 5}, SheetCase{layout, 0, 0, 3, 20},
                                        SheetCase{layout, 0, 0, 6, 5}, SheetCase{layout, 0, 2, 6, 5}}) {
             const Runs runs = slides(scene);
-            SCOPED_TRACE(testing::PrintToString(runs) + ", hole " + std::to_string(scene.hole));
+            SCOPED_TRACE(record(runs, "hole " + std::to_string(scene.hole) + ", depth " + std::to_string(scene.depth)));
             EXPECT_EQ(runs.popped, 0);
             EXPECT_LT(runs.all.forceStep / scene.depth, 0.1) << "prototype: 0.06";
         }
@@ -132,16 +132,16 @@ TEST(ProxySheets, ThePapersFormLosesTheSurface)
                  {"hole of 6", {Layout::random, 0, 0, 6, 5}}};
     for (const auto& [name, scene] : cases) {
         const Runs runs = slides(scene, ProxyForm::sphere);
-        EXPECT_GT(runs.popped, 0) << name << ": " << testing::PrintToString(runs);
+        EXPECT_GT(runs.popped, 0) << record(runs, name);
     }
 }
 
 TEST(ProxySheets, ThePapersFormIsRoughWhereThePointsAreRandom)
 {
     const Runs regulated = slides({Layout::random, 0, 0, 0, 5}, ProxyForm::sphere);
-    EXPECT_GT(regulated.all.angle(), 5) << "degrees, on a plane; prototype: 8 to 9";
+    EXPECT_GT(regulated.all.angle(), 5) << record(regulated, "regulated") << "degrees, on a plane; prototype: 8 to 9";
     const Runs plain = slides({Layout::lattice, 0, 0, 0, 5}, ProxyForm::plainSphere);
-    EXPECT_GT(plain.all.angle(), 5) << "degrees, on a regular plane; prototype: 11.3";
+    EXPECT_GT(plain.all.angle(), 5) << record(plain, "plain") << "degrees, on a regular plane; prototype: 11.3";
     EXPECT_EQ(slides({Layout::lattice, 0, 0, 0, 5}, ProxyForm::sphere).popped, 0) << "on a lattice it holds";
 }
 
