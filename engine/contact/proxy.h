@@ -43,7 +43,7 @@ struct ProxyState {
 ///
 /// Where the object is sharper than its points are close, at an edge, a rim or when a second wall comes into sight, the
 /// position jumps, and so it does on the ideal surface. The pull follows by at most a tenth of itself and the way of
-/// the HIP per tick: after an abrupt end it dies away within 30 ms, in free space. The spheres' pull is not held back.
+/// the HIP per tick: after an abrupt end it dies away within 40 ms, in free space. The spheres' pull is not held back.
 ///
 /// One tick is one millisecond: fade, slip and pull are bounded per call.
 /// \thread one, the servo; step() allocates, locks and throws nothing, and the same input gives the same bits
