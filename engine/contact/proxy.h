@@ -17,16 +17,15 @@ enum class ProxyForm {
 
 struct ProxySettings {
     ProxyForm form            = ProxyForm::hybrid;
-    double    staticFriction  = 0; ///< [1] tangential over normal force that still holds; skin on smooth plastic 0.5
+    double    staticFriction  = 0; ///< [1] tangential over normal force that still holds
     double    dynamicFriction = 0; ///< [1] the same while slipping, at most `staticFriction`
 };
 
 /// Where the proxy is after a tick.
 struct ProxyState {
-    glm::dvec3 position{}; ///< [m] on the surface in contact, at the HIP in free space
-    glm::dvec3 normal{0, 0,
-                      1}; ///< [1] unit, towards the hand, of the surface that carries most; of the last touch if free
-    glm::dvec3 pull{};    ///< [m] what is felt, from the HIP: fade * (position - HIP), but never jumping
+    glm::dvec3 position{};       ///< [m] on the surface in contact, at the HIP in free space
+    glm::dvec3 normal{0, 0, 1};  ///< [1] unit, towards the hand, of the surface that carries most
+    glm::dvec3 pull{};           ///< [m] what is felt, from the HIP: fade * (position - HIP), but never jumping
     bool       touching = false; ///< the surface lies between the HIP and where it came from
     double     fade     = 0;     ///< [1] share of the force to be shown: falls to 0 in 20 ms past a border
     double     spacing  = 0;     ///< [m] of the points around here
