@@ -1,0 +1,246 @@
+// The default proxy. One tick in contact:
+//
+//   find and fit the surfaces near the proxy -> where would it rest on them, nearest to the HIP? -> what does friction
+//   leave of the way? -> one step of it -> again, until nothing moves.
+//
+// The step is a share b of the way, by the two last ways (Barzilai-Borwein): on ground that bends up, deeper than its
+// radius, the whole way would overshoot ever further. A step that turned the way round was too long and is taken again,
+// shorter. The distance to the HIP must not decide that: the ripple of fitted planes, 0.01 to 0.04 spacings, times the
+// depth makes false minima of it.
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "engine/contact/free_travel.h"
+#include "engine/contact/friction.h"
+#include "engine/contact/near_points.h"
+#include "engine/contact/proxy_form.h"
+#include "engine/contact/surfaces.h"
+
+namespace palp {
+namespace {
+
+// Lengths are in local spacings unless noted.
+constexpr int    kIterations  = 24;   // [1] per tick
+constexpr double kTolerance   = 2e-5; // nothing moves by more: done
+constexpr double kFadePerTick = 0.05; // [1] 20 ms from all of the force to none
+constexpr double kLookAfter   = 0.25; // travel after which a new surface may have come into sight
+constexpr double kLostHeight  = 1.5;  // one of several surfaces this far below is no longer felt
+constexpr double kSlipOfDepth = 0.1;  // [1] way per tick beyond the hand's own, of the depth, ...
+constexpr double kLeastSlip   = 0.05; // ... at least
+constexpr double kMostSlip    = 0.5;  // ... and at most: bounds the force step when the proxy slides off something
+constexpr double kSlipOfHand  = 2;    // [1] way per tick, of the way of the HIP
+constexpr double kPullPerTick = 0.1;  // [1] change of the pull per tick beyond the way of the HIP, of the pull, ...
+constexpr double kLeastPull   = 0.02; // ... at least
+constexpr double kTurned      = 0.5;  // [1] share of the way turned round that makes a step too long
+constexpr double kShorter     = 0.35; // [1] it is taken again with this share
+constexpr double kLeastShare  = 0.05; // [1] bounds of b
+constexpr double kMostShare   = 3;    // [1]
+
+glm::dvec3 capped(const glm::dvec3& step, double longest) noexcept
+{
+    const double length = glm::length(step);
+    return length <= longest ? step : step * (longest / length);
+}
+
+class HybridProxy final : public Proxy::Impl {
+public:
+    HybridProxy(std::span<const glm::dvec3> positions, const NeighbourIndex& index, const ProxySettings& settings)
+        : points_(positions, index), tracker_(points_),
+          travel_(points_, tracker_), friction_{settings.staticFriction, settings.dynamicFriction, false}
+    {
+    }
+
+    void step(const glm::dvec3& hip) noexcept override;
+    void reset(const glm::dvec3& hip) noexcept override;
+
+private:
+    /// What a tick's iteration remembers of its last step.
+    struct Descent {
+        glm::dvec3 fromPlace{}, fromWay{}, step{}; ///< [m] before the last step, and that step
+        Surfaces   fromSurfaces{};
+        bool       stepped   = false;
+        double     budget    = 0;  ///< [m] that may still be slid in this tick
+        double     sinceLook = -1; ///< [m] travelled since the last look for new surfaces; negative: look now
+    };
+
+    void                 fly(const glm::dvec3& hip) noexcept;
+    void                 settle(const glm::dvec3& hip) noexcept;
+    bool                 iterate(const glm::dvec3& hip, Descent& descent, bool& decided) noexcept;
+    double               look(const glm::dvec3& hip, Descent& descent) noexcept;
+    bool                 takeStep(Descent& descent, const glm::dvec3& way, double corrected) noexcept;
+    void                 fade() noexcept;
+    void                 pull(const glm::dvec3& hip) noexcept;
+    void                 forget(const glm::dvec3& hip) noexcept;
+    [[nodiscard]] double spacing() const noexcept { return surfaces_.spacing; }
+
+    NearPoints     points_;
+    SurfaceTracker tracker_;
+    FreeTravel     travel_;
+    Friction       friction_;
+    Surfaces       surfaces_;
+    Rest           rest_;
+    glm::dvec3     lastHip_{}; ///< [m]
+};
+
+void HybridProxy::reset(const glm::dvec3& hip) noexcept
+{
+    state    = {};
+    lastHip_ = hip;
+    forget(hip);
+}
+
+void HybridProxy::forget(const glm::dvec3& hip) noexcept
+{
+    surfaces_          = {};
+    rest_              = {};
+    friction_.slipping = false;
+    state.position     = hip;
+    state.touching     = false;
+    state.fade         = 0;
+    state.support      = 0;
+    state.spacing      = points_.usualSpacing();
+}
+
+void HybridProxy::step(const glm::dvec3& hip) noexcept
+{
+    state.limited = false;
+    if (!state.touching) fly(hip);
+    if (state.touching) settle(hip);
+    if (state.touching) fade();
+    if (state.touching && state.fade <= 0) forget(hip);
+    state.slipping = friction_.slipping;
+    pull(hip);
+    lastHip_ = hip;
+}
+
+/// Goes on to the HIP, or to the first surface on the way.
+void HybridProxy::fly(const glm::dvec3& hip) noexcept
+{
+    const Arrival end  = travel_.go(state.position, hip, surfaces_);
+    state.position     = end.position;
+    state.touching     = end.touched;
+    state.limited      = !end.touched && !end.arrived;
+    state.fade         = end.touched ? end.support : 0;
+    state.support      = end.support;
+    friction_.slipping = friction_.slipping && end.touched;
+    if (surfaces_.spacing > 0) state.spacing = surfaces_.spacing;
+}
+
+void HybridProxy::settle(const glm::dvec3& hip) noexcept
+{
+    const double depth = glm::length(hip - state.position);
+    Descent      descent;
+    descent.budget = kSlipOfHand * glm::length(hip - lastHip_) +
+                     std::clamp(kSlipOfDepth * depth, kLeastSlip * spacing(), kMostSlip * spacing());
+    bool decided = false;
+    for (int k = 0; k <= kIterations; ++k) {
+        if (iterate(hip, descent, decided)) break;
+        state.limited = state.touching && k == kIterations;
+    }
+    if (!state.touching) return;
+    if (state.limited) rest_ = restOn(surfaces_.all(), hip);
+    const auto most = std::max_element(rest_.load.begin(), rest_.load.end()) - rest_.load.begin();
+    if (rest_.touching()) state.normal = surfaces_.planes[std::size_t(most)].normal;
+    state.spacing = spacing();
+}
+
+/// Looks for surfaces where that is due and fits the known ones.
+/// \return  [m] the furthest that a surface was moved
+double HybridProxy::look(const glm::dvec3& hip, Descent& descent) noexcept
+{
+    if (descent.sinceLook < 0 || descent.sinceLook > kLookAfter * spacing()) {
+        tracker_.discover(surfaces_, state.position, hip);
+        descent.sinceLook = 0;
+    }
+    const double corrected = tracker_.refresh(surfaces_, state.position);
+    for (int j = surfaces_.count - 1; j >= 0 && surfaces_.count > 1; --j) {
+        const SurfacePlane& plane = surfaces_.planes[std::size_t(j)];
+        if (plane.support == 0 || plane.height(state.position) > kLostHeight * spacing()) surfaces_.remove(j);
+    }
+    return corrected;
+}
+
+/// \return whether the tick is done
+bool HybridProxy::iterate(const glm::dvec3& hip, Descent& descent, bool& decided) noexcept
+{
+    double corrected = look(hip, descent);
+    rest_            = restOn(surfaces_.all(), hip);
+    if (!rest_.touching()) {
+        // From here, never by a jump to the HIP: another wall may be between.
+        fly(hip);
+        descent.stepped   = false;
+        descent.sinceLook = -1;
+        return !state.touching;
+    }
+    const glm::dvec3 onto =
+        capped(ontoLoaded(surfaces_.all(), rest_, state.position) - state.position, kStepCap * spacing());
+    state.position += onto;
+    corrected = std::max(corrected, glm::length(onto));
+
+    const glm::dvec3 pull  = hip - state.position;
+    const glm::dvec3 full  = rest_.point - state.position;
+    const double     depth = std::sqrt(std::max(0.0, glm::dot(pull, pull) - glm::dot(full, full)));
+    if (!decided) friction_.decide(full, depth);
+    decided = true;
+    return takeStep(descent, friction_.shortened(full, depth), corrected);
+}
+
+/// One step of the way, or the last one again, shorter.
+/// \return whether nothing moved any more
+bool HybridProxy::takeStep(Descent& descent, const glm::dvec3& way, double corrected) noexcept
+{
+    if (descent.stepped && glm::dot(way, descent.step) < -kTurned * glm::dot(descent.fromWay, descent.step)) {
+        state.position    = descent.fromPlace;
+        surfaces_         = descent.fromSurfaces;
+        const double back = (1 - kShorter) * glm::length(descent.step);
+        descent.budget += back;
+        descent.step *= kShorter;
+        state.position += descent.step;
+        return false;
+    }
+    double share = 1;
+    if (descent.stepped)
+        if (const double change = glm::dot(descent.step, descent.fromWay - way); change > 0)
+            share = std::clamp(glm::dot(descent.step, descent.step) / change, kLeastShare, kMostShare);
+    descent.fromPlace    = state.position;
+    descent.fromSurfaces = surfaces_;
+    descent.fromWay      = way;
+    descent.step         = capped(share * way, std::min(kStepCap * spacing(), descent.budget));
+    descent.stepped      = true;
+    const double length  = glm::length(descent.step);
+    descent.budget       = std::max(0.0, descent.budget - length);
+    descent.sinceLook += length;
+    state.position += descent.step;
+    return std::max(length, corrected) < kTolerance * spacing();
+}
+
+/// Past a border the force goes within a few ticks, while the proxy slides on along the last plane.
+void HybridProxy::fade() noexcept
+{
+    double support = 0;
+    for (int j = 0; j < surfaces_.count; ++j)
+        if (rest_.load[std::size_t(j)] > 0) support = std::max(support, surfaces_.planes[std::size_t(j)].support);
+    state.support = support;
+    state.fade += std::clamp(support - state.fade, -kFadePerTick, kFadePerTick);
+}
+
+/// A press, a slide, a curve or a stop of the HIP change the pull by no more than the HIP moves; the rest is a jump.
+void HybridProxy::pull(const glm::dvec3& hip) noexcept
+{
+    const glm::dvec3 jump  = state.fade * (state.position - hip) - state.pull;
+    const double     least = kLeastPull * state.spacing;
+    state.pull += capped(jump, glm::length(hip - lastHip_) + std::max(kPullPerTick * glm::length(state.pull), least));
+}
+
+} // namespace
+
+std::unique_ptr<Proxy::Impl> hybridProxy(std::span<const glm::dvec3> positions, const NeighbourIndex& index,
+                                         const ProxySettings& settings)
+{
+    return std::make_unique<HybridProxy>(positions, index, settings);
+}
+
+} // namespace palp

@@ -1,0 +1,96 @@
+#include "engine/contact/local_spacing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "engine/cloud/morton.h"
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+constexpr std::size_t kNeighbours = 6; ///< [1] besides the point itself
+
+/// Search radius over the cloud's spacing: holds 15 points where the cloud is as dense as usual. Where it holds fewer
+/// than seven the exact, slower search follows.
+constexpr double kLikelyReach = 2.2;
+
+/// Radius of the median over the point's own first guess: 28 points of a regular sheet.
+constexpr double kMedianReach = 3;
+
+/// Where points coincide no spacing falls below this share of the cloud's [1]: radii must stay lengths.
+constexpr double kLeast = 0.05;
+
+/// The points in an order in which neighbours follow each other, so that what a search reads is still in the cache.
+std::vector<std::uint32_t> alongCurve(std::span<const glm::dvec3> positions)
+{
+    glm::dvec3 low = positions[0], high = positions[0];
+    for (const glm::dvec3& p : positions) {
+        low  = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const glm::dvec3 size  = high - low;
+    const double     scale = (kMortonCells - 1) / std::max({size.x, size.y, size.z});
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const glm::dvec3 cell = scale * (positions[i] - low);
+        keys[i] = {mortonCode(std::uint32_t(cell.x), std::uint32_t(cell.y), std::uint32_t(cell.z)), std::uint32_t(i)};
+    }
+    std::sort(keys.begin(), keys.end());
+    std::vector<std::uint32_t> order(keys.size());
+    std::transform(keys.begin(), keys.end(), order.begin(), [](const auto& key) { return key.second; });
+    return order;
+}
+
+/// The value that half of the others do not exceed; reorders.
+double median(std::vector<double>& values)
+{
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+} // namespace
+
+std::vector<double> localSpacings(std::span<const glm::dvec3> positions, const NeighbourIndex& index)
+{
+    PALP_EXPECT(positions.size() == index.size(), "the index is over other points");
+    const double usual = index.spacing();
+    if (!(usual > 0))
+        throw Error("contact: the cloud has fewer than seven points or most of them coincide, so there is no surface "
+                    "to touch; are there duplicates?");
+
+    std::vector<std::uint32_t> near;
+    std::vector<double>        values;
+    std::vector<double>        guess(positions.size());
+    const auto                 order = alongCurve(positions);
+    for (const std::uint32_t i : order) {
+        index.gather(positions[i], kLikelyReach * usual, near);
+        values.clear();
+        for (const std::uint32_t p : near) values.push_back(glm::length(positions[p] - positions[i]));
+        double sixth = 0; // [m]
+        if (values.size() > kNeighbours) {
+            std::nth_element(values.begin(), values.begin() + kNeighbours, values.end());
+            sixth = values[kNeighbours];
+        } else {
+            sixth = index.nearest(positions[i], kNeighbours + 1).back().distance;
+        }
+        guess[i] = std::max(sixth * std::sqrt(std::numbers::pi / kNeighbours), kLeast * usual);
+    }
+
+    std::vector<double> spacings(positions.size());
+    for (const std::uint32_t i : order) {
+        index.gather(positions[i], kMedianReach * guess[i], near);
+        values.clear();
+        for (const std::uint32_t p : near) values.push_back(guess[p]);
+        spacings[i] = median(values);
+    }
+    return spacings;
+}
+
+} // namespace palp

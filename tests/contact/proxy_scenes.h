@@ -1,0 +1,247 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <gtest/gtest.h>
+
+#include "engine/cloud/neighbour_index.h"
+#include "engine/contact/proxy.h"
+
+/// Clouds and motions of the proxy's tests. All lengths here are in mean spacings; the clouds have one of 1 mm.
+namespace palp::proxytest {
+
+inline constexpr double        kSpacing   = 1e-3; ///< [m]
+inline constexpr double        kHalf      = 40;   ///< half the side of a sheet [spacings]
+inline constexpr int           kSeeds     = 8;
+inline constexpr std::uint64_t kFirstSeed = 1000;
+
+using Points = std::vector<glm::dvec3>; ///< [spacings]
+
+enum class Layout { lattice, random };
+
+/// Places of a sheet: a lattice shifted by the seed, or as many random ones.
+class Sheet {
+public:
+    Sheet(Layout layout, std::uint64_t seed) : layout_(layout), random_(seed) {}
+
+    /// Points at (x, y) for the rectangle; about one per square spacing.
+    Points over(double x0, double x1, double y0, double y1)
+    {
+        std::uniform_real_distribution<> unit(0, 1);
+        Points                           points;
+        if (layout_ == Layout::random) {
+            const int count = int(std::lround((x1 - x0) * (y1 - y0)));
+            for (int i = 0; i < count; ++i) {
+                const double x = x0 + (x1 - x0) * unit(random_);
+                points.emplace_back(x, y0 + (y1 - y0) * unit(random_), 0);
+            }
+            return points;
+        }
+        const double dx = unit(random_), dy = unit(random_);
+        for (double x = x0 + dx; x < x1; ++x)
+            for (double y = y0 + dy; y < y1; ++y) points.emplace_back(x, y, 0);
+        return points;
+    }
+    Points whole() { return over(-kHalf, kHalf, -kHalf, kHalf); }
+
+    [[nodiscard]] std::mt19937_64& random() noexcept { return random_; }
+
+private:
+    Layout          layout_;
+    std::mt19937_64 random_;
+};
+
+inline void addNoise(Points& points, double deviation, std::mt19937_64& random)
+{
+    std::normal_distribution<> normal(0, deviation);
+    for (glm::dvec3& p : points) p.z += normal(random);
+}
+
+inline void append(Points& points, const Points& more, const glm::dvec3& shift = glm::dvec3(0))
+{
+    for (const glm::dvec3& p : more) points.push_back(p + shift);
+}
+
+inline void cutHole(Points& points, double radius)
+{
+    std::erase_if(points, [=](const glm::dvec3& p) { return std::hypot(p.x, p.y) < radius; });
+}
+
+/// Ball about (0, 0, -radius), the pole at the origin; `cap` [rad] of it. The lattice is a spiral.
+inline Points ball(Layout layout, double radius, double cap, std::uint64_t seed)
+{
+    std::mt19937_64                  random(seed);
+    std::uniform_real_distribution<> unit(0, 1);
+    const double                     low    = std::cos(cap);
+    const int                        count  = int(std::lround(2 * std::numbers::pi * radius * radius * (1 - low)));
+    const double                     golden = std::numbers::pi * (3 - std::sqrt(5.0));
+    const double                     turn   = unit(random);
+    Points                           points;
+    for (int i = 0; i < count; ++i) {
+        const bool   lattice = layout == Layout::lattice;
+        const double c       = 1 - (1 - low) * (lattice ? (i + 0.5) / count : unit(random));
+        const double angle   = lattice ? turn + golden * i : 2 * std::numbers::pi * unit(random);
+        const double r       = std::sqrt(std::max(0.0, 1 - c * c));
+        points.push_back(radius * glm::dvec3(r * std::cos(angle), r * std::sin(angle), c - 1));
+    }
+    return points;
+}
+
+/// A cloud, its index and a proxy, spoken to in spacings.
+class Touch {
+public:
+    explicit Touch(const Points& points, const ProxySettings& settings = {}, const glm::dvec3& shift = glm::dvec3(0))
+        : positions_(points), shift_(shift)
+    {
+        for (glm::dvec3& p : positions_) p = kSpacing * (p + shift);
+        index_ = std::make_unique<NeighbourIndex>(positions_);
+        proxy_ = std::make_unique<Proxy>(positions_, *index_, settings);
+    }
+
+    void step(const glm::dvec3& hip)
+    {
+        const glm::dvec3 before = force(), pullBefore = pull();
+        hip_ = hip;
+        proxy_->step(kSpacing * (hip + shift_));
+        forceStep_ = glm::length(force() - before);
+        pullStep_  = glm::length(pull() - pullBefore);
+    }
+
+    /// Straight to a place in ticks of at most `speed`, calling `after` after each.
+    template <class After>
+    void move(const glm::dvec3& to, double speed, After&& after)
+    {
+        const glm::dvec3 from  = hip_;
+        const int        ticks = std::max(1, int(std::ceil(glm::length(to - from) / speed - 1e-9)));
+        for (int k = 1; k <= ticks; ++k) {
+            step(from + (double(k) / ticks) * (to - from));
+            after();
+        }
+    }
+    void move(const glm::dvec3& to, double speed)
+    {
+        move(to, speed, [] {});
+    }
+    void start(const glm::dvec3& hip)
+    {
+        hip_ = hip;
+        proxy_->reset(kSpacing * (hip + shift_));
+    }
+
+    [[nodiscard]] const ProxyState& state() const { return proxy_->state(); }
+    [[nodiscard]] glm::dvec3        at() const { return state().position / kSpacing - shift_; }
+    [[nodiscard]] glm::dvec3        hip() const { return hip_; }
+    [[nodiscard]] bool              touching() const { return state().touching; }
+    [[nodiscard]] glm::dvec3        force() const { return touching() ? state().fade * (at() - hip_) : glm::dvec3(0); }
+    [[nodiscard]] glm::dvec3        pull() const { return state().pull / kSpacing; }
+    [[nodiscard]] double            forceStep() const { return forceStep_; } ///< [spacings] of depth, in the last tick
+    [[nodiscard]] double            pullStep() const { return pullStep_; }   ///< [spacings] of depth, in the last tick
+
+private:
+    Points                          positions_; ///< [m]
+    glm::dvec3                      shift_;
+    std::unique_ptr<NeighbourIndex> index_;
+    std::unique_ptr<Proxy>          proxy_;
+    glm::dvec3                      hip_{};
+    double                          forceStep_ = 0;
+    double                          pullStep_  = 0;
+};
+
+/// What a slide showed.
+struct Slide {
+    int    ticks = 0, popped = 0, flipped = 0;
+    double angle2 = 0, height = 0, height2 = 0; ///< sums
+    double lag = 0, forceStep = 0;              ///< largest
+
+    /// \param normal, height, lag  of the true surface below the proxy, the proxy over it, and behind where it should
+    /// be
+    void add(const Touch& touch, const glm::dvec3& normal, double heightNow, double lagNow)
+    {
+        const double c = glm::dot(touch.state().normal, normal);
+        ++ticks;
+        popped += !touch.touching() || heightNow < -1;
+        flipped += c < 0;
+        angle2 += std::pow(std::acos(std::clamp(c, -1.0, 1.0)), 2);
+        height += heightNow;
+        height2 += heightNow * heightNow;
+        lag       = std::max(lag, lagNow);
+        forceStep = std::max(forceStep, touch.forceStep());
+    }
+    void add(const Slide& b)
+    {
+        ticks += b.ticks;
+        popped += b.popped;
+        flipped += b.flipped;
+        angle2 += b.angle2;
+        height += b.height;
+        height2 += b.height2;
+        lag       = std::max(lag, b.lag);
+        forceStep = std::max(forceStep, b.forceStep);
+    }
+
+    [[nodiscard]] bool   held() const { return popped == 0 && flipped == 0; }
+    [[nodiscard]] double angle() const { return std::sqrt(angle2 / ticks) * 180 / std::numbers::pi; } ///< [deg] RMS
+    [[nodiscard]] double bias() const { return height / ticks; }
+    [[nodiscard]] double ripple() const { return std::sqrt(std::max(0.0, height2 / ticks - bias() * bias())); }
+};
+
+/// Several runs of one kind.
+struct Runs {
+    int    count = 0, popped = 0; ///< runs
+    Slide  all;
+    double worstAngle = 0, worstRipple = 0, worstBias = 0, worstLag = 0; ///< of one run
+
+    void add(const Slide& slide)
+    {
+        ++count;
+        popped += !slide.held();
+        all.add(slide);
+        worstAngle  = std::max(worstAngle, slide.angle());
+        worstRipple = std::max(worstRipple, slide.ripple());
+        worstBias   = std::max(worstBias, std::abs(slide.bias()));
+        worstLag    = std::max(worstLag, slide.lag);
+    }
+};
+
+inline void PrintTo(const Runs& runs, std::ostream* out)
+{
+    *out << runs.popped << " of " << runs.count << " popped; normal " << runs.all.angle() << " deg RMS (worst run "
+         << runs.worstAngle << "), ripple " << runs.all.ripple() << " (" << runs.worstRipple << "), bias "
+         << runs.all.bias() << ", lag " << runs.worstLag << ", force step " << runs.all.forceStep;
+}
+
+/// Leaves what was measured in the report of the tests (--gtest_output=json:FILE), whether or not they pass.
+inline std::string record(const std::string& measured, const std::string& of = "measured")
+{
+    testing::Test::RecordProperty(of, measured);
+    return of + ": " + measured;
+}
+inline std::string record(const Runs& runs, const std::string& of = "measured")
+{
+    return record(testing::PrintToString(runs), of);
+}
+
+/// Presses down at `from` to `depth` below z = 0 and slides `way` to the side, on a flat object.
+inline Slide slideFlat(Touch& touch, const glm::dvec3& from, const glm::dvec3& way, double depth, double speed)
+{
+    Slide slide;
+    touch.start({from.x, from.y, 5});
+    touch.move({from.x, from.y, -depth}, 0.5);
+    const auto note = [&] {
+        const glm::dvec3 x = touch.at();
+        slide.add(touch, {0, 0, 1}, x.z, std::hypot(x.x - touch.hip().x, x.y - touch.hip().y));
+    };
+    touch.move(touch.hip() + way, speed, note);
+    return slide;
+}
+
+} // namespace palp::proxytest
