@@ -3,7 +3,9 @@
 #include <chrono>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
+#include "engine/core/contract.h"
 #include "engine/gpu/context.h"
 #include "engine/gpu/device_error.h"
 #include "engine/plate/plate_solver_reference.h"
@@ -38,25 +40,29 @@ struct PlateDevice::Multigrid {
     std::optional<VulkanPlateSolver> solver;
     Plate                            plate; ///< of the solver
     double                           tolerance = 0;
+    std::size_t                      loads     = 0; ///< that the solver takes together
 
     explicit Multigrid(const gpu::ContextSettings& settings) : context(settings), kernels(context) {}
 
-    [[nodiscard]] PlateSolution solve(const Plate& wanted, const NodeField& nodalForce, double wantedTolerance)
+    [[nodiscard]] std::vector<PlateSolution> solve(const Plate& wanted, std::span<const NodeField> nodalForces,
+                                                   double wantedTolerance)
     {
         const auto began = std::chrono::steady_clock::now();
-        if (solver && sameButRigidity(plate, wanted) && tolerance == wantedTolerance) {
+        if (solver && sameButRigidity(plate, wanted) && tolerance == wantedTolerance && loads == nodalForces.size()) {
             solver->setRigidity(wanted.rigidity);
         } else {
             solver.reset(); // its memory goes before the next one's comes
-            solver.emplace(context, kernels, wanted, VulkanPlateSolver::Settings{.tolerance = wantedTolerance});
+            solver.emplace(context, kernels, wanted,
+                           VulkanPlateSolver::Settings{.tolerance = wantedTolerance, .loads = int(nodalForces.size())});
             plate     = wanted;
             tolerance = wantedTolerance;
+            loads     = nodalForces.size();
         }
         const std::chrono::duration<double, std::milli> setUp = std::chrono::steady_clock::now() - began;
 
-        PlateSolution solution            = solver->solve(nodalForce);
-        solution.report.setUpMilliseconds = setUp.count();
-        return solution;
+        std::vector<PlateSolution> solutions = solver->solve(nodalForces);
+        for (PlateSolution& solution : solutions) solution.report.setUpMilliseconds = setUp.count();
+        return solutions;
     }
 };
 
@@ -94,11 +100,19 @@ const std::string& PlateDevice::note() const noexcept
 
 PlateSolution PlateDevice::solve(const Plate& plate, const NodeField& nodalForce, double tolerance)
 {
+    return std::move(solveAll(plate, {&nodalForce, 1}, tolerance).front());
+}
+
+std::vector<PlateSolution> PlateDevice::solveAll(const Plate& plate, std::span<const NodeField> nodalForces,
+                                                 double tolerance)
+{
+    PALP_EXPECT(!nodalForces.empty(), "there is no load to solve for");
     if (multigrid_) {
         try {
-            PlateSolution solution = multigrid_->solve(plate, nodalForce, tolerance);
-            if (solution.report.converged || !fitsReference(plate.grid)) return solution;
-            note_ = "the multigrid solver stopped at an error of about " + formatNumber(*solution.report.errorEstimate);
+            std::vector<PlateSolution> solutions = multigrid_->solve(plate, nodalForces, tolerance);
+            const SolveReport&         report    = solutions.front().report; // of the worst load
+            if (report.converged || !fitsReference(plate.grid)) return solutions;
+            note_ = "the multigrid solver stopped at an error of about " + formatNumber(*report.errorEstimate);
         } catch (const gpu::DeviceLost& error) {
             note_ = error.what();
             name_ = kReference;
@@ -106,9 +120,12 @@ PlateSolution PlateDevice::solve(const Plate& plate, const NodeField& nodalForce
         }
     }
     const ReferencePlateSolver solver(plate);
-    PlateSolution              solution = solver.solve(nodalForce);
-    solution.report.setUpMilliseconds   = solver.factoriseMilliseconds();
-    return solution;
+    std::vector<PlateSolution> solutions;
+    for (const NodeField& load : nodalForces) {
+        solutions.push_back(solver.solve(load));
+        solutions.back().report.setUpMilliseconds = solver.factoriseMilliseconds();
+    }
+    return solutions;
 }
 
 } // namespace palp
