@@ -13,8 +13,10 @@ namespace palp {
 ///     entry (i, j) is the footprint at chart position ((i - side/2) spacing, (j - side/2) spacing), stored at
 ///     [i * side + j]; the chart's origin is the entry in the middle
 ///
-/// Holds ln c and ln k_c, which change evenly where rigidity grows by factors. Of fixed size and trivially copyable: it
-/// goes through a three-slot hand-off as it is. Entries beyond side * side are not looked at. \thread pure value
+/// Holds ln c and ln k_c, which change evenly where rigidity grows by factors. Entries beyond side * side are not
+/// looked at. Of fixed size and trivially copyable: it goes through a three-slot hand-off as it is.
+///
+/// \thread pure value
 struct ComplianceTable {
     static constexpr int kMostSide    = 7; ///< [1] reach of 3 R: 0.2 m/s and 30 Hz, see tableSide()
     static constexpr int kMostEntries = kMostSide * kMostSide;

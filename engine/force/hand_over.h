@@ -34,16 +34,16 @@ struct HandedCompliance {
 
 /// Compliance at 1 kHz from tables at 30 to 60 Hz.
 ///
-/// The contact is projected into the table's own chart, radially onto its sphere, as the points of the cloud were when
-/// they brought their rigidity there: the place that is looked up has the error of the map only, which at the reach of
-/// 12 mm is none along a great circle, and a contact that lies some way off the sphere still finds the rigidity of the
-/// points around it. (A projection along the normal onto the tangent plane would be 0.2 mm short there on a radius of
-/// 35 mm, and would shift by misfit times slope.)
+/// The contact is projected into the table's own chart, radially onto its sphere: the same map that brought the
+/// rigidity of the points there, so that a contact finds the points around it wherever it is, and off the sphere too.
+/// What is left is how the rest of the surface is bent differently from the sphere, which the plate does not know
+/// either. (Onto the tangent plane, 12 mm on a radius of 35 mm would be 0.2 mm short, and a contact off the sphere
+/// would be shifted by that distance times the slope.)
 ///
 /// Where a new table disagrees with the old one at the contact, the difference is carried as an offset of ln c, and of
 /// ln k_c, which dies at 1 % per millisecond, or within one period if that is faster.
 /// \thread the servo's; no allocation, lock or throw
-/// \source our own prototype: at 0.2 m/s and 60 Hz `hold` is wrong by 40 to 60 % and `table` by 1 to 4 %
+/// \source our own prototype, with slopes in place of twice as many footprints; engine/README.md has what was measured
 class HandOver {
 public:
     explicit HandOver(HandOverLaw law = HandOverLaw::table) noexcept : law_(law) {}

@@ -33,7 +33,7 @@ struct PatchSettings {
     PlateEdges           edges{}; ///< of the window
     ForceLaw             forceLaw  = ForceLaw::series;
     double               tolerance = 1e-4; ///< of the plate's solution, relative; see PlateDevice::solve [1]
-    std::optional<Frame> frame{};          ///< chart axes carried from the neighbouring contact
+    std::optional<Frame> frame{}; ///< chart axes carried from the neighbouring contact
 };
 
 /// The two ways to run the pipeline; see design notes in engine/README.md.

@@ -1,5 +1,6 @@
 #include "engine/plate/plate_device.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <optional>
@@ -44,24 +45,41 @@ struct PlateDevice::Multigrid {
 
     explicit Multigrid(const gpu::ContextSettings& settings) : context(settings), kernels(context) {}
 
-    [[nodiscard]] std::vector<PlateSolution> solve(const Plate& wanted, std::span<const NodeField> nodalForces,
-                                                   double wantedTolerance)
+    /// How many loads go together. A device has lanes to fill; on the host the fields of one load fit its cache and
+    /// those of 49 do not: one after the other they take two thirds of the time (65 nodes: 15 in place of 24 ms).
+    [[nodiscard]] std::size_t together(std::size_t all) const
+    {
+        return gpu::isDeviceWord(context.device().name, gpu::kHostDevice) ? 1 : all;
+    }
+
+    /// \return milliseconds that it took
+    double prepare(const Plate& wanted, std::size_t wantedLoads, double wantedTolerance)
     {
         const auto began = std::chrono::steady_clock::now();
-        if (solver && sameButRigidity(plate, wanted) && tolerance == wantedTolerance && loads == nodalForces.size()) {
+        if (solver && sameButRigidity(plate, wanted) && tolerance == wantedTolerance && loads == wantedLoads) {
             solver->setRigidity(wanted.rigidity);
         } else {
             solver.reset(); // its memory goes before the next one's comes
             solver.emplace(context, kernels, wanted,
-                           VulkanPlateSolver::Settings{.tolerance = wantedTolerance, .loads = int(nodalForces.size())});
+                           VulkanPlateSolver::Settings{.tolerance = wantedTolerance, .loads = int(wantedLoads)});
             plate     = wanted;
             tolerance = wantedTolerance;
-            loads     = nodalForces.size();
+            loads     = wantedLoads;
         }
-        const std::chrono::duration<double, std::milli> setUp = std::chrono::steady_clock::now() - began;
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
+    }
 
-        std::vector<PlateSolution> solutions = solver->solve(nodalForces);
-        for (PlateSolution& solution : solutions) solution.report.setUpMilliseconds = setUp.count();
+    [[nodiscard]] std::vector<PlateSolution> solve(const Plate& wanted, std::span<const NodeField> nodalForces,
+                                                   double wantedTolerance)
+    {
+        const std::size_t          batch = together(nodalForces.size());
+        const double               setUp = prepare(wanted, batch, wantedTolerance);
+        std::vector<PlateSolution> solutions;
+        for (; !nodalForces.empty(); nodalForces = nodalForces.subspan(batch))
+            for (PlateSolution& solution : solver->solve(nodalForces.first(batch))) {
+                solution.report.setUpMilliseconds = setUp;
+                solutions.push_back(std::move(solution));
+            }
         return solutions;
     }
 };
@@ -110,9 +128,10 @@ std::vector<PlateSolution> PlateDevice::solveAll(const Plate& plate, std::span<c
     if (multigrid_) {
         try {
             std::vector<PlateSolution> solutions = multigrid_->solve(plate, nodalForces, tolerance);
-            const SolveReport&         report    = solutions.front().report; // of the worst load
-            if (report.converged || !fitsReference(plate.grid)) return solutions;
-            note_ = "the multigrid solver stopped at an error of about " + formatNumber(*report.errorEstimate);
+            const auto                 failed =
+                std::ranges::find_if(solutions, [](const PlateSolution& s) { return !s.report.converged; });
+            if (failed == solutions.end() || !fitsReference(plate.grid)) return solutions;
+            note_ = "the multigrid solver stopped at an error of about " + formatNumber(*failed->report.errorEstimate);
         } catch (const gpu::DeviceLost& error) {
             note_ = error.what();
             name_ = kReference;

@@ -239,7 +239,7 @@ TEST(Pipeline, DiscretisationErrorBoundsTheTrueErrorWithinAFactorOfThree)
     settings.cells     = 64;
     const Patch coarse = skin.touch({0, 0, 1.5e-3}, {0, 0, 1}, settings);
 
-    const double truth = std::abs(coarse.compliance / fine.compliance - 1) * 4 / 3; // Richardson, second order
+    const double truth    = std::abs(coarse.compliance / fine.compliance - 1) * 4 / 3; // Richardson, second order
     PlateDevice  reference("reference");
     const auto   estimate = discretisationError(coarse, settings, reference);
     ASSERT_TRUE(estimate.has_value());
