@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include <gtest/gtest.h>
 
@@ -81,8 +79,6 @@ TEST(TableSolve, InterpolationLosesLittleBetweenFootprintsAndSlopesAreWhatMakesI
                     catmullRom         = std::max(catmullRom, std::abs(values.at({x, z}).lnCompliance - truth));
                 }
         }
-        if (std::getenv("PALPATE_SHOW"))
-            std::printf("%s: %.2f %%, by differences %.2f %%\n", c.name, 100 * worst, 100 * catmullRom);
         EXPECT_LT(worst, c.allowed) << c.name;
         EXPECT_GT(catmullRom, 2 * worst) << c.name;
     }
@@ -240,7 +236,6 @@ TEST(DeformWithTable, AHandThatSlidesOverAHomogeneousEllipsoidFeelsNothing)
             std::minmax_element(stiffness.begin() + long(n), stiffness.begin() + long(n + window));
         worst = std::max(worst, *most - *least);
     }
-    if (std::getenv("PALPATE_SHOW")) std::printf("J of the whole pipeline %.1e\n", worst / 0.07);
     EXPECT_LT(worst / 0.07, 1e-6) << "0.5 is what fingers allow, but nothing that sets the force comes from the points";
 }
 
