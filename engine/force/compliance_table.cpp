@@ -25,7 +25,7 @@ struct Place {
 Place placeOf(double coordinate, const ComplianceTable& table) noexcept
 {
     const double along = (coordinate + table.reach()) / table.spacing;
-    const int    cell  = std::clamp(int(along), 0, table.side - 2);
+    const int    cell  = along > 0 ? std::min(int(along), table.side - 2) : 0; // not a number: 0, and stays none
     return {cell, along - cell};
 }
 

@@ -73,6 +73,8 @@ TEST(ComplianceTable, BeyondItsReachTheNearestPlaceAnswersAndItSaysSo)
     EXPECT_NEAR(beyond.lnCompliance, 1 + 2 * 0.5, 1e-14);
     EXPECT_FALSE(table.at({kSpacing, -kSpacing}).clamped) << "the rim belongs to it";
     EXPECT_DOUBLE_EQ(table.reach(), kSpacing);
+    EXPECT_TRUE(std::isnan(table.at({std::numeric_limits<double>::quiet_NaN(), 0}).lnCompliance));
+    EXPECT_FALSE(std::isnan(table.at({std::numeric_limits<double>::infinity(), 0}).lnCompliance));
 }
 
 TEST(ComplianceTable, OneEntryIsOneNumberEverywhere)
