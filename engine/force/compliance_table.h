@@ -50,7 +50,7 @@ struct ComplianceTable {
     ///
     /// The slopes are exact and free, see solveTable(); the twist (the mixed derivative) is from differences of them.
     /// A lattice as coarse as the footprint's radius then loses 0.1 % of c at a wart of contrast 100 and 0.3 to 0.4 %
-    /// at steps of 10 and 100. Slopes from differences of the values (Catmull-Rom's) lose 1.3 to 1.7 % (measured, 5 x
+    /// at steps of 10 and 100. Slopes from differences of the values (Catmull-Rom's) lose 1.3 to 1.6 % (measured, 5 x
     /// 5), and a natural spline is straight at the rim, where a wart is not.
     [[nodiscard]] Look at(const ChartPoint& place) const noexcept;
 

@@ -12,6 +12,10 @@
 namespace palp {
 namespace {
 
+/// Rungs to either side of the middle one, and how far apart [1]: rigidities from a hundredth to a hundred times as
+/// large, with 1e-3 of c lost between two of them at the corner of a table; 17 tables to solve, once per scene.
+constexpr int kRungs = 8, kRungsPerDecade = 4;
+
 /// Central difference of the load of a footprint that moves.
 NodeField slopeOf(const NodeField& ahead, const NodeField& behind, double distance)
 {
@@ -52,9 +56,9 @@ FootprintLattice footprintLattice(const Plate& homogeneous, const FootprintTable
                 "a table of " + std::to_string(shape.side) + " entries a side");
     PALP_EXPECT(shape.contactPerRigidity > 0, "no contact stiffness");
     const PlateGrid& grid    = homogeneous.grid;
-    const double     reach   = shape.side / 2 * shape.radius;
     const double     spacing = std::max(grid.spacingX, grid.spacingZ); // a slope is measured over one; see below
-    const double     wanted = 2 * (reach + shape.radius) + spacing, found = std::min(grid.sizeX(), grid.sizeZ());
+    const double     wanted  = 2 * (shape.side / 2 + 1) * shape.radius + spacing,
+                 found       = std::min(grid.sizeX(), grid.sizeZ());
     if (found < wanted)
         throw Error("the window of " + formatQuantity(found, "m") + " does not hold a table of " +
                     std::to_string(shape.side) + " x " + std::to_string(shape.side) + " footprints of radius " +
@@ -73,11 +77,38 @@ FootprintLattice footprintLattice(const Plate& homogeneous, const FootprintTable
             lattice.slopesX.push_back(slopeOf(loadAt(x + dx, z), loadAt(x - dx, z), 2 * dx));
             lattice.slopesZ.push_back(slopeOf(loadAt(x, z + dz), loadAt(x, z - dz), 2 * dz));
         }
-    const TableSolution own    = solveTable(homogeneous, lattice, device, tolerance);
-    const double        middle = own.table.middle().lnCompliance;
-    lattice.homogeneous        = own.table.compliance;
-    for (ComplianceTable::Entry& entry : lattice.homogeneous) entry.value -= middle;
+    // The middle rung comes first: a device counts rigidities in units of the first, and it must be exactly one.
+    const int reach  = homogeneous.foundation > 0 ? kRungs : 0;
+    lattice.rigidity = homogeneous.rigidity(0, 0);
+    std::vector<ComplianceTable::Entries> rungs(std::size_t(2 * reach + 1));
+    for (int n = 0; n <= 2 * reach; ++n) {
+        const int rung              = (n + 1) / 2 * (n % 2 == 0 ? 1 : -1); // 0, -1, 1, -2, ...
+        Plate     plate             = homogeneous;
+        plate.rigidity              = NodeField(grid, lattice.rigidity * std::pow(10, double(rung) / kRungsPerDecade));
+        const TableSolution own     = solveTable(plate, lattice, device, tolerance);
+        const double        middle  = own.table.middle().lnCompliance;
+        auto&               entries = rungs[std::size_t(rung + reach)] = own.table.compliance;
+        for (ComplianceTable::Entry& entry : entries) entry.value -= middle;
+    }
+    lattice.rungs = std::move(rungs);
     return lattice;
+}
+
+ComplianceTable::Entries FootprintLattice::homogeneous(double meanRigidity) const
+{
+    if (rungs.empty()) return {}; // while they are being made
+    const double last  = double(rungs.size() - 1);
+    const double along = std::clamp(last / 2 + kRungsPerDecade * std::log10(meanRigidity / rigidity), 0.0, last);
+    const auto   lower = std::min(std::size_t(along), rungs.size() - 1), upper = std::min(lower + 1, rungs.size() - 1);
+    const double t = along - double(lower);
+
+    ComplianceTable::Entries entries;
+    for (std::size_t n = 0; n < entries.size(); ++n) {
+        const ComplianceTable::Entry &a = rungs[lower][n], &b = rungs[upper][n];
+        entries[n] = {std::lerp(a.value, b.value, t), std::lerp(a.slopeX, b.slopeX, t),
+                      std::lerp(a.slopeZ, b.slopeZ, t)};
+    }
+    return entries;
 }
 
 TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateDevice& device, double tolerance)
@@ -89,11 +120,13 @@ TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, Pl
 
     const double node = plate.rigidity.values().front(); // logarithms are of ratios to it: exactly 0 if all are alike
     NodeField    over(plate.grid);
+    double       sum = 0;
     for (std::size_t n = 0; n < over.values().size(); ++n)
-        over.values()[n] = std::log(plate.rigidity.values()[n] / node);
+        sum += over.values()[n] = std::log(plate.rigidity.values()[n] / node);
+    const auto homogeneous = lattice.homogeneous(node * std::exp(sum / double(over.values().size())));
     for (std::size_t n = 0; n < solutions.size(); ++n) {
         const ComplianceTable::Entry felt = complianceOf(lattice, n, solutions[n].deflection);
-        const ComplianceTable::Entry own  = lattice.homogeneous[n];
+        const ComplianceTable::Entry own  = homogeneous[n];
         result.table.compliance[n]       = {felt.value - own.value, felt.slopeX - own.slopeX, felt.slopeZ - own.slopeZ};
         result.table.contactStiffness[n] = contactOf(lattice, n, over, node);
     }
