@@ -143,14 +143,6 @@ NodeField unitLoad(const PlateGrid& grid, const PatchSettings& settings)
     return footprintLoad(grid, 1, grid.sizeX() / 2, grid.sizeZ() / 2, settings.footprintRadius);
 }
 
-/// Work of the load on the response; with a unit load, the compliance that the load itself feels [m/N].
-double work(const NodeField& load, const NodeField& response)
-{
-    double sum = 0;
-    for (std::size_t n = 0; n < load.values().size(); ++n) sum += load.values()[n] * response.values()[n];
-    return sum;
-}
-
 /// Width beyond which the edges of a window on a foundation are not felt [m]; empty without a foundation.
 ///
 /// 10 characteristic lengths l = (D/k)^(1/4) hold the compliance to 0.1 %, and 12 where D varies by more than 10;
@@ -192,20 +184,11 @@ std::vector<double> lift(const Patch& patch)
     return response;
 }
 
-} // namespace
-
-Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
-             const PatchSettings& settings)
-{
-    PlateDevice reference("reference");
-    return deform(cloud, index, contact, settings, reference);
-}
-
-Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
-             const PatchSettings& settings, PlateDevice& device)
+/// All that precedes the plate's bending.
+Patch restPatch(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
+                const PatchSettings& settings, Stopwatch& watch)
 {
     Patch        patch;
-    Stopwatch    watch;
     const double spacing = index.spacing();
 
     // The neighbourhood (the paper's section 2.1) ...
@@ -232,24 +215,76 @@ Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact
     patch.spacing             = spacing;
     refuseIfEmpty(patch, settings);
     patch.times.resample = watch.lap();
+    return patch;
+}
 
-    // ... and bends as a plate under a unit force (2.5, equations 6 to 8).
-    const NodeField load     = unitLoad(patch.plate.grid, settings);
-    PlateSolution   solution = device.solve(patch.plate, load, settings.tolerance);
-    patch.response           = std::move(solution.deflection);
-    patch.report             = std::move(solution.report);
-    patch.compliance         = work(load, patch.response);
-    patch.times.prepare      = patch.report.setUpMilliseconds;
-    patch.times.solve        = watch.lap() - patch.times.prepare;
+/// What follows from the bent plate: it moves the points (2.6, equation 9), and with the contact is what the hand
+/// feels.
+void bend(Patch& patch, const PatchSettings& settings, PlateSolution solution, double compliance, Stopwatch& watch)
+{
+    patch.response      = std::move(solution.deflection);
+    patch.report        = std::move(solution.report);
+    patch.compliance    = compliance;
+    patch.times.prepare = patch.report.setUpMilliseconds;
+    patch.times.solve   = watch.lap() - patch.times.prepare;
 
-    // The bent plate moves the points (2.6, equation 9), and plate and contact together are what the hand feels.
     patch.pointResponse    = lift(patch);
     const int    middle    = settings.cells / 2;
     const double modulus   = settings.material.modulus(patch.plate.rigidity(middle, middle));
     patch.contactStiffness = contactStiffness(modulus, settings.footprintRadius, settings.material.thickness);
     patch.feltStiffness    = feltStiffness(settings.forceLaw, patch.contactStiffness, patch.compliance);
     patch.times.lift       = watch.lap();
+}
+
+} // namespace
+
+Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
+             const PatchSettings& settings)
+{
+    PlateDevice reference("reference");
+    return deform(cloud, index, contact, settings, reference);
+}
+
+Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
+             const PatchSettings& settings, PlateDevice& device)
+{
+    Stopwatch watch;
+    Patch     patch = restPatch(cloud, index, contact, settings, watch);
+    if (!patch.deformed()) return patch;
+
+    // ... and bends as a plate under a unit force (2.5, equations 6 to 8).
+    const NodeField load     = unitLoad(patch.plate.grid, settings);
+    PlateSolution   solution = device.solve(patch.plate, load, settings.tolerance);
+    const double    softness = work(load, solution.deflection);
+    bend(patch, settings, std::move(solution), softness, watch);
     return patch;
+}
+
+FootprintLattice footprintLattice(const PointCloud& cloud, const PatchSettings& settings, int side, PlateDevice& device)
+{
+    double logarithm = 0;
+    for (std::size_t point = 0; point < cloud.size(); ++point)
+        logarithm += std::log(cloud.rigidity(point, settings.material));
+    const PlateGrid grid = Window::square(settings.window, settings.cells).grid;
+    const Plate     homogeneous{grid, settings.edges, settings.material.poissonRatio, settings.foundation,
+                            NodeField(grid, std::exp(logarithm / double(cloud.size())))};
+    const double    perRigidity =
+        contactStiffness(settings.material.modulus(1), settings.footprintRadius, settings.material.thickness);
+    return footprintLattice(homogeneous, {settings.footprintRadius, side, perRigidity}, device, settings.tolerance);
+}
+
+PatchWithTable deformWithTable(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
+                               const PatchSettings& settings, const FootprintLattice& lattice, PlateDevice& device)
+{
+    Stopwatch      watch;
+    PatchWithTable result{restPatch(cloud, index, contact, settings, watch), {}};
+    Patch&         patch = result.patch;
+    if (!patch.deformed()) return result;
+    TableSolution solved = solveTable(patch.plate, lattice, device, settings.tolerance);
+    result.table         = solved.table;
+    result.table->chart  = patch.chart;
+    bend(patch, settings, std::move(solved.middle), solved.compliance, watch);
+    return result;
 }
 
 std::vector<double> deflections(const PointCloud& cloud, const Patch& patch, double force)

@@ -12,6 +12,7 @@
 #include "engine/cloud/point_cloud.h"
 #include "engine/contact/contact.h"
 #include "engine/force/force_law.h"
+#include "engine/pipeline/table_solve.h"
 #include "engine/plate/plate.h"
 #include "engine/plate/plate_device.h"
 
@@ -103,6 +104,30 @@ struct Patch {
 [[nodiscard]] Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
                            const PatchSettings& settings);
 
+/// The footprints of a table in the settings' window, with what the window does to them on a homogeneous object whose
+/// rigidity is the geometric mean of the cloud's: a constant of the scene, to be made once.
+/// \param side  1, 3, 5 or 7, see tableSide()
+/// \throws Error if the window is too small for the table
+[[nodiscard]] FootprintLattice footprintLattice(const PointCloud& cloud, const PatchSettings& settings, int side,
+                                                PlateDevice& device);
+
+struct PatchWithTable {
+    Patch                          patch;
+    std::optional<ComplianceTable> table; ///< about the patch's chart; empty if it is not deformed()
+};
+
+/// deform() for a hand that moves: solves for a lattice of footprints in the same window, so that the servo can look
+/// up the compliance of wherever the contact is until the next patch comes; see HandOver.
+///
+/// The table's sequence number and time are the caller's to set.
+/// \param contact  where the hand will be, see aheadOf()
+/// \param settings with `frame` of the patch before: tables then turn only as the surface does
+/// \param lattice  of these settings
+/// \throws as deform()
+[[nodiscard]] PatchWithTable deformWithTable(const PointCloud& cloud, const NeighbourIndex& index,
+                                             const Contact& contact, const PatchSettings& settings,
+                                             const FootprintLattice& lattice, PlateDevice& device);
+
 /// The whole cloud under `force` [N] at the patch's contact: p_i + force * response_i * forceDirection.
 /// \source the back projection that the paper's equation 9 leaves empty
 [[nodiscard]] std::vector<glm::dvec3> displaced(const PointCloud& cloud, const Patch& patch, double force);
@@ -113,7 +138,7 @@ struct Patch {
 /// How far the compliance is from its limit of fine grids, relative [1]: the change of c from a grid twice as coarse,
 /// divided by 3 (Richardson, second order). Empty if the cells are not a multiple of 4 or the footprint is too small.
 [[nodiscard]] std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings,
-                                                         PlateDevice& device);
+                                                        PlateDevice& device);
 
 /// What a user must know about a result, in sentences: where theory or data end. Empty is good.
 [[nodiscard]] std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force);

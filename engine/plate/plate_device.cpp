@@ -1,9 +1,12 @@
 #include "engine/plate/plate_device.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
+#include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/gpu/context.h"
 #include "engine/gpu/device_error.h"
@@ -32,25 +35,46 @@ struct PlateDevice::Multigrid {
     std::optional<VulkanPlateSolver> solver;
     Plate                            plate; ///< of the solver
     double                           tolerance = 0;
+    std::size_t                      loads     = 0; ///< that the solver takes together
 
     explicit Multigrid(const gpu::ContextSettings& settings) : context(settings), kernels(context) {}
 
-    [[nodiscard]] PlateSolution solve(const Plate& wanted, const NodeField& nodalForce, double wantedTolerance)
+    /// How many loads go together. A device has lanes to fill; on the host the fields of one load fit its cache and
+    /// those of 49 do not: one after the other they take two thirds of the time (65 nodes: 15 in place of 24 ms).
+    [[nodiscard]] std::size_t together(std::size_t all) const
+    {
+        return gpu::isDeviceWord(context.device().name, gpu::kHostDevice) ? 1 : all;
+    }
+
+    /// \return milliseconds that it took
+    double prepare(const Plate& wanted, std::size_t wantedLoads, double wantedTolerance)
     {
         const auto began = std::chrono::steady_clock::now();
-        if (solver && sameButRigidity(plate, wanted) && tolerance == wantedTolerance) {
+        if (solver && sameButRigidity(plate, wanted) && tolerance == wantedTolerance && loads == wantedLoads) {
             solver->setRigidity(wanted.rigidity);
         } else {
             solver.reset(); // its memory goes before the next one's comes
-            solver.emplace(context, kernels, wanted, VulkanPlateSolver::Settings{.tolerance = wantedTolerance});
+            solver.emplace(context, kernels, wanted,
+                           VulkanPlateSolver::Settings{.tolerance = wantedTolerance, .loads = int(wantedLoads)});
             plate     = wanted;
             tolerance = wantedTolerance;
+            loads     = wantedLoads;
         }
-        const std::chrono::duration<double, std::milli> setUp = std::chrono::steady_clock::now() - began;
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
+    }
 
-        PlateSolution solution            = solver->solve(nodalForce);
-        solution.report.setUpMilliseconds = setUp.count();
-        return solution;
+    [[nodiscard]] std::vector<PlateSolution> solve(const Plate& wanted, std::span<const NodeField> nodalForces,
+                                                   double wantedTolerance)
+    {
+        const std::size_t          batch = together(nodalForces.size());
+        const double               setUp = prepare(wanted, batch, wantedTolerance);
+        std::vector<PlateSolution> solutions;
+        for (; !nodalForces.empty(); nodalForces = nodalForces.subspan(batch))
+            for (PlateSolution& solution : solver->solve(nodalForces.first(batch))) {
+                solution.report.setUpMilliseconds = setUp;
+                solutions.push_back(std::move(solution));
+            }
+        return solutions;
     }
 };
 
@@ -88,11 +112,20 @@ const std::string& PlateDevice::note() const noexcept
 
 PlateSolution PlateDevice::solve(const Plate& plate, const NodeField& nodalForce, double tolerance)
 {
+    return std::move(solveAll(plate, {&nodalForce, 1}, tolerance).front());
+}
+
+std::vector<PlateSolution> PlateDevice::solveAll(const Plate& plate, std::span<const NodeField> nodalForces,
+                                                 double tolerance)
+{
+    PALP_EXPECT(!nodalForces.empty(), "there is no load to solve for");
     if (multigrid_) {
         try {
-            PlateSolution solution = multigrid_->solve(plate, nodalForce, tolerance);
-            if (solution.report.converged || !fitsReference(plate.grid)) return solution;
-            note_ = "the multigrid solver stopped at an error of about " + formatNumber(*solution.report.errorEstimate);
+            std::vector<PlateSolution> solutions = multigrid_->solve(plate, nodalForces, tolerance);
+            const auto                 failed =
+                std::ranges::find_if(solutions, [](const PlateSolution& s) { return !s.report.converged; });
+            if (failed == solutions.end() || !fitsReference(plate.grid)) return solutions;
+            note_ = "the multigrid solver stopped at an error of about " + formatNumber(*failed->report.errorEstimate);
         } catch (const gpu::DeviceLost& error) {
             note_ = error.what();
             name_ = kReference;
@@ -100,12 +133,16 @@ PlateSolution PlateDevice::solve(const Plate& plate, const NodeField& nodalForce
         }
     }
     const ReferencePlateSolver solver(plate);
-    PlateSolution              solution = solver.solve(nodalForce);
-    solution.report.setUpMilliseconds   = solver.factoriseMilliseconds();
-    // The estimate is of the error before the step of refinement, which takes off as large a share again.
-    const double before       = solution.report.errorEstimate.value_or(0);
-    solution.report.converged = before * before <= tolerance;
-    return solution;
+    std::vector<PlateSolution> solutions;
+    for (const NodeField& load : nodalForces) {
+        solutions.push_back(solver.solve(load));
+        SolveReport& report      = solutions.back().report;
+        report.setUpMilliseconds = solver.factoriseMilliseconds();
+        // The estimate is of the error before the step of refinement, which takes off as large a share again.
+        const double before = report.errorEstimate.value_or(0);
+        report.converged    = before * before <= tolerance;
+    }
+    return solutions;
 }
 
 } // namespace palp

@@ -1,7 +1,9 @@
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/plate/plate.h"
 
@@ -9,7 +11,8 @@ namespace palp {
 
 /// Where plates are solved: on a GPU or the host by multigrid, or by the reference solver.
 ///
-/// Keeps the solver of the last plate: another rigidity on the same grid, edges and foundation costs no new memory.
+/// Keeps the solver of the last plate: another rigidity on the same grid, edges and foundation costs no new memory, nor
+/// do as many loads.
 /// \thread one at a time
 class PlateDevice {
 public:
@@ -39,6 +42,11 @@ public:
     ///                   whether that is enough
     /// \throws Error if the plate, the load or the tolerance are not acceptable
     [[nodiscard]] PlateSolution solve(const Plate& plate, const NodeField& nodalForce, double tolerance = 1e-4);
+
+    /// The same of several loads on one plate, in their order. They share what is prepared for the rigidity; on a
+    /// device that is not the host also every pass, and the report, which then is of the worst of them.
+    [[nodiscard]] std::vector<PlateSolution> solveAll(const Plate& plate, std::span<const NodeField> nodalForces,
+                                                      double tolerance = 1e-4);
 
 private:
     struct Multigrid;

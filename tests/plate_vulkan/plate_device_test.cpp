@@ -74,6 +74,25 @@ TEST(PlateDevice, WhatTheDeviceCannotConvergeTheReferenceSolves)
     EXPECT_NE(device.solve(plateOf(64, 10), load).report.device, "reference") << "for that plate only";
 }
 
+/// As many as the table of a moving contact has, on every device and by the reference alone.
+TEST(PlateDevice, SeveralLoadsOfOnePlateAreThoseOfEachAlone)
+{
+    for (const std::string& name : {deviceOfTests(), std::string(PlateDevice::kReference)}) {
+        PlateDevice            device(name);
+        const Plate            plate = plateOf(20, 10);
+        std::vector<NodeField> loads;
+        for (double x : {0.3, 0.5, 0.7})
+            for (double z : {0.3, 0.5, 0.7}) loads.push_back(footprintLoad(plate.grid, 1, x, z, 0.1));
+        const ReferencePlateSolver reference(plate);
+
+        const auto together = device.solveAll(plate, loads);
+        ASSERT_EQ(together.size(), loads.size());
+        for (std::size_t n = 0; n < loads.size(); ++n)
+            EXPECT_LT(difference(together[n].deflection, reference.solve(loads[n]).deflection), 1e-4) << n;
+        EXPECT_LT(difference(device.solve(plate, loads[2]).deflection, together[2].deflection), 2e-4) << "one after";
+    }
+}
+
 TEST(PlateDevice, OneThatIsNotThereIsRefusedByName)
 {
     EXPECT_THROW(PlateDevice("no such device"), Error);
