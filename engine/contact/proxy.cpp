@@ -42,4 +42,9 @@ const ProxyState& Proxy::state() const noexcept
     return impl_->state;
 }
 
+const char* name(ProxyForm form) noexcept
+{
+    return form == ProxyForm::hybrid ? "hybrid" : form == ProxyForm::sphere ? "sphere" : "plain-sphere";
+}
+
 } // namespace palp

@@ -15,6 +15,8 @@ enum class ProxyForm {
     plainSphere ///< the paper's radial overshoot as published: slower to slide, noisier
 };
 
+[[nodiscard]] const char* name(ProxyForm form) noexcept; ///< "hybrid", "sphere", "plain-sphere"
+
 struct ProxySettings {
     ProxyForm form            = ProxyForm::hybrid;
     double    staticFriction  = 0; ///< [1] tangential over normal force that still holds

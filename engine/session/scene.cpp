@@ -236,7 +236,7 @@ constexpr std::array kKeys = {
     Key{{"hand_over", "", "between two answers of the plate", "table, hold or blend"},
         {},
         [](S& s, const Given& g) {
-            s.handOver = g.oneOf({HandOver::table, HandOver::hold, HandOver::blend});
+            s.handOver = g.oneOf({HandOverLaw::table, HandOverLaw::hold, HandOverLaw::blend});
         },
         [](const S& s) { return quoted(name(s.handOver)); }},
     Key{{"table_size", "1", "footprints a side of the table of compliances; 3 at 60 Hz, 7 at 30 Hz",
@@ -251,10 +251,10 @@ constexpr std::array kKeys = {
         {kNumber},
         [](S& s, const Given& g) { s.deformationRate = g.quantity(D::none, 1, 1000); },
         [](const S& s) { return number(s.deformationRate); }},
-    Key{{"proxy", "", "what stands for the finger", "hybrid, regulated or plain"},
+    Key{{"proxy", "", "what stands for the finger", "hybrid, sphere or plain-sphere"},
         {},
         [](S& s, const Given& g) {
-            s.proxy = g.oneOf({ProxyForm::hybrid, ProxyForm::regulated, ProxyForm::plain});
+            s.proxy = g.oneOf({ProxyForm::hybrid, ProxyForm::sphere, ProxyForm::plainSphere});
         },
         [](const S& s) { return quoted(name(s.proxy)); }},
     Key{{"static_friction", "1", "coefficient of a finger at rest", "a number from 0 to 10"},
@@ -459,16 +459,6 @@ Scene sceneOf(const JsonObject& file, const std::filesystem::path& folder, const
 }
 
 } // namespace
-
-const char* name(HandOver law) noexcept
-{
-    return law == HandOver::table ? "table" : law == HandOver::hold ? "hold" : "blend";
-}
-
-const char* name(ProxyForm form) noexcept
-{
-    return form == ProxyForm::hybrid ? "hybrid" : form == ProxyForm::regulated ? "regulated" : "plain";
-}
 
 const char* name(Origin origin) noexcept
 {

@@ -12,23 +12,11 @@
 #include <glm/vec3.hpp>
 
 #include "engine/cloud/point_cloud_io.h"
+#include "engine/contact/proxy.h"
+#include "engine/force/hand_over.h"
 #include "engine/pipeline/pipeline.h"
 
 namespace palp {
-
-/// How the servo bridges the time between two answers of the plate.
-enum class HandOver {
-    table, ///< compliances around the place where the hand will be, interpolated by position
-    hold,  ///< the last compliance, for comparison: steps when a new one comes
-    blend  ///< from the last to the newest over a period, for comparison: lags
-};
-
-/// Which proxy stands for the finger.
-enum class ProxyForm {
-    hybrid,    ///< a local fit of the surface: no tunnelling, smooth on sheets
-    regulated, ///< radial overshoot with a step that is regulated
-    plain      ///< radial overshoot as the paper has it
-};
 
 /// Where a value of a scene came from; a later one wins.
 enum class Origin {
@@ -38,10 +26,7 @@ enum class Origin {
     environment, ///< PALPATE_<KEY>
     flag         ///< the command line
 };
-
-[[nodiscard]] const char* name(HandOver law) noexcept;   ///< "table", "hold", "blend"
-[[nodiscard]] const char* name(ProxyForm form) noexcept; ///< "hybrid", "regulated", "plain"
-[[nodiscard]] const char* name(Origin origin) noexcept;  ///< "default", "sample", ...
+[[nodiscard]] const char* name(Origin origin) noexcept; ///< "default", "sample", ...
 
 struct ValueOrigin {
     Origin      origin = Origin::standard;
@@ -60,9 +45,9 @@ struct Scene {
     std::string   stiffness;  ///< law of the modulus over the cloud, see parseSpatialLaw [Pa]; empty: the cloud's own
     PatchSettings patch;      ///< material, foundation, window, map, force law, ...
 
-    HandOver handOver        = HandOver::table;
-    int      tableSize       = 3;  ///< footprints a side of the table, odd [1]; reaches (size - 1)/2 footprint radii
-    double   deformationRate = 60; ///< of the plate's thread [Hz]
+    HandOverLaw handOver        = HandOverLaw::table;
+    int         tableSize       = 3;  ///< footprints a side of the table, odd [1]; reaches (size - 1)/2 footprint radii
+    double      deformationRate = 60; ///< of the plate's thread [Hz]
 
     ProxyForm proxy           = ProxyForm::hybrid;
     double    staticFriction  = 0.5;  ///< mu_s [1]; skin on skin 0.5 to 1

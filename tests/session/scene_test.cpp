@@ -114,7 +114,7 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
         "thickness": "0.5 cm", "poisson": -0.2, "foundation": "2 MPa/m", "window": 0.05, "cells": 32.0,
         "footprint_radius": "3mm", "map": "gall-peters", "sampling": "nearest", "edges": {"x0": "free"},
         "force_law": "paper", "tolerance": 1e-6, "hand_over": "blend", "table_size": 7, "deformation_rate": 30,
-        "proxy": "regulated", "static_friction": 1, "dynamic_friction": 0, "max_force": "500 mN",
+        "proxy": "sphere", "static_friction": 1, "dynamic_friction": 0, "max_force": "500 mN",
         "stiffness_cap": 800, "device": "host", "place": [1e-3, 0, 0], "from": [0, 0, 2], "start_height": "2 cm"})");
 
     EXPECT_EQ(scene.points, 1000u);
@@ -129,10 +129,10 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
     EXPECT_EQ(scene.patch.edges, (PlateEdges{.x0 = Edge::free}));
     EXPECT_EQ(scene.patch.forceLaw, ForceLaw::paper);
     EXPECT_EQ(scene.patch.tolerance, 1e-6);
-    EXPECT_EQ(scene.handOver, HandOver::blend);
+    EXPECT_EQ(scene.handOver, HandOverLaw::blend);
     EXPECT_EQ(scene.tableSize, 7);
     EXPECT_EQ(scene.deformationRate, 30);
-    EXPECT_EQ(scene.proxy, ProxyForm::regulated);
+    EXPECT_EQ(scene.proxy, ProxyForm::sphere);
     EXPECT_EQ(scene.staticFriction, 1);
     EXPECT_EQ(scene.dynamicFriction, 0);
     EXPECT_EQ(scene.maxForce, 0.5);

@@ -1,0 +1,91 @@
+#pragma once
+#include <cstdint>
+
+#include <glm/vec3.hpp>
+
+#include "engine/contact/proxy.h"
+#include "engine/force/ahead.h"
+#include "engine/force/energy_tank.h"
+#include "engine/force/governor.h"
+#include "engine/force/hand_over.h"
+#include "engine/session/scene.h"
+#include "engine/session/session_sample.h"
+
+namespace palp {
+
+/// What the deformation tells the servo about one patch. Trivially copyable: it goes through a three-slot hand-off.
+struct PatchNews {
+    ComplianceTable table;             ///< with sequence number and time
+    double          rigidity      = 0; ///< D in the middle [N m]
+    double          mostResponse  = 0; ///< largest deflection per force [m/N]
+    double          errorEstimate = 0; ///< of the plate's solution, relative [1]
+    std::int32_t    iterations    = 0; ///< of the plate's solver [1]
+};
+
+/// What the servo tells the deformation about the touch.
+struct Touch {
+    std::uint64_t sequence = 0; ///< counts ticks [1]; 0: none yet
+    double        time     = 0; ///< [s]
+    bool          touching = false;
+    glm::dvec3    point{};    ///< [m] of the proxy
+    glm::dvec3    outward{};  ///< [1] normal there, towards the hand
+    glm::dvec3    velocity{}; ///< of the proxy over its last 10 ms [m/s]
+};
+
+/// Bits of SessionSample::faults. The low eight are the governor's fault as a number, see GovernorFault.
+enum class SessionFlag : std::uint32_t {
+    stalePatch   = 1U << 8,  ///< the plate's answer in use is older than three of its periods
+    beyondTable  = 1U << 9,  ///< the contact lies beyond the table's reach
+    noPatch      = 1U << 10, ///< in contact, and no answer of the plate yet: no force
+    proxyLimited = 1U << 11, ///< the proxy ran out of iterations
+    beyondTheory = 1U << 12, ///< the deflection exceeds half the thickness: Kirchhoff's plate does not hold
+    governed     = 1U << 13  ///< the governor held the force back: damped, clamped, slewed, waiting or coming on
+};
+
+/// One tick of touch: hand -> proxy -> compliance -> stiffness -> tank -> governor -> force.
+///
+/// The same calls on every clock: the servo thread runs them each millisecond, a virtual session as fast as it can.
+/// \thread one; tick() allocates, locks, throws and prints nothing, and the same input gives the same bits
+class Servo {
+public:
+    /// \param cloud, index  outlive the servo
+    Servo(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene);
+
+    struct Hand {
+        glm::dvec3 position{};   ///< of the HIP [m]
+        glm::dvec3 velocity{};   ///< filtered [m/s]
+        bool       homed = true; ///< see GovernorInput
+        bool       inBox = true;
+    };
+
+    /// \param time        [s] of the session's clock
+    /// \param dt          [s] since the last tick
+    /// \param loopPeriod  [s] measured, as a mean over some 0.1 s
+    /// \param newest      the deformation's last word; null: none yet
+    /// \return everything but tickTime
+    SessionSample tick(double time, double dt, double loopPeriod, const Hand& hand, const PatchNews* newest) noexcept;
+
+    [[nodiscard]] const Touch&         touch() const noexcept { return touch_; }
+    [[nodiscard]] const ForceGovernor& governor() const noexcept { return governor_; }
+    [[nodiscard]] const HandOver&      handOver() const noexcept { return handOver_; }
+
+private:
+    /// The wanted force and what was paid for it.
+    struct Wanted {
+        glm::dvec3       force{};
+        EnergyTankOutput tank{};
+    };
+    [[nodiscard]] Wanted wanted(double stiffness, double dt, const Hand& hand, const glm::dvec3& pull) noexcept;
+
+    ForceLaw      law_;
+    double        thickness_;   ///< [m]
+    double        patchPeriod_; ///< of the deformation [s]
+    Proxy         proxy_;
+    HandOver      handOver_;
+    RecentMotion  motion_;
+    EnergyTank    tank_;
+    ForceGovernor governor_;
+    Touch         touch_;
+};
+
+} // namespace palp
