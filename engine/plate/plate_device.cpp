@@ -31,20 +31,24 @@ bool sameButRigidity(const Plate& a, const Plate& b)
 
 struct PlateDevice::Multigrid {
     gpu::Context                     context;
+    bool                             likeTheHost; ///< smooths as it, and takes one load after the other
     PlateKernels                     kernels;
     std::optional<VulkanPlateSolver> solver;
     Plate                            plate; ///< of the solver
     double                           tolerance = 0;
     std::size_t                      loads     = 0; ///< that the solver takes together
 
-    explicit Multigrid(const gpu::ContextSettings& settings) : context(settings), kernels(context) {}
+    Multigrid(const gpu::ContextSettings& settings, SoftwareBits bits)
+        : context(settings), likeTheHost(context.device().kind == gpu::kHostDevice ||
+                                         (bits == SoftwareBits::ofTheHost && context.device().kind == "software")),
+          kernels(context, Schedule::automatic, Precision::best,
+                  likeTheHost ? Smoother::chebyshev : Smoother::automatic)
+    {
+    }
 
     /// How many loads go together. A device has lanes to fill; on the host the fields of one load fit its cache and
     /// those of 49 do not: one after the other they take two thirds of the time (65 nodes: 15 in place of 24 ms).
-    [[nodiscard]] std::size_t together(std::size_t all) const
-    {
-        return gpu::isDeviceWord(context.device().name, gpu::kHostDevice) ? 1 : all;
-    }
+    [[nodiscard]] std::size_t together(std::size_t all) const { return likeTheHost ? 1 : all; }
 
     /// \return milliseconds that it took
     double prepare(const Plate& wanted, std::size_t wantedLoads, double wantedTolerance)
@@ -78,20 +82,20 @@ struct PlateDevice::Multigrid {
     }
 };
 
-PlateDevice::PlateDevice(std::string_view wanted, double patience)
+PlateDevice::PlateDevice(std::string_view wanted, double patience, SoftwareBits bits)
 {
     if (gpu::isDeviceWord(wanted, kReference)) return;
     gpu::ContextSettings settings;
     settings.device   = std::string(wanted);
     settings.patience = patience;
     try {
-        multigrid_ = std::make_unique<Multigrid>(settings);
+        multigrid_ = std::make_unique<Multigrid>(settings, bits);
         note_      = multigrid_->context.note();
     } catch (const std::exception& error) { // the kernels do not compile, or the device that is asked for is refused
         if (!gpu::isDeviceWord(wanted, gpu::kAutoDevice)) throw;
         note_           = error.what();
         settings.device = gpu::kHostDevice;
-        multigrid_      = std::make_unique<Multigrid>(settings);
+        multigrid_      = std::make_unique<Multigrid>(settings, bits);
     }
     name_ = multigrid_->context.device().name;
 }

@@ -9,6 +9,12 @@
 
 namespace palp {
 
+/// What Vulkan in software makes of a plate.
+enum class SoftwareBits {
+    itsOwn,   ///< the way that is fastest there
+    ofTheHost ///< the host's way, and then to the bit what the host makes of it: for replays
+};
+
 /// Where plates are solved: on a GPU or the host by multigrid, or by the reference solver.
 ///
 /// Keeps the solver of the last plate: another rigidity on the same grid, edges and foundation costs no new memory, nor
@@ -24,7 +30,8 @@ public:
     ///                NAME; words in any case. "auto" is the best GPU that works, else the host
     /// \throws gpu::UnknownDevice or gpu::DeviceError if a device that is asked for is not there or cannot be used
     /// \param patience  see gpu::ContextSettings [s]
-    explicit PlateDevice(std::string_view wanted = "auto", double patience = 0);
+    explicit PlateDevice(std::string_view wanted = "auto", double patience = 0,
+                         SoftwareBits bits = SoftwareBits::itsOwn);
     ~PlateDevice();
     PlateDevice(PlateDevice&&) noexcept;
     PlateDevice& operator=(PlateDevice&&) noexcept;
@@ -38,7 +45,8 @@ public:
     ///
     /// If the device is lost or runs out of memory, this and all later plates are solved by the reference; if it does
     /// not reach the tolerance, this one is, up to 513 x 513 nodes. note() says so. See report.converged.
-    /// \param tolerance  of the error estimate, relative [1]; the reference solver is as accurate as doubles allow, and says
+    /// \param tolerance  of the error estimate, relative [1]; the reference solver is as accurate as doubles allow, and
+    /// says
     ///                   whether that is enough
     /// \throws Error if the plate, the load or the tolerance are not acceptable
     [[nodiscard]] PlateSolution solve(const Plate& plate, const NodeField& nodalForce, double tolerance = 1e-4);

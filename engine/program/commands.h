@@ -1,4 +1,5 @@
 #pragma once
+#include <stdexcept>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -11,8 +12,14 @@ void addConvertCommand(CLI::App& app);
 void addTouchCommand(CLI::App& app);
 void addSolveCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
+void addRunCommand(CLI::App& app); ///< run and replay
 void addBenchCommand(CLI::App& app);
 void addBenchPlateCommand(CLI::App& bench);
+
+/// A check that was asked for says no: exit code 1. What was found has been printed.
+struct CheckFailed : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
 
 /// \throws Error naming the first option of the command that was given an empty value
 void refuseEmptyValues(const CLI::App& command);

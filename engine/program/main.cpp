@@ -1,5 +1,5 @@
-// palpate: the command line. Exit codes: 0 good, 1 a fault of ours, 2 bad usage or input, 4 a GPU that is asked for
-// cannot be used.
+// palpate: the command line. Exit codes: 0 good, 1 a check that failed or a fault of ours, 2 bad usage or input, 4 a
+// GPU that is asked for cannot be used.
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -25,9 +25,10 @@ void refuseEmptyValues(const CLI::App& command)
 
 namespace {
 
-constexpr int kBadInput = 2;
-constexpr int kOurFault = 1;
-constexpr int kNoGpu    = 4; // 3 is a missing package, see engine/prepare.sh
+constexpr int kBadInput    = 2;
+constexpr int kOurFault    = 1;
+constexpr int kCheckFailed = 1;
+constexpr int kNoGpu       = 4; // 3 is a missing package, see engine/prepare.sh
 
 constexpr const char* kUnprinted = "standard output cannot be written";
 
@@ -91,6 +92,7 @@ int main(int argumentCount, char** arguments)
                "  palpate info scan.ply --unit mm                what a file holds and how it is understood\n"
                "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
                "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
+               "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
                "  palpate devices                                what this machine can compute on\n"
                "  palpate bench solve                            how fast its solvers are\n"
                "  palpate bench plate --quick                    and how fast those of others\n"
@@ -100,6 +102,7 @@ int main(int argumentCount, char** arguments)
     palp::addInfoCommand(app);
     palp::addConvertCommand(app);
     palp::addDevicesCommand(app);
+    palp::addRunCommand(app);
     palp::addBenchCommand(app);
     std::signal(SIGXFSZ, SIG_IGN); // a file beyond the limit on sizes is then a write that fails, with a sentence
     try {
@@ -110,6 +113,8 @@ int main(int argumentCount, char** arguments)
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return printHelp(app, error); // or --version
         return complain(std::string(error.what()) + "; see --help", kBadInput);
+    } catch (const palp::CheckFailed&) {
+        return kCheckFailed;
     } catch (const palp::gpu::DeviceError& error) {
         return complain(error.what(), kNoGpu);
     } catch (const palp::gpu::DeviceLost& error) {

@@ -1,0 +1,242 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/progress.h"
+#include "engine/core/quantity.h"
+#include "engine/program/commands.h"
+#include "engine/session/recorded_session.h"
+#include "engine/session/virtual_session.h"
+
+// palpate run and palpate replay: a hand feels a scene, and a recorded session is felt again.
+
+namespace palp {
+namespace {
+
+struct RunOptions {
+    std::string                                     scene, hand = "scan", record;
+    double                                          seconds = 5;
+    std::string                                     speed = "50 mm/s", depth = "2 mm", radius = "10 mm";
+    std::map<std::string, std::string, std::less<>> flags; ///< of the scene's keys, as given
+    bool                                            printConfig = false, json = false;
+};
+
+struct ReplayOptions {
+    std::string folder, device;
+    bool        compare = false, json = false;
+};
+
+double metres(const std::string& text, const std::string& option)
+{
+    const double value = parseQuantity(text, Dimension::length, option);
+    if (value > 0) return value;
+    throw Error(option + ": expected a length above 0, found \"" + text + "\"");
+}
+
+/// "50 mm/s" or "0.05".
+double metresPerSecond(std::string text, const std::string& option)
+{
+    if (text.ends_with("/s")) text.resize(text.size() - 2);
+    return metres(text, option);
+}
+
+HandPath handFor(const RunOptions& o, const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
+{
+    const auto motion = motionNamed(o.hand);
+    if (!motion) return readHand(o.hand);
+    const HandPlace place = handPlace(scene, cloud, index);
+    HandScript      script;
+    script.motion   = *motion;
+    script.speed    = metresPerSecond(o.speed, "--speed");
+    script.depth    = metres(o.depth, "--depth");
+    script.radius   = metres(o.radius, "--radius");
+    script.height   = scene.startHeight;
+    script.duration = o.seconds;
+    return draped(makeHand(script, place), place, cloud, index);
+}
+
+nlohmann::json durations(const DurationHistogram& of)
+{
+    return {{"count", of.count()},
+            {"p50_s", of.quantile(0.5)},
+            {"p99_s", of.quantile(0.99)},
+            {"p99.9_s", of.quantile(0.999)},
+            {"max_s", of.most()}};
+}
+
+nlohmann::json jsonOf(const SessionSummary& s)
+{
+    return {{"ticks", s.ticks},
+            {"contact_ticks", s.contactTicks},
+            {"patches", s.patches},
+            {"failed_patches", s.failedPatches},
+            {"stale_ticks", s.staleTicks},
+            {"ticks_beyond_table", s.beyondTable},
+            {"ticks_beyond_theory", s.beyondTheory},
+            {"max_force_N", s.mostForce},
+            {"max_depth_m", s.mostDepth},
+            {"compliance_min_m_per_N", s.leastCompliance},
+            {"compliance_max_m_per_N", s.mostCompliance},
+            {"fault", name(s.fault)},
+            {"tick", durations(s.tick)},
+            {"solve", durations(s.solve)}};
+}
+
+void printText(const SessionSummary& s, const std::string& device)
+{
+    const auto seconds = [](double t) { return formatQuantity(t, "s"); };
+    std::cout << s.ticks << " ticks, " << s.contactTicks << " in contact; " << s.patches << " patches on " << device
+              << "\n";
+    if (s.contactTicks > 0)
+        std::cout << "  force at most " << formatQuantity(s.mostForce, "N") << ", depth at most "
+                  << formatQuantity(s.mostDepth, "m") << ", compliance " << formatQuantity(s.leastCompliance, "m/N")
+                  << " to " << formatQuantity(s.mostCompliance, "m/N") << "\n";
+    std::cout << "  a tick computes " << seconds(s.tick.quantile(0.5)) << " (p99 " << seconds(s.tick.quantile(0.99))
+              << ", p99.9 " << seconds(s.tick.quantile(0.999)) << ", most " << seconds(s.tick.most()) << "), a patch "
+              << seconds(s.solve.quantile(0.5)) << " (most " << seconds(s.solve.most()) << ")\n";
+    const auto warn = [](const std::string& sentence) { std::cerr << "palpate: warning: " << sentence << "\n"; };
+    if (s.fault != GovernorFault::none) warn(std::string("the governor stopped the force: ") + name(s.fault));
+    if (s.beyondTheory > 0)
+        warn("the deflection exceeded half the thickness in " + std::to_string(s.beyondTheory) +
+             " ticks: Kirchhoff plate theory does not hold there");
+    if (s.beyondTable > 0)
+        warn("the contact left the table's reach in " + std::to_string(s.beyondTable) +
+             " ticks: a larger table_size or deformation_rate follows faster hands");
+    if (s.failedPatches > 0) warn(std::to_string(s.failedPatches) + " patches could not be solved: " + s.why);
+}
+
+/// Plays the hand through the scene, with a line on a terminal and a recording if one is wanted.
+SessionSummary play(const Scene& scene, const LoadedCloud& cloud, const NeighbourIndex& index, const HandPath& hand,
+                    double seconds, const std::function<void(const SessionSample&)>& also)
+{
+    Progress    progress("touching");
+    const auto  total = std::size_t(std::llround(1000 * seconds));
+    std::size_t done  = 0;
+    return runVirtual(scene, cloud.cloud, index, hand, seconds, [&](const SessionSample& sample) {
+        if (also) also(sample);
+        progress.at(++done, total);
+    });
+}
+
+void run(const RunOptions& o)
+{
+    SceneOverrides overrides{o.flags, processEnvironment()};
+    const Scene    scene = readScene(o.scene, overrides);
+    if (o.printConfig) {
+        std::cout << printConfig(scene, o.json ? ConfigFormat::json : ConfigFormat::text);
+        return;
+    }
+    if (!(o.seconds > 0 && o.seconds <= 86400)) throw Error("--seconds: expected a time above 0 and up to 86400");
+    const LoadedCloud    cloud = loadCloud(scene);
+    const NeighbourIndex index(cloud.cloud.positions());
+    const HandPath       hand = handFor(o, scene, cloud.cloud, index);
+
+    std::unique_ptr<Recording> recording;
+    if (!o.record.empty()) {
+        SessionInfo info;
+        info.scene    = scene;
+        info.versions = {{"palpate", PALPATE_VERSION}};
+        info.device   = scene.device;
+        info.clock    = SessionClock::virtualTime;
+        info.command  = "palpate run " + o.scene;
+        recording     = std::make_unique<Recording>(o.record, info);
+    }
+    const SessionSummary summary = play(scene, cloud, index, hand, o.seconds, [&](const SessionSample& sample) {
+        if (recording) recording->pushWaiting(sample);
+    });
+    std::optional<RecordingReport> report;
+    if (recording) report = recording->finish();
+    if (o.json) {
+        nlohmann::json all = jsonOf(summary);
+        if (report) all["recorded"] = {{"folder", o.record}, {"samples", report->samples}, {"lost", report->lost}};
+        std::cout << jsonText(all);
+        return;
+    }
+    printText(summary, scene.device);
+    if (report) std::cout << "  " << report->samples << " samples in " << o.record << "\n";
+}
+
+void replay(const ReplayOptions& o)
+{
+    const RecordedSession session = readSession(o.folder);
+    if (session.clock != "virtual")
+        throw Error(o.folder + ": recorded in real time, which no replay can repeat; expected clock \"virtual\"");
+    Scene scene = sceneOf(session);
+    if (!o.device.empty()) scene.device = o.device;
+    const LoadedCloud    cloud = loadCloud(scene);
+    const NeighbourIndex index(cloud.cloud.positions());
+    const HandPath       hand = handOf(session);
+
+    RecordedSession again = session;
+    again.folder          = "the replay";
+    again.samples.clear();
+    const double         seconds = double(session.samples.size()) * 1e-3;
+    const SessionSummary summary =
+        play(scene, cloud, index, hand, seconds, [&](const SessionSample& sample) { again.samples.push_back(sample); });
+    if (!o.compare) {
+        o.json ? void(std::cout << jsonText(jsonOf(summary))) : printText(summary, scene.device);
+        return;
+    }
+    const auto difference = compareSessions(session, again);
+    const auto sentence   = difference ? describe(*difference, session, again) : "all samples are equal to the bit";
+    if (o.json)
+        std::cout << jsonText(
+            nlohmann::json{{"equal", !difference}, {"samples", again.samples.size()}, {"says", sentence}});
+    else
+        std::cout << again.samples.size() << " samples: " << sentence << "\n";
+    if (difference) throw CheckFailed(sentence);
+}
+
+} // namespace
+
+void addRunCommand(CLI::App& app)
+{
+    auto* run_ = app.add_subcommand("run", "a hand feels a scene, in virtual time");
+    auto  o    = std::make_shared<RunOptions>();
+    run_->add_option("SCENE", o->scene, "scene file, see samples/scenes")->required();
+    run_->add_option("--hand", o->hand,
+                     "press, circle or scan about the scene's place; or a file of time [s], x, y, z [m]")
+        ->capture_default_str();
+    run_->add_option("--seconds", o->seconds, "how long")->capture_default_str();
+    run_->add_option("--speed", o->speed, "of press, circle and scan, at most")->capture_default_str();
+    run_->add_option("--press-depth", o->depth, "of the hand below the surface")->capture_default_str();
+    run_->add_option("--reach", o->radius, "radius of the circle, half the length of the scan")->capture_default_str();
+    run_->add_option("--record", o->record, "a new folder for the session");
+    run_->add_flag("--print-config", o->printConfig,
+                   "every value of the scene, with where it came from, and nothing else");
+    run_->add_flag("--json", o->json, "machine-readable");
+    for (const SceneKey& key : sceneKeys())
+        run_->add_option_function<std::string>(
+                flagOf(key.name), [o, name = std::string(key.name)](const std::string& text) { o->flags[name] = text; },
+                std::string(key.means) + (key.unit.empty() ? "" : " [" + std::string(key.unit) + "]"))
+            ->group("Values of the scene (over PALPATE_<KEY> and the file)");
+    run_->footer("Examples:\n"
+                 "  palpate run samples/scenes/palm_wart.json --hand scan --seconds 5\n"
+                 "  palpate run samples/scenes/palm_wart.json --hand press --record session --max-force '4 N'\n"
+                 "  palpate run samples/scenes/skin_wart.json --print-config");
+    run_->callback([run_, o] {
+        refuseEmptyValues(*run_);
+        run(*o);
+    });
+
+    auto* again = app.add_subcommand("replay", "a recorded session is felt again");
+    auto  r     = std::make_shared<ReplayOptions>();
+    again->add_option("DIR", r->folder, "folder of a session that was recorded in virtual time")->required();
+    again->add_option("--device", r->device, "where the plate is solved; the session's if absent");
+    again->add_flag("--compare", r->compare, "exit code 1 and the first sample that differs, if one does");
+    again->add_flag("--json", r->json, "machine-readable");
+    again->footer("Examples:\n  palpate replay session --compare\n  palpate replay session --json");
+    again->callback([again, r] {
+        refuseEmptyValues(*again);
+        replay(*r);
+    });
+}
+
+} // namespace palp
