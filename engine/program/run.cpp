@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -7,12 +8,15 @@
 
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "engine/core/contract.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
 #include "engine/program/commands.h"
+#include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
+#include "engine/session/recording.h"
 #include "engine/session/virtual_session.h"
 
 // palpate run and palpate replay: a hand feels a scene, and a recorded session is felt again.
@@ -21,7 +25,7 @@ namespace palp {
 namespace {
 
 struct RunOptions {
-    std::string                                     scene, hand = "scan", record;
+    std::string                                     scene, hand = "scan", record, clock = "real";
     double                                          seconds = 5;
     std::string                                     speed = "50 mm/s", depth = "2 mm", radius = "10 mm";
     std::map<std::string, std::string, std::less<>> flags; ///< of the scene's keys, as given
@@ -86,6 +90,7 @@ nlohmann::json jsonOf(const SessionSummary& s)
             {"compliance_max_m_per_N", s.mostCompliance},
             {"fault", name(s.fault)},
             {"tick", durations(s.tick)},
+            {"period", durations(s.period)},
             {"solve", durations(s.solve)}};
 }
 
@@ -101,6 +106,10 @@ void printText(const SessionSummary& s, const std::string& device)
     std::cout << "  a tick computes " << seconds(s.tick.quantile(0.5)) << " (p99 " << seconds(s.tick.quantile(0.99))
               << ", p99.9 " << seconds(s.tick.quantile(0.999)) << ", most " << seconds(s.tick.most()) << "), a patch "
               << seconds(s.solve.quantile(0.5)) << " (most " << seconds(s.solve.most()) << ")\n";
+    if (s.period.count() > 0)
+        std::cout << "  a tick comes every " << seconds(s.period.quantile(0.5)) << " (p99 "
+                  << seconds(s.period.quantile(0.99)) << ", p99.9 " << seconds(s.period.quantile(0.999)) << ", most "
+                  << seconds(s.period.most()) << ")\n";
     const auto warn = [](const std::string& sentence) { std::cerr << "palpate: warning: " << sentence << "\n"; };
     if (s.fault != GovernorFault::none) warn(std::string("the governor stopped the force: ") + name(s.fault));
     if (s.beyondTheory > 0)
@@ -125,32 +134,64 @@ SessionSummary play(const Scene& scene, const LoadedCloud& cloud, const Neighbou
     });
 }
 
+/// The same in real time; the line shows what the hand feels.
+SessionSummary playLive(const RunOptions& o, const Scene& scene, const LoadedCloud& cloud, const NeighbourIndex& index,
+                        const HandPath& hand, Recording* recording)
+{
+    const bool          line = isatty(STDERR_FILENO) != 0 && !o.json;
+    RealSessionSettings settings;
+    settings.seconds = o.seconds;
+    if (recording) settings.onSample = [recording](const SessionSample& sample) { recording->push(sample); };
+    if (line)
+        settings.onView = [](const SessionView& view) {
+            std::fprintf(stderr, "\r%6.1f s  %8s  %8s deep \033[K", view.time, formatQuantity(view.force, "N").c_str(),
+                         formatQuantity(view.depth, "m").c_str());
+        };
+    std::string          warning;
+    const SessionSummary summary = runReal(scene, cloud.cloud, index, hand, settings, warning);
+    if (line) std::fprintf(stderr, "\r\033[K");
+    if (!warning.empty()) std::cerr << "palpate: warning: " << warning << "\n";
+    return summary;
+}
+
+SessionClock clockNamed(const std::string& text)
+{
+    for (const SessionClock clock : {SessionClock::real, SessionClock::virtualTime})
+        if (text == name(clock)) return clock;
+    throw Error("--clock: expected real or virtual, found \"" + text + "\"");
+}
+
+std::unique_ptr<Recording> recordingOf(const RunOptions& o, const Scene& scene, SessionClock clock)
+{
+    if (o.record.empty()) return nullptr;
+    SessionInfo info;
+    info.scene    = scene;
+    info.versions = {{"palpate", PALPATE_VERSION}};
+    info.device   = scene.device;
+    info.clock    = clock;
+    info.command  = "palpate run " + o.scene;
+    return std::make_unique<Recording>(o.record, info);
+}
+
 void run(const RunOptions& o)
 {
-    SceneOverrides overrides{o.flags, processEnvironment()};
-    const Scene    scene = readScene(o.scene, overrides);
+    const SceneOverrides overrides{o.flags, processEnvironment()};
+    const Scene          scene = readScene(o.scene, overrides);
+    const SessionClock   clock = clockNamed(o.clock);
     if (o.printConfig) {
         std::cout << printConfig(scene, o.json ? ConfigFormat::json : ConfigFormat::text);
         return;
     }
     if (!(o.seconds > 0 && o.seconds <= 86400)) throw Error("--seconds: expected a time above 0 and up to 86400");
-    const LoadedCloud    cloud = loadCloud(scene);
-    const NeighbourIndex index(cloud.cloud.positions());
-    const HandPath       hand = handFor(o, scene, cloud.cloud, index);
-
-    std::unique_ptr<Recording> recording;
-    if (!o.record.empty()) {
-        SessionInfo info;
-        info.scene    = scene;
-        info.versions = {{"palpate", PALPATE_VERSION}};
-        info.device   = scene.device;
-        info.clock    = SessionClock::virtualTime;
-        info.command  = "palpate run " + o.scene;
-        recording     = std::make_unique<Recording>(o.record, info);
-    }
-    const SessionSummary summary = play(scene, cloud, index, hand, o.seconds, [&](const SessionSample& sample) {
-        if (recording) recording->pushWaiting(sample);
-    });
+    const LoadedCloud              cloud = loadCloud(scene);
+    const NeighbourIndex           index(cloud.cloud.positions());
+    const HandPath                 hand      = handFor(o, scene, cloud.cloud, index);
+    const auto                     recording = recordingOf(o, scene, clock);
+    const SessionSummary           summary   = clock == SessionClock::real
+                                                   ? playLive(o, scene, cloud, index, hand, recording.get())
+                                                   : play(scene, cloud, index, hand, o.seconds, [&](const SessionSample& sample) {
+                                             if (recording) recording->pushWaiting(sample);
+                                         });
     std::optional<RecordingReport> report;
     if (recording) report = recording->finish();
     if (o.json) {
@@ -198,7 +239,7 @@ void replay(const ReplayOptions& o)
 
 void addRunCommand(CLI::App& app)
 {
-    auto* run_ = app.add_subcommand("run", "a hand feels a scene, in virtual time");
+    auto* run_ = app.add_subcommand("run", "a hand feels a scene");
     auto  o    = std::make_shared<RunOptions>();
     run_->add_option("SCENE", o->scene, "scene file, see samples/scenes")->required();
     run_->add_option("--hand", o->hand,
@@ -208,6 +249,9 @@ void addRunCommand(CLI::App& app)
     run_->add_option("--speed", o->speed, "of press, circle and scan, at most")->capture_default_str();
     run_->add_option("--press-depth", o->depth, "of the hand below the surface")->capture_default_str();
     run_->add_option("--reach", o->radius, "radius of the circle, half the length of the scan")->capture_default_str();
+    run_->add_option("--clock", o->clock,
+                     "real: a tick a millisecond; virtual: as fast as it goes, the same every time")
+        ->capture_default_str();
     run_->add_option("--record", o->record, "a new folder for the session");
     run_->add_flag("--print-config", o->printConfig,
                    "every value of the scene, with where it came from, and nothing else");
@@ -219,7 +263,7 @@ void addRunCommand(CLI::App& app)
             ->group("Values of the scene (over PALPATE_<KEY> and the file)");
     run_->footer("Examples:\n"
                  "  palpate run samples/scenes/palm_wart.json --hand scan --seconds 5\n"
-                 "  palpate run samples/scenes/palm_wart.json --hand press --record session --max-force '4 N'\n"
+                 "  palpate run samples/scenes/palm_wart.json --clock virtual --record session --max-force '4 N'\n"
                  "  palpate run samples/scenes/skin_wart.json --print-config");
     run_->callback([run_, o] {
         refuseEmptyValues(*run_);

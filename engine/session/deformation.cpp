@@ -7,7 +7,8 @@
 namespace palp {
 
 Deformation::Deformation(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene)
-    : cloud_(cloud), index_(index), law_(scene.handOver), settings_(scene.patch), device_(scene.device, 0, SoftwareBits::ofTheHost),
+    : cloud_(cloud), index_(index), law_(scene.handOver), settings_(scene.patch),
+      device_(scene.device, 0, SoftwareBits::ofTheHost),
       lattice_(footprintLattice(cloud, settings_, scene.handOver == HandOverLaw::table ? scene.tableSize : 1, device_))
 {
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include <glm/geometric.hpp>
+#include "engine/session/deformation.h"
 
 namespace palp {
 namespace {
@@ -17,24 +17,6 @@ constexpr double kTick = 1e-3; ///< [s]
 double secondsSince(Clock::time_point start)
 {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-void count(SessionSummary& summary, const SessionSample& sample)
-{
-    const auto has = [&](SessionFlag flag) { return (sample.faults & static_cast<std::uint32_t>(flag)) != 0; };
-    ++summary.ticks;
-    summary.tick.add(sample.tickTime);
-    summary.staleTicks += has(SessionFlag::stalePatch);
-    summary.beyondTable += has(SessionFlag::beyondTable);
-    summary.beyondTheory += has(SessionFlag::beyondTheory);
-    summary.mostForce = std::max(summary.mostForce, glm::length(sample.force));
-    if (sample.normal == glm::dvec3(0)) return;
-    ++summary.contactTicks;
-    summary.mostDepth = std::max(summary.mostDepth, glm::length(sample.proxy - sample.hip));
-    if (!(sample.compliance > 0)) return;
-    const bool first        = summary.mostCompliance == 0;
-    summary.leastCompliance = first ? sample.compliance : std::min(summary.leastCompliance, sample.compliance);
-    summary.mostCompliance  = std::max(summary.mostCompliance, sample.compliance);
 }
 
 } // namespace
@@ -67,7 +49,7 @@ SessionSummary runVirtual(const Scene& scene, const PointCloud& cloud, const Nei
         hip.add(time, place);
         SessionSample sample = servo.tick(time, kTick, kTick, {place, hip.velocity()}, inUse ? &*inUse : nullptr);
         sample.tickTime      = secondsSince(began);
-        count(summary, sample);
+        summary.add(sample);
         if (onSample) onSample(sample);
     }
     summary.fault = servo.governor().fault();

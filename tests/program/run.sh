@@ -170,6 +170,33 @@ for where in start list open; do
     [ $code -eq 4 ] && [ ! -s out.txt ] && passed=$((passed + 1)) || complain "asked for, Vulkan broken at $where: exit $code: $(cat err.txt)"
 done
 
+# --- a hand feels a scene
+cat >scene.json <<'JSON'
+{"cloud": "sample:sheet", "points": 4000, "thickness": "4 mm", "foundation": "1.74 MPa/m", "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm",
+ "stiffness": {"law": "gaussian", "from": 0.3e6, "to": 3e6, "centre": [0, 0, 0], "sigma": 3e-3}}
+JSON
+good 'run' run scene.json --clock virtual --seconds 0.5 --record session --json
+for key in '"ticks": 500' '"fault": "none"' '"samples": 500' '"p99.9_s"'; do holds "$key"; done
+good 'replay' replay session --compare
+holds 'equal to the bit'
+good 'replay on lavapipe' replay session --compare --device lavapipe
+good 'the configuration' run scene.json --print-config --max-force '4 N'
+holds '4 '
+bad 'a session is not overwritten' session run scene.json --clock virtual --seconds 0.1 --record session
+printf '{"cloud": "sample:sheet", "thicknes": 0.004}' >wrong.json
+bad 'an unknown key of a scene' 'did you mean' run wrong.json
+printf '{"cloud": "sample:sheet", "thickness": -0.004}' >wrong.json
+bad 'a negative thickness' thickness run wrong.json
+printf '0,0,0,0\n0.1,nan,0,0\n' >hand.csv
+bad 'a hand that is not a number' hand.csv run scene.json --hand hand.csv
+bad 'an unknown clock' 'expected real or virtual' run scene.json --clock wall
+python3 -c "
+import sys
+data = bytearray(open('session/force.npy', 'rb').read()); data[-1] ^= 1; open('session/force.npy', 'wb').write(data)" 2>/dev/null && {
+    "$palpate" replay session --compare >out.txt 2>err.txt
+    [ $? -eq 1 ] && grep -qF 'sample 499' out.txt && passed=$((passed + 1)) || complain "one changed bit is not found: $(cat out.txt err.txt)"
+}
+
 # --- the same numbers every time
 for run in one two; do "$palpate" touch sample:palm --points 8000 --cells 32 --out $run --json >touch.json; done
 "$palpate" touch sample:palm --points 8000 --cells 32 --device lavapipe --out three --json >lavapipe.json

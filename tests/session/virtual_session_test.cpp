@@ -7,6 +7,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/session/deformation.h"
+#include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
 #include "tests/session/allocations.h"
 
@@ -107,6 +109,29 @@ TEST(VirtualSession, AHomogeneousSheetFeelsTheSameEverywhere)
     }
     ASSERT_GT(most, 0);
     EXPECT_LT(std::log(most / least) / std::log(1.07), 1e-6) << "exact by construction but for rounding; 0.5 is asked";
+}
+
+/// The machine of a test has other things to do: only what must hold on any is asked.
+TEST(RealSession, TheThreadsServeAHandAndEnd)
+{
+    const Session       session(sheet(kWart));
+    std::uint64_t       seen = 0;
+    std::string         warning;
+    RealSessionSettings settings;
+    bool                finite = true;
+    settings.seconds           = 0.6;
+    settings.onSample          = [&](const SessionSample& s) {
+        ++seen;
+        finite = finite && std::isfinite(glm::length(s.force));
+    };
+    const SessionSummary summary =
+        runReal(session.scene, session.cloud.cloud, session.index, session.hand, settings, warning);
+    EXPECT_EQ(summary.ticks, seen);
+    EXPECT_GT(summary.ticks, 20U);
+    EXPECT_LE(summary.ticks, 601U);
+    EXPECT_TRUE(finite);
+    EXPECT_GT(summary.patches + summary.failedPatches, 0U);
+    EXPECT_EQ(summary.failedPatches, 0U) << summary.why;
 }
 
 TEST(Servo, ATickAllocatesNothing)

@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "engine/force/governor.h"
+#include "engine/session/duration_histogram.h"
+#include "engine/session/session_sample.h"
+
+namespace palp {
+
+/// What a session did, for a report.
+struct SessionSummary {
+    std::uint64_t     ticks = 0, contactTicks = 0;             ///< [1]
+    std::uint64_t     patches = 0, failedPatches = 0;          ///< [1]
+    std::uint64_t     staleTicks = 0, beyondTable = 0;         ///< [1]
+    std::uint64_t     beyondTheory    = 0;                     ///< [1] see SessionFlag
+    double            mostForce       = 0;                     ///< [N]
+    double            mostDepth       = 0;                     ///< [m] of the hand below the proxy
+    double            leastCompliance = 0, mostCompliance = 0; ///< in use [m/N]; 0: never in contact
+    GovernorFault     fault = GovernorFault::none;             ///< the last
+    std::string       why;                                     ///< the last patch that failed; may be empty
+    DurationHistogram tick;                                    ///< computing a tick [s]
+    DurationHistogram solve;                                   ///< computing a patch [s]
+    DurationHistogram period;                                  ///< from tick to tick [s]; empty on a virtual clock
+
+    /// Counts a sample in.
+    void add(const SessionSample& sample) noexcept;
+};
+
+/// Each sample of a session as it is made.
+using OnSample = std::function<void(const SessionSample&)>;
+
+} // namespace palp
