@@ -122,13 +122,13 @@ void printText(const SessionSummary& s, const std::string& device)
 }
 
 /// Plays the hand through the scene, with a line on a terminal and a recording if one is wanted.
-SessionSummary play(const Scene& scene, const LoadedCloud& cloud, const NeighbourIndex& index, const HandPath& hand,
-                    double seconds, const std::function<void(const SessionSample&)>& also)
+SessionSummary play(const Scene& scene, const LoadedCloud& cloud, const NeighbourIndex& index, Deformation& deformation,
+                    const HandPath& hand, double seconds, const std::function<void(const SessionSample&)>& also)
 {
     Progress    progress("touching");
     const auto  total = std::size_t(std::llround(1000 * seconds));
     std::size_t done  = 0;
-    return runVirtual(scene, cloud.cloud, index, hand, seconds, [&](const SessionSample& sample) {
+    return runVirtual(scene, cloud.cloud, index, deformation, hand, seconds, [&](const SessionSample& sample) {
         if (also) also(sample);
         progress.at(++done, total);
     });
@@ -136,7 +136,7 @@ SessionSummary play(const Scene& scene, const LoadedCloud& cloud, const Neighbou
 
 /// The same in real time; the line shows what the hand feels.
 SessionSummary playLive(const RunOptions& o, const Scene& scene, const LoadedCloud& cloud, const NeighbourIndex& index,
-                        const HandPath& hand, Recording* recording)
+                        Deformation& deformation, const HandPath& hand, Recording* recording)
 {
     const bool          line = isatty(STDERR_FILENO) != 0 && !o.json;
     RealSessionSettings settings;
@@ -148,7 +148,7 @@ SessionSummary playLive(const RunOptions& o, const Scene& scene, const LoadedClo
                          formatQuantity(view.depth, "m").c_str());
         };
     std::string          warning;
-    const SessionSummary summary = runReal(scene, cloud.cloud, index, hand, settings, warning);
+    const SessionSummary summary = runReal(scene, cloud.cloud, index, deformation, hand, settings, warning);
     if (line) std::fprintf(stderr, "\r\033[K");
     if (!warning.empty()) std::cerr << "palpate: warning: " << warning << "\n";
     return summary;
@@ -161,13 +161,14 @@ SessionClock clockNamed(const std::string& text)
     throw Error("--clock: expected real or virtual, found \"" + text + "\"");
 }
 
-std::unique_ptr<Recording> recordingOf(const RunOptions& o, const Scene& scene, SessionClock clock)
+std::unique_ptr<Recording> recordingOf(const RunOptions& o, const Scene& scene, SessionClock clock,
+                                       const std::string& device)
 {
     if (o.record.empty()) return nullptr;
     SessionInfo info;
     info.scene    = scene;
     info.versions = {{"palpate", PALPATE_VERSION}};
-    info.device   = scene.device;
+    info.device   = device;
     info.clock    = clock;
     info.command  = "palpate run " + o.scene;
     return std::make_unique<Recording>(o.record, info);
@@ -183,15 +184,18 @@ void run(const RunOptions& o)
         return;
     }
     if (!(o.seconds > 0 && o.seconds <= 86400)) throw Error("--seconds: expected a time above 0 and up to 86400");
-    const LoadedCloud              cloud = loadCloud(scene);
-    const NeighbourIndex           index(cloud.cloud.positions());
-    const HandPath                 hand      = handFor(o, scene, cloud.cloud, index);
-    const auto                     recording = recordingOf(o, scene, clock);
-    const SessionSummary           summary   = clock == SessionClock::real
-                                                   ? playLive(o, scene, cloud, index, hand, recording.get())
-                                                   : play(scene, cloud, index, hand, o.seconds, [&](const SessionSample& sample) {
-                                             if (recording) recording->pushWaiting(sample);
-                                         });
+    const LoadedCloud    cloud = loadCloud(scene);
+    const NeighbourIndex index(cloud.cloud.positions());
+    const HandPath       hand = handFor(o, scene, cloud.cloud, index);
+    Deformation          deformation(cloud.cloud, index, scene); // what can fail fails before a folder is made
+    const std::string    device    = deformation.device().name();
+    const auto           recording = recordingOf(o, scene, clock, device);
+    const SessionSummary summary =
+        clock == SessionClock::real
+            ? playLive(o, scene, cloud, index, deformation, hand, recording.get())
+            : play(scene, cloud, index, deformation, hand, o.seconds, [&](const SessionSample& sample) {
+                  if (recording) recording->pushWaiting(sample);
+              });
     std::optional<RecordingReport> report;
     if (recording) report = recording->finish();
     if (o.json) {
@@ -200,7 +204,7 @@ void run(const RunOptions& o)
         std::cout << jsonText(all);
         return;
     }
-    printText(summary, scene.device);
+    printText(summary, device);
     if (report) std::cout << "  " << report->samples << " samples in " << o.record << "\n";
 }
 
@@ -214,15 +218,16 @@ void replay(const ReplayOptions& o)
     const LoadedCloud    cloud = loadCloud(scene);
     const NeighbourIndex index(cloud.cloud.positions());
     const HandPath       hand = handOf(session);
+    Deformation          deformation(cloud.cloud, index, scene);
 
     RecordedSession again = session;
     again.folder          = "the replay";
     again.samples.clear();
     const double         seconds = double(session.samples.size()) * 1e-3;
-    const SessionSummary summary =
-        play(scene, cloud, index, hand, seconds, [&](const SessionSample& sample) { again.samples.push_back(sample); });
+    const SessionSummary summary = play(scene, cloud, index, deformation, hand, seconds,
+                                        [&](const SessionSample& sample) { again.samples.push_back(sample); });
     if (!o.compare) {
-        o.json ? void(std::cout << jsonText(jsonOf(summary))) : printText(summary, scene.device);
+        o.json ? void(std::cout << jsonText(jsonOf(summary))) : printText(summary, deformation.device().name());
         return;
     }
     const auto difference = compareSessions(session, again);

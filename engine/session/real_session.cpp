@@ -81,11 +81,11 @@ void bend(Deformation& deformation, double period, Shared& shared, SessionSummar
 
 } // namespace
 
-SessionSummary runReal(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index, const HandPath& hand,
-                       const RealSessionSettings& settings, std::string& warning)
+SessionSummary runReal(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
+                       Deformation& deformation, const HandPath& hand, const RealSessionSettings& settings,
+                       std::string& warning)
 {
     Servo              servo(cloud, index, scene);
-    Deformation        deformation(cloud, index, scene);
     Shared             shared;
     SessionSummary     summary, slow; // each thread counts in its own
     std::exception_ptr failure;

@@ -2,6 +2,7 @@
 #include <functional>
 #include <string>
 
+#include "engine/session/deformation.h"
 #include "engine/session/hand_path.h"
 #include "engine/session/session_summary.h"
 
@@ -27,8 +28,9 @@ struct RealSessionSettings {
 ///
 /// A deformation that fails or stalls leaves the servo with its last patch, flagged as stale.
 /// \param warning  what the system refused of real-time rights; empty if nothing
-/// \throws Error as Deformation's constructor does, before a thread is started
-SessionSummary runReal(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index, const HandPath& hand,
-                       const RealSessionSettings& settings, std::string& warning);
+/// \param deformation  of the same scene and cloud
+SessionSummary runReal(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
+                       Deformation& deformation, const HandPath& hand, const RealSessionSettings& settings,
+                       std::string& warning);
 
 } // namespace palp

@@ -22,10 +22,9 @@ double secondsSince(Clock::time_point start)
 } // namespace
 
 SessionSummary runVirtual(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
-                          const HandPath& hand, double seconds, const OnSample& onSample)
+                          Deformation& deformation, const HandPath& hand, double seconds, const OnSample& onSample)
 {
     Servo                    servo(cloud, index, scene);
-    Deformation              deformation(cloud, index, scene);
     SessionSummary           summary;
     RecentMotion             hip;
     std::optional<PatchNews> inUse, underWay;

@@ -1,4 +1,5 @@
 #pragma once
+#include "engine/session/deformation.h"
 #include "engine/session/hand_path.h"
 #include "engine/session/session_summary.h"
 
@@ -10,8 +11,8 @@ namespace palp {
 ///
 /// \param seconds   how long [s]
 /// \param onSample  sees every sample; may be empty
-/// \throws Error as Deformation's constructor does
+/// \param deformation  of the same scene and cloud
 SessionSummary runVirtual(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
-                          const HandPath& hand, double seconds, const OnSample& onSample);
+                          Deformation& deformation, const HandPath& hand, double seconds, const OnSample& onSample);
 
 } // namespace palp

@@ -184,6 +184,8 @@ good 'the configuration' run scene.json --print-config --max-force '4 N'
 holds '4 '
 bad 'a session is not overwritten' session run scene.json --clock virtual --seconds 0.1 --record session
 printf '{"cloud": "sample:sheet", "thicknes": 0.004}' >wrong.json
+"$palpate" run scene.json --device gpu9000 --record unmade >out.txt 2>err.txt
+[ $? -eq 2 ] && [ ! -e unmade ] && passed=$((passed + 1)) || complain "a missing device left a session behind: $(cat err.txt)"
 bad 'an unknown key of a scene' 'did you mean' run wrong.json
 printf '{"cloud": "sample:sheet", "thickness": -0.004}' >wrong.json
 bad 'a negative thickness' thickness run wrong.json

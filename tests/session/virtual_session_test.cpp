@@ -44,7 +44,9 @@ struct Session {
     std::vector<SessionSample> run(double seconds) const
     {
         std::vector<SessionSample> samples;
-        runVirtual(scene, cloud.cloud, index, hand, seconds, [&](const SessionSample& s) { samples.push_back(s); });
+        Deformation                deformation(cloud.cloud, index, scene);
+        runVirtual(scene, cloud.cloud, index, deformation, hand, seconds,
+                   [&](const SessionSample& s) { samples.push_back(s); });
         return samples;
     }
 };
@@ -119,13 +121,14 @@ TEST(RealSession, TheThreadsServeAHandAndEnd)
     std::string         warning;
     RealSessionSettings settings;
     bool                finite = true;
-    settings.seconds           = 0.6;
-    settings.onSample          = [&](const SessionSample& s) {
+    Deformation         deformation(session.cloud.cloud, session.index, session.scene);
+    settings.seconds  = 0.6;
+    settings.onSample = [&](const SessionSample& s) {
         ++seen;
         finite = finite && std::isfinite(glm::length(s.force));
     };
     const SessionSummary summary =
-        runReal(session.scene, session.cloud.cloud, session.index, session.hand, settings, warning);
+        runReal(session.scene, session.cloud.cloud, session.index, deformation, session.hand, settings, warning);
     EXPECT_EQ(summary.ticks, seen);
     EXPECT_GT(summary.ticks, 20U);
     EXPECT_LE(summary.ticks, 601U);
