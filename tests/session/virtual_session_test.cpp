@@ -137,6 +137,22 @@ TEST(RealSession, TheThreadsServeAHandAndEnd)
     EXPECT_EQ(summary.failedPatches, 0U) << summary.why;
 }
 
+/// The paper's law on a hard sheet asks for 45 kN/m, far beyond what a sampled loop can render.
+TEST(VirtualSession, NoStiffnessBeyondTheCapIsRendered)
+{
+    Scene scene          = sheet(R"({"law": "constant", "value": 3e6})");
+    scene.patch.forceLaw = ForceLaw::paper;
+    scene.maxForce       = 8;
+    const Session session(scene, HandMotion::press);
+    double        most = 0;
+    for (const SessionSample& s : session.run(0.5)) {
+        const double depth = glm::length(s.proxy - s.hip);
+        if (depth > 0.2e-3) most = std::max(most, glm::length(s.force) / depth);
+    }
+    EXPECT_GT(most, 10) << "something is felt";
+    EXPECT_LT(most, 1.5 * scene.stiffnessCap) << "a half more, for the passivity controller's damping and the slew";
+}
+
 TEST(Servo, ATickAllocatesNothing)
 {
     const Session            session(sheet(kWart));
