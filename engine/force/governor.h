@@ -6,6 +6,8 @@
 
 #include <glm/vec3.hpp>
 
+#include "engine/core/governed_force.h"
+
 namespace palp {
 
 /// Limits of the ForceGovernor. Sources: Hannaford & Ryu, time-domain passivity control (observer, controller);
@@ -133,6 +135,9 @@ public:
     explicit ForceGovernor(const GovernorSettings& settings = {});
 
     GovernorOutput step(const GovernorInput& in) noexcept;
+
+    /// What the last step() let through, as devices take it.
+    [[nodiscard]] GovernedForce force() const noexcept { return GovernedForce(sent_[(tick_ - 1) % kDelays]); }
 
     /// The operator has seen the fault. A cause that lasts is found again by the next tick; the force engages anew.
     void reset() noexcept;

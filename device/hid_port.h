@@ -1,0 +1,57 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace palp {
+
+/// A HID device as the system lists it.
+struct HidListing {
+    std::string   path; ///< only good for HidSystem::open()
+    std::uint16_t vendor = 0, product = 0;
+    std::uint16_t usagePage = 0, usage = 0;
+    std::string   manufacturer, model, serial; ///< may be empty
+};
+
+/// The device went away while open.
+class HidLost : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// An open HID device; closed by its destructor. \thread one at a time
+class HidPort {
+public:
+    HidPort()                          = default;
+    HidPort(const HidPort&)            = delete;
+    HidPort& operator=(const HidPort&) = delete;
+    virtual ~HidPort()                 = default;
+
+    /// One input report with its number in front; waits up to `timeout` [s].
+    /// \return bytes filled; 0: none came in time. \throws HidLost
+    virtual std::size_t read(std::span<std::uint8_t> report, double timeout) = 0;
+
+    /// One output report with its number in front. \throws HidLost
+    virtual void write(std::span<const std::uint8_t> report) = 0;
+};
+
+/// What lists and opens HID devices: hidapi, or a fake.
+class HidSystem {
+public:
+    HidSystem()                            = default;
+    HidSystem(const HidSystem&)            = delete;
+    HidSystem& operator=(const HidSystem&) = delete;
+    virtual ~HidSystem()                   = default;
+
+    [[nodiscard]] virtual std::vector<HidListing> list() = 0;
+
+    /// \param path  of a listing; anything else is refused
+    /// \throws Error naming the device and what to do, such as a missing permission
+    [[nodiscard]] virtual std::unique_ptr<HidPort> open(const std::string& path) = 0;
+};
+
+} // namespace palp

@@ -1,0 +1,28 @@
+#pragma once
+#include <glm/gtc/quaternion.hpp>
+#include <glm/vec3.hpp>
+
+namespace palp {
+
+/// A force that a device may render: none, or what a ForceGovernor has let through. Nothing else can make one, so that
+/// no force leaves without the governor.
+class GovernedForce {
+public:
+    GovernedForce() = default; ///< none
+
+    [[nodiscard]] const glm::dvec3& newtons() const noexcept { return newtons_; } ///< [N] on the hand
+
+    /// The same force seen from another frame. \param frame  normalized here, so that the magnitude stays
+    [[nodiscard]] GovernedForce rotated(const glm::dquat& frame) const noexcept
+    {
+        return GovernedForce(glm::normalize(frame) * newtons_);
+    }
+
+private:
+    friend class ForceGovernor;
+    explicit GovernedForce(const glm::dvec3& newtons) noexcept : newtons_(newtons) {}
+
+    glm::dvec3 newtons_{}; ///< [N]
+};
+
+} // namespace palp
