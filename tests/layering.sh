@@ -37,12 +37,12 @@ for folder in engine/*/; do
 done
 
 # A device knows forces and positions, nothing of objects.
-others=$(grep -nE '^ *# *include *"' device/*.h device/*.cpp | grep -vE '"(device|engine/core)/')
+others=$(grep -rnE '^ *# *include *"' device --include="*.h" --include="*.cpp" | grep -vE '"(device|engine/core)/')
 [ -z "$others" ] || complain "device/ includes more than engine/core: $others"
 
 # library: pattern of its includes: folders that may hold them
 wall() {
-    found=$(grep -rlE "^ *# *include *[<\"]$2" engine device --include='*.h' --include='*.cpp' | grep -vE "^engine/($3)$")
+    found=$(grep -rlE "^ *# *include *[<\"]$2" engine device --include='*.h' --include='*.cpp' | grep -vE "^(engine|device)/($3)$")
     [ -z "$found" ] || complain "$1 is included outside its wall: $found"
 }
 wall Embree 'embree[34]/' 'cloud/(embree\.h|neighbour_index\.cpp)'
@@ -53,9 +53,11 @@ wall Vulkan 'vulkan/' 'gpu/vulkan_[a-z]*\.(h|cpp)'
 wall CHOLMOD '(suitesparse/)?cholmod' 'bench/cholmod_solver\.cpp'
 wall nanoflann 'nanoflann' 'bench/nanoflann_search\.cpp'
 wall stb 'stb' 'picture/png\.cpp'
+wall libusb 'libusb' 'falcon/libusb_[a-z]*\.cpp'
+wall hidapi 'hidapi' 'hid/hidapi_[a-z]*\.cpp'
 
 # Public headers name no type of a wrapped library.
-grep -rnE 'RTC[A-Z]|Eigen::|nlohmann::|stbi_|Vk[A-Z]|VK_' engine device --include='*.h' | grep -vE '^engine/(cloud/embree\.h|gpu/vulkan_[a-z]*\.h|program/)' | grep -vE ':[0-9]+: *//' && complain 'a header names a type of a wrapped library'
+grep -rnE 'RTC[A-Z]|Eigen::|nlohmann::|stbi_|Vk[A-Z]|VK_|libusb_[a-z]|hid_[a-z]*\(' engine device --include='*.h' | grep -vE '^engine/(cloud/embree\.h|gpu/vulkan_[a-z]*\.h|program/)' | grep -vE ':[0-9]+: *//' && complain 'a header names a type of a wrapped library'
 
 [ $bad -eq 0 ] && echo 'every include points downward'
 exit $bad
