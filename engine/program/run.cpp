@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -14,6 +16,7 @@
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
 #include "engine/program/commands.h"
+#include "engine/session/hand_device.h"
 #include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
 #include "engine/session/recording.h"
@@ -25,7 +28,7 @@ namespace palp {
 namespace {
 
 struct RunOptions {
-    std::string                                     scene, hand = "scan", record, clock = "real";
+    std::string                                     scene, hand = "scan", record, clock = "real", threads = "servo";
     double                                          seconds = 5;
     std::string                                     speed = "50 mm/s", depth = "2 mm", radius = "10 mm";
     std::map<std::string, std::string, std::less<>> flags; ///< of the scene's keys, as given
@@ -122,33 +125,51 @@ void printText(const SessionSummary& s, const std::string& device)
 }
 
 /// Plays the hand through the scene, with a line on a terminal and a recording if one is wanted.
-SessionSummary play(const Scene& scene, const LoadedCloud& cloud, const NeighbourIndex& index, Deformation& deformation,
-                    const HandPath& hand, double seconds, const std::function<void(const SessionSample&)>& also)
+SessionSummary play(const SessionParts& parts, double seconds, const OnSample& also)
 {
     Progress    progress("touching");
     const auto  total = std::size_t(std::llround(1000 * seconds));
     std::size_t done  = 0;
-    return runVirtual(scene, cloud.cloud, index, deformation, hand, seconds, [&](const SessionSample& sample) {
+    return runVirtual(parts, seconds, [&](const SessionSample& sample) {
         if (also) also(sample);
         progress.at(++done, total);
     });
 }
 
+/// Ctrl-C ends the session in order: zero force, a recording that is complete. A second one ends the program.
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
+
+void onInterrupt(int signal)
+{
+    interrupted = true;
+    std::signal(signal, SIG_DFL);
+}
+
+/// One line that is written over and over: what the hand feels, and how fast.
+void showLine(const SessionView& view)
+{
+    const SessionSample& s = view.sample;
+    std::fprintf(stderr, "\r%6.1f s  %8s  %8s deep  a tick every %8s  a patch in %8s\033[K", s.time,
+                 formatQuantity(glm::length(s.force), "N").c_str(),
+                 formatQuantity(glm::length(s.proxy - s.hip), "m").c_str(),
+                 formatQuantity(view.loopPeriod, "s").c_str(), formatQuantity(view.solveTime, "s").c_str());
+}
+
 /// The same in real time; the line shows what the hand feels.
-SessionSummary playLive(const RunOptions& o, const Scene& scene, const LoadedCloud& cloud, const NeighbourIndex& index,
-                        Deformation& deformation, const HandPath& hand, Recording* recording)
+SessionSummary playLive(const RunOptions& o, SessionThreads threads, const SessionParts& parts, Recording* recording)
 {
     const bool          line = isatty(STDERR_FILENO) != 0 && !o.json;
     RealSessionSettings settings;
     settings.seconds = o.seconds;
+    settings.threads = threads;
+    settings.stop    = &interrupted;
+    std::signal(SIGINT, onInterrupt);
+    std::signal(SIGTERM, onInterrupt);
     if (recording) settings.onSample = [recording](const SessionSample& sample) { recording->push(sample); };
-    if (line)
-        settings.onView = [](const SessionView& view) {
-            std::fprintf(stderr, "\r%6.1f s  %8s  %8s deep \033[K", view.time, formatQuantity(view.force, "N").c_str(),
-                         formatQuantity(view.depth, "m").c_str());
-        };
+    if (line) settings.onView = showLine;
     std::string          warning;
-    const SessionSummary summary = runReal(scene, cloud.cloud, index, deformation, hand, settings, warning);
+    const SessionSummary summary = runReal(parts, settings, warning);
     if (line) std::fprintf(stderr, "\r\033[K");
     if (!warning.empty()) std::cerr << "palpate: warning: " << warning << "\n";
     return summary;
@@ -159,6 +180,15 @@ SessionClock clockNamed(const std::string& text)
     for (const SessionClock clock : {SessionClock::real, SessionClock::virtualTime})
         if (text == name(clock)) return clock;
     throw Error("--clock: expected real or virtual, found \"" + text + "\"");
+}
+
+SessionThreads threadsOf(const RunOptions& o, SessionClock clock)
+{
+    const auto threads = sessionThreadsNamed(o.threads);
+    if (!threads) throw Error("--threads: expected servo or paper, found \"" + o.threads + "\"");
+    if (*threads == SessionThreads::paper && clock != SessionClock::real)
+        throw Error("--threads paper: a virtual clock has no threads; leave one of the two out");
+    return *threads;
 }
 
 std::unique_ptr<Recording> recordingOf(const RunOptions& o, const Scene& scene, SessionClock clock,
@@ -177,8 +207,9 @@ std::unique_ptr<Recording> recordingOf(const RunOptions& o, const Scene& scene, 
 void run(const RunOptions& o)
 {
     const SceneOverrides overrides{o.flags, processEnvironment()};
-    const Scene          scene = readScene(o.scene, overrides);
-    const SessionClock   clock = clockNamed(o.clock);
+    const Scene          scene   = readScene(o.scene, overrides);
+    const SessionClock   clock   = clockNamed(o.clock);
+    const SessionThreads threads = threadsOf(o, clock);
     if (o.printConfig) {
         std::cout << printConfig(scene, o.json ? ConfigFormat::json : ConfigFormat::text);
         return;
@@ -188,14 +219,15 @@ void run(const RunOptions& o)
     const NeighbourIndex index(cloud.cloud.positions());
     const HandPath       hand = handFor(o, scene, cloud.cloud, index);
     Deformation          deformation(cloud.cloud, index, scene); // what can fail fails before a folder is made
-    const std::string    device    = deformation.device().name();
+    const std::string    device = deformation.device().name();
+    HandDevice           scripted(hand);
+    const SessionParts   parts{scene, cloud.cloud, index, deformation.solver(), scripted, {}};
     const auto           recording = recordingOf(o, scene, clock, device);
-    const SessionSummary summary =
-        clock == SessionClock::real
-            ? playLive(o, scene, cloud, index, deformation, hand, recording.get())
-            : play(scene, cloud, index, deformation, hand, o.seconds, [&](const SessionSample& sample) {
-                  if (recording) recording->pushWaiting(sample);
-              });
+    const SessionSummary summary   = clock == SessionClock::real
+                                         ? playLive(o, threads, parts, recording.get())
+                                         : play(parts, o.seconds, [&](const SessionSample& sample) {
+                                             if (recording) recording->pushWaiting(sample);
+                                         });
     std::optional<RecordingReport> report;
     if (recording) report = recording->finish();
     if (o.json) {
@@ -224,7 +256,8 @@ void replay(const ReplayOptions& o)
     again.folder          = "the replay";
     again.samples.clear();
     const double         seconds = double(session.samples.size()) * 1e-3;
-    const SessionSummary summary = play(scene, cloud, index, deformation, hand, seconds,
+    HandDevice           scripted(hand);
+    const SessionSummary summary = play({scene, cloud.cloud, index, deformation.solver(), scripted, {}}, seconds,
                                         [&](const SessionSample& sample) { again.samples.push_back(sample); });
     if (!o.compare) {
         o.json ? void(std::cout << jsonText(jsonOf(summary))) : printText(summary, deformation.device().name());
@@ -256,6 +289,9 @@ void addRunCommand(CLI::App& app)
     run_->add_option("--reach", o->radius, "radius of the circle, half the length of the scan")->capture_default_str();
     run_->add_option("--clock", o->clock,
                      "real: a tick a millisecond; virtual: as fast as it goes, the same every time")
+        ->capture_default_str();
+    run_->add_option("--threads", o->threads,
+                     "servo: one thread from the hand to the force; paper: proxy and force on threads of their own")
         ->capture_default_str();
     run_->add_option("--record", o->record, "a new folder for the session");
     run_->add_flag("--print-config", o->printConfig,

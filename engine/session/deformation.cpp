@@ -13,21 +13,21 @@ Deformation::Deformation(const PointCloud& cloud, const NeighbourIndex& index, c
 {
 }
 
-std::optional<PatchNews> Deformation::solve(const Touch& touch, double period)
+DeformationAnswer Deformation::solve(const Touch& touch, double period)
 {
-    const glm::dvec3 ahead = aheadOf(law_, touch.point, touch.velocity, period);
-    if (auto news = solveAt(ahead, touch)) return news;
-    return ahead == touch.point ? std::nullopt : solveAt(touch.point, touch);
+    const glm::dvec3  ahead = aheadOf(law_, touch.point, touch.velocity, period);
+    DeformationAnswer there = solveAt(ahead, touch);
+    if (there.news || ahead == touch.point) return there;
+    DeformationAnswer here = solveAt(touch.point, touch);
+    if (here.why.empty()) here.why = there.why;
+    return here;
 }
 
-std::optional<PatchNews> Deformation::solveAt(const glm::dvec3& place, const Touch& touch)
+DeformationAnswer Deformation::solveAt(const glm::dvec3& place, const Touch& touch)
 {
     try {
         PatchWithTable solved = deformWithTable(cloud_, index_, {place, touch.outward}, settings_, lattice_, device_);
-        if (!solved.table) {
-            why_ = "the points around the contact determine no surface";
-            return {};
-        }
+        if (!solved.table) return {{}, {}, "the points around the contact determine no surface"};
         Patch& patch    = solved.patch;
         settings_.frame = patch.chart.frame;
         PatchNews news{*solved.table};
@@ -39,11 +39,9 @@ std::optional<PatchNews> Deformation::solveAt(const glm::dvec3& place, const Tou
         news.mostResponse   = *std::max_element(w.begin(), w.end());
         news.errorEstimate  = patch.report.errorEstimate.value_or(0);
         news.iterations     = patch.report.iterations.value_or(0);
-        patch_              = std::move(patch);
-        return news;
+        return {news, std::move(patch), {}};
     } catch (const Error& error) { // the window is off the object, or the plate has no solution there
-        why_ = error.what();
-        return {};
+        return {{}, {}, error.what()};
     }
 }
 

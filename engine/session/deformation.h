@@ -1,10 +1,21 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "engine/session/servo.h"
 
 namespace palp {
+
+/// What the slow half of a session has found out about a touch.
+struct DeformationAnswer {
+    std::optional<PatchNews> news;  ///< for the servo; empty: nothing could be solved there
+    std::optional<Patch>     patch; ///< for who looks on; together with `news`
+    std::string              why;   ///< of a failure, also of one that a second try mended; may be empty
+};
+
+/// From a touch, and the measured period of the deformation [s], to an answer. May take its time and throw.
+using PatchSolver = std::function<DeformationAnswer(const Touch&, double period)>;
 
 /// The slow half of a session: from a touch to the patch and the table of compliances for where it will be.
 /// \thread one at a time, together with its device
@@ -16,16 +27,20 @@ public:
     Deformation(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene);
 
     /// Solves for the touch, 1.5 periods ahead of its motion. Off the object, or where the points determine no surface,
-    /// for the touch itself; if that fails too there is no news, and why() says so.
+    /// for the touch itself; if that fails too there is no news, and the answer says why.
     /// \param period  of the deformation, as measured [s]
-    [[nodiscard]] std::optional<PatchNews> solve(const Touch& touch, double period);
+    [[nodiscard]] DeformationAnswer solve(const Touch& touch, double period);
 
-    [[nodiscard]] const std::string&          why() const noexcept { return why_; } ///< the last failure; may be empty
-    [[nodiscard]] const std::optional<Patch>& patch() const noexcept { return patch_; } ///< the last one
-    [[nodiscard]] const PlateDevice&          device() const noexcept { return device_; }
+    /// solve() of this object, which must outlive it.
+    [[nodiscard]] PatchSolver solver()
+    {
+        return [this](const Touch& touch, double period) { return solve(touch, period); };
+    }
+
+    [[nodiscard]] const PlateDevice& device() const noexcept { return device_; }
 
 private:
-    [[nodiscard]] std::optional<PatchNews> solveAt(const glm::dvec3& place, const Touch& touch);
+    [[nodiscard]] DeformationAnswer solveAt(const glm::dvec3& place, const Touch& touch);
 
     const PointCloud&     cloud_;
     const NeighbourIndex& index_;
@@ -33,8 +48,6 @@ private:
     PatchSettings         settings_; ///< with the frame of the last patch
     PlateDevice           device_;
     FootprintLattice      lattice_;
-    std::optional<Patch>  patch_;
-    std::string           why_;
 };
 
 } // namespace palp

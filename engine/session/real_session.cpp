@@ -1,13 +1,14 @@
 #include "engine/session/real_session.h"
 
-#include <atomic>
+#include <algorithm>
 #include <chrono>
+#include <condition_variable>
 #include <exception>
+#include <mutex>
 #include <thread>
+#include <utility>
+#include <vector>
 
-#include <glm/geometric.hpp>
-
-#include "engine/session/deformation.h"
 #include "engine/session/latest.h"
 #include "engine/session/real_time.h"
 
@@ -17,106 +18,266 @@ namespace {
 using Clock   = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-/// What the threads share, and nothing else.
-struct Shared {
-    Latest<Touch>       touch;
-    Latest<PatchNews>   news;
-    Latest<SessionView> view;
-    std::atomic<bool>   over = false;
+constexpr double kTick = 1e-3; ///< nominal period of servo and proxy [s]
+
+/// A hand and when it was there.
+struct TimedHand {
+    double time = 0; ///< [s]
+    Hand   hand;
 };
 
-/// The servo's thread. \return what the system refused
-std::string serve(Servo& servo, const HandPath& hand, const RealSessionSettings& settings, Shared& shared,
-                  SessionSummary& summary)
+/// What the servo shows to the caller.
+struct Shown {
+    SessionSample sample;
+    double        loopPeriod = 0; ///< [s]
+    std::uint32_t buttons    = 0;
+};
+
+/// What the deformation shows to the caller.
+struct ShownPatch {
+    std::optional<Patch> patch;
+    double               solveTime = 0; ///< [s]
+};
+
+/// What the threads share, and nothing else.
+struct Shared {
+    Latest<TimedHand>  hand; ///< with threads of the paper only, as is the next
+    Latest<Held>       held;
+    Latest<Touch>      touch;
+    Latest<PatchNews>  news;
+    Latest<Shown>      shown;
+    Latest<ShownPatch> patch;
+
+    std::atomic<bool>       over = false; ///< everybody ends
+    std::mutex              mutex;        ///< of the next two; the servo takes it after its last tick
+    std::condition_variable ended;
+    bool                    served = false;
+
+    void serveNoMore()
+    {
+        const std::lock_guard lock(mutex);
+        served = true;
+        ended.notify_one();
+    }
+};
+
+/// One session: its threads are these functions.
+class RealSession {
+public:
+    RealSession(const SessionParts& parts, const RealSessionSettings& settings)
+        : parts_(parts), settings_(settings), contact_(parts.cloud, parts.index, parts.scene), force_(parts.scene)
+    {
+    }
+
+    SessionSummary run(std::string& warning);
+
+private:
+    void          serve();
+    SessionSample tick(const ForceHalf::Beat& beat, const HapticState& state) noexcept;
+    const Held&   held(double time, const Hand& hand) noexcept;
+    void          follow();
+    void          bend();
+    void          look();
+    void          publish(const Held& held) noexcept;
+
+    const SessionParts&        parts_;
+    const RealSessionSettings& settings_;
+    Shared                     shared_;
+    ContactHalf                contact_; ///< of the servo's thread, or of the proxy's
+    ForceHalf                  force_;   ///< of the servo's thread
+    SessionSummary             summary_; ///< of the servo's thread
+    SessionSummary             slow_;    ///< of the deformation's
+    std::string                warning_; ///< of the servo's
+    std::exception_ptr         failure_; ///< of the deformation's
+};
+
+/// The servo's thread.
+void RealSession::serve()
 {
-    constexpr double  kTick = 1e-3, kMean = 0.1; // [s] nominal period; over which the measured one is averaged
-    const std::string refused = askForRealTime();
-    RecentMotion      hip;
-    Metronome         metronome(std::chrono::microseconds(1000));
-    const auto        start  = metronome.wait();
-    auto              last   = start;
-    double            period = kTick;
+    constexpr double kMean = 0.1; // [s] over which the measured period is averaged
+    warning_               = askForRealTime();
+    Metronome     metronome{std::chrono::microseconds(1000)};
+    GovernedForce force;
+    const auto    start = metronome.wait(); // asking may take a quarter of a second
+    double        last = 0, period = kTick;
     for (;;) {
         const auto   now  = metronome.wait();
-        const double time = Seconds(now - start).count(), dt = Seconds(now - last).count();
-        if (time >= settings.seconds) break;
-        last = now;
+        const double time = Seconds(now - start).count(), dt = time - last;
+        if (time >= settings_.seconds || shared_.over || (settings_.stop && *settings_.stop)) break;
+        last = time;
         period += (dt - period) * std::min(1.0, dt / kMean);
-        summary.period.add(dt);
-        shared.news.take();
-        const glm::dvec3 place = hand.position(hand.begin() + time);
-        hip.add(time, place);
-        SessionSample sample = servo.tick(time, dt, period, {place, hip.velocity()}, shared.news.held());
-        shared.touch.draft() = servo.touch();
-        shared.touch.publish();
-        shared.view.draft() = {time, glm::length(sample.force), glm::length(sample.proxy - sample.hip)};
-        shared.view.publish();
-        sample.tickTime = Seconds(Clock::now() - now).count();
-        summary.add(sample);
-        if (settings.onSample) settings.onSample(sample);
+        summary_.period.add(dt);
+        const HapticState state  = parts_.device.exchange(force, time);
+        SessionSample     sample = tick({time, dt, period}, state);
+        force                    = parts_.frame.toDevice(force_.governor().force());
+        sample.tickTime          = Seconds(Clock::now() - now).count();
+        shared_.shown.draft()    = {sample, period, state.buttons};
+        shared_.shown.publish();
+        summary_.add(sample);
+        if (settings_.onSample) settings_.onSample(sample);
     }
-    return refused;
+    parts_.device.exchange(GovernedForce(), Seconds(Clock::now() - start).count());
+}
+
+SessionSample RealSession::tick(const ForceHalf::Beat& beat, const HapticState& state) noexcept
+{
+    const Hand  hand = parts_.frame.handOf(state);
+    const Held& now  = held(beat.time, hand);
+    shared_.news.take();
+    return force_.tick(beat, hand, now, shared_.news.held());
+}
+
+/// What the hand holds: computed here, or the last word of the proxy's thread.
+const Held& RealSession::held(double time, const Hand& hand) noexcept
+{
+    static constexpr Held kNothing{};
+    if (settings_.threads == SessionThreads::paper) {
+        shared_.hand.draft() = {time, hand};
+        shared_.hand.publish();
+        shared_.held.take();
+        const Held* const newest = shared_.held.held();
+        return newest ? *newest : kNothing;
+    }
+    const Held& now = contact_.tick(time, hand.position);
+    publish(now);
+    return now;
+}
+
+/// The proxy's thread, with threads of the paper.
+void RealSession::follow()
+{
+    static_cast<void>(askForRealTime()); // the servo's warning says it all
+    Metronome metronome{std::chrono::microseconds(1000)};
+    while (!shared_.over) {
+        metronome.wait();
+        if (!shared_.hand.take()) continue;
+        const TimedHand& newest = *shared_.hand.held();
+        const Held&      held   = contact_.tick(newest.time, newest.hand.position);
+        publish(held);
+        shared_.held.draft() = held;
+        shared_.held.publish();
+    }
+}
+
+void RealSession::publish(const Held& held) noexcept
+{
+    shared_.touch.draft() = held.touch;
+    shared_.touch.publish();
 }
 
 /// The deformation's thread: the newest touch, once a period.
-void bend(Deformation& deformation, double period, Shared& shared, SessionSummary& summary)
+void RealSession::bend()
 {
+    const double  period = 1 / parts_.scene.deformationRate;
     Metronome     metronome(std::chrono::duration_cast<std::chrono::nanoseconds>(Seconds(period)));
     std::uint64_t done = 0;
-    while (!shared.over) {
+    while (!shared_.over) {
         metronome.wait();
-        shared.touch.take();
-        const Touch* touch = shared.touch.held();
+        shared_.touch.take();
+        const Touch* touch = shared_.touch.held();
         if (!touch || !touch->touching || touch->sequence == done) continue;
-        done             = touch->sequence;
-        const auto began = Clock::now();
-        const auto news  = deformation.solve(*touch, period);
-        summary.solve.add(Seconds(Clock::now() - began).count());
-        ++(news ? summary.patches : summary.failedPatches);
-        if (!news) continue;
-        shared.news.draft() = *news;
-        shared.news.publish();
+        done                     = touch->sequence;
+        const auto        began  = Clock::now();
+        DeformationAnswer answer = parts_.solver(*touch, period);
+        const double      took   = Seconds(Clock::now() - began).count();
+        slow_.solve.add(took);
+        ++(answer.news ? slow_.patches : slow_.failedPatches);
+        if (!answer.why.empty()) slow_.why = answer.why;
+        if (!answer.news) continue;
+        shared_.news.draft() = *answer.news;
+        shared_.news.publish();
+        shared_.patch.draft() = {std::move(answer.patch), took};
+        shared_.patch.publish();
     }
+}
+
+/// The caller's thread: looks on until the servo ends.
+void RealSession::look()
+{
+    const auto       period = std::chrono::duration_cast<Clock::duration>(Seconds(settings_.viewPeriod));
+    std::unique_lock lock(shared_.mutex);
+    while (!shared_.ended.wait_for(lock, period, [this] { return shared_.served; })) {
+        if (!settings_.onView) continue;
+        lock.unlock();
+        shared_.patch.take();
+        const ShownPatch* const patch = shared_.patch.held();
+        if (shared_.shown.take()) {
+            const Shown& shown = *shared_.shown.held();
+            settings_.onView({shown.sample, shown.loopPeriod, patch ? patch->solveTime : 0, shown.buttons,
+                              patch && patch->patch ? &*patch->patch : nullptr});
+        }
+        lock.lock();
+    }
+}
+
+/// Threads that are told to end, and waited for, on every way out.
+class Crew {
+public:
+    explicit Crew(std::atomic<bool>& over) : over_(over) {}
+    Crew(const Crew&)            = delete;
+    Crew& operator=(const Crew&) = delete;
+    ~Crew()
+    {
+        over_ = true;
+        for (std::thread& thread : threads_) thread.join();
+    }
+
+    template <class Work>
+    void add(Work work)
+    {
+        threads_.emplace_back(std::move(work));
+    }
+
+private:
+    std::atomic<bool>&       over_;
+    std::vector<std::thread> threads_;
+};
+
+SessionSummary RealSession::run(std::string& warning)
+{
+    {
+        Crew crew(shared_.over);
+        crew.add([this] {
+            try {
+                bend();
+            } catch (...) { // the touch goes on with the last patch
+                failure_ = std::current_exception();
+            }
+        });
+        if (settings_.threads == SessionThreads::paper) crew.add([this] { follow(); });
+        crew.add([this] {
+            serve();
+            shared_.serveNoMore();
+        });
+        look();
+    }
+    warning = warning_;
+    if (failure_) std::rethrow_exception(failure_);
+    summary_.patches       = slow_.patches;
+    summary_.failedPatches = slow_.failedPatches;
+    summary_.solve         = slow_.solve;
+    summary_.fault         = force_.governor().fault();
+    summary_.why           = slow_.why;
+    return summary_;
 }
 
 } // namespace
 
-SessionSummary runReal(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
-                       Deformation& deformation, const HandPath& hand, const RealSessionSettings& settings,
-                       std::string& warning)
+const char* name(SessionThreads threads) noexcept
 {
-    Servo              servo(cloud, index, scene);
-    Shared             shared;
-    SessionSummary     summary, slow; // each thread counts in its own
-    std::exception_ptr failure;
-    std::atomic<bool>  served = false;
+    return threads == SessionThreads::paper ? "paper" : "servo";
+}
 
-    std::thread bending([&] {
-        try {
-            bend(deformation, 1 / scene.deformationRate, shared, slow);
-        } catch (...) { // the touch goes on with the last patch
-            failure = std::current_exception();
-        }
-    });
-    std::thread serving([&] {
-        warning = serve(servo, hand, settings, shared, summary);
-        served  = true;
-    });
-    while (!served) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        if (settings.onView && shared.view.take()) settings.onView(*shared.view.held());
-    }
-    serving.join();
-    shared.over = true;
-    bending.join();
-    if (failure) std::rethrow_exception(failure);
+std::optional<SessionThreads> sessionThreadsNamed(std::string_view name_)
+{
+    for (const SessionThreads threads : {SessionThreads::servo, SessionThreads::paper})
+        if (name_ == name(threads)) return threads;
+    return {};
+}
 
-    summary.patches       = slow.patches;
-    summary.failedPatches = slow.failedPatches;
-    summary.solve         = slow.solve;
-    summary.fault         = servo.governor().fault();
-    summary.why           = deformation.why();
-    return summary;
+SessionSummary runReal(const SessionParts& parts, const RealSessionSettings& settings, std::string& warning)
+{
+    return RealSession(parts, settings).run(warning);
 }
 
 } // namespace palp

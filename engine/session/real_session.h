@@ -1,36 +1,54 @@
 #pragma once
+#include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 
-#include "engine/session/deformation.h"
-#include "engine/session/hand_path.h"
+#include "engine/session/session_parts.h"
 #include "engine/session/session_summary.h"
 
 namespace palp {
 
-/// What the caller may show while a session runs.
+/// What one may look at while a session runs; valid during the call that shows it.
 struct SessionView {
-    double time  = 0; ///< [s]
-    double force = 0; ///< [N]
-    double depth = 0; ///< [m]
+    SessionSample sample;               ///< the newest
+    double        loopPeriod = 0;       ///< of the servo, a mean over 0.1 s [s]
+    double        solveTime  = 0;       ///< of the last patch [s]; 0: none yet
+    std::uint32_t buttons    = 0;       ///< of the device
+    const Patch*  patch      = nullptr; ///< the last one: displaced(cloud, *patch, |force|) is the surface; may be null
 };
 
-/// What a session in real time needs beside its scene.
+/// Which thread does what; see runReal().
+enum class SessionThreads {
+    servo, ///< one thread from the hand to the force
+    paper  ///< proxy and force on threads of their own, as Kumari & Chaudhuri run them
+};
+[[nodiscard]] const char*                   name(SessionThreads threads) noexcept;      ///< "servo", "paper"
+[[nodiscard]] std::optional<SessionThreads> sessionThreadsNamed(std::string_view name); ///< empty if unknown
+
+/// What a session in real time needs beside its parts.
 struct RealSessionSettings {
-    double   seconds = 5; ///< [s]
-    OnSample onSample{};  ///< on the servo's thread, every tick: must neither wait nor allocate; may be empty
-    std::function<void(const SessionView&)> onView{}; ///< on the calling thread, ten times a second; may be empty
+    double         seconds = 5; ///< [s]
+    SessionThreads threads = SessionThreads::servo;
+    OnSample       onSample{}; ///< on the servo's thread, every tick: must neither wait nor allocate; may be empty
+    std::function<void(const SessionView&)> onView{};         ///< on the calling thread, every viewPeriod; may be empty
+    double                                  viewPeriod = 0.1; ///< [s]
+    const std::atomic<bool>*                stop       = nullptr; ///< ends the session once it is true; may be null
 };
 
 /// A whole session in real time: the servo and the deformation on threads of their own, the caller looks on.
 ///
-///     servo 1 ms --Touch--> deformation 1/rate --PatchNews--> servo        each a three-slot hand-off, newest wins
+///     servo 1 ms --Touch--> deformation 1/rate --PatchNews--> servo     each a three-slot hand-off, newest wins
+///       \--SessionSample--> caller <--Patch--/                          read in place, nothing is copied out
 ///
-/// A deformation that fails or stalls leaves the servo with its last patch, flagged as stale.
+///     paper:  force 1 ms --Hand--> proxy 1 ms --Touch--> deformation; the force takes the proxy's last word, a tick
+///     old
+///
+/// A deformation that fails or stalls leaves the servo with its last patch, flagged as stale. In the end, also by an
+/// exception of onView, the device is given zero force.
 /// \param warning  what the system refused of real-time rights; empty if nothing
-/// \param deformation  of the same scene and cloud
-SessionSummary runReal(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
-                       Deformation& deformation, const HandPath& hand, const RealSessionSettings& settings,
-                       std::string& warning);
+/// \throws what the solver or onView threw, once all threads have ended
+SessionSummary runReal(const SessionParts& parts, const RealSessionSettings& settings, std::string& warning);
 
 } // namespace palp

@@ -24,14 +24,31 @@ GovernorSettings governorOf(const Scene& scene)
 
 } // namespace
 
-Servo::Servo(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene)
+ContactHalf::ContactHalf(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene)
+    : proxy_(cloud.positions(), index, {scene.proxy, scene.staticFriction, scene.dynamicFriction})
+{
+}
+
+const Held& ContactHalf::tick(double time, const glm::dvec3& hip) noexcept
+{
+    const ProxyState& proxy = proxy_.step(hip);
+    if (proxy.touching)
+        motion_.add(time, proxy.position);
+    else
+        motion_.forget();
+    held_ = {{held_.touch.sequence + 1, time, proxy.touching, proxy.position, proxy.normal, motion_.velocity()},
+             proxy.pull,
+             proxy.limited};
+    return held_;
+}
+
+ForceHalf::ForceHalf(const Scene& scene)
     : law_(scene.patch.forceLaw), thickness_(scene.patch.material.thickness), patchPeriod_(1 / scene.deformationRate),
-      proxy_(cloud.positions(), index, {scene.proxy, scene.staticFriction, scene.dynamicFriction}),
       handOver_(scene.handOver), governor_(governorOf(scene))
 {
 }
 
-Servo::Wanted Servo::wanted(double stiffness, double dt, const Hand& hand, const glm::dvec3& pull) noexcept
+ForceHalf::Wanted ForceHalf::wanted(double stiffness, double dt, const Hand& hand, const glm::dvec3& pull) noexcept
 {
     const double     depth   = glm::length(pull);
     const glm::dvec3 outward = depth > 0 ? pull / depth : glm::dvec3(0);
@@ -50,59 +67,54 @@ Servo::Wanted Servo::wanted(double stiffness, double dt, const Hand& hand, const
     return result;
 }
 
-SessionSample Servo::tick(double time, double dt, double loopPeriod, const Hand& hand, const PatchNews* newest) noexcept
+SessionSample ForceHalf::tick(const Beat& beat, const Hand& hand, const Held& held, const PatchNews* newest) noexcept
 {
-    const ProxyState& proxy = proxy_.step(hand.position);
-    if (proxy.touching) {
-        motion_.add(time, proxy.position);
-    } else {
-        motion_.forget();
-        handOver_.restart();
-    }
-    touch_ = {touch_.sequence + 1, time, proxy.touching, proxy.position, proxy.normal, motion_.velocity()};
-
+    const Touch& touch = held.touch;
+    if (!touch.touching) handOver_.restart();
     const auto handed =
-        handOver_.tick({proxy.position, time, dt, newest ? &newest->table : nullptr}); // also beyond the surface
+        handOver_.tick({touch.point, beat.time, beat.dt, newest ? &newest->table : nullptr}); // also beyond the surface
     const double stiffness = handed ? feltStiffness(law_, handed->contactStiffness, handed->compliance) : 0;
-    const Wanted want      = wanted(stiffness, dt, hand, proxy.pull);
+    const Wanted want      = wanted(stiffness, beat.dt, hand, held.pull);
 
     GovernorInput in;
     in.force                 = want.force;
     in.position              = hand.position;
     in.velocity              = hand.velocity;
-    in.homed                 = hand.homed;
+    in.homed                 = hand.homed && hand.device == DeviceFault::none;
     in.inBox                 = hand.inBox;
-    in.time                  = time;
-    in.dt                    = dt;
-    in.loopPeriod            = loopPeriod;
+    in.time                  = beat.time;
+    in.dt                    = beat.dt;
+    in.loopPeriod            = beat.loopPeriod;
+    in.forceAge              = std::max(0.0, beat.time - touch.time); // above 0 if the proxy has a thread of its own
+    in.missedExchanges       = hand.missed;
     in.admittedEnergy        = want.tank.used;
     in.storedEnergy          = want.tank.stored;
     const GovernorOutput out = governor_.step(in);
 
     SessionSample sample;
-    sample.time   = time;
+    sample.time   = beat.time;
     sample.hip    = hand.position;
-    sample.proxy  = proxy.position;
+    sample.proxy  = touch.point;
     sample.force  = out.force;
-    sample.normal = proxy.touching ? proxy.normal : glm::dvec3(0);
-    if (newest && proxy.touching) {
+    sample.normal = touch.touching ? touch.outward : glm::dvec3(0);
+    if (newest && touch.touching) {
         sample.rigidity      = newest->rigidity;
         sample.maxDeflection = newest->mostResponse * glm::length(out.force);
         sample.errorEstimate = newest->errorEstimate;
         sample.iterations    = newest->iterations;
     }
-    if (handed && proxy.touching) {
+    if (handed && touch.touching) {
         sample.compliance = handed->compliance;
         sample.patchAge   = handed->age;
     }
     constexpr double kStalePeriods = 3; // two are ordinary: one to solve, one in use [1]
-    sample.faults                  = static_cast<std::uint32_t>(out.fault) |
+    sample.faults = static_cast<std::uint32_t>(out.fault) | static_cast<std::uint32_t>(hand.device) << 16U |
                     flag(SessionFlag::stalePatch, sample.patchAge > kStalePeriods * patchPeriod_) |
-                    flag(SessionFlag::beyondTable, proxy.touching && handed && handed->clamped) |
-                    flag(SessionFlag::noPatch, proxy.touching && !handed) |
-                    flag(SessionFlag::proxyLimited, proxy.limited) |
+                    flag(SessionFlag::beyondTable, touch.touching && handed && handed->clamped) |
+                    flag(SessionFlag::noPatch, touch.touching && !handed) |
+                    flag(SessionFlag::proxyLimited, held.limited) |
                     flag(SessionFlag::beyondTheory, sample.maxDeflection > thickness_ / 2) |
-                    flag(SessionFlag::governed, proxy.touching && out.actions != 0);
+                    flag(SessionFlag::governed, touch.touching && out.actions != 0);
     return sample;
 }
 

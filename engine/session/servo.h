@@ -3,6 +3,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "device/haptic_device.h"
 #include "engine/contact/proxy.h"
 #include "engine/force/ahead.h"
 #include "engine/force/energy_tank.h"
@@ -32,7 +33,8 @@ struct Touch {
     glm::dvec3    velocity{}; ///< of the proxy over its last 10 ms [m/s]
 };
 
-/// Bits of SessionSample::faults. The low eight are the governor's fault as a number, see GovernorFault.
+/// Bits of SessionSample::faults. The low eight are the governor's fault as a number, see GovernorFault; bits 16 to 23
+/// the device's, see DeviceFault.
 enum class SessionFlag : std::uint32_t {
     stalePatch   = 1U << 8,  ///< the plate's answer in use is older than three of its periods
     beyondTable  = 1U << 9,  ///< the contact lies beyond the table's reach
@@ -42,32 +44,58 @@ enum class SessionFlag : std::uint32_t {
     governed     = 1U << 13  ///< the governor held the force back: damped, clamped, slewed, waiting or coming on
 };
 
-/// One tick of touch: hand -> proxy -> compliance -> stiffness -> tank -> governor -> force.
-///
-/// The same calls on every clock: the servo thread runs them each millisecond, a virtual session as fast as it can.
-/// \thread one; tick() allocates, locks, throws and prints nothing, and the same input gives the same bits
-class Servo {
-public:
-    /// \param cloud, index  outlive the servo
-    Servo(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene);
+/// Where the hand is, as a device tells.
+struct Hand {
+    glm::dvec3  position{};    ///< of the HIP [m]
+    glm::dvec3  velocity{};    ///< filtered [m/s]
+    bool        homed  = true; ///< see GovernorInput
+    bool        inBox  = true;
+    int         missed = 0; ///< [1] exchanges with the device without an answer, in a row
+    DeviceFault device = DeviceFault::none;
+};
 
-    struct Hand {
-        glm::dvec3 position{};   ///< of the HIP [m]
-        glm::dvec3 velocity{};   ///< filtered [m/s]
-        bool       homed = true; ///< see GovernorInput
-        bool       inBox = true;
+/// What the hand touches: the proxy and its pull.
+struct Held {
+    Touch      touch;
+    glm::dvec3 pull{};          ///< [m] from the hand to where the force law acts; see ProxyState
+    bool       limited = false; ///< the proxy ran out of iterations
+};
+
+/// The first half of a tick: hand -> proxy.
+/// \thread one; tick() allocates, locks, throws and prints nothing, and the same input gives the same bits
+class ContactHalf {
+public:
+    /// \param cloud, index  outlive it
+    ContactHalf(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene);
+
+    /// \param time  [s] of the session's clock  \param hip  [m]
+    const Held& tick(double time, const glm::dvec3& hip) noexcept;
+
+    [[nodiscard]] const Touch& touch() const noexcept { return held_.touch; }
+
+private:
+    Proxy        proxy_;
+    RecentMotion motion_;
+    Held         held_;
+};
+
+/// The second half of a tick: pull -> compliance -> stiffness -> tank -> governor -> force. \thread as ContactHalf
+class ForceHalf {
+public:
+    explicit ForceHalf(const Scene& scene);
+
+    /// When a tick is, on which clock.
+    struct Beat {
+        double time;       ///< [s] of the session's clock
+        double dt;         ///< [s] since the last tick
+        double loopPeriod; ///< [s] measured, as a mean over some 0.1 s
     };
 
-    /// \param time        [s] of the session's clock
-    /// \param dt          [s] since the last tick
-    /// \param loopPeriod  [s] measured, as a mean over some 0.1 s
-    /// \param newest      the deformation's last word; null: none yet
+    /// \param newest  the deformation's last word; null: none yet
     /// \return everything but tickTime
-    SessionSample tick(double time, double dt, double loopPeriod, const Hand& hand, const PatchNews* newest) noexcept;
+    SessionSample tick(const Beat& beat, const Hand& hand, const Held& held, const PatchNews* newest) noexcept;
 
-    [[nodiscard]] const Touch&         touch() const noexcept { return touch_; }
     [[nodiscard]] const ForceGovernor& governor() const noexcept { return governor_; }
-    [[nodiscard]] const HandOver&      handOver() const noexcept { return handOver_; }
 
 private:
     /// The wanted force and what was paid for it.
@@ -80,12 +108,33 @@ private:
     ForceLaw      law_;
     double        thickness_;   ///< [m]
     double        patchPeriod_; ///< of the deformation [s]
-    Proxy         proxy_;
     HandOver      handOver_;
-    RecentMotion  motion_;
     EnergyTank    tank_;
     ForceGovernor governor_;
-    Touch         touch_;
+};
+
+/// One tick of touch, both halves.
+///
+/// The same calls on every clock: the servo thread runs them each millisecond, a virtual session as fast as it can.
+/// \thread as its halves
+class Servo {
+public:
+    Servo(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene)
+        : contact_(cloud, index, scene), force_(scene)
+    {
+    }
+
+    SessionSample tick(const ForceHalf::Beat& beat, const Hand& hand, const PatchNews* newest) noexcept
+    {
+        return force_.tick(beat, hand, contact_.tick(beat.time, hand.position), newest);
+    }
+
+    [[nodiscard]] const Touch&         touch() const noexcept { return contact_.touch(); }
+    [[nodiscard]] const ForceGovernor& governor() const noexcept { return force_.governor(); }
+
+private:
+    ContactHalf contact_;
+    ForceHalf   force_;
 };
 
 } // namespace palp

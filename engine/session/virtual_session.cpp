@@ -4,8 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
-
-#include "engine/session/deformation.h"
+#include <utility>
 
 namespace palp {
 namespace {
@@ -21,15 +20,14 @@ double secondsSince(Clock::time_point start)
 
 } // namespace
 
-SessionSummary runVirtual(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
-                          Deformation& deformation, const HandPath& hand, double seconds, const OnSample& onSample)
+SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSample& onSample)
 {
-    Servo                    servo(cloud, index, scene);
+    Servo                    servo(parts.cloud, parts.index, parts.scene);
     SessionSummary           summary;
-    RecentMotion             hip;
+    GovernedForce            force;
     std::optional<PatchNews> inUse, underWay;
 
-    const auto every = std::max<std::int64_t>(1, std::llround(1 / (scene.deformationRate * kTick))); // ticks a patch
+    const auto every = std::max<std::int64_t>(1, std::llround(1 / (parts.scene.deformationRate * kTick))); // ticks
     const auto ticks = std::llround(seconds / kTick);
     for (std::int64_t n = 0; n < ticks; ++n) {
         const double time = double(n) * kTick;
@@ -37,22 +35,24 @@ SessionSummary runVirtual(const Scene& scene, const PointCloud& cloud, const Nei
             if (underWay) inUse = underWay;
             underWay.reset();
             if (servo.touch().touching) {
-                const auto began = Clock::now();
-                underWay         = deformation.solve(servo.touch(), double(every) * kTick);
+                const auto        began  = Clock::now();
+                DeformationAnswer answer = parts.solver(servo.touch(), double(every) * kTick);
                 summary.solve.add(secondsSince(began));
+                underWay = std::move(answer.news);
                 ++(underWay ? summary.patches : summary.failedPatches);
+                if (!answer.why.empty()) summary.why = answer.why;
             }
         }
-        const auto       began = Clock::now();
-        const glm::dvec3 place = hand.position(hand.begin() + time);
-        hip.add(time, place);
-        SessionSample sample = servo.tick(time, kTick, kTick, {place, hip.velocity()}, inUse ? &*inUse : nullptr);
+        const auto    began  = Clock::now();
+        const Hand    hand   = parts.frame.handOf(parts.device.exchange(force, time));
+        SessionSample sample = servo.tick({time, kTick, kTick}, hand, inUse ? &*inUse : nullptr);
+        force                = parts.frame.toDevice(servo.governor().force());
         sample.tickTime      = secondsSince(began);
         summary.add(sample);
         if (onSample) onSample(sample);
     }
+    parts.device.exchange(GovernedForce(), double(ticks) * kTick);
     summary.fault = servo.governor().fault();
-    summary.why   = deformation.why();
     return summary;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
-#include "engine/session/deformation.h"
-#include "engine/session/hand_path.h"
+#include "engine/session/session_parts.h"
 #include "engine/session/session_summary.h"
 
 namespace palp {
@@ -11,8 +10,7 @@ namespace palp {
 ///
 /// \param seconds   how long [s]
 /// \param onSample  sees every sample; may be empty
-/// \param deformation  of the same scene and cloud
-SessionSummary runVirtual(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
-                          Deformation& deformation, const HandPath& hand, double seconds, const OnSample& onSample);
+/// \throws what the solver throws
+SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSample& onSample);
 
 } // namespace palp

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/session/deformation.h"
+#include "engine/session/hand_device.h"
 #include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
 #include "tests/session/allocations.h"
@@ -45,7 +46,8 @@ struct Session {
     {
         std::vector<SessionSample> samples;
         Deformation                deformation(cloud.cloud, index, scene);
-        runVirtual(scene, cloud.cloud, index, deformation, hand, seconds,
+        HandDevice                 device(hand);
+        runVirtual({scene, cloud.cloud, index, deformation.solver(), device, {}}, seconds,
                    [&](const SessionSample& s) { samples.push_back(s); });
         return samples;
     }
@@ -122,13 +124,14 @@ TEST(RealSession, TheThreadsServeAHandAndEnd)
     RealSessionSettings settings;
     bool                finite = true;
     Deformation         deformation(session.cloud.cloud, session.index, session.scene);
+    HandDevice          device(session.hand);
     settings.seconds  = 0.6;
     settings.onSample = [&](const SessionSample& s) {
         ++seen;
         finite = finite && std::isfinite(glm::length(s.force));
     };
-    const SessionSummary summary =
-        runReal(session.scene, session.cloud.cloud, session.index, deformation, session.hand, settings, warning);
+    const SessionSummary summary = runReal(
+        {session.scene, session.cloud.cloud, session.index, deformation.solver(), device, {}}, settings, warning);
     EXPECT_EQ(summary.ticks, seen);
     EXPECT_GT(summary.ticks, 20U);
     EXPECT_LE(summary.ticks, 601U);
@@ -164,9 +167,9 @@ TEST(Servo, ATickAllocatesNothing)
         const double     time   = 1e-3 * n;
         const glm::dvec3 hip    = session.hand.position(time);
         const auto       before = allocationsOfThisThread();
-        (void)servo.tick(time, 1e-3, 1e-3, {hip, {}}, news ? &*news : nullptr);
+        (void)servo.tick({time, 1e-3, 1e-3}, {hip, {}}, news ? &*news : nullptr);
         if (n > 0) allocated += allocationsOfThisThread() - before;
-        if (n % 100 == 99 && servo.touch().touching) news = deformation.solve(servo.touch(), 0.1);
+        if (n % 100 == 99 && servo.touch().touching) news = deformation.solve(servo.touch(), 0.1).news;
     }
     EXPECT_TRUE(news.has_value()) << "the hand came to touch";
     EXPECT_EQ(allocated, 0U);
@@ -185,8 +188,8 @@ TEST(Servo, AStalledDeformationIsFlaggedAndTheForceStaysSmooth)
     for (int n = 0; n < 6000; ++n) { // one patch at the first touch, then none for more than five seconds
         const double     time   = 1e-3 * n;
         const glm::dvec3 hip    = session.hand.position(std::min(time, 0.055));
-        const auto       sample = servo.tick(time, 1e-3, 1e-3, {hip, {}}, news ? &*news : nullptr);
-        if (!news && servo.touch().touching) news = deformation.solve(servo.touch(), 1.0 / 60);
+        const auto       sample = servo.tick({time, 1e-3, 1e-3}, {hip, {}}, news ? &*news : nullptr);
+        if (!news && servo.touch().touching) news = deformation.solve(servo.touch(), 1.0 / 60).news;
         ASSERT_TRUE(std::isfinite(glm::length(sample.force)));
         EXPECT_LE(glm::length(sample.force - last), 1 + 1e-9);
         last    = sample.force;
@@ -201,9 +204,9 @@ TEST(Servo, AHandThatIsNotANumberEndsAtZeroForceWithAReason)
 {
     const Session session(sheet(kWart));
     Servo         servo(session.cloud.cloud, session.index, session.scene);
-    (void)servo.tick(0, 1e-3, 1e-3, {session.hand.position(0), {}}, nullptr);
+    (void)servo.tick({0, 1e-3, 1e-3}, {session.hand.position(0), {}}, nullptr);
     SessionSample sample;
-    for (int n = 1; n <= 20; ++n) sample = servo.tick(1e-3 * n, 1e-3, 1e-3, {glm::dvec3(std::nan("")), {}}, nullptr);
+    for (int n = 1; n <= 20; ++n) sample = servo.tick({1e-3 * n, 1e-3, 1e-3}, {glm::dvec3(std::nan("")), {}}, nullptr);
     EXPECT_EQ(sample.force, glm::dvec3(0));
     EXPECT_EQ(sample.faults & 0xFFU, static_cast<std::uint32_t>(GovernorFault::positionNotFinite));
 }

@@ -1,0 +1,27 @@
+#include "engine/session/hand_device.h"
+
+#include <limits>
+
+namespace palp {
+
+HandDevice::HandDevice(const HandPath& hand) : hand_(hand)
+{
+    info_.model           = "scripted hand";
+    info_.workspaceRadius = std::numeric_limits<double>::infinity();
+    info_.isSimulation    = true;
+}
+
+HapticState HandDevice::exchange(const GovernedForce& /*force*/, double now) noexcept
+{
+    HapticState state;
+    state.time     = now;
+    state.sequence = ++sequence_;
+    state.position = hand_.position(hand_.begin() + now);
+    motion_.add(now, state.position);
+    state.velocity = motion_.velocity();
+    state.homed = state.inBox = true;
+    state.fault               = DeviceFault::none;
+    return state;
+}
+
+} // namespace palp
