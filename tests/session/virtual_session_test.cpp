@@ -9,49 +9,12 @@
 
 #include "engine/session/deformation.h"
 #include "engine/session/hand_device.h"
-#include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
 #include "tests/session/allocations.h"
+#include "tests/session/sheet_session.h"
 
 namespace palp {
 namespace {
-
-/// A flat, soft sheet on tissue, half as large as the sample scenes' and with a coarser grid: a test is not a
-/// benchmark.
-Scene sheet(const std::string& stiffness, const std::string& device = "host")
-{
-    const std::string text = R"({"cloud": "sample:sheet", "points": 4000, "thickness": "4 mm", "poisson": 0.45,
-        "foundation": "1.74 MPa/m", "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "stiffness": )" +
-                             stiffness + R"(, "device": ")" + device + "\"}";
-    return parseScene(text, "a test", ".");
-}
-
-const char* const kWart = R"({"law": "gaussian", "from": 0.3e6, "to": 3e6, "centre": [0, 0, 0], "sigma": 3e-3})";
-
-struct Session {
-    Scene          scene;
-    LoadedCloud    cloud;
-    NeighbourIndex index;
-    HandPath       hand;
-
-    explicit Session(const Scene& of, HandMotion motion = HandMotion::scan, double seconds = 1.5)
-        : scene(of), cloud(loadCloud(of)), index(cloud.cloud.positions()),
-          hand(makeHand(
-              {.motion = motion, .speed = 0.1, .depth = 1.5e-3, .radius = 10e-3, .height = 2e-3, .duration = seconds},
-              handPlace(of, cloud.cloud, index)))
-    {
-    }
-
-    std::vector<SessionSample> run(double seconds) const
-    {
-        std::vector<SessionSample> samples;
-        Deformation                deformation(cloud.cloud, index, scene);
-        HandDevice                 device(hand);
-        runVirtual({scene, cloud.cloud, index, deformation.solver(), device, {}}, seconds,
-                   [&](const SessionSample& s) { samples.push_back(s); });
-        return samples;
-    }
-};
 
 bool has(const SessionSample& sample, SessionFlag flag)
 {
@@ -67,7 +30,7 @@ RecordedSession asRecorded(std::vector<SessionSample> samples)
 
 TEST(VirtualSession, TheWartIsFeltWhereItIs)
 {
-    const Session              session(sheet(kWart));
+    const SheetSession         session(sheetScene(kWart));
     std::vector<SessionSample> samples = session.run(1.5);
     double                     on = 0, off = std::numeric_limits<double>::infinity();
     glm::dvec3                 last{};
@@ -87,16 +50,16 @@ TEST(VirtualSession, TheWartIsFeltWhereItIs)
 
 TEST(VirtualSession, TheSameInputGivesTheSameBits)
 {
-    const Session session(sheet(kWart));
-    const auto    first = asRecorded(session.run(0.6)), second = asRecorded(session.run(0.6));
+    const SheetSession session(sheetScene(kWart));
+    const auto         first = asRecorded(session.run(0.6)), second = asRecorded(session.run(0.6));
     EXPECT_FALSE(compareSessions(first, second).has_value());
 }
 
 TEST(VirtualSession, TheHostAndLavapipeGiveTheSameBits)
 {
-    const Session here(sheet(kWart)), there(sheet(kWart, "lavapipe"));
-    const auto    first = asRecorded(here.run(0.4)), second = asRecorded(there.run(0.4));
-    const auto    difference = compareSessions(first, second);
+    const SheetSession here(sheetScene(kWart)), there(sheetScene(kWart, "lavapipe"));
+    const auto         first = asRecorded(here.run(0.4)), second = asRecorded(there.run(0.4));
+    const auto         difference = compareSessions(first, second);
     EXPECT_FALSE(difference.has_value()) << describe(*difference, first, second);
     EXPECT_GT(glm::length(first.samples.back().force), 0) << "there is something to compare";
 }
@@ -104,8 +67,8 @@ TEST(VirtualSession, TheHostAndLavapipeGiveTheSameBits)
 /// On a homogeneous object nothing that the points do may be felt: J below 0.5 for the best Weber fraction, 0.07.
 TEST(VirtualSession, AHomogeneousSheetFeelsTheSameEverywhere)
 {
-    const Session session(sheet(R"({"law": "constant", "value": 0.5e6})"));
-    double        least = std::numeric_limits<double>::infinity(), most = 0;
+    const SheetSession session(sheetScene(R"({"law": "constant", "value": 0.5e6})"));
+    double             least = std::numeric_limits<double>::infinity(), most = 0;
     for (const SessionSample& s : session.run(1.5)) {
         if (s.compliance <= 0) continue;
         least = std::min(least, s.compliance);
@@ -115,39 +78,41 @@ TEST(VirtualSession, AHomogeneousSheetFeelsTheSameEverywhere)
     EXPECT_LT(std::log(most / least) / std::log(1.07), 1e-6) << "exact by construction but for rounding; 0.5 is asked";
 }
 
-/// The machine of a test has other things to do: only what must hold on any is asked.
-TEST(RealSession, TheThreadsServeAHandAndEnd)
+/// The same on curved objects, through everything from the hand to the governed force: J below 0.5 for the best Weber
+/// fraction, 0.07. Measured: 0.09, which is what the governor's damping of a hand that rides up and down does.
+TEST(VirtualSession, AHomogeneousCurvedObjectFeelsTheSameAlongThePath)
 {
-    const Session       session(sheet(kWart));
-    std::uint64_t       seen = 0;
-    std::string         warning;
-    RealSessionSettings settings;
-    bool                finite = true;
-    Deformation         deformation(session.cloud.cloud, session.index, session.scene);
-    HandDevice          device(session.hand);
-    settings.seconds  = 0.6;
-    settings.onSample = [&](const SessionSample& s) {
-        ++seen;
-        finite = finite && std::isfinite(glm::length(s.force));
-    };
-    const SessionSummary summary = runReal(
-        {session.scene, session.cloud.cloud, session.index, deformation.solver(), device, {}}, settings, warning);
-    EXPECT_EQ(summary.ticks, seen);
-    EXPECT_GT(summary.ticks, 20U);
-    EXPECT_LE(summary.ticks, 601U);
-    EXPECT_TRUE(finite);
-    EXPECT_GT(summary.patches + summary.failedPatches, 0U);
-    EXPECT_EQ(summary.failedPatches, 0U) << summary.why;
+    for (const char* const object : {R"("sample:ellipsoid", "place": [0.03, 0, 0.0303])",
+                                     R"("sample:palm", "place": [0, 0, 0], "from": [0, 0, 1])"}) {
+        SheetSession session(parseScene(R"({"thickness": "4 mm", "poisson": 0.45, "foundation": "1.74 MPa/m",
+            "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "device": "host",
+            "stiffness": {"law": "constant", "value": 0.5e6}, "cloud": )" +
+                                            std::string(object) + "}",
+                                        "a test", "."));
+        session.drape();
+        double softest = std::numeric_limits<double>::infinity(), stiffest = 0, least = softest, most = 0;
+        for (const SessionSample& s : session.run(3)) {
+            if (s.compliance <= 0 || s.time < 1.7) continue; // [s] 1.5 to engage, after the way down
+            const double felt = glm::length(s.force) / glm::length(s.proxy - s.hip);
+            softest           = std::min(softest, felt);
+            stiffest          = std::max(stiffest, felt);
+            least             = std::min(least, s.compliance);
+            most              = std::max(most, s.compliance);
+        }
+        ASSERT_GT(most, 0) << object;
+        EXPECT_LT(std::log(stiffest / softest) / std::log(1.07), 0.5) << object << softest << " to " << stiffest;
+        EXPECT_LT(std::log(most / least) / std::log(1.07), 1e-3) << object << ", the plate's part; rounding";
+    }
 }
 
 /// The paper's law on a hard sheet asks for 45 kN/m, far beyond what a sampled loop can render.
 TEST(VirtualSession, NoStiffnessBeyondTheCapIsRendered)
 {
-    Scene scene          = sheet(R"({"law": "constant", "value": 3e6})");
+    Scene scene          = sheetScene(R"({"law": "constant", "value": 3e6})");
     scene.patch.forceLaw = ForceLaw::paper;
     scene.maxForce       = 8;
-    const Session session(scene, HandMotion::press);
-    double        most = 0;
+    const SheetSession session(scene, HandMotion::press);
+    double             most = 0;
     for (const SessionSample& s : session.run(0.5)) {
         const double depth = glm::length(s.proxy - s.hip);
         if (depth > 0.2e-3) most = std::max(most, glm::length(s.force) / depth);
@@ -158,7 +123,7 @@ TEST(VirtualSession, NoStiffnessBeyondTheCapIsRendered)
 
 TEST(Servo, ATickAllocatesNothing)
 {
-    const Session            session(sheet(kWart));
+    const SheetSession       session(sheetScene(kWart));
     Servo                    servo(session.cloud.cloud, session.index, session.scene);
     Deformation              deformation(session.cloud.cloud, session.index, session.scene);
     std::optional<PatchNews> news;
@@ -177,7 +142,7 @@ TEST(Servo, ATickAllocatesNothing)
 
 TEST(Servo, AStalledDeformationIsFlaggedAndTheForceStaysSmooth)
 {
-    const Session            session(sheet(kWart), HandMotion::press, 2);
+    const SheetSession       session(sheetScene(kWart), HandMotion::press, 2);
     Servo                    servo(session.cloud.cloud, session.index, session.scene);
     Deformation              deformation(session.cloud.cloud, session.index, session.scene);
     std::optional<PatchNews> news;
@@ -202,8 +167,8 @@ TEST(Servo, AStalledDeformationIsFlaggedAndTheForceStaysSmooth)
 
 TEST(Servo, AHandThatIsNotANumberEndsAtZeroForceWithAReason)
 {
-    const Session session(sheet(kWart));
-    Servo         servo(session.cloud.cloud, session.index, session.scene);
+    const SheetSession session(sheetScene(kWart));
+    Servo              servo(session.cloud.cloud, session.index, session.scene);
     (void)servo.tick({0, 1e-3, 1e-3}, {session.hand.position(0), {}}, nullptr);
     SessionSample sample;
     for (int n = 1; n <= 20; ++n) sample = servo.tick({1e-3 * n, 1e-3, 1e-3}, {glm::dvec3(std::nan("")), {}}, nullptr);

@@ -1,0 +1,51 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/session/deformation.h"
+#include "engine/session/hand_device.h"
+#include "engine/session/virtual_session.h"
+
+namespace palp {
+
+/// A flat, soft sheet on tissue, half as large as the sample scenes' and with a coarser grid: a test is not a
+/// benchmark.
+inline Scene sheetScene(const std::string& stiffness, const std::string& device = "host")
+{
+    const std::string text = R"({"cloud": "sample:sheet", "points": 4000, "thickness": "4 mm", "poisson": 0.45,
+        "foundation": "1.74 MPa/m", "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "stiffness": )" +
+                             stiffness + R"(, "device": ")" + device + "\"}";
+    return parseScene(text, "a test", ".");
+}
+
+inline const char* const kWart = R"({"law": "gaussian", "from": 0.3e6, "to": 3e6, "centre": [0, 0, 0], "sigma": 3e-3})";
+
+struct SheetSession {
+    Scene          scene;
+    LoadedCloud    cloud;
+    NeighbourIndex index;
+    HandPath       hand;
+
+    explicit SheetSession(const Scene& of, HandMotion motion = HandMotion::scan, double seconds = 1.5)
+        : scene(of), cloud(loadCloud(of)), index(cloud.cloud.positions()),
+          hand(makeHand(
+              {.motion = motion, .speed = 0.1, .depth = 1.5e-3, .radius = 10e-3, .height = 2e-3, .duration = seconds},
+              handPlace(of, cloud.cloud, index)))
+    {
+    }
+
+    /// The hand keeps its depth over a curved object.
+    void drape() { hand = draped(hand, handPlace(scene, cloud.cloud, index), cloud.cloud, index); }
+
+    std::vector<SessionSample> run(double seconds) const
+    {
+        std::vector<SessionSample> samples;
+        Deformation                deformation(cloud.cloud, index, scene);
+        HandDevice                 device(hand);
+        runVirtual({scene, cloud.cloud, index, deformation.solver(), device, {}}, seconds,
+                   [&](const SessionSample& s) { samples.push_back(s); });
+        return samples;
+    }
+};
+
+} // namespace palp
