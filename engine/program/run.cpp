@@ -30,7 +30,7 @@ namespace {
 struct RunOptions {
     std::string                                     scene, hand = "scan", record, clock = "real", threads = "servo";
     double                                          seconds = 5;
-    std::string                                     speed = "50 mm/s", depth = "2 mm", radius = "10 mm";
+    std::string                                     speed = "50 mm/s", depth, radius = "10 mm";
     std::map<std::string, std::string, std::less<>> flags; ///< of the scene's keys, as given
     bool                                            printConfig = false, json = false;
 };
@@ -54,6 +54,9 @@ double metresPerSecond(std::string text, const std::string& option)
     return metres(text, option);
 }
 
+/// Of the thickness: the deflection is at most some tenths more than the hand's depth, so theory holds [1].
+constexpr double kDepth = 0.4;
+
 HandPath handFor(const RunOptions& o, const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
 {
     const auto motion = motionNamed(o.hand);
@@ -62,8 +65,8 @@ HandPath handFor(const RunOptions& o, const Scene& scene, const PointCloud& clou
     HandScript      script;
     script.motion   = *motion;
     script.speed    = metresPerSecond(o.speed, "--speed");
-    script.depth    = metres(o.depth, "--depth");
-    script.radius   = metres(o.radius, "--radius");
+    script.depth    = o.depth.empty() ? kDepth * scene.patch.material.thickness : metres(o.depth, "--press-depth");
+    script.radius   = metres(o.radius, "--reach");
     script.height   = scene.startHeight;
     script.duration = o.seconds;
     return draped(makeHand(script, place), place, cloud, index);
@@ -97,6 +100,11 @@ nlohmann::json jsonOf(const SessionSummary& s)
             {"solve", durations(s.solve)}};
 }
 
+void warn(const std::string& sentence)
+{
+    std::cerr << "palpate: warning: " << sentence << "\n";
+}
+
 void printText(const SessionSummary& s, const std::string& device)
 {
     const auto seconds = [](double t) { return formatQuantity(t, "s"); };
@@ -113,7 +121,6 @@ void printText(const SessionSummary& s, const std::string& device)
         std::cout << "  a tick comes every " << seconds(s.period.quantile(0.5)) << " (p99 "
                   << seconds(s.period.quantile(0.99)) << ", p99.9 " << seconds(s.period.quantile(0.999)) << ", most "
                   << seconds(s.period.most()) << ")\n";
-    const auto warn = [](const std::string& sentence) { std::cerr << "palpate: warning: " << sentence << "\n"; };
     if (s.fault != GovernorFault::none) warn(std::string("the governor stopped the force: ") + name(s.fault));
     if (s.beyondTheory > 0)
         warn("the deflection exceeded half the thickness in " + std::to_string(s.beyondTheory) +
@@ -134,6 +141,19 @@ SessionSummary play(const SessionParts& parts, double seconds, const OnSample& a
         if (also) also(sample);
         progress.at(++done, total);
     });
+}
+
+/// What one must know before touching: the plate at the scene's place, on the host, which needs no device.
+std::vector<std::string> warningsOf(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
+{
+    try {
+        const HandPlace place = handPlace(scene, cloud, index);
+        PlateDevice     host("host");
+        const Patch     patch = deform(cloud, index, {place.point, place.outward}, scene.patch, host);
+        return warnings(patch, scene.patch, 0);
+    } catch (const Error& error) { // a hand from a file may work elsewhere
+        return {std::string("at the scene's place nothing can be felt: ") + error.what()};
+    }
 }
 
 /// Ctrl-C ends the session in order: zero force, a recording that is complete. A second one ends the program.
@@ -171,7 +191,7 @@ SessionSummary playLive(const RunOptions& o, SessionThreads threads, const Sessi
     std::string          warning;
     const SessionSummary summary = runReal(parts, settings, warning);
     if (line) std::fprintf(stderr, "\r\033[K");
-    if (!warning.empty()) std::cerr << "palpate: warning: " << warning << "\n";
+    if (!warning.empty()) warn(warning);
     return summary;
 }
 
@@ -220,18 +240,21 @@ void run(const RunOptions& o)
     const HandPath       hand = handFor(o, scene, cloud.cloud, index);
     Deformation          deformation(cloud.cloud, index, scene); // what can fail fails before a folder is made
     const std::string    device = deformation.device().name();
-    HandDevice           scripted(hand);
-    const SessionParts   parts{scene, cloud.cloud, index, deformation.solver(), scripted, {}};
-    const auto           recording = recordingOf(o, scene, clock, device);
-    const SessionSummary summary   = clock == SessionClock::real
-                                         ? playLive(o, threads, parts, recording.get())
-                                         : play(parts, o.seconds, [&](const SessionSample& sample) {
+    const auto           known  = warningsOf(scene, cloud.cloud, index);
+    for (const std::string& sentence : known) warn(sentence);
+    HandDevice                     scripted(hand);
+    const SessionParts             parts{scene, cloud.cloud, index, deformation.solver(), scripted, {}};
+    const auto                     recording = recordingOf(o, scene, clock, device);
+    const SessionSummary           summary   = clock == SessionClock::real
+                                                   ? playLive(o, threads, parts, recording.get())
+                                                   : play(parts, o.seconds, [&](const SessionSample& sample) {
                                              if (recording) recording->pushWaiting(sample);
                                          });
     std::optional<RecordingReport> report;
     if (recording) report = recording->finish();
     if (o.json) {
         nlohmann::json all = jsonOf(summary);
+        all["warnings"]    = known;
         if (report) all["recorded"] = {{"folder", o.record}, {"samples", report->samples}, {"lost", report->lost}};
         std::cout << jsonText(all);
         return;
@@ -285,7 +308,8 @@ void addRunCommand(CLI::App& app)
         ->capture_default_str();
     run_->add_option("--seconds", o->seconds, "how long")->capture_default_str();
     run_->add_option("--speed", o->speed, "of press, circle and scan, at most")->capture_default_str();
-    run_->add_option("--press-depth", o->depth, "of the hand below the surface")->capture_default_str();
+    run_->add_option("--press-depth", o->depth,
+                     "of the hand below the surface [40 % of the thickness, within plate theory]");
     run_->add_option("--reach", o->radius, "radius of the circle, half the length of the scan")->capture_default_str();
     run_->add_option("--clock", o->clock,
                      "real: a tick a millisecond; virtual: as fast as it goes, the same every time")
