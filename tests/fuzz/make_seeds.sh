@@ -1,7 +1,7 @@
 #!/bin/sh
 # Writes small files that the readers accept, or nearly, for the fuzzers to start from. Argument: the folder.
 set -eu
-mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/npy" "$1/problem"
+mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/npy" "$1/problem" "$1/scene" "$1/hand"
 cd "$1"
 
 # The floats 1 and 2, little and big endian, and the doubles 1 and 2, little endian; printf takes octal.
@@ -44,3 +44,16 @@ printf '{%s, "rigidity": {"law": "gaussian", "low": 1, "high": 9, "centre": [0.5
 printf '{%s, "rigidity": {"law": "exponential", "from": 1, "to": 10, "start": [0, 0], "end": [1, 1]}, %s}' "$plate" "$point" >problem/exponential
 printf '{%s, "rigidity": {"law": "checker", "low": 1, "high": 2, "edge": 0.2}, %s}' "$plate" "$point" >problem/checker
 printf '{"size": [1, 1], "cells": [4, 4096], "poisson": 0.5, "rigidity": 3, "load": {}}' >problem/refused
+
+cat >scene/skin <<END
+{"\$schema": "scene.schema.json", "cloud": "sample:skin", "points": 4000, "seed": 7, // a comment
+ "stiffness": {"law": "gaussian", "from": 0.3e6, "to": 3e6, "centre": [0, 0, 0], "sigma": 3e-3},
+ "thickness": "4 mm", "poisson": 0.45, "foundation": "1.74 MPa/m", "window": "70 mm", "cells": 64,
+ "footprint_radius": "4.4 mm", "place": [0, 0, 0.0015], "from": [0, 0, 1], "max_force": "6 N", "proxy": "sphere"}
+END
+printf '{"cloud": "sample:sheet", "thicknes": 0.004}' >scene/unknown
+printf '{"cloud": "sample:sheet", "thickness": "4 kPa", "poisson": 0.5, "force_law": "paper", "device": "host"}' >scene/refused
+
+printf 'time,x,y,z\n0,0,0,0.01\n0.1,0,0,0\n1e0,1e-3,0,-2e-3,ignored\n' >hand/csv
+printf '# down and up\n0 0 0 0.01\n0.5; 0; 0; -1e-3\n1\t0\t0\t0.01\n' >hand/mixed
+printf '0 0 0 nan\n0 0 0 1\n-1 0 0 5000\n' >hand/refused
