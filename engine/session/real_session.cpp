@@ -7,9 +7,9 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/session/deformation.h"
 #include "engine/core/latest.h"
-#include "engine/session/real_time.h"
+#include "engine/core/real_time.h"
+#include "engine/session/deformation.h"
 
 namespace palp {
 namespace {
