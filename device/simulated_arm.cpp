@@ -25,7 +25,7 @@ void demand(const char* what, double value, double least, double most)
 } // namespace
 
 SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, const glm::dvec3& position, const glm::dvec3& velocity)
-    : settings_(settings), position_(position), velocity_(velocity)
+    : settings_(settings), position_(position), velocity_(velocity), window_(settings.velocityWindow)
 {
     demand("mass", settings.mass, 1e-3, 1e3);
     demand("damping", settings.damping, 0, 1e3);
@@ -35,7 +35,7 @@ SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, const glm::dvec
     demand("halfWorkspace", settings.halfWorkspace, 1e-3, 1e3);
     demand("boxRadius", settings.boxRadius, 0, 1e3);
     demand("delaySamples", settings.delaySamples, 0, int(kDelays) - 1);
-    past_[0] = {time_, encoded()};
+    window_.add(time_, encoded());
 }
 
 ArmSample SimulatedArm::step(const glm::dvec3& force, double period) noexcept
@@ -49,26 +49,14 @@ ArmSample SimulatedArm::step(const glm::dvec3& force, double period) noexcept
     const double pieces = std::ceil(period / kPiece * (1 - 1e-12));
     for (double piece = 0; piece < pieces; ++piece) move(held, period / pieces);
     time_ += period;
-
-    newest_        = (newest_ + 1) % kPast;
-    pasts_         = std::min(pasts_ + 1, kPast);
-    past_[newest_] = {time_, encoded()};
+    window_.add(time_, encoded());
     return sample();
 }
 
 ArmSample SimulatedArm::sample() const noexcept
 {
-    const Past& now = past_[newest_];
-    ArmSample   out{now.time, now.position, {}, glm::length(now.position) <= settings_.boxRadius};
-
-    // Back to the first sample that is a window old, or the oldest; at least one sample.
-    std::size_t back = 1;
-    while (back + 1 < pasts_ &&
-           now.time - past_[(newest_ + kPast - back) % kPast].time < settings_.velocityWindow * (1 - 1e-9))
-        ++back;
-    const Past& then = past_[(newest_ + kPast - back) % kPast];
-    if (pasts_ > 1) out.velocity = (now.position - then.position) / (now.time - then.time);
-    return out;
+    const glm::dvec3 place = encoded();
+    return {time_, place, window_.velocity(), glm::length(place) <= settings_.boxRadius};
 }
 
 glm::dvec3 SimulatedArm::encoded() const noexcept

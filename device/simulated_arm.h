@@ -4,6 +4,8 @@
 
 #include <glm/vec3.hpp>
 
+#include "device/velocity_window.h"
+
 namespace palp {
 
 /// An arm like the Novint Falcon. Mass and damping: one published free-oscillation measurement (0.459 kg; 2.8 N s/m
@@ -65,13 +67,7 @@ public:
     [[nodiscard]] const glm::dvec3& velocity() const noexcept { return velocity_; } ///< [m/s] true
 
 private:
-    static constexpr std::size_t kDelays = 8;   ///< a ring of forces on their way
-    static constexpr std::size_t kPast   = 128; ///< a ring of samples for the velocity
-
-    struct Past {
-        double     time = 0;   ///< [s]
-        glm::dvec3 position{}; ///< [m] in encoder steps
-    };
+    static constexpr std::size_t kDelays = 8; ///< a ring of forces on their way
 
     [[nodiscard]] glm::dvec3 encoded() const noexcept;
     void                     move(const glm::dvec3& force, double dt) noexcept;
@@ -84,9 +80,7 @@ private:
     glm::dvec3                      velocity_;
     std::array<glm::dvec3, kDelays> forces_{};
     std::size_t                     tick_ = 0;
-    std::array<Past, kPast>         past_{};
-    std::size_t                     newest_ = 0; ///< in past_
-    std::size_t                     pasts_  = 1; ///< how many of past_ there are
+    VelocityWindow                  window_; ///< of positions in encoder steps
 };
 
 } // namespace palp

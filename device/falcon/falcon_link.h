@@ -12,10 +12,17 @@ enum class FtdiRequest : std::uint8_t {
     reset          = 0x00, ///< 0 all, 1 purge what the device sent, 2 purge what we sent
     modemLines     = 0x01, ///< 0x0100 DTR low, 0x0101 DTR high, 0x0200 RTS low, 0x0202 RTS high
     flowControl    = 0x02, ///< 0 none
-    divisor        = 0x03, ///< of 3 MHz: 0x4138 9600, 0x0015 142 857, 0x0002 1 500 000 baud
+    divisor        = 0x03, ///< of 3 MHz: see FalconDivisor
     lineFormat     = 0x04, ///< 0x0008 is 8N1
     eventCharacter = 0x06, ///< 0x0100 | character: what came so far is sent on at once when it comes
     latencyTimer   = 0x09  ///< [ms] 1 to 255: how long the chip waits before it sends a short packet
+};
+
+/// Divisors of 3 MHz that a Falcon listens at: FtdiRequest::divisor.
+enum class FalconDivisor : std::uint16_t {
+    hello  = 0x4138, ///< 9600 baud: asks for the boot loader
+    loader = 0x0015, ///< 142 857 baud: the firmware goes up
+    run    = 0x0002  ///< 1 500 000 baud: the firmware runs
 };
 
 /// The device went away, or the link to it is broken for good.

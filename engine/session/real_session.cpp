@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/session/latest.h"
-#include "engine/session/real_time.h"
+#include "engine/core/latest.h"
+#include "engine/core/real_time.h"
 
 namespace palp {
 namespace {

@@ -1,4 +1,4 @@
-#include "engine/session/real_time.h"
+#include "engine/core/real_time.h"
 
 #include <cerrno>
 #include <cstring>

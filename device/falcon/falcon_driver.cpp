@@ -1,0 +1,215 @@
+#include "device/falcon/falcon_driver.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
+#include <optional>
+#include <string>
+
+#include "device/haptic_device.h"
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+constexpr std::array<std::uint8_t, 3> kHello{0x0A, 0x43, 0x0D};
+constexpr std::array<std::uint8_t, 4> kWelcome{0x0A, 0x44, 0x2C, 0x0D};
+constexpr std::uint8_t                kLoad = 0x41;
+
+constexpr int         kHellos      = 30;    ///< [1] libnifalcon says hello up to 100 times; the attempts are more here
+constexpr double      kHelloTime   = 50e-3; ///< [s] 7 bytes at 9600 baud are 7 ms, and the latency timer has 16
+constexpr std::size_t kChunk       = 62;    ///< [byte] its echo fills a packet, which does not wait for the timer
+constexpr double      kEchoTime    = 0.1;   ///< [s] a chunk takes 4.4 ms, the last one up to 16 more
+constexpr double      kAnswerTime  = 20e-3; ///< [s] for a packet and its answer: 1 to 2 ms
+constexpr int         kAnswers     = 3;     ///< [1] in a row before the firmware is believed to run
+constexpr int         kProbes      = 5;     ///< [1] packets to firmware that may be running
+constexpr int         kFirstProbes = 50;    ///< [1] packets to firmware that starts: for 1 s
+
+constexpr const char* kAdvice = "; try without a hub, or take the Falcon off its power for a moment";
+
+constexpr std::uint16_t kDtrLow = 0x0100, kDtrHigh = 0x0101, kRtsLow = 0x0200, k8N1 = 0x0008;
+constexpr std::uint16_t kLoaderLatency = 16, kRunLatency = 1; ///< [ms] libnifalcon: the loader's checks fail at 1
+constexpr std::uint16_t kEventOnEnd    = 0x0100 | '>';
+constexpr std::uint16_t kPurgeReceived = 1, kPurgeToSend = 2;
+
+/// One start. Reasons why an attempt failed are strings, empty where it did not.
+class Start {
+public:
+    Start(std::span<const std::uint8_t> firmware, const FalconStartSettings& settings, const std::atomic<bool>* cancel)
+        : firmware_(firmware), settings_(settings), cancel_(cancel)
+    {
+    }
+
+    StartedFalcon run(const FalconLinkOpener& open)
+    {
+        StartedFalcon started;
+        started.link = open();
+        end_         = started.link->now() + settings_.deadline;
+        if (firmwareRuns(started)) return started;
+        if (firmware_.empty())
+            throw Error("the Falcon has no firmware: name the file that came with its software (--falcon-firmware)");
+        while (started.attempts < settings_.attempts) {
+            ++started.attempts;
+            started.link.reset(); // before it is opened again
+            started.link = open();
+            reason_      = attempt(started);
+            if (reason_.empty()) return started;
+        }
+        throw Error("the Falcon did not start in " + std::to_string(started.attempts) + " attempts: " + reason_ +
+                    kAdvice);
+    }
+
+private:
+    bool firmwareRuns(StartedFalcon& started)
+    {
+        try {
+            return probe(started, kProbes);
+        } catch (const LinkLost&) { // an attempt opens it anew
+            return false;
+        }
+    }
+
+    std::string attempt(StartedFalcon& started)
+    {
+        try {
+            FalconLink& link   = *started.link;
+            std::string reason = greet(link);
+            if (reason.empty()) reason = upload(link);
+            if (reason.empty() && !probe(started, kFirstProbes)) reason = "it took the firmware but gives no answers";
+            return reason;
+        } catch (const LinkLost& lost) {
+            return lost.what();
+        }
+    }
+
+    void pause(const FalconLink& link) const
+    {
+        if (cancel_ && cancel_->load()) throw Error("the start of the Falcon was cancelled");
+        if (link.now() > end_)
+            throw Error("the Falcon did not start in " + std::to_string(std::lround(settings_.deadline)) +
+                        " s: " + reason_ + kAdvice);
+    }
+
+    void prepare(FalconLink& link, std::uint16_t latency, FalconDivisor divisor, std::uint16_t event) const
+    {
+        link.control(FtdiRequest::reset, kPurgeReceived);
+        link.control(FtdiRequest::reset, kPurgeToSend);
+        link.control(FtdiRequest::latencyTimer, latency);
+        link.control(FtdiRequest::divisor, std::uint16_t(divisor));
+        link.control(FtdiRequest::lineFormat, k8N1);
+        link.control(FtdiRequest::flowControl, 0);
+        link.control(FtdiRequest::eventCharacter, event);
+    }
+
+    /// Whether the firmware answers. Leaves the link as run-time packets need it.
+    bool probe(StartedFalcon& started, int packets)
+    {
+        FalconLink& link = *started.link;
+        prepare(link, kRunLatency, FalconDivisor::run, settings_.eventCharacter ? kEventOnEnd : std::uint16_t('>'));
+        const FalconPacket zero = encode(FalconCommand{.homing = true, .lights = std::uint8_t(DeviceLight::red)});
+        FalconParser       parser;
+        int                inARow = 0;
+        for (int n = 0; n < packets && inARow < kAnswers; ++n) {
+            pause(link);
+            link.write(zero);
+            const auto reply = listen(link, parser);
+            inARow           = reply ? inARow + 1 : 0;
+            if (reply) started.reply = *reply;
+        }
+        return inARow == kAnswers;
+    }
+
+    static std::optional<FalconReply> listen(FalconLink& link, FalconParser& parser)
+    {
+        std::array<std::uint8_t, 256> bytes;
+        const double                  until = link.now() + kAnswerTime;
+        for (double left = kAnswerTime; left > 0; left = until - link.now()) {
+            parser.feed(std::span(bytes).first(link.read(bytes, left)));
+            if (const auto reply = parser.next()) return reply;
+        }
+        return {};
+    }
+
+    /// Wakes the boot loader.
+    std::string greet(FalconLink& link) const
+    {
+        prepare(link, kLoaderLatency, FalconDivisor::hello, 0);
+        link.control(FtdiRequest::modemLines, kRtsLow);
+        link.control(FtdiRequest::modemLines, kDtrLow);
+        link.control(FtdiRequest::modemLines, kDtrHigh);
+        for (int n = 0; n < kHellos; ++n) {
+            pause(link);
+            link.write(kHello);
+            if (!heard(link, kWelcome, kHelloTime)) continue;
+            link.control(FtdiRequest::modemLines, kDtrLow);
+            link.control(FtdiRequest::divisor, std::uint16_t(FalconDivisor::loader));
+            link.write(std::array{kLoad});
+            return heard(link, std::array{kLoad}, kHelloTime) ? "" : "the boot loader did not accept the upload";
+        }
+        return "the boot loader does not answer";
+    }
+
+    /// Whether these bytes come, after whatever: some hosts see a zero before them.
+    static bool heard(FalconLink& link, std::span<const std::uint8_t> wanted, double timeout)
+    {
+        std::array<std::uint8_t, 256> bytes;
+        std::size_t                   count = 0;
+        const double                  until = link.now() + timeout;
+        for (double left = timeout; left > 0 && count < bytes.size(); left = until - link.now()) {
+            count += link.read(std::span(bytes).subspan(count), left);
+            if (count >= wanted.size() &&
+                std::equal(wanted.begin(), wanted.end(), bytes.begin() + std::ptrdiff_t(count - wanted.size())))
+                return true;
+        }
+        return false;
+    }
+
+    /// Chunk after chunk, each compared with its echo: there is no other check.
+    std::string upload(FalconLink& link) const
+    {
+        for (std::size_t at = 0; at < firmware_.size(); at += kChunk) {
+            pause(link);
+            const auto chunk = firmware_.subspan(at, std::min(kChunk, firmware_.size() - at));
+            link.write(chunk);
+            std::array<std::uint8_t, kChunk> echo;
+            std::size_t                      count = 0;
+            const double                     until = link.now() + kEchoTime;
+            for (double left = kEchoTime; left > 0 && count < chunk.size(); left = until - link.now())
+                count += link.read(std::span(echo).subspan(count, chunk.size() - count), left);
+            if (count < chunk.size()) return "byte " + std::to_string(at + count) + " of the firmware found no echo";
+            for (std::size_t n = 0; n < count; ++n)
+                if (echo[n] != chunk[n]) return "byte " + std::to_string(at + n) + " of the firmware came back changed";
+        }
+        return {};
+    }
+
+    std::span<const std::uint8_t> firmware_;
+    FalconStartSettings           settings_;
+    const std::atomic<bool>*      cancel_;
+    double                        end_    = 0;                   ///< [s] of the link's clock
+    std::string                   reason_ = "it gave no answer"; ///< why the last attempt failed
+};
+
+} // namespace
+
+StartedFalcon startFalcon(const FalconLinkOpener& open, std::span<const std::uint8_t> firmware,
+                          const FalconStartSettings& settings, const std::atomic<bool>* cancel)
+{
+    return Start(firmware, settings, cancel).run(open);
+}
+
+void releaseMotors(FalconLink& link, const FalconCommand& command) noexcept
+{
+    FalconCommand zero = command;
+    zero.motors        = {};
+    for (int n = 0; n < 3; ++n) {
+        try {
+            link.write(encode(zero));
+        } catch (const std::exception&) { // gone: the motors let go by themselves
+            return;
+        }
+    }
+}
+
+} // namespace palp

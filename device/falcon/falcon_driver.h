@@ -1,0 +1,48 @@
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "device/falcon/falcon_codec.h"
+#include "device/falcon/falcon_link.h"
+
+namespace palp {
+
+/// Opens the bridge of one Falcon, the same one each time. \throws Error, one sentence why it cannot be opened
+using FalconLinkOpener = std::function<std::unique_ptr<FalconLink>()>;
+
+struct FalconStartSettings {
+    int    attempts = 10; ///< [1] at most, each with a link opened anew; peers take 10 to 40
+    double deadline = 30; ///< [s] for all of it; an attempt that goes well takes 0.8 s
+
+    /// Lets the bridge pass on each answer at its '>' in place of once a millisecond, which doubles the rate. Off until
+    /// somebody has tried it on a device.
+    bool eventCharacter = false;
+};
+
+/// A Falcon that answers.
+struct StartedFalcon {
+    std::unique_ptr<FalconLink> link;
+    FalconReply                 reply{};      ///< its last answer
+    int                         attempts = 0; ///< [1] uploads that it took; 0: its firmware was running
+};
+
+/// Opens a Falcon and sees to it that its firmware runs: it is lost whenever the power is. Asks for answers first; then
+/// uploads, in attempts that start from nothing; and believes none that does not end with answers. The motors get
+/// nothing but zero.
+///
+/// \param firmware  bytes to upload; none: the firmware must be running
+/// \param cancel    may become true on another thread: gives up within 0.1 s
+/// \throws Error, one sentence: why, and what to try
+/// \source   libnifalcon (BSD-3), src/comm/FalconCommLibUSB.cpp: steps, divisors, lines, echo
+/// \differs  it uploads without asking, reads the answer's length only, and does not look whether the result answers.
+///           One author's driver found that asking spoils the upload; so the link is opened anew in between
+StartedFalcon startFalcon(const FalconLinkOpener& open, std::span<const std::uint8_t> firmware,
+                          const FalconStartSettings& settings = {}, const std::atomic<bool>* cancel = nullptr);
+
+/// Three packets of zero force, whatever happens to them. \thread the link's
+void releaseMotors(FalconLink& link, const FalconCommand& command) noexcept;
+
+} // namespace palp

@@ -1,0 +1,53 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include <glm/vec3.hpp>
+
+#include "device/falcon/falcon_kinematics.h"
+
+namespace palp {
+
+/// What the motors are told, of one force.
+struct FalconDrive {
+    std::array<std::int16_t, 3> motors{};         ///< [counts] for a FalconCommand; at most kMost in magnitude
+    double                      scale    = 0;     ///< [1] share of the force that is rendered; below 1: saturated
+    bool                        badForce = false; ///< the force was not finite; no force is rendered
+    bool                        singular = false; ///< out of reach or near a singularity; no force is rendered
+};
+
+/// From forces to what the motors are told, and back.
+///
+/// A motor pushes inwards where its number is positive, against the angles of the kinematics: count = -G torque. Where
+/// a number would exceed the range, all three shrink by one factor: a weaker force, in the same direction. \thread
+/// const and pure; no allocation
+class FalconMotors {
+public:
+    /// [counts] most that a motor takes. Beyond it the vendor's driver scales as above; beyond an int16 the packet
+    /// would turn the sign of the force.
+    static constexpr std::int16_t kMost = 4095;
+
+    /// [counts/(N m)] G. Most packets of the vendor's driver that libnifalcon holds (util/translate_packet.py) give
+    /// 4000 to 4700, with the Jacobian of FalconKinematics and their forces taken as newtons. libnifalcon multiplies by
+    /// 10 000. Measured on no device: if the larger one is right, our forces are too weak. With 4200 the motors hold 14
+    /// N in the middle, whichever way.
+    static constexpr double kCountsPerTorque = 4200;
+
+    /// \param countsPerTorque  [counts/(N m)] G
+    /// \throws Error if it is not from 100 to 100 000
+    explicit FalconMotors(const FalconKinematics& kinematics      = FalconKinematics{},
+                          double                  countsPerTorque = kCountsPerTorque);
+
+    /// \param position  [m] of the grip, in the frame of the kinematics
+    /// \param force     [N] on the hand
+    [[nodiscard]] FalconDrive drive(const glm::dvec3& position, const glm::dvec3& force) const noexcept;
+
+    /// Torques [N m] of motors that are told this.
+    [[nodiscard]] std::array<double, 3> torques(const std::array<std::int16_t, 3>& motors) const noexcept;
+
+private:
+    FalconKinematics kinematics_;
+    double           countsPerTorque_; ///< [counts/(N m)]
+};
+
+} // namespace palp

@@ -1,0 +1,211 @@
+// Starting a Falcon, in the emulator's virtual time.
+#include "device/falcon/falcon_driver.h"
+
+#include <array>
+#include <atomic>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "device/falcon/ft232_emulator.h"
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+constexpr double kTimeOfUpload = 8492 * 10 / (3e6 / 21); // [s] 0.594: that many bytes at 142 857 baud
+
+/// As long as the one in use; any bytes do.
+std::vector<std::uint8_t> firmware()
+{
+    std::vector<std::uint8_t> bytes(8492);
+    for (std::size_t n = 0; n < bytes.size(); ++n) bytes[n] = std::uint8_t(n * n / 7 + n);
+    return bytes;
+}
+
+struct Start {
+    Ft232Emulator       emulator;
+    int                 openings = 0;
+    FalconStartSettings settings{};
+    std::atomic<bool>   cancel = false;
+
+    explicit Start(const Ft232EmulatorSettings& how = {}) : emulator(how) {}
+
+    StartedFalcon run(const std::vector<std::uint8_t>& image)
+    {
+        return startFalcon(
+            [this] {
+                ++openings;
+                return emulator.connect();
+            },
+            image, settings, &cancel);
+    }
+
+    /// What it complains of; empty: it starts.
+    std::string complaint(const std::vector<std::uint8_t>& image = firmware())
+    {
+        try {
+            static_cast<void>(run(image));
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    }
+};
+
+TEST(FalconDriver, UploadsOnceAndBelievesOnlyAnswers)
+{
+    Start start;
+
+    const StartedFalcon started = start.run(firmware());
+
+    std::printf("  started after %.3f s, of which %.3f s are the bytes on the wire\n", start.emulator.now(),
+                kTimeOfUpload);
+    EXPECT_EQ(started.attempts, 1);
+    EXPECT_EQ(start.emulator.falcon().image(), firmware());
+    EXPECT_EQ(start.emulator.falcon().stage(), FalconStage::running);
+    EXPECT_FALSE(started.reply.homed());
+    EXPECT_LT(start.emulator.now(), 1.0) << "0.1 s of asking first, 0.6 of bytes, 137 turns of 0.4 ms";
+    EXPECT_EQ(start.emulator.falcon().lastTorque(), -1) << "no motor ever moved";
+}
+
+TEST(FalconDriver, UploadsNothingWhereTheFirmwareRuns)
+{
+    Ft232EmulatorSettings settings;
+    settings.falcon.running = true;
+    Start start(settings);
+
+    const StartedFalcon started = start.run({});
+
+    EXPECT_EQ(started.attempts, 0);
+    EXPECT_EQ(start.openings, 1);
+    EXPECT_TRUE(start.emulator.falcon().image().empty());
+    EXPECT_LT(start.emulator.now(), 0.02) << "three packets";
+}
+
+TEST(FalconDriver, WithoutFirmwareSaysWhatIsMissing)
+{
+    EXPECT_NE(Start().complaint({}).find("--falcon-firmware"), std::string::npos);
+}
+
+TEST(FalconDriver, TheEventCharacterIsSetOnlyIfAskedFor)
+{
+    Ft232EmulatorSettings settings;
+    settings.falcon.running = true;
+    Start plain(settings), quick(settings);
+    quick.settings.eventCharacter = true;
+    const auto roundTrip          = [](Start& start) {
+        const auto                   started = start.run({});
+        const double                 before  = started.link->now();
+        std::array<std::uint8_t, 64> bytes;
+        started.link->write(encode(FalconCommand{}));
+        EXPECT_EQ(started.link->read(bytes, 0.1), 16u);
+        return started.link->now() - before;
+    };
+
+    EXPECT_NEAR(roundTrip(plain), 1e-3, 1e-9) << "the timer's";
+    EXPECT_LT(roundTrip(quick), 0.6e-3) << "wires and transfers";
+}
+
+TEST(FalconDriver, TriesAgainFromNothingAfterEveryTroubleOfAnUpload)
+{
+    // Within the first upload; the pauses are longer than it waits for an echo.
+    for (const LinkTrouble& trouble :
+         {LinkTrouble{LinkTroubleKind::echoMismatch, 0.4, 0.41}, LinkTrouble{LinkTroubleKind::silence, 0.4, 0.41},
+          LinkTrouble{LinkTroubleKind::stall, 0.4, 0.55}}) {
+        Start start;
+        start.emulator.cause(trouble);
+
+        const StartedFalcon started = start.run(firmware());
+
+        EXPECT_EQ(started.attempts, 2) << "kind " << int(trouble.kind);
+        EXPECT_EQ(start.emulator.falcon().image(), firmware())
+            << "whole, not the rest of it; kind " << int(trouble.kind);
+    }
+    for (double from : {0.01, 0.5}) { // while it asks, while it uploads
+        Start start;
+        start.emulator.cause({LinkTroubleKind::unplug, from, from + 1e-6});
+        start.emulator.cause({LinkTroubleKind::unplug, from + 2e-6, from + 3e-6});
+        EXPECT_EQ(start.complaint(), "") << "a plug that was loose for a moment, at " << from << " s";
+    }
+}
+
+TEST(FalconDriver, SaysWhichByteFailedAndGivesUpAfterTheAttempts)
+{
+    Start once, thrice;
+    once.settings.attempts   = 1;
+    thrice.settings.attempts = 3;
+    once.emulator.cause({LinkTroubleKind::echoMismatch, 0.4});
+    thrice.emulator.cause({LinkTroubleKind::echoMismatch, 0});
+
+    EXPECT_NE(once.complaint().find("of the firmware came back changed"), std::string::npos);
+    EXPECT_NE(thrice.complaint().find("3 attempts"), std::string::npos);
+    EXPECT_EQ(thrice.openings, 4) << "one to ask, then each attempt its own";
+}
+
+TEST(FalconDriver, ADeadFalconEndsAtTheAttemptsOrTheDeadline)
+{
+    Start patient, hasty;
+    patient.emulator.cause({LinkTroubleKind::silence, 0});
+    hasty.emulator.cause({LinkTroubleKind::silence, 0});
+    hasty.settings.deadline = 2;
+
+    EXPECT_NE(patient.complaint().find("10 attempts"), std::string::npos);
+    EXPECT_LT(patient.emulator.now(), 17) << "30 greetings of 50 ms each";
+    EXPECT_NE(hasty.complaint().find("2 s"), std::string::npos);
+    EXPECT_LT(hasty.emulator.now(), 2.1) << "looked at with each greeting";
+}
+
+TEST(FalconDriver, CancelEndsItWithinATenthOfASecond)
+{
+    for (double when : {0.05, 0.3, 1.0}) { // while it asks, greets and uploads
+        Start           start;
+        double          cancelled = -1;
+        struct Watching final : FalconLink {
+            FalconLink& link;
+            Start&      start;
+            double      when, *cancelled;
+            Watching(FalconLink& l, Start& s, double w, double* c) : link(l), start(s), when(w), cancelled(c) {}
+            double now() const noexcept override { return link.now(); }
+            void   control(FtdiRequest request, std::uint16_t value) override { link.control(request, value); }
+            void   write(std::span<const std::uint8_t> bytes) override
+            {
+                if (now() > when && *cancelled < 0) {
+                    start.cancel = true;
+                    *cancelled   = now();
+                }
+                link.write(bytes);
+            }
+            std::size_t read(std::span<std::uint8_t> bytes, double timeout) override
+            {
+                return link.read(bytes, timeout);
+            }
+        };
+        if (when == 1.0) start.emulator.cause({LinkTroubleKind::silence, 0.15, 0.5});
+
+        std::string complaint;
+        try {
+            static_cast<void>(
+                startFalcon([&] { return std::make_unique<Watching>(start.emulator, start, when, &cancelled); },
+                            firmware(), {}, &start.cancel));
+        } catch (const Error& error) {
+            complaint = error.what();
+        }
+
+        EXPECT_NE(complaint.find("cancelled"), std::string::npos) << complaint;
+        EXPECT_LT(start.emulator.now() - cancelled, 0.1);
+    }
+}
+
+TEST(FalconDriver, AFalconThatIsNotThereIsTheOpenersError)
+{
+    EXPECT_THROW(
+        static_cast<void>(startFalcon([]() -> std::unique_ptr<FalconLink> { throw Error("no rights"); }, firmware())),
+        Error);
+}
+
+} // namespace
+} // namespace palp
