@@ -7,8 +7,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/core/latest.h"
 #include "engine/session/deformation.h"
-#include "engine/session/latest.h"
 #include "engine/session/real_time.h"
 
 namespace palp {

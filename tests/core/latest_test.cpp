@@ -1,4 +1,4 @@
-#include "engine/session/latest.h"
+#include "engine/core/latest.h"
 
 #include <gtest/gtest.h>
 
