@@ -13,10 +13,10 @@ namespace palp {
 
 /// A HID device as the system lists it.
 struct HidListing {
-    std::string   path; ///< only good for HidSystem::open()
+    std::string   path{}; ///< only good for HidSystem::open()
     std::uint16_t vendor = 0, product = 0;
     std::uint16_t usagePage = 0, usage = 0;
-    std::string   manufacturer, model, serial; ///< may be empty
+    std::string   manufacturer{}, model{}, serial{}; ///< may be empty
 };
 
 /// A device that cannot be opened: why, and the one line that helps; what() is both.
