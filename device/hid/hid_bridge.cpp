@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "device/setting_range.h"
 #include "engine/core/contract.h"
 
 namespace palp {
@@ -22,13 +23,6 @@ constexpr int kRestart =
 constexpr int    kMostReports = 64; // [1] per pass: whoever is flooded still writes
 constexpr double kFarOut      = 2;  // [1] times the workspace's radius: no arm gets there
 
-void demand(const char* what, double value, double least, double most)
-{
-    if (!(value >= least && value <= most))
-        throw Error("HID bridge: " + std::string(what) + " must be from " + std::to_string(least) + " to " +
-                    std::to_string(most) + ", found " + std::to_string(value));
-}
-
 bool isFinite(const glm::dvec3& v) noexcept
 {
     return std::isfinite(v.x + v.y + v.z);
@@ -44,9 +38,9 @@ bool isBridge(const HidListing& listing) noexcept
 HidBridgeDevice::HidBridgeDevice(HidSystem& system, const HidListing& listing, const HidBridgeSettings& settings)
     : system_(system), listing_(listing), settings_(settings)
 {
-    demand("watchdog", settings.watchdog, 2e-3, 0.255);
-    demand("openWait", settings.openWait, 0, 60);
-    demand("readWait", settings.readWait, 0, 0.05);
+    demandRange("HID bridge", "watchdog", settings.watchdog, 2e-3, 0.255);
+    demandRange("HID bridge", "openWait", settings.openWait, 0, 60);
+    demandRange("HID bridge", "readWait", settings.readWait, 0, 0.05);
     info_.model  = listing.model.empty() ? "HID bridge" : listing.model;
     info_.path   = listing.path;
     info_.serial = listing.serial;

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "device/setting_range.h"
 #include "engine/core/contract.h"
 
 namespace palp {
@@ -18,13 +18,6 @@ constexpr double       kWait        = 10e-3; // [s] for a report: how late a lig
 constexpr double       kLongest     = 0.1;   // [s] a later tick moves the point no further than this one
 constexpr std::uint8_t kLight       = 4;     // number of the output report; then 1 or 0
 constexpr int          kMostReports = 64;    // [1] per pass: whoever is flooded still returns
-
-void demand(const char* what, double value, double least, double most)
-{
-    if (!(value >= least && value <= most))
-        throw Error("SpaceMouse: " + std::string(what) + " must be from " + std::to_string(least) + " to " +
-                    std::to_string(most) + ", found " + std::to_string(value));
-}
 
 /// Its z points down and its y to the user: a turn about x by 90 degrees brings y up.
 glm::dvec3 upright(const std::array<std::int16_t, 6>& axes, std::size_t first)
@@ -44,10 +37,10 @@ double beyond(double deflection, double deadZone)
 SpaceMouse::SpaceMouse(HidSystem& system, const HidListing& listing, const SpaceMouseSettings& settings)
     : system_(system), listing_(listing), settings_(settings)
 {
-    demand("speed", settings.speed, 0, 10);
-    demand("deadZone", settings.deadZone, 0, 0.9);
-    demand("reach", settings.reach, 1e-3, 10);
-    demand("stale", settings.stale, 0.02, 60);
+    demandRange("SpaceMouse", "speed", settings.speed, 0, 10);
+    demandRange("SpaceMouse", "deadZone", settings.deadZone, 0, 0.9);
+    demandRange("SpaceMouse", "reach", settings.reach, 1e-3, 10);
+    demandRange("SpaceMouse", "stale", settings.stale, 0.02, 60);
     const SpaceMouseModel* model = spaceMouseModel(listing);
     if (!model) throw Error(listing.path + " is no SpaceMouse: see \"palpate devices\"");
     info_.model           = model->name;
