@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "engine/core/contract.h"
+#include "device/setting_range.h"
 
 namespace palp {
 namespace {
@@ -15,26 +14,19 @@ namespace {
 constexpr double kPiece = 125e-6; ///< [s] longest piece of the integration: friction turns with the motion that often
 constexpr int    kOrder = 10;     ///< of the Taylor series; the rest is below 1e-12 for a hand of 1e6 N/m
 
-void demand(const char* what, double value, double least, double most)
-{
-    if (!(value >= least && value <= most))
-        throw Error("simulated arm: " + std::string(what) + " must be from " + std::to_string(least) + " to " +
-                    std::to_string(most) + ", found " + std::to_string(value));
-}
-
 } // namespace
 
 SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, const glm::dvec3& position, const glm::dvec3& velocity)
     : settings_(settings), position_(position), velocity_(velocity), window_(settings.velocityWindow)
 {
-    demand("mass", settings.mass, 1e-3, 1e3);
-    demand("damping", settings.damping, 0, 1e3);
-    demand("friction", settings.friction, 0, 1e3);
-    demand("encoderStep", settings.encoderStep, 0, 1e-2);
-    demand("velocityWindow", settings.velocityWindow, 0, 1);
-    demand("halfWorkspace", settings.halfWorkspace, 1e-3, 1e3);
-    demand("boxRadius", settings.boxRadius, 0, 1e3);
-    demand("delaySamples", settings.delaySamples, 0, int(kDelays) - 1);
+    demandRange("simulated arm", "mass", settings.mass, 1e-3, 1e3);
+    demandRange("simulated arm", "damping", settings.damping, 0, 1e3);
+    demandRange("simulated arm", "friction", settings.friction, 0, 1e3);
+    demandRange("simulated arm", "encoderStep", settings.encoderStep, 0, 1e-2);
+    demandRange("simulated arm", "velocityWindow", settings.velocityWindow, 0, 1);
+    demandRange("simulated arm", "halfWorkspace", settings.halfWorkspace, 1e-3, 1e3);
+    demandRange("simulated arm", "boxRadius", settings.boxRadius, 0, 1e3);
+    demandRange("simulated arm", "delaySamples", settings.delaySamples, 0, int(kDelays) - 1);
     window_.add(time_, encoded());
 }
 

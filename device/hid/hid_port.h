@@ -7,14 +7,27 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/contract.h"
+
 namespace palp {
 
 /// A HID device as the system lists it.
 struct HidListing {
-    std::string   path; ///< only good for HidSystem::open()
+    std::string   path{}; ///< only good for HidSystem::open()
     std::uint16_t vendor = 0, product = 0;
     std::uint16_t usagePage = 0, usage = 0;
-    std::string   manufacturer, model, serial; ///< may be empty
+    std::string   manufacturer{}, model{}, serial{}; ///< may be empty
+};
+
+/// A device that cannot be opened: why, and the one line that helps; what() is both.
+class HidRefused : public Error {
+public:
+    HidRefused(const std::string& reason, const std::string& advice)
+        : Error(reason + (advice.empty() ? "" : "; " + advice)), why(reason), help(advice)
+    {
+    }
+
+    std::string why, help; ///< help may be empty
 };
 
 /// The device went away while open.
@@ -39,6 +52,10 @@ public:
     virtual void write(std::span<const std::uint8_t> report) = 0;
 };
 
+/// Who waits for a driver's reports: a thread of its own, or whoever calls exchange(), without waiting. The second is
+/// for tests in virtual time, and for fakes; reading hardware in exchange() would cost system calls there.
+enum class HidPace : std::uint8_t { thread, caller };
+
 /// What lists and opens HID devices: hidapi, or a fake.
 class HidSystem {
 public:
@@ -50,7 +67,7 @@ public:
     [[nodiscard]] virtual std::vector<HidListing> list() = 0;
 
     /// \param path  of a listing; anything else is refused
-    /// \throws Error naming the device and what to do, such as a missing permission
+    /// \throws HidRefused naming the device and what to do, such as a missing permission
     [[nodiscard]] virtual std::unique_ptr<HidPort> open(const std::string& path) = 0;
 };
 

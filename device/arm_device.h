@@ -1,0 +1,40 @@
+#pragma once
+#include "device/haptic_device.h"
+#include "device/simulated_arm.h"
+
+namespace palp {
+
+/// A SimulatedArm, and the hand that holds it, as a device: exchange() moves both on to `now`, by whatever clock the
+/// caller has, virtual or real. Its frame is the arm's. The force of an exchange acts from then on, after the delay of
+/// the settings: the arm's delay of n samples is n - 1 beyond that, so it must be at least 1.
+///
+/// If exchange() stays away, the force acts for 100 ms, then none; what is beyond a second is left out.
+class ArmDevice : public HapticDevice {
+public:
+    /// \param start  [m] where the arm rests when it is opened
+    /// \throws Error naming a setting out of its range
+    explicit ArmDevice(const SimulatedArmSettings& settings = {}, const glm::dvec3& start = {});
+
+    [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }
+
+    void        open() override;
+    void        close() noexcept override;
+    HapticState exchange(const GovernedForce& force, double now) noexcept override;
+
+    /// The hand from now on; see SimulatedArm::hold(). \thread that of exchange(), or any while none runs
+    void hold(const SimulatedHand& hand) noexcept;
+
+    [[nodiscard]] const SimulatedArm& arm() const noexcept { return arm_; } ///< where it truly is \thread as hold()
+
+private:
+    SimulatedArmSettings settings_;
+    glm::dvec3           start_; ///< [m]
+    SimulatedArm         arm_;
+    SimulatedHand        hand_;
+    HapticDeviceInfo     info_;
+    HapticState          state_;
+    bool                 ticked_ = false; ///< since open()
+    double               last_   = 0;     ///< [s] of the last exchange
+};
+
+} // namespace palp

@@ -1,0 +1,292 @@
+#include "device/hid/hid_bridge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <glm/geometric.hpp>
+
+#include "device/setting_range.h"
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+constexpr double kHostStall = 0.1;  // [s] without an exchange: see DeviceFault::hostTooSlow
+constexpr double kSilence   = 0.1;  // [s] without an answer: see DeviceFault::silent
+constexpr int    kMissed    = 20;   // [1] exchanges without an answer, likewise
+constexpr double kQuiet     = 0.02; // [s] between the zero commands of a host that is too slow: five in the time that
+                                    // made it so, and far from flooding
+constexpr int kZeros = 3;           // [1] commands at the end: one may be lost with its packet, hardly three
+constexpr int kRestart =
+    20; // [1] answers that go on counting from an old number, until it is a device that started anew
+constexpr int    kMostReports = 64; // [1] per pass: whoever is flooded still writes
+constexpr double kFarOut      = 2;  // [1] times the workspace's radius: no arm gets there
+
+bool isFinite(const glm::dvec3& v) noexcept
+{
+    return std::isfinite(v.x + v.y + v.z);
+}
+
+} // namespace
+
+bool isBridge(const HidListing& listing) noexcept
+{
+    return listing.usagePage == kBridgeUsagePage && listing.usage == kBridgeUsage;
+}
+
+HidBridgeDevice::HidBridgeDevice(HidSystem& system, const HidListing& listing, const HidBridgeSettings& settings)
+    : system_(system), listing_(listing), settings_(settings)
+{
+    demandRange("HID bridge", "watchdog", settings.watchdog, 2e-3, 0.255);
+    demandRange("HID bridge", "openWait", settings.openWait, 0, 60);
+    demandRange("HID bridge", "readWait", settings.readWait, 0, 0.05);
+    info_.model  = listing.model.empty() ? "HID bridge" : listing.model;
+    info_.path   = listing.path;
+    info_.serial = listing.serial;
+}
+
+HidBridgeDevice::~HidBridgeDevice()
+{
+    close();
+}
+
+void HidBridgeDevice::open()
+{
+    if (open_) return;
+    port_         = system_.open(listing_.path);
+    seen_         = {};
+    wrongVersion_ = false;
+    goesOn_       = 0;
+    sent_         = 0;
+    hot_          = false;
+    homing_       = false;
+    started_ = stopped_ = impossible_ = false;
+    seenGood_ = seenGarbled_ = 0;
+    state_                   = {};
+    outbox_.take(); // what an earlier opening left behind is forgotten
+
+    const auto deadline = Clock::now() + std::chrono::duration<double>(settings_.openWait);
+    try {
+        send({}); // zero, before anything else
+        do receive(settings_.readWait);
+        while (seen_.good == 0 && !wrongVersion_ && Clock::now() < deadline);
+    } catch (const HidLost& lost) {
+        port_.reset();
+        throw Error(info_.model + " went away while it was opened: " + lost.what());
+    }
+    if (seen_.good == 0) {
+        port_.reset();
+        throw Error(info_.model + " (" + listing_.path + ") " +
+                    (wrongVersion_
+                         ? "speaks another version of the bridge's report than " + std::to_string(kBridgeMajor)
+                         : "sends no report of a bridge") +
+                    "; see device/README.md, \"The bridge\"");
+    }
+    describe(seen_.answer);
+    open_        = true;
+    state_.fault = DeviceFault::none;
+    lastTaken_ = lastSent_ = Clock::now();
+    inbox_.draft()         = seen_;
+    inbox_.publish();
+    if (settings_.pace == HidPace::thread) thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+void HidBridgeDevice::describe(const BridgeAnswer& answer)
+{
+    info_.workspaceRadius  = answer.workspaceRadius;
+    info_.maximumForce     = answer.maximumForce;
+    info_.maximumStiffness = answer.maximumStiffness;
+    info_.maximumDamping   = answer.maximumDamping;
+    info_.buttons          = answer.buttonCount;
+    info_.needsHoming      = answer.has(BridgeFlag::needsHoming);
+    info_.rotates          = answer.has(BridgeFlag::rotates);
+    info_.hasGripper       = answer.has(BridgeFlag::grips);
+}
+
+void HidBridgeDevice::close() noexcept
+{
+    if (thread_.joinable()) { // it says zero at its end
+        thread_.request_stop();
+        thread_.join();
+    } else if (open_) {
+        sayZero();
+    }
+    port_.reset();
+    open_           = false;
+    state_.fault    = DeviceFault::closed;
+    state_.velocity = {};
+}
+
+// --- the port: the thread's, or exchange()'s
+
+/// Every report there is. \throws HidLost
+void HidBridgeDevice::receive(double wait)
+{
+    std::array<std::uint8_t, kBridgeSize + 1> report{}; // one more, so that one that is too long is seen
+    for (int n = 0; n < kMostReports; ++n) {
+        const std::size_t size = port_->read(report, n == 0 ? wait : 0);
+        if (size == 0) return;
+        BridgeAnswer        answer;
+        const BridgeVerdict verdict = decode(std::span(report).first(size), answer);
+        wrongVersion_               = wrongVersion_ || verdict == BridgeVerdict::otherVersion;
+        if (verdict == BridgeVerdict::good)
+            take(answer);
+        else
+            ++seen_.garbled;
+    }
+}
+
+/// Only what is newer than the last one, by numbers that wrap around; but a device that goes on counting from an old
+/// number has started anew.
+void HidBridgeDevice::take(const BridgeAnswer& answer) noexcept
+{
+    const auto ahead = std::int16_t(answer.sequence - seen_.answer.sequence);
+    if (seen_.good > 0 && ahead <= 0) {
+        goesOn_      = std::int16_t(answer.sequence - lastRefused_) > 0 ? goesOn_ + 1 : 0;
+        lastRefused_ = answer.sequence;
+        if (goesOn_ < kRestart) return;
+    }
+    goesOn_      = 0;
+    seen_.answer = answer;
+    ++seen_.good;
+}
+
+/// \throws HidLost
+void HidBridgeDevice::send(BridgeCommand command)
+{
+    command.sequence = ++sent_;
+    command.watchdog = settings_.watchdog;
+    hot_             = command.enable;
+    lastSent_        = Clock::now();
+    port_->write(encode(command));
+}
+
+void HidBridgeDevice::sendNewest()
+{
+    if (!outbox_.take()) return;
+    lastTaken_ = Clock::now();
+    send(*outbox_.held());
+}
+
+/// Zero force in the name of a host that does not call.
+void HidBridgeDevice::keepQuiet()
+{
+    using Seconds  = std::chrono::duration<double>;
+    const auto now = Clock::now();
+    if (now - lastTaken_ > Seconds(kHostStall) && (hot_ || now - lastSent_ > Seconds(kQuiet))) send({});
+}
+
+/// Reads, then writes. \return false: the device is gone
+bool HidBridgeDevice::pass(double wait) noexcept
+{
+    try {
+        receive(wait);
+        sendNewest();
+        if (settings_.pace == HidPace::thread) keepQuiet();
+    } catch (const HidLost&) {
+        seen_.lost = true;
+    }
+    inbox_.draft() = seen_;
+    inbox_.publish();
+    return !seen_.lost;
+}
+
+void HidBridgeDevice::run(const std::stop_token& stop) noexcept
+{
+    while (!stop.stop_requested() && pass(settings_.readWait)) {
+    }
+    sayZero();
+}
+
+void HidBridgeDevice::sayZero() noexcept
+{
+    try {
+        for (int n = 0; n < kZeros && !seen_.lost; ++n) send({});
+    } catch (const HidLost&) {
+        seen_.lost = true; // then its own watchdog stops it
+    }
+}
+
+// --- exchange()
+
+HapticState HidBridgeDevice::exchange(const GovernedForce& force, double now) noexcept
+{
+    if (!open_ || state_.fault == DeviceFault::unplugged) return state_;
+    const bool own = settings_.pace == HidPace::caller;
+    if (own) pass(0);
+    note(now);
+    state_.fault = faultAt(force, now);
+
+    BridgeCommand& command = outbox_.draft();
+    command                = {};
+    command.enable         = state_.fault == DeviceFault::none && state_.homed && info_.maximumForce > 0;
+    command.force          = command.enable ? renderable(force.newtons()) : glm::dvec3(0);
+    command.home           = homing_ && !state_.homed;
+    command.lights         = lights_;
+    outbox_.publish();
+    if (own) {
+        try {
+            sendNewest();
+        } catch (const HidLost&) {
+            seen_.lost = true; // seen by the next exchange
+        }
+    }
+    started_      = true;
+    lastExchange_ = now;
+    return state_;
+}
+
+/// Takes over the newest answer, if there is one.
+void HidBridgeDevice::note(double now) noexcept
+{
+    inbox_.take();
+    const Inbox& inbox = *inbox_.held(); // open() has filled it
+    if (inbox.lost) {
+        state_.fault = DeviceFault::unplugged;
+        return;
+    }
+    if (!started_) lastAnswer_ = now; // what came before is not to be blamed
+    if (inbox.good == seenGood_) {
+        ++state_.missed;
+        return;
+    }
+    const BridgeAnswer& answer = inbox.answer;
+    seenGood_                  = inbox.good;
+    seenGarbled_               = inbox.garbled;
+    lastAnswer_                = now;
+    state_.missed              = 0;
+    state_.sequence            = inbox.good;
+    state_.time                = now;
+    stopped_                   = answer.has(BridgeFlag::stopped);
+    state_.homed               = answer.has(BridgeFlag::homed);
+    impossible_                = glm::length(answer.position) > kFarOut * answer.workspaceRadius;
+    state_.inBox               = answer.has(BridgeFlag::inBox) && !impossible_;
+    state_.buttons             = answer.buttons;
+    state_.gripperAngle        = answer.gripper;
+    state_.orientation         = answer.orientation;
+    if (impossible_) return; // the hand stays where it was last seen
+    state_.position = answer.position;
+    state_.velocity = answer.velocity;
+}
+
+DeviceFault HidBridgeDevice::faultAt(const GovernedForce& force, double now) const noexcept
+{
+    if (state_.fault == DeviceFault::unplugged) return DeviceFault::unplugged;
+    if (state_.missed > kMissed || now - lastAnswer_ > kSilence)
+        return inbox_.held()->garbled != seenGarbled_ ? DeviceFault::garbled : DeviceFault::silent;
+    if (impossible_) return DeviceFault::kinematics;
+    if (stopped_) return DeviceFault::ownWatchdog;
+    if (!isFinite(force.newtons())) return DeviceFault::badForce;
+    if (started_ && now - lastExchange_ > kHostStall) return DeviceFault::hostTooSlow;
+    return DeviceFault::none;
+}
+
+/// At most what the motors hold, in the same direction: cutting each field apart would turn the force.
+glm::dvec3 HidBridgeDevice::renderable(const glm::dvec3& force) const noexcept
+{
+    const double size = glm::length(force);
+    return size > info_.maximumForce ? force * (info_.maximumForce / size) : force;
+}
+
+} // namespace palp

@@ -1,0 +1,108 @@
+#pragma once
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <thread>
+
+#include "device/haptic_device.h"
+#include "device/hid/bridge_report.h"
+#include "device/hid/hid_port.h"
+#include "engine/core/latest.h"
+
+namespace palp {
+
+/// Whether a listing can be a bridge; only its reports tell for certain.
+[[nodiscard]] bool isBridge(const HidListing& listing) noexcept;
+
+struct HidBridgeSettings {
+    double  watchdog = 50e-3; ///< [s] the device goes to zero force that long after the last command; 2 ms to 0.255 s
+    double  openWait = 1;     ///< [s] for the first report
+    double  readWait = 1e-3;  ///< [s] the thread waits for a report before it looks for a command again
+    HidPace pace     = HidPace::thread;
+};
+
+/// A device that speaks the bridge's report: position in, force out, at up to 1 kHz.
+///
+/// exchange() leaves a command in one three-slot hand-off and takes the newest answer from another; the driver's thread
+/// does the reading and writing. Force flows only while the device is homed and there is no fault: every other command
+/// says zero, and motors off. On close, and if exchange() stays away for 100 ms, several such commands go out; beyond
+/// that the device's own watchdog is the last line.
+///
+/// A fault is shown while its cause lasts; only "unplugged" stays until close().
+/// \thread see HapticDevice
+class HidBridgeDevice : public HapticDevice {
+public:
+    /// \param system  outlives it
+    /// \throws Error naming a setting out of its range
+    HidBridgeDevice(HidSystem& system, const HidListing& listing, const HidBridgeSettings& settings = {});
+    ~HidBridgeDevice() override;
+
+    [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }
+
+    void        open() override;
+    void        close() noexcept override;
+    HapticState exchange(const GovernedForce& force, double now) noexcept override;
+    void        home() noexcept override { homing_ = true; }
+    void        light(std::uint8_t lights) noexcept override { lights_ = lights; }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    struct Inbox {
+        BridgeAnswer  answer;      ///< the last good one
+        std::uint64_t good    = 0; ///< [1] with a new sequence number
+        std::uint64_t garbled = 0; ///< [1] that make no sense
+        bool          lost    = false;
+    };
+
+    // Of the thread, or of exchange() where that sets the pace.
+    void receive(double wait);
+    void take(const BridgeAnswer& answer) noexcept;
+    void send(BridgeCommand command);
+    void sendNewest();
+    void keepQuiet();
+    bool pass(double wait) noexcept;
+    void run(const std::stop_token& stop) noexcept;
+    void sayZero() noexcept;
+
+    // Of exchange().
+    void                      note(double now) noexcept;
+    [[nodiscard]] DeviceFault faultAt(const GovernedForce& force, double now) const noexcept;
+    [[nodiscard]] glm::dvec3  renderable(const glm::dvec3& force) const noexcept;
+
+    void describe(const BridgeAnswer& answer);
+
+    HidSystem&                system_;
+    HidListing                listing_;
+    HidBridgeSettings         settings_;
+    HapticDeviceInfo          info_;
+    std::atomic<bool>         homing_{false};
+    std::atomic<std::uint8_t> lights_{0};
+    Latest<BridgeCommand>     outbox_;
+    Latest<Inbox>             inbox_;
+
+    // Of the thread, or of exchange() where that sets the pace.
+    std::unique_ptr<HidPort> port_;
+    Inbox                    seen_;
+    bool                     wrongVersion_ = false;
+    std::uint16_t            lastRefused_  = 0;     ///< sequence of an answer that was too old
+    int                      goesOn_       = 0;     ///< [1] old answers that follow one another
+    std::uint16_t            sent_         = 0;     ///< sequence of the last command
+    bool                     hot_          = false; ///< the last command may have had the motors on
+    Clock::time_point        lastTaken_, lastSent_;
+
+    // Of exchange().
+    HapticState   state_;
+    bool          open_     = false;
+    bool          started_  = false; ///< exchange() has been called since open()
+    std::uint64_t seenGood_ = 0, seenGarbled_ = 0;
+    bool          stopped_      = false; ///< the device says so
+    bool          impossible_   = false; ///< its last position
+    double        lastAnswer_   = 0;     ///< [s]
+    double        lastExchange_ = 0;     ///< [s]
+
+    std::jthread thread_; ///< last: it ends before what it uses
+};
+
+} // namespace palp

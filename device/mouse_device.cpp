@@ -1,0 +1,90 @@
+#include "device/mouse_device.h"
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "device/setting_range.h"
+
+namespace palp {
+namespace {
+
+bool isFinite(const glm::dvec3& v) noexcept
+{
+    return std::isfinite(v.x + v.y + v.z);
+}
+
+glm::dvec3 within(const glm::dvec3& point, double reach) noexcept
+{
+    const double out = glm::length(point);
+    return out > reach ? point * (reach / out) : point;
+}
+
+} // namespace
+
+MouseDevice::MouseDevice(const MouseDeviceSettings& settings) : settings_(settings)
+{
+    demandRange("mouse", "settle", settings.settle, 1e-3, 10);
+    demandRange("mouse", "reach", settings.reach, 1e-3, 10);
+    demandRange("mouse", "rest's distance from the origin", glm::length(settings.rest), 0, settings.reach);
+    info_.model           = "mouse";
+    info_.workspaceRadius = settings.reach;
+    info_.buttons         = 3;
+    info_.isSimulation    = true;
+    release(); // a target to begin with
+}
+
+void MouseDevice::open()
+{
+    if (state_.fault == DeviceFault::none) return;
+    state_          = {};
+    state_.position = settings_.rest;
+    state_.homed = state_.inBox = true;
+    state_.fault                = DeviceFault::none;
+}
+
+void MouseDevice::close() noexcept
+{
+    state_.velocity = {};
+    state_.fault    = DeviceFault::closed;
+}
+
+HapticState MouseDevice::exchange(const GovernedForce& force, double now) noexcept
+{
+    if (state_.fault == DeviceFault::closed) return state_;
+    const bool good = isFinite(force.newtons());
+    shown_.draft()  = good ? force.newtons() : glm::dvec3(0);
+    state_.fault    = good ? DeviceFault::none : DeviceFault::badForce;
+    shown_.publish();
+    target_.take();
+    const Target& target = *target_.held(); // the constructor has left one
+
+    const double passed = state_.sequence == 0 ? 0 : now - state_.time;
+    if (!std::isfinite(passed) || passed < 0) return state_; // a clock that makes no sense: nothing moves
+    // With e = x - target and c = v + e/s: e(t) = (e + c t) exp(-t/s), v(t) = (v - c t/s) exp(-t/s).
+    const double     s = settings_.settle, decay = std::exp(-passed / s);
+    const glm::dvec3 away = state_.position - target.point, rush = state_.velocity + away / s;
+    const glm::dvec3 moved = target.point + (away + rush * passed) * decay;
+    state_.velocity        = (state_.velocity - rush * (passed / s)) * decay;
+    state_.position        = within(moved, settings_.reach);
+    if (state_.position != moved) state_.velocity = {}; // a swing ends at the edge
+    state_.buttons = target.buttons;
+    state_.time    = now;
+    ++state_.sequence;
+    return state_;
+}
+
+void MouseDevice::target(const glm::dvec3& point, std::uint32_t buttons) noexcept
+{
+    if (!isFinite(point)) return;
+    target_.draft() = {within(point, settings_.reach), buttons};
+    target_.publish();
+}
+
+glm::dvec3 MouseDevice::shownForce() noexcept
+{
+    shown_.take();
+    return shown_.held() ? *shown_.held() : glm::dvec3(0);
+}
+
+} // namespace palp

@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+
+#include <glm/vec3.hpp>
+
+#include "device/haptic_device.h"
+#include "engine/core/latest.h"
+
+namespace palp {
+
+struct MouseDeviceSettings {
+    double     settle = 20e-3; ///< [s] time constant of the spring to the target; a display shows a picture every 16 ms
+    glm::dvec3 rest{};         ///< [m] where the point springs back to when it is let go
+    double     reach = 0.05;   ///< [m] radius of the sphere that the point stays in
+};
+
+/// A pointer in a window as a hand: a point on a critically damped spring to where the window says. The window moves in
+/// steps of a picture, the point smoothly, exactly along the solution of x'' = -(x - target)/s² - 2 x'/s whatever the
+/// tick. Forces move nothing; they are kept for the window to show.
+/// \thread see HapticDevice; target(), release() and shownForce() on one more, the window's
+class MouseDevice : public HapticDevice {
+public:
+    /// \throws Error naming a setting out of its range
+    explicit MouseDevice(const MouseDeviceSettings& settings = {});
+
+    [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }
+
+    void        open() override;
+    void        close() noexcept override;
+    HapticState exchange(const GovernedForce& force, double now) noexcept override;
+
+    /// The window's: where the point is pulled from now on, and which buttons are down. Wait-free.
+    /// \param point  [m] in the device's frame, brought into the reach; one that is not finite is left out
+    void target(const glm::dvec3& point, std::uint32_t buttons = 0) noexcept;
+
+    /// The window's: the point springs back to its rest, all buttons up. Wait-free.
+    void release() noexcept { target(settings_.rest); }
+
+    /// The window's: [N] the force of the newest exchange. Wait-free.
+    [[nodiscard]] glm::dvec3 shownForce() noexcept;
+
+private:
+    struct Target {
+        glm::dvec3    point{};     ///< [m]
+        std::uint32_t buttons = 0; ///< as HapticState::buttons
+    };
+
+    MouseDeviceSettings settings_;
+    HapticDeviceInfo    info_;
+    HapticState         state_;
+    Latest<Target>      target_;
+    Latest<glm::dvec3>  shown_; ///< [N]
+};
+
+} // namespace palp

@@ -1,0 +1,104 @@
+#include "device/arm_device.h"
+
+#include <limits>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "engine/core/contract.h"
+#include "tests/device/governed.h"
+
+namespace palp {
+namespace {
+
+constexpr double kTick = 1e-3; // [s]
+
+TEST(ArmDevice, IsTheSimulatedArmTickForTick)
+{
+    const SimulatedHand hand{.stiffness = 150, .damping = 1, .target = {0.01, 0, 0}, .targetVelocity = {0, 0.02, 0}};
+    const GovernedForce push = governed({1, -2, 0.5});
+    SimulatedArm        arm;
+    arm.hold(hand);
+    ArmDevice device;
+    device.hold(hand);
+    device.open();
+    device.exchange({}, 0);
+
+    double now = 0;
+    for (int n = 0; n < 500; ++n) {
+        const double last = now;
+        now += kTick;
+        const HapticState state  = device.exchange(push, now);
+        const ArmSample   sample = arm.step({1, -2, 0.5}, now - last);
+        ASSERT_EQ(state.position, sample.position) << "the same bits, tick " << n;
+        ASSERT_EQ(state.velocity, sample.velocity);
+        ASSERT_EQ(state.inBox, sample.inBox);
+        ASSERT_EQ(state.time, now);
+    }
+    EXPECT_GT(glm::length(device.arm().position()), 1e-3) << "it moved";
+}
+
+TEST(ArmDevice, AForceActsFromItsExchangeOn)
+{
+    ArmDevice device({.encoderStep = 0, .delaySamples = 1});
+    device.open();
+    device.exchange({}, 0);
+    EXPECT_EQ(device.exchange(governed({1, 0, 0}), kTick).position, glm::dvec3(0)) << "none acted until now";
+    EXPECT_GT(device.exchange({}, 2 * kTick).position.x, 0) << "that one did";
+}
+
+TEST(ArmDevice, AHostThatStaysAwayMeansNoForceAfterATenthOfASecond)
+{
+    const SimulatedArmSettings smooth{.encoderStep = 0, .halfWorkspace = 10};
+    const GovernedForce        push = governed({1, 0, 0});
+    ArmDevice                  device(smooth);
+    device.open();
+    device.exchange({}, 0);
+    device.exchange(push, kTick);
+    const HapticState late = device.exchange(push, kTick + 0.4);
+
+    SimulatedArm arm(smooth);
+    arm.step({1, 0, 0}, kTick);
+    arm.step({}, 0.1);
+    arm.step({}, 0.3);
+    EXPECT_EQ(late.fault, DeviceFault::hostTooSlow);
+    EXPECT_NEAR(late.position.x, arm.position().x, 1e-12) << "rounding of the times";
+    EXPECT_EQ(device.exchange(push, kTick + 0.401).fault, DeviceFault::none);
+
+    const double there = device.exchange({}, kTick + 0.402).position.x;
+    EXPECT_LT(device.exchange({}, 1e9).position.x - there, 1) << "years are left out";
+}
+
+TEST(ArmDevice, BadForcesAndClocksDoNotMoveIt)
+{
+    ArmDevice device({.encoderStep = 0});
+    device.open();
+    device.exchange({}, 1);
+    EXPECT_EQ(device.exchange(notFinite(), 1 + kTick).fault, DeviceFault::badForce);
+    EXPECT_EQ(device.exchange({}, 1 + 2 * kTick).position, glm::dvec3(0)) << "nothing was rendered";
+    const HapticState before = device.exchange(governed({1, 0, 0}), 1 + 3 * kTick);
+    for (double odd : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 0.5}) {
+        const HapticState state = device.exchange({}, odd);
+        EXPECT_EQ(state.position, before.position);
+        EXPECT_EQ(state.sequence, before.sequence) << "nothing new, clock " << odd;
+        EXPECT_GT(state.missed, 0);
+    }
+    EXPECT_GT(device.exchange({}, 1 + 4 * kTick).position.x, 0) << "and then it goes on";
+}
+
+TEST(ArmDevice, OpensAtItsStart)
+{
+    ArmDevice device({}, {0.0096, 0, 0});
+    EXPECT_EQ(device.exchange({}, 0).fault, DeviceFault::closed);
+    device.open();
+    device.exchange({}, 0);
+    for (int n = 1; n < 100; ++n) device.exchange(governed({1, 0, 0}), n * kTick);
+    device.close();
+    EXPECT_EQ(device.exchange({}, 1).fault, DeviceFault::closed);
+    device.open();
+    EXPECT_NEAR(device.exchange({}, 7).position.x, 0.0096, 1e-12) << "200 encoder steps of 48 um; rounding";
+    EXPECT_THROW(ArmDevice({.delaySamples = 0}), Error);
+}
+
+} // namespace
+} // namespace palp

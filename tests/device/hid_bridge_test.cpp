@@ -1,0 +1,409 @@
+#include "device/hid/hid_bridge.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <limits>
+#include <thread>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "engine/core/contract.h"
+#include "tests/device/fake_bridge.h"
+#include "tests/device/fake_hid.h"
+#include "tests/device/governed.h"
+
+namespace palp {
+namespace {
+
+using Report = FakeHidDevice::Report;
+
+constexpr double kTick = 1e-3;  // [s]
+constexpr double kStep = 1e-12; // rounding of whole steps of 1e-6 m or 1e-3 N
+
+HidListing ours()
+{
+    HidListing listing;
+    listing.path      = "/dev/hidraw7";
+    listing.usagePage = kBridgeUsagePage;
+    listing.usage     = kBridgeUsage;
+    listing.model     = "Workshop arm";
+    return listing;
+}
+
+class Bridge : public testing::Test {
+protected:
+    static HidBridgeSettings settings() { return {.openWait = 0.05, .pace = HidPace::caller}; }
+
+    Bridge() { firmware.tick(kTick); } // the report that open() waits for
+
+    /// Both sides go on together.
+    HapticState after(int ticks, const GovernedForce& force = {})
+    {
+        HapticState state;
+        for (int n = 0; n < ticks; ++n) {
+            firmware.tick(kTick);
+            state = bridge.exchange(force, now += kTick);
+        }
+        return state;
+    }
+    /// The device says nothing.
+    HapticState alone(int ticks, const GovernedForce& force = {})
+    {
+        HapticState state;
+        for (int n = 0; n < ticks; ++n) state = bridge.exchange(force, now += kTick);
+        return state;
+    }
+
+    FakeHidSystem   system;
+    FakeHidDevice&  device = system.plug(ours());
+    FakeBridge      firmware{device};
+    HidBridgeDevice bridge{system, ours(), settings()};
+    GovernedForce   push = governed({1, -2, 0.5});
+    double          now  = 100; // [s]
+};
+
+TEST_F(Bridge, SaysWhatItIs)
+{
+    EXPECT_EQ(bridge.info().model, "Workshop arm");
+    EXPECT_EQ(bridge.exchange(push, now).fault, DeviceFault::closed);
+    bridge.open();
+    EXPECT_NEAR(bridge.info().workspaceRadius, 0.05, kStep);
+    EXPECT_NEAR(bridge.info().maximumForce, 4, kStep);
+    EXPECT_EQ(bridge.info().buttons, 2U);
+    EXPECT_FALSE(bridge.info().isSimulation);
+    EXPECT_FALSE(firmware.commands().at(0).enable) << "the first command says zero";
+}
+
+TEST_F(Bridge, ForceGoesOutAndPositionComesIn)
+{
+    bridge.open();
+    firmware.answer.position = {0.01, -0.02, 0.03};
+    firmware.answer.velocity = {0.1, 0, -0.2};
+    firmware.answer.buttons  = 2;
+    const HapticState state  = after(10, push);
+
+    EXPECT_EQ(state.fault, DeviceFault::none);
+    EXPECT_NEAR(glm::distance(state.position, {0.01, -0.02, 0.03}), 0, kStep);
+    EXPECT_NEAR(glm::distance(state.velocity, {0.1, 0, -0.2}), 0, kStep);
+    EXPECT_EQ(state.buttons, 2U);
+    EXPECT_EQ(state.sequence, 11U) << "one at opening, ten since";
+    EXPECT_EQ(state.time, now);
+    EXPECT_EQ(state.missed, 0);
+    EXPECT_TRUE(state.homed && state.inBox);
+    EXPECT_NEAR(glm::distance(firmware.force(), {1, -2, 0.5}), 0, kStep);
+}
+
+TEST_F(Bridge, AStrongForceKeepsItsDirection)
+{
+    bridge.open();
+    bridge.close();
+    firmware.answer.maximumForce = 2;
+    firmware.tick(kTick);
+    bridge.open();
+    EXPECT_NEAR(bridge.info().maximumForce, 2, kStep);
+    after(3, governed({3, -4, 0}));
+    EXPECT_NEAR(glm::distance(firmware.force(), {1.2, -1.6, 0}), 0, 1e-3) << "2 N along it; a step of the field";
+}
+
+TEST_F(Bridge, NoForceBeforeItIsHomed)
+{
+    firmware.answer.flags = std::uint16_t(BridgeFlag::inBox);
+    bridge.open();
+    bridge.home();
+    EXPECT_FALSE(after(5, push).homed);
+    EXPECT_EQ(firmware.force(), glm::dvec3(0));
+    EXPECT_TRUE(firmware.commands().back().home);
+    firmware.answer.flags = BridgeFlag::homed | BridgeFlag::inBox;
+    EXPECT_TRUE(after(2, push).homed);
+    EXPECT_GT(glm::length(firmware.force()), 1);
+    EXPECT_FALSE(firmware.commands().back().home);
+}
+
+TEST_F(Bridge, CommandsAreNumberedAndCarryTheWatchdog)
+{
+    bridge.open();
+    bridge.light(5);
+    after(20, push);
+    const std::vector<BridgeCommand> commands = firmware.commands();
+    ASSERT_EQ(commands.size(), 21U);
+    for (std::size_t n = 1; n < commands.size(); ++n) {
+        EXPECT_EQ(commands[n].sequence, commands[n - 1].sequence + 1);
+        EXPECT_NEAR(commands[n].watchdog, 0.05, kStep);
+        EXPECT_EQ(commands[n].lights, 5);
+    }
+}
+
+TEST_F(Bridge, ASilentDeviceIsAFaultAndGetsZero)
+{
+    bridge.open();
+    after(10, push);
+    EXPECT_EQ(alone(20, push).fault, DeviceFault::none) << "20 may be missed";
+    EXPECT_EQ(alone(1, push).fault, DeviceFault::silent);
+    EXPECT_EQ(alone(1, push).missed, 22);
+    EXPECT_EQ(firmware.force(), glm::dvec3(0)) << "the commands still arrive";
+    EXPECT_EQ(after(1, push).fault, DeviceFault::none) << "it is back";
+
+    now += 0.1; // a slow servo: 100 ms without an answer are silence too, however few exchanges
+    EXPECT_EQ(alone(1, push).fault, DeviceFault::silent);
+}
+
+TEST_F(Bridge, GarbageIsAFaultOfItsOwn)
+{
+    bridge.open();
+    after(10, push);
+    DeviceFault fault{};
+    for (int n = 0; n < 21; ++n) {
+        device.send(Report(64, std::uint8_t(n)));
+        device.send(Report(70, 1)); // too long
+        fault = alone(1, push).fault;
+    }
+    EXPECT_EQ(fault, DeviceFault::garbled);
+    EXPECT_EQ(firmware.force(), glm::dvec3(0));
+    EXPECT_EQ(after(1, push).fault, DeviceFault::none) << "one good answer is enough";
+}
+
+TEST_F(Bridge, OldAnswersAreNotNews)
+{
+    bridge.open();
+    firmware.answer.position = {0.01, 0, 0};
+    after(10);
+    BridgeAnswer old = firmware.answer;
+    old.position     = {-0.04, 0, 0};
+    HapticState state;
+    for (int n = 0; n < 100; ++n) { // a buffer that is stuck
+        const BridgeBytes bytes = encode(old);
+        device.send(Report(bytes.begin(), bytes.end()));
+        state = alone(1);
+        EXPECT_NEAR(state.position.x, 0.01, kStep);
+    }
+    EXPECT_EQ(state.fault, DeviceFault::silent);
+    EXPECT_EQ(state.missed, 100);
+}
+
+TEST_F(Bridge, SequenceNumbersWrapAround)
+{
+    bridge.open();
+    for (int sequence : {20000, 40000, 60000, 65530}) { // each less than half the range ahead, thus news
+        firmware.answer.sequence = std::uint16_t(sequence);
+        EXPECT_EQ(after(1).missed, 0) << sequence;
+    }
+    const HapticState state = after(20, push);
+    EXPECT_EQ(state.missed, 0);
+    EXPECT_EQ(state.sequence, 25U) << "each counts";
+}
+
+TEST_F(Bridge, ADeviceThatStartedAnewIsHeardAgain)
+{
+    firmware.answer.sequence = 20000;
+    firmware.tick(kTick);
+    bridge.open();
+    after(10);
+    firmware.answer.sequence = 0;
+    EXPECT_EQ(after(15).missed, 15) << "it could be old reports";
+    EXPECT_EQ(after(15).missed, 0);
+}
+
+TEST_F(Bridge, ItsOwnWatchdogIsToldAndLetGo)
+{
+    bridge.open();
+    after(10, push);
+    for (int n = 0; n < 60; ++n) firmware.tick(kTick); // 60 ms without a command, 50 allowed
+    EXPECT_TRUE(firmware.stopped());
+    EXPECT_EQ(firmware.force(), glm::dvec3(0));
+    const HapticState told = alone(1, push); // within 100 ms, so it is not the host that is blamed
+    EXPECT_EQ(told.fault, DeviceFault::ownWatchdog);
+    EXPECT_FALSE(firmware.commands().back().enable) << "which lets it go";
+    EXPECT_EQ(after(2, push).fault, DeviceFault::none);
+    EXPECT_GT(glm::length(firmware.force()), 1);
+}
+
+TEST_F(Bridge, AForceThatIsNoneIsNotRendered)
+{
+    bridge.open();
+    after(10, push);
+    EXPECT_EQ(after(1, notFinite()).fault, DeviceFault::badForce);
+    EXPECT_EQ(firmware.force(), glm::dvec3(0));
+    EXPECT_EQ(after(1, push).fault, DeviceFault::none);
+}
+
+TEST_F(Bridge, AHostThatStayedAwayRendersNothingAtFirst)
+{
+    bridge.open();
+    after(10, push);
+    now += 0.11;
+    EXPECT_EQ(after(1, push).fault, DeviceFault::hostTooSlow);
+    EXPECT_EQ(firmware.force(), glm::dvec3(0));
+    EXPECT_EQ(after(1, push).fault, DeviceFault::none);
+}
+
+TEST_F(Bridge, APositionThatNoArmHasIsNotBelieved)
+{
+    bridge.open();
+    firmware.answer.position = {0.01, 0, 0};
+    after(10, push);
+    firmware.answer.position = {0.11, 0, 0}; // more than twice the radius of 0.05
+    const HapticState state  = after(1, push);
+    EXPECT_EQ(state.fault, DeviceFault::kinematics);
+    EXPECT_NEAR(state.position.x, 0.01, kStep) << "it stays where it was last seen";
+    EXPECT_FALSE(state.inBox);
+    EXPECT_EQ(firmware.force(), glm::dvec3(0));
+}
+
+TEST_F(Bridge, UnpluggedStaysUntilItIsOpenedAnew)
+{
+    bridge.open();
+    after(10, push);
+    device.unplug();
+    EXPECT_EQ(alone(2, push).fault, DeviceFault::unplugged);
+    EXPECT_EQ(alone(1, push).fault, DeviceFault::unplugged);
+    bridge.close();
+    EXPECT_EQ(device.openPorts(), 0);
+    EXPECT_THROW(bridge.open(), Error) << "it is not back";
+    EXPECT_EQ(bridge.exchange(push, now).fault, DeviceFault::closed);
+}
+
+TEST_F(Bridge, ALostWriteIsALostDevice)
+{
+    bridge.open();
+    after(10, push);
+    device.refuseWrites();
+    EXPECT_EQ(after(2, push).fault, DeviceFault::unplugged);
+}
+
+TEST_F(Bridge, CloseAndDestructionSayZeroSeveralTimes)
+{
+    const auto threeZeros = [&] {
+        const std::vector<BridgeCommand> commands = firmware.commands();
+        return commands.size() > 3 && std::none_of(commands.end() - 3, commands.end(),
+                                                   [](const BridgeCommand& command) { return command.enable; });
+    };
+    bridge.open();
+    after(10, push);
+    EXPECT_GT(glm::length(firmware.force()), 1);
+    bridge.close();
+    EXPECT_TRUE(threeZeros());
+    EXPECT_EQ(device.openPorts(), 0);
+    {
+        HidBridgeDevice second(system, ours(), settings());
+        firmware.tick(kTick);
+        second.open();
+        firmware.tick(kTick);
+        second.exchange(push, now += kTick);
+        EXPECT_GT(glm::length(firmware.force()), 1);
+    }
+    EXPECT_TRUE(threeZeros());
+    EXPECT_EQ(device.openPorts(), 0);
+}
+
+std::string reasonOf(HidBridgeDevice& bridge)
+{
+    try {
+        bridge.open();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "it was opened";
+}
+
+TEST(BridgeOpening, SaysWhyItFails)
+{
+    FakeHidSystem   system;
+    FakeHidDevice&  device = system.plug(ours());
+    HidBridgeDevice bridge(system, ours(), {.openWait = 0.01, .pace = HidPace::caller});
+    EXPECT_NE(reasonOf(bridge).find("sends no report of a bridge"), std::string::npos) << reasonOf(bridge);
+    BridgeBytes later = encode(BridgeAnswer{});
+    later[3]          = 0x20;
+    device.send(Report(later.begin(), later.end()));
+    EXPECT_NE(reasonOf(bridge).find("another version"), std::string::npos);
+    EXPECT_EQ(device.openPorts(), 0);
+    device.refusal = "no permission";
+    EXPECT_NE(reasonOf(bridge).find("no permission; the line that helps"), std::string::npos);
+    EXPECT_THROW(HidBridgeDevice(system, ours(), {.watchdog = 1}), Error);
+    EXPECT_THROW(HidBridgeDevice(system, ours(), {.openWait = std::numeric_limits<double>::quiet_NaN()}), Error);
+}
+
+TEST(BridgeListing, IsKnownByItsPage)
+{
+    EXPECT_TRUE(isBridge(ours()));
+    HidListing other = ours();
+    other.usage      = 1;
+    EXPECT_FALSE(isBridge(other));
+}
+
+/// A device that runs on a thread of its own, in real time.
+class BridgeInRealTime : public testing::Test {
+protected:
+    BridgeInRealTime()
+        : firmwareThread_([this](const std::stop_token& stop) {
+              while (!stop.stop_requested()) {
+                  firmware.tick(kTick);
+                  std::this_thread::sleep_for(std::chrono::milliseconds(1));
+              }
+          })
+    {
+    }
+
+    [[nodiscard]] double seconds() const
+    {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+    /// Ticks on until it is so; false after 10 s, for a busy machine.
+    bool until(HidBridgeDevice& bridge, const GovernedForce& force, const std::function<bool(const HapticState&)>& so)
+    {
+        for (const double end = seconds() + 10; seconds() < end;) {
+            if (so(bridge.exchange(force, seconds()))) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return false;
+    }
+
+    const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    FakeHidSystem                               system;
+    FakeHidDevice&                              device = system.plug(ours());
+    FakeBridge                                  firmware{device};
+    std::jthread                                firmwareThread_;
+};
+
+TEST_F(BridgeInRealTime, AThreadDoesTheReadingAndWriting)
+{
+    HidBridgeDevice bridge(system, ours());
+    bridge.open();
+    const GovernedForce push = governed({1, 0, 0});
+    EXPECT_TRUE(until(bridge, push, [&](const HapticState& state) {
+        return state.sequence > 50 && state.fault == DeviceFault::none && firmware.force().x > 0.9;
+    }));
+    bridge.close();
+    EXPECT_EQ(firmware.force(), glm::dvec3(0));
+    EXPECT_EQ(device.openPorts(), 0);
+}
+
+TEST_F(BridgeInRealTime, ZeroGoesOutByItselfWhenNobodyCalls)
+{
+    HidBridgeDevice bridge(system, ours());
+    bridge.open();
+    const GovernedForce push = governed({1, 0, 0});
+    ASSERT_TRUE(until(bridge, push, [&](const HapticState&) { return firmware.force().x > 0.9; }));
+    const std::size_t before = firmware.commands().size();
+    const double      end    = seconds() + 10; // for a busy machine
+    while (seconds() < end && firmware.commands().size() < before + 4) std::this_thread::yield();
+
+    const std::vector<BridgeCommand> commands = firmware.commands();
+    ASSERT_GE(commands.size(), before + 4) << "several, though nobody calls";
+    EXPECT_FALSE(commands.back().enable);
+    EXPECT_EQ(firmware.force(), glm::dvec3(0));
+    EXPECT_EQ(bridge.exchange(push, seconds()).fault, DeviceFault::hostTooSlow);
+}
+
+TEST_F(BridgeInRealTime, UnpluggingEndsTheThreadWithAFault)
+{
+    HidBridgeDevice bridge(system, ours());
+    bridge.open();
+    device.unplug();
+    EXPECT_TRUE(until(bridge, {}, [](const HapticState& state) { return state.fault == DeviceFault::unplugged; }));
+}
+
+} // namespace
+} // namespace palp

@@ -1,0 +1,155 @@
+// The adapter on hidapi, against a stand-in of the library: see hidapi_fake.cpp.
+#include "device/hid/hidapi_system.h"
+
+#include <array>
+#include <limits>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "tests/device/hidapi_fake.h"
+
+namespace palp {
+namespace {
+
+class Hidapi : public testing::Test {
+protected:
+    Hidapi()
+    {
+        fake.starts  = true;
+        fake.devices = {{"/dev/hidraw3", 0x256f, 0xc635, 1, 8, L"SpaceMouse Compact"},
+                        {"/dev/hidraw4", 1, 2, 3, 4, L""}};
+        fake.openError.clear();
+        fake.broken = false;
+        fake.report.clear();
+        fake.written.clear();
+        fake.opened = 0;
+    }
+    ~Hidapi() override
+    {
+        EXPECT_EQ(fake.ports, 0) << "every port is closed";
+        EXPECT_EQ(fake.entries, 0) << "every listing is freed";
+    }
+
+    HidapiFake&  fake = hidapiFake();
+    HidapiSystem system;
+};
+
+TEST_F(Hidapi, ListsWhatTheSystemHas)
+{
+    const std::vector<HidListing> list = system.list();
+
+    ASSERT_EQ(list.size(), 2U);
+    EXPECT_EQ(list[0].path, "/dev/hidraw3");
+    EXPECT_EQ(list[0].vendor, 0x256f);
+    EXPECT_EQ(list[0].product, 0xc635);
+    EXPECT_EQ(list[0].usagePage, 1);
+    EXPECT_EQ(list[0].usage, 8);
+    EXPECT_EQ(list[0].model, "SpaceMouse Compact");
+    EXPECT_EQ(list[0].manufacturer, "") << "a text that the system does not have";
+    EXPECT_EQ(list[1].model, "");
+    EXPECT_EQ(hidSupport(), "hidapi 0.13.1 (fake)");
+}
+
+TEST_F(Hidapi, TextsBecomeUtf8)
+{
+    fake.devices = {{"/dev/hidraw0", 1, 2, 3, 4, L"a\u00e9\u20ac\U0001F600" + std::wstring(1, wchar_t(0xD800))}};
+    EXPECT_EQ(system.list().at(0).model, "a\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80\xEF\xBF\xBD");
+}
+
+TEST_F(Hidapi, OpensOnlyWhatTheLastListNamed)
+{
+    EXPECT_THROW(static_cast<void>(system.open("/dev/hidraw3")), HidRefused) << "nothing was listed yet";
+    static_cast<void>(system.list());
+    EXPECT_THROW(static_cast<void>(system.open("/dev/null")), HidRefused);
+    EXPECT_EQ(fake.opened, 0) << "hidapi never saw these paths";
+
+    EXPECT_TRUE(system.open("/dev/hidraw3"));
+    EXPECT_EQ(fake.opened, 1);
+
+    fake.devices.clear();
+    static_cast<void>(system.list());
+    EXPECT_THROW(static_cast<void>(system.open("/dev/hidraw3")), HidRefused) << "it is gone from the list";
+    EXPECT_EQ(fake.opened, 1);
+}
+
+TEST_F(Hidapi, AMissingPermissionComesWithTheLineThatHelps)
+{
+    static_cast<void>(system.list());
+    fake.openError = L"Failed to open a device with path '/dev/hidraw3': Permission denied";
+    try {
+        static_cast<void>(system.open("/dev/hidraw3"));
+        FAIL() << "was opened";
+    } catch (const HidRefused& refused) {
+        EXPECT_NE(refused.why.find("SpaceMouse Compact (/dev/hidraw3)"), std::string::npos) << refused.why;
+        EXPECT_NE(refused.why.find("Permission denied"), std::string::npos) << refused.why;
+        EXPECT_NE(refused.help.find(R"(ATTRS{idVendor}=="256f", ATTRS{idProduct}=="c635", TAG+="uaccess")"),
+                  std::string::npos)
+            << refused.help;
+        EXPECT_EQ(std::string(refused.what()), refused.why + "; " + refused.help);
+    }
+
+    fake.openError = L"No such file or directory";
+    try {
+        static_cast<void>(system.open("/dev/hidraw4"));
+        FAIL() << "was opened";
+    } catch (const HidRefused& refused) {
+        EXPECT_EQ(refused.help.find("udev"), std::string::npos) << "rights are not what is missing: " << refused.help;
+    }
+}
+
+TEST_F(Hidapi, ReadsAndWritesReports)
+{
+    static_cast<void>(system.list());
+    const auto                  port = system.open("/dev/hidraw3");
+    std::array<std::uint8_t, 8> report{};
+    fake.report = {3, 1, 0};
+
+    EXPECT_EQ(port->read(report, 0.0011), 3U);
+    EXPECT_EQ(report[0], 3);
+    EXPECT_EQ(fake.waited, 2) << "ms, rounded up: a short wait is not none";
+    EXPECT_EQ(port->read(report, 0), 3U);
+    EXPECT_EQ(fake.waited, 0);
+    for (double odd : {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        EXPECT_EQ(port->read(report, odd), 3U);
+        EXPECT_EQ(fake.waited, 0) << "never -1, which waits for ever";
+    }
+    port->write(std::array<std::uint8_t, 2>{4, 1});
+    EXPECT_EQ(fake.written, (std::vector<std::uint8_t>{4, 1}));
+}
+
+TEST_F(Hidapi, ADeviceThatWentAwayIsLost)
+{
+    static_cast<void>(system.list());
+    const auto                  port = system.open("/dev/hidraw3");
+    std::array<std::uint8_t, 8> report{};
+    fake.broken = true;
+
+    EXPECT_THROW(static_cast<void>(port->read(report, 0)), HidLost);
+    EXPECT_THROW(port->write(report), HidLost);
+}
+
+TEST_F(Hidapi, AnHidapiThatDoesNotStartIsAnError)
+{
+    fake.starts = false;
+    EXPECT_THROW(static_cast<void>(system.list()), Error);
+}
+
+TEST_F(Hidapi, SystemsOnSeveralThreadsTakeTurns)
+{
+    fake.openError         = L"Permission denied"; // each failure writes and reads the library's global text
+    const auto listAndOpen = [] {
+        HidapiSystem own;
+        for (int n = 0; n < 200; ++n) {
+            static_cast<void>(own.list());
+            EXPECT_THROW(static_cast<void>(own.open("/dev/hidraw3")), HidRefused);
+        }
+    };
+    std::thread other(listAndOpen);
+    listAndOpen();
+    other.join();
+    EXPECT_EQ(fake.opened, 400);
+}
+
+} // namespace
+} // namespace palp
