@@ -16,10 +16,11 @@
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
 #include "engine/program/commands.h"
-#include "engine/session/hand_device.h"
+#include "engine/program/hand_source.h"
 #include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
 #include "engine/session/recording.h"
+#include "engine/session/replay_device.h"
 #include "engine/session/virtual_session.h"
 
 // palpate run and palpate replay: a hand feels a scene, and a recorded session is felt again.
@@ -28,9 +29,8 @@ namespace palp {
 namespace {
 
 struct RunOptions {
-    std::string                                     scene, hand = "scan", record, clock = "real", threads = "servo";
-    double                                          seconds = 5;
-    std::string                                     speed = "50 mm/s", depth, radius = "10 mm";
+    HandOptions                                     hand;
+    std::string                                     scene, record, clock = "real", threads = "servo";
     std::map<std::string, std::string, std::less<>> flags; ///< of the scene's keys, as given
     bool                                            printConfig = false, json = false;
 };
@@ -39,38 +39,6 @@ struct ReplayOptions {
     std::string folder, device;
     bool        compare = false, json = false;
 };
-
-double metres(const std::string& text, const std::string& option)
-{
-    const double value = parseQuantity(text, Dimension::length, option);
-    if (value > 0) return value;
-    throw Error(option + ": expected a length above 0, found \"" + text + "\"");
-}
-
-/// "50 mm/s" or "0.05".
-double metresPerSecond(std::string text, const std::string& option)
-{
-    if (text.ends_with("/s")) text.resize(text.size() - 2);
-    return metres(text, option);
-}
-
-/// Of the thickness: the deflection is at most some tenths more than the hand's depth, so theory holds [1].
-constexpr double kDepth = 0.4;
-
-HandPath handFor(const RunOptions& o, const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
-{
-    const auto motion = motionNamed(o.hand);
-    if (!motion) return readHand(o.hand);
-    const HandPlace place = handPlace(scene, cloud, index);
-    HandScript      script;
-    script.motion   = *motion;
-    script.speed    = metresPerSecond(o.speed, "--speed");
-    script.depth    = o.depth.empty() ? kDepth * scene.patch.material.thickness : metres(o.depth, "--press-depth");
-    script.radius   = metres(o.radius, "--reach");
-    script.height   = scene.startHeight;
-    script.duration = o.seconds;
-    return draped(makeHand(script, place), place, cloud, index);
-}
 
 nlohmann::json durations(const DurationHistogram& of)
 {
@@ -181,7 +149,7 @@ SessionSummary playLive(const RunOptions& o, SessionThreads threads, const Sessi
 {
     const bool          line = isatty(STDERR_FILENO) != 0 && !o.json;
     RealSessionSettings settings;
-    settings.seconds = o.seconds;
+    settings.seconds = o.hand.seconds;
     settings.threads = threads;
     settings.stop    = &interrupted;
     std::signal(SIGINT, onInterrupt);
@@ -234,20 +202,20 @@ void run(const RunOptions& o)
         std::cout << printConfig(scene, o.json ? ConfigFormat::json : ConfigFormat::text);
         return;
     }
-    if (!(o.seconds > 0 && o.seconds <= 86400)) throw Error("--seconds: expected a time above 0 and up to 86400");
+    if (!(o.hand.seconds > 0 && o.hand.seconds <= 86400))
+        throw Error("--seconds: expected a time above 0 and up to 86400");
     const LoadedCloud    cloud = loadCloud(scene);
     const NeighbourIndex index(cloud.cloud.positions());
-    const HandPath       hand = handFor(o, scene, cloud.cloud, index);
+    const HandSource     hand = handFor(o.hand, scene, cloud.cloud, index);
     Deformation          deformation(cloud.cloud, index, scene); // what can fail fails before a folder is made
     const std::string    device = deformation.device().name();
     const auto           known  = warningsOf(scene, cloud.cloud, index);
     for (const std::string& sentence : known) warn(sentence);
-    HandDevice                     scripted(hand);
-    const SessionParts             parts{scene, cloud.cloud, index, deformation.solver(), scripted, {}};
+    const SessionParts             parts{scene, cloud.cloud, index, deformation.solver(), *hand.device, hand.frame};
     const auto                     recording = recordingOf(o, scene, clock, device);
     const SessionSummary           summary   = clock == SessionClock::real
                                                    ? playLive(o, threads, parts, recording.get())
-                                                   : play(parts, o.seconds, [&](const SessionSample& sample) {
+                                                   : play(parts, o.hand.seconds, [&](const SessionSample& sample) {
                                              if (recording) recording->pushWaiting(sample);
                                          });
     std::optional<RecordingReport> report;
@@ -272,15 +240,14 @@ void replay(const ReplayOptions& o)
     if (!o.device.empty()) scene.device = o.device;
     const LoadedCloud    cloud = loadCloud(scene);
     const NeighbourIndex index(cloud.cloud.positions());
-    const HandPath       hand = handOf(session);
     Deformation          deformation(cloud.cloud, index, scene);
 
     RecordedSession again = session;
     again.folder          = "the replay";
     again.samples.clear();
     const double         seconds = double(session.samples.size()) * 1e-3;
-    HandDevice           scripted(hand);
-    const SessionSummary summary = play({scene, cloud.cloud, index, deformation.solver(), scripted, {}}, seconds,
+    ReplayDevice         hand(session.samples);
+    const SessionSummary summary = play({scene, cloud.cloud, index, deformation.solver(), hand, {}}, seconds,
                                         [&](const SessionSample& sample) { again.samples.push_back(sample); });
     if (!o.compare) {
         o.json ? void(std::cout << jsonText(jsonOf(summary))) : printText(summary, deformation.device().name());
@@ -303,14 +270,19 @@ void addRunCommand(CLI::App& app)
     auto* run_ = app.add_subcommand("run", "a hand feels a scene");
     auto  o    = std::make_shared<RunOptions>();
     run_->add_option("SCENE", o->scene, "scene file, see samples/scenes")->required();
-    run_->add_option("--hand", o->hand,
+    run_->add_option("--hand", o->hand.hand,
                      "press, circle or scan about the scene's place; or a file of time [s], x, y, z [m]")
         ->capture_default_str();
-    run_->add_option("--seconds", o->seconds, "how long")->capture_default_str();
-    run_->add_option("--speed", o->speed, "of press, circle and scan, at most")->capture_default_str();
-    run_->add_option("--press-depth", o->depth,
+    run_->add_option("--seconds", o->hand.seconds, "how long")->capture_default_str();
+    run_->add_option("--speed", o->hand.speed, "of press, circle and scan, at most")->capture_default_str();
+    run_->add_option("--press-depth", o->hand.depth,
                      "of the hand below the surface [40 % of the thickness, within plate theory]");
-    run_->add_option("--reach", o->radius, "radius of the circle, half the length of the scan")->capture_default_str();
+    run_->add_option("--reach", o->hand.reach, "radius of the circle, half the length of the scan")
+        ->capture_default_str();
+    run_->add_option(
+        "--arm", o->hand.grip,
+        "the hand holds a simulated arm with a grip of this stiffness (relaxed '150 N/m', firm '500 N/m'), "
+        "so that forces move it");
     run_->add_option("--clock", o->clock,
                      "real: a tick a millisecond; virtual: as fast as it goes, the same every time")
         ->capture_default_str();

@@ -176,14 +176,6 @@ Scene sceneOf(const RecordedSession& session)
     return parseScene(session.scene, (session.folder / "session.json").string() + ": scene", session.folder);
 }
 
-HandPath handOf(const RecordedSession& session)
-{
-    std::vector<HandSample> samples;
-    samples.reserve(session.samples.size());
-    for (const SessionSample& sample : session.samples) samples.push_back({sample.time, sample.hip});
-    return HandPath(std::move(samples), session.folder.string());
-}
-
 std::optional<SessionDifference> compareSessions(const RecordedSession& a, const RecordedSession& b)
 {
     const std::size_t both = std::min(a.samples.size(), b.samples.size());

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "engine/session/hand_path.h"
 #include "engine/session/scene.h"
 #include "engine/session/session_sample.h"
 
@@ -28,10 +27,6 @@ struct RecordedSession {
 
 /// The scene as it was run. \throws Error, also if its cloud is not where it was
 [[nodiscard]] Scene sceneOf(const RecordedSession& session);
-
-/// The hand of a session: at the time of each sample exactly where it was.
-/// \throws Error if it has fewer than two samples
-[[nodiscard]] HandPath handOf(const RecordedSession& session);
 
 /// The first place where two sessions differ.
 struct SessionDifference {

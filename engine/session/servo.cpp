@@ -92,11 +92,14 @@ SessionSample ForceHalf::tick(const Beat& beat, const Hand& hand, const Held& he
     const GovernorOutput out = governor_.step(in);
 
     SessionSample sample;
-    sample.time   = beat.time;
-    sample.hip    = hand.position;
-    sample.proxy  = touch.point;
-    sample.force  = out.force;
-    sample.normal = touch.touching ? touch.outward : glm::dvec3(0);
+    sample.time        = beat.time;
+    sample.hip         = hand.position;
+    sample.hipVelocity = hand.velocity;
+    sample.device      = hand.bits();
+    sample.missed      = hand.missed;
+    sample.proxy       = touch.point;
+    sample.force       = out.force;
+    sample.normal      = touch.touching ? touch.outward : glm::dvec3(0);
     if (newest && touch.touching) {
         sample.rigidity      = newest->rigidity;
         sample.maxDeflection = newest->mostResponse * glm::length(out.force);
@@ -108,7 +111,7 @@ SessionSample ForceHalf::tick(const Beat& beat, const Hand& hand, const Held& he
         sample.patchAge   = handed->age;
     }
     constexpr double kStalePeriods = 3; // two are ordinary: one to solve, one in use [1]
-    sample.faults = static_cast<std::uint32_t>(out.fault) | static_cast<std::uint32_t>(hand.device) << 16U |
+    sample.faults                  = static_cast<std::uint32_t>(out.fault) |
                     flag(SessionFlag::stalePatch, sample.patchAge > kStalePeriods * patchPeriod_) |
                     flag(SessionFlag::beyondTable, touch.touching && handed && handed->clamped) |
                     flag(SessionFlag::noPatch, touch.touching && !handed) |

@@ -33,8 +33,7 @@ struct Touch {
     glm::dvec3    velocity{}; ///< of the proxy over its last 10 ms [m/s]
 };
 
-/// Bits of SessionSample::faults. The low eight are the governor's fault as a number, see GovernorFault; bits 16 to 23
-/// the device's, see DeviceFault.
+/// Bits of SessionSample::faults. The low eight are the governor's fault as a number, see GovernorFault.
 enum class SessionFlag : std::uint32_t {
     stalePatch   = 1U << 8,  ///< the plate's answer in use is older than three of its periods
     beyondTable  = 1U << 9,  ///< the contact lies beyond the table's reach
@@ -46,12 +45,29 @@ enum class SessionFlag : std::uint32_t {
 
 /// Where the hand is, as a device tells.
 struct Hand {
-    glm::dvec3  position{};    ///< of the HIP [m]
-    glm::dvec3  velocity{};    ///< filtered [m/s]
-    bool        homed  = true; ///< see GovernorInput
-    bool        inBox  = true;
-    int         missed = 0; ///< [1] exchanges with the device without an answer, in a row
-    DeviceFault device = DeviceFault::none;
+    glm::dvec3    position{};     ///< of the HIP [m]
+    glm::dvec3    velocity{};     ///< filtered [m/s]
+    bool          homed   = true; ///< see GovernorInput
+    bool          inBox   = true;
+    int           missed  = 0; ///< [1] exchanges with the device without an answer, in a row
+    DeviceFault   device  = DeviceFault::none;
+    std::uint32_t buttons = 0; ///< of the device, the lower 16
+
+    /// As SessionSample::device has it, and back.
+    [[nodiscard]] std::uint32_t bits() const noexcept
+    {
+        return static_cast<std::uint32_t>(device) | (homed ? kHomed : 0U) | (inBox ? kInBox : 0U) | buttons << 16U;
+    }
+    void setBits(std::uint32_t bits) noexcept
+    {
+        device  = static_cast<DeviceFault>(bits & 0xFFU);
+        homed   = (bits & kHomed) != 0;
+        inBox   = (bits & kInBox) != 0;
+        buttons = bits >> 16U;
+    }
+
+private:
+    static constexpr std::uint32_t kHomed = 1U << 8, kInBox = 1U << 9;
 };
 
 /// What the hand touches: the proxy and its pull.

@@ -19,7 +19,8 @@ struct DeviceFrame {
                 state.homed,
                 state.inBox,
                 state.missed,
-                state.fault};
+                state.fault,
+                state.buttons & 0xFFFFU};
     }
 
     /// A force of the scene, as the device takes it.
@@ -28,6 +29,10 @@ struct DeviceFrame {
         return force.rotated(glm::conjugate(sceneFromDevice));
     }
 };
+
+/// A device on a table before the object: its origin at `origin`, its y along `outward`, its x along the scene's x as
+/// far as the surface lets it.
+[[nodiscard]] DeviceFrame deviceFrame(const glm::dvec3& origin, const glm::dvec3& outward);
 
 /// What every session is made of, on whichever clock. All of it outlives the session.
 struct SessionParts {

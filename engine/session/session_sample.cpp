@@ -12,6 +12,8 @@ using S    = SessionSample;
 constexpr std::array kColumns = {
     SessionColumn{"time", Type::float64, 1, offsetof(S, time), "s", "since the session's start", false},
     SessionColumn{"hip", Type::float64, 3, offsetof(S, hip), "m", "where the hand is", false},
+    SessionColumn{"hip_velocity", Type::float64, 3, offsetof(S, hipVelocity), "m/s", "filtered, as the device tells",
+                  false},
     SessionColumn{"proxy", Type::float64, 3, offsetof(S, proxy), "m", "where the tool is held", false},
     SessionColumn{"force", Type::float64, 3, offsetof(S, force), "N", "on the hand, after the governor", false},
     SessionColumn{"normal", Type::float64, 3, offsetof(S, normal), "1",
@@ -26,6 +28,10 @@ constexpr std::array kColumns = {
                   "what the tick computed, by the wall clock", true},
     SessionColumn{"iterations", Type::int32, 1, offsetof(S, iterations), "1", "of the plate's solver", false},
     SessionColumn{"faults", Type::uint32, 1, offsetof(S, faults), "1", "one bit each", false},
+    SessionColumn{"device", Type::uint32, 1, offsetof(S, device), "1",
+                  "bits 0 to 7 its fault, 8 homed, 9 in its box, 16 to 31 buttons", false},
+    SessionColumn{"missed", Type::int32, 1, offsetof(S, missed), "1",
+                  "exchanges with the device without an answer, in a row", false},
 };
 
 } // namespace

@@ -13,6 +13,7 @@ namespace palp {
 struct SessionSample {
     double        time = 0;          ///< [s] since the session's start
     glm::dvec3    hip{};             ///< [m] where the hand is
+    glm::dvec3    hipVelocity{};     ///< [m/s] filtered, as the device tells
     glm::dvec3    proxy{};           ///< [m] where the tool is held
     glm::dvec3    force{};           ///< [N] on the hand, after the governor
     glm::dvec3    normal{};          ///< [1] of the surface at the proxy; zero without contact
@@ -23,10 +24,12 @@ struct SessionSample {
     double        patchAge      = 0; ///< of the plate's answer in use [s]
     double        tickTime      = 0; ///< what the tick computed, by the wall clock [s]
     std::int32_t  iterations    = 0; ///< of the plate's solver [1]
-    std::uint32_t faults        = 0; ///< one bit each
+    std::uint32_t faults        = 0; ///< one bit each, see SessionFlag; the low eight are the GovernorFault
+    std::uint32_t device        = 0; ///< bits 0 to 7 the DeviceFault, 8 homed, 9 in its box, 16 to 31 buttons
+    std::int32_t  missed        = 0; ///< exchanges with the device without an answer, in a row [1]
 };
 static_assert(std::is_trivially_copyable_v<SessionSample>);
-static_assert(sizeof(SessionSample) == 19 * 8 + 8, "no padding: samples are compared byte for byte");
+static_assert(sizeof(SessionSample) == 22 * 8 + 16, "no padding: samples are compared byte for byte");
 
 /// One field of a sample as a file: NAME.npy of shape (n,) or (n, components), and as columns of samples.csv.
 struct SessionColumn {

@@ -1,3 +1,4 @@
+#include "engine/session/hand_path.h"
 #include "engine/session/recording.h"
 
 #include <algorithm>
@@ -97,19 +98,20 @@ TEST(Recording, TheTableHoldsTheSameNumbersAsTheColumns)
     std::istringstream csv(contentsOf(folder / "run" / "samples.csv"));
     std::string        line;
     std::getline(csv, line);
-    EXPECT_EQ(line, "time,hip_x,hip_y,hip_z,proxy_x,proxy_y,proxy_z,force_x,force_y,force_z,normal_x,normal_y,normal_z,"
-                    "rigidity,compliance,w_max,error_estimate,patch_age,tick_time,iterations,faults");
+    EXPECT_EQ(line, "time,hip_x,hip_y,hip_z,hip_velocity_x,hip_velocity_y,hip_velocity_z,proxy_x,proxy_y,proxy_z,force_"
+                    "x,force_y,force_z,normal_x,normal_y,normal_z,"
+                    "rigidity,compliance,w_max,error_estimate,patch_age,tick_time,iterations,faults,device,missed");
     for (int i = 0; i < 100; ++i) {
         std::getline(csv, line);
         std::ranges::replace(line, ',', ' ');
         std::istringstream  words(line);
         std::vector<double> numbers;
         for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
-        ASSERT_EQ(numbers.size(), 21u);
+        ASSERT_EQ(numbers.size(), 26u);
         EXPECT_EQ(numbers[1], sampleNumber(i).hip.x);
-        EXPECT_EQ(numbers[9], sampleNumber(i).force.z);
-        EXPECT_EQ(numbers[19], sampleNumber(i).iterations);
-        EXPECT_EQ(numbers[20], sampleNumber(i).faults);
+        EXPECT_EQ(numbers[12], sampleNumber(i).force.z);
+        EXPECT_EQ(numbers[22], sampleNumber(i).iterations);
+        EXPECT_EQ(numbers[23], sampleNumber(i).faults);
     }
     EXPECT_FALSE(std::getline(csv, line));
     EXPECT_EQ(readHand(folder / "run" / "samples.csv").position(0.05), sampleNumber(50).hip) << "a hand again";

@@ -11,6 +11,9 @@ inline SessionSample sampleNumber(int i)
     SessionSample s;
     s.time          = i * 1e-3;
     s.hip           = {std::sin(i * 0.01) / 3, i * 1e-5, -0.0};
+    s.hipVelocity   = {i * 1e-4, 0, -1e-3};
+    s.device        = 1U << 8 | std::uint32_t(i % 3) << 16U;
+    s.missed        = i % 4;
     s.proxy         = {std::sin(i * 0.01) / 7, i * 1e-5, 1e-3};
     s.force         = {0, 0, i / 3.0};
     s.normal        = {0, 0.6, 0.8};
