@@ -30,6 +30,7 @@ for folder in engine/*/; do
         sed -n 's|^ *# *include *"\([^"]*\)".*|\1|p' "$file" | while read -r name; do
             case $name in
             engine/* | compute_shaders/shared/* | compute_shaders/*.spv.h | stb/*) ;;
+            device/*) [ "$level" -ge "$(level_of session)" ] || echo "$file includes \"$name\": only sessions and programs know devices" ;;
             *) echo "$file includes \"$name\": write project includes from the root" ;;
             esac
         done | grep . && bad=1
