@@ -12,6 +12,7 @@ void addConvertCommand(CLI::App& app);
 void addTouchCommand(CLI::App& app);
 void addSolveCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
+void addDoctorCommand(CLI::App& app);
 void addRunCommand(CLI::App& app); ///< run and replay
 void addBenchCommand(CLI::App& app);
 void addBenchPlateCommand(CLI::App& bench);

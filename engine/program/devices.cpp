@@ -9,13 +9,15 @@
 #include "engine/gpu/device_list.h"
 #include "engine/plate/host_kernels.h"
 #include "engine/program/commands.h"
+#include "engine/program/haptic_list.h"
 
 namespace palp {
 namespace {
 
 struct DevicesOptions {
-    bool gpu  = false;
-    bool json = false;
+    bool gpu    = false;
+    bool haptic = false;
+    bool json   = false;
 };
 
 /// What there is to compute on.
@@ -55,12 +57,12 @@ nlohmann::ordered_json jsonOf(const gpu::DeviceDescription& device, const Machin
             {"auto", device.index == machine.taken}};
 }
 
-void printJson(const Machine& machine)
+nlohmann::ordered_json jsonOf(const Machine& machine)
 {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const gpu::DeviceDescription& device : machine.gpus) list.push_back(jsonOf(device, machine));
     if (machine.host) list.push_back(jsonOf(*machine.host, machine));
-    std::cout << list.dump(2) << "\n";
+    return list;
 }
 
 void printText(const gpu::DeviceDescription& device, const Machine& machine)
@@ -75,9 +77,20 @@ void printText(const gpu::DeviceDescription& device, const Machine& machine)
               << (device.index == machine.taken ? "; auto takes it" : "") << "\n";
 }
 
+void printText(const HapticList& haptics)
+{
+    for (const DeviceListing& device : haptics.devices) {
+        std::cout << device.name << "  " << device.model << "\n";
+        if (!device.path.empty()) std::cout << "   path     " << device.path << "\n";
+        std::cout << "   usable   " << (device.usable ? "yes" : "no: " + device.why) << "\n";
+        if (!device.help.empty()) std::cout << "   help     " << device.help << "\n";
+    }
+    std::cout << "looked for with " << hapticSupport() << "\n";
+}
+
 /// Vulkan may be broken: the host is there all the same.
-/// \throws gpu::DeviceError, after printing, if only GPUs are asked for and none can be used
-void printDevices(const DevicesOptions& options)
+/// \throws gpu::DeviceError if Vulkan does not start and only GPUs are asked for
+Machine lookAtMachine(const DevicesOptions& options)
 {
     Machine machine;
     try {
@@ -88,9 +101,15 @@ void printDevices(const DevicesOptions& options)
     }
     if (const auto best = gpu::chooseDevice(machine.gpus, gpu::kAutoDevice)) machine.taken = machine.gpus[*best].index;
     if (options.gpu) machine.host.reset();
+    return machine;
+}
 
+/// \throws gpu::DeviceError, after printing, if only GPUs are asked for and none can be used
+void printComputing(const DevicesOptions& options)
+{
+    const Machine machine = lookAtMachine(options);
     if (options.json) {
-        printJson(machine);
+        std::cout << jsonText(jsonOf(machine));
     } else {
         for (const gpu::DeviceDescription& device : machine.gpus) printText(device, machine);
         if (machine.host) printText(*machine.host, machine);
@@ -101,23 +120,60 @@ void printDevices(const DevicesOptions& options)
             "no GPU can be used: install the vendor's driver, or mesa-vulkan-drivers for one in software");
 }
 
+HapticList lookForHaptics()
+{
+    HapticList haptics = listHaptics();
+    for (const std::string& trouble : haptics.troubles) std::cerr << "palpate: " << trouble << "\n";
+    return haptics;
+}
+
+void printDevices(const DevicesOptions& options)
+{
+    if (options.gpu) return printComputing(options);
+    if (options.haptic) {
+        const HapticList haptics = lookForHaptics();
+        if (options.json)
+            std::cout << jsonText(jsonOf(haptics.devices));
+        else
+            printText(haptics);
+        return;
+    }
+    if (options.json) {
+        const Machine machine = lookAtMachine(options);
+        std::cout << jsonText(
+            nlohmann::ordered_json{{"compute", jsonOf(machine)}, {"haptic", jsonOf(lookForHaptics().devices)}});
+        return;
+    }
+    std::cout << "to compute on\n";
+    printComputing(options);
+    std::cout << "\nas a hand\n";
+    printText(lookForHaptics());
+}
+
 } // namespace
 
 void addDevicesCommand(CLI::App& app)
 {
-    CLI::App*  command = app.add_subcommand("devices", "what this machine can compute on");
-    const auto options = std::make_shared<DevicesOptions>();
-    command->add_flag("--gpu", options->gpu, "only GPUs, as Vulkan sees them; exit code 4: none can be used");
-    command->add_flag("--json", options->json,
-                      "machine-readable; \"auto\" is true for the one that --device auto takes");
+    CLI::App* command = app.add_subcommand("devices", "what this machine can compute on, and what can serve as a hand");
+    const auto   options = std::make_shared<DevicesOptions>();
+    CLI::Option* gpu =
+        command->add_flag("--gpu", options->gpu, "only GPUs, as Vulkan sees them; exit code 4: none can be used");
+    command->add_flag("--haptic", options->haptic, "only haptic devices, and what stands in for one")->excludes(gpu);
+    command->add_flag(
+        "--json", options->json,
+        "machine-readable: a list with --gpu or --haptic, else an object with both, \"compute\" and \"haptic\"; "
+        "\"auto\" is true for the one that --device auto takes");
     command->footer(
         "A GPU is named by its index or part of its name; \"host\" is this processor, with native code for the\n"
         "best instruction set that it has; the environment variable PALPATE_HOST_ISA sets a limit (portable,\n"
         "avx2 or avx512). --device auto takes a GPU, discrete before integrated before virtual, else the host;\n"
         "a device in software only if it is named, by \"lavapipe\" too.\n"
+        "A haptic device is opened and let go again to see whether that works; one that cannot be used comes with\n"
+        "the reason, and with what helps. \"palpate doctor\" looks at the rest of the machine.\n"
         "Examples:\n"
         "  palpate devices\n"
-        "  palpate devices --gpu --json");
+        "  palpate devices --gpu --json\n"
+        "  palpate devices --haptic");
     command->callback([options] { printDevices(*options); });
 }
 

@@ -93,7 +93,8 @@ int main(int argumentCount, char** arguments)
                "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
                "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
                "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
-               "  palpate devices                                what this machine can compute on\n"
+               "  palpate devices                                what this machine can compute on, and feel with\n"
+               "  palpate doctor                                 what it lacks, and what helps\n"
                "  palpate bench solve                            how fast its solvers are\n"
                "  palpate bench plate --quick                    and how fast those of others\n"
                "Each command explains itself with --help.");
@@ -102,6 +103,7 @@ int main(int argumentCount, char** arguments)
     palp::addInfoCommand(app);
     palp::addConvertCommand(app);
     palp::addDevicesCommand(app);
+    palp::addDoctorCommand(app);
     palp::addRunCommand(app);
     palp::addBenchCommand(app);
     std::signal(SIGXFSZ, SIG_IGN); // a file beyond the limit on sizes is then a write that fails, with a sentence

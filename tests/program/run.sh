@@ -31,7 +31,7 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert devices 'bench solve'; do
+for command in touch solve info convert devices doctor 'bench solve'; do
     # shellcheck disable=SC2086  # a command, or one within another
     good "help of $command" $command --help; holds 'Examples:'
     mv out.txt help.txt
@@ -137,13 +137,51 @@ holds 'install libsuitesparse-dev'
 good 'list of devices' devices
 holds 'host  '
 holds 'usable   yes; auto takes it'
+holds 'arm  a simulated arm'
+holds 'looked for with '
+# Where there is a window depends on the environment, and so does what needs one.
+env -u DISPLAY -u WAYLAND_DISPLAY "$palpate" devices --haptic >out.txt 2>err.txt || complain "devices --haptic: exit $?"
+holds 'usable   no: there is no display'
+holds 'help     run it on a desktop'
+grep -q Vulkan out.txt && complain "a hand computes nothing: $(cat out.txt)" || passed=$((passed + 1))
+DISPLAY=:0 "$palpate" devices --haptic --json >out.txt 2>err.txt || complain "devices --haptic --json: exit $?"
+for key in '"name": "mouse"' '"name": "arm"' '"model"' '"path": null' '"usable": true' '"why": null' '"help": null'; do holds "$key"; done
+[ "$(head -c 1 out.txt)" = '[' ] && passed=$((passed + 1)) || complain "devices --haptic --json is no list: $(cat out.txt)"
+bad 'two sorts alone at once' 'excludes' devices --gpu --haptic
+
+# doctor [VARIABLE=VALUE...] -- WORDS of one line of its output, runs of blanks as one
+doctor() {
+    variables=
+    while [ "$1" != -- ]; do variables="$variables $1"; shift; done
+    shift
+    # shellcheck disable=SC2086  # a list of words on purpose
+    env -u DISPLAY -u WAYLAND_DISPLAY -u FALCON_FIRMWARE $variables "$palpate" doctor >out.txt 2>err.txt && [ ! -s err.txt ] || complain "doctor: exit $? $(cat err.txt)"
+    tr -s ' ' <out.txt | grep -qF -- "$*" && passed=$((passed + 1)) || complain "doctor$variables lacks '$*': $(cat out.txt)"
+}
+for part in vulkan host display 'real time' usb 'udev rule' hid 'falcon firmware' 'haptic devices'; do doctor -- " $part "; done
+doctor -- 'Embree '
+doctor -- 'missing display neither DISPLAY nor WAYLAND_DISPLAY'
+doctor DISPLAY=:0 -- 'ok display X11'
+doctor DISPLAY=:0 WAYLAND_DISPLAY=wayland-0 -- 'ok display Wayland'
+doctor -- 'warning falcon firmware FALCON_FIRMWARE is not set'
+doctor FALCON_FIRMWARE=nothing.bin -- 'missing falcon firmware FALCON_FIRMWARE names a file that cannot be read'
+doctor FALCON_FIRMWARE=plate.json -- 'which is no image'
+head -c 8000 skin.ply >image.bin
+doctor FALCON_FIRMWARE=image.bin -- 'ok falcon firmware 8000 byte'
+grep -qF 'image.bin' out.txt && complain 'a report names a file of the user' || passed=$((passed + 1))
+doctor PALPATE_HOST_ISA=portable -- 'code for portable'
+doctor PALPATE_HOST_ISA=sse9 -- '-> unset PALPATE_HOST_ISA'
+doctor VK_DRIVER_FILES=none.json VK_ICD_FILENAMES=none.json -- 'warning vulkan no device'
+doctor -- 'warning vulkan only in software: '
+good 'doctor, for scripts' doctor --json
+for key in '"palpate": "0.' '"compiler"' '"libraries"' '"system"' '"part": "real time"' '"verdict": "' '"found"' '"help"' '"name": "arm"'; do holds "$key"; done
 good 'list of GPUs' devices --gpu
 holds 'usable   yes'
 grep -q host out.txt && complain "the host is no GPU: $(cat out.txt)" || passed=$((passed + 1))
 good 'list of devices, for scripts' devices --json
 for key in '"index": 0' '"index": null' '"name": "host"' '"kind": "software"' '"kind": "host"' '"driver"' '"api"' '"memory"' '"float64"' '"usable": true' '"refusals": []' '"processor": "' \
     '"instruction_set": "' '"auto": false'; do holds "$key"; done
-tr -d ' \n' <out.txt | grep -q '"auto":true}\]$' && passed=$((passed + 1)) || complain "auto is not the host, the last of: $(cat out.txt)"
+tr -d ' \n' <out.txt | grep -q '^{"compute":.*"auto":true}\],"haptic":\[' && passed=$((passed + 1)) || complain "auto is not the host, the last of: $(cat out.txt)"
 without "$palpate" devices --gpu --json
 code=$?
 [ $code -eq 4 ] && grep -qF 'mesa-vulkan-drivers' err.txt && [ "$(cat out.txt)" = '[]' ] && passed=$((passed + 1)) ||
@@ -234,6 +272,7 @@ bad 'too few runs for quartiles' '--runs' bench plate --runs 5
 bad 'the reference as its own peer' 'reference' bench plate --device reference
 bad 'peers with an empty device' '--device' bench plate --device ''
 bad 'devices take no argument' 'voodoo' devices voodoo
+bad 'nor does the doctor' 'voodoo' doctor voodoo
 for command in 'solve plate.json' 'bench solve'; do
     # shellcheck disable=SC2086  # a command and its arguments
     "$palpate" $command --device gpu9000 >out.txt 2>err.txt

@@ -1,0 +1,207 @@
+#include "engine/program/doctor_checks.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#ifdef __linux__
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/utsname.h>
+#endif
+
+#include "device/hid/hidapi_system.h"
+#include "engine/core/contract.h"
+#include "engine/core/processor.h"
+#include "engine/gpu/device_list.h"
+#include "engine/plate/host_kernels.h"
+#include "engine/session/real_time.h"
+
+namespace palp {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kLeastFirmware = 4096, kMostFirmware = 16384; // [byte] known images have 7324 to 8492
+
+constexpr const char* kFalconRule = // USB, not HID: the Falcon is a serial bridge
+    R"(put SUBSYSTEM=="usb", ATTR{idVendor}=="0403", ATTR{idProduct}=="cb48", TAG+="uaccess" into )"
+    "/etc/udev/rules.d/70-palpate.rules";
+
+Finding vulkan()
+{
+    const std::string host = "; the host computes in the meantime";
+    try {
+        const std::vector<gpu::DeviceDescription> devices  = gpu::listDevices();
+        std::string                               software = "none";
+        for (const gpu::DeviceDescription& device : devices) {
+            if (!device.refusals.empty()) continue;
+            if (device.kind != "software")
+                return {"vulkan", Verdict::ok, device.name + " (" + device.kind + "), Vulkan " + device.api};
+            software = device.name;
+        }
+        if (software != "none")
+            return {"vulkan", Verdict::warning, "only in software: " + software,
+                    "install the driver of the graphics card" + host};
+        return {"vulkan", Verdict::warning, devices.empty() ? "no device" : "no device that can be used",
+                "install the driver of the graphics card" + host};
+    } catch (const gpu::DeviceError& error) {
+        return {"vulkan", Verdict::warning, error.what(), "install the driver of the graphics card" + host};
+    }
+}
+
+Finding host()
+{
+    try {
+        return {"host", Verdict::ok,
+                processorName() + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads, code for " +
+                    std::string(hostVariant().isa)};
+    } catch (const Error& error) {
+        return {"host", Verdict::missing, error.what(), "unset PALPATE_HOST_ISA"};
+    }
+}
+
+Finding display()
+{
+    if (!displayName().empty()) return {"display", Verdict::ok, displayName()};
+    return {"display", Verdict::missing, "neither DISPLAY nor WAYLAND_DISPLAY is set",
+            "run it on a desktop; without a window there are \"palpate run\" and \"palpate touch\""};
+}
+
+#ifdef __linux__
+std::string limitText(int resource, rlim_t unit, const char* unitName)
+{
+    rlimit limit{};
+    if (getrlimit(resource, &limit) != 0) return "unknown";
+    return limit.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(limit.rlim_cur / unit) + unitName;
+}
+#endif
+
+Finding realTime()
+{
+#ifdef __linux__
+    const std::string limits = "RLIMIT_RTPRIO " + limitText(RLIMIT_RTPRIO, 1, "") + ", RLIMIT_MEMLOCK " +
+                               limitText(RLIMIT_MEMLOCK, 1024, " KiB");
+    std::string refused;
+    std::thread([&refused] { refused = askForRealTime(); }).join(); // its priority ends with it
+    munlockall();
+    if (refused.empty()) return {"real time", Verdict::ok, "SCHED_FIFO and mlockall granted; " + limits};
+    return {"real time", Verdict::warning, limits, refused};
+#else
+    return {"real time", Verdict::warning, "not on this system", "use Linux for haptics at 1 kHz"};
+#endif
+}
+
+Finding usb()
+{
+    std::error_code failed;
+    const auto      buses = std::distance(fs::directory_iterator("/dev/bus/usb", failed), fs::directory_iterator());
+    if (!failed && buses > 0) return {"usb", Verdict::ok, std::to_string(buses) + " buses in /dev/bus/usb"};
+    return {"usb", Verdict::missing, "there is no /dev/bus/usb",
+            "in a container pass it on, such as by --device /dev/bus/usb; else the kernel has no USB"};
+}
+
+/// Whether some rule names the product, given in lower case; rules may spell it in any.
+bool hasUdevRule(const std::string& product)
+{
+    for (const char* folder :
+         {"/etc/udev/rules.d", "/run/udev/rules.d", "/usr/lib/udev/rules.d", "/lib/udev/rules.d"}) {
+        std::error_code failed;
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+            if (entry.path().extension() != ".rules") continue;
+            std::ifstream file(entry.path());
+            std::string   text(std::istreambuf_iterator<char>(file), {});
+            std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+            if (text.find(product) != std::string::npos) return true;
+        }
+    }
+    return false;
+}
+
+Finding udevRule()
+{
+    if (hasUdevRule("cb48")) return {"udev rule", Verdict::ok, "one for the Falcon is installed"};
+    return {"udev rule", Verdict::warning, "none for the Falcon; only an administrator can open one", kFalconRule};
+}
+
+Finding hid(const HapticList& haptics)
+{
+    if (!hasHidSupport())
+        return {"hid", Verdict::missing, hidSupport(), "install libhidapi-dev and build Palpate anew"};
+    if (!haptics.troubles.empty()) return {"hid", Verdict::missing, haptics.troubles.front()};
+    for (const DeviceListing& device : haptics.devices)
+        if ((device.name == "spacemouse" || device.name == "bridge") && !device.usable)
+            return {"hid", Verdict::missing, device.why, device.help};
+    return {"hid", Verdict::ok, hidSupport()};
+}
+
+Finding firmware()
+{
+    const char* path = std::getenv("FALCON_FIRMWARE");
+    if (!path || !*path)
+        return {"falcon firmware", Verdict::warning,
+                "FALCON_FIRMWARE is not set; a Falcon that was just plugged in needs it",
+                "export FALCON_FIRMWARE=FILE, the image that came with the device's own driver"};
+    std::error_code      failed;
+    const std::uintmax_t size = fs::file_size(path, failed);
+    if (failed || !std::ifstream(path))
+        return {"falcon firmware", Verdict::missing, "FALCON_FIRMWARE names a file that cannot be read",
+                "export FALCON_FIRMWARE=FILE, one that you may read"};
+    const std::string bytes = std::to_string(size) + " byte";
+    if (size < kLeastFirmware || size > kMostFirmware)
+        return {"falcon firmware", Verdict::missing, "FALCON_FIRMWARE names a file of " + bytes + ", which is no image",
+                "images have 4096 to 16384 byte"};
+    return {"falcon firmware", Verdict::ok, bytes};
+}
+
+Finding hapticDevices(const HapticList& haptics)
+{
+    std::string usable;
+    for (const DeviceListing& device : haptics.devices)
+        if (device.usable && !device.path.empty()) usable += (usable.empty() ? "" : ", ") + device.model;
+    if (!usable.empty()) return {"haptic devices", Verdict::ok, usable};
+    const auto refused = std::ranges::find_if(
+        haptics.devices, [](const DeviceListing& device) { return !device.usable && !device.path.empty(); });
+    if (refused != haptics.devices.end())
+        return {"haptic devices", Verdict::missing, refused->model + ": " + refused->why, refused->help};
+    return {"haptic devices", Verdict::warning, "none is plugged in; the mouse and the simulated arm stand in"};
+}
+
+} // namespace
+
+const char* name(Verdict verdict) noexcept
+{
+    constexpr std::array<const char*, 3> kNames{"ok", "warning", "missing"};
+    return kNames[std::size_t(verdict)];
+}
+
+std::vector<Finding> examine(const HapticList& haptics)
+{
+    std::vector<Finding> findings{realTime()}; // first: drivers of GPUs map memory that would be locked as well
+    for (const Finding& finding :
+         {vulkan(), host(), display(), usb(), udevRule(), hid(haptics), firmware(), hapticDevices(haptics)})
+        findings.push_back(finding);
+    return findings;
+}
+
+Make make()
+{
+    std::string system = "unknown";
+#ifdef __linux__
+    utsname names{};
+    if (uname(&names) == 0) system = std::string(names.sysname) + " " + names.release + " " + names.machine;
+#endif
+#ifdef __clang__
+    const std::string compiler = "Clang " __clang_version__;
+#else
+    const std::string compiler = "GCC " __VERSION__;
+#endif
+    return {PALPATE_VERSION, compiler, PALPATE_LIBRARIES ", " + hapticSupport(), system};
+}
+
+} // namespace palp
