@@ -1,0 +1,122 @@
+#include "device/falcon/falcon_device.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "engine/core/real_time.h"
+
+namespace palp {
+namespace {
+
+constexpr double kHostTooSlow = 0.1; ///< [s] HapticDevice::exchange
+constexpr double kMostWait    = 0.1; ///< [s] that a step follows the servo's clock; beyond it the clocks are set anew
+
+double seconds(std::chrono::steady_clock::duration duration)
+{
+    return std::chrono::duration<double>(duration).count();
+}
+
+} // namespace
+
+FalconDevice::FalconDevice(FalconLinkOpener open, const FalconDeviceSettings& settings)
+    : open_(std::move(open)), settings_(settings)
+{
+    info_.model            = "Novint Falcon";
+    info_.path             = settings.path;
+    info_.serial           = settings.serial;
+    info_.workspaceRadius  = settings.loop.workspaceRadius;
+    info_.maximumForce     = 8;    // CHAI3D's table; the maker says "more than 8.9 N" for short
+    info_.maximumStiffness = 1000; // half of where the released arm starts to swing, at 1 kHz and a sample of delay
+    info_.maximumDamping   = 1.5;  // so that 1000 N/m (T/2 + delay) and it stay below the arm's own 3.2
+    info_.buttons          = 4;
+    info_.needsHoming      = true;
+}
+
+void FalconDevice::open()
+{
+    if (line_) return;
+    struct Rearm {
+        std::atomic<bool>& cancel;
+        ~Rearm() { cancel = false; }
+    } rearm{cancel_};
+    StartedFalcon started = startFalcon(open_, settings_.firmware, settings_.start, &cancel_);
+    auto          line = std::make_unique<Line>(std::make_unique<FalconLoop>(std::move(started.link), settings_.loop));
+    if (settings_.pace == FalconPace::thread)
+        line->thread = std::thread(converse, std::ref(*line), settings_.asksForRealTime);
+    line_ = std::move(line);
+}
+
+void FalconDevice::close() noexcept
+{
+    if (!line_) return;
+    line_->isOver = true;
+    if (line_->thread.joinable()) line_->thread.join();
+    line_.reset(); // its FalconLoop ends with zero force
+}
+
+HapticState FalconDevice::exchange(const GovernedForce& force, double now) noexcept
+{
+    if (!line_) return {};
+    const FalconRequest request{force.newtons(), lights_, DeviceFault::none};
+    if (settings_.pace == FalconPace::stepped) return step(request, now);
+    line_->requests.draft() = request;
+    line_->requests.publish();
+    return newest(now);
+}
+
+/// The I/O thread: the newest force, for as long as the servo keeps asking.
+void FalconDevice::converse(Line& line, bool asksForRealTime) noexcept
+{
+    // Refusal is no news to the user: the servo asked before and said so.
+    if (asksForRealTime) static_cast<void>(askForRealTime());
+    Clock::time_point asked = Clock::now();
+    while (!line.isOver) {
+        if (line.requests.take()) asked = Clock::now();
+        FalconRequest request = line.requests.held() ? *line.requests.held() : FalconRequest{};
+        if (line.requests.held() && seconds(Clock::now() - asked) > kHostTooSlow) {
+            request.force = {};
+            request.host  = DeviceFault::hostTooSlow;
+        }
+        const HapticState& state = line.loop->exchange(request);
+        line.answers.draft()     = {state, Clock::now(), line.loop->now() - state.time};
+        line.answers.publish();
+        if (state.fault == DeviceFault::unplugged) return;
+    }
+}
+
+HapticState FalconDevice::newest(double now) noexcept
+{
+    line_->answers.take();
+    const Answer* answer = line_->answers.held();
+    HapticState   state;
+    state.fault = DeviceFault::startingUp;
+    if (!answer) return state;
+    const double old = seconds(Clock::now() - answer->time);
+    state            = answer->state;
+    state.time       = now - old - answer->age;
+    // The thread hangs in a write, or got no processor.
+    if (state.fault == DeviceFault::none && old > kHostTooSlow) state.fault = DeviceFault::silent;
+    return state;
+}
+
+/// Follows the servo's clock, then makes the round trip.
+HapticState FalconDevice::step(FalconRequest request, double now) noexcept
+{
+    FalconLoop&  loop   = *line_->loop;
+    const double ahead  = now - line_->offset - loop.now();
+    const bool   isEven = std::isfinite(now) && !line_->isFirst && ahead <= kMostWait;
+    if (!line_->isFirst && !(now - line_->last <= kHostTooSlow)) request.host = DeviceFault::hostTooSlow;
+    if (isEven)
+        loop.listen(now - line_->offset);
+    else if (std::isfinite(now))
+        line_->offset = now - loop.now();
+    line_->isFirst    = false;
+    line_->last       = now;
+    HapticState state = loop.exchange(request);
+    state.time += line_->offset;
+    return state;
+}
+
+} // namespace palp

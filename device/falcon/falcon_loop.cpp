@@ -1,0 +1,205 @@
+#include "device/falcon/falcon_loop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "device/falcon/falcon_driver.h"
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+constexpr double      kStale = 10e-3; ///< [s] age of an answer from which on no force goes out: half the shortest hold
+constexpr double      kRise  = 20e-3; ///< [s] in which a force comes on after a break, as long as the governor's fall
+constexpr int         kMostMissed  = 20;  ///< [1] DeviceFault::silent
+constexpr double      kMostSilence = 0.1; ///< [s] the same
+constexpr int         kGoodAgain   = 20;  ///< [1] good answers after which a fault of the line is over
+constexpr int         kPatience    = 4;   ///< [1] misses after which packets go out only every ...
+constexpr double      kPause   = 10e-3;   ///< [s] ... so often, so that they do not pile up in a line that stands still
+constexpr double      kFastest = 4;       ///< [m/s] of a grip; the governor stops at 1.2
+constexpr double      kSlip    = 1e-3;    ///< [m] that answers may come closer than they were asked for, at kFastest
+constexpr double      kJump    = 5e-3;    ///< [m] from one answer to the next, beyond which that is no velocity
+constexpr std::size_t kRead    = 512;     ///< [byte] at once
+
+bool isFinite(const glm::dvec3& v)
+{
+    return std::isfinite(v.x + v.y + v.z);
+}
+
+} // namespace
+
+FalconLoop::FalconLoop(std::unique_ptr<FalconLink> link, const FalconLoopSettings& settings)
+    : link_(std::move(link)), settings_(settings), kinematics_(settings.geometry),
+      motors_(kinematics_, settings.countsPerTorque), window_(settings.velocityWindow)
+{
+    const auto demand = [](const char* what, double value, double least, double most) {
+        if (!(value >= least && value <= most))
+            throw Error("Falcon: " + std::string(what) + " must be from " + std::to_string(least) + " to " +
+                        std::to_string(most) + ", found " + std::to_string(value));
+    };
+    demand("workspaceRadius", settings.workspaceRadius, 0.01, 0.044);
+    demand("velocityWindow", settings.velocityWindow, 0, 0.1);
+    demand("answerTimeout", settings.answerTimeout, 1e-3, 20e-3);
+    sent_ = answered_ = link_->now();
+    state_.fault      = DeviceFault::startingUp;
+}
+
+const HapticState& FalconLoop::exchange(const FalconRequest& request) noexcept
+{
+    if (line_ == DeviceFault::unplugged) return state_;
+    try {
+        collect(0);
+        const double now = link_->now();
+        state_.fault     = line_ != DeviceFault::none ? line_ : request.host;
+        const bool   mustLetGo = now - answered_ >= kStale && command_.motors != FalconCommand{}.motors;
+        if (state_.missed < kPatience || now - sent_ >= kPause || mustLetGo) send(request, now);
+
+        bool         isAnswered = false;
+        const double until      = now + settings_.answerTimeout;
+        for (double left = until - link_->now(); left > 0 && !isAnswered; left = until - link_->now())
+            isAnswered = collect(left);
+        if (!isAnswered) miss();
+    } catch (const std::exception&) { // LinkLost, or no memory for the link
+        lose();
+    }
+    return state_;
+}
+
+void FalconLoop::listen(double until) noexcept
+{
+    if (line_ == DeviceFault::unplugged) return;
+    try {
+        for (double left = until - link_->now(); left > 0; left = until - link_->now()) collect(left);
+    } catch (const std::exception&) {
+        lose();
+    }
+}
+
+FalconLoop::~FalconLoop()
+{
+    if (line_ == DeviceFault::unplugged) return;
+    command_.homing = false;
+    command_.lights = settings_.showsState ? std::uint8_t(DeviceLight::none) : command_.lights;
+    releaseMotors(*link_, command_);
+}
+
+void FalconLoop::send(const FalconRequest& request, double now)
+{
+    command_.motors = drive(request, now).motors;
+    command_.homing = !state_.homed;
+    command_.lights = lights(request);
+    sent_           = now;
+    link_->write(encode(command_));
+}
+
+FalconDrive FalconLoop::drive(const FalconRequest& request, double now) noexcept
+{
+    if (!isFinite(request.force) && state_.fault == DeviceFault::none) state_.fault = DeviceFault::badForce;
+    const glm::dvec3 force = allowed(request, now);
+    if (force == glm::dvec3(0)) return {};
+    return motors_.drive(state_.position + FalconKinematics::kMiddle, force);
+}
+
+/// [N] what of the wanted force may act.
+glm::dvec3 FalconLoop::allowed(const FalconRequest& request, double now) noexcept
+{
+    const bool isOpen = state_.fault == DeviceFault::none && state_.homed && state_.inBox && now - answered_ < kStale;
+    gain_             = isOpen ? std::min(1.0, gain_ + (now - sent_) / kRise) : 0;
+    return isOpen ? gain_ * request.force : glm::dvec3(0);
+}
+
+std::uint8_t FalconLoop::lights(const FalconRequest& request) const noexcept
+{
+    if (!settings_.showsState) return request.lights;
+    if (!state_.homed) return std::uint8_t(DeviceLight::red);
+    return std::uint8_t(state_.fault == DeviceFault::none && state_.inBox ? DeviceLight::green : DeviceLight::blue);
+}
+
+/// Reads once; of several answers only the newest counts. \return whether there was one, and it was believed
+bool FalconLoop::collect(double timeout)
+{
+    std::array<std::uint8_t, kRead> bytes;
+    parser_.feed(std::span(bytes).first(link_->read(bytes, timeout)));
+    std::optional<FalconReply> newest;
+    while (const auto reply = parser_.next()) newest = reply;
+    return newest && accept(*newest);
+}
+
+bool FalconLoop::accept(const FalconReply& reply) noexcept
+{
+    const double now = link_->now();
+    disbelief_       = false;
+    if (reply.homed() != state_.homed) { // the encoders jump
+        hasPlace_ = false;
+        gain_     = 0;
+    }
+    const bool isGood = reply.homed() && place(reply, now);
+    if (!isGood && disbelief_) return false;
+
+    state_.homed   = reply.homed();
+    state_.inBox   = isGood && glm::length(state_.position) <= settings_.workspaceRadius;
+    state_.buttons = reply.grip;
+    state_.time    = now;
+    state_.missed  = 0;
+    ++state_.sequence;
+    answered_ = now;
+    skipped_  = parser_.skipped();
+    good_     = isGood || !reply.homed() ? good_ + 1 : 0;
+    unsolved_ = isGood || !reply.homed() ? 0 : unsolved_ + 1;
+    if (!isGood) {
+        state_.velocity = {};
+        hasPlace_       = false;
+    }
+    if (unsolved_ > kMostMissed && line_ == DeviceFault::none) line_ = DeviceFault::kinematics;
+    if (good_ >= kGoodAgain) line_ = DeviceFault::none;
+    if (line_ != DeviceFault::none) state_.fault = line_;
+    return true;
+}
+
+/// Position and velocity of a homed arm. \return false: there is no such position, or it is not believed (disbelief_)
+bool FalconLoop::place(const FalconReply& reply, double now) noexcept
+{
+    disbelief_          = false;
+    const auto angles   = kinematics_.angles(reply.encoders);
+    const auto position = kinematics_.position(angles, state_.position + FalconKinematics::kMiddle);
+    if (!position) return false;
+    const glm::dvec3 here  = *position - FalconKinematics::kMiddle;
+    const double     moved = glm::length(here - state_.position);
+    if (hasPlace_ && moved > kSlip + kFastest * (now - placed_)) {
+        disbelief_ = true;
+        return false;
+    }
+    if (!hasPlace_ || moved > kJump) window_.restart();
+    window_.add(now, here);
+    state_.position = here;
+    state_.velocity = window_.velocity();
+    placed_         = now;
+    hasPlace_       = true;
+    return true;
+}
+
+void FalconLoop::miss() noexcept
+{
+    ++state_.missed;
+    good_ = 0;
+    if (state_.missed <= kMostMissed && link_->now() - answered_ <= kMostSilence) return;
+    const bool isNonsense = disbelief_ || parser_.skipped() != skipped_;
+    line_ = state_.fault = isNonsense ? DeviceFault::garbled : DeviceFault::silent;
+    hasPlace_            = false;
+}
+
+void FalconLoop::lose() noexcept
+{
+    line_ = state_.fault = DeviceFault::unplugged;
+    ++state_.missed;
+    state_.velocity = {};
+    gain_           = 0;
+}
+
+} // namespace palp

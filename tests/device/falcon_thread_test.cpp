@@ -1,0 +1,224 @@
+// A Falcon's own thread, in real time: what waits for whom, and what happens when one side stops. No test here asks how
+// fast it goes: the machine may be busy.
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "device/falcon/falcon_device.h"
+#include "engine/core/contract.h"
+#include "tests/device/falcon_bench.h"
+
+namespace palp {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+/// The emulator on steady time, for several threads.
+class RealTimeFalcon {
+public:
+    explicit RealTimeFalcon(const Ft232EmulatorSettings& settings, EmulatedFalcon::Arm arm = {})
+        : emulator_(settings, std::move(arm))
+    {
+    }
+
+    /// Lets the emulator catch up, then lets nobody else at it.
+    template <class Action>
+    auto with(const Action& action)
+    {
+        const std::lock_guard lock(mutex_);
+        emulator_.waitUntil(now());
+        return action(emulator_);
+    }
+
+    [[nodiscard]] double now() const { return std::chrono::duration<double>(Clock::now() - start_).count(); } // [s]
+
+    std::unique_ptr<FalconLink> connect()
+    {
+        return with([this](Ft232Emulator& emulator) { return std::make_unique<Link>(*this, emulator.connect()); });
+    }
+
+    [[nodiscard]] bool pushes()
+    {
+        return with([](Ft232Emulator& it) { return it.falcon().motors() != std::array<std::int16_t, 3>{}; });
+    }
+
+private:
+    struct Link final : FalconLink {
+        RealTimeFalcon&             falcon;
+        std::unique_ptr<FalconLink> link;
+
+        Link(RealTimeFalcon& f, std::unique_ptr<FalconLink> l) : falcon(f), link(std::move(l)) {}
+
+        double now() const noexcept override { return falcon.now(); }
+        void   control(FtdiRequest request, std::uint16_t value) override
+        {
+            falcon.with([&](Ft232Emulator&) { link->control(request, value); });
+        }
+        void write(std::span<const std::uint8_t> bytes) override
+        {
+            falcon.with([&](Ft232Emulator&) { link->write(bytes); });
+        }
+        std::size_t read(std::span<std::uint8_t> bytes, double timeout) override
+        {
+            for (const double until = now() + timeout;;) {
+                const std::size_t count = falcon.with([&](Ft232Emulator&) { return link->read(bytes, 0); });
+                if (count > 0 || now() >= until) return count;
+                std::this_thread::sleep_for(100us);
+            }
+        }
+    };
+
+    Ft232Emulator     emulator_;
+    std::mutex        mutex_;
+    Clock::time_point start_ = Clock::now();
+};
+
+struct Servo {
+    RealTimeFalcon                falcon;
+    std::unique_ptr<FalconDevice> device;
+    GovernedForce                 force{};
+    HapticState                   state{};
+
+    explicit Servo(const Ft232EmulatorSettings& falconSettings = runningFalcon(), EmulatedFalcon::Arm arm = {})
+        : falcon(falconSettings, std::move(arm))
+    {
+        FalconDeviceSettings settings;
+        settings.asksForRealTime = false; // a test must not outrank what else runs here
+        device                   = std::make_unique<FalconDevice>([this] { return falcon.connect(); }, settings);
+    }
+
+    /// Ticks until it is so. \return whether it came to be within 5 s, which is ages
+    bool until(const std::function<bool()>& isSo)
+    {
+        for (const double end = falcon.now() + 5; falcon.now() < end;) {
+            state = device->exchange(force, falcon.now());
+            if (isSo()) return true;
+            std::this_thread::sleep_for(1ms);
+        }
+        return false;
+    }
+};
+
+Ft232EmulatorSettings neverLettingGo()
+{
+    Ft232EmulatorSettings settings = runningFalcon();
+    settings.falcon.holdTime       = 1e6; // s
+    return settings;
+}
+
+TEST(FalconThread, CarriesForcesOutAndAnswersIn)
+{
+    Servo servo(runningFalcon(), [](const glm::dvec3&, double) { return glm::dvec3(0.01, 0, 0); });
+    EXPECT_EQ(servo.device->exchange({}, 0).fault, DeviceFault::closed);
+    servo.device->open();
+    servo.force = governed({1, 0, 0});
+
+    ASSERT_TRUE(servo.until([&] { return servo.state.sequence >= 100; }));
+    ASSERT_TRUE(servo.until([&] { return servo.falcon.pushes(); }));
+
+    EXPECT_NEAR(servo.state.position.x, 0.01, 55e-6) << "a count";
+    EXPECT_TRUE(servo.state.homed && servo.state.inBox);
+    const double called = servo.falcon.now();
+    const double time   = servo.device->exchange(servo.force, 100).time;
+    EXPECT_LT(time, 100);
+    EXPECT_GT(time, 100 - 1 - (servo.falcon.now() - called)) << "by the servo's clock";
+}
+
+TEST(FalconThread, NotAskedFor100msItEndsTheForceByItself)
+{
+    Servo servo(neverLettingGo());
+    servo.device->open();
+    servo.force = governed({1, 0, 0});
+    ASSERT_TRUE(servo.until([&] { return servo.falcon.pushes(); }));
+
+    const double left = servo.falcon.now();
+    while (servo.falcon.pushes() && servo.falcon.now() < left + 5) std::this_thread::sleep_for(1ms);
+    const double ended = servo.falcon.now() - left;
+
+    EXPECT_GT(ended, 0.09) << "not before; a millisecond or so of polling";
+    EXPECT_LT(ended, 5);
+    EXPECT_TRUE(servo.until([&] { return servo.state.fault == DeviceFault::hostTooSlow; }));
+    EXPECT_TRUE(servo.until([&] { return servo.state.fault == DeviceFault::none && servo.falcon.pushes(); }));
+}
+
+TEST(FalconThread, UnpluggedItSaysSoAndCloses)
+{
+    Servo servo;
+    servo.device->open();
+    servo.falcon.with([](Ft232Emulator& it) { it.cause({LinkTroubleKind::unplug, it.now() + 0.05}); });
+
+    EXPECT_TRUE(servo.until([&] { return servo.state.fault == DeviceFault::unplugged; }));
+    servo.device->close();
+    EXPECT_EQ(servo.device->exchange({}, 0).fault, DeviceFault::closed);
+}
+
+TEST(FalconThread, SilentItSaysSo)
+{
+    Servo servo;
+    servo.device->open();
+    ASSERT_TRUE(servo.until([&] { return servo.state.sequence > 0; }));
+    servo.falcon.with([](Ft232Emulator& it) { it.cause({LinkTroubleKind::silence, it.now()}); });
+
+    EXPECT_TRUE(servo.until([&] { return servo.state.fault == DeviceFault::silent; }));
+    EXPECT_GT(servo.state.missed, 20);
+}
+
+TEST(FalconThread, DestroyedInMidForceItLeavesNone)
+{
+    Servo servo(neverLettingGo());
+    servo.device->open();
+    servo.force = governed({1, 0, 0});
+    ASSERT_TRUE(servo.until([&] { return servo.falcon.pushes(); }));
+
+    servo.device.reset();
+    std::this_thread::sleep_for(5ms); // three packets on the wire
+
+    EXPECT_FALSE(servo.falcon.pushes());
+}
+
+TEST(FalconThread, OpensAndClosesManyTimes)
+{
+    Servo servo;
+    for (int n = 0; n < 20; ++n) {
+        servo.device->open();
+        EXPECT_TRUE(servo.until([&] { return servo.state.sequence >= 3; })) << n;
+        servo.device->close();
+    }
+}
+
+TEST(FalconThread, AnotherThreadCancelsTheStart)
+{
+    Servo                servo(Ft232EmulatorSettings{}); // without firmware
+    FalconDeviceSettings settings;
+    settings.firmware = std::vector<std::uint8_t>(8492, 7);
+    servo.falcon.with([](Ft232Emulator& it) { it.cause({LinkTroubleKind::silence, 0}); });
+    FalconDevice device([&] { return servo.falcon.connect(); }, settings);
+
+    std::string complaint;
+    std::thread opener([&] {
+        try {
+            device.open();
+        } catch (const Error& error) {
+            complaint = error.what();
+        }
+    });
+    std::this_thread::sleep_for(50ms);
+    const double cancelled = servo.falcon.now();
+    device.cancelOpen();
+    opener.join();
+
+    EXPECT_NE(complaint.find("cancelled"), std::string::npos) << complaint;
+    EXPECT_LT(servo.falcon.now() - cancelled, 2) << "0.1 s, were the machine idle; unheeded it takes 16";
+}
+
+} // namespace
+} // namespace palp
