@@ -18,9 +18,9 @@
 #include "device/hid/hidapi_system.h"
 #include "engine/core/contract.h"
 #include "engine/core/processor.h"
+#include "engine/core/real_time.h"
 #include "engine/gpu/device_list.h"
 #include "engine/plate/host_kernels.h"
-#include "engine/session/real_time.h"
 
 namespace palp {
 namespace {
