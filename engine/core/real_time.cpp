@@ -17,9 +17,10 @@ std::string askForRealTime()
     constexpr int kPriority = 80; // above the kernel's threads for interrupts, which have 50
     sched_param   wanted{};
     wanted.sched_priority = kPriority;
-    const int  scheduling = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
-    const bool locked     = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
-    const int  locking    = locked ? 0 : errno;
+    const int scheduling  = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
+    // Of the whole program, so once is enough; it may take a quarter of a second.
+    static const int locking = mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
+    const bool       locked  = locking == 0;
     if (scheduling == 0 && locked) return {};
     std::string refused;
     if (scheduling != 0) refused = std::string("SCHED_FIFO (") + std::strerror(scheduling) + ")";

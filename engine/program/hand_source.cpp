@@ -26,10 +26,14 @@ double metres(const std::string& text, const std::string& option)
 }
 
 /// "50 mm/s" or "0.05".
-double metresPerSecond(std::string text, const std::string& option)
+double metresPerSecond(const std::string& text, const std::string& option)
 {
-    if (text.ends_with("/s")) text.resize(text.size() - 2);
-    return metres(text, option);
+    std::string length = text;
+    if (length.ends_with("/s")) length.resize(length.size() - 2);
+    const double value = parseQuantity(length, Dimension::length, option);
+    if (value > 0 && value <= HandPath::kFastest) return value;
+    throw Error(option + ": expected a speed above 0 and up to " + formatQuantity(HandPath::kFastest, "m/s") +
+                ", found \"" + text + "\"");
 }
 
 /// Of the thickness: the deflection is at most some tenths more than the hand's depth, so theory holds [1].
@@ -54,9 +58,9 @@ HandPath pathFor(const HandOptions& o, const Scene& scene, const PointCloud& clo
 SimulatedHand gripOf(const std::string& text)
 {
     std::string number = text;
-    if (const auto unit = number.find("N/m"); unit != std::string::npos) number.erase(unit);
+    if (number.ends_with("N/m")) number.resize(number.size() - 3);
     SimulatedHand hand;
-    hand.stiffness = parseQuantity(number, Dimension::none, "--arm");
+    hand.stiffness = parseQuantity(number, Dimension::none, "--arm (N/m)");
     if (!(hand.stiffness > 0 && hand.stiffness <= 5000))
         throw Error("--arm: expected the stiffness of a grip, above 0 and up to 5000 N/m (150 is relaxed, 500 firm), "
                     "found \"" +

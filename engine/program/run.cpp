@@ -31,7 +31,8 @@ namespace {
 struct RunOptions {
     HandOptions                                     hand;
     std::string                                     scene, record, clock = "real", threads = "servo";
-    std::map<std::string, std::string, std::less<>> flags; ///< of the scene's keys, as given
+    std::map<std::string, std::string, std::less<>> flags;   ///< of the scene's keys, as given
+    std::string                                     command; ///< as a shell would take it again
     bool                                            printConfig = false, json = false;
 };
 
@@ -58,6 +59,7 @@ nlohmann::json jsonOf(const SessionSummary& s)
             {"stale_ticks", s.staleTicks},
             {"ticks_beyond_table", s.beyondTable},
             {"ticks_beyond_theory", s.beyondTheory},
+            {"ticks_without_patch", s.patchless},
             {"max_force_N", s.mostForce},
             {"max_depth_m", s.mostDepth},
             {"compliance_min_m_per_N", s.leastCompliance},
@@ -98,6 +100,9 @@ void printText(const SessionSummary& s, const std::string& device)
     if (s.beyondTable > 0)
         warn("the contact left the table's reach in " + std::to_string(s.beyondTable) +
              " ticks: a larger table_size or deformation_rate follows faster hands");
+    if (s.staleTicks > 0)
+        warn(std::to_string(s.staleTicks) + " ticks had a patch older than three of its periods: a smaller grid, "
+                                            "deformation_rate or table_size is solved in time");
     if (s.failedPatches > 0) warn(std::to_string(s.failedPatches) + " patches could not be solved: " + s.why);
 }
 
@@ -139,11 +144,15 @@ void onInterrupt(int signal)
 /// One line that is written over and over: what the hand feels, and how fast.
 void showLine(const SessionView& view)
 {
-    const SessionSample& s = view.sample;
-    std::fprintf(stderr, "\r%6.1f s  %8s  %8s deep  a tick every %8s  a patch in %8s\033[K", s.time,
+    const SessionSample& s     = view.sample;
+    const auto           fault = static_cast<GovernorFault>(s.faults & 0xFFU);
+    const bool           stale = (s.faults & static_cast<std::uint32_t>(SessionFlag::stalePatch)) != 0;
+    std::fprintf(stderr, "\r%6.1f s  %8s  %8s deep  a tick every %8s  a patch in %8s%s%s%s\033[K", s.time,
                  formatQuantity(glm::length(s.force), "N").c_str(),
                  formatQuantity(glm::length(s.proxy - s.hip), "m").c_str(),
-                 formatQuantity(view.loopPeriod, "s").c_str(), formatQuantity(view.solveTime, "s").c_str());
+                 formatQuantity(view.loopPeriod, "s").c_str(), formatQuantity(view.solveTime, "s").c_str(),
+                 stale ? "  stale" : "", fault == GovernorFault::none ? "" : "  no force, button 0 resets: ",
+                 fault == GovernorFault::none ? "" : name(fault));
 }
 
 /// The same in real time; the line shows what the hand feels.
@@ -161,6 +170,31 @@ SessionSummary playLive(const RunOptions& o, SessionThreads threads, const Sessi
     if (line) std::fprintf(stderr, "\r\033[K");
     if (!warning.empty()) warn(warning);
     return summary;
+}
+
+/// The command line that these options are, quoted for a shell.
+std::string commandOf(const CLI::App& command)
+{
+    const auto quoted = [](const std::string& text) {
+        if (text.find_first_of(" '\"\\$*?&;|<>()#~") == std::string::npos) return text;
+        std::string result = "'";
+        for (const char c : text) {
+            if (c == '\'')
+                result.append("'\\''");
+            else
+                result.push_back(c);
+        }
+        result.push_back('\'');
+        return result;
+    };
+    std::string line = "palpate " + command.get_name();
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->count() == 0) continue;
+        if (!option->get_positional()) line.append(" --").append(option->get_lnames().front());
+        if (option->get_items_expected_max() == 0) continue; // a flag
+        for (const std::string& value : option->results()) line.append(" ").append(quoted(value));
+    }
+    return line;
 }
 
 SessionClock clockNamed(const std::string& text)
@@ -185,10 +219,10 @@ std::unique_ptr<Recording> recordingOf(const RunOptions& o, const Scene& scene, 
     if (o.record.empty()) return nullptr;
     SessionInfo info;
     info.scene    = scene;
-    info.versions = {{"palpate", PALPATE_VERSION}};
+    info.versions = {{"palpate", PALPATE_VERSION}, {"compiler", __VERSION__}, {"libraries", PALPATE_LIBRARIES}};
     info.device   = device;
     info.clock    = clock;
-    info.command  = "palpate run " + o.scene + " --hand " + o.hand.hand;
+    info.command  = o.command;
     return std::make_unique<Recording>(o.record, info);
 }
 
@@ -316,6 +350,7 @@ void addRunCommand(CLI::App& app)
                  "  palpate run samples/scenes/skin_wart.json --print-config");
     run_->callback([run_, o] {
         refuseEmptyValues(*run_);
+        o->command = commandOf(*run_);
         run(*o);
     });
 

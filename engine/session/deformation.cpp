@@ -3,13 +3,33 @@
 #include <algorithm>
 
 #include "engine/core/contract.h"
+#include "engine/force/ahead.h"
 
 namespace palp {
+namespace {
+
+/// The table that the scene asks for; without a wish, the largest that its rate has a use for and its window room.
+FootprintLattice latticeOf(const Scene& scene, const PointCloud& cloud, PlateDevice& device)
+{
+    const auto of = [&](int side) { return footprintLattice(cloud, scene.patch, side, device); };
+    if (scene.handOver != HandOverLaw::table) return of(1);
+    if (scene.tableSize > 0) return of(scene.tableSize);
+    for (int side = tableSide(scene.handOver, 1 / scene.deformationRate, scene.patch.footprintRadius); side > 3;
+         side -= 2) {
+        try {
+            return of(side);
+        } catch (const Error&) {
+            continue;
+        }
+    }
+    return of(3);
+}
+
+} // namespace
 
 Deformation::Deformation(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene)
     : cloud_(cloud), index_(index), law_(scene.handOver), settings_(scene.patch),
-      device_(scene.device, 0, SoftwareBits::ofTheHost),
-      lattice_(footprintLattice(cloud, settings_, scene.handOver == HandOverLaw::table ? scene.tableSize : 1, device_))
+      device_(scene.device, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, cloud, device_))
 {
 }
 

@@ -11,6 +11,7 @@
 
 #include "engine/core/latest.h"
 #include "engine/core/real_time.h"
+#include "engine/core/thread_time.h"
 
 namespace palp {
 namespace {
@@ -65,30 +66,33 @@ struct Shared {
 class RealSession {
 public:
     RealSession(const SessionParts& parts, const RealSessionSettings& settings)
-        : parts_(parts), settings_(settings), contact_(parts.cloud, parts.index, parts.scene), force_(parts.scene)
+        : parts_(parts), settings_(settings), contact_(parts.cloud, parts.index, parts.scene),
+          force_(parts.scene, settings.threads)
     {
     }
 
     SessionSummary run(std::string& warning);
 
 private:
-    void          serve();
-    SessionSample tick(const ForceHalf::Beat& beat, const HapticState& state) noexcept;
-    const Held&   held(double time, const Hand& hand) noexcept;
-    void          follow();
-    void          bend();
-    void          look();
-    void          publish(const Held& held) noexcept;
+    void                            serve();
+    SessionSample                   tick(const ForceHalf::Beat& beat, const HapticState& state) noexcept;
+    const Held&                     held(double time, const Hand& hand) noexcept;
+    void                            follow();
+    void                            bend();
+    [[nodiscard]] DeformationAnswer solved(const Touch& touch, double period);
+    void                            look();
+    void                            publish(const Held& held) noexcept;
 
     const SessionParts&        parts_;
     const RealSessionSettings& settings_;
     Shared                     shared_;
-    ContactHalf                contact_; ///< of the servo's thread, or of the proxy's
-    ForceHalf                  force_;   ///< of the servo's thread
-    SessionSummary             summary_; ///< of the servo's thread
-    SessionSummary             slow_;    ///< of the deformation's
-    std::string                warning_; ///< of the servo's
-    std::exception_ptr         failure_; ///< of the deformation's
+    ContactHalf                contact_;      ///< of the servo's thread, or of the proxy's
+    ForceHalf                  force_;        ///< of the servo's thread
+    SessionSummary             summary_;      ///< of the servo's thread
+    SessionSummary             slow_;         ///< of the deformation's
+    std::string                warning_;      ///< of the servo's
+    std::exception_ptr         failure_;      ///< of the servo's
+    double                     lastTick_ = 0; ///< [s] of the servo's
 };
 
 /// The servo's thread.
@@ -104,19 +108,19 @@ void RealSession::serve()
         const auto   now  = metronome.wait();
         const double time = Seconds(now - start).count(), dt = time - last;
         if (time >= settings_.seconds || shared_.over || (settings_.stop && *settings_.stop)) break;
-        last = time;
+        last = lastTick_ = time;
         period += (dt - period) * std::min(1.0, dt / kMean);
         summary_.period.add(dt);
+        const double      began  = threadSeconds();
         const HapticState state  = parts_.device.exchange(force, time);
         SessionSample     sample = tick({time, dt, period}, state);
         force                    = parts_.frame.toDevice(force_.governor().force());
-        sample.tickTime          = Seconds(Clock::now() - now).count();
+        sample.tickTime          = threadSeconds() - began;
         shared_.shown.draft()    = {sample, period, state.buttons};
         shared_.shown.publish();
         summary_.add(sample);
         if (settings_.onSample) settings_.onSample(sample);
     }
-    parts_.device.exchange(GovernedForce(), Seconds(Clock::now() - start).count());
 }
 
 SessionSample RealSession::tick(const ForceHalf::Beat& beat, const HapticState& state) noexcept
@@ -165,11 +169,32 @@ void RealSession::publish(const Held& held) noexcept
     shared_.touch.publish();
 }
 
+/// The time from one solve to the next, smoothed: what a window must be ahead by.
+class SolvePeriod {
+public:
+    explicit SolvePeriod(double nominal) : nominal_(nominal), mean_(nominal) {}
+
+    /// A solve begins. \return [s]
+    double begins(Clock::time_point now)
+    {
+        constexpr double kLongest = 0.5, kShare = 0.2; // [s] beyond it the hand was away; of the newest [1]
+        const double     dt = Seconds(now - last_).count();
+        last_               = now;
+        if (dt < kLongest) mean_ += kShare * (std::max(dt, nominal_) - mean_);
+        return mean_;
+    }
+
+private:
+    double            nominal_, mean_; ///< [s]
+    Clock::time_point last_{};
+};
+
 /// The deformation's thread: the newest touch, once a period.
 void RealSession::bend()
 {
-    const double  period = 1 / parts_.scene.deformationRate;
-    Metronome     metronome(std::chrono::duration_cast<std::chrono::nanoseconds>(Seconds(period)));
+    const double  nominal = 1 / parts_.scene.deformationRate;
+    Metronome     metronome(std::chrono::duration_cast<std::chrono::nanoseconds>(Seconds(nominal)));
+    SolvePeriod   period(nominal);
     std::uint64_t done = 0;
     while (!shared_.over) {
         metronome.wait();
@@ -178,7 +203,7 @@ void RealSession::bend()
         if (!touch || !touch->touching || touch->sequence == done) continue;
         done                     = touch->sequence;
         const auto        began  = Clock::now();
-        DeformationAnswer answer = parts_.solver(*touch, period);
+        DeformationAnswer answer = solved(*touch, period.begins(began));
         const double      took   = Seconds(Clock::now() - began).count();
         slow_.solve.add(took);
         ++(answer.news ? slow_.patches : slow_.failedPatches);
@@ -188,6 +213,16 @@ void RealSession::bend()
         shared_.news.publish();
         shared_.patch.draft() = {std::move(answer.patch), took};
         shared_.patch.publish();
+    }
+}
+
+/// Whatever goes wrong in a solve is one patch that there is not; the touch goes on with the one before.
+DeformationAnswer RealSession::solved(const Touch& touch, double period)
+{
+    try {
+        return parts_.solver(touch, period);
+    } catch (const std::exception& error) {
+        return {{}, {}, error.what()};
     }
 }
 
@@ -237,16 +272,15 @@ SessionSummary RealSession::run(std::string& warning)
 {
     {
         Crew crew(shared_.over);
-        crew.add([this] {
-            try {
-                bend();
-            } catch (...) { // the touch goes on with the last patch
-                failure_ = std::current_exception();
-            }
-        });
+        crew.add([this] { bend(); });
         if (settings_.threads == SessionThreads::paper) crew.add([this] { follow(); });
         crew.add([this] {
-            serve();
+            try {
+                serve();
+            } catch (...) { // onSample's, against its promise
+                failure_ = std::current_exception();
+            }
+            parts_.device.exchange(GovernedForce(), lastTick_);
             shared_.serveNoMore();
         });
         look();
@@ -262,18 +296,6 @@ SessionSummary RealSession::run(std::string& warning)
 }
 
 } // namespace
-
-const char* name(SessionThreads threads) noexcept
-{
-    return threads == SessionThreads::paper ? "paper" : "servo";
-}
-
-std::optional<SessionThreads> sessionThreadsNamed(std::string_view name_)
-{
-    for (const SessionThreads threads : {SessionThreads::servo, SessionThreads::paper})
-        if (name_ == name(threads)) return threads;
-    return {};
-}
 
 SessionSummary runReal(const SessionParts& parts, const RealSessionSettings& settings, std::string& warning)
 {

@@ -19,14 +19,6 @@ struct SessionView {
     const Patch*  patch      = nullptr; ///< the last one: displaced(cloud, *patch, |force|) is the surface; may be null
 };
 
-/// Which thread does what; see runReal().
-enum class SessionThreads {
-    servo, ///< one thread from the hand to the force
-    paper  ///< proxy and force on threads of their own, as Kumari & Chaudhuri run them
-};
-[[nodiscard]] const char*                   name(SessionThreads threads) noexcept;      ///< "servo", "paper"
-[[nodiscard]] std::optional<SessionThreads> sessionThreadsNamed(std::string_view name); ///< empty if unknown
-
 /// What a session in real time needs beside its parts.
 struct RealSessionSettings {
     double         seconds = 5; ///< [s]
@@ -48,7 +40,8 @@ struct RealSessionSettings {
 /// A deformation that fails or stalls leaves the servo with its last patch, flagged as stale. In the end, also by an
 /// exception of onView, the device is given zero force.
 /// \param warning  what the system refused of real-time rights; empty if nothing
-/// \throws what the solver or onView threw, once all threads have ended
+/// A solver that throws has failed to solve one patch: SessionSummary::why tells.
+/// \throws what onView threw, once all threads have ended; so for onSample, which should not
 SessionSummary runReal(const SessionParts& parts, const RealSessionSettings& settings, std::string& warning);
 
 } // namespace palp

@@ -239,12 +239,13 @@ constexpr std::array kKeys = {
             s.handOver = g.oneOf({HandOverLaw::table, HandOverLaw::hold, HandOverLaw::blend});
         },
         [](const S& s) { return quoted(name(s.handOver)); }},
-    Key{{"table_size", "1", "footprints a side of the table of compliances; 3 at 60 Hz, 7 at 30 Hz",
-         "an odd number from 1 to 15"},
+    Key{{"table_size", "1",
+         "footprints a side of the table of compliances; 0: as many as the rate asks for, 3 at 60 Hz",
+         "0, 1, 3, 5 or 7"},
         {kNumber},
         [](S& s, const Given& g) {
-            s.tableSize = int(g.count(1, 15));
-            if (s.tableSize % 2 == 0) g.refuse();
+            s.tableSize = int(g.count(0, ComplianceTable::kMostSide));
+            if (s.tableSize > 0 && s.tableSize % 2 == 0) g.refuse();
         },
         [](const S& s) { return std::to_string(s.tableSize); }},
     Key{{"deformation_rate", "Hz", "of the plate's answers", "a number from 1 to 1000 [Hz]"},

@@ -45,8 +45,8 @@ struct Scene {
     std::string   stiffness;  ///< law of the modulus over the cloud, see parseSpatialLaw [Pa]; empty: the cloud's own
     PatchSettings patch;      ///< material, foundation, window, map, force law, ...
 
-    HandOverLaw handOver        = HandOverLaw::table;
-    int         tableSize       = 3;  ///< footprints a side of the table, odd [1]; reaches (size - 1)/2 footprint radii
+    HandOverLaw handOver  = HandOverLaw::table;
+    int         tableSize = 0; ///< footprints a side of the table, odd [1]; reaches (size - 1)/2 radii; 0: tableSide()
     double      deformationRate = 60; ///< of the plate's thread [Hz]
 
     ProxyForm proxy           = ProxyForm::hybrid;

@@ -13,16 +13,52 @@ std::uint32_t flag(SessionFlag which, bool set) noexcept
     return set ? static_cast<std::uint32_t>(which) : 0U;
 }
 
-GovernorSettings governorOf(const Scene& scene)
+/// What the sampled spring at the cap takes of the arm's damping, K (T/2 + delay) [N s/m]. One sample of delay; with a
+/// thread of its own the proxy's word is up to two more ticks old.
+double spentDamping(const Scene& scene, int delaySamples)
+{
+    return scene.stiffnessCap * (0.5 + delaySamples) * 1e-3;
+}
+
+int delayOf(SessionThreads threads)
+{
+    return threads == SessionThreads::paper ? 3 : 1;
+}
+
+/// The longer the delay, the lower the cap at a period of 1 ms: the spring then spends what it does with one sample.
+GovernorSettings governorOf(const Scene& scene, SessionThreads threads)
 {
     GovernorSettings settings;
     settings.maximumForce              = scene.maxForce;
     settings.maximumStiffness          = scene.stiffnessCap;
     settings.stiffnessAtOneMillisecond = scene.stiffnessCap;
+    settings.delaySamples              = delayOf(threads);
+    settings.creditedDamping           = spentDamping(scene, 1);
+    return settings;
+}
+
+/// The tank lives on what the cap leaves of an arm's 3.2 N s/m, less a reserve.
+EnergyTankSettings tankOf(const Scene& scene)
+{
+    constexpr double   kArm = 2.5; // [N s/m] of 3.2
+    EnergyTankSettings settings;
+    settings.damping = std::clamp(kArm - spentDamping(scene, 1), 0.0, settings.damping);
     return settings;
 }
 
 } // namespace
+
+const char* name(SessionThreads threads) noexcept
+{
+    return threads == SessionThreads::paper ? "paper" : "servo";
+}
+
+std::optional<SessionThreads> sessionThreadsNamed(std::string_view text)
+{
+    for (const SessionThreads threads : {SessionThreads::servo, SessionThreads::paper})
+        if (text == name(threads)) return threads;
+    return {};
+}
 
 ContactHalf::ContactHalf(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene)
     : proxy_(cloud.positions(), index, {scene.proxy, scene.staticFriction, scene.dynamicFriction})
@@ -42,9 +78,9 @@ const Held& ContactHalf::tick(double time, const glm::dvec3& hip) noexcept
     return held_;
 }
 
-ForceHalf::ForceHalf(const Scene& scene)
+ForceHalf::ForceHalf(const Scene& scene, SessionThreads threads)
     : law_(scene.patch.forceLaw), thickness_(scene.patch.material.thickness), patchPeriod_(1 / scene.deformationRate),
-      handOver_(scene.handOver), governor_(governorOf(scene))
+      handOver_(scene.handOver), tank_(tankOf(scene)), governor_(governorOf(scene, threads))
 {
 }
 
@@ -69,6 +105,9 @@ ForceHalf::Wanted ForceHalf::wanted(double stiffness, double dt, const Hand& han
 
 SessionSample ForceHalf::tick(const Beat& beat, const Hand& hand, const Held& held, const PatchNews* newest) noexcept
 {
+    if (hand.buttons & ~buttons_ & kOperatorsButton) governor_.reset();
+    buttons_ = hand.buttons;
+
     const Touch& touch = held.touch;
     if (!touch.touching) handOver_.restart();
     const auto handed =

@@ -1,5 +1,7 @@
 #pragma once
 #include <cstdint>
+#include <optional>
+#include <string_view>
 
 #include <glm/vec3.hpp>
 
@@ -70,6 +72,14 @@ private:
     static constexpr std::uint32_t kHomed = 1U << 8, kInBox = 1U << 9;
 };
 
+/// Which thread does what in real time; see runReal().
+enum class SessionThreads {
+    servo, ///< one thread from the hand to the force
+    paper  ///< proxy and force on threads of their own, as Kumari & Chaudhuri run them
+};
+[[nodiscard]] const char*                   name(SessionThreads threads) noexcept;      ///< "servo", "paper"
+[[nodiscard]] std::optional<SessionThreads> sessionThreadsNamed(std::string_view name); ///< empty if unknown
+
 /// What the hand touches: the proxy and its pull.
 struct Held {
     Touch      touch;
@@ -98,7 +108,10 @@ private:
 /// The second half of a tick: pull -> compliance -> stiffness -> tank -> governor -> force. \thread as ContactHalf
 class ForceHalf {
 public:
-    explicit ForceHalf(const Scene& scene);
+    /// Pressed, it resets the governor's fault: whoever holds the device is its operator. The first button.
+    static constexpr std::uint32_t kOperatorsButton = 1;
+
+    explicit ForceHalf(const Scene& scene, SessionThreads threads = SessionThreads::servo);
 
     /// When a tick is, on which clock.
     struct Beat {
@@ -127,6 +140,7 @@ private:
     HandOver      handOver_;
     EnergyTank    tank_;
     ForceGovernor governor_;
+    std::uint32_t buttons_ = 0; ///< of the last tick
 };
 
 /// One tick of touch, both halves.

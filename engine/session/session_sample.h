@@ -22,7 +22,7 @@ struct SessionSample {
     double        maxDeflection = 0; ///< [m]
     double        errorEstimate = 0; ///< of the plate's solution, relative [1]
     double        patchAge      = 0; ///< of the plate's answer in use [s]
-    double        tickTime      = 0; ///< what the tick computed, by the wall clock [s]
+    double        tickTime      = 0; ///< processor time of the tick [s]
     std::int32_t  iterations    = 0; ///< of the plate's solver [1]
     std::uint32_t faults        = 0; ///< one bit each, see SessionFlag; the low eight are the GovernorFault
     std::uint32_t device        = 0; ///< bits 0 to 7 the DeviceFault, 8 homed, 9 in its box, 16 to 31 buttons

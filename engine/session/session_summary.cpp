@@ -18,6 +18,7 @@ void SessionSummary::add(const SessionSample& sample) noexcept
     staleTicks += has(SessionFlag::stalePatch);
     beyondTable += has(SessionFlag::beyondTable);
     beyondTheory += has(SessionFlag::beyondTheory);
+    patchless += has(SessionFlag::noPatch);
     mostForce = std::max(mostForce, glm::length(sample.force));
     if (sample.normal == glm::dvec3(0)) return;
     ++contactTicks;

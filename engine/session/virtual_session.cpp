@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "engine/core/thread_time.h"
+
 namespace palp {
 namespace {
 
@@ -43,11 +45,11 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSam
                 if (!answer.why.empty()) summary.why = answer.why;
             }
         }
-        const auto    began  = Clock::now();
+        const double  began  = threadSeconds();
         const Hand    hand   = parts.frame.handOf(parts.device.exchange(force, time));
         SessionSample sample = servo.tick({time, kTick, kTick}, hand, inUse ? &*inUse : nullptr);
         force                = parts.frame.toDevice(servo.governor().force());
-        sample.tickTime      = secondsSince(began);
+        sample.tickTime      = threadSeconds() - began;
         summary.add(sample);
         if (onSample) onSample(sample);
     }

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -70,12 +71,17 @@ TEST_P(RealSessions, StartAndStopAThousandTimes)
     Deformation         deformation(session.cloud.cloud, session.index, session.scene);
     RealSessionSettings settings;
     settings.threads    = GetParam();
-    std::uint64_t ticks = 0;
-    for (int n = 0; n < 500; ++n) { // of either kind
-        settings.seconds = n % 2 ? 1e-3 : 3e-3;
-        ticks += run(session, deformation.solver(), settings).ticks;
+    std::uint64_t ticks = 0, seen = 0;
+    settings.onSample = [&](const SessionSample&) { ++seen; };
+    for (int n = 0; n < 1000; ++n) {
+        settings.seconds             = n % 2 ? 1e-3 : 3e-3;
+        const SessionSummary summary = run(session, deformation.solver(), settings);
+        ASSERT_LE(summary.ticks, 3U) << n;
+        ASSERT_EQ(summary.fault, GovernorFault::none) << n;
+        ticks += summary.ticks;
     }
-    EXPECT_GT(ticks, 0U);
+    EXPECT_EQ(ticks, seen);
+    EXPECT_GT(ticks, 500U) << "some sessions of 1 ms may see no tick on a busy machine, of 3 ms hardly one";
 }
 
 TEST_P(RealSessions, AnInterruptEndsIt)
@@ -104,51 +110,73 @@ TEST_P(RealSessions, WhoLooksOnMayThrow)
     EXPECT_THROW(run(session, deformation.solver(), settings), std::runtime_error);
 }
 
-TEST_P(RealSessions, ADeformationThatThrowsLeavesTheTouchGoingOnAndIsReportedInTheEnd)
+TEST_P(RealSessions, ADeformationThatThrowsFailsAPatchAndTheTouchGoesOn)
 {
     const SheetSession  session(sheetScene(kWart), HandMotion::press);
+    Deformation         deformation(session.cloud.cloud, session.index, session.scene);
     RealSessionSettings settings;
-    std::uint64_t       ticks = 0;
-    settings.threads          = GetParam();
-    settings.seconds          = 0.4;
-    settings.onSample         = [&](const SessionSample&) { ++ticks; };
-    EXPECT_THROW(
-        run(
-            session, [](const Touch&, double) -> DeformationAnswer { throw std::runtime_error("lost"); }, settings),
-        std::runtime_error);
-    EXPECT_GT(ticks, 20U);
+    settings.threads   = GetParam();
+    settings.seconds   = 0.6;
+    int        count   = 0;
+    const auto summary = run(
+        session,
+        [&](const Touch& touch, double period) {
+            if (++count % 2 == 1) throw std::runtime_error("lost");
+            return deformation.solve(touch, period);
+        },
+        settings);
+    EXPECT_GT(summary.failedPatches, 0U);
+    EXPECT_GT(summary.patches, 0U) << "it goes on";
+    EXPECT_EQ(summary.why, "lost");
+}
+
+TEST_P(RealSessions, WhoTakesSamplesMustNotThrowAndEndsTheSessionIfItDoes)
+{
+    const SheetSession  session(sheetScene(kWart));
+    Deformation         deformation(session.cloud.cloud, session.index, session.scene);
+    RealSessionSettings settings;
+    settings.threads  = GetParam();
+    settings.seconds  = 3600;
+    settings.onSample = [](const SessionSample&) { throw std::runtime_error("no"); };
+    EXPECT_THROW(run(session, deformation.solver(), settings), std::runtime_error);
 }
 
 /// Five seconds without a word from the deformation.
 TEST_P(RealSessions, AStalledDeformationLeavesAFiniteSmoothForceAndAFlag)
 {
-    const SheetSession  session(sheetScene(kWart), HandMotion::press, 10);
+    const SheetSession  session(sheetScene(kWart));
+    const HandPath      rests({{0, {0, 0, 2e-3}}, {0.1, {0, 0, -1.5e-3}}, {20, {0, 0, -1.5e-3}}}); // and stays there
+    HandDevice          device(rests);
     Deformation         deformation(session.cloud.cloud, session.index, session.scene);
     RealSessionSettings settings;
-    int                 solved = 0;
-    const PatchSolver   stalls = [&](const Touch& touch, double period) {
-        if (++solved == 3) std::this_thread::sleep_for(std::chrono::seconds(5));
+    bool                stalled = false;
+    const auto          start   = std::chrono::steady_clock::now();
+    const PatchSolver   stalls  = [&](const Touch& touch, double period) {
+        const bool engaged = std::chrono::steady_clock::now() - start > std::chrono::seconds(2);
+        if (engaged && !std::exchange(stalled, true)) std::this_thread::sleep_for(std::chrono::seconds(5));
         return deformation.solve(touch, period);
     };
-    bool       finite = true, flagged = false;
-    double     step = 0, most = 0, oldest = 0; // [N], [N], [s]
-    glm::dvec3 last{};
+    bool   finite = true, flagged = false;
+    double step = 0, most = 0, oldest = 0, last = 0; // [N], [N], [s], [N]
     settings.threads  = GetParam();
-    settings.seconds  = 5.5;
+    settings.seconds  = 7.6;
     settings.onSample = [&](const SessionSample& s) {
-        finite  = finite && std::isfinite(glm::length(s.force));
-        flagged = flagged || (s.faults & static_cast<std::uint32_t>(SessionFlag::stalePatch)) != 0;
-        step    = std::max(step, glm::length(s.force - last));
-        most    = std::max(most, glm::length(s.force));
-        oldest  = std::max(oldest, s.patchAge);
-        last    = s.force;
+        const double force = glm::length(s.force);
+        finite             = finite && std::isfinite(force);
+        flagged            = flagged || (s.faults & static_cast<std::uint32_t>(SessionFlag::stalePatch)) != 0;
+        if (s.time > 1.9) step = std::max(step, std::abs(force - last)); // the force has come on by 1.6 s
+        most   = std::max(most, force);
+        oldest = std::max(oldest, s.patchAge);
+        last   = force;
     };
-    const SessionSummary summary = run(session, stalls, settings);
+    std::string          warning;
+    const SessionSummary summary =
+        runReal({session.scene, session.cloud.cloud, session.index, stalls, device, {}}, settings, warning);
     EXPECT_TRUE(finite);
     EXPECT_TRUE(flagged);
-    EXPECT_GT(oldest, 1.0) << "the stall was felt by the servo";
-    EXPECT_GT(most, 0.1) << "the hand goes on feeling the sheet";
-    EXPECT_LE(step, 4.0) << "1 N a tick; a late tick counts as 4 ms at most: GovernorSettings::longestTick";
+    EXPECT_GT(oldest, 4.0) << "the stall was felt by the servo";
+    EXPECT_GT(most, 0.3) << "the hand goes on feeling the sheet [N]";
+    EXPECT_LT(step, 0.02 * most) << "neither when it stalls nor when it comes back: the hand rests";
     EXPECT_EQ(summary.fault, GovernorFault::none);
 }
 
