@@ -218,6 +218,9 @@ glm::dvec3 ForceGovernor::passive(glm::dvec3 force, const GovernorInput& in, dou
     const bool   flows = engagement_ == Engagement::engaging || engagement_ == Engagement::engaged;
     if (!flows || energy_ >= 0 || !(speed > settings_.passivitySpeed)) return force;
     out.damping = std::min(-energy_ / (speed * speed * dt), settings_.passivityDamping);
+    // A force along the motion gives energy: it is taken back, but never turned round, or the surface would be sticky.
+    const double along = glm::dot(force, in.velocity);
+    if (along >= 0) out.damping = std::min(out.damping, along / (speed * speed));
     mark(out, GovernorAction::damped);
     return force - out.damping * in.velocity;
 }

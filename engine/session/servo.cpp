@@ -84,10 +84,12 @@ ForceHalf::ForceHalf(const Scene& scene, SessionThreads threads)
 {
 }
 
-ForceHalf::Wanted ForceHalf::wanted(double stiffness, double dt, const Hand& hand, const glm::dvec3& pull) noexcept
+ForceHalf::Wanted ForceHalf::wanted(double stiffness, double dt, const Hand& hand, const Held& held) noexcept
 {
-    const double     depth   = glm::length(pull);
-    const glm::dvec3 outward = depth > 0 ? pull / depth : glm::dvec3(0);
+    const glm::dvec3& pull  = held.pull;
+    const double      depth = glm::length(pull);
+    const glm::dvec3& outward =
+        held.touch.outward; // the brake is along the surface, whichever way friction tilts the pull
     const double     along   = glm::dot(hand.velocity, outward);
     const glm::dvec3 sliding = hand.velocity - along * outward;
     const double     speed   = glm::length(sliding);
@@ -113,7 +115,7 @@ SessionSample ForceHalf::tick(const Beat& beat, const Hand& hand, const Held& he
     const auto handed =
         handOver_.tick({touch.point, beat.time, beat.dt, newest ? &newest->table : nullptr}); // also beyond the surface
     const double stiffness = handed ? feltStiffness(law_, handed->contactStiffness, handed->compliance) : 0;
-    const Wanted want      = wanted(stiffness, beat.dt, hand, held.pull);
+    const Wanted want      = wanted(stiffness, beat.dt, hand, held);
 
     GovernorInput in;
     in.force                 = want.force;
@@ -141,7 +143,7 @@ SessionSample ForceHalf::tick(const Beat& beat, const Hand& hand, const Held& he
     sample.normal      = touch.touching ? touch.outward : glm::dvec3(0);
     if (newest && touch.touching) {
         sample.rigidity      = newest->rigidity;
-        sample.maxDeflection = newest->mostResponse * glm::length(out.force);
+        sample.maxDeflection = newest->mostResponse * std::max(0.0, glm::dot(out.force, touch.outward));
         sample.errorEstimate = newest->errorEstimate;
         sample.iterations    = newest->iterations;
     }

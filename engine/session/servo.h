@@ -132,7 +132,7 @@ private:
         glm::dvec3       force{};
         EnergyTankOutput tank{};
     };
-    [[nodiscard]] Wanted wanted(double stiffness, double dt, const Hand& hand, const glm::dvec3& pull) noexcept;
+    [[nodiscard]] Wanted wanted(double stiffness, double dt, const Hand& hand, const Held& held) noexcept;
 
     ForceLaw      law_;
     double        thickness_;   ///< [m]

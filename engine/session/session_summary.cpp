@@ -22,7 +22,7 @@ void SessionSummary::add(const SessionSample& sample) noexcept
     mostForce = std::max(mostForce, glm::length(sample.force));
     if (sample.normal == glm::dvec3(0)) return;
     ++contactTicks;
-    mostDepth = std::max(mostDepth, glm::length(sample.proxy - sample.hip));
+    mostDepth = std::max(mostDepth, glm::dot(sample.proxy - sample.hip, sample.normal));
     if (!(sample.compliance > 0)) return;
     const bool first = mostCompliance == 0;
     leastCompliance  = first ? sample.compliance : std::min(leastCompliance, sample.compliance);

@@ -17,7 +17,7 @@ struct SessionSummary {
     std::uint64_t     staleTicks = 0, beyondTable = 0;         ///< [1]
     std::uint64_t     beyondTheory = 0, patchless = 0;         ///< [1] see SessionFlag
     double            mostForce       = 0;                     ///< [N]
-    double            mostDepth       = 0;                     ///< [m] of the hand below the proxy
+    double            mostDepth       = 0;                     ///< [m] of the hand below the proxy, along the normal
     double            leastCompliance = 0, mostCompliance = 0; ///< in use [m/N]; 0: never in contact
     GovernorFault     fault       = GovernorFault::none;       ///< the last
     DeviceFault       deviceFault = DeviceFault::none;         ///< the first, but for starting up
