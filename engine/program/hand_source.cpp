@@ -65,7 +65,7 @@ HandSource handFor(const HandOptions& options, const Scene& scene, const PointCl
         source.device = std::make_unique<HandDevice>(*source.path);
     } else {
         source.frame.origin = source.path->position(source.path->begin());
-        source.device       = std::make_unique<HeldArm>(*source.path, gripOf(options.grip), source.frame.origin);
+        source.device       = std::make_unique<HeldArm>(HoldingHand{*source.path, gripOf(options.grip), source.frame});
     }
     source.device->open();
     return source;

@@ -7,26 +7,34 @@
 
 namespace palp {
 
-HeldArm::HeldArm(const HandPath& path, const SimulatedHand& grip, const glm::dvec3& origin,
-                 const SimulatedArmSettings& arm)
-    : path_(path), grip_(grip), origin_(origin), arm_(arm, path.position(path.begin()) - origin)
+SimulatedHand HoldingHand::at(double time) const noexcept
+{
+    constexpr double kStep = 1e-3; // [s] over which the target's velocity is taken
+    const double     there = path.begin() + time;
+    SimulatedHand    hand  = grip;
+    hand.target            = frame.toDevice(path.position(there));
+    hand.targetVelocity    = (frame.toDevice(path.position(there + kStep)) - hand.target) / kStep;
+    return hand;
+}
+
+void HoldingHand::demandWithin(double radius) const
 {
     for (const HandSample& s : path.samples())
-        if (const double away = glm::length(s.position - origin); away > arm.boxRadius)
-            throw Error("arm: at " + formatQuantity(s.time, "s") + " the hand is " + formatQuantity(away, "m") +
-                        " from the middle of the arm's workspace, whose radius is " +
-                        formatQuantity(arm.boxRadius, "m") + "; try a smaller --reach or a scene with a lower start");
+        if (const double away = glm::length(s.position - frame.origin); away > radius)
+            throw Error("the hand: at " + formatQuantity(s.time, "s") + " it is " + formatQuantity(away, "m") +
+                        " from the middle of the arm's workspace, whose radius is " + formatQuantity(radius, "m") +
+                        "; try a smaller --reach, or a scene whose start_height is lower");
+}
+
+HeldArm::HeldArm(const HoldingHand& hand, const SimulatedArmSettings& arm) : hand_(hand), arm_(arm, hand.at(0).target)
+{
+    hand.demandWithin(arm.boxRadius);
 }
 
 HapticState HeldArm::exchange(const GovernedForce& force, double now) noexcept
 {
-    constexpr double  kStep = 1e-3;                      // [s] over which the target's velocity is taken
     const HapticState state = arm_.exchange(force, now); // on to now, by the hand of the last tick
-    const double      time  = path_.begin() + now;
-    SimulatedHand     hand  = grip_;
-    hand.target             = path_.position(time) - origin_;
-    hand.targetVelocity     = (path_.position(time + kStep) - path_.position(time)) / kStep;
-    arm_.hold(hand);
+    arm_.hold(hand_.at(now));
     return state;
 }
 

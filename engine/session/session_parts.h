@@ -23,6 +23,12 @@ struct DeviceFrame {
                 state.buttons & 0xFFFFU};
     }
 
+    /// A place of the scene, in the device's frame [m].
+    [[nodiscard]] glm::dvec3 toDevice(const glm::dvec3& place) const noexcept
+    {
+        return glm::conjugate(sceneFromDevice) * (place - origin);
+    }
+
     /// A force of the scene, as the device takes it.
     [[nodiscard]] GovernedForce toDevice(const GovernedForce& force) const noexcept
     {

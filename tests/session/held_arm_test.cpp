@@ -25,13 +25,14 @@ struct Felt {
 /// The hand goes down 5 mm from above, the arm in its grip, and stays.
 Felt released(const SheetSession& session, double grip, double seconds)
 {
-    const HandPath down({{0, {0, 0, 5e-3}}, {1.8, {0, 0, 5e-3}}, {1.85, {0, 0, -4e-3}}, {2, {0, 0, -4e-3}}});
-    HeldArm        arm(down, {.stiffness = grip, .damping = 2}, {0, 0, 5e-3});
+    const HandPath    down({{0, {0, 0, 5e-3}}, {1.8, {0, 0, 5e-3}}, {1.85, {0, 0, -4e-3}}, {2, {0, 0, -4e-3}}});
+    const HoldingHand hand{down, {.stiffness = grip, .damping = 2}, {{0, 0, 5e-3}}};
+    HeldArm           arm(hand);
     arm.open();
     Deformation deformation(session.cloud.cloud, session.index, session.scene);
     Felt        felt;
     double      low = 1, high = -1; // [m]
-    runVirtual({session.scene, session.cloud.cloud, session.index, deformation.solver(), arm, {arm.origin()}}, seconds,
+    runVirtual({session.scene, session.cloud.cloud, session.index, deformation.solver(), arm, hand.frame}, seconds,
                [&](const SessionSample& s) {
                    felt.finite = felt.finite && std::isfinite(glm::length(s.force) + glm::length(s.hip));
                    felt.faults |= (s.faults | s.device) & 0xFFU;
@@ -65,7 +66,7 @@ TEST(HeldArm, ForcesMoveIt)
 TEST(HeldArm, ThePathMustLieInTheWorkspace)
 {
     const HandPath far({{0, {0, 0, 0}}, {1, {0.1, 0, 0}}});
-    EXPECT_THROW(HeldArm(far, {.stiffness = 150}, {}), Error);
+    EXPECT_THROW(HeldArm({far, {.stiffness = 150}}), Error);
 }
 
 TEST(DeviceFrames, ADeviceOnATableBeforeTheObject)

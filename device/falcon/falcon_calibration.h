@@ -1,0 +1,84 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include <glm/vec3.hpp>
+
+#include "device/falcon/falcon_motors.h"
+#include "device/haptic_device.h"
+
+namespace palp {
+
+struct FalconCalibrationSettings {
+    double     mass            = 0.2;                            ///< [kg] known, hung on the grip; 0.05 to 0.5
+    double     countsPerTorque = FalconMotors::kCountsPerTorque; ///< [counts/(N m)] that the device runs with
+    glm::dvec3 up{0, 1, 0};                                      ///< [1] against gravity, in the device's frame
+    double     gravity = 9.81;                                   ///< [m/s2]
+};
+
+enum class FalconCalibrationStage : std::uint8_t {
+    bare,   ///< weighs the arm alone
+    hang,   ///< holds still: hang the mass on the grip, then call hung()
+    loaded, ///< weighs arm and mass
+    done,
+    failed ///< see failure()
+};
+
+/// Finds how many counts a motor needs for a torque, with a known mass on the grip.
+///
+/// The wanted force holds the grip at a place that goes up and down by 8 mm in 4 s. Over whole periods its mean is the
+/// weight, whatever friction and inertia do. With F0 and F1 [N] the means without and with the mass, as commanded with
+/// G counts per torque, the motors have in truth
+///
+///     G' = G (F1 - F0) / (mass gravity),
+///
+/// which goes into FalconLoopSettings::countsPerTorque. A quarter of a minute for each weighing, hands off.
+///
+///     1  home the device; lift the grip to the middle of its workspace and hold it there loosely
+///     2  each tick: state = device.exchange(force), then governor.step() with step()'s force; let go as force comes on
+///     3  at `hang`: hang the mass on the grip, wait until it hangs still, call hung()
+///     4  at `done`: countsPerTorque()
+///
+/// The governor's 6 N bound what can be weighed. If the arm weighs 0.2 kg on the grip, a mass of 0.2 kg fits as long as
+/// G is up to 1.4 times too small, one of 0.05 kg up to 2.2 times. \thread one
+class FalconCalibration {
+public:
+    /// \throws Error naming a setting out of its range
+    explicit FalconCalibration(const FalconCalibrationSettings& settings = {});
+
+    /// One tick.
+    /// \param sent  the force that the device was last given
+    /// \param gain  [1] of the governor; below 1 nothing is weighed, at 0 the place to hold is where the grip is
+    /// \param dt    [s] since the last tick
+    /// \return the force wanted [N], for the governor
+    glm::dvec3 step(const HapticState& state, const GovernedForce& sent, double gain, double dt) noexcept;
+
+    void hung() noexcept; ///< the mass hangs; at any other stage than `hang`: nothing
+
+    [[nodiscard]] FalconCalibrationStage stage() const noexcept { return stage_; }
+    [[nodiscard]] const char*            failure() const noexcept { return failure_; } ///< one sentence, or empty
+
+    [[nodiscard]] std::optional<double> countsPerTorque() const noexcept; ///< [counts/(N m)] once done
+    [[nodiscard]] std::optional<double> armMass() const noexcept;         ///< [kg] that weighs on the grip; once done
+
+private:
+    static constexpr int kPeriods = 4; ///< of a weighing: two to settle, two to measure
+
+    void start(FalconCalibrationStage stage) noexcept;
+    void endPeriod() noexcept;
+    void fail(const char* why) noexcept;
+
+    FalconCalibrationSettings    settings_;
+    FalconCalibrationStage       stage_   = FalconCalibrationStage::bare;
+    const char*                  failure_ = "";
+    glm::dvec3                   anchor_{};   ///< [m] about which the place to hold goes up and down
+    glm::dvec3                   integral_{}; ///< [N]
+    double                       time_ = 0;   ///< [s] in the period
+    double                       sum_  = 0;   ///< [N s] of the force upwards in the period
+    std::array<double, kPeriods> means_{};    ///< [N] of the periods
+    int                          periods_ = 0;
+    double                       bare_ = 0, loaded_ = 0; ///< [N] F0 and F1
+};
+
+} // namespace palp

@@ -1,0 +1,137 @@
+// Weighing a known mass on an emulated Falcon whose motors are not what its driver takes them for.
+#include "device/falcon/falcon_calibration.h"
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "device/simulated_arm.h"
+#include "engine/core/contract.h"
+#include "tests/device/falcon_bench.h"
+
+namespace palp {
+namespace {
+
+constexpr double kArm = 0.21; // [kg] of it weighs on the grip
+
+/// A user with a mass in reach, and motors of `truth` [counts/(N m)].
+struct Weighing {
+    double            hanging = 0; // [kg]
+    SimulatedArm      arm;
+    FalconBench       bench;
+    ForceGovernor     governor;
+    FalconCalibration calibration;
+
+    Weighing(double truth, double friction, const FalconCalibrationSettings& settings = {})
+        : arm(like(friction), {0, 0.004, -0.006}),
+          bench(motors(truth),
+                [this](const glm::dvec3& force, double dt) {
+                    // Its inertia is left out: means do not see it.
+                    arm.step(force - glm::dvec3(0, (kArm + hanging) * 9.81, 0), dt);
+                    return arm.position();
+                }),
+          calibration(settings)
+    {
+    }
+
+    static SimulatedArmSettings like(double friction)
+    {
+        SimulatedArmSettings settings;
+        settings.friction     = friction;
+        settings.encoderStep  = 0;
+        settings.delaySamples = 0;
+        return settings;
+    }
+
+    static Ft232EmulatorSettings motors(double truth)
+    {
+        Ft232EmulatorSettings settings  = runningFalcon();
+        settings.falcon.countsPerTorque = truth;
+        return settings;
+    }
+
+    void tick(double& gain)
+    {
+        GovernorInput in;
+        in.force      = calibration.step(bench.state, bench.force, gain, 1e-3);
+        in.position   = bench.state.position;
+        in.velocity   = bench.state.velocity;
+        in.homed      = bench.state.homed;
+        in.inBox      = bench.state.inBox;
+        in.time       = bench.now;
+        in.dt         = 1e-3;
+        in.loopPeriod = 1e-3;
+        gain          = governor.step(in).gain;
+        bench.force   = governor.force();
+        bench.tick();
+    }
+
+    /// The user holds the grip until force comes on, then hangs `mass` [kg] when asked to.
+    void run(double mass)
+    {
+        double gain = 0, asked = -1; // s
+        bench.tick();
+        for (const double until = bench.now + 60; bench.now < until;) {
+            arm.hold(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = {0, 0.004, -0.006}}
+                              : SimulatedHand{});
+            tick(gain);
+            const auto stage = calibration.stage();
+            if (stage == FalconCalibrationStage::done || stage == FalconCalibrationStage::failed) return;
+            if (stage != FalconCalibrationStage::hang) continue;
+            if (asked < 0) asked = bench.now;
+            hanging = mass;
+            if (bench.now > asked + 3) calibration.hung();
+        }
+    }
+};
+
+TEST(FalconCalibration, FindsTheCountsThatHoldTheMass)
+{
+    struct Case {
+        double truth, friction;
+    };
+    for (const auto& [truth, friction] : {Case{2500, 0.08}, Case{4200, 0}, Case{5500, 0.08}}) {
+        Weighing weighing(truth, friction);
+
+        weighing.run(0.2);
+
+        ASSERT_EQ(weighing.calibration.stage(), FalconCalibrationStage::done) << weighing.calibration.failure();
+        const double found = weighing.calibration.countsPerTorque().value();
+        std::printf("  motors of %.0f, friction %.2f N: found %.1f, arm %.4f kg\n", truth, friction, found,
+                    weighing.calibration.armMass().value());
+        EXPECT_NEAR(found, truth, 0.005 * truth) << "0.01 N of the mass's 1.96: two counts of the motors, 4 mN each";
+        EXPECT_NEAR(weighing.calibration.armMass().value(), kArm, 0.01 * kArm) << "twice that";
+    }
+}
+
+TEST(FalconCalibration, WithoutTheMassItFails)
+{
+    Weighing weighing(4200, 0.05);
+
+    weighing.run(0);
+
+    EXPECT_EQ(weighing.calibration.stage(), FalconCalibrationStage::failed);
+    EXPECT_NE(std::string(weighing.calibration.failure()).find("no mass"), std::string::npos);
+    EXPECT_FALSE(weighing.calibration.countsPerTorque());
+}
+
+TEST(FalconCalibration, AMassBeyondTheGovernorFails)
+{
+    Weighing weighing(8000, 0.05);
+
+    weighing.run(0.5);
+
+    EXPECT_EQ(weighing.calibration.stage(), FalconCalibrationStage::failed);
+    EXPECT_NE(std::string(weighing.calibration.failure()).find("lighter"), std::string::npos);
+}
+
+TEST(FalconCalibration, RefusesSettingsOutOfRange)
+{
+    EXPECT_THROW(FalconCalibration({.mass = 0}), Error);
+    EXPECT_THROW(FalconCalibration({.mass = 0.2, .up = {0, 2, 0}}), Error);
+}
+
+} // namespace
+} // namespace palp
