@@ -1,8 +1,9 @@
 #pragma once
+#include <atomic>
 #include <memory>
-#include <optional>
 #include <string>
 
+#include "device/hid/hid_port.h"
 #include "engine/session/hand_path.h"
 #include "engine/session/session_parts.h"
 
@@ -10,21 +11,31 @@ namespace palp {
 
 /// What the command line says about the hand.
 struct HandOptions {
-    std::string hand  = "scan"; ///< press, circle, scan, or a file
+    std::string hand  = "scan"; ///< press, circle, scan, a file, or a device as `palpate devices` names it
     std::string speed = "50 mm/s", depth, reach = "10 mm";
-    std::string grip; ///< stiffness of the hand that holds the simulated arm; empty: the hand is not moved by forces
-    double      seconds = 5; ///< [s]
+    std::string grip;                   ///< of the hand that holds a simulated arm; empty: forces do not move the hand
+    std::string firmware;               ///< of the Falcon; empty: FALCON_FIRMWARE
+    double      countsPerTorque = 4200; ///< of the Falcon's motors [1/(N m)]
+    double      seconds         = 5;    ///< [s]
 };
 
 /// A hand that is ready: its device is open.
 struct HandSource {
+    std::unique_ptr<HidSystem>      hid;  ///< of the device; may be null
     std::unique_ptr<const HandPath> path; ///< of a script or a file; null of a device that somebody holds
     std::unique_ptr<HapticDevice>   device;
     DeviceFrame                     frame;
+
+    [[nodiscard]] bool isHeld() const noexcept { return !path; } ///< by somebody, in real time
 };
 
 /// \throws Error naming the option, the file, or why the device cannot be used
 [[nodiscard]] HandSource handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud,
                                  const NeighbourIndex& index);
+
+/// Waits until somebody has homed the device, telling how on standard error. Devices that need none: nothing.
+/// \param stop  gives up once it is true
+/// \throws Error if the device is lost, or `stop` came first
+void waitForHoming(HapticDevice& device, const std::atomic<bool>& stop);
 
 } // namespace palp

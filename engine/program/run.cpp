@@ -63,6 +63,7 @@ nlohmann::json jsonOf(const SessionSummary& s)
             {"compliance_min_m_per_N", s.leastCompliance},
             {"compliance_max_m_per_N", s.mostCompliance},
             {"fault", name(s.fault)},
+            {"device_fault", name(s.deviceFault)},
             {"tick", durations(s.tick)},
             {"period", durations(s.period)},
             {"solve", durations(s.solve)}};
@@ -90,6 +91,7 @@ void printText(const SessionSummary& s, const std::string& device)
                   << seconds(s.period.quantile(0.99)) << ", p99.9 " << seconds(s.period.quantile(0.999)) << ", most "
                   << seconds(s.period.most()) << ")\n";
     if (s.fault != GovernorFault::none) warn(std::string("the governor stopped the force: ") + name(s.fault));
+    if (s.deviceFault != DeviceFault::none) warn(std::string("the device was not well: ") + name(s.deviceFault));
     if (s.beyondTheory > 0)
         warn("the deflection exceeded half the thickness in " + std::to_string(s.beyondTheory) +
              " ticks: Kirchhoff plate theory does not hold there");
@@ -152,8 +154,6 @@ SessionSummary playLive(const RunOptions& o, SessionThreads threads, const Sessi
     settings.seconds = o.hand.seconds;
     settings.threads = threads;
     settings.stop    = &interrupted;
-    std::signal(SIGINT, onInterrupt);
-    std::signal(SIGTERM, onInterrupt);
     if (recording) settings.onSample = [recording](const SessionSample& sample) { recording->push(sample); };
     if (line) settings.onView = showLine;
     std::string          warning;
@@ -188,7 +188,7 @@ std::unique_ptr<Recording> recordingOf(const RunOptions& o, const Scene& scene, 
     info.versions = {{"palpate", PALPATE_VERSION}};
     info.device   = device;
     info.clock    = clock;
-    info.command  = "palpate run " + o.scene;
+    info.command  = "palpate run " + o.scene + " --hand " + o.hand.hand;
     return std::make_unique<Recording>(o.record, info);
 }
 
@@ -206,11 +206,16 @@ void run(const RunOptions& o)
         throw Error("--seconds: expected a time above 0 and up to 86400");
     const LoadedCloud    cloud = loadCloud(scene);
     const NeighbourIndex index(cloud.cloud.positions());
-    const HandSource     hand = handFor(o.hand, scene, cloud.cloud, index);
     Deformation          deformation(cloud.cloud, index, scene); // what can fail fails before a folder is made
     const std::string    device = deformation.device().name();
     const auto           known  = warningsOf(scene, cloud.cloud, index);
     for (const std::string& sentence : known) warn(sentence);
+    const HandSource hand = handFor(o.hand, scene, cloud.cloud, index);
+    if (hand.isHeld() && clock != SessionClock::real)
+        throw Error("--hand " + o.hand.hand + ": somebody holds it, in real time; leave out --clock virtual");
+    std::signal(SIGINT, onInterrupt);
+    std::signal(SIGTERM, onInterrupt);
+    waitForHoming(*hand.device, interrupted);
     const SessionParts             parts{scene, cloud.cloud, index, deformation.solver(), *hand.device, hand.frame};
     const auto                     recording = recordingOf(o, scene, clock, device);
     const SessionSummary           summary   = clock == SessionClock::real
@@ -271,7 +276,8 @@ void addRunCommand(CLI::App& app)
     auto  o    = std::make_shared<RunOptions>();
     run_->add_option("SCENE", o->scene, "scene file, see samples/scenes")->required();
     run_->add_option("--hand", o->hand.hand,
-                     "press, circle or scan about the scene's place; or a file of time [s], x, y, z [m]")
+                     "press, circle or scan about the scene's place; a file of time [s], x, y, z [m]; or a device: "
+                     "falcon, bridge, spacemouse, arm, falcon-emulator (palpate devices tells which there are)")
         ->capture_default_str();
     run_->add_option("--seconds", o->hand.seconds, "how long")->capture_default_str();
     run_->add_option("--speed", o->hand.speed, "of press, circle and scan, at most")->capture_default_str();
@@ -283,6 +289,12 @@ void addRunCommand(CLI::App& app)
         "--arm", o->hand.grip,
         "the hand holds a simulated arm with a grip of this stiffness (relaxed '150 N/m', firm '500 N/m'), "
         "so that forces move it");
+    run_->add_option("--falcon-firmware", o->hand.firmware,
+                     "image that a Falcon needs after it was plugged in [FALCON_FIRMWARE]");
+    run_->add_option("--falcon-counts", o->hand.countsPerTorque,
+                     "counts per N m of a Falcon's motors, see palpate calibrate")
+        ->capture_default_str()
+        ->check(CLI::Range(500.0, 50000.0));
     run_->add_option("--clock", o->clock,
                      "real: a tick a millisecond; virtual: as fast as it goes, the same every time")
         ->capture_default_str();

@@ -10,7 +10,9 @@ namespace palp {
 
 void SessionSummary::add(const SessionSample& sample) noexcept
 {
-    const auto has = [&](SessionFlag flag) { return (sample.faults & static_cast<std::uint32_t>(flag)) != 0; };
+    const auto has   = [&](SessionFlag flag) { return (sample.faults & static_cast<std::uint32_t>(flag)) != 0; };
+    const auto state = static_cast<DeviceFault>(sample.device & 0xFFU);
+    if (deviceFault == DeviceFault::none && state != DeviceFault::startingUp) deviceFault = state;
     ++ticks;
     tick.add(sample.tickTime);
     staleTicks += has(SessionFlag::stalePatch);

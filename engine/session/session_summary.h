@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 
+#include "device/haptic_device.h"
 #include "engine/force/governor.h"
 #include "engine/session/duration_histogram.h"
 #include "engine/session/session_sample.h"
@@ -18,7 +19,8 @@ struct SessionSummary {
     double            mostForce       = 0;                     ///< [N]
     double            mostDepth       = 0;                     ///< [m] of the hand below the proxy
     double            leastCompliance = 0, mostCompliance = 0; ///< in use [m/N]; 0: never in contact
-    GovernorFault     fault = GovernorFault::none;             ///< the last
+    GovernorFault     fault       = GovernorFault::none;       ///< the last
+    DeviceFault       deviceFault = DeviceFault::none;         ///< the first, but for starting up
     std::string       why;                                     ///< the last patch that failed; may be empty
     DurationHistogram tick;                                    ///< computing a tick [s]
     DurationHistogram solve;                                   ///< computing a patch [s]
