@@ -8,6 +8,7 @@
 
 #include "device/setting_range.h"
 #include "engine/core/contract.h"
+#include "engine/core/real_time.h"
 
 namespace palp {
 namespace {
@@ -194,6 +195,8 @@ bool HidBridgeDevice::pass(double wait) noexcept
 
 void HidBridgeDevice::run(const std::stop_token& stop) noexcept
 {
+    // Refusal is no news to the user: the servo asked before and said so.
+    if (settings_.asksForRealTime) static_cast<void>(askForRealTime());
     while (!stop.stop_requested() && pass(settings_.readWait)) {
     }
     sayZero();

@@ -20,6 +20,7 @@ struct HidBridgeSettings {
     double  openWait = 1;     ///< [s] for the first report
     double  readWait = 1e-3;  ///< [s] the thread waits for a report before it looks for a command again
     HidPace pace     = HidPace::thread;
+    bool    asksForRealTime = true; ///< for its thread, if it may; without, commands may be late
 };
 
 /// A device that speaks the bridge's report: position in, force out, at up to 1 kHz.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -15,6 +14,8 @@
 #include <sys/utsname.h>
 #endif
 
+#include "device/falcon/falcon_firmware.h"
+#include "device/falcon/libusb_link.h"
 #include "device/hid/hidapi_system.h"
 #include "engine/core/contract.h"
 #include "engine/core/processor.h"
@@ -26,12 +27,6 @@ namespace palp {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::uintmax_t kLeastFirmware = 4096, kMostFirmware = 16384; // [byte] known images have 7324 to 8492
-
-constexpr const char* kFalconRule = // USB, not HID: the Falcon is a serial bridge
-    R"(put SUBSYSTEM=="usb", ATTR{idVendor}=="0403", ATTR{idProduct}=="cb48", TAG+="uaccess" into )"
-    "/etc/udev/rules.d/70-palpate.rules";
 
 Finding vulkan()
 {
@@ -106,6 +101,12 @@ Finding usb()
             "in a container pass it on, such as by --device /dev/bus/usb; else the kernel has no USB"};
 }
 
+Finding ofDevice(const char* part, const DeviceListing& device)
+{
+    if (device.usable) return {part, Verdict::ok, device.model + " can be opened"};
+    return {part, Verdict::missing, device.model + ": " + device.why, device.help};
+}
+
 /// Whether some rule names the product, given in lower case; rules may spell it in any.
 bool hasUdevRule(const std::string& product)
 {
@@ -126,24 +127,36 @@ bool hasUdevRule(const std::string& product)
 Finding udevRule()
 {
     if (hasUdevRule("cb48")) return {"udev rule", Verdict::ok, "one for the Falcon is installed"};
-    return {"udev rule", Verdict::warning, "none for the Falcon; only an administrator can open one", kFalconRule};
+    return {"udev rule", Verdict::warning, "none for the Falcon; only an administrator can open one",
+            std::string("put this line into /etc/udev/rules.d/70-palpate-falcon.rules: ") + kFalconUdevLine};
+}
+
+Finding falcon(const HapticList& haptics)
+{
+    for (const DeviceListing& device : haptics.devices)
+        if (device.name == "falcon") return ofDevice("falcon", device);
+    return {"falcon", Verdict::warning, "none is plugged in; looked for with " + falconSupport()};
 }
 
 Finding hid(const HapticList& haptics)
 {
     if (!hasHidSupport())
         return {"hid", Verdict::missing, hidSupport(), "install libhidapi-dev and build Palpate anew"};
-    if (!haptics.troubles.empty()) return {"hid", Verdict::missing, haptics.troubles.front()};
-    for (const DeviceListing& device : haptics.devices)
-        if ((device.name == "spacemouse" || device.name == "bridge") && !device.usable)
-            return {"hid", Verdict::missing, device.why, device.help};
-    return {"hid", Verdict::ok, hidSupport()};
+    std::string usable;
+    for (const DeviceListing& device : haptics.devices) {
+        if (device.name != "spacemouse" && device.name != "bridge") continue;
+        if (!device.usable) return ofDevice("hid", device);
+        usable += (usable.empty() ? "" : ", ") + device.model;
+    }
+    if (usable.empty())
+        return {"hid", Verdict::ok, "no SpaceMouse and no bridge is plugged in; looked for with " + hidSupport()};
+    return {"hid", Verdict::ok, usable};
 }
 
 Finding firmware()
 {
-    const char* path = std::getenv("FALCON_FIRMWARE");
-    if (!path || !*path)
+    const fs::path path = falconFirmwarePath(""); // as the environment says
+    if (path.empty())
         return {"falcon firmware", Verdict::warning,
                 "FALCON_FIRMWARE is not set; a Falcon that was just plugged in needs it",
                 "export FALCON_FIRMWARE=FILE, the image that came with the device's own driver"};
@@ -153,23 +166,11 @@ Finding firmware()
         return {"falcon firmware", Verdict::missing, "FALCON_FIRMWARE names a file that cannot be read",
                 "export FALCON_FIRMWARE=FILE, one that you may read"};
     const std::string bytes = std::to_string(size) + " byte";
-    if (size < kLeastFirmware || size > kMostFirmware)
+    if (size < kLeastFalconFirmware || size > kMostFalconFirmware)
         return {"falcon firmware", Verdict::missing, "FALCON_FIRMWARE names a file of " + bytes + ", which is no image",
-                "images have 4096 to 16384 byte"};
+                "images have " + std::to_string(kLeastFalconFirmware) + " to " + std::to_string(kMostFalconFirmware) +
+                    " byte"};
     return {"falcon firmware", Verdict::ok, bytes};
-}
-
-Finding hapticDevices(const HapticList& haptics)
-{
-    std::string usable;
-    for (const DeviceListing& device : haptics.devices)
-        if (device.usable && !device.path.empty()) usable += (usable.empty() ? "" : ", ") + device.model;
-    if (!usable.empty()) return {"haptic devices", Verdict::ok, usable};
-    const auto refused = std::ranges::find_if(
-        haptics.devices, [](const DeviceListing& device) { return !device.usable && !device.path.empty(); });
-    if (refused != haptics.devices.end())
-        return {"haptic devices", Verdict::missing, refused->model + ": " + refused->why, refused->help};
-    return {"haptic devices", Verdict::warning, "none is plugged in; the mouse and the simulated arm stand in"};
 }
 
 } // namespace
@@ -184,8 +185,9 @@ std::vector<Finding> examine(const HapticList& haptics)
 {
     std::vector<Finding> findings{realTime()}; // first: drivers of GPUs map memory that would be locked as well
     for (const Finding& finding :
-         {vulkan(), host(), display(), usb(), udevRule(), hid(haptics), firmware(), hapticDevices(haptics)})
+         {vulkan(), host(), display(), usb(), udevRule(), falcon(haptics), firmware(), hid(haptics)})
         findings.push_back(finding);
+    for (const std::string& trouble : haptics.troubles) findings.push_back({"devices", Verdict::missing, trouble});
     return findings;
 }
 

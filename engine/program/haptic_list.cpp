@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 
+#include "device/falcon/libusb_link.h"
 #include "device/hid/hidapi_system.h"
 #include "engine/core/contract.h"
 
@@ -14,17 +15,40 @@ bool isSet(const char* variable)
     return value && *value;
 }
 
+std::vector<DeviceListing> falcons()
+{
+    std::vector<DeviceListing> list;
+    for (const FalconListing& falcon : listFalcons())
+        list.push_back({.name   = "falcon",
+                        .model  = "Novint Falcon",
+                        .path   = falcon.path,
+                        .usable = falcon.usable,
+                        .why    = falcon.why,
+                        .help   = falcon.help});
+    return list;
+}
+
+/// What `look` finds; a trouble if it fails.
+template <class Look>
+std::vector<DeviceListing> tried(Look look, std::vector<std::string>& troubles)
+{
+    try {
+        return look();
+    } catch (const Error& error) {
+        troubles.emplace_back(error.what());
+        return {};
+    }
+}
+
 } // namespace
 
 HapticList listHaptics()
 {
     HapticList   list;
     HidapiSystem hid;
-    try {
-        list.devices = listDevices(hid);
-    } catch (const Error& error) {
-        list.troubles.emplace_back(error.what());
-    }
+    const auto   usb = tried(falcons, list.troubles);
+    list.devices     = tried([&] { return listDevices(hid, usb); }, list.troubles);
+    if (list.devices.empty()) list.devices = usb; // HID could not be listed
     for (DeviceListing& device : list.devices) {
         if (device.name != "mouse" || !displayName().empty()) continue;
         device.usable = false; // it lives in a window
@@ -36,7 +60,7 @@ HapticList listHaptics()
 
 std::string hapticSupport()
 {
-    return hidSupport();
+    return falconSupport() + ", " + hidSupport();
 }
 
 std::string displayName()

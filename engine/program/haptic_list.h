@@ -14,10 +14,10 @@ struct HapticList {
     std::vector<std::string>   troubles; ///< why some could not be looked for; one sentence each
 };
 
-/// Looks for them: HID devices are opened and let go again.
+/// Looks for them: Falcons and HID devices are opened and let go again.
 [[nodiscard]] HapticList listHaptics();
 
-/// What this build finds devices by: "hidapi 0.13.1".
+/// What this build finds devices by: "libusb-1.0 1.0.26, hidapi 0.13.1".
 [[nodiscard]] std::string hapticSupport();
 
 /// Of the window system: "Wayland", "X11", or empty without one.

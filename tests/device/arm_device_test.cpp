@@ -63,7 +63,9 @@ TEST(ArmDevice, AHostThatStaysAwayMeansNoForceAfterATenthOfASecond)
     arm.step({}, 0.3);
     EXPECT_EQ(late.fault, DeviceFault::hostTooSlow);
     EXPECT_NEAR(late.position.x, arm.position().x, 1e-12) << "rounding of the times";
-    EXPECT_EQ(device.exchange(push, kTick + 0.401).fault, DeviceFault::none);
+    const HapticState next = device.exchange(push, kTick + 0.401);
+    EXPECT_EQ(next.fault, DeviceFault::none);
+    EXPECT_NEAR(next.position.x, arm.step({}, 1e-3).position.x, 1e-12) << "the late force was not rendered; rounding";
 
     const double there = device.exchange({}, kTick + 0.402).position.x;
     EXPECT_LT(device.exchange({}, 1e9).position.x - there, 1) << "years are left out";

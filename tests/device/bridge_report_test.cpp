@@ -146,6 +146,8 @@ TEST(BridgeReport, WhatDoesNotFitEndsAtTheFieldsLimit)
     command.enable = false;
     ASSERT_EQ(decode(encode(command), got), BridgeVerdict::good);
     EXPECT_EQ(got.force, glm::dvec3(0)) << "no force without enable";
+    const BridgeBytes bytes = encode(command); // nor on the wire, where a firmware may forget to look
+    for (std::size_t n = 8; n < 14; ++n) EXPECT_EQ(bytes[n], 0) << "byte " << n;
 
     BridgeAnswer answer, back;
     answer.position   = {kInf, -1e9, 1e9};

@@ -14,6 +14,8 @@
 #include "tests/device/fake_bridge.h"
 #include "tests/device/fake_hid.h"
 #include "tests/device/governed.h"
+#include "tests/session/allocations.h"
+#include "tests/session/locks.h"
 
 namespace palp {
 namespace {
@@ -369,7 +371,7 @@ protected:
 
 TEST_F(BridgeInRealTime, AThreadDoesTheReadingAndWriting)
 {
-    HidBridgeDevice bridge(system, ours());
+    HidBridgeDevice bridge(system, ours(), {.asksForRealTime = false}); // a test must not outrank what else runs
     bridge.open();
     const GovernedForce push = governed({1, 0, 0});
     EXPECT_TRUE(until(bridge, push, [&](const HapticState& state) {
@@ -380,9 +382,23 @@ TEST_F(BridgeInRealTime, AThreadDoesTheReadingAndWriting)
     EXPECT_EQ(device.openPorts(), 0);
 }
 
+TEST_F(BridgeInRealTime, AnExchangeNeitherLocksNorAllocates)
+{
+    HidBridgeDevice bridge(system, ours(), {.asksForRealTime = false});
+    bridge.open();
+    const GovernedForce push = governed({1, 0, 0});
+
+    const std::size_t locks = locksOfThisThread(), allocations = allocationsOfThisThread();
+    for (int n = 0; n < 100000; ++n) bridge.exchange(push, n * kTick);
+    EXPECT_EQ(locksOfThisThread(), locks) << "the fake's mutex would show, so no port was touched";
+    EXPECT_EQ(allocationsOfThisThread(), allocations);
+    static_cast<void>(device.written());
+    EXPECT_EQ(locksOfThisThread() > locks, locksAreCounted()) << "written() takes one";
+}
+
 TEST_F(BridgeInRealTime, ZeroGoesOutByItselfWhenNobodyCalls)
 {
-    HidBridgeDevice bridge(system, ours());
+    HidBridgeDevice bridge(system, ours(), {.asksForRealTime = false}); // a test must not outrank what else runs
     bridge.open();
     const GovernedForce push = governed({1, 0, 0});
     ASSERT_TRUE(until(bridge, push, [&](const HapticState&) { return firmware.force().x > 0.9; }));
@@ -399,7 +415,7 @@ TEST_F(BridgeInRealTime, ZeroGoesOutByItselfWhenNobodyCalls)
 
 TEST_F(BridgeInRealTime, UnpluggingEndsTheThreadWithAFault)
 {
-    HidBridgeDevice bridge(system, ours());
+    HidBridgeDevice bridge(system, ours(), {.asksForRealTime = false}); // a test must not outrank what else runs
     bridge.open();
     device.unplug();
     EXPECT_TRUE(until(bridge, {}, [](const HapticState& state) { return state.fault == DeviceFault::unplugged; }));

@@ -55,7 +55,10 @@ TEST(MouseDevice, StaysWithinItsReach)
     MouseDevice mouse({.reach = 0.05});
     mouse.open();
     mouse.target({3, 4, 0});
-    for (int n = 0; n < 500; ++n) EXPECT_LE(glm::length(mouse.exchange({}, n * 1e-3).position), 0.05 + 1e-15);
+    mouse.exchange({}, 0);
+    EXPECT_LT(glm::length(mouse.exchange({}, 0.01).position), 0.005)
+        << "pulled from the edge, not from 5 m away: (1 - 1.5 exp(-0.5)) 0.05 m";
+    for (int n = 10; n < 500; ++n) EXPECT_LE(glm::length(mouse.exchange({}, n * 1e-3).position), 0.05 + 1e-15);
     EXPECT_NEAR(glm::distance(mouse.exchange({}, 0.6).position, {0.03, 0.04, 0}), 0, 1e-11) << "exp(-30), and rounding";
 }
 

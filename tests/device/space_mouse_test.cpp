@@ -11,6 +11,8 @@
 
 #include "engine/core/contract.h"
 #include "tests/device/fake_hid.h"
+#include "tests/session/allocations.h"
+#include "tests/session/locks.h"
 
 namespace palp {
 namespace {
@@ -248,6 +250,23 @@ TEST_F(SpaceMouseInVirtualTime, RefusesWhatItIsNot)
     SpaceMouse mouse(system, compact(), settings());
     EXPECT_THROW(mouse.open(), HidRefused);
     EXPECT_EQ(mouse.exchange({}, now).fault, DeviceFault::closed);
+}
+
+TEST(SpaceMouseInRealTime, AnExchangeNeitherLocksNorAllocates)
+{
+    FakeHidSystem  system;
+    FakeHidDevice& device = system.plug(compact());
+    SpaceMouse     mouse(system, compact());
+    mouse.open();
+    device.send(axesReport(1, {350, 0, 0}));
+
+    const std::size_t locks = locksOfThisThread(), allocations = allocationsOfThisThread();
+    for (int n = 0; n < 100000; ++n) {
+        mouse.exchange({}, n * 1e-3);
+        static_cast<void>(mouse.axes());
+    }
+    EXPECT_EQ(locksOfThisThread(), locks) << "the fake's mutex would show, so no port was touched";
+    EXPECT_EQ(allocationsOfThisThread(), allocations);
 }
 
 TEST(SpaceMouseInRealTime, AThreadReadsWhileTheServoOnlyTakes)

@@ -139,6 +139,8 @@ holds 'host  '
 holds 'usable   yes; auto takes it'
 holds 'arm  a simulated arm'
 holds 'looked for with '
+holds 'hidapi'
+holds 'libusb'
 # Where there is a window depends on the environment, and so does what needs one.
 env -u DISPLAY -u WAYLAND_DISPLAY "$palpate" devices --haptic >out.txt 2>err.txt || complain "devices --haptic: exit $?"
 holds 'usable   no: there is no display'
@@ -158,7 +160,7 @@ doctor() {
     env -u DISPLAY -u WAYLAND_DISPLAY -u FALCON_FIRMWARE $variables "$palpate" doctor >out.txt 2>err.txt && [ ! -s err.txt ] || complain "doctor: exit $? $(cat err.txt)"
     tr -s ' ' <out.txt | grep -qF -- "$*" && passed=$((passed + 1)) || complain "doctor$variables lacks '$*': $(cat out.txt)"
 }
-for part in vulkan host display 'real time' usb 'udev rule' hid 'falcon firmware' 'haptic devices'; do doctor -- " $part "; done
+for part in vulkan host display 'real time' usb 'udev rule' falcon 'falcon firmware' hid; do doctor -- " $part "; done
 doctor -- 'Embree '
 doctor -- 'missing display neither DISPLAY nor WAYLAND_DISPLAY'
 doctor DISPLAY=:0 -- 'ok display X11'
