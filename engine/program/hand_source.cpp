@@ -3,6 +3,9 @@
 #include <chrono>
 #include <iostream>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include "device/falcon/falcon_firmware.h"
 #include "device/falcon/libusb_link.h"
 #include "device/hid/hid_bridge.h"
@@ -39,7 +42,19 @@ double metresPerSecond(const std::string& text, const std::string& option)
 /// Of the thickness: the deflection is at most some tenths more than the hand's depth, so theory holds [1].
 constexpr double kDepth = 0.4;
 
-HandPath pathFor(const HandOptions& o, const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
+/// "5 s" or "5".
+double secondsOf(const std::string& text)
+{
+    constexpr double kMost  = 86400; // [s] a day
+    std::string      number = text;
+    if (number.ends_with("s")) number.resize(number.size() - 1);
+    const double seconds = parseQuantity(number, Dimension::none, "--seconds");
+    if (seconds > 0 && seconds <= kMost) return seconds;
+    throw Error("--seconds: expected a time above 0 and up to 86400 s, found \"" + text + "\"");
+}
+
+HandPath pathFor(const HandOptions& o, double seconds, const Scene& scene, const PointCloud& cloud,
+                 const NeighbourIndex& index)
 {
     const auto motion = motionNamed(o.hand);
     if (!motion) return readHand(o.hand);
@@ -50,7 +65,7 @@ HandPath pathFor(const HandOptions& o, const Scene& scene, const PointCloud& clo
     script.depth    = o.depth.empty() ? kDepth * scene.patch.material.thickness : metres(o.depth, "--press-depth");
     script.radius   = metres(o.reach, "--reach");
     script.height   = scene.startHeight;
-    script.duration = o.seconds;
+    script.duration = seconds;
     return draped(makeHand(script, place), place, cloud, index);
 }
 
@@ -69,6 +84,20 @@ SimulatedHand gripOf(const std::string& text)
     return hand;
 }
 
+/// Farther than so many sizes of the object a hand hardly goes [1].
+constexpr double kWide = 5;
+
+/// Diagonal of the box that the hand stays in [m].
+double widthOf(const HandPath& path)
+{
+    glm::dvec3 low = path.samples().front().position, high = low;
+    for (const HandSample& s : path.samples()) {
+        low  = glm::min(low, s.position);
+        high = glm::max(high, s.position);
+    }
+    return glm::length(high - low);
+}
+
 /// A scripted hand or one from a file, alone or holding something that forces move.
 void script(HandSource& source, HandOptions options, const Scene& scene, const PointCloud& cloud,
             const NeighbourIndex& index)
@@ -78,7 +107,13 @@ void script(HandSource& source, HandOptions options, const Scene& scene, const P
         options.hand = "scan";
         if (options.grip.empty()) options.grip = "300 N/m";
     }
-    source.path = std::make_unique<const HandPath>(pathFor(options, scene, cloud, index));
+    source.path = std::make_unique<const HandPath>(pathFor(options, source.seconds, scene, cloud, index));
+    if (!motionNamed(options.hand)) {
+        if (options.seconds.empty()) source.seconds = source.path->duration();
+        if (const double wide = widthOf(*source.path), size = cloud.bounds().diagonal(); wide > kWide * size)
+            source.warnings.push_back("the hand goes over " + formatQuantity(wide, "m") + " and the object measures " +
+                                      formatQuantity(size, "m") + ": are its positions metres?");
+    }
     if (options.grip.empty()) {
         source.device = std::make_unique<HandDevice>(*source.path);
         return;
@@ -134,6 +169,7 @@ HandSource handFor(const HandOptions& options, const Scene& scene, const PointCl
     if (options.hand == "mouse")
         throw Error("--hand mouse: the mouse needs a window, which this command has not; try scan, or --hand arm");
     HandSource source;
+    if (!options.seconds.empty()) source.seconds = secondsOf(options.seconds);
     const bool held = options.hand == "falcon" || options.hand == "bridge" || options.hand == "spacemouse";
     if (held && !options.grip.empty())
         throw Error("--arm: a person holds the " + options.hand + "; leave one of the two out");

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "device/hid/hid_port.h"
 #include "engine/session/hand_path.h"
@@ -16,7 +17,7 @@ struct HandOptions {
     std::string grip;                   ///< of the hand that holds a simulated arm; empty: forces do not move the hand
     std::string firmware;               ///< of the Falcon; empty: FALCON_FIRMWARE
     double      countsPerTorque = 4200; ///< of the Falcon's motors [1/(N m)]
-    double      seconds         = 5;    ///< [s]
+    std::string seconds;                ///< "5 s"; empty: 5 s, or a file's own length
 };
 
 /// A hand that is ready: its device is open.
@@ -25,6 +26,8 @@ struct HandSource {
     std::unique_ptr<const HandPath> path; ///< of a script or a file; null of a device that somebody holds
     std::unique_ptr<HapticDevice>   device;
     DeviceFrame                     frame;
+    double                          seconds = 5; ///< how long [s]
+    std::vector<std::string>        warnings;    ///< what is odd about it, in sentences
 
     [[nodiscard]] bool isHeld() const noexcept { return !path; } ///< by somebody, in real time
 };

@@ -17,6 +17,7 @@
 #include "engine/core/quantity.h"
 #include "engine/program/commands.h"
 #include "engine/program/hand_source.h"
+#include "engine/program/session_report.h"
 #include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
 #include "engine/session/recording.h"
@@ -41,69 +42,14 @@ struct ReplayOptions {
     bool        compare = false, json = false;
 };
 
-nlohmann::json durations(const DurationHistogram& of)
-{
-    return {{"count", of.count()},
-            {"p50_s", of.quantile(0.5)},
-            {"p99_s", of.quantile(0.99)},
-            {"p99.9_s", of.quantile(0.999)},
-            {"max_s", of.most()}};
-}
+/// Ctrl-C ends the session in order: zero force, a recording that is complete. A second one ends the program.
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
 
-nlohmann::json jsonOf(const SessionSummary& s)
+void onInterrupt(int signal)
 {
-    return {{"ticks", s.ticks},
-            {"contact_ticks", s.contactTicks},
-            {"patches", s.patches},
-            {"failed_patches", s.failedPatches},
-            {"stale_ticks", s.staleTicks},
-            {"ticks_beyond_table", s.beyondTable},
-            {"ticks_beyond_theory", s.beyondTheory},
-            {"ticks_without_patch", s.patchless},
-            {"max_force_N", s.mostForce},
-            {"max_depth_m", s.mostDepth},
-            {"compliance_min_m_per_N", s.leastCompliance},
-            {"compliance_max_m_per_N", s.mostCompliance},
-            {"fault", name(s.fault)},
-            {"device_fault", name(s.deviceFault)},
-            {"tick", durations(s.tick)},
-            {"period", durations(s.period)},
-            {"solve", durations(s.solve)}};
-}
-
-void warn(const std::string& sentence)
-{
-    std::cerr << "palpate: warning: " << sentence << "\n";
-}
-
-void printText(const SessionSummary& s, const std::string& device)
-{
-    const auto seconds = [](double t) { return formatQuantity(t, "s"); };
-    std::cout << s.ticks << " ticks, " << s.contactTicks << " in contact; " << s.patches << " patches on " << device
-              << "\n";
-    if (s.contactTicks > 0)
-        std::cout << "  force at most " << formatQuantity(s.mostForce, "N") << ", depth at most "
-                  << formatQuantity(s.mostDepth, "m") << ", compliance " << formatQuantity(s.leastCompliance, "m/N")
-                  << " to " << formatQuantity(s.mostCompliance, "m/N") << "\n";
-    std::cout << "  a tick computes " << seconds(s.tick.quantile(0.5)) << " (p99 " << seconds(s.tick.quantile(0.99))
-              << ", p99.9 " << seconds(s.tick.quantile(0.999)) << ", most " << seconds(s.tick.most()) << "), a patch "
-              << seconds(s.solve.quantile(0.5)) << " (most " << seconds(s.solve.most()) << ")\n";
-    if (s.period.count() > 0)
-        std::cout << "  a tick comes every " << seconds(s.period.quantile(0.5)) << " (p99 "
-                  << seconds(s.period.quantile(0.99)) << ", p99.9 " << seconds(s.period.quantile(0.999)) << ", most "
-                  << seconds(s.period.most()) << ")\n";
-    if (s.fault != GovernorFault::none) warn(std::string("the governor stopped the force: ") + name(s.fault));
-    if (s.deviceFault != DeviceFault::none) warn(std::string("the device was not well: ") + name(s.deviceFault));
-    if (s.beyondTheory > 0)
-        warn("the deflection exceeded half the thickness in " + std::to_string(s.beyondTheory) +
-             " ticks: Kirchhoff plate theory does not hold there");
-    if (s.beyondTable > 0)
-        warn("the contact left the table's reach in " + std::to_string(s.beyondTable) +
-             " ticks: a larger table_size or deformation_rate follows faster hands");
-    if (s.staleTicks > 0)
-        warn(std::to_string(s.staleTicks) + " ticks had a patch older than three of its periods: a smaller grid, "
-                                            "deformation_rate or table_size is solved in time");
-    if (s.failedPatches > 0) warn(std::to_string(s.failedPatches) + " patches could not be solved: " + s.why);
+    interrupted = true;
+    std::signal(signal, SIG_DFL);
 }
 
 /// Plays the hand through the scene, with a line on a terminal and a recording if one is wanted.
@@ -112,10 +58,29 @@ SessionSummary play(const SessionParts& parts, double seconds, const OnSample& a
     Progress    progress("touching");
     const auto  total = std::size_t(std::llround(1000 * seconds));
     std::size_t done  = 0;
-    return runVirtual(parts, seconds, [&](const SessionSample& sample) {
-        if (also) also(sample);
-        progress.at(++done, total);
-    });
+    return runVirtual(
+        parts, seconds,
+        [&](const SessionSample& sample) {
+            if (also) also(sample);
+            progress.at(++done, total);
+        },
+        &interrupted);
+}
+
+void warn(const std::vector<std::string>& sentences)
+{
+    for (const std::string& sentence : sentences) std::cerr << "palpate: warning: " << sentence << "\n";
+}
+
+/// What the cloud did not say and nobody else did.
+std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& report)
+{
+    std::vector<std::string> said;
+    if (report.lengthUnitAssumed)
+        said.emplace_back("assumed metres: the scene has no length_unit, and the file no comment that names one");
+    if (report.stiffnessAssumed && scene.stiffness.empty())
+        said.emplace_back("no stiffness in the file: uniform 300 kPa assumed; the scene's stiffness says otherwise");
+    return said;
 }
 
 /// What one must know before touching: the plate at the scene's place, on the host, which needs no device.
@@ -129,16 +94,6 @@ std::vector<std::string> warningsOf(const Scene& scene, const PointCloud& cloud,
     } catch (const Error& error) { // a hand from a file may work elsewhere
         return {std::string("at the scene's place nothing can be felt: ") + error.what()};
     }
-}
-
-/// Ctrl-C ends the session in order: zero force, a recording that is complete. A second one ends the program.
-std::atomic<bool> interrupted = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
-
-void onInterrupt(int signal)
-{
-    interrupted = true;
-    std::signal(signal, SIG_DFL);
 }
 
 /// One line that is written over and over: what the hand feels, and how fast.
@@ -156,11 +111,12 @@ void showLine(const SessionView& view)
 }
 
 /// The same in real time; the line shows what the hand feels.
-SessionSummary playLive(const RunOptions& o, SessionThreads threads, const SessionParts& parts, Recording* recording)
+SessionSummary playLive(const RunOptions& o, double seconds, SessionThreads threads, const SessionParts& parts,
+                        Recording* recording)
 {
     const bool          line = isatty(STDERR_FILENO) != 0 && !o.json;
     RealSessionSettings settings;
-    settings.seconds = o.hand.seconds;
+    settings.seconds = seconds;
     settings.threads = threads;
     settings.stop    = &interrupted;
     if (recording) settings.onSample = [recording](const SessionSample& sample) { recording->push(sample); };
@@ -168,7 +124,7 @@ SessionSummary playLive(const RunOptions& o, SessionThreads threads, const Sessi
     std::string          warning;
     const SessionSummary summary = runReal(parts, settings, warning);
     if (line) std::fprintf(stderr, "\r\033[K");
-    if (!warning.empty()) warn(warning);
+    if (!warning.empty()) warn({warning});
     return summary;
 }
 
@@ -213,8 +169,8 @@ SessionThreads threadsOf(const RunOptions& o, SessionClock clock)
     return *threads;
 }
 
-std::unique_ptr<Recording> recordingOf(const RunOptions& o, const Scene& scene, SessionClock clock,
-                                       const std::string& device)
+std::unique_ptr<Recording> recordingOf(const RunOptions& o, const Scene& scene, const PointCloud& cloud,
+                                       SessionClock clock, const std::string& device)
 {
     if (o.record.empty()) return nullptr;
     SessionInfo info;
@@ -223,7 +179,30 @@ std::unique_ptr<Recording> recordingOf(const RunOptions& o, const Scene& scene, 
     info.device   = device;
     info.clock    = clock;
     info.command  = o.command;
+    info.cloud    = fingerprint(cloud);
     return std::make_unique<Recording>(o.record, info);
+}
+
+/// Prints what happened. \throws CheckFailed if samples are missing in the recording
+void tell(const RunOptions& o, const SessionSummary& summary, const std::string& device, const std::string& hand,
+          std::vector<std::string> known, const std::optional<RecordingReport>& report)
+{
+    const auto after = warningsOf(summary);
+    warn(after);
+    if (o.json) {
+        known.insert(known.end(), after.begin(), after.end());
+        nlohmann::json all = jsonOf(summary);
+        all["hand"]        = hand;
+        all["device"]      = device;
+        all["warnings"]    = known;
+        if (report) all["recorded"] = {{"folder", o.record}, {"samples", report->samples}, {"lost", report->lost}};
+        std::cout << jsonText(all);
+    } else {
+        printText(summary, device, hand);
+        if (report) std::cout << "  " << report->samples << " samples in " << o.record << "\n";
+    }
+    if (report && report->lost > 0)
+        throw CheckFailed(o.record + ": " + std::to_string(report->lost) + " samples were lost");
 }
 
 void run(const RunOptions& o)
@@ -236,38 +215,31 @@ void run(const RunOptions& o)
         std::cout << printConfig(scene, o.json ? ConfigFormat::json : ConfigFormat::text);
         return;
     }
-    if (!(o.hand.seconds > 0 && o.hand.seconds <= 86400))
-        throw Error("--seconds: expected a time above 0 and up to 86400");
     const LoadedCloud    cloud = loadCloud(scene);
     const NeighbourIndex index(cloud.cloud.positions());
     Deformation          deformation(cloud.cloud, index, scene); // what can fail fails before a folder is made
     const std::string    device = deformation.device().name();
-    const auto           known  = warningsOf(scene, cloud.cloud, index);
-    for (const std::string& sentence : known) warn(sentence);
-    const HandSource hand = handFor(o.hand, scene, cloud.cloud, index);
+    HandSource           hand   = handFor(o.hand, scene, cloud.cloud, index);
     if (hand.isHeld() && clock != SessionClock::real)
         throw Error("--hand " + o.hand.hand + ": somebody holds it, in real time; leave out --clock virtual");
+
+    std::vector<std::string> known = assumptions(scene, cloud.report);
+    for (const auto& more : {warningsOf(scene, cloud.cloud, index), hand.warnings})
+        known.insert(known.end(), more.begin(), more.end());
+    warn(known);
     std::signal(SIGINT, onInterrupt);
     std::signal(SIGTERM, onInterrupt);
     waitForHoming(*hand.device, interrupted);
-    const SessionParts             parts{scene, cloud.cloud, index, deformation.solver(), *hand.device, hand.frame};
-    const auto                     recording = recordingOf(o, scene, clock, device);
-    const SessionSummary           summary   = clock == SessionClock::real
-                                                   ? playLive(o, threads, parts, recording.get())
-                                                   : play(parts, o.hand.seconds, [&](const SessionSample& sample) {
-                                             if (recording) recording->pushWaiting(sample);
-                                         });
+
+    const SessionParts parts{scene, cloud.cloud, index, deformation.solver(), *hand.device, hand.frame};
+    const auto         recording = recordingOf(o, scene, cloud.cloud, clock, device);
+    const auto summary = clock == SessionClock::real ? playLive(o, hand.seconds, threads, parts, recording.get())
+                                                     : play(parts, hand.seconds, [&](const SessionSample& sample) {
+                                                           if (recording) recording->pushWaiting(sample);
+                                                       });
     std::optional<RecordingReport> report;
     if (recording) report = recording->finish();
-    if (o.json) {
-        nlohmann::json all = jsonOf(summary);
-        all["warnings"]    = known;
-        if (report) all["recorded"] = {{"folder", o.record}, {"samples", report->samples}, {"lost", report->lost}};
-        std::cout << jsonText(all);
-        return;
-    }
-    printText(summary, device);
-    if (report) std::cout << "  " << report->samples << " samples in " << o.record << "\n";
+    tell(o, summary, device, hand.device->info().model, known, report);
 }
 
 void replay(const ReplayOptions& o)
@@ -275,9 +247,15 @@ void replay(const ReplayOptions& o)
     const RecordedSession session = readSession(o.folder);
     if (session.clock != "virtual")
         throw Error(o.folder + ": recorded in real time, which no replay can repeat; expected clock \"virtual\"");
-    Scene scene = sceneOf(session);
-    if (!o.device.empty()) scene.device = o.device;
-    const LoadedCloud    cloud = loadCloud(scene);
+    Scene scene  = sceneOf(session);
+    scene.device = o.device.empty() ? session.device : o.device;
+    if (session.samples.empty()) throw Error(o.folder + ": there are no samples in it, so there is nothing to replay");
+    if (!session.finished)
+        warn({o.folder + " was not finished: its first " + std::to_string(session.samples.size()) +
+              " samples are replayed"});
+    const LoadedCloud cloud = loadCloud(scene);
+    if (!session.cloud.empty() && session.cloud != fingerprint(cloud.cloud))
+        warn({"the cloud is not the one that was recorded: " + scene.cloud + " has changed"});
     const NeighbourIndex index(cloud.cloud.positions());
     Deformation          deformation(cloud.cloud, index, scene);
 
@@ -289,7 +267,8 @@ void replay(const ReplayOptions& o)
     const SessionSummary summary = play({scene, cloud.cloud, index, deformation.solver(), hand, {}}, seconds,
                                         [&](const SessionSample& sample) { again.samples.push_back(sample); });
     if (!o.compare) {
-        o.json ? void(std::cout << jsonText(jsonOf(summary))) : printText(summary, deformation.device().name());
+        o.json ? void(std::cout << jsonText(jsonOf(summary)))
+               : printText(summary, deformation.device().name(), hand.info().model);
         return;
     }
     const auto difference = compareSessions(session, again);
@@ -313,7 +292,7 @@ void addRunCommand(CLI::App& app)
                      "press, circle or scan about the scene's place; a file of time [s], x, y, z [m]; or a device: "
                      "falcon, bridge, spacemouse, arm, falcon-emulator (palpate devices tells which there are)")
         ->capture_default_str();
-    run_->add_option("--seconds", o->hand.seconds, "how long")->capture_default_str();
+    run_->add_option("--seconds", o->hand.seconds, "how long [5 s; a file's own length]");
     run_->add_option("--speed", o->hand.speed, "of press, circle and scan, at most")->capture_default_str();
     run_->add_option("--press-depth", o->hand.depth,
                      "of the hand below the surface [40 % of the thickness, within plate theory]");

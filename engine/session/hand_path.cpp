@@ -81,16 +81,31 @@ std::string plain(std::string_view word)
 
 constexpr std::string_view kBetween = ",; \t\r"; // what may stand between numbers
 
-/// The first four words of a line; empty where there are fewer.
-std::array<std::string_view, 4> wordsOf(std::string_view line)
+/// The first four words of a line, empty where there are fewer, and how many there are.
+struct Words {
+    std::array<std::string_view, 4> first{};
+    std::size_t                     count = 0;
+};
+
+Words wordsOf(std::string_view line)
 {
-    std::array<std::string_view, 4> words{};
-    for (std::string_view& word : words) {
+    Words words;
+    for (;;) {
         line.remove_prefix(std::min(line.find_first_not_of(kBetween), line.size()));
-        word = line.substr(0, line.find_first_of(kBetween));
+        if (line.empty()) return words;
+        const std::string_view word = line.substr(0, line.find_first_of(kBetween));
+        if (words.count < words.first.size()) words.first[words.count] = word;
+        ++words.count;
         line.remove_prefix(word.size());
     }
-    return words;
+}
+
+/// As many columns as the header has, four without one: a comma too many may be a decimal one.
+void demandColumns(const Words& words, std::size_t columns, const std::string& where)
+{
+    if (words.count == columns || words.count < 4) return; // too few are told number by number
+    throw Error(where + ": expected " + std::to_string(columns) + " columns, found " + std::to_string(words.count) +
+                "; decimals have a point, and further columns need a header line");
 }
 
 HandSample sampleOf(const std::array<std::string_view, 4>& words, const std::string& where)
@@ -203,13 +218,21 @@ HandPath parseHand(std::istream& in, const std::string& name)
 {
     constexpr std::size_t kLongestLine = 1 << 16; // [bytes] a file without line ends is no text, and may be endless
     Checked               checked;
+    std::size_t           columns = 4;
     std::vector<char>     line(kLongestLine);
     for (std::size_t number = 1; in.getline(line.data(), std::streamsize(line.size())); ++number) {
-        const std::string where = name + ": line " + std::to_string(number);
-        const auto        words = wordsOf(line.data());
-        if (words[0].empty() || words[0].starts_with('#')) continue;
-        if (checked.samples.empty() && isHeader(words, where)) continue;
-        checked.add(sampleOf(words, where), where);
+        const std::string          where = name + ": line " + std::to_string(number);
+        constexpr std::string_view kMark = "\xEF\xBB\xBF"; // of UTF-8, as spreadsheets write it
+        std::string_view           rest(line.data());
+        if (number == 1 && rest.starts_with(kMark)) rest.remove_prefix(kMark.size());
+        const Words words = wordsOf(rest);
+        if (words.count == 0 || words.first[0].starts_with('#')) continue;
+        if (checked.samples.empty() && isHeader(words.first, where)) {
+            columns = std::max(words.count, columns);
+            continue;
+        }
+        demandColumns(words, columns, where);
+        checked.add(sampleOf(words.first, where), where);
     }
     if (!in.eof())
         throw Error(name + ": expected lines of numbers, found one longer than " + std::to_string(kLongestLine) +

@@ -48,8 +48,8 @@ private:
     double                  fastest_ = 0; ///< [m/s]
 };
 
-/// Reads a hand from a file of rows time [s], x, y, z [m]; further columns are skipped, so that samples.csv of a
-/// recorded session is a hand too.
+/// Reads a hand from a file of rows time [s], x, y, z [m]; further columns are skipped where a header line has them
+/// too, so that samples.csv of a recorded session is a hand.
 ///
 /// .npy: an array of shape (n, 4) or wider. Any other extension: text, one sample a line, numbers between commas,
 /// semicolons, blanks or tabs; lines that start with '#' are comments; a header line is skipped if its first name

@@ -87,6 +87,7 @@ private:
     const RealSessionSettings& settings_;
     Shared                     shared_;
     ContactHalf                contact_;      ///< of the servo's thread, or of the proxy's
+    Held                       nothing_;      ///< of the servo's thread, before the proxy's first word
     ForceHalf                  force_;        ///< of the servo's thread
     SessionSummary             summary_;      ///< of the servo's thread
     SessionSummary             slow_;         ///< of the deformation's
@@ -134,13 +135,14 @@ SessionSample RealSession::tick(const ForceHalf::Beat& beat, const HapticState& 
 /// What the hand holds: computed here, or the last word of the proxy's thread.
 const Held& RealSession::held(double time, const Hand& hand) noexcept
 {
-    static constexpr Held kNothing{};
     if (settings_.threads == SessionThreads::paper) {
         shared_.hand.draft() = {time, hand};
         shared_.hand.publish();
         shared_.held.take();
-        const Held* const newest = shared_.held.held();
-        return newest ? *newest : kNothing;
+        if (const Held* const newest = shared_.held.held()) return *newest;
+        nothing_.touch.time  = time;
+        nothing_.touch.point = hand.position;
+        return nothing_;
     }
     const Held& now = contact_.tick(time, hand.position);
     publish(now);

@@ -68,13 +68,18 @@ OpenColumn openColumn(const std::filesystem::path& folder, const SessionColumn& 
     return {std::move(in), path.string(), extent.rows};
 }
 
-std::vector<SessionSample> readColumns(const std::filesystem::path& folder)
+/// \param expected  samples of a session that was finished: all columns have as many
+std::vector<SessionSample> readColumns(const std::filesystem::path& folder, std::optional<std::uint64_t> expected)
 {
     std::vector<OpenColumn> open;
     std::uint64_t           rows = std::numeric_limits<std::uint64_t>::max();
     for (const SessionColumn& column : sessionColumns()) {
         open.push_back(openColumn(folder, column));
         rows = std::min(rows, open.back().rows);
+        if (expected && open.back().rows != *expected)
+            throw Error(open.back().name + ": expected the " + std::to_string(*expected) +
+                        " samples that session.json counts, found " + std::to_string(open.back().rows) +
+                        "; the recording is damaged");
     }
     std::vector<SessionSample> samples(rows);
     std::vector<char>          part;
@@ -167,7 +172,10 @@ RecordedSession readSession(const std::filesystem::path& folder)
     session.command = file.text("command");
     session.scene   = file.json("scene");
     if (file.has("finished")) session.finished = file.json("finished") == "true";
-    session.samples = readColumns(folder);
+    std::optional<std::uint64_t> expected;
+    if (session.finished) expected = file.wholeNumber("samples", 0, std::numeric_limits<int>::max());
+    session.cloud   = file.has("cloud") ? file.text("cloud") : "";
+    session.samples = readColumns(folder, expected);
     return session;
 }
 

@@ -17,6 +17,7 @@ struct RecordedSession {
     std::string                device;           ///< as it was called then
     std::string                command;          ///< that recorded it
     std::string                scene;            ///< JSON for parseScene()
+    std::string                cloud;            ///< fingerprint() of what was touched
     bool                       finished = false; ///< false: killed, or still running
     std::vector<SessionSample> samples;
 };

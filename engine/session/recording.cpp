@@ -239,6 +239,7 @@ nlohmann::ordered_json describe(const SessionInfo& info)
             {"command", info.command},
             {"clock", name(info.clock)},
             {"device", info.device},
+            {"cloud", info.cloud},
             {"scene", nlohmann::ordered_json::parse(sceneJson(info.scene))},
             {"origins", std::move(origins)},
             {"columns", std::move(columns)},

@@ -26,6 +26,7 @@ struct SessionInfo {
     std::string                        device;   ///< that solves the plate, as it is called
     SessionClock                       clock = SessionClock::real;
     std::string                        command; ///< line by which the session was started
+    std::string                        cloud{}; ///< fingerprint() of what is touched
 };
 
 /// What became of a recording.

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <sstream>
 #include <vector>
@@ -36,6 +38,7 @@ struct Given {
     const std::string& text;
     const std::string& what;     ///< "skin.json: key \"thickness\"", "--thickness"
     std::string_view   expected; ///< of the key
+    std::string_view   unit{};   ///< of the key; empty where it has none
 
     [[noreturn]] void refuse(const std::string& hint = {}) const
     {
@@ -47,9 +50,12 @@ struct Given {
                     (text.size() > kMost ? "..." : "") + "\"" + hint);
     }
 
+    /// A number without a dimension of its own may still carry the key's unit: "60 Hz".
     [[nodiscard]] double quantity(Dimension dimension, double least, double most) const
     {
-        const double value = parseQuantity(text, dimension, what);
+        std::string_view plain = text;
+        if (dimension == Dimension::none && !unit.empty() && plain.ends_with(unit)) plain.remove_suffix(unit.size());
+        const double value = parseQuantity(plain, dimension, what);
         if (!(value >= least && value <= most)) refuse();
         return value;
     }
@@ -116,9 +122,11 @@ void readLaw(Scene& scene, const Given& given)
 
 void readFrom(Scene& scene, const Given& given)
 {
-    const glm::dvec3 from = parsePoint(given.text, given.what);
-    if (from == glm::dvec3(0)) given.refuse();
-    scene.from = from;
+    const glm::dvec3 from  = parsePoint(given.text, given.what);
+    const double     scale = std::max({std::abs(from.x), std::abs(from.y), std::abs(from.z)});
+    if (scale == 0) given.refuse();
+    scene.from =
+        scale < 1e100 && scale > 1e-100 ? from : from / scale; // its length says nothing, and must not overflow
 }
 
 void readPlace(Scene& scene, const Given& given)
@@ -445,7 +453,8 @@ Scene sceneOf(const JsonObject& file, const std::filesystem::path& folder, const
         const auto one = sources.about(key);
         if (!one) continue;
         try {
-            key.read(scene, Given{one->text, one->what, key.key.expected});
+            key.read(scene, Given{one->text, one->what, key.key.expected,
+                                  key.key.unit == "1" ? std::string_view() : key.key.unit});
         } catch (const Error& error) { // of the readers of quantities and units
             const std::string sentence = error.what();
             throw sentence.starts_with(one->what) ? error : Error(one->what + ": " + sentence);
@@ -589,6 +598,24 @@ LoadedCloud loadCloud(const Scene& scene)
                               StiffnessKind::modulus);
     loaded.report.stiffnessSource = "the scene's law [Pa]";
     return loaded;
+}
+
+std::string fingerprint(const PointCloud& cloud)
+{
+    std::uint64_t hash = 14695981039346656037U;
+    const auto    add  = [&](double value) {
+        std::uint64_t bits = std::bit_cast<std::uint64_t>(value);
+        for (int k = 0; k < 8; ++k, bits >>= 8U) hash = (hash ^ (bits & 0xFFU)) * 1099511628211U;
+    };
+    for (const glm::dvec3& p : cloud.positions()) {
+        add(p.x);
+        add(p.y);
+        add(p.z);
+    }
+    for (const double stiffness : cloud.stiffness()) add(stiffness);
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
 }
 
 } // namespace palp

@@ -115,4 +115,7 @@ enum class ConfigFormat { text, json };
 /// \throws Error as readCloud() does
 [[nodiscard]] LoadedCloud loadCloud(const Scene& scene);
 
+/// 16 hexadecimal digits that tell clouds apart: FNV-1a over the bits of places and stiffnesses. Not against malice.
+[[nodiscard]] std::string fingerprint(const PointCloud& cloud);
+
 } // namespace palp

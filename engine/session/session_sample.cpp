@@ -26,7 +26,11 @@ constexpr std::array kColumns = {
     SessionColumn{"patch_age", Type::float64, 1, offsetof(S, patchAge), "s", "of the plate's answer in use", false},
     SessionColumn{"tick_time", Type::float64, 1, offsetof(S, tickTime), "s", "processor time of the tick", true},
     SessionColumn{"iterations", Type::int32, 1, offsetof(S, iterations), "1", "of the plate's solver", false},
-    SessionColumn{"faults", Type::uint32, 1, offsetof(S, faults), "1", "one bit each", false},
+    SessionColumn{
+        "faults", Type::uint32, 1, offsetof(S, faults), "1",
+        "bits 0 to 7 why the governor stopped, 256 stale patch, 512 beyond the table, 1024 no patch yet, 2048 "
+        "proxy limited, 4096 beyond plate theory, 8192 held back by the governor",
+        false},
     SessionColumn{"device", Type::uint32, 1, offsetof(S, device), "1",
                   "bits 0 to 7 its fault, 8 homed, 9 in its box, 16 to 31 buttons", false},
     SessionColumn{"missed", Type::int32, 1, offsetof(S, missed), "1",

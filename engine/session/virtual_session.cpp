@@ -22,7 +22,8 @@ double secondsSince(Clock::time_point start)
 
 } // namespace
 
-SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSample& onSample)
+SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSample& onSample,
+                          const std::atomic<bool>* stop)
 {
     Servo                    servo(parts.cloud, parts.index, parts.scene);
     SessionSummary           summary;
@@ -32,6 +33,7 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSam
     const auto every = std::max<std::int64_t>(1, std::llround(1 / (parts.scene.deformationRate * kTick))); // ticks
     const auto ticks = std::llround(seconds / kTick);
     for (std::int64_t n = 0; n < ticks; ++n) {
+        if (stop && *stop) break;
         const double time = double(n) * kTick;
         if (n % every == 0) {
             if (underWay) inUse = underWay;

@@ -1,4 +1,6 @@
 #pragma once
+#include <atomic>
+
 #include "engine/session/session_parts.h"
 #include "engine/session/session_summary.h"
 
@@ -10,7 +12,9 @@ namespace palp {
 ///
 /// \param seconds   how long [s]
 /// \param onSample  sees every sample; may be empty
+/// \param stop      ends the session once it is true; may be null
 /// \throws what the solver throws
-SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSample& onSample);
+SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSample& onSample,
+                          const std::atomic<bool>* stop = nullptr);
 
 } // namespace palp
