@@ -12,7 +12,7 @@
 namespace palp {
 namespace {
 
-constexpr double kTolerance = 1e-9; ///< [rad] of Newton's method: below 1e-10 m, and far above rounding
+constexpr double kTolerance = 1e-9; ///< [rad] of Newton's method: 1e-10 m, and far above rounding
 constexpr int    kSteps = 20; ///< of Newton's method; it takes 9 at most from the middle, 2 to 4 from the last position
 constexpr int    kHalvings = 10;    ///< of a step; after so many the residual has a minimum here that is not 0
 constexpr double kLongest  = 20e-3; ///< [m] of a step; without a limit one start in 6000 leads out of the workspace

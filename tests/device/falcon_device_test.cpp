@@ -309,9 +309,9 @@ TEST(FalconDevice, HomingLostAndFoundElsewhereIsNoSpeed)
     });
     for (double x : {0.015, -0.015, 0.015}) {
         place = {1, 0, 0};
-        bench.run(0.003); // too short for 30 mm at a speed that would be believed
+        bench.run(0.002); // too short for 30 mm at a speed that would be believed
         place = {x, 0, 0};
-        bench.run(0.003);
+        bench.run(0.002);
         bench.run(0.05, [&] {
             EXPECT_NEAR(bench.state.position.x, x, kCount) << "with the first answer";
             EXPECT_LE(glm::length(bench.state.velocity), 2 * kCount / 1e-3) << "a count at each end";

@@ -1,0 +1,39 @@
+// This machine's own USB, with the real libusb or without any; no Falcon need be plugged in.
+#include "device/falcon/libusb_link.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace palp {
+namespace {
+
+TEST(FalconLink, ThisBuildSaysWhatItCanDo)
+{
+    EXPECT_TRUE(holds(falconSupport(), {"libusb-1.0"})) << falconSupport();
+}
+
+TEST(FalconLink, APlaceWithoutAFalconIsRefusedInWords)
+{
+    const std::string refusal = refusalOf([] { static_cast<void>(openFalcon("no-such-place")); });
+    EXPECT_TRUE(holds(refusal, {"Falcon", ";"}) || holds(refusal, {"USB cannot be used", ";"})) << refusal;
+}
+
+TEST(FalconLink, EveryFalconThatIsListedIsUsableOrSaysWhyNot)
+{
+    std::vector<FalconListing> listings;
+    try {
+        listings = listFalcons();
+    } catch (const Error& error) {
+        GTEST_SKIP() << error.what();
+    }
+    for (const FalconListing& listing : listings) {
+        EXPECT_NE(listing.path, "");
+        EXPECT_EQ(listing.usable, listing.why.empty() && listing.help.empty());
+    }
+}
+
+} // namespace
+} // namespace palp

@@ -1,0 +1,91 @@
+// Listing and opening Falcons by libusb, against a stand-in of the library.
+#include <string>
+
+#include "device/falcon/libusb_link.h"
+#include "tests/device/falcon_usb_fixture.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palp {
+namespace {
+
+TEST_F(FalconUsb, ListsFalconsByTheirPlacesAndNothingElse)
+{
+    plugIn(3)->product = 0x6001; // a serial cable
+    const auto deep    = plugIn(4);
+    deep->bus          = 3;
+    deep->ports        = {4, 1, 7};
+
+    const auto listings = listFalcons();
+
+    ASSERT_EQ(listings.size(), 2u);
+    EXPECT_EQ(listings[0].path, "1-2");
+    EXPECT_EQ(listings[1].path, "3-4.1.7");
+    EXPECT_TRUE(listings[0].usable);
+    EXPECT_EQ(listings[0].why + listings[0].help, "");
+    EXPECT_EQ(falconSupport(), "libusb-1.0 1.0.26");
+}
+
+TEST_F(FalconUsb, WithoutPermissionTheListingGivesTheLineThatHelps)
+{
+    falcon_->openError = LIBUSB_ERROR_ACCESS;
+
+    const auto listings = listFalcons();
+
+    ASSERT_EQ(listings.size(), 1u);
+    EXPECT_FALSE(listings[0].usable);
+    EXPECT_TRUE(holds(listings[0].why, {"permission"})) << listings[0].why;
+    EXPECT_TRUE(holds(listings[0].help, {"/etc/udev/rules.d", kFalconUdevLine})) << listings[0].help;
+    const std::string refusal = refusalOf([] { static_cast<void>(openFalcon()); });
+    EXPECT_TRUE(holds(refusal, {"1-2", "permission", kFalconUdevLine})) << refusal;
+}
+
+TEST_F(FalconUsb, TheInstalledRuleIsTheLineThatHelps)
+{
+    EXPECT_TRUE(holds(contentsOf(PALPATE_FALCON_RULES), {kFalconUdevLine}));
+}
+
+TEST_F(FalconUsb, AFalconThatIsOpenIsBusyUntilItIsClosed)
+{
+    auto link = openFalcon();
+    EXPECT_TRUE(falcon_->autoDetach) << "a serial driver of the kernel must give way";
+
+    EXPECT_TRUE(holds(listFalcons().at(0).why, {"open already"}));
+    EXPECT_TRUE(holds(refusalOf([] { static_cast<void>(openFalcon("1-2")); }), {"1-2", "open already"}));
+    link.reset();
+
+    EXPECT_TRUE(listFalcons().at(0).usable);
+}
+
+TEST_F(FalconUsb, TheFirstUsableOneIsTakenUnlessAPathIsGiven)
+{
+    falcon_->openError = LIBUSB_ERROR_ACCESS;
+    const auto second  = plugIn(5);
+
+    static_cast<void>(openFalcon()->control(FtdiRequest::latencyTimer, 1));
+
+    EXPECT_EQ(second->controls.size(), 1u);
+    EXPECT_TRUE(holds(refusalOf([] { static_cast<void>(openFalcon("1-2")); }), {"permission"}));
+    EXPECT_TRUE(holds(refusalOf([] { static_cast<void>(openFalcon("9-9")); }), {"9-9", "1-2, 1-5"}));
+    usb_.devices.clear();
+    EXPECT_TRUE(holds(refusalOf([] { static_cast<void>(openFalcon()); }), {"plugged in", "0403:cb48"}));
+}
+
+TEST_F(FalconUsb, WhenNothingStartsTheReasonIsGivenAndNothingIsLeft)
+{
+    const auto open = [] { static_cast<void>(openFalcon()); };
+    usb_.initError  = LIBUSB_ERROR_OTHER;
+    EXPECT_TRUE(holds(refusalOf(open), {"libusb does not start"}));
+    EXPECT_TRUE(holds(refusalOf([] { static_cast<void>(listFalcons()); }), {"libusb does not start"}));
+    usb_.initError = 0;
+    usb_.listError = LIBUSB_ERROR_OTHER;
+    EXPECT_TRUE(holds(refusalOf(open), {"cannot be listed"}));
+    usb_.listError      = 0;
+    falcon_->claimError = LIBUSB_ERROR_NO_DEVICE;
+    EXPECT_TRUE(holds(refusalOf(open), {"NO_DEVICE"}));
+    falcon_->claimError  = 0;
+    falcon_->submitError = LIBUSB_ERROR_NO_DEVICE;
+    EXPECT_TRUE(holds(refusalOf(open), {"NO_DEVICE", "plug it in anew"}));
+}
+
+} // namespace
+} // namespace palp
