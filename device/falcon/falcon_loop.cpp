@@ -15,19 +15,22 @@
 namespace palp {
 namespace {
 
-constexpr double      kStale = 10e-3;  ///< [s] age of an answer from which on no force goes out: half the shortest hold
-constexpr double      kLongest = 4e-3; ///< [s] that counts of the time between two packets, as for the governor
-constexpr double      kRise    = 20e-3; ///< [s] in which a force comes on after a break, as long as the governor's fall
-constexpr int         kMostMissed  = 20;  ///< [1] DeviceFault::silent
-constexpr double      kMostSilence = 0.1; ///< [s] the same
-constexpr int         kGoodAgain   = 20;  ///< [1] good answers after which a fault of the line is over
-constexpr int         kPatience    = 4;   ///< [1] misses after which packets go out only every ...
-constexpr double      kPause    = 10e-3;  ///< [s] ... so often, so that they do not pile up in a line that stands still
-constexpr double      kFastest  = 4;      ///< [m/s] of a grip; the governor stops at 1.2
-constexpr double      kSlip     = 1e-3;   ///< [m] that answers may come closer than they were asked for, at kFastest
-constexpr double      kJump     = 5e-3;   ///< [m] from one answer to the next, beyond which that is no velocity
-constexpr double      kBothWays = 2 * 16 * 10 / 1.5e6; ///< [s] 213 us: a packet and its answer on the wire
-constexpr std::size_t kRead     = 512;                 ///< [byte] at once
+constexpr double kStale    = 10e-3; ///< [s] age of an answer from which on no force goes out: half the shortest hold
+constexpr double kRise     = 20e-3; ///< [s] in which a force comes on after a break, as long as the governor's fall
+constexpr double kLongest  = 4e-3;  ///< [s] that counts of the time between two packets, as for the governor
+constexpr double kBothWays = 2 * 16 * 10 / 1.5e6; ///< [s] 213 us: a packet and its answer on the wire
+
+constexpr int    kMostMissed  = 20;    ///< [1] DeviceFault::silent
+constexpr double kMostSilence = 0.1;   ///< [s] the same
+constexpr int    kGoodAgain   = 20;    ///< [1] good answers after which a fault of the line is over
+constexpr int    kPatience    = 4;     ///< [1] misses after which packets go out only every ...
+constexpr double kPause       = 10e-3; ///< [s] ... so often, so that they do not pile up in a line that stands still
+
+constexpr double kFastest = 4;    ///< [m/s] of a grip; the governor stops at 1.2
+constexpr double kSlip    = 1e-3; ///< [m] that answers may come closer than they were asked for, at kFastest
+constexpr double kJump    = 5e-3; ///< [m] from one answer to the next, beyond which that is no velocity
+
+constexpr std::size_t kRead = 512; ///< [byte] at once
 
 bool isFinite(const glm::dvec3& v)
 {
@@ -136,8 +139,7 @@ bool FalconLoop::collect(double timeout)
 
 bool FalconLoop::accept(const FalconReply& reply) noexcept
 {
-    const double now      = link_->now();
-    disbelief_            = false;
+    const double  now     = link_->now();
     const Placing placing = reply.homed() ? place(reply, now) : Placing::unknown;
     disbelief_            = placing == Placing::incredible;
     if (disbelief_) return false;
@@ -166,7 +168,6 @@ bool FalconLoop::accept(const FalconReply& reply) noexcept
 /// Position and velocity of a homed arm; both stay where there is none, or none that is believed.
 FalconLoop::Placing FalconLoop::place(const FalconReply& reply, double now) noexcept
 {
-    disbelief_          = false;
     const auto angles   = kinematics_.angles(reply.encoders);
     const auto position = kinematics_.position(angles, state_.position + FalconKinematics::kMiddle);
     if (!position) return Placing::unknown;
@@ -195,9 +196,9 @@ void FalconLoop::miss() noexcept
 void FalconLoop::lose() noexcept
 {
     line_ = state_.fault = DeviceFault::unplugged;
+    state_.homed = state_.inBox = false;
+    state_.velocity             = {};
     ++state_.missed;
-    state_.velocity = {};
-    gain_           = 0;
 }
 
 } // namespace palp

@@ -443,6 +443,7 @@ TEST(FalconDevice, UnpluggedItOpensAgainOnceItIsBack)
     bench.emulator.cause({LinkTroubleKind::unplug, 0.1, 0.3});
     bench.run(0.2);
     ASSERT_EQ(bench.state.fault, DeviceFault::unplugged);
+    EXPECT_FALSE(bench.state.homed || bench.state.inBox);
 
     bench.device->close();
     EXPECT_THROW(bench.device->open(), Error) << "still away";
@@ -453,6 +454,26 @@ TEST(FalconDevice, UnpluggedItOpensAgainOnceItIsBack)
 
     EXPECT_EQ(bench.state.fault, DeviceFault::none);
     EXPECT_TRUE(bench.state.homed) << "it kept its power";
+}
+
+TEST(FalconDevice, WithoutPowerItIsSilentAndOpensAgainByUpload)
+{
+    FalconDeviceSettings settings;
+    settings.firmware = std::vector<std::uint8_t>(8492, 7);
+    FalconBench bench(runningFalcon(), {}, settings);
+    bench.run(0.1);
+    bench.emulator.falcon().powerCycle();
+    bench.run(0.2);
+    EXPECT_EQ(bench.state.fault, DeviceFault::silent);
+
+    bench.device->close();
+    bench.device->open();
+    bench.now = bench.emulator.now();
+    bench.run(0.1);
+
+    EXPECT_EQ(bench.emulator.falcon().image(), settings.firmware);
+    EXPECT_EQ(bench.state.fault, DeviceFault::none);
+    EXPECT_FALSE(bench.state.homed) << "it has to be homed anew";
 }
 
 TEST(FalconDevice, ButtonsAndLightsPassThrough)
