@@ -4,13 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include "device/falcon/falcon_firmware.h"
 #include "engine/core/contract.h"
 
 namespace palp {
 namespace {
 
-constexpr double      kPiece = 1e-3; ///< [s] longest motion with one force: the torques' force turns with the pose
-constexpr std::size_t kSmallestImage = 4096, kLargestImage = 16384; ///< [byte]
+constexpr double kPiece = 1e-3; ///< [s] longest motion with one force: the torques' force turns with the pose
 
 } // namespace
 
@@ -62,7 +62,7 @@ std::uint16_t EmulatedFalcon::divisor() const noexcept
 std::span<const std::uint8_t> EmulatedFalcon::receive(std::uint8_t byte, std::uint16_t at, double time)
 {
     moveTo(time);
-    const bool isWhole = image_.size() >= kSmallestImage && image_.size() <= kLargestImage;
+    const bool isWhole = image_.size() >= kLeastFalconFirmware && image_.size() <= kMostFalconFirmware;
     if (stage_ == FalconStage::loader && at == std::uint16_t(FalconDivisor::run) && isWhole)
         stage_ = FalconStage::running;
     if (stage_ == FalconStage::greeted && at == std::uint16_t(FalconDivisor::hello)) stage_ = FalconStage::hello;
@@ -92,7 +92,7 @@ std::span<const std::uint8_t> EmulatedFalcon::boot(std::uint8_t byte)
 
 std::span<const std::uint8_t> EmulatedFalcon::load(std::uint8_t byte)
 {
-    if (image_.size() <= kLargestImage) image_.push_back(byte);
+    if (image_.size() <= kMostFalconFirmware) image_.push_back(byte);
     return say({byte});
 }
 

@@ -46,12 +46,14 @@ enum class FalconStage : std::uint8_t {
 
 /// A Falcon behind its serial bridge: boot loader, firmware, motors, encoders and the arm. It knows nothing of USB. Any
 /// 4096 to 16384 bytes are a firmware. After `holdTime` without a packet its motors let go.
-/// \thread one \source libnifalcon (BSD-3), src/comm/FalconCommLibUSB.cpp and src/firmware/FalconFirmwareNovintSDK.cpp,
-/// for what is said on the wire
+/// \thread one
+/// \source libnifalcon (BSD-3), src/comm/FalconCommLibUSB.cpp and src/firmware/FalconFirmwareNovintSDK.cpp: the bytes
 class EmulatedFalcon {
 public:
-    /// Moves the arm: \param force  [N] on the hand, device's frame as HapticState's \param dt [s], 0 to 1 ms
-    /// \return where the grip is then [m], same frame
+    /// Moves the arm; both vectors in the device's frame, as HapticState's.
+    /// \param force  [N] on the hand
+    /// \param dt     [s] 0 to 1 ms; 0 asks where it is
+    /// \return where the grip is then [m]
     using Arm = std::function<glm::dvec3(const glm::dvec3& force, double dt)>;
 
     /// \throws Error naming what cannot be

@@ -11,14 +11,14 @@
 namespace palp {
 namespace {
 
-constexpr double kStroke    = 8e-3; ///< [m] each way: some hundred counts, and beyond the width of static friction
-constexpr double kPeriod    = 4;    ///< [s] 13 mm/s at most
-constexpr double kStiffness = 300;  ///< [N/m] a third of what the loop holds stably
-constexpr double kDamping   = 1;    ///< [N s/m] on the filtered velocity
-constexpr double kIntegral  = 300;  ///< [N/(m s)] the weight is found with a time constant of a second
-constexpr double kMostForce = 5.7;  ///< [N] below the governor's 6, beyond which a mean says nothing
-constexpr double kLeast     = 0.1;  ///< [N] that the mass must weigh
-constexpr double kSpread    = 0.05; ///< [N] between the two periods that are measured; a touch is more
+constexpr double kStroke        = 8e-3; ///< [m] each way: some hundred counts, and beyond the width of static friction
+constexpr double kPeriod        = 4;    ///< [s] 13 mm/s at most
+constexpr double kStiffness     = 300; ///< [N/m] a third of what the loop holds; the arm's own damping is enough for it
+constexpr double kIntegral      = 300; ///< [N/(m s)] the weight is found with a time constant of a second
+constexpr double kMostForce     = 5.7; ///< [N] below the governor's 6, beyond which a mean says nothing
+constexpr double kLeast         = 0.1; ///< [N] that the mass must weigh
+constexpr double kSpread        = 0.05; ///< [N] between the two periods that are measured; a touch is more
+constexpr const char* kTooHeavy = "arm and mass could not be held: take a lighter mass";
 
 } // namespace
 
@@ -42,7 +42,8 @@ glm::dvec3 FalconCalibration::step(const HapticState& state, const GovernedForce
     if (!(gain > 0) || state.fault != DeviceFault::none || !(dt > 0)) { // let go by the governor: from the start
         anchor_   = state.position;
         integral_ = {};
-        if (stage_ != Stage::hang) start(stage_);
+        if (stage_ == Stage::loaded) fail(kTooHeavy); // it fell out of its workspace
+        if (stage_ == Stage::bare) start(stage_);
         return {};
     }
     const bool   isWeighing = gain >= 1 && stage_ != Stage::hang;
@@ -51,12 +52,15 @@ glm::dvec3 FalconCalibration::step(const HapticState& state, const GovernedForce
     integral_ -= kIntegral * dt * away;
     if (isWeighing) {
         const double upwards = glm::dot(sent.newtons(), settings_.up);
-        if (glm::length(sent.newtons()) > kMostForce) fail("the arm and the mass weigh too much: take a lighter mass");
+        if (periods_ >= kPeriods / 2 && glm::length(sent.newtons()) > kMostForce) {
+            fail(kTooHeavy);
+            return {};
+        }
         sum_ += upwards * dt;
         time_ += dt;
         if (time_ >= kPeriod) endPeriod();
     }
-    return integral_ - kStiffness * away - kDamping * state.velocity;
+    return integral_ - kStiffness * away;
 }
 
 void FalconCalibration::endPeriod() noexcept

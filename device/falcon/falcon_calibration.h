@@ -41,7 +41,8 @@ enum class FalconCalibrationStage : std::uint8_t {
 ///     4  at `done`: countsPerTorque()
 ///
 /// The governor's 6 N bound what can be weighed. If the arm weighs 0.2 kg on the grip, a mass of 0.2 kg fits as long as
-/// G is up to 1.4 times too small, one of 0.05 kg up to 2.2 times. \thread one
+/// G is up to 1.4 times too small, one of 0.05 kg up to 2.2 times.
+/// \thread one
 class FalconCalibration {
 public:
     /// \throws Error naming a setting out of its range

@@ -27,7 +27,7 @@ FalconDevice::FalconDevice(FalconLinkOpener open, const FalconDeviceSettings& se
     info_.path             = settings.path;
     info_.serial           = settings.serial;
     info_.workspaceRadius  = settings.loop.workspaceRadius;
-    info_.maximumForce     = 8;    // CHAI3D's table; the maker says "more than 8.9 N" for short
+    info_.maximumForce     = 8;    // CHAI3D's table; 4095 counts at 4200 hold 11.4 N at the worst place of the sphere
     info_.maximumStiffness = 1000; // half of where the released arm starts to swing, at 1 kHz and a sample of delay
     info_.maximumDamping   = 1.5;  // so that 1000 N/m (T/2 + delay) and it stay below the arm's own 3.2
     info_.buttons          = 4;
@@ -97,7 +97,10 @@ HapticState FalconDevice::newest(double now) noexcept
     state            = answer->state;
     state.time       = now - old - answer->age;
     // The thread hangs in a write, or got no processor.
-    if (state.fault == DeviceFault::none && old > kHostTooSlow) state.fault = DeviceFault::silent;
+    if (state.fault == DeviceFault::none && old > kHostTooSlow) {
+        state.fault = DeviceFault::silent;
+        state.inBox = false;
+    }
     return state;
 }
 

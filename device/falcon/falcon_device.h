@@ -35,10 +35,10 @@ struct FalconDeviceSettings {
 /// exchange() was not called for 100 ms, and close() ends with packets of zero force.
 ///
 /// Forces come by the governor only, positions are those of the device's frame: the kinematics' less (0, 0, 125 mm).
-/// Buttons: bit 0 plus, 1 forward, 2 centre, 3 minus. Until it is homed (the user pulls the grip out, then pushes it
-/// in) its light is red. In the pace `stepped`, if it is not called, the last force stays until the Falcon's own
-/// firmware lets go; and exchange() may take FalconLoopSettings::answerTimeout. \thread as HapticDevice; the pace
-/// `thread` hands over by Latest
+/// Buttons: bit 0 plus, 1 forward, 2 centre, 3 minus. Until it is homed its light is red: the user pulls the grip out,
+/// then pushes it in. In the pace `stepped`, exchange() takes a round trip, and the last force stays until the Falcon's
+/// own firmware lets go if it is not called.
+/// \thread as HapticDevice; the pace `thread` hands over by Latest
 class FalconDevice final : public HapticDevice {
 public:
     /// \param open  opens the bridge; called by open(), several times if an upload fails

@@ -42,7 +42,7 @@ struct StartedFalcon {
 StartedFalcon startFalcon(const FalconLinkOpener& open, std::span<const std::uint8_t> firmware,
                           const FalconStartSettings& settings = {}, const std::atomic<bool>* cancel = nullptr);
 
-/// Three packets of zero force, whatever happens to them. \thread the link's
+/// Three packets of zero force; a link that is lost meanwhile ends them. \param command  the lights of these packets
 void releaseMotors(FalconLink& link, const FalconCommand& command) noexcept;
 
 } // namespace palp

@@ -15,17 +15,22 @@
 namespace palp {
 namespace {
 
-constexpr double      kStale = 10e-3; ///< [s] age of an answer from which on no force goes out: half the shortest hold
-constexpr double      kRise  = 20e-3; ///< [s] in which a force comes on after a break, as long as the governor's fall
-constexpr int         kMostMissed  = 20;  ///< [1] DeviceFault::silent
-constexpr double      kMostSilence = 0.1; ///< [s] the same
-constexpr int         kGoodAgain   = 20;  ///< [1] good answers after which a fault of the line is over
-constexpr int         kPatience    = 4;   ///< [1] misses after which packets go out only every ...
-constexpr double      kPause   = 10e-3;   ///< [s] ... so often, so that they do not pile up in a line that stands still
-constexpr double      kFastest = 4;       ///< [m/s] of a grip; the governor stops at 1.2
-constexpr double      kSlip    = 1e-3;    ///< [m] that answers may come closer than they were asked for, at kFastest
-constexpr double      kJump    = 5e-3;    ///< [m] from one answer to the next, beyond which that is no velocity
-constexpr std::size_t kRead    = 512;     ///< [byte] at once
+constexpr double kStale    = 10e-3; ///< [s] age of an answer from which on no force goes out: half the shortest hold
+constexpr double kRise     = 20e-3; ///< [s] in which a force comes on after a break, as long as the governor's fall
+constexpr double kLongest  = 4e-3;  ///< [s] that counts of the time between two packets, as for the governor
+constexpr double kBothWays = 2 * 16 * 10 / 1.5e6; ///< [s] 213 us: a packet and its answer on the wire
+
+constexpr int    kMostMissed  = 20;    ///< [1] DeviceFault::silent
+constexpr double kMostSilence = 0.1;   ///< [s] the same
+constexpr int    kGoodAgain   = 20;    ///< [1] good answers after which a fault of the line is over
+constexpr int    kPatience    = 4;     ///< [1] misses after which packets go out only every ...
+constexpr double kPause       = 10e-3; ///< [s] ... so often, so that they do not pile up in a line that stands still
+
+constexpr double kFastest = 4;    ///< [m/s] of a grip; the governor stops at 1.2
+constexpr double kSlip    = 1e-3; ///< [m] that answers may come closer than they were asked for, at kFastest
+constexpr double kJump    = 5e-3; ///< [m] from one answer to the next, beyond which that is no velocity
+
+constexpr std::size_t kRead = 512; ///< [byte] at once
 
 bool isFinite(const glm::dvec3& v)
 {
@@ -54,16 +59,17 @@ const HapticState& FalconLoop::exchange(const FalconRequest& request) noexcept
 {
     if (line_ == DeviceFault::unplugged) return state_;
     try {
-        collect(0);
-        const double now = link_->now();
-        state_.fault     = line_ != DeviceFault::none ? line_ : request.host;
-        const bool   mustLetGo = now - answered_ >= kStale && command_.motors != FalconCommand{}.motors;
+        const double now     = link_->now();
+        state_.fault         = line_ != DeviceFault::none ? line_ : request.host;
+        const bool mustLetGo = now - answered_ >= kStale && command_.motors != FalconCommand{}.motors;
         if (state_.missed < kPatience || now - sent_ >= kPause || mustLetGo) send(request, now);
 
         bool         isAnswered = false;
         const double until      = now + settings_.answerTimeout;
-        for (double left = until - link_->now(); left > 0 && !isAnswered; left = until - link_->now())
-            isAnswered = collect(left);
+        for (double left = until - now; left > 0; left = until - link_->now()) {
+            isAnswered = collect(left) || isAnswered;
+            if (isAnswered && link_->now() - sent_ >= kBothWays) break; // one that came sooner answers another packet
+        }
         if (!isAnswered) miss();
     } catch (const std::exception&) { // LinkLost, or no memory for the link
         lose();
@@ -110,7 +116,7 @@ FalconDrive FalconLoop::drive(const FalconRequest& request, double now) noexcept
 glm::dvec3 FalconLoop::allowed(const FalconRequest& request, double now) noexcept
 {
     const bool isOpen = state_.fault == DeviceFault::none && state_.homed && state_.inBox && now - answered_ < kStale;
-    gain_             = isOpen ? std::min(1.0, gain_ + (now - sent_) / kRise) : 0;
+    gain_             = isOpen ? std::min(1.0, gain_ + std::min(now - sent_, kLongest) / kRise) : 0;
     return isOpen ? gain_ * request.force : glm::dvec3(0);
 }
 
@@ -133,14 +139,11 @@ bool FalconLoop::collect(double timeout)
 
 bool FalconLoop::accept(const FalconReply& reply) noexcept
 {
-    const double now = link_->now();
-    disbelief_       = false;
-    if (reply.homed() != state_.homed) { // the encoders jump
-        hasPlace_ = false;
-        gain_     = 0;
-    }
-    const bool isGood = reply.homed() && place(reply, now);
-    if (!isGood && disbelief_) return false;
+    const double  now     = link_->now();
+    const Placing placing = reply.homed() ? place(reply, now) : Placing::unknown;
+    disbelief_            = placing == Placing::incredible;
+    if (disbelief_) return false;
+    const bool isGood = placing == Placing::good;
 
     state_.homed   = reply.homed();
     state_.inBox   = isGood && glm::length(state_.position) <= settings_.workspaceRadius;
@@ -162,26 +165,22 @@ bool FalconLoop::accept(const FalconReply& reply) noexcept
     return true;
 }
 
-/// Position and velocity of a homed arm. \return false: there is no such position, or it is not believed (disbelief_)
-bool FalconLoop::place(const FalconReply& reply, double now) noexcept
+/// Position and velocity of a homed arm; both stay where there is none, or none that is believed.
+FalconLoop::Placing FalconLoop::place(const FalconReply& reply, double now) noexcept
 {
-    disbelief_          = false;
     const auto angles   = kinematics_.angles(reply.encoders);
     const auto position = kinematics_.position(angles, state_.position + FalconKinematics::kMiddle);
-    if (!position) return false;
+    if (!position) return Placing::unknown;
     const glm::dvec3 here  = *position - FalconKinematics::kMiddle;
     const double     moved = glm::length(here - state_.position);
-    if (hasPlace_ && moved > kSlip + kFastest * (now - placed_)) {
-        disbelief_ = true;
-        return false;
-    }
+    if (hasPlace_ && moved > kSlip + kFastest * (now - placed_)) return Placing::incredible;
     if (!hasPlace_ || moved > kJump) window_.restart();
     window_.add(now, here);
     state_.position = here;
     state_.velocity = window_.velocity();
     placed_         = now;
     hasPlace_       = true;
-    return true;
+    return Placing::good;
 }
 
 void FalconLoop::miss() noexcept
@@ -197,9 +196,9 @@ void FalconLoop::miss() noexcept
 void FalconLoop::lose() noexcept
 {
     line_ = state_.fault = DeviceFault::unplugged;
+    state_.homed = state_.inBox = false;
+    state_.velocity             = {};
     ++state_.missed;
-    state_.velocity = {};
-    gain_           = 0;
 }
 
 } // namespace palp

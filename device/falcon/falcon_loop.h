@@ -34,8 +34,9 @@ struct FalconRequest {
 ///
 /// A force goes out only while the arm is homed and in its workspace, the last answer is less than 10 ms old and
 /// nothing is at fault; after any break it comes on within 20 ms. What a fault of the line was is over after 20 good
-/// answers in a row, except unplugged. An answer that would have the grip move faster than 4 m/s is not believed. Late
-/// and repeated answers are read before the next packet goes out, so that none stays behind. \thread one
+/// answers in a row, except unplugged. An answer that would have the grip move faster than 4 m/s is not believed. An
+/// answer that comes sooner than one can is another packet's, late or repeated: it counts, but the next is waited for.
+/// \thread one
 class FalconLoop {
 public:
     /// \throws Error naming a setting out of its range
@@ -53,12 +54,14 @@ public:
     [[nodiscard]] const HapticState& state() const noexcept { return state_; }
 
 private:
+    enum class Placing : std::uint8_t { good, unknown, incredible }; ///< an answer's position
+
     void                       send(const FalconRequest& request, double now);
     [[nodiscard]] glm::dvec3   allowed(const FalconRequest& request, double now) noexcept;
     [[nodiscard]] FalconDrive  drive(const FalconRequest& request, double now) noexcept;
     bool                       collect(double timeout);
     bool                       accept(const FalconReply& reply) noexcept;
-    bool                       place(const FalconReply& reply, double now) noexcept;
+    Placing                    place(const FalconReply& reply, double now) noexcept;
     void                       miss() noexcept;
     void                       lose() noexcept;
     [[nodiscard]] std::uint8_t lights(const FalconRequest& request) const noexcept;

@@ -44,8 +44,9 @@ struct Ft232EmulatorSettings {
 ///     read  <- transfer <- packet of 2 status and at most 62 bytes <- 10 bits a byte <- its answer
 ///
 /// The chip sends a packet when 62 bytes are there, when the event character comes, or when the latency timer runs out,
-/// which it starts with each packet. A byte at another divisor than the other side's is lost.
-/// \thread one \source FTDI AN232B-04, "Data throughput, latency and handshaking"; Linux drivers/usb/serial/ftdi_sio.h
+/// which starts with each packet [I]. A byte at another divisor than the other side's is lost.
+/// \thread one
+/// \source Linux, drivers/usb/serial/ftdi_sio.h: requests, divisors, timer, event character; buffers of the FT232R: [I]
 class Ft232Emulator final : public FalconLink {
 public:
     explicit Ft232Emulator(const Ft232EmulatorSettings& settings = {}, EmulatedFalcon::Arm arm = {});

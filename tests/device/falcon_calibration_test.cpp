@@ -19,6 +19,8 @@ constexpr double kArm = 0.21; // [kg] of it weighs on the grip
 /// A user with a mass in reach, and motors of `truth` [counts/(N m)].
 struct Weighing {
     double            hanging = 0; // [kg]
+    double            touch   = 0; // [N] by which somebody pushes it up and down, each 7 s
+    double            clock   = 0; // [s]
     SimulatedArm      arm;
     FalconBench       bench;
     ForceGovernor     governor;
@@ -29,7 +31,9 @@ struct Weighing {
           bench(motors(truth),
                 [this](const glm::dvec3& force, double dt) {
                     // Its inertia is left out: means do not see it.
-                    arm.step(force - glm::dvec3(0, (kArm + hanging) * 9.81, 0), dt);
+                    clock += dt;
+                    const double push = touch * std::sin(0.9 * clock);
+                    arm.step(force + glm::dvec3(0, push - (kArm + hanging) * 9.81, 0), dt);
                     return arm.position();
                 }),
           calibration(settings)
@@ -82,7 +86,7 @@ struct Weighing {
             if (stage != FalconCalibrationStage::hang) continue;
             if (asked < 0) asked = bench.now;
             hanging = mass;
-            if (bench.now > asked + 3) calibration.hung();
+            if (bench.now > asked + 0.2) calibration.hung();
         }
     }
 };
@@ -117,6 +121,17 @@ TEST(FalconCalibration, WithoutTheMassItFails)
     EXPECT_FALSE(weighing.calibration.countsPerTorque());
 }
 
+TEST(FalconCalibration, TouchedItFails)
+{
+    Weighing weighing(4200, 0.05);
+    weighing.touch = 0.3;
+
+    weighing.run(0.2);
+
+    EXPECT_EQ(weighing.calibration.stage(), FalconCalibrationStage::failed);
+    EXPECT_NE(std::string(weighing.calibration.failure()).find("let go"), std::string::npos);
+}
+
 TEST(FalconCalibration, AMassBeyondTheGovernorFails)
 {
     Weighing weighing(8000, 0.05);
@@ -125,6 +140,16 @@ TEST(FalconCalibration, AMassBeyondTheGovernorFails)
 
     EXPECT_EQ(weighing.calibration.stage(), FalconCalibrationStage::failed);
     EXPECT_NE(std::string(weighing.calibration.failure()).find("lighter"), std::string::npos);
+}
+
+TEST(FalconCalibration, AWeightAtTheGovernorsLimitFails)
+{
+    // 6.02 N of weight, as commanded; the governor's 6 and friction hold it.
+    Weighing weighing(6290, 0.2);
+
+    weighing.run(0.2);
+
+    EXPECT_EQ(weighing.calibration.stage(), FalconCalibrationStage::failed);
 }
 
 TEST(FalconCalibration, RefusesSettingsOutOfRange)

@@ -79,6 +79,12 @@ TEST(Ft232Emulator, IsSilentAtEveryOtherDivisor)
         link.control(FtdiRequest::divisor, divisor);
         EXPECT_FALSE(ask(link, {}, 0.2)) << "divisor " << divisor;
         EXPECT_EQ(link.falcon().packets(), 0u);
+
+        setRun(link, 1);
+        link.write(encode(FalconCommand{}));
+        link.control(FtdiRequest::divisor, divisor); // before the answer comes
+        EXPECT_TRUE(hear(link, 0.1).empty()) << "divisor " << divisor;
+        EXPECT_EQ(link.falcon().packets(), 1u);
     }
 }
 
@@ -173,6 +179,33 @@ TEST(Ft232Emulator, NeedsAPulseTheGreetingAndTheRightBaudToLoad)
     EXPECT_EQ(echo, image);
     setRun(link, 1);
     EXPECT_FALSE(ask(link, {}, 0.1)) << "4095 bytes are no firmware";
+}
+
+TEST(Ft232Emulator, AskedForAnswersBeforeTheUploadItIsDeafUntilOpenedAnew)
+{
+    for (const bool isOpenedAnew : {false, true}) {
+        Ft232Emulator emulator;
+        auto          link = emulator.connect();
+        setRun(*link, 1);
+        EXPECT_FALSE(ask(*link, {}, 0.1));
+        if (isOpenedAnew) link = emulator.connect();
+        link->control(FtdiRequest::divisor, std::uint16_t(FalconDivisor::hello));
+        link->control(FtdiRequest::modemLines, 0x0100);
+        link->control(FtdiRequest::modemLines, 0x0101);
+        link->write(std::array<std::uint8_t, 3>{0x0A, 0x43, 0x0D});
+        EXPECT_EQ(hear(*link, 0.1).size(), isOpenedAnew ? 4u : 0u);
+    }
+}
+
+TEST(Ft232Emulator, ALineThatTakesNothingForATenthOfASecondIsLost)
+{
+    Ft232Emulator link(running());
+    setRun(link, 1);
+    link.cause({LinkTroubleKind::stall, link.now(), link.now() + 1});
+    const std::array<std::uint8_t, 256> full{};
+    link.write(full); // the chip's buffer
+
+    EXPECT_THROW(link.write(full), LinkLost);
 }
 
 TEST(Ft232Emulator, HomesOutThenInAndOnlyWhenAskedTo)
