@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "engine/core/contract.h"
+#include "engine/core/nearest_name.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
 #include "engine/program/commands.h"
@@ -80,6 +81,22 @@ std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& 
         said.emplace_back("assumed metres: the scene has no length_unit, and the file no comment that names one");
     if (report.stiffnessAssumed && scene.stiffness.empty())
         said.emplace_back("no stiffness in the file: uniform 300 kPa assumed; the scene's stiffness says otherwise");
+    return said;
+}
+
+/// Variables of the environment that were likely meant for a key.
+std::vector<std::string> strangeVariables()
+{
+    std::vector<std::string> variables, said;
+    for (const SceneKey& key : sceneKeys()) variables.push_back(variableOf(key.name));
+    const std::vector<std::string_view> known(variables.begin(), variables.end());
+    for (char** entry = environ; *entry; ++entry) {
+        const std::string_view name = std::string_view(*entry).substr(0, std::string_view(*entry).find('='));
+        if (!name.starts_with("PALPATE_") || std::ranges::find(known, name) != known.end()) continue;
+        if (const auto meant = nearestName(name, known))
+            said.push_back("the environment's " + std::string(name) + " says nothing; did you mean " +
+                           std::string(*meant) + "?");
+    }
     return said;
 }
 
@@ -224,7 +241,7 @@ void run(const RunOptions& o)
         throw Error("--hand " + o.hand.hand + ": somebody holds it, in real time; leave out --clock virtual");
 
     std::vector<std::string> known = assumptions(scene, cloud.report);
-    for (const auto& more : {warningsOf(scene, cloud.cloud, index), hand.warnings})
+    for (const auto& more : {strangeVariables(), warningsOf(scene, cloud.cloud, index), hand.warnings})
         known.insert(known.end(), more.begin(), more.end());
     warn(known);
     std::signal(SIGINT, onInterrupt);
