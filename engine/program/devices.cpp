@@ -111,6 +111,7 @@ void printComputing(const DevicesOptions& options)
     if (options.json) {
         std::cout << jsonText(jsonOf(machine));
     } else {
+        if (!options.gpu) std::cout << "to compute on\n";
         for (const gpu::DeviceDescription& device : machine.gpus) printText(device, machine);
         if (machine.host) printText(*machine.host, machine);
     }
@@ -144,7 +145,6 @@ void printDevices(const DevicesOptions& options)
             nlohmann::ordered_json{{"compute", jsonOf(machine)}, {"haptic", jsonOf(lookForHaptics().devices)}});
         return;
     }
-    std::cout << "to compute on\n";
     printComputing(options);
     std::cout << "\nas a hand\n";
     printText(lookForHaptics());

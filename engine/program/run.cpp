@@ -243,13 +243,13 @@ void run(const RunOptions& o)
     std::vector<std::string> known = assumptions(scene, cloud.report);
     for (const auto& more : {strangeVariables(), warningsOf(scene, cloud.cloud, index), hand.warnings})
         known.insert(known.end(), more.begin(), more.end());
-    warn(known);
     std::signal(SIGINT, onInterrupt);
     std::signal(SIGTERM, onInterrupt);
     waitForHoming(*hand.device, interrupted);
 
     const SessionParts parts{scene, cloud.cloud, index, deformation.solver(), *hand.device, hand.frame};
     const auto         recording = recordingOf(o, scene, cloud.cloud, clock, device);
+    warn(known);
     const auto summary = clock == SessionClock::real ? playLive(o, hand.seconds, threads, parts, recording.get())
                                                      : play(parts, hand.seconds, [&](const SessionSample& sample) {
                                                            if (recording) recording->pushWaiting(sample);

@@ -231,6 +231,31 @@ printf '{"cloud": "sample:sheet", "thickness": -0.004}' >wrong.json
 bad 'a negative thickness' thickness run wrong.json
 printf '0,0,0,0\n0.1,nan,0,0\n' >hand.csv
 bad 'a hand that is not a number' hand.csv run scene.json --hand hand.csv
+printf 't;x;y;z\n0;0;0;0,01\n1;0;0;0,002\n' >decimal.csv
+bad 'decimal commas' 'expected 4 columns, found 5' run scene.json --hand decimal.csv
+bad 'a grip in a wrong unit' '"N/mm"' run scene.json --arm '150 N/mm'
+bad 'a speed that no hand has' 'up to 100 m/s' run scene.json --speed 1e300
+bad 'a time without end' 'up to 86400 s' run scene.json --seconds 1e9
+bad 'threads without a clock' 'virtual clock has no threads' run scene.json --threads paper --clock virtual
+bad 'a mouse without a window' 'needs a window' run scene.json --hand mouse
+bad 'a table that is too large' '0, 1, 3, 5 or 7' run scene.json --table-size 9
+good 'units of keys' run scene.json --print-config --stiffness-cap '800 N/m' --deformation-rate 30Hz --from 1e300,0,1e300
+for hand in arm falcon-emulator; do
+    good "a hand that forces move: $hand" run scene.json --hand $hand --clock virtual --seconds 0.5 --record "held-$hand" --json
+    good "it replays: $hand" replay "held-$hand" --compare
+    holds 'equal to the bit'
+done
+good 'threads of the paper' run scene.json --threads paper --seconds 0.3
+good 'a fast hand' run scene.json --speed 2 --clock virtual --seconds 1 --json
+holds 'no force came on'
+sed 's/"samples": [0-9]*/"samples": 7/' held-arm/session.json >cut.json && mv cut.json held-arm/session.json
+bad 'a damaged recording' 'the recording is damaged' replay held-arm --compare
+"$palpate" run scene.json --clock virtual --seconds 3000 --record stopped >out.txt 2>err.txt &
+session=$!
+n=0
+until [ -s stopped/samples.csv ] || [ $n -gt 300 ]; do sleep 0.1; n=$((n + 1)); done
+kill -TERM $session
+wait $session && grep -q '"finished": true' stopped/session.json && passed=$((passed + 1)) || complain "a session that is stopped: exit $? $(cat err.txt)"
 bad 'an unknown clock' 'expected real or virtual' run scene.json --clock wall
 python3 -c "
 import sys
