@@ -1,7 +1,5 @@
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -17,6 +15,7 @@
 #include "engine/core/quantity.h"
 #include "engine/program/commands.h"
 #include "engine/program/hand_source.h"
+#include "engine/program/interrupt.h"
 #include "engine/program/session_report.h"
 #include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
@@ -118,7 +117,7 @@ SessionSummary playLive(const RunOptions& o, double seconds, SessionThreads thre
     RealSessionSettings settings;
     settings.seconds = seconds;
     settings.threads = threads;
-    settings.stop    = &interrupted;
+    settings.stop    = &catchInterrupts();
     if (recording) settings.onSample = [recording](const SessionSample& sample) { recording->push(sample); };
     if (line) settings.onView = showLine;
     std::string          warning;
@@ -227,9 +226,7 @@ void run(const RunOptions& o)
     for (const auto& more : {warningsOf(scene, cloud.cloud, index), hand.warnings})
         known.insert(known.end(), more.begin(), more.end());
     warn(known);
-    std::signal(SIGINT, onInterrupt);
-    std::signal(SIGTERM, onInterrupt);
-    waitForHoming(*hand.device, interrupted);
+    waitForHoming(*hand.device, catchInterrupts());
 
     const SessionParts parts{scene, cloud.cloud, index, deformation.solver(), *hand.device, hand.frame};
     const auto         recording = recordingOf(o, scene, cloud.cloud, clock, device);
