@@ -104,12 +104,12 @@ HapticState FalconDevice::newest(double now) noexcept
     return state;
 }
 
-/// Follows the servo's clock, then makes the round trip.
+/// Follows the servo's clock, which may start anew, then makes the round trip.
 HapticState FalconDevice::step(FalconRequest request, double now) noexcept
 {
     FalconLoop&  loop   = *line_->loop;
     const double ahead  = now - line_->offset - loop.now();
-    const bool   isEven = std::isfinite(now) && !line_->isFirst && ahead <= kMostWait;
+    const bool   isEven = now >= line_->last && !line_->isFirst && ahead <= kMostWait;
     if (!line_->isFirst && !(now - line_->last <= kHostTooSlow)) request.host = DeviceFault::hostTooSlow;
     if (isEven)
         loop.listen(now - line_->offset);

@@ -180,6 +180,7 @@ private:
             if (count < chunk.size()) return "byte " + std::to_string(at + count) + " of the firmware found no echo";
             for (std::size_t n = 0; n < count; ++n)
                 if (echo[n] != chunk[n]) return "byte " + std::to_string(at + n) + " of the firmware came back changed";
+            if (settings_.onUpload) settings_.onUpload(at + count, firmware_.size());
         }
         return {};
     }

@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -20,6 +21,9 @@ struct FalconStartSettings {
     /// Lets the bridge pass on each answer at its '>' in place of once a millisecond, which doubles the rate. Off until
     /// somebody has tried it on a device.
     bool eventCharacter = false;
+
+    /// Told of each piece of the firmware that came back as it was sent: bytes so far, bytes in all. May take 20 ms.
+    std::function<void(std::size_t, std::size_t)> onUpload{};
 };
 
 /// A Falcon that answers.

@@ -39,6 +39,12 @@ bool isFinite(const glm::dvec3& v)
 
 } // namespace
 
+DeviceLight falconLight(const HapticState& state) noexcept
+{
+    if (!state.homed) return DeviceLight::red;
+    return state.fault == DeviceFault::none && state.inBox ? DeviceLight::green : DeviceLight::blue;
+}
+
 FalconLoop::FalconLoop(std::unique_ptr<FalconLink> link, const FalconLoopSettings& settings)
     : link_(std::move(link)), settings_(settings), kinematics_(settings.geometry),
       motors_(kinematics_, settings.countsPerTorque), window_(settings.velocityWindow)
@@ -99,7 +105,7 @@ void FalconLoop::send(const FalconRequest& request, double now)
 {
     command_.motors = drive(request, now).motors;
     command_.homing = !state_.homed;
-    command_.lights = lights(request);
+    command_.lights = settings_.showsState ? std::uint8_t(falconLight(state_)) : request.lights;
     sent_           = now;
     link_->write(encode(command_));
 }
@@ -118,13 +124,6 @@ glm::dvec3 FalconLoop::allowed(const FalconRequest& request, double now) noexcep
     const bool isOpen = state_.fault == DeviceFault::none && state_.homed && state_.inBox && now - answered_ < kStale;
     gain_             = isOpen ? std::min(1.0, gain_ + std::min(now - sent_, kLongest) / kRise) : 0;
     return isOpen ? gain_ * request.force : glm::dvec3(0);
-}
-
-std::uint8_t FalconLoop::lights(const FalconRequest& request) const noexcept
-{
-    if (!settings_.showsState) return request.lights;
-    if (!state_.homed) return std::uint8_t(DeviceLight::red);
-    return std::uint8_t(state_.fault == DeviceFault::none && state_.inBox ? DeviceLight::green : DeviceLight::blue);
 }
 
 /// Reads once; of several answers only the newest counts. \return whether there was one, and it was believed

@@ -20,8 +20,12 @@ struct FalconLoopSettings {
     double         workspaceRadius = 0.04;   ///< [m] sphere about the middle; 44 mm is the largest in reach of all legs
     double         velocityWindow  = 15e-3;  ///< [s] as the simulated arm and CHAI3D
     double         answerTimeout   = 2.5e-3; ///< [s] for an answer; with a latency timer of 1 ms it takes 1 to 1.5
-    bool           showsState      = true;   ///< red: to be homed; blue: no force flows; green: forces flow
+    bool           showsState      = true;   ///< by falconLight()
 };
+
+/// The light of a Falcon that shows its state, FalconLoopSettings::showsState: red: to be homed; blue: no force flows;
+/// green: forces flow.
+[[nodiscard]] DeviceLight falconLight(const HapticState& state) noexcept;
 
 /// What the host wants of one exchange.
 struct FalconRequest {
@@ -56,15 +60,14 @@ public:
 private:
     enum class Placing : std::uint8_t { good, unknown, incredible }; ///< an answer's position
 
-    void                       send(const FalconRequest& request, double now);
-    [[nodiscard]] glm::dvec3   allowed(const FalconRequest& request, double now) noexcept;
-    [[nodiscard]] FalconDrive  drive(const FalconRequest& request, double now) noexcept;
-    bool                       collect(double timeout);
-    bool                       accept(const FalconReply& reply) noexcept;
-    Placing                    place(const FalconReply& reply, double now) noexcept;
-    void                       miss() noexcept;
-    void                       lose() noexcept;
-    [[nodiscard]] std::uint8_t lights(const FalconRequest& request) const noexcept;
+    void                      send(const FalconRequest& request, double now);
+    [[nodiscard]] glm::dvec3  allowed(const FalconRequest& request, double now) noexcept;
+    [[nodiscard]] FalconDrive drive(const FalconRequest& request, double now) noexcept;
+    bool                      collect(double timeout);
+    bool                      accept(const FalconReply& reply) noexcept;
+    Placing                   place(const FalconReply& reply, double now) noexcept;
+    void                      miss() noexcept;
+    void                      lose() noexcept;
 
     std::unique_ptr<FalconLink> link_;
     FalconLoopSettings          settings_;

@@ -127,15 +127,6 @@ void script(HandSource& source, HandOptions options, const Scene& scene, const P
         source.device = std::make_unique<HeldArm>(hand);
 }
 
-std::unique_ptr<HapticDevice> falconFor(const HandOptions& options)
-{
-    FalconDeviceSettings settings;
-    if (const auto image = falconFirmwarePath(options.firmware); !image.empty())
-        settings.firmware = readFirmware(image);
-    settings.loop.countsPerTorque = options.countsPerTorque;
-    return std::make_unique<FalconDevice>([] { return openFalcon(); }, settings);
-}
-
 /// The first HID device of that kind.
 std::unique_ptr<HapticDevice> hidFor(const std::string& name, HidSystem& hid)
 {
@@ -155,7 +146,7 @@ void hold(HandSource& source, const HandOptions& options, const Scene& scene, co
     const HandPlace place = handPlace(scene, cloud, index);
     source.frame          = deviceFrame(place.point + scene.startHeight * place.outward, place.outward);
     if (options.hand == "falcon") {
-        source.device = falconFor(options);
+        source.device = falconFor(options.firmware, options.countsPerTorque);
         return;
     }
     source.hid    = std::make_unique<HidapiSystem>();
@@ -179,6 +170,14 @@ HandSource handFor(const HandOptions& options, const Scene& scene, const PointCl
         script(source, options, scene, cloud, index);
     source.device->open();
     return source;
+}
+
+std::unique_ptr<HapticDevice> falconFor(const std::string& firmware, double countsPerTorque)
+{
+    FalconDeviceSettings settings;
+    if (const auto image = falconFirmwarePath(firmware); !image.empty()) settings.firmware = readFirmware(image);
+    settings.loop.countsPerTorque = countsPerTorque;
+    return std::make_unique<FalconDevice>([] { return openFalcon(); }, settings);
 }
 
 void waitForHoming(HapticDevice& device, const std::atomic<bool>& stop)

@@ -36,6 +36,11 @@ struct HandSource {
 [[nodiscard]] HandSource handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud,
                                  const NeighbourIndex& index);
 
+/// A Falcon that is plugged in, not opened yet.
+/// \param firmware  as HandOptions has it
+/// \throws Error naming the image, if it cannot be read
+[[nodiscard]] std::unique_ptr<HapticDevice> falconFor(const std::string& firmware, double countsPerTorque);
+
 /// Waits until somebody has homed the device, telling how on standard error. Devices that need none: nothing.
 /// \param stop  gives up once it is true
 /// \throws Error if the device is lost, or `stop` came first

@@ -95,6 +95,7 @@ int main(int argumentCount, char** arguments)
                "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
                "  palpate devices                                what this machine can compute on, and feel with\n"
                "  palpate doctor                                 what it lacks, and what helps\n"
+               "  palpate calibrate --mass '200 g'               a Falcon weighs a mass, so that its newtons are true\n"
                "  palpate bench solve                            how fast its solvers are\n"
                "  palpate bench plate --quick                    and how fast those of others\n"
                "Each command explains itself with --help.");
@@ -105,6 +106,7 @@ int main(int argumentCount, char** arguments)
     palp::addDevicesCommand(app);
     palp::addDoctorCommand(app);
     palp::addRunCommand(app);
+    palp::addCalibrateCommand(app);
     palp::addBenchCommand(app);
     std::signal(SIGXFSZ, SIG_IGN); // a file beyond the limit on sizes is then a write that fails, with a sentence
     try {

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -18,6 +17,7 @@
 #include "engine/core/quantity.h"
 #include "engine/program/commands.h"
 #include "engine/program/hand_source.h"
+#include "engine/program/interrupt.h"
 #include "engine/program/session_report.h"
 #include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
@@ -43,18 +43,10 @@ struct ReplayOptions {
     bool        compare = false, json = false;
 };
 
-/// Ctrl-C ends the session in order: zero force, a recording that is complete. A second one ends the program.
-std::atomic<bool> interrupted = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
-
-void onInterrupt(int signal)
-{
-    interrupted = true;
-    std::signal(signal, SIG_DFL);
-}
-
 /// Plays the hand through the scene, with a line on a terminal and a recording if one is wanted.
-SessionSummary play(const SessionParts& parts, double seconds, const OnSample& also)
+/// \param stop  ends it once it is true; may be null
+SessionSummary play(const SessionParts& parts, double seconds, const OnSample& also,
+                    const std::atomic<bool>* stop = nullptr)
 {
     Progress    progress("touching");
     const auto  total = std::size_t(std::llround(1000 * seconds));
@@ -65,7 +57,7 @@ SessionSummary play(const SessionParts& parts, double seconds, const OnSample& a
             if (also) also(sample);
             progress.at(++done, total);
         },
-        &interrupted);
+        stop);
 }
 
 void warn(const std::vector<std::string>& sentences)
@@ -135,7 +127,7 @@ SessionSummary playLive(const RunOptions& o, double seconds, SessionThreads thre
     RealSessionSettings settings;
     settings.seconds = seconds;
     settings.threads = threads;
-    settings.stop    = &interrupted;
+    settings.stop    = &catchInterrupts();
     if (recording) settings.onSample = [recording](const SessionSample& sample) { recording->push(sample); };
     if (line) settings.onView = showLine;
     std::string          warning;
@@ -243,17 +235,17 @@ void run(const RunOptions& o)
     std::vector<std::string> known = assumptions(scene, cloud.report);
     for (const auto& more : {strangeVariables(), warningsOf(scene, cloud.cloud, index), hand.warnings})
         known.insert(known.end(), more.begin(), more.end());
-    std::signal(SIGINT, onInterrupt);
-    std::signal(SIGTERM, onInterrupt);
-    waitForHoming(*hand.device, interrupted);
+    const std::atomic<bool>& stop = catchInterrupts();
+    waitForHoming(*hand.device, stop);
 
     const SessionParts parts{scene, cloud.cloud, index, deformation.solver(), *hand.device, hand.frame};
     const auto         recording = recordingOf(o, scene, cloud.cloud, clock, device);
     warn(known);
+    const OnSample record = [&](const SessionSample& sample) {
+        if (recording) recording->pushWaiting(sample);
+    };
     const auto summary = clock == SessionClock::real ? playLive(o, hand.seconds, threads, parts, recording.get())
-                                                     : play(parts, hand.seconds, [&](const SessionSample& sample) {
-                                                           if (recording) recording->pushWaiting(sample);
-                                                       });
+                                                     : play(parts, hand.seconds, record, &stop);
     std::optional<RecordingReport> report;
     if (recording) report = recording->finish();
     tell(o, summary, device, hand.device->info().model, known, report);

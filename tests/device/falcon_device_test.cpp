@@ -508,6 +508,23 @@ TEST(FalconDevice, TheRateIsTheTimersOrTheWires)
     EXPECT_GT(event, 1800) << "two transfers, two wires and the firmware: 514 us";
 }
 
+TEST(FalconDevice, TheServosClockMayStartAnew)
+{
+    FalconBench bench;
+    bench.run(5);
+    const double before = bench.emulator.now();
+
+    double now = 0, worst = 0; // [s]
+    for (; now < 1; now += 2e-3) {
+        const HapticState state = bench.device->exchange({}, now);
+        EXPECT_EQ(state.fault, DeviceFault::none);
+        worst = std::max(worst, std::abs(state.time - now));
+    }
+
+    EXPECT_NEAR(bench.emulator.now() - before, now, 5e-3) << "both go on alike";
+    EXPECT_LE(worst, 2e-3) << "an answer takes 1 to 1.5 ms";
+}
+
 TEST(FalconDevice, AWallIsFeltThroughTheWholeChain)
 {
     // A hand of 150 N/m pulls 5 mm into a wall of 500 N/m at z = 0: it rests where 500 d = 150 (5 mm - d).

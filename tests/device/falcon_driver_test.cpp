@@ -73,6 +73,23 @@ TEST(FalconDriver, UploadsOnceAndBelievesOnlyAnswers)
     EXPECT_EQ(start.emulator.falcon().lastTorque(), -1) << "no motor ever moved";
 }
 
+TEST(FalconDriver, TellsEachPieceOfAnUpload)
+{
+    Start                    start;
+    std::vector<std::size_t> pieces;
+    start.settings.onUpload = [&](std::size_t done, std::size_t total) {
+        EXPECT_EQ(total, firmware().size());
+        EXPECT_EQ(start.emulator.falcon().image().size(), done) << "what was echoed has arrived";
+        pieces.push_back(done);
+    };
+
+    static_cast<void>(start.run(firmware()));
+
+    ASSERT_EQ(pieces.size(), 137U) << "8492 bytes in pieces of 62";
+    EXPECT_EQ(pieces.front(), 62U);
+    EXPECT_EQ(pieces.back(), firmware().size());
+}
+
 TEST(FalconDriver, UploadsNothingWhereTheFirmwareRuns)
 {
     Ft232EmulatorSettings settings;

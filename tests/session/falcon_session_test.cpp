@@ -48,6 +48,34 @@ struct Session {
     }
 };
 
+/// Led out and in the arm is homed; then the hand goes along its path, whatever time that took.
+TEST(FalconSession, ALedHandHomesTheFalconAndThenFollowsItsPath)
+{
+    const HandPath    path({{0, {0, 0, 6e-3}}, {1, {10e-3, 0, 6e-3}}});
+    const HoldingHand hand{path, {.stiffness = 500, .damping = 20}, deviceFrame({0, 0, 6e-3}, {0, 0, 1})};
+    auto              settings = HeldFalcon::ready();
+    settings.falcon.homed      = false;
+    HeldFalcon falcon(hand, settings);
+    falcon.open();
+    HapticState state;
+    double      now  = 0; // [s]
+    const auto  hold = [&](double z, double seconds) {
+        falcon.lead({0, 0, z});
+        for (const double until = now + seconds; now < until; now += 1.5e-3) state = falcon.exchange({}, now);
+    };
+    hold(0.048, 0.5);
+    EXPECT_FALSE(state.homed) << "out is not enough";
+    hold(-0.052, 0.5);
+    EXPECT_TRUE(state.homed);
+    hold(0, 0.5);
+    EXPECT_NEAR(state.position.x, 0, 1e-3) << "the path waits";
+
+    falcon.follow();
+    for (now = 0; now < 0.5; now += 1.5e-3) state = falcon.exchange({}, now);
+    EXPECT_NEAR(state.position.x, 5e-3, 1e-3) << "half way; the arm trails behind the hand";
+    EXPECT_NEAR(state.time, now, 4e-3);
+}
+
 class TenMinutes : public ::testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(On, TenMinutes,
