@@ -16,9 +16,10 @@ namespace {
 
 constexpr std::size_t kNeighbours = 6; ///< [1] besides the point itself
 
-/// Search radius over the cloud's spacing: holds 15 points where the cloud is as dense as usual. Where it holds fewer
-/// than seven the exact, slower search follows.
-constexpr double kLikelyReach = 2.2;
+/// Search radius over the distance of the sixth neighbour of the point before, a near one: holds 15 points where the
+/// density does not vary. Where it holds fewer than seven the exact, slower search follows. (The cloud's usual spacing
+/// would not do: where points are a hundred times closer it holds a hundred thousand of them.)
+constexpr double kLikelyReach = 1.6;
 
 /// Radius of the median over the point's own first guess: 28 points of a regular sheet.
 constexpr double kMedianReach = 3;
@@ -69,11 +70,11 @@ std::vector<double> localSpacings(std::span<const glm::dvec3> positions, const N
     std::vector<double>        values;
     std::vector<double>        guess(positions.size());
     const auto                 order = alongCurve(positions);
+    double                     sixth = usual * std::sqrt(kNeighbours / std::numbers::pi); // [m] of the point before
     for (const std::uint32_t i : order) {
-        index.gather(positions[i], kLikelyReach * usual, near);
+        index.gather(positions[i], kLikelyReach * sixth, near);
         values.clear();
         for (const std::uint32_t p : near) values.push_back(glm::length(positions[p] - positions[i]));
-        double sixth = 0; // [m]
         if (values.size() > kNeighbours) {
             std::nth_element(values.begin(), values.begin() + kNeighbours, values.end());
             sixth = values[kNeighbours];

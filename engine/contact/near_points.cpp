@@ -19,24 +19,27 @@ constexpr double kTooLarge = 3;
 } // namespace
 
 NearPoints::NearPoints(std::span<const glm::dvec3> positions, const NeighbourIndex& index)
-    : positions_(positions), index_(index), spacings_(localSpacings(positions, index)),
-      largest_(*std::max_element(spacings_.begin(), spacings_.end()))
+    : index_(index), tree_(positions, localSpacings(positions, index))
 {
-    found_.reserve(positions.size());
-    held_.reserve(std::min(positions.size(), kMost));
+    held_.reserve(kMost);
 }
 
-void NearPoints::cover(const glm::dvec3& centre, double radius)
+void NearPoints::cover(const glm::dvec3& centre, double radius, int level)
 {
-    if (glm::length(centre - centre_) + radius <= radius_ && radius_ <= kTooLarge * radius) return;
+    const bool covered = glm::length(centre - centre_) + radius <= radius_ && radius_ <= kTooLarge * radius;
+    if (covered && level == asked_) return;
     centre_ = centre;
     radius_ = kReserve * radius;
-    index_.gather(centre_, radius_, found_);
-    std::sort(found_.begin(), found_.end());
-    const std::size_t stride = (found_.size() + kMost - 1) / kMost;
-    held_.clear();
-    for (std::size_t i = 0; i < found_.size(); i += stride)
-        held_.push_back({positions_[found_[i]], spacings_[found_[i]]});
+    asked_  = level;
+    for (bool full = true; full && level < tree_.levels(); ++level) {
+        held_.clear();
+        full = false;
+        tree_.inside(centre_, radius_, level, [&](const NearPoint& point) {
+            full = held_.size() == kMost;
+            if (!full) held_.push_back({point.position, std::max(point.spacing, tree_.cell(level))});
+            return !full;
+        });
+    }
 }
 
 } // namespace palp

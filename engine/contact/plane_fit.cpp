@@ -22,6 +22,7 @@ constexpr double      kMostCurve    = 0.15; // [1/spacing]
 constexpr double      kSlopeRidge   = 0.01; // [spacing^2] added to the variances of a and b
 constexpr double      kCurveRidge   = 0.05; // [spacing^4] added to the variance of q
 constexpr double      kBetween      = 0.2;  // points in a groove that are so little nearer to one side are neither's
+constexpr double      kCrowded      = 2;    // [1] points this many times closer than the spacing count less
 constexpr double      kSteepest     = 1;    // [1] slope against the given plane
 
 /// Weight of a height: 1 up to kFullHeight, a smoothstep down to 0 at kNoHeight.
@@ -117,7 +118,7 @@ void PlaneFitter::collect(const Frame& frame, double radius)
 {
     samples_.clear();
     owned_ = 0;
-    points_.inside(frame.place, radius, [&](const NearPoint& point, double d2) {
+    points_.inside(frame.place, radius, frame.spacing, [&](const NearPoint& point, double d2) {
         const glm::dvec3 d = point.position - frame.place;
         const double     h = glm::dot(frame.normal, d);
         if (!(std::abs(h) < kNoHeight * frame.spacing)) return;
@@ -160,7 +161,10 @@ std::optional<PlaneFit> PlaneFitter::fit(const glm::dvec3& place, const glm::dve
     Moments    m;
     const auto weightOf = [&](const Sample& s) {
         const double fall = std::max(0.0, 1 - s.d2 / (r * r));
-        return fall * fall * heightWeight(std::abs(s.h) / spacing);
+        // Where points are closer than half as usual here they count by the area they stand for, or a step in density
+        // would look like a border.
+        const double area = std::min(1.0, kCrowded * s.spacing / spacing);
+        return area * area * fall * fall * heightWeight(std::abs(s.h) / spacing);
     };
     Centroid all;
     for (const Sample& s : samples_) {

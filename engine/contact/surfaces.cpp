@@ -14,7 +14,8 @@ constexpr double kView = 2;
 /// Fits at the point that was seen, before one at the foot of the proxy [1].
 constexpr int kFitsAtPoint = 3;
 
-/// While surfaces are known, the ball counts on points at most this much sparser than here [1].
+/// Points this much sparser than here say where the surface is by their own spacing only [1]. In a random cloud hardly
+/// any are.
 constexpr double kSparser = 2;
 
 /// A plane that opposes a known one as much, and passes through it here, is the known one from below [1]: cosine.
@@ -126,16 +127,16 @@ glm::dvec3 ontoLoaded(std::span<const SurfacePlane> planes, const Rest& rest, co
 
 SurfaceTracker::Sight SurfaceTracker::look(const Surfaces& surfaces, const glm::dvec3& place)
 {
-    const double sparsest =
-        surfaces.count > 0 ? std::min(points_.largestSpacing(), kSparser * surfaces.spacing) : points_.largestSpacing();
     const auto visible = [&](const NearPoint& point) {
+        const bool   sparse = point.spacing > kSparser * surfaces.spacing;
+        const double hidden = kFullHeight * (sparse ? point.spacing : surfaces.spacing);
         for (const SurfacePlane& plane : surfaces.all())
-            if (plane.height(point.position) <= kFullHeight * surfaces.spacing) return false;
+            if (plane.height(point.position) <= hidden) return false;
         return true;
     };
     Sight  sight;
     double best = kBall; // [1] distance over the point's spacing
-    points_.inside(place, kBall * sparsest, [&](const NearPoint& point, double d2) {
+    points_.holding(place, [&](const NearPoint& point, double d2) {
         const double distance = std::sqrt(d2) / point.spacing;
         if (!(distance < best) || !visible(point)) return;
         best          = distance;
@@ -145,11 +146,37 @@ SurfaceTracker::Sight SurfaceTracker::look(const Surfaces& surfaces, const glm::
     if (!sight.any) return sight;
     const double s = sight.nearest.spacing;
     const double r = s * std::sqrt(best * best + kView * kView);
-    points_.inside(place, r, [&](const NearPoint& point, double d2) {
+    points_.inside(place, r, s, [&](const NearPoint& point, double d2) {
         const double distance = std::sqrt(d2);
         if (distance > 0 && visible(point)) sight.outward += (r / distance - 1) * (place - point.position);
     });
     return sight;
+}
+
+/// The spacing of the nearest points around a place that are much sparser than the guess, near its plane; 0: none.
+double SurfaceTracker::sparserSpacing(const Guess& guess) const noexcept
+{
+    double spacing = 0;
+    double best    = kBall; // [1] distance over the point's spacing
+    points_.holding(guess.place, [&](const NearPoint& point, double d2) {
+        const double distance = std::sqrt(d2) / point.spacing;
+        if (!(point.spacing > kSparser * guess.spacing && distance < best)) return;
+        if (std::abs(glm::dot(guess.normal, point.position - guess.place)) > kFullHeight * point.spacing) return;
+        best    = distance;
+        spacing = point.spacing;
+    });
+    return spacing;
+}
+
+/// A fit, with a larger spacing where the surface goes on with sparser points: what looks like a border is none then.
+std::optional<PlaneFit> SurfaceTracker::fit(const Guess& guess, std::span<const SurfacePlane> others) noexcept
+{
+    const auto fine = fitter_.fit(guess.place, guess.normal, guess.spacing, others);
+    if (fine && fine->plane.support >= 1) return fine;
+    const double spacing = sparserSpacing(guess);
+    if (!(spacing > 0)) return fine;
+    const auto coarse = fitter_.fit(guess.place, guess.normal, spacing, others);
+    return coarse && (!fine || coarse->plane.support > fine->plane.support) ? coarse : fine;
 }
 
 bool SurfaceTracker::accept(Surfaces& surfaces, const NearPoint& nearest, const glm::dvec3& place,
@@ -159,9 +186,9 @@ bool SurfaceTracker::accept(Surfaces& surfaces, const NearPoint& nearest, const 
     if (!(length > 0)) return false;
     SurfacePlane plane{seed / length, nearest.position, 0};
     double       spacing = surfaces.spacing;
-    for (int fit = 0; fit <= kFitsAtPoint; ++fit) {
-        const glm::dvec3 at = fit < kFitsAtPoint ? nearest.position : place;
-        const auto found    = fitter_.fit(at - plane.height(at) * plane.normal, plane.normal, spacing, surfaces.all());
+    for (int k = 0; k <= kFitsAtPoint; ++k) {
+        const glm::dvec3 at    = k < kFitsAtPoint ? nearest.position : place;
+        const auto       found = fit({at - plane.height(at) * plane.normal, plane.normal, spacing}, surfaces.all());
         if (!found) return false;
         plane = found->plane;
     }
@@ -210,8 +237,8 @@ double SurfaceTracker::refresh(Surfaces& surfaces, const glm::dvec3& place) noex
         std::size_t                               count = 0;
         for (int k = 0; k < surfaces.count; ++k)
             if (k != j) others[count++] = surfaces.planes[std::size_t(k)];
-        const auto found = fitter_.fit(place - plane.height(place) * plane.normal, plane.normal, surfaces.spacing,
-                                       {others.data(), count});
+        const auto found =
+            fit({place - plane.height(place) * plane.normal, plane.normal, surfaces.spacing}, {others.data(), count});
         if (!found || !(found->plane.support > 0)) {
             plane.support = 0;
             continue;

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <optional>
 #include <span>
 
 #include <glm/vec3.hpp>
@@ -67,16 +68,21 @@ private:
         glm::dvec3 outward{}; ///< [m^2] sum of overshoots, away from the points
     };
 
-    [[nodiscard]] Sight look(const Surfaces& surfaces, const glm::dvec3& place);
-    [[nodiscard]] bool  accept(Surfaces& surfaces, const NearPoint& nearest, const glm::dvec3& place,
-                               const glm::dvec3& seed) noexcept;
+    /// A plane through points, fitted with a spacing.
+    struct Guess {
+        glm::dvec3 place{};     ///< [m] near the surface
+        glm::dvec3 normal{};    ///< [1] unit
+        double     spacing = 0; ///< [m]
+    };
+
+    [[nodiscard]] Sight                   look(const Surfaces& surfaces, const glm::dvec3& place);
+    [[nodiscard]] std::optional<PlaneFit> fit(const Guess& guess, std::span<const SurfacePlane> others) noexcept;
+    [[nodiscard]] double                  sparserSpacing(const Guess& guess) const noexcept;
+    [[nodiscard]] bool                    accept(Surfaces& surfaces, const NearPoint& nearest, const glm::dvec3& place,
+                                                 const glm::dvec3& seed) noexcept;
 
     NearPoints& points_;
     PlaneFitter fitter_;
 };
-
-/// Radius of the ball in spacings of the point [1]: the largest empty circle in a random cloud of 10^4 points has a
-/// radius of 1.9.
-inline constexpr double kBall = 2.5;
 
 } // namespace palp
