@@ -47,6 +47,7 @@ public:
         return tree_.firstTouch(from, to);
     }
 
+    [[nodiscard]] bool   mixed() const noexcept { return tree_.mixed(); } ///< the density varies by more than chance
     [[nodiscard]] double largestSpacing() const noexcept { return tree_.largestSpacing(); } ///< [m]
     [[nodiscard]] double usualSpacing() const noexcept { return index_.spacing(); }         ///< [m]
 

@@ -159,17 +159,21 @@ std::optional<PlaneFit> PlaneFitter::fit(const glm::dvec3& place, const glm::dve
     if (owned_ < kFewestPoints) return {};
 
     Moments    m;
+    const auto fall = [&](const Sample& s) {
+        const double share = std::max(0.0, 1 - s.d2 / (r * r));
+        return share * share;
+    };
     const auto weightOf = [&](const Sample& s) {
-        const double fall = std::max(0.0, 1 - s.d2 / (r * r));
         // Where points are closer than half as usual here they count by the area they stand for, or a step in density
         // would look like a border.
         const double area = std::min(1.0, kCrowded * s.spacing / spacing);
-        return area * area * fall * fall * heightWeight(std::abs(s.h) / spacing);
+        return area * area * fall(s) * heightWeight(std::abs(s.h) / spacing);
     };
     Centroid all;
     for (const Sample& s : samples_) {
-        const double w = weightOf(s);
-        all.add(w, s.a, s.b);
+        const double w   = weightOf(s);
+        const double own = std::min(s.spacing / spacing, kCrowded);
+        all.add(own * own * fall(s) * heightWeight(std::abs(s.h) / spacing), s.a, s.b);
         if (s.own) m.addFirst(w, s.a, s.b, s.h, s.spacing);
     }
     if (!(m.weight > 0)) return {};

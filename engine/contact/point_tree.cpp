@@ -146,9 +146,14 @@ PointTree::PointTree(std::span<const glm::dvec3> positions, std::span<const doub
     builder.add(0, positions.size());
 }
 
+bool PointTree::mixed() const noexcept
+{
+    return largest_ >= kUniform * least_;
+}
+
 int PointTree::level(double scale) const noexcept
 {
-    if (largest_ < kUniform * least_ || !(scale > kFiner * least_)) return 0;
+    if (!mixed() || !(scale > kFiner * least_)) return 0;
     return std::min(int(std::floor(std::log2(scale / (kFiner * least_)))), levels_ - 1);
 }
 

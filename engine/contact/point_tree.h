@@ -39,6 +39,7 @@ public:
     /// The level for a look with the spacing `scale` [m]; 0, all points, where the density hardly varies.
     [[nodiscard]] int    level(double scale) const noexcept;
     [[nodiscard]] double cell(int level) const noexcept; ///< [m] side of its cubes; 0 for level 0
+    [[nodiscard]] bool   mixed() const noexcept;         ///< the density varies by more than that of a random sheet
     [[nodiscard]] int    levels() const noexcept { return levels_; }
     [[nodiscard]] double largestSpacing() const noexcept { return largest_; } ///< [m]
 

@@ -153,30 +153,40 @@ SurfaceTracker::Sight SurfaceTracker::look(const Surfaces& surfaces, const glm::
     return sight;
 }
 
-/// The spacing of the nearest points around a place that are much sparser than the guess, near its plane; 0: none.
-double SurfaceTracker::sparserSpacing(const Guess& guess) const noexcept
+/// Whose own balls the place of a guess lies in, of the points near its plane.
+SurfaceTracker::Around SurfaceTracker::around(const Guess& guess) const noexcept
 {
-    double spacing = 0;
-    double best    = kBall; // [1] distance over the point's spacing
+    Around around;
+    double best = kBall; // [1] distance over the point's spacing
     points_.holding(guess.place, [&](const NearPoint& point, double d2) {
-        const double distance = std::sqrt(d2) / point.spacing;
-        if (!(point.spacing > kSparser * guess.spacing && distance < best)) return;
         if (std::abs(glm::dot(guess.normal, point.position - guess.place)) > kFullHeight * point.spacing) return;
-        best    = distance;
-        spacing = point.spacing;
+        const bool   sparser  = point.spacing > kSparser * guess.spacing;
+        const double distance = std::sqrt(d2) / point.spacing;
+        around.alike          = around.alike || !sparser;
+        if (!sparser || distance >= best) return;
+        best           = distance;
+        around.sparser = point.spacing;
     });
-    return spacing;
+    return around;
 }
 
 /// A fit, with a larger spacing where the surface goes on with sparser points: what looks like a border is none then.
+/// Of all tried, the one with the most support.
 std::optional<PlaneFit> SurfaceTracker::fit(const Guess& guess, std::span<const SurfacePlane> others) noexcept
 {
-    const auto fine = fitter_.fit(guess.place, guess.normal, guess.spacing, others);
-    if (fine && fine->plane.support >= 1) return fine;
-    const double spacing = sparserSpacing(guess);
-    if (!(spacing > 0)) return fine;
-    const auto coarse = fitter_.fit(guess.place, guess.normal, spacing, others);
-    return coarse && (!fine || coarse->plane.support > fine->plane.support) ? coarse : fine;
+    if (!points_.mixed()) return fitter_.fit(guess.place, guess.normal, guess.spacing, others);
+    std::optional<PlaneFit> best;
+    Guess                   wider = guess;
+    for (bool last = false; !last;) { // at most once per doubling of the spacing
+        const Around near = around(wider);
+        if (near.alike || !(near.sparser > 0)) {
+            const auto found = fitter_.fit(wider.place, wider.normal, wider.spacing, others);
+            if (found && (!best || found->plane.support > best->plane.support)) best = found;
+        }
+        last          = !(near.sparser > 0) || (best && best->plane.support >= 1);
+        wider.spacing = near.sparser;
+    }
+    return best;
 }
 
 bool SurfaceTracker::accept(Surfaces& surfaces, const NearPoint& nearest, const glm::dvec3& place,

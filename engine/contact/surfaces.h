@@ -75,9 +75,15 @@ private:
         double     spacing = 0; ///< [m]
     };
 
+    /// Which points' own balls a place lies in.
+    struct Around {
+        bool   alike   = false; ///< points about as close as the guess, or closer
+        double sparser = 0;     ///< [m] spacing of the nearest of those much sparser; 0: none
+    };
+
     [[nodiscard]] Sight                   look(const Surfaces& surfaces, const glm::dvec3& place);
+    [[nodiscard]] Around                  around(const Guess& guess) const noexcept;
     [[nodiscard]] std::optional<PlaneFit> fit(const Guess& guess, std::span<const SurfacePlane> others) noexcept;
-    [[nodiscard]] double                  sparserSpacing(const Guess& guess) const noexcept;
     [[nodiscard]] bool                    accept(Surfaces& surfaces, const NearPoint& nearest, const glm::dvec3& place,
                                                  const glm::dvec3& seed) noexcept;
 
