@@ -21,25 +21,27 @@ constexpr double kTooLarge = 3;
 NearPoints::NearPoints(std::span<const glm::dvec3> positions, const NeighbourIndex& index)
     : index_(index), tree_(positions, localSpacings(positions, index))
 {
-    held_.reserve(kMost);
+    for (Ball& ball : balls_) ball.points.reserve(kMost);
 }
 
-void NearPoints::cover(const glm::dvec3& centre, double radius, int level)
+std::span<const NearPoint> NearPoints::cover(const glm::dvec3& centre, double radius, int level)
 {
-    const bool covered = glm::length(centre - centre_) + radius <= radius_ && radius_ <= kTooLarge * radius;
-    if (covered && level == asked_) return;
-    centre_ = centre;
-    radius_ = kReserve * radius;
-    asked_  = level;
+    Ball&      ball    = balls_[std::size_t(level) % balls_.size()];
+    const bool covered = glm::length(centre - ball.centre) + radius <= ball.radius && ball.radius <= kTooLarge * radius;
+    if (covered && level == ball.level) return ball.points;
+    ball.centre = centre;
+    ball.radius = kReserve * radius;
+    ball.level  = level;
     for (bool full = true; full && level < tree_.levels(); ++level) {
-        held_.clear();
+        ball.points.clear();
         full = false;
-        tree_.inside(centre_, radius_, level, [&](const NearPoint& point) {
-            full = held_.size() == kMost;
-            if (!full) held_.push_back({point.position, std::max(point.spacing, tree_.cell(level))});
+        tree_.inside(ball.centre, ball.radius, level, [&](const NearPoint& point) {
+            full = ball.points.size() == kMost;
+            if (!full) ball.points.push_back({point.position, std::max(point.spacing, tree_.cell(level))});
             return !full;
         });
     }
+    return ball.points;
 }
 
 } // namespace palp

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,8 +27,7 @@ public:
     template <class Visit>
     void inside(const glm::dvec3& centre, double radius, double scale, Visit&& visit)
     {
-        cover(centre, radius, tree_.level(scale));
-        for (const NearPoint& point : held_) {
+        for (const NearPoint& point : cover(centre, radius, tree_.level(scale))) {
             const glm::dvec3 d  = point.position - centre;
             const double     d2 = d.x * d.x + d.y * d.y + d.z * d.z;
             if (d2 <= radius * radius) visit(point, d2);
@@ -55,14 +55,19 @@ public:
     static constexpr std::size_t kMost = 4096;
 
 private:
-    void cover(const glm::dvec3& centre, double radius, int level);
+    /// The points of one level in a ball.
+    struct Ball {
+        std::vector<NearPoint> points;
+        glm::dvec3             centre{};    ///< [m]
+        double                 radius = -1; ///< [m]; negative: none
+        int                    level  = 0;  ///< that was asked for
+    };
 
-    const NeighbourIndex&  index_;
-    PointTree              tree_;
-    std::vector<NearPoint> held_;
-    glm::dvec3             centre_{};    ///< [m] of the ball that is held
-    double                 radius_ = -1; ///< [m] of it; negative: none
-    int                    asked_  = 0;  ///< level it was asked for
+    [[nodiscard]] std::span<const NearPoint> cover(const glm::dvec3& centre, double radius, int level);
+
+    const NeighbourIndex& index_;
+    PointTree             tree_;
+    std::array<Ball, 4>   balls_; ///< by the level, modulo their number: beside a step in density several are asked for
 };
 
 } // namespace palp

@@ -196,11 +196,13 @@ bool SurfaceTracker::accept(Surfaces& surfaces, const NearPoint& nearest, const 
     if (!(length > 0)) return false;
     SurfacePlane plane{seed / length, nearest.position, 0};
     double       spacing = surfaces.spacing;
+    double       coarse  = spacing; // of the sparsest points that the plane was made of
     for (int k = 0; k <= kFitsAtPoint; ++k) {
         const glm::dvec3 at    = k < kFitsAtPoint ? nearest.position : place;
         const auto       found = fit({at - plane.height(at) * plane.normal, plane.normal, spacing}, surfaces.all());
         if (!found) return false;
         plane = found->plane;
+        if (points_.mixed()) coarse = std::max({coarse, found->spacing, nearest.spacing});
     }
     // A plane that misses the point that was seen is another's: of a sheet hidden behind it, or the floor from below.
     if (!(plane.support > 0 && std::abs(plane.height(nearest.position)) < kFullHeight * spacing &&
@@ -209,7 +211,7 @@ bool SurfaceTracker::accept(Surfaces& surfaces, const NearPoint& nearest, const 
     for (const SurfacePlane& known : surfaces.all()) {
         const double c = glm::dot(known.normal, plane.normal);
         if (c > kSameSurface) return false;
-        if (c < kFromBelow && known.height(plane.foot) < kFullHeight * spacing) return false;
+        if (c < kFromBelow && known.height(plane.foot) < kFullHeight * coarse) return false;
     }
     if (surfaces.count == 0) surfaces.seen = plane.normal;
     surfaces.planes[std::size_t(surfaces.count++)] = plane;
