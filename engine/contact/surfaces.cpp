@@ -138,6 +138,7 @@ SurfaceTracker::Sight SurfaceTracker::look(const Surfaces& surfaces, const glm::
     double best = kBall; // [1] distance over the point's spacing
     points_.holding(place, [&](const NearPoint& point, double d2) {
         const double distance = std::sqrt(d2) / point.spacing;
+        sight.sparsest        = std::max(sight.sparsest, point.spacing);
         if (!(distance < best) || !visible(point)) return;
         best          = distance;
         sight.nearest = point;
@@ -189,20 +190,21 @@ std::optional<PlaneFit> SurfaceTracker::fit(const Guess& guess, std::span<const 
     return best;
 }
 
-bool SurfaceTracker::accept(Surfaces& surfaces, const NearPoint& nearest, const glm::dvec3& place,
+bool SurfaceTracker::accept(Surfaces& surfaces, const Sight& sight, const glm::dvec3& place,
                             const glm::dvec3& seed) noexcept
 {
-    const double length = glm::length(seed);
+    const NearPoint& nearest = sight.nearest;
+    const double     length  = glm::length(seed);
     if (!(length > 0)) return false;
     SurfacePlane plane{seed / length, nearest.position, 0};
     double       spacing = surfaces.spacing;
-    double       coarse  = spacing; // of the sparsest points that the plane was made of
+    // Noise of sparse points is no ceiling over a floor of dense ones.
+    const double coarse = points_.mixed() ? std::max(spacing, sight.sparsest) : spacing;
     for (int k = 0; k <= kFitsAtPoint; ++k) {
         const glm::dvec3 at    = k < kFitsAtPoint ? nearest.position : place;
         const auto       found = fit({at - plane.height(at) * plane.normal, plane.normal, spacing}, surfaces.all());
         if (!found) return false;
         plane = found->plane;
-        if (points_.mixed()) coarse = std::max({coarse, found->spacing, nearest.spacing});
     }
     // A plane that misses the point that was seen is another's: of a sheet hidden behind it, or the floor from below.
     if (!(plane.support > 0 && std::abs(plane.height(nearest.position)) < kFullHeight * spacing &&
@@ -229,12 +231,12 @@ bool SurfaceTracker::discover(Surfaces& surfaces, const glm::dvec3& place, const
     if (surfaces.count == 0) surfaces.spacing = sight.nearest.spacing;
     // What was seen from further away was seen better: near a hole the nearest points are all on one side.
     const Surfaces before = surfaces;
-    if (surfaces.count == 0 && accept(surfaces, sight.nearest, place, surfaces.seen)) {
+    if (surfaces.count == 0 && accept(surfaces, sight, place, surfaces.seen)) {
         if (surfaces.planes[0].support >= kSureSupport) return true;
         surfaces = before;
     }
     for (const glm::dvec3& seed : {sight.outward, place - towards, place - sight.nearest.position})
-        if (accept(surfaces, sight.nearest, place, seed)) break;
+        if (accept(surfaces, sight, place, seed)) break;
     return true;
 }
 

@@ -65,7 +65,8 @@ private:
     struct Sight {
         bool       any = false;
         NearPoint  nearest{};
-        glm::dvec3 outward{}; ///< [m^2] sum of overshoots, away from the points
+        double     sparsest = 0; ///< [m] largest spacing of all points in whose own balls the place is
+        glm::dvec3 outward{};    ///< [m^2] sum of overshoots, away from the points
     };
 
     /// A plane through points, fitted with a spacing.
@@ -84,7 +85,7 @@ private:
     [[nodiscard]] Sight                   look(const Surfaces& surfaces, const glm::dvec3& place);
     [[nodiscard]] Around                  around(const Guess& guess) const noexcept;
     [[nodiscard]] std::optional<PlaneFit> fit(const Guess& guess, std::span<const SurfacePlane> others) noexcept;
-    [[nodiscard]] bool                    accept(Surfaces& surfaces, const NearPoint& nearest, const glm::dvec3& place,
+    [[nodiscard]] bool                    accept(Surfaces& surfaces, const Sight& sight, const glm::dvec3& place,
                                                  const glm::dvec3& seed) noexcept;
 
     NearPoints& points_;
