@@ -157,7 +157,7 @@ TEST_P(RealSessions, AStalledDeformationLeavesAFiniteSmoothForceAndAFlag)
         return deformation.solve(touch, period);
     };
     bool   finite = true, flagged = false;
-    double step = 0, most = 0, oldest = 0, last = 0; // [N], [N], [s], [N]
+    double step = 0, most = 0, oldest = 0, last = 0, before = 0; // [N/ms], [N], [s], [N], [s]
     settings.threads  = GetParam();
     settings.seconds  = 7.6;
     settings.onSample = [&](const SessionSample& s) {
