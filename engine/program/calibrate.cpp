@@ -264,7 +264,7 @@ void addCalibrateCommand(CLI::App& app)
         ->add_option("--falcon-counts", o->countsPerTorque,
                      "counts per N m to begin with; more if the arm hangs down where it should be held")
         ->capture_default_str()
-        ->check(CLI::Range(500.0, 50000.0));
+        ->check(falconCounts());
     command->add_flag("--emulator", o->emulator, "an emulated Falcon and hand, in virtual time: to see how it goes");
     command->add_flag("--json", o->json, "machine-readable; what to do is said on standard error all the same");
     command->footer(

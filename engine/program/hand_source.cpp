@@ -1,6 +1,9 @@
 #include "engine/program/hand_source.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 
 #include <glm/common.hpp>
@@ -13,6 +16,7 @@
 #include "device/hid/space_mouse.h"
 #include "device/hid/space_mouse_report.h"
 #include "engine/core/contract.h"
+#include "engine/core/nearest_name.h"
 #include "engine/core/quantity.h"
 #include "engine/core/real_time.h"
 #include "engine/session/hand_device.h"
@@ -121,9 +125,12 @@ void script(HandSource& source, HandOptions options, const Scene& scene, const P
     const glm::dvec3 start = source.path->position(source.path->begin());
     source.frame           = falcon ? deviceFrame(start, handPlace(scene, cloud, index).outward) : DeviceFrame{start};
     const HoldingHand hand{*source.path, gripOf(options.grip), source.frame};
-    if (falcon)
-        source.device = std::make_unique<HeldFalcon>(hand);
-    else
+    if (falcon) {
+        FalconDeviceSettings settings;
+        settings.loop.countsPerTorque = options.countsPerTorque.value_or(FalconMotors::kCountsPerTorque);
+        settings.start.eventCharacter = options.eventCharacter;
+        source.device                 = std::make_unique<HeldFalcon>(hand, HeldFalcon::ready(), settings);
+    } else
         source.device = std::make_unique<HeldArm>(hand);
 }
 
@@ -153,14 +160,57 @@ void hold(HandSource& source, const HandOptions& options, const Scene& scene, co
     source.device = hidFor(options.hand, *source.hid);
 }
 
+/// Options that would do nothing.
+void refuseOptionsOfAFalcon(const HandOptions& options)
+{
+    const bool real = options.hand == "falcon", any = real || options.hand == "falcon-emulator";
+    if (!any && (options.countsPerTorque || options.eventCharacter))
+        throw Error("--falcon-counts and --falcon-event-character are of --hand falcon, found --hand " + options.hand);
+    if (!real && !options.firmware.empty())
+        throw Error("--falcon-firmware is of --hand falcon, found --hand " + options.hand);
+}
+
+/// A word that is neither a file nor a hand was meant for one of these.
+void refuseSlips(const std::string& word)
+{
+    static constexpr std::array<std::string_view, 9> kKnown{
+        "press", "circle", "scan", "falcon", "falcon-emulator", "arm", "bridge", "spacemouse", "mouse"};
+    if (std::ranges::find(kKnown, word) != kKnown.end() || std::filesystem::exists(word)) return;
+    if (const auto meant = nearestName(word, kKnown))
+        throw Error("--hand " + word + ": there is no such hand or file; did you mean " + std::string(*meant) + "?");
+}
+
 } // namespace
+
+void addFalconOptions(CLI::App& command, HandOptions& options)
+{
+    command.add_option("--falcon-firmware", options.firmware,
+                       "image that a Falcon needs after it was plugged in [FALCON_FIRMWARE]");
+    command
+        .add_option("--falcon-counts", options.countsPerTorque,
+                    "counts per N m of a Falcon's motors, see palpate calibrate [4200]")
+        ->check(falconCounts());
+    command.add_flag("--falcon-event-character", options.eventCharacter,
+                     "ask the Falcon's bridge to pass on each answer at once; nobody has tried it on a device yet");
+}
+
+CLI::Validator falconCounts()
+{
+    return {[](const std::string& text) -> std::string {
+                const double counts = parseQuantity(text, Dimension::none, "--falcon-counts");
+                return counts >= 2000 && counts <= 10000 ? "" : "expected 2000 to 10000, found " + text;
+            },
+            "[2000 - 10000]"};
+}
 
 HandSource handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
 {
     if (options.hand == "mouse")
         throw Error("--hand mouse: the mouse needs a window, which this command has not; try scan, or --hand arm");
+    refuseSlips(options.hand);
     HandSource source;
     if (!options.seconds.empty()) source.seconds = secondsOf(options.seconds);
+    refuseOptionsOfAFalcon(options);
     const bool held = options.hand == "falcon" || options.hand == "bridge" || options.hand == "spacemouse";
     if (held && !options.grip.empty())
         throw Error("--arm: a person holds the " + options.hand + "; leave one of the two out");
@@ -186,14 +236,16 @@ void waitForHoming(HapticDevice& device, const std::atomic<bool>& stop)
     const auto start = std::chrono::steady_clock::now();
     Metronome  metronome{std::chrono::milliseconds(1)};
     bool       told = false;
+    double     well = 0; // [s] when it was last without a fault
     device.home();
     for (;;) {
         const double      now   = std::chrono::duration<double>(metronome.wait() - start).count();
         const HapticState state = device.exchange(GovernedForce(), now);
         if (state.homed) break;
         if (stop) throw Error("homing was given up; no force flows before it");
-        constexpr double kPatience = 1; // [s] for the first answers
-        if (now > kPatience && state.fault != DeviceFault::none)
+        constexpr double kPatience = 1; // [s] for the first answers, and for a fault that may pass
+        if (state.fault == DeviceFault::none) well = now;
+        if (now > well + kPatience)
             throw Error(device.info().model + ": lost while it was to be homed (" + name(state.fault) +
                         "); palpate doctor may tell why");
         if (now > kPatience && !told) {

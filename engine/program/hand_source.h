@@ -1,8 +1,11 @@
 #pragma once
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include "device/hid/hid_port.h"
 #include "engine/session/hand_path.h"
@@ -12,12 +15,13 @@ namespace palp {
 
 /// What the command line says about the hand.
 struct HandOptions {
-    std::string hand  = "scan"; ///< press, circle, scan, a file, or a device as `palpate devices` names it
-    std::string speed = "50 mm/s", depth, reach = "10 mm";
-    std::string grip;                   ///< of the hand that holds a simulated arm; empty: forces do not move the hand
-    std::string firmware;               ///< of the Falcon; empty: FALCON_FIRMWARE
-    double      countsPerTorque = 4200; ///< of the Falcon's motors [1/(N m)]
-    std::string seconds;                ///< "5 s"; empty: 5 s, or a file's own length
+    std::string           hand  = "scan"; ///< press, circle, scan, a file, or a device as `palpate devices` names it
+    std::string           speed = "50 mm/s", depth, reach = "10 mm";
+    std::string           grip;     ///< of the hand that holds a simulated arm; empty: forces do not move the hand
+    std::string           firmware; ///< of the Falcon; empty: FALCON_FIRMWARE
+    std::optional<double> countsPerTorque; ///< of the Falcon's motors [1/(N m)]; empty: FalconMotors::kCountsPerTorque
+    bool                  eventCharacter = false; ///< see FalconStartSettings
+    std::string           seconds;                ///< "5 s"; empty: 5 s, or a file's own length
 };
 
 /// A hand that is ready: its device is open.
@@ -31,6 +35,13 @@ struct HandSource {
 
     [[nodiscard]] bool isHeld() const noexcept { return !path; } ///< by somebody, in real time
 };
+
+/// Adds --falcon-firmware, --falcon-counts and --falcon-event-character.
+void addFalconOptions(CLI::App& command, HandOptions& options);
+
+/// Refuses what no Falcon's motors have been seen to need, and NaN: 2000 to 10 000 counts per N m. Much too many, and
+/// the loop swings.
+[[nodiscard]] CLI::Validator falconCounts();
 
 /// \throws Error naming the option, the file, or why the device cannot be used
 [[nodiscard]] HandSource handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud,
