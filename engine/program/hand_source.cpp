@@ -126,10 +126,7 @@ void script(HandSource& source, HandOptions options, const Scene& scene, const P
     source.frame           = falcon ? deviceFrame(start, handPlace(scene, cloud, index).outward) : DeviceFrame{start};
     const HoldingHand hand{*source.path, gripOf(options.grip), source.frame};
     if (falcon) {
-        FalconDeviceSettings settings;
-        settings.loop.countsPerTorque = options.countsPerTorque.value_or(FalconMotors::kCountsPerTorque);
-        settings.start.eventCharacter = options.eventCharacter;
-        source.device                 = std::make_unique<HeldFalcon>(hand, HeldFalcon::ready(), settings);
+        source.device = std::make_unique<HeldFalcon>(hand, HeldFalcon::ready(), options.falcon.settings());
     } else
         source.device = std::make_unique<HeldArm>(hand);
 }
@@ -153,7 +150,7 @@ void hold(HandSource& source, const HandOptions& options, const Scene& scene, co
     const HandPlace place = handPlace(scene, cloud, index);
     source.frame          = deviceFrame(place.point + scene.startHeight * place.outward, place.outward);
     if (options.hand == "falcon") {
-        source.device = falconFor(options.firmware, options.countsPerTorque);
+        source.device = falconFor(options.falcon);
         return;
     }
     source.hid    = std::make_unique<HidapiSystem>();
@@ -164,9 +161,9 @@ void hold(HandSource& source, const HandOptions& options, const Scene& scene, co
 void refuseOptionsOfAFalcon(const HandOptions& options)
 {
     const bool real = options.hand == "falcon", any = real || options.hand == "falcon-emulator";
-    if (!any && (options.countsPerTorque || options.eventCharacter))
+    if (!any && (options.falcon.countsPerTorque || options.falcon.eventCharacter))
         throw Error("--falcon-counts and --falcon-event-character are of --hand falcon, found --hand " + options.hand);
-    if (!real && !options.firmware.empty())
+    if (!real && !options.falcon.firmware.empty())
         throw Error("--falcon-firmware is of --hand falcon, found --hand " + options.hand);
 }
 
@@ -182,25 +179,30 @@ void refuseSlips(const std::string& word)
 
 } // namespace
 
-void addFalconOptions(CLI::App& command, HandOptions& options)
+FalconDeviceSettings FalconOptions::settings() const
 {
+    FalconDeviceSettings settings;
+    settings.loop.countsPerTorque = countsPerTorque.value_or(FalconMotors::kCountsPerTorque);
+    settings.start.eventCharacter = eventCharacter;
+    return settings;
+}
+
+void addFalconOptions(CLI::App& command, FalconOptions& options)
+{
+    const CLI::Validator inRange{[](const std::string& text) -> std::string {
+                                     const double counts = parseQuantity(text, Dimension::none, "--falcon-counts");
+                                     if (counts >= 2000 && counts <= 10000) return {};
+                                     return "expected 2000 to 10000, found " + text;
+                                 },
+                                 "[2000 - 10000]"};
     command.add_option("--falcon-firmware", options.firmware,
                        "image that a Falcon needs after it was plugged in [FALCON_FIRMWARE]");
     command
         .add_option("--falcon-counts", options.countsPerTorque,
                     "counts per N m of a Falcon's motors, see palpate calibrate [4200]")
-        ->check(falconCounts());
+        ->check(inRange);
     command.add_flag("--falcon-event-character", options.eventCharacter,
                      "ask the Falcon's bridge to pass on each answer at once; nobody has tried it on a device yet");
-}
-
-CLI::Validator falconCounts()
-{
-    return {[](const std::string& text) -> std::string {
-                const double counts = parseQuantity(text, Dimension::none, "--falcon-counts");
-                return counts >= 2000 && counts <= 10000 ? "" : "expected 2000 to 10000, found " + text;
-            },
-            "[2000 - 10000]"};
 }
 
 HandSource handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
@@ -222,11 +224,11 @@ HandSource handFor(const HandOptions& options, const Scene& scene, const PointCl
     return source;
 }
 
-std::unique_ptr<HapticDevice> falconFor(const std::string& firmware, double countsPerTorque)
+std::unique_ptr<HapticDevice> falconFor(const FalconOptions& options)
 {
-    FalconDeviceSettings settings;
-    if (const auto image = falconFirmwarePath(firmware); !image.empty()) settings.firmware = readFirmware(image);
-    settings.loop.countsPerTorque = countsPerTorque;
+    FalconDeviceSettings settings = options.settings();
+    if (const auto image = falconFirmwarePath(options.firmware); !image.empty())
+        settings.firmware = readFirmware(image);
     return std::make_unique<FalconDevice>([] { return openFalcon(); }, settings);
 }
 

@@ -178,8 +178,8 @@ SessionThreads threadsOf(const RunOptions& o, SessionClock clock)
     return *threads;
 }
 
-std::unique_ptr<Recording> recordingOf(const RunOptions& o, const Scene& scene, const PointCloud& cloud,
-                                       SessionClock clock, const std::string& device)
+std::unique_ptr<Recording> recordingOf(const RunOptions& o, const SessionParts& parts, SessionClock clock,
+                                       const std::string& device)
 {
     if (o.record.empty()) return nullptr;
     SessionInfo info;
@@ -314,7 +314,7 @@ void addRunCommand(CLI::App& app)
         "--arm", o->hand.grip,
         "the hand holds a simulated arm with a grip of this stiffness (relaxed '150 N/m', firm '500 N/m'), "
         "so that forces move it");
-    addFalconOptions(*run_, o->hand);
+    addFalconOptions(*run_, o->hand.falcon);
     run_->add_option("--clock", o->clock,
                      "real: a tick a millisecond; virtual: as fast as it goes, the same every time")
         ->capture_default_str();
