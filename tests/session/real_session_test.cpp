@@ -13,8 +13,8 @@
 #include <glm/geometric.hpp>
 
 #include "engine/session/hand_device.h"
-#include "tests/session/allocations.h"
-#include "tests/session/locks.h"
+#include "tests/support/allocations.h"
+#include "tests/support/locks.h"
 #include "tests/session/sheet_session.h"
 
 namespace palp {

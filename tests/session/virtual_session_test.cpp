@@ -11,7 +11,7 @@
 #include "engine/session/deformation.h"
 #include "engine/session/hand_device.h"
 #include "engine/session/recorded_session.h"
-#include "tests/session/allocations.h"
+#include "tests/support/allocations.h"
 #include "tests/session/sheet_session.h"
 
 namespace palp {
