@@ -131,15 +131,28 @@ void script(HandSource& source, HandOptions options, const Scene& scene, const P
         source.device = std::make_unique<HeldArm>(hand);
 }
 
-/// The first HID device of that kind.
-std::unique_ptr<HapticDevice> hidFor(const std::string& name, HidSystem& hid)
+/// "falcon@1-2.3": what `palpate devices` calls it, and where it is plugged in if there are several.
+struct NamedDevice {
+    std::string name, path;
+
+    explicit NamedDevice(const std::string& hand) : name(hand.substr(0, hand.find('@')))
+    {
+        if (name.size() < hand.size()) path = hand.substr(name.size() + 1);
+    }
+
+    [[nodiscard]] bool isHeld() const { return name == "falcon" || name == "bridge" || name == "spacemouse"; }
+};
+
+/// The first HID device of that kind, or the one at that path.
+std::unique_ptr<HapticDevice> hidFor(const NamedDevice& wanted, HidSystem& hid)
 {
-    const bool bridge = name == "bridge";
+    const bool bridge = wanted.name == "bridge";
     for (const HidListing& listing : hid.list()) {
+        if (!wanted.path.empty() && listing.path != wanted.path) continue;
         if (bridge && isBridge(listing)) return std::make_unique<HidBridgeDevice>(hid, listing);
         if (!bridge && spaceMouseModel(listing)) return std::make_unique<SpaceMouse>(hid, listing);
     }
-    throw Error("--hand " + name + ": none is plugged in, by " + hidSupport() +
+    throw Error("--hand " + wanted.name + ": none is plugged in" + (wanted.path.empty() ? "" : " at " + wanted.path) +
                 "; palpate devices tells what there is");
 }
 
@@ -149,18 +162,20 @@ void hold(HandSource& source, const HandOptions& options, const Scene& scene, co
 {
     const HandPlace place = handPlace(scene, cloud, index);
     source.frame          = deviceFrame(place.point + scene.startHeight * place.outward, place.outward);
-    if (options.hand == "falcon") {
-        source.device = falconFor(options.falcon);
+    const NamedDevice wanted(options.hand);
+    if (wanted.name == "falcon") {
+        source.device = falconFor(options.falcon, wanted.path);
         return;
     }
+    if (!hasHidSupport()) throw Error("--hand " + options.hand + ": this palpate is " + hidSupport());
     source.hid    = std::make_unique<HidapiSystem>();
-    source.device = hidFor(options.hand, *source.hid);
+    source.device = hidFor(wanted, *source.hid);
 }
 
 /// Options that would do nothing.
 void refuseOptionsOfAFalcon(const HandOptions& options)
 {
-    const bool real = options.hand == "falcon", any = real || options.hand == "falcon-emulator";
+    const bool real = NamedDevice(options.hand).name == "falcon", any = real || options.hand == "falcon-emulator";
     if (!any && (options.falcon.countsPerTorque || options.falcon.eventCharacter))
         throw Error("--falcon-counts and --falcon-event-character are of --hand falcon, found --hand " + options.hand);
     if (!real && !options.falcon.firmware.empty())
@@ -172,7 +187,8 @@ void refuseSlips(const std::string& word)
 {
     static constexpr std::array<std::string_view, 9> kKnown{
         "press", "circle", "scan", "falcon", "falcon-emulator", "arm", "bridge", "spacemouse", "mouse"};
-    if (std::ranges::find(kKnown, word) != kKnown.end() || std::filesystem::exists(word)) return;
+    if (std::ranges::find(kKnown, word) != kKnown.end() || NamedDevice(word).isHeld() || std::filesystem::exists(word))
+        return;
     if (const auto meant = nearestName(word, kKnown))
         throw Error("--hand " + word + ": there is no such hand or file; did you mean " + std::string(*meant) + "?");
 }
@@ -213,7 +229,7 @@ HandSource handFor(const HandOptions& options, const Scene& scene, const PointCl
     HandSource source;
     if (!options.seconds.empty()) source.seconds = secondsOf(options.seconds);
     refuseOptionsOfAFalcon(options);
-    const bool held = options.hand == "falcon" || options.hand == "bridge" || options.hand == "spacemouse";
+    const bool held = NamedDevice(options.hand).isHeld();
     if (held && !options.grip.empty())
         throw Error("--arm: a person holds the " + options.hand + "; leave one of the two out");
     if (held)
@@ -224,12 +240,13 @@ HandSource handFor(const HandOptions& options, const Scene& scene, const PointCl
     return source;
 }
 
-std::unique_ptr<HapticDevice> falconFor(const FalconOptions& options)
+std::unique_ptr<HapticDevice> falconFor(const FalconOptions& options, const std::string& path)
 {
     FalconDeviceSettings settings = options.settings();
+    settings.path                 = path;
     if (const auto image = falconFirmwarePath(options.firmware); !image.empty())
         settings.firmware = readFirmware(image);
-    return std::make_unique<FalconDevice>([] { return openFalcon(); }, settings);
+    return std::make_unique<FalconDevice>([path] { return openFalcon(path); }, settings);
 }
 
 void waitForHoming(HapticDevice& device, const std::atomic<bool>& stop)

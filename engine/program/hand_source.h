@@ -53,9 +53,9 @@ struct HandSource {
 [[nodiscard]] HandSource handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud,
                                  const NeighbourIndex& index);
 
-/// A Falcon that is plugged in, not opened yet.
+/// A Falcon that is plugged in, not opened yet. \param path  of its listing; empty: the first that is usable
 /// \throws Error naming the image, if it cannot be read
-[[nodiscard]] std::unique_ptr<HapticDevice> falconFor(const FalconOptions& options);
+[[nodiscard]] std::unique_ptr<HapticDevice> falconFor(const FalconOptions& options, const std::string& path = {});
 
 /// Waits until somebody has homed the device, telling how on standard error. Devices that need none: nothing.
 /// \param stop  gives up once it is true

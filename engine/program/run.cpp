@@ -302,7 +302,8 @@ void addRunCommand(CLI::App& app)
     run_->add_option("SCENE", o->scene, "scene file, see samples/scenes")->required();
     run_->add_option("--hand", o->hand.hand,
                      "press, circle or scan about the scene's place; a file of time [s], x, y, z [m]; or a device: "
-                     "falcon, bridge, spacemouse, arm, falcon-emulator (palpate devices tells which are there)")
+                     "falcon, bridge, spacemouse, arm, falcon-emulator (palpate devices tells which are there; of "
+                     "several, falcon@PATH)")
         ->capture_default_str();
     run_->add_option("--seconds", o->hand.seconds, "how long [5 s; a file's own length]");
     run_->add_option("--speed", o->hand.speed, "of press, circle and scan, at most")->capture_default_str();
