@@ -207,8 +207,9 @@ void releaseMotors(FalconLink& link, const FalconCommand& command) noexcept
     for (int n = 0; n < 3; ++n) {
         try {
             link.write(encode(zero));
-        } catch (const std::exception&) { // gone: the motors let go by themselves
+        } catch (const LinkGone&) { // the motors let go by themselves
             return;
+        } catch (const std::exception&) { // perhaps the next one gets through
         }
     }
 }

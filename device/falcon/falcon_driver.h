@@ -46,7 +46,8 @@ struct StartedFalcon {
 StartedFalcon startFalcon(const FalconLinkOpener& open, std::span<const std::uint8_t> firmware,
                           const FalconStartSettings& settings = {}, const std::atomic<bool>* cancel = nullptr);
 
-/// Three packets of zero force; a link that is lost meanwhile ends them. \param command  the lights of these packets
+/// Three packets of zero force, each tried even where the one before failed; a device that is gone ends them.
+/// \param command  the lights of these packets
 void releaseMotors(FalconLink& link, const FalconCommand& command) noexcept;
 
 } // namespace palp
