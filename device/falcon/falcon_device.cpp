@@ -53,7 +53,8 @@ void FalconDevice::close() noexcept
     if (!line_) return;
     line_->isOver = true;
     if (line_->thread.joinable()) line_->thread.join();
-    line_.reset(); // its FalconLoop ends with zero force
+    line_.reset();   // its FalconLoop ends with zero force
+    cancel_ = false; // of the start that is over
 }
 
 HapticState FalconDevice::exchange(const GovernedForce& force, double now) noexcept

@@ -51,7 +51,8 @@ public:
     HapticState                           exchange(const GovernedForce& force, double now) noexcept override;
     void light(std::uint8_t lights) noexcept override { lights_ = lights; } ///< if settings.loop.showsState is off
 
-    void cancelOpen() noexcept { cancel_ = true; } ///< makes an open() that runs, or the next one, give up; any thread
+    /// Makes an open() that runs give up, or the next one; while it is open: nothing. \thread any
+    void cancelOpen() noexcept { cancel_ = true; }
 
 private:
     using Clock = std::chrono::steady_clock;

@@ -106,11 +106,12 @@ FalconLoop::~FalconLoop()
     if (loss_ != Loss::gone) release();
 }
 
-void FalconLoop::release() noexcept
+/// \return false: the device is gone
+bool FalconLoop::release() noexcept
 {
     command_.homing = false;
     command_.lights = settings_.showsState ? std::uint8_t(DeviceLight::none) : command_.lights;
-    releaseMotors(*link_, command_);
+    return releaseMotors(*link_, command_);
 }
 
 void FalconLoop::send(const FalconRequest& request, double now)
@@ -236,9 +237,8 @@ void FalconLoop::miss() noexcept
 /// What is not gone for certain may still push, and may still hear.
 void FalconLoop::lose(Loss loss) noexcept
 {
-    loss_ = loss;
-    line_ = state_.fault = loss == Loss::gone ? DeviceFault::unplugged : DeviceFault::silent;
-    if (loss == Loss::broken) release();
+    loss_ = loss == Loss::broken && !release() ? Loss::gone : loss;
+    line_ = state_.fault = loss_ == Loss::gone ? DeviceFault::unplugged : DeviceFault::silent;
     state_.homed = state_.inBox = false;
     state_.velocity             = {};
     ++state_.missed;

@@ -78,7 +78,7 @@ private:
     void                      forgetPlace() noexcept;
     void                      miss() noexcept;
     void                      lose(Loss loss) noexcept;
-    void                      release() noexcept;
+    bool                      release() noexcept;
 
     std::unique_ptr<FalconLink> link_;
     FalconLoopSettings          settings_;
