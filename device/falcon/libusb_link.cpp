@@ -111,7 +111,9 @@ Handle claim(libusb_device* device, FalconListing& listing)
     listing.usable = found == 0;
     if (listing.usable) return handle;
 
-    explainRefusal(listing, found);
+    const UsbRefusal because = refusal(found);
+    listing.why              = because.why;
+    listing.help             = because.help;
     return nullptr;
 }
 

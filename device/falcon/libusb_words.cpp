@@ -2,6 +2,8 @@
 
 #include <libusb.h>
 
+#include "device/falcon/libusb_link.h"
+
 namespace palp {
 
 const char* transferFailure(int status) noexcept
@@ -20,21 +22,17 @@ const char* transferFailure(int status) noexcept
     }
 }
 
-void explainRefusal(FalconListing& listing, int error)
+UsbRefusal refusal(int error)
 {
     switch (error) {
     case LIBUSB_ERROR_ACCESS:
-        listing.why  = "no permission to open it";
-        listing.help = "put this line into /etc/udev/rules.d/70-palpate-falcon.rules and plug it in anew: " +
-                       std::string(kFalconUdevLine);
-        break;
+        return {"no permission to open it",
+                "put this line into /etc/udev/rules.d/70-palpate-falcon.rules and plug it in anew: " +
+                    std::string(kFalconUdevLine)};
     case LIBUSB_ERROR_BUSY:
-        listing.why  = "a program has it open already";
-        listing.help = "end the other program that uses it";
-        break;
+        return {"a program has it open already", "end the other program that uses it"};
     default:
-        listing.why  = std::string("it cannot be opened: ") + libusb_error_name(error);
-        listing.help = "plug it in anew, without a hub";
+        return {std::string("it cannot be opened: ") + libusb_error_name(error), "plug it in anew, without a hub"};
     }
 }
 

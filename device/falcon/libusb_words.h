@@ -1,5 +1,5 @@
 #pragma once
-#include "device/falcon/libusb_link.h"
+#include <string>
 
 namespace palp {
 
@@ -8,7 +8,11 @@ namespace palp {
 /// \param status  of a transfer that failed \return "it was unplugged", ...; a static text
 [[nodiscard]] const char* transferFailure(int status) noexcept;
 
-/// Fills in why a device cannot be opened, and what to do. \param error  of the call that opens or claims it
-void explainRefusal(FalconListing& listing, int error);
+struct UsbRefusal {
+    std::string why, help; ///< as FalconListing's
+};
+
+/// Why a device cannot be opened, and what to do. \param error  of the call that opens or claims it
+[[nodiscard]] UsbRefusal refusal(int error);
 
 } // namespace palp
