@@ -256,8 +256,9 @@ TEST_F(Bridge, TheServosClockMayStartAnew)
     now += 0.11;
     EXPECT_EQ(after(1, push).fault, DeviceFault::hostTooSlow) << "counted from the new start";
     after(1, push);
-    now = 0;
-    EXPECT_LE(alone(1, push).time, now + kStep) << "no answer is of the future; rounding";
+    now                   = 0;
+    const double answered = alone(1, push).time;
+    EXPECT_LE(answered, now + kStep) << "no answer is of the future; rounding";
     now += 0.05;
     EXPECT_EQ(alone(1, push).fault, DeviceFault::none);
     now += 0.06;
@@ -424,29 +425,33 @@ TEST_F(BridgeInRealTime, TheForceFallsByItselfWhenNobodyCalls)
     // A watchdog that is out of the way, and a thread that must not outrank what else runs.
     HidBridgeDevice bridge(system, ours(), {.watchdog = 0.255, .asksForRealTime = false});
     bridge.open();
-    const GovernedForce push = governed({1, 0, 0});
-    ASSERT_TRUE(until(bridge, push, [&](const HapticState&) { return firmware.force().x > 0.9995; }));
-    const std::size_t before = firmware.commands().size();
-    bridge.exchange(push, seconds());
-    const auto left = std::chrono::steady_clock::now();
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    const GovernedForce push  = governed({1, 0, 0});
+    int                 steps = 0; // [1] on the way down; on a busy machine the thread may miss them all, so thrice
+    for (int trial = 0; trial < 3; ++trial) {
+        ASSERT_TRUE(until(bridge, push, [&](const HapticState&) { return firmware.force().x > 0.9995; }));
+        const std::size_t before = firmware.commands().size();
+        bridge.exchange(push, seconds());
+        const auto left = std::chrono::steady_clock::now();
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
 
-    const std::vector<BridgeCommand> commands = firmware.commands();
-    const auto                       times    = firmware.times();
-    const auto age  = [](auto time, auto since) { return std::chrono::duration<double>(time - since).count(); };
-    double     zero = -1; // [s] after the call
-    for (std::size_t n = before; n < commands.size(); ++n) {
-        if (zero < 0 && !commands[n].enable) zero = age(times[n], left);
-        EXPECT_EQ(commands[n].enable, zero < 0) << "zero is not the end of it";
-        EXPECT_LE(commands[n].force.x, heldShare(age(times[n], left) - kBusy) + 2e-3) << "no later; a step";
+        const std::vector<BridgeCommand> commands = firmware.commands();
+        const auto                       times    = firmware.times();
+        double                           zero     = -1; // [s] after the call
+        for (std::size_t n = before; n < commands.size(); ++n) {
+            const double age = std::chrono::duration<double>(times[n] - left).count(), force = commands[n].force.x;
+            if (zero < 0 && !commands[n].enable) zero = age;
+            steps += force > 0.05 && force < 0.95;
+            EXPECT_EQ(commands[n].enable, zero < 0) << "zero is not the end of it";
+            EXPECT_LE(force, heldShare(age - kBusy) + 2e-3) << "no later; a step of the field";
+        }
+        std::printf("  zero after %.1f ms\n", zero * 1e3);
+        EXPECT_GE(zero, 25e-3 - 2e-3) << "held, then let fall; the call itself takes a moment";
+        EXPECT_LE(zero, 25e-3 + kBusy);
+        EXPECT_GE(commands.size(), before + 4) << "it is said over and over";
+        EXPECT_EQ(firmware.force(), glm::dvec3(0));
+        EXPECT_EQ(bridge.exchange(push, seconds()).fault, DeviceFault::hostTooSlow);
     }
-    std::printf("  zero after %.1f ms; %zu commands in 0.3 s\n", zero * 1e3, commands.size() - before);
-    EXPECT_GE(zero, 25e-3 - 2e-3) << "held, then let fall; the call itself takes a moment";
-    EXPECT_LE(zero, 25e-3 + kBusy);
-    EXPECT_GE(commands.size(), before + 4) << "it is said over and over";
-    EXPECT_EQ(firmware.force(), glm::dvec3(0));
-    EXPECT_EQ(bridge.exchange(push, seconds()).fault, DeviceFault::hostTooSlow);
-    EXPECT_TRUE(until(bridge, push, [&](const HapticState&) { return firmware.force().x > 0.9995; })) << "it is back";
+    EXPECT_GE(steps, 3);
 }
 
 TEST_F(BridgeInRealTime, UnpluggingEndsTheThreadWithAFault)
