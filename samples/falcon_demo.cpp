@@ -356,8 +356,7 @@ void run(const Options& o)
     const fs::path file = sceneFile(o);
     Touching       touching(file);
     std::printf("scene   %s\n", file.stem().c_str());
-    std::signal(SIGINT, onInterrupt);
-    std::signal(SIGTERM, onInterrupt);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, onInterrupt);
     Falcon falcon = isRealUsable(o) ? realFalcon(o, touching) : emulatedFalcon(o, touching);
     falcon.device->open();
     home(falcon);

@@ -13,8 +13,8 @@ namespace palp {
 
 /// The points about a place that wanders slowly: one search in the tree serves many ticks.
 ///
-/// Invariant: `inside` calls back for the same points in the same order, whatever was asked before and whatever
-/// instructions the processor has. So sums over them have the same bits on every run.
+/// Invariant: `inside` calls back for the same points in the same order, whatever was asked before (unless kMost forces
+/// a coarser level) and whatever instructions the processor has. So sums over them have the same bits on every run.
 /// \thread one; allocates nothing after construction
 class NearPoints {
 public:

@@ -240,6 +240,20 @@ bool SurfaceTracker::discover(Surfaces& surfaces, const glm::dvec3& place, const
     return true;
 }
 
+/// Beside a step in density the noise of sparse points can look like a ceiling. One that has come down to a known floor
+/// is none: drops the later of two.
+void SurfaceTracker::dropContradicting(Surfaces& surfaces) noexcept
+{
+    for (int j = surfaces.count - 1; j > 0; --j)
+        for (int k = 0; k < j; ++k) {
+            const SurfacePlane &floor = surfaces.planes[std::size_t(k)], &ceiling = surfaces.planes[std::size_t(j)];
+            if (glm::dot(floor.normal, ceiling.normal) >= kFromBelow) continue;
+            if (floor.height(ceiling.foot) >= kFullHeight * surfaces.spacing) continue;
+            surfaces.remove(j);
+            break;
+        }
+}
+
 double SurfaceTracker::refresh(Surfaces& surfaces, const glm::dvec3& place) noexcept
 {
     double furthest = 0;
@@ -262,6 +276,7 @@ double SurfaceTracker::refresh(Surfaces& surfaces, const glm::dvec3& place) noex
         spacing += found->spacing;
         ++fitted;
     }
+    if (points_.mixed()) dropContradicting(surfaces);
     constexpr double kFollow = 0.5; // [1] share of the way per fit: a step in density must not jump
     if (fitted > 0) surfaces.spacing += kFollow * (spacing / fitted - surfaces.spacing);
     return furthest;

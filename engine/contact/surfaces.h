@@ -87,6 +87,7 @@ private:
     [[nodiscard]] std::optional<PlaneFit> fit(const Guess& guess, std::span<const SurfacePlane> others) noexcept;
     [[nodiscard]] bool                    accept(Surfaces& surfaces, const Sight& sight, const glm::dvec3& place,
                                                  const glm::dvec3& seed) noexcept;
+    static void                           dropContradicting(Surfaces& surfaces) noexcept;
 
     NearPoints& points_;
     PlaneFitter fitter_;

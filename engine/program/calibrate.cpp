@@ -28,9 +28,12 @@ namespace {
 using Stage = FalconCalibrationStage;
 
 struct CalibrateOptions {
-    std::string mass            = "200 g", firmware;
-    double      countsPerTorque = FalconMotors::kCountsPerTorque; ///< that it runs with [1/(N m)]
-    bool        emulator = false, json = false;
+    std::string   mass = "200 g";
+    FalconOptions falcon;
+    bool          emulator = false, json = false;
+
+    /// That it runs with [1/(N m)].
+    [[nodiscard]] double countsPerTorque() const { return falcon.settings().loop.countsPerTorque; }
 };
 
 /// "200 g" or "0.2".
@@ -141,7 +144,7 @@ void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrati
 
 void weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
 {
-    const auto falcon = falconFor(o.firmware, o.countsPerTorque);
+    const auto falcon = falconFor(o.falcon);
     falcon->open();
     waitForHoming(*falcon, catchInterrupts());
     if (const std::string refused = askForRealTime(); !refused.empty())
@@ -211,7 +214,7 @@ struct EmulatedBench {
 void weighEmulated(const CalibrateOptions& o, double mass, FalconCalibration& calibration)
 {
     std::cerr << "palpate: this Falcon is emulated, and so is the hand that does what follows, faster than real time\n";
-    EmulatedBench emulated(o.countsPerTorque);
+    EmulatedBench emulated(o.countsPerTorque());
     Bench bench{emulated.falcon, [&] { return emulated.now = std::max(emulated.now + 1e-3, emulated.emulator.now()); },
                 [&](double gain, Stage stage) { emulated.act(gain, stage, mass); }};
     weigh(o, bench, calibration);
@@ -222,7 +225,7 @@ void print(const CalibrateOptions& o, double mass, const FalconCalibration& cali
     const double counts = calibration.countsPerTorque().value(), arm = calibration.armMass().value();
     if (o.json) {
         nlohmann::ordered_json report{{"counts_per_torque", counts},
-                                      {"counts_per_torque_before", o.countsPerTorque},
+                                      {"counts_per_torque_before", o.countsPerTorque()},
                                       {"arm_kg", arm},
                                       {"mass_kg", mass},
                                       {"emulated", nullptr}};
@@ -231,7 +234,7 @@ void print(const CalibrateOptions& o, double mass, const FalconCalibration& cali
         return;
     }
     std::printf("counts per N m   %.0f   (%.0f until now: its forces were %.2f times what was asked for)\n", counts,
-                o.countsPerTorque, o.countsPerTorque / counts);
+                o.countsPerTorque(), o.countsPerTorque() / counts);
     std::printf("the arm          %.0f g weigh on the grip\n", 1000 * arm);
     if (o.emulator)
         std::printf(
@@ -243,7 +246,7 @@ void print(const CalibrateOptions& o, double mass, const FalconCalibration& cali
 void calibrate(const CalibrateOptions& o)
 {
     const double      mass = kilograms(o.mass);
-    FalconCalibration calibration({.mass = mass, .countsPerTorque = o.countsPerTorque});
+    FalconCalibration calibration({.mass = mass, .countsPerTorque = o.countsPerTorque()});
     if (o.emulator)
         weighEmulated(o, mass, calibration);
     else
@@ -258,13 +261,7 @@ void addCalibrateCommand(CLI::App& app)
     auto* command = app.add_subcommand("calibrate", "a Falcon weighs a known mass, so that its newtons are true");
     auto  o       = std::make_shared<CalibrateOptions>();
     command->add_option("--mass", o->mass, "what you will hang on the grip, 50 g to 500 g")->capture_default_str();
-    command->add_option("--falcon-firmware", o->firmware,
-                        "image that a Falcon needs after it was plugged in [FALCON_FIRMWARE]");
-    command
-        ->add_option("--falcon-counts", o->countsPerTorque,
-                     "counts per N m to begin with; more if the arm hangs down where it should be held")
-        ->capture_default_str()
-        ->check(CLI::Range(500.0, 50000.0));
+    addFalconOptions(*command, o->falcon);
     command->add_flag("--emulator", o->emulator, "an emulated Falcon and hand, in virtual time: to see how it goes");
     command->add_flag("--json", o->json, "machine-readable; what to do is said on standard error all the same");
     command->footer(

@@ -18,8 +18,7 @@ void onInterrupt(int signal)
 
 const std::atomic<bool>& catchInterrupts()
 {
-    std::signal(SIGINT, onInterrupt);
-    std::signal(SIGTERM, onInterrupt);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, onInterrupt);
     return interrupted;
 }
 

@@ -178,21 +178,22 @@ SessionThreads threadsOf(const RunOptions& o, SessionClock clock)
     return *threads;
 }
 
-std::unique_ptr<Recording> recordingOf(const RunOptions& o, const Scene& scene, const PointCloud& cloud,
-                                       SessionClock clock, const std::string& device)
+std::unique_ptr<Recording> recordingOf(const RunOptions& o, const SessionParts& parts, SessionClock clock,
+                                       const std::string& device)
 {
     if (o.record.empty()) return nullptr;
     SessionInfo info;
-    info.scene    = scene;
+    info.scene    = parts.scene;
     info.versions = {{"palpate", PALPATE_VERSION}, {"compiler", __VERSION__}, {"libraries", PALPATE_LIBRARIES}};
     info.device   = device;
     info.clock    = clock;
     info.command  = o.command;
-    info.cloud    = fingerprint(cloud);
+    info.cloud    = fingerprint(parts.cloud);
+    info.hand     = parts.device.info();
     return std::make_unique<Recording>(o.record, info);
 }
 
-/// Prints what happened. \throws CheckFailed if samples are missing in the recording
+/// Prints what happened. \throws CheckFailed if the force was stopped, or samples are missing in the recording
 void tell(const RunOptions& o, const SessionSummary& summary, const std::string& device, const std::string& hand,
           std::vector<std::string> known, const std::optional<RecordingReport>& report)
 {
@@ -210,6 +211,8 @@ void tell(const RunOptions& o, const SessionSummary& summary, const std::string&
         printText(summary, device, hand);
         if (report) std::cout << "  " << report->samples << " samples in " << o.record << "\n";
     }
+    if (summary.fault != GovernorFault::none || summary.deviceFault == DeviceFault::unplugged)
+        throw CheckFailed("the force was stopped");
     if (report && report->lost > 0)
         throw CheckFailed(o.record + ": " + std::to_string(report->lost) + " samples were lost");
 }
@@ -239,7 +242,7 @@ void run(const RunOptions& o)
     waitForHoming(*hand.device, stop);
 
     const SessionParts parts{scene, cloud.cloud, index, deformation.solver(), *hand.device, hand.frame};
-    const auto         recording = recordingOf(o, scene, cloud.cloud, clock, device);
+    const auto         recording = recordingOf(o, parts, clock, device);
     warn(known);
     const OnSample record = [&](const SessionSample& sample) {
         if (recording) recording->pushWaiting(sample);
@@ -272,7 +275,7 @@ void replay(const ReplayOptions& o)
     again.folder          = "the replay";
     again.samples.clear();
     const double         seconds = double(session.samples.size()) * 1e-3;
-    ReplayDevice         hand(session.samples);
+    ReplayDevice         hand(session.samples, session.hand);
     const SessionSummary summary = play({scene, cloud.cloud, index, deformation.solver(), hand, {}}, seconds,
                                         [&](const SessionSample& sample) { again.samples.push_back(sample); });
     if (!o.compare) {
@@ -299,7 +302,8 @@ void addRunCommand(CLI::App& app)
     run_->add_option("SCENE", o->scene, "scene file, see samples/scenes")->required();
     run_->add_option("--hand", o->hand.hand,
                      "press, circle or scan about the scene's place; a file of time [s], x, y, z [m]; or a device: "
-                     "falcon, bridge, spacemouse, arm, falcon-emulator (palpate devices tells which there are)")
+                     "falcon, bridge, spacemouse, arm, falcon-emulator (palpate devices tells which are there; of "
+                     "several, falcon@PATH)")
         ->capture_default_str();
     run_->add_option("--seconds", o->hand.seconds, "how long [5 s; a file's own length]");
     run_->add_option("--speed", o->hand.speed, "of press, circle and scan, at most")->capture_default_str();
@@ -311,12 +315,7 @@ void addRunCommand(CLI::App& app)
         "--arm", o->hand.grip,
         "the hand holds a simulated arm with a grip of this stiffness (relaxed '150 N/m', firm '500 N/m'), "
         "so that forces move it");
-    run_->add_option("--falcon-firmware", o->hand.firmware,
-                     "image that a Falcon needs after it was plugged in [FALCON_FIRMWARE]");
-    run_->add_option("--falcon-counts", o->hand.countsPerTorque,
-                     "counts per N m of a Falcon's motors, see palpate calibrate")
-        ->capture_default_str()
-        ->check(CLI::Range(500.0, 50000.0));
+    addFalconOptions(*run_, o->hand.falcon);
     run_->add_option("--clock", o->clock,
                      "real: a tick a millisecond; virtual: as fast as it goes, the same every time")
         ->capture_default_str();

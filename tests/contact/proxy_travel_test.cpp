@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/contract.h"
-#include "tests/contact/allocation_count.h"
 #include "tests/contact/proxy_scenes.h"
+#include "tests/support/allocations.h"
 
 namespace palp {
 namespace {
@@ -156,13 +156,13 @@ TEST(ProxyTravel, NothingIsAllocatedAfterConstruction)
     for (const ProxyForm form : {ProxyForm::hybrid, ProxyForm::sphere, ProxyForm::plainSphere}) {
         Touch touch(points, {form});
         touch.start({0, 0, 60});
-        const std::size_t before = allocations();
+        const std::size_t before = allocationsOfThisThread();
         int               felt   = 0;
         for (const glm::dvec3& hip : hips) {
             touch.step(hip);
             felt += touch.touching();
         }
-        EXPECT_EQ(allocations() - before, 0U);
+        EXPECT_EQ(allocationsOfThisThread() - before, 0U);
         EXPECT_GT(felt, 500);
     }
 }

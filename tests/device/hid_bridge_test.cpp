@@ -16,8 +16,8 @@
 #include "tests/device/fake_bridge.h"
 #include "tests/device/fake_hid.h"
 #include "tests/device/governed.h"
-#include "tests/session/allocations.h"
-#include "tests/session/locks.h"
+#include "tests/support/allocations.h"
+#include "tests/support/locks.h"
 
 namespace palp {
 namespace {

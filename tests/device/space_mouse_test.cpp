@@ -11,8 +11,8 @@
 
 #include "engine/core/contract.h"
 #include "tests/device/fake_hid.h"
-#include "tests/session/allocations.h"
-#include "tests/session/locks.h"
+#include "tests/support/allocations.h"
+#include "tests/support/locks.h"
 
 namespace palp {
 namespace {

@@ -237,6 +237,10 @@ bad 'a grip in a wrong unit' '"N/mm"' run scene.json --arm '150 N/mm'
 bad 'a speed that no hand has' 'up to 100 m/s' run scene.json --speed 1e300
 bad 'a time without end' 'up to 86400 s' run scene.json --seconds 1e9
 bad 'threads without a clock' 'virtual clock has no threads' run scene.json --threads paper --clock virtual
+bad 'counts of no motor' 'expected 2000 to 10000' run scene.json --hand falcon-emulator --falcon-counts 50000
+bad 'counts that are no number' 'nan' run scene.json --hand falcon-emulator --falcon-counts nan
+bad 'counts without a Falcon' 'of --hand falcon' run scene.json --falcon-counts 4300
+bad 'a slip' 'did you mean falcon?' run scene.json --hand falcom
 bad 'a mouse without a window' 'needs a window' run scene.json --hand mouse
 bad 'a table that is too large' '0, 1, 3, 5 or 7' run scene.json --table-size 9
 good 'units of keys' run scene.json --print-config --stiffness-cap '800 N/m' --deformation-rate 30Hz --from 1e300,0,1e300
