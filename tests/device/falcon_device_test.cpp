@@ -476,6 +476,19 @@ TEST(FalconDevice, WithoutPowerItIsSilentAndOpensAgainByUpload)
     EXPECT_FALSE(bench.state.homed) << "it has to be homed anew";
 }
 
+TEST(FalconDevice, CancellingWhileItIsOpenDoesNotSpoilTheNextOpening)
+{
+    FalconBench bench;
+    bench.device->cancelOpen();
+    bench.device->close();
+    EXPECT_NO_THROW(bench.device->open());
+
+    bench.device->close();
+    bench.device->cancelOpen();
+    EXPECT_THROW(bench.device->open(), Error) << "the next one, where none is open";
+    EXPECT_NO_THROW(bench.device->open()) << "and no other";
+}
+
 TEST(FalconDevice, ButtonsAndLightsPassThrough)
 {
     FalconDeviceSettings settings;

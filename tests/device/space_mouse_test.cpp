@@ -180,6 +180,19 @@ TEST_F(SpaceMouseInVirtualTime, ADeflectionThatNobodyConfirmsEnds)
     EXPECT_EQ(mouse.axes().push, glm::dvec3(0));
 }
 
+TEST_F(SpaceMouseInVirtualTime, WhenTheServosClockStartsAnewADeflectionStillEnds)
+{
+    SpaceMouse mouse(system, compact(), settings());
+    mouse.open();
+    mouse.exchange({}, now);
+    device.send(axesReport(1, {0, 0, -35 - 63})); // 0.02 m/s
+    after(0.1, mouse);
+    now                  = 0; // a session that starts after homing
+    const double reached = after(2, mouse).position.y;
+    EXPECT_NEAR(reached, 0.02 * 0.5, 0.02 * 3e-3) << "for 0.5 s in all, give or take three ticks";
+    EXPECT_EQ(mouse.axes().push, glm::dvec3(0));
+}
+
 TEST_F(SpaceMouseInVirtualTime, APauseDoesNotMakeItJump)
 {
     SpaceMouse mouse(system, compact(), settings());
