@@ -38,6 +38,8 @@ std::vector<DeviceListing> listDevices(HidSystem& hid, std::vector<DeviceListing
     }
     devices.push_back({.name = "mouse", .model = "a pointer in the window, without force", .usable = true});
     devices.push_back({.name = "arm", .model = "a simulated arm like the Falcon's", .usable = true});
+    devices.push_back(
+        {.name = "falcon-emulator", .model = "a Falcon emulated down to its wire, in a scripted hand", .usable = true});
     return devices;
 }
 

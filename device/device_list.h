@@ -8,7 +8,7 @@ namespace palp {
 
 /// A haptic device that there is, or that would be there.
 struct DeviceListing {
-    std::string name{};         ///< what `--hand` takes: "falcon", "spacemouse", "bridge", "mouse", "arm"
+    std::string name{};         ///< what `--hand` takes: "falcon", "spacemouse", "bridge", "mouse", "arm", ...
     std::string model{};        ///< "SpaceMouse Compact"
     std::string path{};         ///< where it is plugged in; empty for what is not
     bool        usable = false; ///< it could be opened now

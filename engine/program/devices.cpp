@@ -82,7 +82,11 @@ void printText(const HapticList& haptics)
     for (const DeviceListing& device : haptics.devices) {
         std::cout << device.name << "  " << device.model << "\n";
         if (!device.path.empty()) std::cout << "   path     " << device.path << "\n";
-        std::cout << "   usable   " << (device.usable ? "yes" : "no: " + device.why) << "\n";
+        std::cout << "   usable   " << (device.usable ? "yes" : "no")
+                  << (device.why.empty() ? ""
+                      : device.usable    ? ", but "
+                                         : ": ")
+                  << device.why << "\n";
         if (!device.help.empty()) std::cout << "   help     " << device.help << "\n";
     }
     std::cout << "looked for with " << hapticSupport() << "\n";

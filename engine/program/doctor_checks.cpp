@@ -103,7 +103,8 @@ Finding usb()
 
 Finding ofDevice(const char* part, const DeviceListing& device)
 {
-    if (device.usable) return {part, Verdict::ok, device.model + " can be opened"};
+    if (device.usable && device.why.empty()) return {part, Verdict::ok, device.model + " can be opened"};
+    if (device.usable) return {part, Verdict::warning, device.model + " can be opened, but " + device.why, device.help};
     return {part, Verdict::missing, device.model + ": " + device.why, device.help};
 }
 
@@ -116,9 +117,10 @@ bool hasUdevRule(const std::string& product)
         for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
             if (entry.path().extension() != ".rules") continue;
             std::ifstream file(entry.path());
-            std::string   text(std::istreambuf_iterator<char>(file), {});
-            std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-            if (text.find(product) != std::string::npos) return true;
+            for (std::string line; std::getline(file, line);) {
+                std::ranges::transform(line, line.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+                if (line.find(product) < line.find('#')) return true;
+            }
         }
     }
     return false;
@@ -135,6 +137,8 @@ Finding falcon(const HapticList& haptics)
 {
     for (const DeviceListing& device : haptics.devices)
         if (device.name == "falcon") return ofDevice("falcon", device);
+    if (!hasFalconSupport())
+        return {"falcon", Verdict::missing, falconSupport(), "install libusb-1.0-0-dev and build Palpate anew"};
     return {"falcon", Verdict::warning, "none is plugged in; looked for with " + falconSupport()};
 }
 

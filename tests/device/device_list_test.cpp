@@ -23,7 +23,7 @@ TEST(DeviceList, WithoutHardwareThereAreThoseThatNeedNone)
 {
     FakeHidSystem                    hid;
     const std::vector<DeviceListing> devices = listDevices(hid);
-    ASSERT_EQ(devices.size(), 2U);
+    ASSERT_EQ(devices.size(), 3U);
     EXPECT_EQ(devices[0].name, "mouse");
     EXPECT_EQ(devices[1].name, "arm");
     for (const DeviceListing& device : devices) EXPECT_TRUE(device.usable && device.why.empty());
@@ -39,7 +39,7 @@ TEST(DeviceList, HoldsWhatADriverKnows)
     hid.plug(listing("/dev/hidraw4", 0x1209, 0x0001, 0xFF00, 1));  // something else of that page
 
     const std::vector<DeviceListing> devices = listDevices(hid);
-    ASSERT_EQ(devices.size(), 4U);
+    ASSERT_EQ(devices.size(), 5U);
     EXPECT_EQ(devices[0].name, "spacemouse");
     EXPECT_EQ(devices[0].model, "SpaceMouse Compact");
     EXPECT_EQ(devices[0].path, "/dev/hidraw1");
@@ -64,7 +64,7 @@ TEST(DeviceList, BeginsWithThoseFromElsewhere)
     FakeHidSystem                    hid;
     const std::vector<DeviceListing> devices =
         listDevices(hid, {{.name = "falcon", .model = "Novint Falcon", .path = "1-2", .why = "no permission"}});
-    ASSERT_EQ(devices.size(), 3U);
+    ASSERT_EQ(devices.size(), 4U);
     EXPECT_EQ(devices[0].name, "falcon");
     EXPECT_FALSE(devices[0].usable);
 }
