@@ -49,7 +49,8 @@ void main()
     vec3  place  = placeAt(at, surface.w);
     float hollow = hollowness(at, place, surface.xyz, frame.cueRadius) +
                    hollowness(at, place, surface.xyz, 0.3 * frame.cueRadius);
-    float cue    = clamp(-frame.cueGain * hollow, kDarkest, kLightest);
+    float facing = max(0.0, dot(surface.xyz, toEyeFrom(place))); // at grazing slopes the depth differs for other reasons
+    float cue    = clamp(-frame.cueGain * facing * facing * hollow, kDarkest, kLightest);
     float bright = litBy(surface.xyz) * (1.0 + cue);
     vec3  colour = texelFetch(albedos, ivec2(at), 0).rgb * bright + frame.shine * reflection(surface.xyz, place);
     picture      = vec4(min(vec3(1), colour), 1);

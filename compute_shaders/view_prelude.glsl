@@ -28,7 +28,7 @@ const vec3 kLight = normalize(vec3(-0.55, 0.60, 0.62));
 /// How bright the light makes a matt surface [1].
 float litBy(vec3 normal)
 {
-    const float kAmbient = 0.42, kDiffuse = 0.66; // of the light [1]
+    const float kAmbient = 0.36, kDiffuse = 0.74; // of the light [1]
     const float kWrap = 0.25;                     // how far light reaches around the object [1]
     float lit = max(0.0, (dot(normal, kLight) + kWrap) / (1.0 + kWrap));
     return kAmbient + kDiffuse * lit * lit;

@@ -1,5 +1,5 @@
 // view_splat.vert - a point of the cloud as a disc in its tangent plane: six corners of the square around it.
-// Reads      splats  Writes  place within the disc (-1 to 1), depth [m], normal and colour
+// Reads      splats  Writes  place within the disc (-1 to 1), depth [m], normal and colour; with PALPATE_DEPTH only the first two
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "compute_shaders/view_prelude.glsl"
@@ -8,9 +8,14 @@ layout(std430, binding = kBindSplats) readonly buffer Splats { ViewSplat splats[
 
 layout(location = 0) out vec2  within;
 layout(location = 1) out float depth;
+#ifdef PALPATE_DEPTH
+vec3  normal, colour;
+float radius;
+#else
 layout(location = 2) flat out vec3  normal;
 layout(location = 3) flat out vec3  colour;
 layout(location = 4) flat out float radius;
+#endif
 
 void main()
 {

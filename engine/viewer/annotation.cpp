@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/quantity.h"
+#include "engine/picture/cloud_shading.h"
 #include "engine/viewer/text.h"
 
 namespace palp {
@@ -100,7 +101,7 @@ void drawColours(Annotator& to, const ViewColours& colours)
     to.text(corner - glm::dvec2(0, 0.8 * s), title);
     to.fill(corner - 1.0, {bar + 2, high + 2}, to.ink());
     to.eachPixel(corner, {bar, high},
-                 [&](Rgb8& pixel, glm::dvec2 at) { pixel = colourAt(1 - (at.y - corner.y) / high, colours.map); });
+                 [&](Rgb8& pixel, glm::dvec2 at) { pixel = surfaceColour(1 - (at.y - corner.y) / high, colours.map); });
     for (const Tick& t : axis.ticks()) {
         const double y = corner.y + high * (1 - axis.position(t.value));
         to.fill({corner.x + bar, y - 0.5 * s / 14}, {tick, std::max(1.0, s / 14)}, to.ink());
@@ -150,6 +151,15 @@ void drawKey(Annotator& to, const ViewScene& scene)
     }
 }
 
+/// Of a round length: "20 mm".
+std::string plainText(double length)
+{
+    std::string       text = formatQuantity(length, "m");
+    const std::size_t unit = text.find(' '), point = text.find('.');
+    if (point < unit) text.erase(point, unit - point);
+    return text;
+}
+
 /// The round length, 1, 2 or 5 times a power of ten, that is at most `most`.
 double roundLength(double most)
 {
@@ -167,7 +177,7 @@ void drawLength(Annotator& to, const Camera& camera)
     const double      length         = roundLength(kShare * to.width() / pixelsPerMetre);
     const double      wide           = length * pixelsPerMetre;
     const glm::dvec2  end(to.width() - s, to.height() - s);
-    const std::string text = formatQuantity(length, "m");
+    const std::string text = plainText(length);
     const double      room = std::max(wide, widthOfText(text, s));
     to.fade({end.x - room - 0.7 * s, to.height() - 3.4 * s}, {room + 1.7 * s, 3.4 * s});
     to.fill({end.x - wide, end.y - 0.25 * s}, {wide, 0.25 * s}, to.ink());

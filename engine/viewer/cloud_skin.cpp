@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kNeighbours = 14; ///< of a fit, the point included: fewer are noisy, more round off edges [1]
 
 /// Radius of a disc over the spacing: of points strewn at random one place in 10^6 stays bare [1].
-constexpr double kRadius = 2.3;
+constexpr double kRadius = 2.5;
 
 /// The smallest eigenvalue of a symmetric matrix.
 /// \source O. K. Smith 1961, "Eigenvalues of a symmetric 3 x 3 matrix"

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/picture/cloud_shading.h"
 #include "engine/viewer/view_shapes.h"
 #include "engine/viewer/vulkan_surface.h"
 
@@ -29,7 +30,8 @@ class Paintbox {
 public:
     explicit Paintbox(const ViewColours& colours) : axis_(colours.range, colours.scale, colours.unit, 2)
     {
-        for (int n = 0; n < kShades; ++n) shades_[std::size_t(n)] = packed(colourAt(n / (kShades - 1.0), colours.map));
+        for (int n = 0; n < kShades; ++n)
+            shades_[std::size_t(n)] = packed(surfaceColour(n / (kShades - 1.0), colours.map));
     }
     [[nodiscard]] std::uint32_t of(double value) const
     {
@@ -76,7 +78,7 @@ double reachOf(const ViewScene& scene, const std::vector<shared::ViewCorner>& sh
 
 shared::ViewFrame frameOf(const ViewScene& scene, const Camera& camera, const PictureSize& size, double reach)
 {
-    constexpr float      kCueGain = 1.5F, kShine = 0.10F, kHidden = 0.45F;
+    constexpr float      kCueGain = 5.0F, kShine = 0.10F, kHidden = 0.45F;
     constexpr float      kInnerPart = 0.8F; // so that an object ends where its points end
     const CameraMatrices matrices   = matricesOf(camera, camera.target, reach, double(size.width) / size.height);
     const bool           dark       = scene.ground == Ground::dark;

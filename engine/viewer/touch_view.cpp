@@ -1,36 +1,63 @@
 #include "engine/viewer/touch_view.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
 namespace palp {
 namespace {
 
-/// A polygon that follows the surface along the window's edge; parts where there is no surface are left out.
-std::vector<ViewSegment> outlineOf(const Patch& patch, std::span<const glm::dvec3> positions,
-                                   const NeighbourIndex& index)
+/// How far the surface lies from the fitted sphere at a place of the chart: the mean over the nearest points of the
+/// sheet on top. Empty where there is no surface.
+std::optional<glm::dvec3> residualAt(const Patch& patch, std::span<const glm::dvec3> positions, const ChartPoint& at)
 {
-    constexpr int         kSteps = 48; // a side [1]
-    constexpr std::size_t kNear  = 6;  // points whose mean height is the surface [1]
-    constexpr double      kFar   = 4;  // spacings beyond which there is none [1]
-    const double          width = patch.window.grid.sizeX(), height = patch.window.grid.sizeZ();
-    const ChartPoint      corner = patch.window.corner;
-    const auto            place  = [&](int n) -> std::optional<glm::dvec3> {
-        const int    side = n / kSteps % 4;
-        const double t    = double(n % kSteps) / kSteps;
-        const double x    = side == 0 ? t : side == 1 ? 1 : side == 2 ? 1 - t : 0;
-        const double z    = side == 0 ? 0 : side == 1 ? t : side == 2 ? 1 : 1 - t;
-        const auto   on   = patch.chart.lift({corner.x + x * width, corner.z + z * height});
-        if (!on) return std::nullopt;
-        const auto near = index.nearest(*on, kNear);
-        double     rise = 0;
-        for (const Neighbour& one : near)
-            rise += glm::dot(positions[one.point] - *on, patch.chart.frame.normal) / double(near.size());
-        const glm::dvec3 raised = *on + rise * patch.chart.frame.normal;
-        if (index.nearest(raised, 1).front().distance > kFar * patch.spacing) return std::nullopt;
-        return raised;
+    constexpr std::size_t kNear  = 16;// points looked at [1]
+    constexpr double      kFar   = 4; // spacings beyond which there is none [1]
+    constexpr double      kSheet = 1; // spacings below the highest that are still the same sheet [1]
+    std::array<std::pair<double, std::size_t>, kNear> near;
+    near.fill({std::numeric_limits<double>::infinity(), 0});
+    for (std::size_t n = 0; n < patch.positions.size(); ++n) {
+        const double x = patch.positions[n].x - at.x, z = patch.positions[n].z - at.z;
+        if (x * x + z * z >= near.back().first) continue;
+        near.back() = {x * x + z * z, n};
+        std::ranges::sort(near);
+    }
+    if (!(near.back().first < kFar * kFar * patch.spacing * patch.spacing)) return std::nullopt;
+    std::vector<glm::dvec3> residuals;
+    double                  highest = -std::numeric_limits<double>::infinity(); // [m]
+    for (const auto& [distance, n] : near)
+        if (const auto on = patch.chart.lift(patch.positions[n])) {
+            residuals.push_back(positions[patch.points[n]] - *on);
+            highest = std::max(highest, glm::dot(residuals.back(), patch.chart.frame.normal));
+        }
+    glm::dvec3 sum(0);
+    double     count = 0;
+    for (const glm::dvec3& residual : residuals)
+        if (glm::dot(residual, patch.chart.frame.normal) >= highest - kSheet * patch.spacing) {
+            sum += residual;
+            ++count;
+        }
+    return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
+/// A line that follows the surface along the window's edge; parts where there is no surface are left out.
+std::vector<ViewSegment> outlineOf(const Patch& patch, std::span<const glm::dvec3> positions)
+{
+    constexpr int    kSteps = 48; // a side [1]
+    const double     width = patch.window.grid.sizeX(), height = patch.window.grid.sizeZ();
+    const ChartPoint corner = patch.window.corner;
+    const auto       place  = [&](int n) -> std::optional<glm::dvec3> {
+        const int        side = n / kSteps % 4;
+        const double     t    = double(n % kSteps) / kSteps;
+        const double     x    = side == 0 ? t : side == 1 ? 1 : side == 2 ? 1 - t : 0;
+        const double     z    = side == 0 ? 0 : side == 1 ? t : side == 2 ? 1 : 1 - t;
+        const ChartPoint at{corner.x + x * width, corner.z + z * height};
+        const auto       on = patch.chart.lift(at), off = residualAt(patch, positions, at);
+        return on && off ? std::optional(*on + *off) : std::nullopt;
     };
     std::vector<ViewSegment>  segments;
     std::optional<glm::dvec3> last = place(0);
@@ -58,7 +85,7 @@ std::optional<ViewPaint> viewPaintNamed(std::string_view wanted)
 }
 
 TouchView::TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings)
-    : cloud_(cloud), index_(index), settings_(settings), skin_(cloud.positions(), index),
+    : cloud_(cloud), settings_(settings), skin_(cloud.positions(), index),
       restNormals_(skin_.normals(cloud.positions()))
 {
 }
@@ -112,16 +139,16 @@ void TouchView::addShapes(const Patch& patch, double force, const TouchLook& loo
     const glm::dvec3 against   = hand && glm::length(hand->force) > 0 ? glm::normalize(hand->force) : -inward;
     scene_.force               = ViewSegment{*scene_.proxy, *scene_.proxy + length * against};
     scene_.normal              = ViewSegment{*scene_.proxy, *scene_.proxy - kNormal * longest * inward};
-    scene_.outline             = outlineOf(patch, positions_, index_);
+    scene_.outline             = outlineOf(patch, positions_);
 }
 
 void TouchView::show(const Patch* patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand)
 {
     // Shares of the window and of the fingertip: large enough to be seen, small enough to leave the dent free.
-    constexpr double kMarker = 0.3, kArrow = 0.006, kOutline = 0.0016, kCue = 0.07; // [1]
+    constexpr double kMarker = 0.45, kArrow = 0.006, kOutline = 0.0016, kCue = 0.07; // [1]
     bend(patch, force, look.exaggeration);
     scene_               = {};
-    scene_.markerRadius  = std::min(kMarker * settings_.footprintRadius, 0.02 * settings_.window);
+    scene_.markerRadius  = std::min(kMarker * settings_.footprintRadius, 0.025 * settings_.window);
     scene_.arrowRadius   = kArrow * settings_.window;
     scene_.outlineRadius = kOutline * settings_.window;
     scene_.cueRadius     = kCue * settings_.window;

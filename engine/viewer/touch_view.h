@@ -37,8 +37,8 @@ struct TouchHand {
 /// A cloud and a touch of it as a scene to draw.
 class TouchView {
 public:
-    /// \param cloud, index  outlive the view
-    /// \param window        edge of the square that bends: shapes measure a share of it [m]
+    /// \param cloud     outlives the view  \param index  of the cloud
+    /// \param settings  of the touches: shapes measure a share of their window and fingertip
     /// \throws as CloudSkin
     TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings);
 
@@ -57,7 +57,6 @@ private:
     void addShapes(const Patch& patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand);
 
     const PointCloud&       cloud_;
-    const NeighbourIndex&   index_;
     PatchSettings           settings_;
     CloudSkin               skin_;
     std::vector<glm::dvec3> restNormals_, positions_, normals_; // [1], [m], [1]

@@ -95,8 +95,9 @@ void addLine(Corners& corners, const ViewSegment& line, double radius, Rgb8 colo
 
 std::vector<ShapeCorner> shapesOf(const ViewScene& scene)
 {
-    constexpr double kThinner = 0.45, kHip = 1.25; // of the force's arrow; of the proxy's radius [1]
-    Corners          corners;
+    constexpr double kThinner = 0.45,
+                     kHip     = 1.6; // of the force's arrow; of the proxy, whose ball then shows in the faces [1]
+    Corners corners;
     if (scene.proxy) addBall(corners, *scene.proxy, scene.markerRadius, kProxyColour);
     if (scene.hip) addOctahedron(corners, *scene.hip, kHip * scene.markerRadius, kHipColour);
     if (scene.force) addArrow(corners, *scene.force, scene.arrowRadius, kForceColour);

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "compute_shaders/view_blend_frag.spv.h"
+#include "compute_shaders/view_disc_vert.spv.h"
 #include "compute_shaders/view_hidden_frag.spv.h"
 #include "compute_shaders/view_light_frag.spv.h"
 #include "compute_shaders/view_nearest_frag.spv.h"
@@ -108,7 +109,7 @@ void VulkanSurface::makeSteps()
     const auto add = [this](Step& step, const DrawSettings& settings) {
         step.pipelines.push_back(makePipeline(context_, step.pass.get(), layout_.get(), settings));
     };
-    add(nearestStep_, {"nearest depths", view_splat_vert_spv, view_nearest_frag_spv, 1, Blending::replace,
+    add(nearestStep_, {"nearest depths", view_disc_vert_spv, view_nearest_frag_spv, 1, Blending::replace,
                        VK_COMPARE_OP_LESS, VK_TRUE});
     add(blendStep_, {"sums over splats", view_splat_vert_spv, view_blend_frag_spv, 2, Blending::add});
     add(surfaceStep_, {"surface", view_screen_vert_spv, view_surface_frag_spv, 2});
