@@ -46,9 +46,10 @@ void main()
         return;
     }
     const float kDarkest = -0.45, kLightest = 0.18; // bounds of the cue [1]
+    const float kWider   = 3.5;                     // a second look finds dents that are wide and shallow [1]
     vec3  place  = placeAt(at, surface.w);
     float hollow = hollowness(at, place, surface.xyz, frame.cueRadius) +
-                   hollowness(at, place, surface.xyz, 0.3 * frame.cueRadius);
+                   hollowness(at, place, surface.xyz, kWider * frame.cueRadius);
     float facing = max(0.0, dot(surface.xyz, toEyeFrom(place))); // at grazing slopes the depth differs for other reasons
     float cue    = clamp(-frame.cueGain * facing * facing * hollow, kDarkest, kLightest);
     float bright = litBy(surface.xyz) * (1.0 + cue);

@@ -23,12 +23,12 @@ float pixelsPerMetre(float depth)
 vec3 toEyeFrom(vec3 place) { return frame.orthographic == 1u ? vec3(0, 0, 1) : normalize(-place); }
 
 // Light from the upper left, as in printed relief.
-const vec3 kLight = normalize(vec3(-0.55, 0.60, 0.62));
+const vec3 kLight = normalize(vec3(-0.75, 0.50, 0.43));
 
 /// How bright the light makes a matt surface [1].
 float litBy(vec3 normal)
 {
-    const float kAmbient = 0.36, kDiffuse = 0.74; // of the light [1]
+    const float kAmbient = 0.38, kDiffuse = 0.78; // of the light [1]
     const float kWrap = 0.25;                     // how far light reaches around the object [1]
     float lit = max(0.0, (dot(normal, kLight) + kWrap) / (1.0 + kWrap));
     return kAmbient + kDiffuse * lit * lit;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -135,20 +136,34 @@ std::vector<KeyEntry> keyOf(const ViewScene& scene)
     return key;
 }
 
-void drawKey(Annotator& to, const ViewScene& scene)
+/// \return the place that it takes up, from the lower left corner [px]
+glm::dvec2 drawKey(Annotator& to, const ViewScene& scene)
 {
-    const auto   key = keyOf(scene);
-    const double s   = to.size();
-    if (key.empty()) return;
-    double wide = 0;
-    for (const KeyEntry& entry : key) wide += widthOfText(entry.text, s) + 3.2 * s;
-    to.fade({0, to.height() - 2.6 * s}, {wide + 0.6 * s, 2.6 * s});
-    glm::dvec2 at(s, to.height() - s);
-    for (const KeyEntry& entry : key) {
-        to.icon(at + glm::dvec2(0.6 * s, -0.36 * s), 0.75 * s, entry.colour, entry.inside);
-        to.text(at + glm::dvec2(1.8 * s, 0), entry.text);
-        at.x += widthOfText(entry.text, s) + 3.2 * s;
+    const double s = to.size(), line = 1.9 * s;
+    const auto   widthOf = [s](const KeyEntry& entry) { return widthOfText(entry.text, s) + 3.2 * s; };
+    std::vector<std::vector<KeyEntry>> rows;
+    double                             wide = 0, widest = 0;
+    for (KeyEntry& entry : keyOf(scene)) {
+        if (rows.empty() || wide + widthOf(entry) > to.width() - s) {
+            rows.emplace_back();
+            wide = 0;
+        }
+        wide += widthOf(entry);
+        widest = std::max(widest, wide);
+        rows.back().push_back(std::move(entry));
     }
+    if (rows.empty()) return {0, 0};
+    const glm::dvec2 size(widest + 0.6 * s, 0.7 * s + line * double(rows.size()));
+    to.fade({0, to.height() - size.y}, size);
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+        glm::dvec2 at(s, to.height() - 0.9 * s - line * double(rows.size() - 1 - row));
+        for (const KeyEntry& entry : rows[row]) {
+            to.icon(at + glm::dvec2(0.6 * s, -0.36 * s), 0.75 * s, entry.colour, entry.inside);
+            to.text(at + glm::dvec2(1.8 * s, 0), entry.text);
+            at.x += widthOf(entry);
+        }
+    }
+    return size;
 }
 
 /// Of a round length: "20 mm".
@@ -169,17 +184,20 @@ double roundLength(double most)
     return decade;
 }
 
-void drawLength(Annotator& to, const Camera& camera)
+/// \param taken  from the lower left corner, by others [px]
+void drawLength(Annotator& to, const Camera& camera, const glm::dvec2& taken)
 {
     constexpr double  kShare         = 0.16; // of the width, at most [1]
     const double      s              = to.size();
     const double      pixelsPerMetre = to.height() / (2 * camera.halfHeight());
     const double      length         = roundLength(kShare * to.width() / pixelsPerMetre);
     const double      wide           = length * pixelsPerMetre;
-    const glm::dvec2  end(to.width() - s, to.height() - s);
-    const std::string text = plainText(length);
-    const double      room = std::max(wide, widthOfText(text, s));
-    to.fade({end.x - room - 0.7 * s, to.height() - 3.4 * s}, {room + 1.7 * s, 3.4 * s});
+    const std::string text           = plainText(length);
+    const double      room           = std::max(wide, widthOfText(text, s));
+    const double      right          = to.width() - s;
+    const double      foot           = to.height() - (right - room - 0.7 * s < taken.x ? taken.y : 0); // [px]
+    const glm::dvec2  end(right, foot - s);
+    to.fade({end.x - room - 0.7 * s, foot - 3.4 * s}, {room + 1.7 * s, 3.4 * s});
     to.fill({end.x - wide, end.y - 0.25 * s}, {wide, 0.25 * s}, to.ink());
     to.fill({end.x - wide, end.y - 0.6 * s}, {s / 8, 0.6 * s}, to.ink());
     to.fill({end.x - s / 8, end.y - 0.6 * s}, {s / 8, 0.6 * s}, to.ink());
@@ -194,8 +212,7 @@ void annotate(Image& image, const ViewScene& scene, const Camera& camera)
     Annotator to(image, scene.ground);
     drawTitle(to, scene);
     if (!scene.values.empty()) drawColours(to, scene.colours);
-    drawKey(to, scene);
-    drawLength(to, camera);
+    drawLength(to, camera, drawKey(to, scene));
 }
 
 } // namespace palp

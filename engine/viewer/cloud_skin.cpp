@@ -14,7 +14,7 @@
 namespace palp {
 namespace {
 
-constexpr std::size_t kNeighbours = 14; ///< of a fit, the point included: fewer are noisy, more round off edges [1]
+constexpr std::size_t kNeighbours = 20; ///< of a fit, the point included: fewer are noisy, more round off edges [1]
 
 /// Radius of a disc over the spacing: of points strewn at random one place in 10^6 stays bare [1].
 constexpr double kRadius = 2.5;
