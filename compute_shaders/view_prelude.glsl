@@ -28,7 +28,7 @@ const vec3 kLight = normalize(vec3(-0.75, 0.50, 0.43));
 /// How bright the light makes a matt surface [1].
 float litBy(vec3 normal)
 {
-    const float kAmbient = 0.38, kDiffuse = 0.78; // of the light [1]
+    const float kAmbient = 0.46, kDiffuse = 0.80; // of the light [1]
     const float kWrap = 0.25;                     // how far light reaches around the object [1]
     float lit = max(0.0, (dot(normal, kLight) + kWrap) / (1.0 + kWrap));
     return kAmbient + kDiffuse * lit * lit;

@@ -32,6 +32,7 @@ struct RenderOptions {
     std::string                                     drawOn = "auto", view = "patch", hand = "scan", seconds = "2 s";
     std::map<std::string, std::string, std::less<>> flags; ///< of the scene's keys, as given
     std::optional<int>                              frames;
+    int                                             finer = 2;
     bool                                            dark = false, json = false;
 };
 
@@ -43,8 +44,8 @@ T named(const std::optional<T>& value, const std::string& option, const std::str
     throw Error(option + ": unknown name \"" + text + "\"; known: " + known);
 }
 
-/// "1600x1200". Pictures are drawn four times as large, so half of what devices can at most is enough to ask for.
-PictureSize sizeOf(const std::string& text)
+/// "1600x1200"
+PictureSize sizeOf(const std::string& text, int finer)
 {
     constexpr int kLeast = 16, kMost = 4096; // [px]
     int           width = 0, height = 0, end = 0;
@@ -52,7 +53,7 @@ PictureSize sizeOf(const std::string& text)
         std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &end) == 2 && std::size_t(end) == text.size();
     if (!read || width < kLeast || height < kLeast || width > kMost || height > kMost)
         throw Error("--size: expected WIDTHxHEIGHT of 16 to 4096 px each, such as 1600x1200, found \"" + text + "\"");
-    return {width, height, 2};
+    return {width, height, finer};
 }
 
 TouchLook lookOf(const RenderOptions& o)
@@ -83,7 +84,7 @@ Scene sceneOf(const RenderOptions& o)
 /// Everything that is touched and drawn, made once.
 struct Stage {
     explicit Stage(const RenderOptions& o)
-        : size(sizeOf(o.size)), look(lookOf(o)), scene(sceneOf(o)), renderer({.device = o.drawOn}),
+        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(sceneOf(o)), renderer({.device = o.drawOn}),
           loaded(loadCloud(scene)), index(loaded.cloud.positions()),
           device(orTheReference([this] { return PlateDevice(scene.device); })), view(loaded.cloud, index, scene.patch)
     {
@@ -293,9 +294,13 @@ void addRenderCommand(CLI::App& app)
     command->add_option("SCENE", o->scene, "scene file, cloud file or sample:NAME")->required();
     command->add_option("--out", o->out, "PNG file; with --frames a number is added before .png")->required();
     command->add_option("--size", o->size, "of the picture [px]")->capture_default_str();
+    command->add_option("--finer", o->finer, "drawn so many times larger, then averaged: smooth edges")
+        ->check(CLI::Range(1, 4))
+        ->capture_default_str();
     command->add_option("--force", o->force, "that presses, such as '1 N' [what dents by a third of the thickness]");
     command->add_option("--colour,--color", o->colour, "deflection, stiffness or plain")->capture_default_str();
-    command->add_option("--colour-map,--color-map", o->map, "of colours: viridis, cividis or grey")->capture_default_str();
+    command->add_option("--colour-map,--color-map", o->map, "of colours: viridis, cividis or grey")
+        ->capture_default_str();
     command->add_option("--exaggerate", o->exaggerate, "factor on every displacement")->capture_default_str();
     command->add_option("--view", o->view, "patch: what bends; whole: the object")->capture_default_str();
     command->add_flag("--dark", o->dark, "a dark ground");
