@@ -31,6 +31,9 @@ void main()
     radius      = max(splat.radius, kLeastPixels / pixelsPerMetre(max(1e-6, -centre.z)));
     vec3 aside  = normalize(cross(normal, abs(normal.x) < 0.7 ? vec3(1, 0, 0) : vec3(0, 1, 0)));
     within      = kCorners[gl_VertexIndex % 6];
+#ifdef PALPATE_DEPTH
+    within *= frame.innerPart; // what lies beyond would be thrown away
+#endif
     vec3 place  = centre + radius * (within.x * aside + within.y * cross(normal, aside));
     depth       = -place.z;
     gl_Position = frame.clipFromView * vec4(place, 1);
