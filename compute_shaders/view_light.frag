@@ -12,8 +12,13 @@ layout(binding = kBindAlbedo) uniform texture2D albedos;
 
 layout(location = 0) out vec4 picture;
 
-const int   kTaps   = 16;
-const float kGolden = 2.39996323; // [rad] a spiral of this angle spreads evenly
+// A spiral by the golden angle, evenly spread over the unit disc: sqrt((n + 1/2) / 16) (cos, sin)(2.39996 n).
+const int  kTaps = 16;
+const vec2 kSpiral[kTaps] = vec2[](
+    vec2(0.1768, 0.0000), vec2(-0.2258, 0.2068), vec2(0.0346, -0.3938), vec2(0.2846, 0.3712),
+    vec2(-0.5222, -0.0924), vec2(0.4947, -0.3147), vec2(-0.1655, 0.6155), vec2(-0.3156, -0.6076),
+    vec2(0.6846, 0.2500), vec2(-0.7123, 0.2940), vec2(0.3434, -0.7337), vec2(0.2537, 0.8089),
+    vec2(-0.7647, -0.4432), vec2(0.8971, -0.1972), vec2(-0.5475, 0.7788), vec2(-0.1265, -0.9761));
 
 /// Mean rise of the surroundings within a radius [1].
 float hollowness(vec2 at, vec3 place, vec3 normal, float radius)
@@ -22,9 +27,7 @@ float hollowness(vec2 at, vec3 place, vec3 normal, float radius)
     float pixels = max(kLeastPixels, radius * pixelsPerMetre(-place.z));
     float sum = 0.0, weights = 0.0;
     for (int n = 0; n < kTaps; ++n) {
-        float out_ = sqrt((float(n) + 0.5) / float(kTaps));
-        vec2  tap  = at + pixels * out_ * vec2(cos(kGolden * float(n)), sin(kGolden * float(n)));
-        ivec2 texel = clamp(ivec2(tap), ivec2(0), ivec2(frame.width, frame.height) - 1);
+        ivec2 texel = clamp(ivec2(at + pixels * kSpiral[n]), ivec2(0), ivec2(frame.width, frame.height) - 1);
         float depth = texelFetch(surfaces, texel, 0).w;
         if (depth == 0.0) continue;
         vec3  rise     = placeAt(vec2(texel) + 0.5, depth) - place;
