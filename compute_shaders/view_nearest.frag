@@ -1,4 +1,4 @@
-// view_nearest.frag - first pass: the nearest depth of all discs. Only the inner part of a disc counts, so that an
+// view_nearest.frag - first pass: the nearest depth of all discs. Only the core of a disc counts, so that an
 // object ends where its points end.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -6,10 +6,11 @@
 
 layout(location = 0) in vec2  within;
 layout(location = 1) in float depth;
+layout(location = 2) flat in float core;
 layout(location = 0) out float nearest;
 
 void main()
 {
-    if (dot(within, within) > frame.innerPart * frame.innerPart) discard;
+    if (dot(within, within) > core * core) discard;
     nearest = depth;
 }

@@ -1,5 +1,5 @@
 // view_splat.vert - a point of the cloud as a disc in its tangent plane: six corners of the square around it.
-// Reads      splats  Writes  place within the disc (-1 to 1), depth [m], normal and colour; with PALPATE_DEPTH only the first two
+// Reads      splats  Writes  place within the disc (-1 to 1), depth [m], normal and colour; with PALPATE_DEPTH the first two and the core
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "compute_shaders/view_prelude.glsl"
@@ -9,6 +9,7 @@ layout(std430, binding = kBindSplats) readonly buffer Splats { ViewSplat splats[
 layout(location = 0) out vec2  within;
 layout(location = 1) out float depth;
 #ifdef PALPATE_DEPTH
+layout(location = 2) flat out float core;
 vec3  normal, colour;
 float radius;
 #else
@@ -32,7 +33,8 @@ void main()
     vec3 aside  = normalize(cross(normal, abs(normal.x) < 0.7 ? vec3(1, 0, 0) : vec3(0, 1, 0)));
     within      = kCorners[gl_VertexIndex % 6];
 #ifdef PALPATE_DEPTH
-    within *= frame.innerPart; // what lies beyond would be thrown away
+    core = unpackUnorm4x8(splat.colour).a; // what lies beyond would be thrown away
+    within *= core;
 #endif
     vec3 place  = centre + radius * (within.x * aside + within.y * cross(normal, aside));
     depth       = -place.z;

@@ -43,7 +43,7 @@ struct ViewFrame {
     float cueRadius;   // of the surroundings that tell hollows from humps [m]
     float cueGain;     // of that [1]
     float shine;       // of the surface's light, how much is a reflection [1]
-    float innerPart;   // of a disc's radius: only that covers what is behind [1]
+    float unused;
     float hiddenShare; // how much of a shape shows through the surface [1]
     uint  orthographic; // 1: the eye is infinitely far away
 };
@@ -52,7 +52,7 @@ struct ViewSplat {
     vec3  position; // [m]
     float radius;   // [m]
     vec3  normal;   // unit; the side does not matter
-    uint  colour;   // red in the lowest byte
+    uint  colour;   // red in the lowest byte; the highest one: how much of the radius covers what is behind [1/255]
 };
 
 struct ViewCorner {

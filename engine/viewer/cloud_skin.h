@@ -16,8 +16,12 @@ public:
     /// \throws Error if the cloud has fewer than seven points or most of them coincide
     CloudSkin(std::span<const glm::dvec3> positions, const NeighbourIndex& index);
 
-    /// Radii of discs that close the surface [m].
+    /// Radii of discs whose means make a smooth surface [m].
     [[nodiscard]] std::span<const double> radii() const noexcept { return radii_; }
+
+    /// Radii of their cores, at most radii(), which alone close the surface and end where the points end: a core
+    /// reaches the places that are farther from all other points [m].
+    [[nodiscard]] std::span<const double> cores() const noexcept { return cores_; }
 
     /// Normals of the points where they are now, of either side [1]: least squares planes through each point and the
     /// neighbours it had at rest.
@@ -30,10 +34,11 @@ public:
 
 private:
     [[nodiscard]] glm::dvec3 normalOf(std::span<const glm::dvec3> positions, std::size_t point) const;
+    [[nodiscard]] double     coreOf(std::span<const glm::dvec3> positions, std::size_t point, double spacing) const;
 
-    std::size_t                each_ = 0;   // neighbours of a point, itself included [1]
-    std::vector<std::uint32_t> neighbours_; // point by point
-    std::vector<double>        radii_;      // [m]
+    std::size_t                each_ = 0;      // neighbours of a point, itself included [1]
+    std::vector<std::uint32_t> neighbours_;    // point by point
+    std::vector<double>        radii_, cores_; // [m]
 };
 
 } // namespace palp

@@ -46,14 +46,21 @@ private:
     std::array<std::uint32_t, kShades> shades_{};
 };
 
+/// \param share  core over disc, 0 to 1 [1]
+std::uint32_t withCore(std::uint32_t colour, double share)
+{
+    return (colour & 0x00FFFFFFU) | std::uint32_t(std::lround(255 * std::clamp(share, 0.0, 1.0))) << 24;
+}
+
 std::vector<shared::ViewSplat> splatsOf(const ViewScene& scene, const glm::dvec3& origin)
 {
     std::vector<shared::ViewSplat> splats(scene.positions.size());
     std::optional<Paintbox>        paint;
     if (!scene.values.empty()) paint.emplace(scene.colours);
     for (std::size_t n = 0; n < splats.size(); ++n)
-        splats[n] = {glm::vec3(scene.positions[n] - origin), float(scene.radii[n]), glm::vec3(scene.normals[n]),
-                     paint ? paint->of(scene.values[n]) : packed(kPlainColour)};
+        splats[n] = {
+            glm::vec3(scene.positions[n] - origin), float(scene.radii[n]), glm::vec3(scene.normals[n]),
+            withCore(paint ? paint->of(scene.values[n]) : packed(kPlainColour), scene.cores[n] / scene.radii[n])};
     return splats;
 }
 
@@ -79,9 +86,8 @@ double reachOf(const ViewScene& scene, const std::vector<shared::ViewCorner>& sh
 shared::ViewFrame frameOf(const ViewScene& scene, const Camera& camera, const PictureSize& size, double reach)
 {
     constexpr float      kCueGain = 5.0F, kShine = 0.10F, kHidden = 0.45F;
-    constexpr float      kInnerPart = 0.8F; // so that an object ends where its points end
-    const CameraMatrices matrices   = matricesOf(camera, camera.target, reach, double(size.width) / size.height);
-    const bool           dark       = scene.ground == Ground::dark;
+    const CameraMatrices matrices = matricesOf(camera, camera.target, reach, double(size.width) / size.height);
+    const bool           dark     = scene.ground == Ground::dark;
     shared::ViewFrame    frame;
     frame.viewFromWorld = glm::mat4(matrices.viewFromWorld);
     frame.clipFromView  = glm::mat4(matrices.clipFromView);
@@ -94,7 +100,7 @@ shared::ViewFrame frameOf(const ViewScene& scene, const Camera& camera, const Pi
     frame.cueRadius     = float(scene.cueRadius);
     frame.cueGain       = scene.cueRadius > 0 ? kCueGain : 0;
     frame.shine         = kShine;
-    frame.innerPart     = kInnerPart;
+    frame.unused        = 0;
     frame.hiddenShare   = kHidden;
     frame.orthographic  = camera.projection == Projection::orthographic;
     return frame;
@@ -141,8 +147,9 @@ Image SurfaceRenderer::draw(const ViewScene& scene, const Camera& camera, const 
 {
     PALP_EXPECT(size.width > 0 && size.height > 0 && size.finer > 0, "a picture has at least one pixel");
     PALP_EXPECT(scene.normals.size() == scene.positions.size() && scene.radii.size() == scene.positions.size() &&
+                    scene.cores.size() == scene.positions.size() &&
                     (scene.values.empty() || scene.values.size() == scene.positions.size()),
-                "every point has a normal, a radius and, if there are values, a value");
+                "every point has a normal, two radii and, if there are values, a value");
     const auto   splats = splatsOf(scene, camera.target);
     const auto   shapes = cornersOf(scene, camera.target);
     const double reach  = reachOf(scene, shapes, camera.target);

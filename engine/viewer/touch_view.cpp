@@ -106,6 +106,7 @@ void TouchView::paint(const TouchLook& look)
     scene_.positions = positions_;
     scene_.normals   = normals_;
     scene_.radii     = skin_.radii();
+    scene_.cores     = skin_.cores();
     scene_.ground    = look.ground;
     if (look.paint == ViewPaint::deflection) {
         const double most = look.deepest > 0 ? look.deepest : *std::ranges::max_element(deflections_);

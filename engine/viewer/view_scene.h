@@ -30,7 +30,8 @@ struct ViewSegment {
 struct ViewScene {
     std::span<const glm::dvec3> positions; ///< of the points, deformed [m]
     std::span<const glm::dvec3> normals;   ///< as many [1], unit; their side does not matter
-    std::span<const double>     radii;     ///< as many, of the discs that cover the surface [m]
+    std::span<const double>     radii;     ///< as many, of the discs whose means are the surface [m]
+    std::span<const double>     cores;     ///< as many, of the part of each that hides what is behind [m]
     std::span<const double>     values;    ///< as many [unit of `colours`], NaN for none; empty: one plain colour
     ViewColours                 colours;
 

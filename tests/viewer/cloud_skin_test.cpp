@@ -46,13 +46,12 @@ TEST(CloudSkin, DiscsLeaveNoPlaceOfABallBare)
     const auto           positions = ball(8000);
     const NeighbourIndex index(positions);
     const CloudSkin      skin(positions, index);
-    constexpr double     kInner = 0.8; // of a disc covers, see SurfaceRenderer [1]
 
     int bare = 0;
     for (const glm::dvec3& place : ball(50000)) {
         bool covered = false;
         for (const Neighbour& near : index.nearest(place, 8))
-            covered = covered || near.distance < kInner * skin.radii()[near.point];
+            covered = covered || near.distance < skin.cores()[near.point];
         bare += !covered;
     }
     EXPECT_LE(bare, 5) << "of 50000 places";

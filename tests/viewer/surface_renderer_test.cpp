@@ -30,6 +30,7 @@ struct Sheet {
         const CloudSkin      skin(positions, index);
         normals = skin.normals(positions);
         radii.assign(skin.radii().begin(), skin.radii().end());
+        cores.assign(skin.cores().begin(), skin.cores().end());
     }
     [[nodiscard]] ViewScene scene() const
     {
@@ -37,11 +38,12 @@ struct Sheet {
         scene.positions = positions;
         scene.normals   = normals;
         scene.radii     = radii;
+        scene.cores     = cores;
         scene.cueRadius = 0.007;
         return scene;
     }
     std::vector<glm::dvec3> positions, normals; // [m], [1]
-    std::vector<double>     radii;              // [m]
+    std::vector<double>     radii, cores;       // [m]
 };
 
 /// From above, the sheet fills the height of the picture.
@@ -133,6 +135,7 @@ TEST_F(SurfaceRendererTest, WhatIsNearerHidesWhatIsBehind)
         sheet.positions.push_back(sheet.positions[n] + glm::dvec3(0, 0, 0.01));
         sheet.normals.push_back(sheet.normals[n]);
         sheet.radii.push_back(sheet.radii[n]);
+        sheet.cores.push_back(sheet.cores[n]);
         values.push_back(1);
     }
     ViewScene scene  = sheet.scene();
