@@ -69,5 +69,21 @@ TEST(ColourMap, HexColourHasTwoDigitsEach)
     EXPECT_EQ(hexColour({1, 171, 255}), "#01abff");
 }
 
+TEST(ColourMap, EveryMapRisesInLightnessAndHasANameOfItsOwn)
+{
+    for (const ColourMap map : {ColourMap::viridis, ColourMap::cividis, ColourMap::grey}) {
+        EXPECT_EQ(colourMapNamed(name(map)), map);
+        double last = -1;
+        for (int n = 0; n <= 200; ++n) {
+            const Rgb8   c    = colourAt(n / 200.0, map);
+            const double luma = 0.2126 * c.red + 0.7152 * c.green + 0.0722 * c.blue; // of 255
+            EXPECT_GE(luma, last - 0.75) << name(map) << " at " << n / 200.0 << ": bytes round";
+            last = luma;
+        }
+    }
+    EXPECT_EQ(colourMapNamed("jet"), std::nullopt);
+    EXPECT_NE(colourAt(0.5, ColourMap::cividis), colourAt(0.5));
+}
+
 } // namespace
 } // namespace palp
