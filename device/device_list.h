@@ -12,7 +12,7 @@ struct DeviceListing {
     std::string model{};        ///< "SpaceMouse Compact"
     std::string path{};         ///< where it is plugged in; empty for what is not
     bool        usable = false; ///< it could be opened now
-    std::string why{};          ///< it is not usable, in words; empty if it is
+    std::string why{};          ///< it is not usable, or what it still needs, in words; empty if it is ready
     std::string help{};         ///< the one line that helps; may be empty
 };
 

@@ -32,13 +32,13 @@ enum class DeviceFault : std::uint8_t {
     none        = 0,
     closed      = 1, ///< not opened yet, or closed
     unplugged   = 2, ///< it went away while open; close(), and open() once it is back
-    silent      = 3, ///< more than 20 exchanges or 100 ms without an answer
+    silent      = 3, ///< more than 20 exchanges or 100 ms without an answer; or the link broke: close(), and open()
     garbled     = 4, ///< answers that make no sense, as many
     kinematics  = 5, ///< a position that the arm cannot have
     ownWatchdog = 6, ///< the device says that it stopped by itself
     badForce    = 7, ///< it was asked for a force that is not finite; it rendered none
     startingUp  = 8, ///< being opened: upload, first exchange
-    hostTooSlow = 9  ///< exchange() was not called for 100 ms, so the driver sent zero force by itself
+    hostTooSlow = 9  ///< exchange() was not called for 100 ms; the force had long gone by then
 };
 [[nodiscard]] const char* name(DeviceFault fault) noexcept; ///< "none", "unplugged", ...
 
@@ -83,9 +83,9 @@ public:
     virtual void close() noexcept = 0;
 
     /// One tick: render `force` from now on, and tell where the hand is. Bounded: takes well below a millisecond, waits
-    /// for no thread, allocates nothing. Drivers drop to zero force by themselves if it is not called for 100 ms.
-    /// \param force  [N] in the device's frame
-    /// \param now    [s] of the servo's clock; simulated devices move on to it
+    /// for no thread, allocates nothing. If it is not called, a driver with a thread holds the force for 5 ms and lets
+    /// it fall to zero in 20 ms more; any other device by its own watchdog. After 100 ms the next state says so. \param
+    /// force  [N] in the device's frame \param now    [s] of the servo's clock; simulated devices move on to it
     virtual HapticState exchange(const GovernedForce& force, double now) noexcept = 0;
 
     /// Asks the user to home it, by lights or words, where that is needed. Until HapticState::homed no force flows.

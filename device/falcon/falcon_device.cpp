@@ -5,13 +5,13 @@
 #include <functional>
 #include <utility>
 
+#include "device/held_force.h"
 #include "engine/core/real_time.h"
 
 namespace palp {
 namespace {
 
-constexpr double kHostTooSlow = 0.1; ///< [s] HapticDevice::exchange
-constexpr double kMostWait    = 0.1; ///< [s] that a step follows the servo's clock; beyond it the clocks are set anew
+constexpr double kMostWait = 0.1; ///< [s] that a step follows the servo's clock; beyond it the clocks are set anew
 
 double seconds(std::chrono::steady_clock::duration duration)
 {
@@ -53,36 +53,37 @@ void FalconDevice::close() noexcept
     if (!line_) return;
     line_->isOver = true;
     if (line_->thread.joinable()) line_->thread.join();
-    line_.reset(); // its FalconLoop ends with zero force
+    line_.reset();   // its FalconLoop ends with zero force
+    cancel_ = false; // of the start that is over
 }
 
 HapticState FalconDevice::exchange(const GovernedForce& force, double now) noexcept
 {
     if (!line_) return {};
-    const FalconRequest request{force.newtons(), lights_, DeviceFault::none};
+    const FalconRequest request{.force = force.newtons(), .lights = lights_};
     if (settings_.pace == FalconPace::stepped) return step(request, now);
-    line_->requests.draft() = request;
+    line_->requests.draft() = {request, Clock::now()};
     line_->requests.publish();
     return newest(now);
 }
 
-/// The I/O thread: the newest force, for as long as the servo keeps asking.
+/// The I/O thread: the newest force, and less of it the longer the servo does not ask.
 void FalconDevice::converse(Line& line, bool asksForRealTime) noexcept
 {
     // Refusal is no news to the user: the servo asked before and said so.
     if (asksForRealTime) static_cast<void>(askForRealTime());
-    Clock::time_point asked = Clock::now();
-    while (!line.isOver) {
-        if (line.requests.take()) asked = Clock::now();
-        FalconRequest request = line.requests.held() ? *line.requests.held() : FalconRequest{};
-        if (line.requests.held() && seconds(Clock::now() - asked) > kHostTooSlow) {
-            request.force = {};
-            request.host  = DeviceFault::hostTooSlow;
+    while (!line.isOver && !line.loop->isLost()) {
+        line.requests.take();
+        FalconRequest request;
+        if (const Asked* asked = line.requests.held()) {
+            const double age = seconds(Clock::now() - asked->time);
+            request          = asked->request;
+            request.share    = heldShare(age);
+            if (age > kHostTooSlow) request.host = DeviceFault::hostTooSlow;
         }
         const HapticState& state = line.loop->exchange(request);
         line.answers.draft()     = {state, Clock::now(), line.loop->now() - state.time};
         line.answers.publish();
-        if (state.fault == DeviceFault::unplugged) return;
     }
 }
 
@@ -104,12 +105,12 @@ HapticState FalconDevice::newest(double now) noexcept
     return state;
 }
 
-/// Follows the servo's clock, then makes the round trip.
+/// Follows the servo's clock, which may start anew, then makes the round trip.
 HapticState FalconDevice::step(FalconRequest request, double now) noexcept
 {
     FalconLoop&  loop   = *line_->loop;
     const double ahead  = now - line_->offset - loop.now();
-    const bool   isEven = std::isfinite(now) && !line_->isFirst && ahead <= kMostWait;
+    const bool   isEven = now >= line_->last && !line_->isFirst && ahead <= kMostWait;
     if (!line_->isFirst && !(now - line_->last <= kHostTooSlow)) request.host = DeviceFault::hostTooSlow;
     if (isEven)
         loop.listen(now - line_->offset);

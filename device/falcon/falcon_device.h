@@ -31,8 +31,8 @@ struct FalconDeviceSettings {
     FalconLoopSettings        loop{};
 };
 
-/// A Novint Falcon behind any FalconLink. FalconLoop says when forces flow. Beyond that, no force goes out once
-/// exchange() was not called for 100 ms, and close() ends with packets of zero force.
+/// A Novint Falcon behind any FalconLink. FalconLoop says when forces flow. Beyond that, a force that exchange() does
+/// not renew is held for 5 ms and falls to zero in 20 ms more, and close() ends with packets of zero force.
 ///
 /// Forces come by the governor only, positions are those of the device's frame: the kinematics' less (0, 0, 125 mm).
 /// Buttons: bit 0 plus, 1 forward, 2 centre, 3 minus. Until it is homed its light is red: the user pulls the grip out,
@@ -51,11 +51,16 @@ public:
     HapticState                           exchange(const GovernedForce& force, double now) noexcept override;
     void light(std::uint8_t lights) noexcept override { lights_ = lights; } ///< if settings.loop.showsState is off
 
-    void cancelOpen() noexcept { cancel_ = true; } ///< makes an open() that runs, or the next one, give up; any thread
+    /// Makes an open() that runs give up, or the next one; while it is open: nothing. \thread any
+    void cancelOpen() noexcept { cancel_ = true; }
 
 private:
     using Clock = std::chrono::steady_clock;
 
+    struct Asked {
+        FalconRequest     request{};
+        Clock::time_point time{};
+    };
     struct Answer {
         HapticState       state{};
         Clock::time_point time{};  ///< when the exchange ended
@@ -65,7 +70,7 @@ private:
     struct Line {
         explicit Line(std::unique_ptr<FalconLoop> newLoop) : loop(std::move(newLoop)) {}
         std::unique_ptr<FalconLoop> loop;
-        Latest<FalconRequest>       requests;
+        Latest<Asked>               requests;
         Latest<Answer>              answers;
         std::atomic<bool>           isOver = false;
         std::thread                 thread;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "device/haptic_device.h"
 #include "engine/core/contract.h"
@@ -24,7 +26,10 @@ constexpr double      kEchoTime    = 0.1;   ///< [s] a chunk takes 4.4 ms, the l
 constexpr double      kAnswerTime  = 20e-3; ///< [s] for a packet and its answer: 1 to 2 ms
 constexpr int         kAnswers     = 3;     ///< [1] in a row before the firmware is believed to run
 constexpr int         kProbes      = 5;     ///< [1] packets to firmware that may be running
+constexpr int         kQuestions   = 4;     ///< [1] packets of askFalcon(): 80 ms
 constexpr int         kFirstProbes = 50;    ///< [1] packets to firmware that starts: for 1 s
+
+constexpr std::chrono::milliseconds kGlance(10); ///< at the cancelling, while it waits to reopen
 
 constexpr const char* kAdvice = "; try without a hub, or take the Falcon off its power for a moment";
 
@@ -32,6 +37,29 @@ constexpr std::uint16_t kDtrLow = 0x0100, kDtrHigh = 0x0101, kRtsLow = 0x0200, k
 constexpr std::uint16_t kLoaderLatency = 16, kRunLatency = 1; ///< [ms] libnifalcon: the loader's checks fail at 1
 constexpr std::uint16_t kEventOnEnd    = 0x0100 | '>';
 constexpr std::uint16_t kPurgeReceived = 1, kPurgeToSend = 2;
+
+void prepare(FalconLink& link, std::uint16_t latency, FalconDivisor divisor, std::uint16_t event)
+{
+    link.control(FtdiRequest::reset, kPurgeReceived);
+    link.control(FtdiRequest::reset, kPurgeToSend);
+    link.control(FtdiRequest::latencyTimer, latency);
+    link.control(FtdiRequest::divisor, std::uint16_t(divisor));
+    link.control(FtdiRequest::lineFormat, k8N1);
+    link.control(FtdiRequest::flowControl, 0);
+    link.control(FtdiRequest::eventCharacter, event);
+}
+
+/// The first answer that comes in time.
+std::optional<FalconReply> listen(FalconLink& link, FalconParser& parser)
+{
+    std::array<std::uint8_t, 256> bytes;
+    const double                  until = link.now() + kAnswerTime;
+    for (double left = kAnswerTime; left > 0; left = until - link.now()) {
+        parser.feed(std::span(bytes).first(link.read(bytes, left)));
+        if (const auto reply = parser.next()) return reply;
+    }
+    return {};
+}
 
 /// One start. Reasons why an attempt failed are strings, empty where it did not.
 class Start {
@@ -47,13 +75,12 @@ public:
         started.link = open();
         end_         = started.link->now() + settings_.deadline;
         if (firmwareRuns(started)) return started;
+        if (firmware_.empty() && !lost_.empty()) throw Error(lost_ + kAdvice);
         if (firmware_.empty())
             throw Error("the Falcon has no firmware: name the file that came with its software (--falcon-firmware)");
         while (started.attempts < settings_.attempts) {
             ++started.attempts;
-            started.link.reset(); // before it is opened again
-            started.link = open();
-            reason_      = attempt(started);
+            reason_ = attempt(started, open);
             if (reason_.empty()) return started;
         }
         throw Error("the Falcon did not start in " + std::to_string(started.attempts) + " attempts: " + reason_ +
@@ -65,13 +92,21 @@ private:
     {
         try {
             return probe(started, kProbes);
-        } catch (const LinkLost&) { // an attempt opens it anew
+        } catch (const LinkLost& lost) { // an attempt opens it anew
+            lost_ = lost.what();
             return false;
         }
     }
 
-    std::string attempt(StartedFalcon& started)
+    std::string attempt(StartedFalcon& started, const FalconLinkOpener& open)
     {
+        started.link.reset(); // before it is opened again
+        try {
+            started.link = open();
+        } catch (const Error& error) { // it may be on its way back, or busy for a moment
+            waitToReopen();
+            return error.what();
+        }
         try {
             FalconLink& link   = *started.link;
             std::string reason = greet(link);
@@ -83,23 +118,26 @@ private:
         }
     }
 
-    void pause(const FalconLink& link) const
+    void heedCancel() const
     {
         if (cancel_ && cancel_->load()) throw Error("the start of the Falcon was cancelled");
+    }
+
+    /// In steady time: there is no link whose clock would tell.
+    void waitToReopen() const
+    {
+        using Clock    = std::chrono::steady_clock;
+        const auto end = Clock::now() + std::chrono::duration<double>(settings_.reopenAfter);
+        do heedCancel();
+        while (Clock::now() < end && (std::this_thread::sleep_for(kGlance), true));
+    }
+
+    void pause(const FalconLink& link) const
+    {
+        heedCancel();
         if (link.now() > end_)
             throw Error("the Falcon did not start in " + std::to_string(std::lround(settings_.deadline)) +
                         " s: " + reason_ + kAdvice);
-    }
-
-    void prepare(FalconLink& link, std::uint16_t latency, FalconDivisor divisor, std::uint16_t event) const
-    {
-        link.control(FtdiRequest::reset, kPurgeReceived);
-        link.control(FtdiRequest::reset, kPurgeToSend);
-        link.control(FtdiRequest::latencyTimer, latency);
-        link.control(FtdiRequest::divisor, std::uint16_t(divisor));
-        link.control(FtdiRequest::lineFormat, k8N1);
-        link.control(FtdiRequest::flowControl, 0);
-        link.control(FtdiRequest::eventCharacter, event);
     }
 
     /// Whether the firmware answers. Leaves the link as run-time packets need it.
@@ -118,17 +156,6 @@ private:
             if (reply) started.reply = *reply;
         }
         return inARow == kAnswers;
-    }
-
-    static std::optional<FalconReply> listen(FalconLink& link, FalconParser& parser)
-    {
-        std::array<std::uint8_t, 256> bytes;
-        const double                  until = link.now() + kAnswerTime;
-        for (double left = kAnswerTime; left > 0; left = until - link.now()) {
-            parser.feed(std::span(bytes).first(link.read(bytes, left)));
-            if (const auto reply = parser.next()) return reply;
-        }
-        return {};
     }
 
     /// Wakes the boot loader.
@@ -180,6 +207,7 @@ private:
             if (count < chunk.size()) return "byte " + std::to_string(at + count) + " of the firmware found no echo";
             for (std::size_t n = 0; n < count; ++n)
                 if (echo[n] != chunk[n]) return "byte " + std::to_string(at + n) + " of the firmware came back changed";
+            if (settings_.onUpload) settings_.onUpload(at + count, firmware_.size());
         }
         return {};
     }
@@ -187,7 +215,8 @@ private:
     std::span<const std::uint8_t> firmware_;
     FalconStartSettings           settings_;
     const std::atomic<bool>*      cancel_;
-    double                        end_    = 0;                   ///< [s] of the link's clock
+    double                        end_ = 0;                      ///< [s] of the link's clock
+    std::string                   lost_;                         ///< why asking failed, if it did
     std::string                   reason_ = "it gave no answer"; ///< why the last attempt failed
 };
 
@@ -199,17 +228,32 @@ StartedFalcon startFalcon(const FalconLinkOpener& open, std::span<const std::uin
     return Start(firmware, settings, cancel).run(open);
 }
 
-void releaseMotors(FalconLink& link, const FalconCommand& command) noexcept
+FalconReadiness askFalcon(FalconLink& link)
+{
+    prepare(link, kRunLatency, FalconDivisor::run, 0);
+    FalconParser parser;
+    for (int n = 0, inARow = 0; n < kQuestions; ++n) {
+        link.write(encode(FalconCommand{}));
+        const auto reply = listen(link, parser);
+        inARow           = reply ? inARow + 1 : 0;
+        if (inARow == 2) return reply->homed() ? FalconReadiness::ready : FalconReadiness::notHomed;
+    }
+    return FalconReadiness::noFirmware;
+}
+
+bool releaseMotors(FalconLink& link, const FalconCommand& command) noexcept
 {
     FalconCommand zero = command;
     zero.motors        = {};
     for (int n = 0; n < 3; ++n) {
         try {
             link.write(encode(zero));
-        } catch (const std::exception&) { // gone: the motors let go by themselves
-            return;
+        } catch (const LinkGone&) { // the motors let go by themselves
+            return false;
+        } catch (const std::exception&) { // perhaps the next one gets through
         }
     }
+    return true;
 }
 
 } // namespace palp

@@ -25,10 +25,16 @@ enum class FalconDivisor : std::uint16_t {
     run    = 0x0002  ///< 1 500 000 baud: the firmware runs
 };
 
-/// The device went away, or the link to it is broken for good.
+/// The link is broken for good: another one must be opened. The device may be there, and push.
 class LinkLost : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
+};
+
+/// The device went away.
+class LinkGone : public LinkLost {
+public:
+    using LinkLost::LinkLost;
 };
 
 /// The FT232R bridge of one Falcon, open: control requests and two pipes. Implemented by LibusbLink and Ft232Emulator.
@@ -46,7 +52,8 @@ public:
     /// \throws LinkLost
     virtual void control(FtdiRequest request, std::uint16_t value) = 0;
 
-    /// All of it, or LinkLost; waits 0.1 s at most.
+    /// All of it, or LinkLost; waits 0.1 s at most. On a link that is lost but not gone it tries all the same before it
+    /// throws, so that zero force gets through to a device that still listens.
     virtual void write(std::span<const std::uint8_t> bytes) = 0;
 
     /// What came in, without the chip's status bytes; waits up to `timeout` [s] for the first byte.

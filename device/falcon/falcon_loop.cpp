@@ -29,6 +29,8 @@ constexpr double kPause       = 10e-3; ///< [s] ... so often, so that they do no
 constexpr double kFastest = 4;    ///< [m/s] of a grip; the governor stops at 1.2
 constexpr double kSlip    = 1e-3; ///< [m] that answers may come closer than they were asked for, at kFastest
 constexpr double kJump    = 5e-3; ///< [m] from one answer to the next, beyond which that is no velocity
+constexpr double kBlink   = 5e-3; ///< [s] after which an answer that is back in place proves no jump to be a mistake
+constexpr double kUsual   = 1.5;  ///< [m/s] of a grip that was in place all the time: just above the governor's limit
 
 constexpr std::size_t kRead = 512; ///< [byte] at once
 
@@ -38,6 +40,12 @@ bool isFinite(const glm::dvec3& v)
 }
 
 } // namespace
+
+DeviceLight falconLight(const HapticState& state) noexcept
+{
+    if (!state.homed) return DeviceLight::red;
+    return state.fault == DeviceFault::none && state.inBox ? DeviceLight::green : DeviceLight::blue;
+}
 
 FalconLoop::FalconLoop(std::unique_ptr<FalconLink> link, const FalconLoopSettings& settings)
     : link_(std::move(link)), settings_(settings), kinematics_(settings.geometry),
@@ -57,10 +65,12 @@ FalconLoop::FalconLoop(std::unique_ptr<FalconLink> link, const FalconLoopSetting
 
 const HapticState& FalconLoop::exchange(const FalconRequest& request) noexcept
 {
-    if (line_ == DeviceFault::unplugged) return state_;
+    if (isLost()) return state_;
     try {
-        const double now     = link_->now();
-        state_.fault         = line_ != DeviceFault::none ? line_ : request.host;
+        const double now = link_->now();
+        state_.fault     = line_ != DeviceFault::none ? line_ : request.host;
+        if (state_.fault == DeviceFault::none && inDoubt_ && now - placed_ > kBlink)
+            state_.fault = DeviceFault::kinematics;
         const bool mustLetGo = now - answered_ >= kStale && command_.motors != FalconCommand{}.motors;
         if (state_.missed < kPatience || now - sent_ >= kPause || mustLetGo) send(request, now);
 
@@ -71,35 +81,44 @@ const HapticState& FalconLoop::exchange(const FalconRequest& request) noexcept
             if (isAnswered && link_->now() - sent_ >= kBothWays) break; // one that came sooner answers another packet
         }
         if (!isAnswered) miss();
-    } catch (const std::exception&) { // LinkLost, or no memory for the link
-        lose();
+    } catch (const LinkGone&) {
+        lose(Loss::gone);
+    } catch (const std::exception&) { // any other LinkLost, or no memory for the link
+        lose(Loss::broken);
     }
     return state_;
 }
 
 void FalconLoop::listen(double until) noexcept
 {
-    if (line_ == DeviceFault::unplugged) return;
+    if (isLost()) return;
     try {
         for (double left = until - link_->now(); left > 0; left = until - link_->now()) collect(left);
+    } catch (const LinkGone&) {
+        lose(Loss::gone);
     } catch (const std::exception&) {
-        lose();
+        lose(Loss::broken);
     }
 }
 
 FalconLoop::~FalconLoop()
 {
-    if (line_ == DeviceFault::unplugged) return;
+    if (loss_ != Loss::gone) release();
+}
+
+/// \return false: the device is gone
+bool FalconLoop::release() noexcept
+{
     command_.homing = false;
     command_.lights = settings_.showsState ? std::uint8_t(DeviceLight::none) : command_.lights;
-    releaseMotors(*link_, command_);
+    return releaseMotors(*link_, command_);
 }
 
 void FalconLoop::send(const FalconRequest& request, double now)
 {
     command_.motors = drive(request, now).motors;
     command_.homing = !state_.homed;
-    command_.lights = lights(request);
+    command_.lights = settings_.showsState ? std::uint8_t(falconLight(state_)) : request.lights;
     sent_           = now;
     link_->write(encode(command_));
 }
@@ -109,22 +128,21 @@ FalconDrive FalconLoop::drive(const FalconRequest& request, double now) noexcept
     if (!isFinite(request.force) && state_.fault == DeviceFault::none) state_.fault = DeviceFault::badForce;
     const glm::dvec3 force = allowed(request, now);
     if (force == glm::dvec3(0)) return {};
-    return motors_.drive(state_.position + FalconKinematics::kMiddle, force);
+    const FalconDrive made = motors_.drive(state_.position + FalconKinematics::kMiddle, force);
+    if (made.badForce) state_.fault = DeviceFault::badForce;
+    if (made.singular) state_.fault = DeviceFault::kinematics;
+    if (made.badForce || made.singular) gain_ = 0;
+    return made;
 }
 
 /// [N] what of the wanted force may act.
 glm::dvec3 FalconLoop::allowed(const FalconRequest& request, double now) noexcept
 {
-    const bool isOpen = state_.fault == DeviceFault::none && state_.homed && state_.inBox && now - answered_ < kStale;
-    gain_             = isOpen ? std::min(1.0, gain_ + std::min(now - sent_, kLongest) / kRise) : 0;
+    const bool isOpen =
+        state_.fault == DeviceFault::none && state_.homed && state_.inBox && !inDoubt_ && now - answered_ < kStale;
+    const double most = std::clamp(request.share, 0.0, 1.0);
+    gain_             = isOpen ? std::min(most, gain_ + std::min(now - sent_, kLongest) / kRise) : 0;
     return isOpen ? gain_ * request.force : glm::dvec3(0);
-}
-
-std::uint8_t FalconLoop::lights(const FalconRequest& request) const noexcept
-{
-    if (!settings_.showsState) return request.lights;
-    if (!state_.homed) return std::uint8_t(DeviceLight::red);
-    return std::uint8_t(state_.fault == DeviceFault::none && state_.inBox ? DeviceLight::green : DeviceLight::blue);
 }
 
 /// Reads once; of several answers only the newest counts. \return whether there was one, and it was believed
@@ -139,11 +157,10 @@ bool FalconLoop::collect(double timeout)
 
 bool FalconLoop::accept(const FalconReply& reply) noexcept
 {
-    const double  now     = link_->now();
-    const Placing placing = reply.homed() ? place(reply, now) : Placing::unknown;
-    disbelief_            = placing == Placing::incredible;
+    const double now    = link_->now();
+    const bool   isGood = reply.homed() && place(reply, now);
+    disbelief_          = reply.homed() && !isGood && hasPlace_ && now - placed_ <= kBlink;
     if (disbelief_) return false;
-    const bool isGood = placing == Placing::good;
 
     state_.homed   = reply.homed();
     state_.inBox   = isGood && glm::length(state_.position) <= settings_.workspaceRadius;
@@ -155,10 +172,9 @@ bool FalconLoop::accept(const FalconReply& reply) noexcept
     skipped_  = parser_.skipped();
     good_     = isGood || !reply.homed() ? good_ + 1 : 0;
     unsolved_ = isGood || !reply.homed() ? 0 : unsolved_ + 1;
-    if (!isGood) {
-        state_.velocity = {};
-        hasPlace_       = false;
-    }
+    if (!isGood) state_.velocity = {};
+    if (!isGood && hasPlace_ && state_.fault == DeviceFault::none) state_.fault = DeviceFault::kinematics;
+    if (!reply.homed()) forgetPlace();
     if (unsolved_ > kMostMissed && line_ == DeviceFault::none) line_ = DeviceFault::kinematics;
     if (good_ >= kGoodAgain) line_ = DeviceFault::none;
     if (line_ != DeviceFault::none) state_.fault = line_;
@@ -166,21 +182,46 @@ bool FalconLoop::accept(const FalconReply& reply) noexcept
 }
 
 /// Position and velocity of a homed arm; both stay where there is none, or none that is believed.
-FalconLoop::Placing FalconLoop::place(const FalconReply& reply, double now) noexcept
+bool FalconLoop::place(const FalconReply& reply, double now) noexcept
 {
     const auto angles   = kinematics_.angles(reply.encoders);
     const auto position = kinematics_.position(angles, state_.position + FalconKinematics::kMiddle);
-    if (!position) return Placing::unknown;
-    const glm::dvec3 here  = *position - FalconKinematics::kMiddle;
-    const double     moved = glm::length(here - state_.position);
-    if (hasPlace_ && moved > kSlip + kFastest * (now - placed_)) return Placing::incredible;
-    if (!hasPlace_ || moved > kJump) window_.restart();
+    if (!position) { // a jump as well: to a place that there is not
+        inDoubt_ = hasPlace_;
+        agreed_  = 0;
+        return false;
+    }
+    const glm::dvec3 here = *position - FalconKinematics::kMiddle;
+    if (hasPlace_ && !isCredible(here, now)) return false;
+    if (!hasPlace_ || glm::length(here - state_.position) > kJump) window_.restart();
+    forgetPlace();
     window_.add(now, here);
     state_.position = here;
     state_.velocity = window_.velocity();
     placed_         = now;
     hasPlace_       = true;
-    return Placing::good;
+    return true;
+}
+
+/// How far it may have moved grows with time, so that time alone must not make a jump credible.
+bool FalconLoop::isCredible(const glm::dvec3& here, double now) noexcept
+{
+    const double moved = glm::length(here - state_.position), since = now - placed_;
+    if (!inDoubt_ && moved <= kSlip + kFastest * since) return true;
+    if (inDoubt_ && since <= kBlink && moved <= kSlip + kUsual * since) return true;
+    const double reach = kSlip + kFastest * std::min(now - seen_, kLongest);
+    agreed_            = inDoubt_ && agreed_ > 0 && glm::length(here - elsewhere_) <= reach ? agreed_ + 1 : 1;
+    inDoubt_           = true;
+    elsewhere_         = here;
+    seen_              = now;
+    return agreed_ >= kGoodAgain;
+}
+
+/// The next position is believed, wherever it is.
+void FalconLoop::forgetPlace() noexcept
+{
+    hasPlace_ = inDoubt_ = false;
+    agreed_              = 0;
 }
 
 void FalconLoop::miss() noexcept
@@ -190,12 +231,14 @@ void FalconLoop::miss() noexcept
     if (state_.missed <= kMostMissed && link_->now() - answered_ <= kMostSilence) return;
     const bool isNonsense = disbelief_ || parser_.skipped() != skipped_;
     line_ = state_.fault = isNonsense ? DeviceFault::garbled : DeviceFault::silent;
-    hasPlace_            = false;
+    forgetPlace();
 }
 
-void FalconLoop::lose() noexcept
+/// What is not gone for certain may still push, and may still hear.
+void FalconLoop::lose(Loss loss) noexcept
 {
-    line_ = state_.fault = DeviceFault::unplugged;
+    loss_ = loss == Loss::broken && !release() ? Loss::gone : loss;
+    line_ = state_.fault = loss_ == Loss::gone ? DeviceFault::unplugged : DeviceFault::silent;
     state_.homed = state_.inBox = false;
     state_.velocity             = {};
     ++state_.missed;

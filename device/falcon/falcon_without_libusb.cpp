@@ -10,7 +10,12 @@ std::string falconSupport()
     return "compiled without libusb-1.0";
 }
 
-std::vector<FalconListing> listFalcons()
+bool hasFalconSupport() noexcept
+{
+    return false;
+}
+
+std::vector<FalconListing> findFalcons()
 {
     return {};
 }

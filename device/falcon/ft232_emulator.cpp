@@ -29,7 +29,7 @@ double byteTime(std::uint16_t divisor)
     return kBitsPerByte * by / kClock;
 }
 
-/// One opening of the emulator's link; lost once the emulator was unplugged.
+/// One opening of the emulator's link; gone once the emulator was unplugged, lost once a write failed.
 class Connection final : public FalconLink {
 public:
     explicit Connection(Ft232Emulator& emulator) noexcept : emulator_(emulator) {}
@@ -55,17 +55,21 @@ private:
     template <class Action>
     void guard(const Action& action)
     {
-        if (isLost_) throw LinkLost("the Falcon was unplugged");
+        if (isGone_) throw LinkGone("the Falcon was unplugged");
         try {
             action();
+        } catch (const LinkGone&) {
+            isGone_ = true;
+            throw;
         } catch (const LinkLost&) {
             isLost_ = true;
             throw;
         }
+        if (isLost_) throw LinkLost("the Falcon's link is broken");
     }
 
     Ft232Emulator& emulator_;
-    bool           isLost_ = false;
+    bool           isGone_ = false, isLost_ = false;
 };
 
 } // namespace
@@ -105,7 +109,7 @@ double Ft232Emulator::unstalled(double time) const noexcept
 
 void Ft232Emulator::demandPlugged() const
 {
-    if (troubled(LinkTroubleKind::unplug, time_)) throw LinkLost("the Falcon was unplugged");
+    if (troubled(LinkTroubleKind::unplug, time_)) throw LinkGone("the Falcon was unplugged");
 }
 
 void Ft232Emulator::control(FtdiRequest request, std::uint16_t value)

@@ -1,4 +1,4 @@
-// The only file that knows libusb: listing Falcons, and the link to one.
+// Listing Falcons by libusb, and the link to one.
 #include "device/falcon/libusb_link.h"
 
 #include <algorithm>
@@ -7,9 +7,12 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 #include <libusb.h>
 
+#include "device/falcon/byte_ring.h"
+#include "device/falcon/libusb_words.h"
 #include "engine/core/contract.h"
 
 namespace palp {
@@ -27,22 +30,18 @@ constexpr std::size_t kBuffer = 256;  ///< [bytes] of a transfer: what the chip 
 constexpr std::size_t kQueued = 4;    ///< transfers that wait: at a latency timer of 1 ms, 4 ms of a host that is away
 constexpr std::size_t kInbox  = 4096; ///< [bytes] that came in and were not read; then the oldest go
 
-constexpr double       kWriteTimeout   = 0.1;  ///< [s] FalconLink::write() promises it
-constexpr double       kCloseTimeout   = 1;    ///< [s] for transfers to come back; the kernel needs a few ms
-constexpr unsigned int kControlTimeout = 100;  ///< [ms]
-constexpr double       kLongestWait    = 3600; ///< [s] of a read, so that it fits the system's clock
+constexpr double       kWriteTimeout   = 0.1;   ///< [s] FalconLink::write() promises it
+constexpr double       kCancelTime     = 20e-3; ///< [s] for a write that hangs to come back, before another
+constexpr double       kCloseTimeout   = 1;     ///< [s] for transfers to come back; the kernel needs a few ms
+constexpr unsigned int kControlTimeout = 100;   ///< [ms]
+constexpr double       kLongestWait    = 3600;  ///< [s] of a read, so that it fits the system's clock
 
-struct Exit {
-    void operator()(libusb_context* context) const { libusb_exit(context); }
+template <auto free>
+struct By {
+    void operator()(auto* it) const { free(it); }
 };
-struct Close {
-    void operator()(libusb_device_handle* handle) const { libusb_close(handle); }
-};
-struct Free {
-    void operator()(libusb_transfer* transfer) const { libusb_free_transfer(transfer); }
-};
-using Context = std::unique_ptr<libusb_context, Exit>;
-using Handle  = std::unique_ptr<libusb_device_handle, Close>; ///< its interface is claimed; closing gives it back
+using Context = std::unique_ptr<libusb_context, By<libusb_exit>>;
+using Handle  = std::unique_ptr<libusb_device_handle, By<libusb_close>>; ///< its interface is claimed until it closes
 
 Context start()
 {
@@ -112,73 +111,14 @@ Handle claim(libusb_device* device, FalconListing& listing)
     listing.usable = found == 0;
     if (listing.usable) return handle;
 
-    switch (found) {
-    case LIBUSB_ERROR_ACCESS:
-        listing.why  = "no permission to open it";
-        listing.help = "put this line into /etc/udev/rules.d/70-palpate-falcon.rules and plug it in anew: " +
-                       std::string(kFalconUdevLine);
-        break;
-    case LIBUSB_ERROR_BUSY:
-        listing.why  = "a program has it open already";
-        listing.help = "end the other program that uses it";
-        break;
-    default:
-        listing.why  = std::string("it cannot be opened: ") + libusb_error_name(found);
-        listing.help = "plug it in anew, without a hub";
-    }
+    const UsbRefusal because = refusal(found);
+    listing.why              = because.why;
+    listing.help             = because.help;
     return nullptr;
 }
 
-const char* reasonOf(libusb_transfer_status status)
-{
-    switch (status) {
-    case LIBUSB_TRANSFER_NO_DEVICE:
-        return "it was unplugged";
-    case LIBUSB_TRANSFER_STALL:
-        return "it refused (stall)";
-    case LIBUSB_TRANSFER_OVERFLOW:
-        return "it sent too much at once";
-    case LIBUSB_TRANSFER_CANCELLED:
-        return "the transfer was cancelled";
-    case LIBUSB_TRANSFER_TIMED_OUT:
-        return "it took too long";
-    default:
-        return "the transfer failed";
-    }
-}
-
-/// What came in and was not read yet: a ring of the newest kInbox bytes.
-class Inbox {
-public:
-    [[nodiscard]] bool empty() const noexcept { return held_ == 0; }
-
-    void put(std::span<const std::uint8_t> bytes) noexcept
-    {
-        for (const std::uint8_t byte : bytes) {
-            bytes_[(oldest_ + held_) % kInbox] = byte;
-            if (held_ < kInbox)
-                ++held_;
-            else
-                oldest_ = (oldest_ + 1) % kInbox;
-        }
-    }
-
-    std::size_t take(std::span<std::uint8_t> bytes) noexcept
-    {
-        const std::size_t taken = std::min(bytes.size(), held_);
-        for (std::size_t n = 0; n < taken; ++n) bytes[n] = bytes_[(oldest_ + n) % kInbox];
-        oldest_ = (oldest_ + taken) % kInbox;
-        held_ -= taken;
-        return taken;
-    }
-
-private:
-    std::array<std::uint8_t, kInbox> bytes_{};
-    std::size_t                      oldest_ = 0, held_ = 0;
-};
-
-/// See openFalcon(). Once lost_ is set no transfer is submitted any more; one that is pending belongs to libusb until
-/// its callback, which only comes from inside pump() and the control requests.
+/// See openFalcon(). Once lost_ is set no transfer is submitted any more, but by writeAnyway(); one that is pending
+/// belongs to libusb until its callback, which only comes from inside pump() and the control requests.
 class LibusbLink final : public FalconLink {
 public:
     LibusbLink(Context context, Handle handle, std::string path)
@@ -197,9 +137,7 @@ public:
         for (Transfer& transfer : in_)
             if (transfer.pending) libusb_cancel_transfer(transfer.raw.get());
         if (out_.pending) libusb_cancel_transfer(out_.raw.get());
-        const double end = now() + kCloseTimeout;
-        while (!idle() && now() < end)
-            if (!pump(end - now())) break;
+        settle(idle, kCloseTimeout);
         // If one still has not come back: libusb forgets it as it closes the handle. So the transfers are freed after.
         libusb_release_interface(handle_.get(), kInterface);
         handle_.reset();
@@ -215,20 +153,19 @@ public:
         finishWriting(now() + kWriteTimeout);
         const int done = libusb_control_transfer(handle_.get(), kVendorRequest, std::uint8_t(request), value, 0,
                                                  nullptr, 0, kControlTimeout);
-        if (done < 0) lose("a request failed: ", libusb_error_name(done));
+        if (done < 0) lose("a request failed: ", libusb_error_name(done), done == LIBUSB_ERROR_NO_DEVICE);
         throwIfLost();
     }
 
     void write(std::span<const std::uint8_t> bytes) override
     {
+        if (lost_ && !lost_->isGone) return writeAnyway(bytes);
         const double end = now() + kWriteTimeout;
         do {
             finishWriting(end);
-            const auto part  = bytes.first(std::min(bytes.size(), kBuffer));
-            bytes            = bytes.subspan(part.size());
-            out_.raw->length = int(part.size());
-            std::ranges::copy(part, out_.buffer.begin());
-            if (!part.empty()) submit(out_);
+            const auto part = bytes.first(std::min(bytes.size(), kBuffer));
+            bytes           = bytes.subspan(part.size());
+            if (!part.empty()) submitWrite(part);
             throwIfLost();
         } while (!bytes.empty());
     }
@@ -242,18 +179,22 @@ public:
 
     void throwIfLost() const
     {
-        if (lost_) throw LinkLost(nameOf(path_) + ": " + lost_->doing + lost_->reason);
+        if (!lost_) return;
+        const std::string what = nameOf(path_) + ": " + lost_->doing + lost_->reason;
+        if (lost_->isGone) throw LinkGone(what);
+        throw LinkLost(what);
     }
 
 private:
     struct Transfer {
-        LibusbLink*                            link = nullptr;
-        std::unique_ptr<libusb_transfer, Free> raw;
-        std::array<unsigned char, kBuffer>     buffer{};
-        bool                                   pending = false; ///< submitted, and its callback has not come
+        LibusbLink*                                                link = nullptr;
+        std::unique_ptr<libusb_transfer, By<libusb_free_transfer>> raw;
+        std::array<unsigned char, kBuffer>                         buffer{};
+        bool pending = false; ///< submitted, and its callback has not come
     };
     struct Loss {
         const char *doing, *reason; ///< of static texts: a callback must not throw
+        bool        isGone;         ///< the device, not only the link
     };
 
     void prepare(Transfer& transfer, unsigned char endpoint, libusb_transfer_cb_fn callback)
@@ -268,15 +209,45 @@ private:
 
     void submit(Transfer& transfer) noexcept
     {
-        if (lost_) return;
-        const int failed = libusb_submit_transfer(transfer.raw.get());
-        transfer.pending = failed == 0;
-        if (failed) lose("a transfer was refused: ", libusb_error_name(failed));
+        if (!lost_) submitAnyway(transfer);
     }
 
-    void lose(const char* doing, const char* reason) noexcept
+    void submitAnyway(Transfer& transfer) noexcept
     {
-        if (!lost_) lost_ = Loss{doing, reason};
+        const int failed = libusb_submit_transfer(transfer.raw.get());
+        transfer.pending = failed == 0;
+        if (failed) lose("a transfer was refused: ", libusb_error_name(failed), failed == LIBUSB_ERROR_NO_DEVICE);
+    }
+
+    void submitWrite(std::span<const std::uint8_t> part) noexcept
+    {
+        out_.raw->length = int(part.size());
+        std::ranges::copy(part, out_.buffer.begin());
+        submitAnyway(out_);
+    }
+
+    /// On a link that is lost, to a device that may still listen: see FalconLink::write(). One buffer at most.
+    void writeAnyway(std::span<const std::uint8_t> bytes)
+    {
+        const auto isOut = [this] { return !out_.pending; };
+        if (out_.pending) libusb_cancel_transfer(out_.raw.get()); // the one that hangs
+        settle(isOut, kCancelTime);
+        if (std::exchange(isStalled_, false)) static_cast<void>(libusb_clear_halt(handle_.get(), kOut));
+        if (!out_.pending && !bytes.empty()) submitWrite(bytes.first(std::min(bytes.size(), kBuffer)));
+        settle(isOut, kWriteTimeout);
+        throwIfLost();
+    }
+
+    /// The first cause is kept; that the device is gone may turn out later.
+    void lose(const char* doing, const char* reason, bool isGone = false) noexcept
+    {
+        if (!lost_) lost_ = Loss{doing, reason, isGone};
+        lost_->isGone = lost_->isGone || isGone;
+    }
+
+    void lose(const char* doing, libusb_transfer_status status) noexcept
+    {
+        lose(doing, transferFailure(status), status == LIBUSB_TRANSFER_NO_DEVICE);
     }
 
     static void LIBUSB_CALL onIn(libusb_transfer* raw)
@@ -284,7 +255,7 @@ private:
         Transfer&   transfer = *static_cast<Transfer*>(raw->user_data);
         LibusbLink& link     = *transfer.link;
         transfer.pending     = false;
-        if (raw->status != LIBUSB_TRANSFER_COMPLETED) return link.lose("reading failed: ", reasonOf(raw->status));
+        if (raw->status != LIBUSB_TRANSFER_COMPLETED) return link.lose("reading failed: ", raw->status);
 
         std::span<const std::uint8_t> rest(raw->buffer, std::size_t(raw->actual_length));
         while (rest.size() > kStatus) {
@@ -299,8 +270,9 @@ private:
     {
         Transfer& transfer = *static_cast<Transfer*>(raw->user_data);
         transfer.pending   = false;
+        if (raw->status == LIBUSB_TRANSFER_STALL) transfer.link->isStalled_ = true;
         if (raw->status != LIBUSB_TRANSFER_COMPLETED)
-            transfer.link->lose("writing failed: ", reasonOf(raw->status));
+            transfer.link->lose("writing failed: ", raw->status);
         else if (raw->actual_length != raw->length)
             transfer.link->lose("writing failed: ", "it took only a part");
     }
@@ -325,10 +297,19 @@ private:
         for (double left = end - now(); !done() && !lost_ && left > 0; left = end - now()) pump(left);
     }
 
+    /// The same, even though the link is lost.
+    template <class Done>
+    void settle(const Done& done, double timeout) noexcept
+    {
+        const double end = now() + timeout;
+        while (!done() && now() < end && pump(end - now())) {
+        }
+    }
+
     void finishWriting(double end)
     {
         waitFor([&] { return !out_.pending; }, end - now());
-        if (out_.pending) lose("writing failed: ", reasonOf(LIBUSB_TRANSFER_TIMED_OUT));
+        if (out_.pending) lose("writing failed: ", LIBUSB_TRANSFER_TIMED_OUT);
         throwIfLost();
     }
 
@@ -336,10 +317,11 @@ private:
     Context                       context_;
     Handle                        handle_;
     std::string                   path_;
-    Inbox                         inbox_;
+    ByteRing<kInbox>              inbox_;
     std::array<Transfer, kQueued> in_;
     Transfer                      out_;
     std::optional<Loss>           lost_;
+    bool                          isStalled_ = false; ///< the pipe to the device
 };
 
 } // namespace
@@ -350,7 +332,12 @@ std::string falconSupport()
     return "libusb-1.0 " + std::to_string(v->major) + "." + std::to_string(v->minor) + "." + std::to_string(v->micro);
 }
 
-std::vector<FalconListing> listFalcons()
+bool hasFalconSupport() noexcept
+{
+    return true;
+}
+
+std::vector<FalconListing> findFalcons()
 {
     const Context              context = start();
     std::vector<FalconListing> listings;

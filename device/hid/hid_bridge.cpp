@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "device/held_force.h"
 #include "device/setting_range.h"
 #include "engine/core/contract.h"
 #include "engine/core/real_time.h"
@@ -13,16 +14,21 @@
 namespace palp {
 namespace {
 
-constexpr double kHostStall = 0.1;  // [s] without an exchange: see DeviceFault::hostTooSlow
-constexpr double kSilence   = 0.1;  // [s] without an answer: see DeviceFault::silent
-constexpr int    kMissed    = 20;   // [1] exchanges without an answer, likewise
-constexpr double kQuiet     = 0.02; // [s] between the zero commands of a host that is too slow: five in the time that
-                                    // made it so, and far from flooding
-constexpr int kZeros = 3;           // [1] commands at the end: one may be lost with its packet, hardly three
-constexpr int kRestart =
+constexpr double kSilence = 0.1;  // [s] without an answer: see DeviceFault::silent
+constexpr int    kMissed  = 20;   // [1] exchanges without an answer, likewise
+constexpr double kQuiet   = 0.02; // [s] between the zero commands of a host that does not call: far from flooding
+constexpr double kStep    = 1e-3; // [s] between commands while a force falls, at least
+constexpr double kLongest = 4e-3; // [s] that counts of the time between two commands, as for the governor
+constexpr int    kZeros   = 3;    // [1] commands at the end: one may be lost with its packet, hardly three
+constexpr int    kRestart =
     20; // [1] answers that go on counting from an old number, until it is a device that started anew
 constexpr int    kMostReports = 64; // [1] per pass: whoever is flooded still writes
 constexpr double kFarOut      = 2;  // [1] times the workspace's radius: no arm gets there
+
+double secondsSince(std::chrono::steady_clock::time_point then)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
+}
 
 bool isFinite(const glm::dvec3& v) noexcept
 {
@@ -87,7 +93,8 @@ void HidBridgeDevice::open()
     describe(seen_.answer);
     open_        = true;
     state_.fault = DeviceFault::none;
-    lastTaken_ = lastSent_ = Clock::now();
+    share_       = 1;
+    lastAsked_ = lastSent_ = Clock::now();
     inbox_.draft()         = seen_;
     inbox_.publish();
     if (settings_.pace == HidPace::thread) thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
@@ -166,16 +173,30 @@ void HidBridgeDevice::send(BridgeCommand command)
 void HidBridgeDevice::sendNewest()
 {
     if (!outbox_.take()) return;
-    lastTaken_ = Clock::now();
-    send(*outbox_.held());
+    lastAsked_ = outbox_.held()->time;
+    sendShare(1);
 }
 
-/// Zero force in the name of a host that does not call.
-void HidBridgeDevice::keepQuiet()
+/// The force last asked for, or what of it may go out: at most that, and more by and by after it had to be less.
+void HidBridgeDevice::sendShare(double most)
 {
-    using Seconds  = std::chrono::duration<double>;
-    const auto now = Clock::now();
-    if (now - lastTaken_ > Seconds(kHostStall) && (hot_ || now - lastSent_ > Seconds(kQuiet))) send({});
+    BridgeCommand command = outbox_.held()->command;
+    const double  rise    = std::min(secondsSince(lastSent_), kLongest) / kForceFall;
+    share_                = std::min(most, share_ + rise);
+    command.force *= share_;
+    command.enable = command.enable && share_ > 0;
+    send(command);
+}
+
+/// In the name of a host that does not call: less and less force, then zero over and over.
+void HidBridgeDevice::letFall()
+{
+    const double age = secondsSince(lastAsked_), share = heldShare(age);
+    if (hot_ && share < 1) {
+        if (share == 0 || secondsSince(lastSent_) >= kStep) sendShare(share);
+    } else if (share == 0 && secondsSince(lastSent_) > kQuiet) {
+        send({});
+    }
 }
 
 /// Reads, then writes. \return false: the device is gone
@@ -184,7 +205,7 @@ bool HidBridgeDevice::pass(double wait) noexcept
     try {
         receive(wait);
         sendNewest();
-        if (settings_.pace == HidPace::thread) keepQuiet();
+        if (settings_.pace == HidPace::thread) letFall();
     } catch (const HidLost&) {
         seen_.lost = true;
     }
@@ -218,11 +239,12 @@ HapticState HidBridgeDevice::exchange(const GovernedForce& force, double now) no
     if (!open_ || state_.fault == DeviceFault::unplugged) return state_;
     const bool own = settings_.pace == HidPace::caller;
     if (own) pass(0);
+    follow(now);
     note(now);
     state_.fault = faultAt(force, now);
 
-    BridgeCommand& command = outbox_.draft();
-    command                = {};
+    BridgeCommand& command = outbox_.draft().command;
+    outbox_.draft()        = {{}, Clock::now()};
     command.enable         = state_.fault == DeviceFault::none && state_.homed && info_.maximumForce > 0;
     command.force          = command.enable ? renderable(force.newtons()) : glm::dvec3(0);
     command.home           = homing_ && !state_.homed;
@@ -238,6 +260,16 @@ HapticState HidBridgeDevice::exchange(const GovernedForce& force, double now) no
     started_      = true;
     lastExchange_ = now;
     return state_;
+}
+
+/// The servo's clock may start anew: all times go back with it.
+void HidBridgeDevice::follow(double now) noexcept
+{
+    if (!started_ || !(now < lastExchange_)) return;
+    const double back = lastExchange_ - now;
+    lastExchange_ -= back;
+    lastAnswer_ -= back;
+    state_.time -= back;
 }
 
 /// Takes over the newest answer, if there is one.
@@ -281,7 +313,7 @@ DeviceFault HidBridgeDevice::faultAt(const GovernedForce& force, double now) con
     if (impossible_) return DeviceFault::kinematics;
     if (stopped_) return DeviceFault::ownWatchdog;
     if (!isFinite(force.newtons())) return DeviceFault::badForce;
-    if (started_ && now - lastExchange_ > kHostStall) return DeviceFault::hostTooSlow;
+    if (started_ && now - lastExchange_ > kHostTooSlow) return DeviceFault::hostTooSlow;
     return DeviceFault::none;
 }
 

@@ -16,7 +16,7 @@ namespace palp {
 [[nodiscard]] bool isBridge(const HidListing& listing) noexcept;
 
 struct HidBridgeSettings {
-    double  watchdog = 50e-3; ///< [s] the device goes to zero force that long after the last command; 2 ms to 0.255 s
+    double  watchdog = 25e-3; ///< [s] the device goes to zero force that long after the last command; 2 ms to 0.255 s
     double  openWait = 1;     ///< [s] for the first report
     double  readWait = 1e-3;  ///< [s] the thread waits for a report before it looks for a command again
     HidPace pace     = HidPace::thread;
@@ -27,8 +27,9 @@ struct HidBridgeSettings {
 ///
 /// exchange() leaves a command in one three-slot hand-off and takes the newest answer from another; the driver's thread
 /// does the reading and writing. Force flows only while the device is homed and there is no fault: every other command
-/// says zero, and motors off. On close, and if exchange() stays away for 100 ms, several such commands go out; beyond
-/// that the device's own watchdog is the last line.
+/// says zero, and motors off. A force that exchange() does not renew is held for 5 ms and falls to zero in 20 ms more,
+/// where the driver has a thread; then, and on close, several such commands go out. Beyond that the device's own
+/// watchdog is the last line.
 ///
 /// A fault is shown while its cause lasts; only "unplugged" stays until close().
 /// \thread see HapticDevice
@@ -57,17 +58,24 @@ private:
         bool          lost    = false;
     };
 
+    struct Asked {
+        BridgeCommand     command;
+        Clock::time_point time;
+    };
+
     // Of the thread, or of exchange() where that sets the pace.
     void receive(double wait);
     void take(const BridgeAnswer& answer) noexcept;
     void send(BridgeCommand command);
     void sendNewest();
-    void keepQuiet();
+    void letFall();
+    void sendShare(double most);
     bool pass(double wait) noexcept;
     void run(const std::stop_token& stop) noexcept;
     void sayZero() noexcept;
 
     // Of exchange().
+    void                      follow(double now) noexcept;
     void                      note(double now) noexcept;
     [[nodiscard]] DeviceFault faultAt(const GovernedForce& force, double now) const noexcept;
     [[nodiscard]] glm::dvec3  renderable(const glm::dvec3& force) const noexcept;
@@ -80,7 +88,7 @@ private:
     HapticDeviceInfo          info_;
     std::atomic<bool>         homing_{false};
     std::atomic<std::uint8_t> lights_{0};
-    Latest<BridgeCommand>     outbox_;
+    Latest<Asked>             outbox_;
     Latest<Inbox>             inbox_;
 
     // Of the thread, or of exchange() where that sets the pace.
@@ -91,7 +99,8 @@ private:
     int                      goesOn_       = 0;     ///< [1] old answers that follow one another
     std::uint16_t            sent_         = 0;     ///< sequence of the last command
     bool                     hot_          = false; ///< the last command may have had the motors on
-    Clock::time_point        lastTaken_, lastSent_;
+    double                   share_        = 1;     ///< [1] of the force asked for that goes out
+    Clock::time_point        lastAsked_, lastSent_;
 
     // Of exchange().
     HapticState   state_;

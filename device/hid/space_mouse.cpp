@@ -119,6 +119,7 @@ HapticState SpaceMouse::exchange(const GovernedForce& /*force*/, double now) noe
 {
     if (!port_ || state_.fault == DeviceFault::unplugged) return state_;
     if (settings_.pace == HidPace::caller) pass(0);
+    if (state_.sequence > 0 && now < state_.time) lastReport_ += now - state_.time; // the servo's clock starts anew
     inbox_.take();
     const Seen seen = inbox_.held() ? *inbox_.held() : Seen{};
     if (seen.reports != lastReports_) {

@@ -16,7 +16,7 @@ constexpr double kHoldHeight = 1.0;
 /// Fits after a step at which the surface was further away than kHoldHeight [1].
 constexpr int kFitsFromAfar = 3;
 
-/// The ball rolls at most this far per round [largest spacing]: the search stays a ball of some hundred points.
+/// The ball rolls at most this far per round [largest spacing]: bounds the search along a way close over a sheet.
 constexpr double kLongestRoll = 24;
 
 /// Moves at most `longest` [m] towards the goal.
@@ -50,18 +50,7 @@ glm::dvec3 FreeTravel::roll(const glm::dvec3& from, const glm::dvec3& goal) noex
     const double     largest = points_.largestSpacing();
     const glm::dvec3 to      = stepTowards(from, goal, kLongestRoll * largest);
     const glm::dvec3 way     = to - from;
-    const double     way2    = glm::dot(way, way);
-    double           share   = 1; // of the way
-    points_.insideOnce(0.5 * (from + to), 0.5 * std::sqrt(way2) + kBall * largest, [&](const NearPoint& point) {
-        // |from + t way - p|^2 = radius^2; the lesser root is where the ball comes to touch.
-        const glm::dvec3 d            = from - point.position;
-        const double     radius       = kBall * point.spacing;
-        const double     half         = glm::dot(d, way);
-        const double     outside      = glm::dot(d, d) - radius * radius;
-        const double     discriminant = half * half - way2 * outside;
-        if (half >= 0 || outside <= 0 || discriminant < 0) return;
-        share = std::min(share, outside / (std::sqrt(discriminant) - half));
-    });
+    const double     share   = points_.firstTouch(from, to);
     // A touch must put the point into the ball, or the next round would see it come again and again.
     constexpr double kInto = 1e-9; // [largest spacing]
     return share < 1 ? stepTowards(from + share * way, to, kInto * largest) : to;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -16,12 +17,22 @@ namespace {
 
 constexpr std::size_t kNeighbours = 6; ///< [1] besides the point itself
 
-/// Search radius over the cloud's spacing: holds 15 points where the cloud is as dense as usual. Where it holds fewer
-/// than seven the exact, slower search follows.
-constexpr double kLikelyReach = 2.2;
+/// Search radius over the distance of the sixth neighbour of the point before, a near one: holds 15 points where the
+/// density does not vary. Where it holds fewer than seven the exact, slower search follows. (The cloud's usual spacing
+/// would not do: where points are a hundred times closer it holds a hundred thousand of them.)
+constexpr double kLikelyReach = 1.6;
 
 /// Radius of the median over the point's own first guess: 28 points of a regular sheet.
 constexpr double kMedianReach = 3;
+
+/// A point that is so much further from its neighbours than they are among themselves [1] is a stray, or one of the
+/// sparse side of a step in density; in a random sheet none is, at its corners neither. Then it is the area that
+/// decides and not the number of points: of a stray the others' spacing holds, as all around is theirs.
+constexpr double kAlone = 3;
+
+/// Share of the disc around such a point that the others' areas cover if it is a stray over a sheet [1]: 0.8, wherever
+/// it is. Just outside a dense half of a sheet it is 0.4.
+constexpr double kCovered = 0.6;
 
 /// Where points coincide no spacing falls below this share of the cloud's [1]: radii must stay lengths.
 constexpr double kLeast = 0.05;
@@ -55,6 +66,19 @@ double median(std::vector<double>& values)
     return *middle;
 }
 
+/// The value that half of the area does not exceed, each value standing for an area of its square; reorders. Infinite
+/// if together they cover less than kCovered of a disc.
+double medianOfArea(std::vector<double>& values, double radius)
+{
+    std::sort(values.begin(), values.end());
+    double all = 0, sum = 0;
+    for (const double value : values) all += value * value;
+    if (all < kCovered * std::numbers::pi * radius * radius) return std::numeric_limits<double>::infinity();
+    for (const double value : values)
+        if (sum += value * value; sum >= 0.5 * all) return value;
+    return values.back();
+}
+
 } // namespace
 
 std::vector<double> localSpacings(std::span<const glm::dvec3> positions, const NeighbourIndex& index)
@@ -69,11 +93,11 @@ std::vector<double> localSpacings(std::span<const glm::dvec3> positions, const N
     std::vector<double>        values;
     std::vector<double>        guess(positions.size());
     const auto                 order = alongCurve(positions);
+    double                     sixth = usual * std::sqrt(kNeighbours / std::numbers::pi); // [m] of the point before
     for (const std::uint32_t i : order) {
-        index.gather(positions[i], kLikelyReach * usual, near);
+        index.gather(positions[i], kLikelyReach * sixth, near);
         values.clear();
         for (const std::uint32_t p : near) values.push_back(glm::length(positions[p] - positions[i]));
-        double sixth = 0; // [m]
         if (values.size() > kNeighbours) {
             std::nth_element(values.begin(), values.begin() + kNeighbours, values.end());
             sixth = values[kNeighbours];
@@ -89,6 +113,8 @@ std::vector<double> localSpacings(std::span<const glm::dvec3> positions, const N
         values.clear();
         for (const std::uint32_t p : near) values.push_back(guess[p]);
         spacings[i] = median(values);
+        if (guess[i] > kAlone * spacings[i])
+            spacings[i] = std::min(guess[i], medianOfArea(values, kMedianReach * guess[i]));
     }
     return spacings;
 }

@@ -19,24 +19,29 @@ constexpr double kTooLarge = 3;
 } // namespace
 
 NearPoints::NearPoints(std::span<const glm::dvec3> positions, const NeighbourIndex& index)
-    : positions_(positions), index_(index), spacings_(localSpacings(positions, index)),
-      largest_(*std::max_element(spacings_.begin(), spacings_.end()))
+    : index_(index), tree_(positions, localSpacings(positions, index))
 {
-    found_.reserve(positions.size());
-    held_.reserve(std::min(positions.size(), kMost));
+    for (Ball& ball : balls_) ball.points.reserve(kMost);
 }
 
-void NearPoints::cover(const glm::dvec3& centre, double radius)
+std::span<const NearPoint> NearPoints::cover(const glm::dvec3& centre, double radius, int level)
 {
-    if (glm::length(centre - centre_) + radius <= radius_ && radius_ <= kTooLarge * radius) return;
-    centre_ = centre;
-    radius_ = kReserve * radius;
-    index_.gather(centre_, radius_, found_);
-    std::sort(found_.begin(), found_.end());
-    const std::size_t stride = (found_.size() + kMost - 1) / kMost;
-    held_.clear();
-    for (std::size_t i = 0; i < found_.size(); i += stride)
-        held_.push_back({positions_[found_[i]], spacings_[found_[i]]});
+    Ball&      ball    = balls_[std::size_t(level) % balls_.size()];
+    const bool covered = glm::length(centre - ball.centre) + radius <= ball.radius && ball.radius <= kTooLarge * radius;
+    if (covered && level == ball.level) return ball.points;
+    ball.centre = centre;
+    ball.radius = kReserve * radius;
+    ball.level  = level;
+    for (bool full = true; full && level < tree_.levels(); ++level) {
+        ball.points.clear();
+        full = false;
+        tree_.inside(ball.centre, ball.radius, level, [&](const NearPoint& point) {
+            full = ball.points.size() == kMost;
+            if (!full) ball.points.push_back({point.position, std::max(point.spacing, tree_.cell(level))});
+            return !full;
+        });
+    }
+    return ball.points;
 }
 
 } // namespace palp

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -6,63 +7,67 @@
 #include <glm/vec3.hpp>
 
 #include "engine/cloud/neighbour_index.h"
+#include "engine/contact/point_tree.h"
 
 namespace palp {
 
-/// A point of the cloud and the spacing around it.
-struct NearPoint {
-    glm::dvec3 position{};  ///< [m]
-    double     spacing = 0; ///< [m]
-};
-
 /// The points about a place that wanders slowly: one search in the tree serves many ticks.
 ///
-/// Invariant: `inside` calls back for exactly the points of the ball, by rising index, whatever was asked before and
-/// whatever instructions the processor has. So sums over them have the same bits on every run.
+/// Invariant: `inside` calls back for the same points in the same order, whatever was asked before (unless kMost forces
+/// a coarser level) and whatever instructions the processor has. So sums over them have the same bits on every run.
 /// \thread one; allocates nothing after construction
 class NearPoints {
 public:
-    /// \param positions  [m] those of the index; both outlive this
+    /// \param positions  [m] those of the index, which must outlive this
     NearPoints(std::span<const glm::dvec3> positions, const NeighbourIndex& index);
 
-    /// Calls visit(const NearPoint&, squared distance [m^2]) for the points within `radius` [m] of `centre` [m].
+    /// Calls visit(const NearPoint&, squared distance [m^2]) for the points within `radius` [m] of `centre` [m], as
+    /// they are seen with a spacing of `scale` [m]: where they are many times closer, some stand for the others and
+    /// have the spacing that these have among themselves.
     template <class Visit>
-    void inside(const glm::dvec3& centre, double radius, Visit&& visit)
+    void inside(const glm::dvec3& centre, double radius, double scale, Visit&& visit)
     {
-        cover(centre, radius);
-        for (const NearPoint& point : held_) {
+        for (const NearPoint& point : cover(centre, radius, tree_.level(scale))) {
             const glm::dvec3 d  = point.position - centre;
             const double     d2 = d.x * d.x + d.y * d.y + d.z * d.z;
             if (d2 <= radius * radius) visit(point, d2);
         }
     }
 
-    /// Calls visit(const NearPoint&) for the points within `radius` in any order, without keeping them.
+    /// Calls visit(const NearPoint&, squared distance [m^2]) for all points in whose own ball `place` [m] lies.
     template <class Visit>
-    void insideOnce(const glm::dvec3& centre, double radius, Visit&& visit)
+    void holding(const glm::dvec3& place, Visit&& visit) const
     {
-        index_.gather(centre, radius, found_);
-        for (const std::uint32_t p : found_) visit(NearPoint{positions_[p], spacings_[p]});
+        tree_.holding(place, visit);
     }
 
-    [[nodiscard]] double largestSpacing() const noexcept { return largest_; }       ///< [m]
-    [[nodiscard]] double usualSpacing() const noexcept { return index_.spacing(); } ///< [m]
+    /// The share [1] of the way after which it first enters a ball that `from` is not in; 1 if there is none.
+    [[nodiscard]] double firstTouch(const glm::dvec3& from, const glm::dvec3& to) const noexcept
+    {
+        return tree_.firstTouch(from, to);
+    }
 
-    /// As many points are held at most; of more, every second, third and so on. Bounds the time of a tick where the
-    /// density jumps by orders of magnitude: a ball usually holds 100.
-    static constexpr std::size_t kMost = 16384;
+    [[nodiscard]] bool   mixed() const noexcept { return tree_.mixed(); } ///< the density varies by more than chance
+    [[nodiscard]] double largestSpacing() const noexcept { return tree_.largestSpacing(); } ///< [m]
+    [[nodiscard]] double usualSpacing() const noexcept { return index_.spacing(); }         ///< [m]
+
+    /// As many points are held at most, of a coarser level if need be. A ball usually holds 100, and 500 about a hole.
+    static constexpr std::size_t kMost = 4096;
 
 private:
-    void cover(const glm::dvec3& centre, double radius);
+    /// The points of one level in a ball.
+    struct Ball {
+        std::vector<NearPoint> points;
+        glm::dvec3             centre{};    ///< [m]
+        double                 radius = -1; ///< [m]; negative: none
+        int                    level  = 0;  ///< that was asked for
+    };
 
-    std::span<const glm::dvec3> positions_;
-    const NeighbourIndex&       index_;
-    std::vector<double>         spacings_; ///< [m] by point
-    double                      largest_;  ///< [m]
-    std::vector<std::uint32_t>  found_;    ///< capacity: the whole cloud
-    std::vector<NearPoint>      held_;
-    glm::dvec3                  centre_{};    ///< [m] of the ball that is held
-    double                      radius_ = -1; ///< [m] of it; negative: none
+    [[nodiscard]] std::span<const NearPoint> cover(const glm::dvec3& centre, double radius, int level);
+
+    const NeighbourIndex& index_;
+    PointTree             tree_;
+    std::array<Ball, 4>   balls_; ///< by the level, modulo their number: beside a step in density several are asked for
 };
 
 } // namespace palp

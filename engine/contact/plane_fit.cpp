@@ -22,6 +22,7 @@ constexpr double      kMostCurve    = 0.15; // [1/spacing]
 constexpr double      kSlopeRidge   = 0.01; // [spacing^2] added to the variances of a and b
 constexpr double      kCurveRidge   = 0.05; // [spacing^4] added to the variance of q
 constexpr double      kBetween      = 0.2;  // points in a groove that are so little nearer to one side are neither's
+constexpr double      kCrowded      = 2;    // [1] points this many times closer than the spacing count less
 constexpr double      kSteepest     = 1;    // [1] slope against the given plane
 
 /// Weight of a height: 1 up to kFullHeight, a smoothstep down to 0 at kNoHeight.
@@ -117,7 +118,7 @@ void PlaneFitter::collect(const Frame& frame, double radius)
 {
     samples_.clear();
     owned_ = 0;
-    points_.inside(frame.place, radius, [&](const NearPoint& point, double d2) {
+    points_.inside(frame.place, radius, frame.spacing, [&](const NearPoint& point, double d2) {
         const glm::dvec3 d = point.position - frame.place;
         const double     h = glm::dot(frame.normal, d);
         if (!(std::abs(h) < kNoHeight * frame.spacing)) return;
@@ -158,14 +159,21 @@ std::optional<PlaneFit> PlaneFitter::fit(const glm::dvec3& place, const glm::dve
     if (owned_ < kFewestPoints) return {};
 
     Moments    m;
+    const auto fall = [&](const Sample& s) {
+        const double share = std::max(0.0, 1 - s.d2 / (r * r));
+        return share * share;
+    };
     const auto weightOf = [&](const Sample& s) {
-        const double fall = std::max(0.0, 1 - s.d2 / (r * r));
-        return fall * fall * heightWeight(std::abs(s.h) / spacing);
+        // Where points are closer than half as usual here they count by the area they stand for, or a step in density
+        // would look like a border.
+        const double area = std::min(1.0, kCrowded * s.spacing / spacing);
+        return area * area * fall(s) * heightWeight(std::abs(s.h) / spacing);
     };
     Centroid all;
     for (const Sample& s : samples_) {
-        const double w = weightOf(s);
-        all.add(w, s.a, s.b);
+        const double w   = weightOf(s);
+        const double own = std::min(s.spacing / spacing, kCrowded);
+        all.add(own * own * fall(s) * heightWeight(std::abs(s.h) / spacing), s.a, s.b);
         if (s.own) m.addFirst(w, s.a, s.b, s.h, s.spacing);
     }
     if (!(m.weight > 0)) return {};

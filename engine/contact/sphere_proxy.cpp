@@ -67,7 +67,7 @@ SphereProxy::Overshoot SphereProxy::overshoot()
 {
     Overshoot    over;
     const double radius = kRadius * state.spacing;
-    points_.inside(state.position, radius, [&](const NearPoint& point, double d2) {
+    points_.inside(state.position, radius, state.spacing, [&](const NearPoint& point, double d2) {
         const double distance = std::sqrt(d2);
         ++over.count;
         over.spacing += point.spacing;

@@ -14,7 +14,8 @@ constexpr double kView = 2;
 /// Fits at the point that was seen, before one at the foot of the proxy [1].
 constexpr int kFitsAtPoint = 3;
 
-/// While surfaces are known, the ball counts on points at most this much sparser than here [1].
+/// Points this much sparser than here say where the surface is by their own spacing only [1]. In a random cloud hardly
+/// any are.
 constexpr double kSparser = 2;
 
 /// A plane that opposes a known one as much, and passes through it here, is the known one from below [1]: cosine.
@@ -126,17 +127,18 @@ glm::dvec3 ontoLoaded(std::span<const SurfacePlane> planes, const Rest& rest, co
 
 SurfaceTracker::Sight SurfaceTracker::look(const Surfaces& surfaces, const glm::dvec3& place)
 {
-    const double sparsest =
-        surfaces.count > 0 ? std::min(points_.largestSpacing(), kSparser * surfaces.spacing) : points_.largestSpacing();
     const auto visible = [&](const NearPoint& point) {
+        const bool   sparse = point.spacing > kSparser * surfaces.spacing;
+        const double hidden = kFullHeight * (sparse ? point.spacing : surfaces.spacing);
         for (const SurfacePlane& plane : surfaces.all())
-            if (plane.height(point.position) <= kFullHeight * surfaces.spacing) return false;
+            if (plane.height(point.position) <= hidden) return false;
         return true;
     };
     Sight  sight;
     double best = kBall; // [1] distance over the point's spacing
-    points_.inside(place, kBall * sparsest, [&](const NearPoint& point, double d2) {
+    points_.holding(place, [&](const NearPoint& point, double d2) {
         const double distance = std::sqrt(d2) / point.spacing;
+        sight.sparsest        = std::max(sight.sparsest, point.spacing);
         if (!(distance < best) || !visible(point)) return;
         best          = distance;
         sight.nearest = point;
@@ -145,23 +147,62 @@ SurfaceTracker::Sight SurfaceTracker::look(const Surfaces& surfaces, const glm::
     if (!sight.any) return sight;
     const double s = sight.nearest.spacing;
     const double r = s * std::sqrt(best * best + kView * kView);
-    points_.inside(place, r, [&](const NearPoint& point, double d2) {
+    points_.inside(place, r, s, [&](const NearPoint& point, double d2) {
         const double distance = std::sqrt(d2);
         if (distance > 0 && visible(point)) sight.outward += (r / distance - 1) * (place - point.position);
     });
     return sight;
 }
 
-bool SurfaceTracker::accept(Surfaces& surfaces, const NearPoint& nearest, const glm::dvec3& place,
+/// Whose own balls the place of a guess lies in, of the points near its plane.
+SurfaceTracker::Around SurfaceTracker::around(const Guess& guess) const noexcept
+{
+    Around around;
+    double best = kBall; // [1] distance over the point's spacing
+    points_.holding(guess.place, [&](const NearPoint& point, double d2) {
+        if (std::abs(glm::dot(guess.normal, point.position - guess.place)) > kFullHeight * point.spacing) return;
+        const bool   sparser  = point.spacing > kSparser * guess.spacing;
+        const double distance = std::sqrt(d2) / point.spacing;
+        around.alike          = around.alike || !sparser;
+        if (!sparser || distance >= best) return;
+        best           = distance;
+        around.sparser = point.spacing;
+    });
+    return around;
+}
+
+/// A fit, with a larger spacing where the surface goes on with sparser points: what looks like a border is none then.
+/// Of all tried, the one with the most support.
+std::optional<PlaneFit> SurfaceTracker::fit(const Guess& guess, std::span<const SurfacePlane> others) noexcept
+{
+    if (!points_.mixed()) return fitter_.fit(guess.place, guess.normal, guess.spacing, others);
+    std::optional<PlaneFit> best;
+    Guess                   wider = guess;
+    for (bool last = false; !last;) { // at most once per doubling of the spacing
+        const Around near = around(wider);
+        if (near.alike || !(near.sparser > 0)) {
+            const auto found = fitter_.fit(wider.place, wider.normal, wider.spacing, others);
+            if (found && (!best || found->plane.support > best->plane.support)) best = found;
+        }
+        last          = !(near.sparser > 0) || (best && best->plane.support >= 1);
+        wider.spacing = near.sparser;
+    }
+    return best;
+}
+
+bool SurfaceTracker::accept(Surfaces& surfaces, const Sight& sight, const glm::dvec3& place,
                             const glm::dvec3& seed) noexcept
 {
-    const double length = glm::length(seed);
+    const NearPoint& nearest = sight.nearest;
+    const double     length  = glm::length(seed);
     if (!(length > 0)) return false;
     SurfacePlane plane{seed / length, nearest.position, 0};
     double       spacing = surfaces.spacing;
-    for (int fit = 0; fit <= kFitsAtPoint; ++fit) {
-        const glm::dvec3 at = fit < kFitsAtPoint ? nearest.position : place;
-        const auto found    = fitter_.fit(at - plane.height(at) * plane.normal, plane.normal, spacing, surfaces.all());
+    // Noise of sparse points is no ceiling over a floor of dense ones.
+    const double coarse = points_.mixed() ? std::max(spacing, sight.sparsest) : spacing;
+    for (int k = 0; k <= kFitsAtPoint; ++k) {
+        const glm::dvec3 at    = k < kFitsAtPoint ? nearest.position : place;
+        const auto       found = fit({at - plane.height(at) * plane.normal, plane.normal, spacing}, surfaces.all());
         if (!found) return false;
         plane = found->plane;
     }
@@ -172,7 +213,7 @@ bool SurfaceTracker::accept(Surfaces& surfaces, const NearPoint& nearest, const 
     for (const SurfacePlane& known : surfaces.all()) {
         const double c = glm::dot(known.normal, plane.normal);
         if (c > kSameSurface) return false;
-        if (c < kFromBelow && known.height(plane.foot) < kFullHeight * spacing) return false;
+        if (c < kFromBelow && known.height(plane.foot) < kFullHeight * coarse) return false;
     }
     if (surfaces.count == 0) surfaces.seen = plane.normal;
     surfaces.planes[std::size_t(surfaces.count++)] = plane;
@@ -190,13 +231,27 @@ bool SurfaceTracker::discover(Surfaces& surfaces, const glm::dvec3& place, const
     if (surfaces.count == 0) surfaces.spacing = sight.nearest.spacing;
     // What was seen from further away was seen better: near a hole the nearest points are all on one side.
     const Surfaces before = surfaces;
-    if (surfaces.count == 0 && accept(surfaces, sight.nearest, place, surfaces.seen)) {
+    if (surfaces.count == 0 && accept(surfaces, sight, place, surfaces.seen)) {
         if (surfaces.planes[0].support >= kSureSupport) return true;
         surfaces = before;
     }
     for (const glm::dvec3& seed : {sight.outward, place - towards, place - sight.nearest.position})
-        if (accept(surfaces, sight.nearest, place, seed)) break;
+        if (accept(surfaces, sight, place, seed)) break;
     return true;
+}
+
+/// Beside a step in density the noise of sparse points can look like a ceiling. One that has come down to a known floor
+/// is none: drops the later of two.
+void SurfaceTracker::dropContradicting(Surfaces& surfaces) noexcept
+{
+    for (int j = surfaces.count - 1; j > 0; --j)
+        for (int k = 0; k < j; ++k) {
+            const SurfacePlane &floor = surfaces.planes[std::size_t(k)], &ceiling = surfaces.planes[std::size_t(j)];
+            if (glm::dot(floor.normal, ceiling.normal) >= kFromBelow) continue;
+            if (floor.height(ceiling.foot) >= kFullHeight * surfaces.spacing) continue;
+            surfaces.remove(j);
+            break;
+        }
 }
 
 double SurfaceTracker::refresh(Surfaces& surfaces, const glm::dvec3& place) noexcept
@@ -210,8 +265,8 @@ double SurfaceTracker::refresh(Surfaces& surfaces, const glm::dvec3& place) noex
         std::size_t                               count = 0;
         for (int k = 0; k < surfaces.count; ++k)
             if (k != j) others[count++] = surfaces.planes[std::size_t(k)];
-        const auto found = fitter_.fit(place - plane.height(place) * plane.normal, plane.normal, surfaces.spacing,
-                                       {others.data(), count});
+        const auto found =
+            fit({place - plane.height(place) * plane.normal, plane.normal, surfaces.spacing}, {others.data(), count});
         if (!found || !(found->plane.support > 0)) {
             plane.support = 0;
             continue;
@@ -221,6 +276,7 @@ double SurfaceTracker::refresh(Surfaces& surfaces, const glm::dvec3& place) noex
         spacing += found->spacing;
         ++fitted;
     }
+    if (points_.mixed()) dropContradicting(surfaces);
     constexpr double kFollow = 0.5; // [1] share of the way per fit: a step in density must not jump
     if (fitted > 0) surfaces.spacing += kFollow * (spacing / fitted - surfaces.spacing);
     return furthest;

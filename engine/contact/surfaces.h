@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <optional>
 #include <span>
 
 #include <glm/vec3.hpp>
@@ -64,19 +65,32 @@ private:
     struct Sight {
         bool       any = false;
         NearPoint  nearest{};
-        glm::dvec3 outward{}; ///< [m^2] sum of overshoots, away from the points
+        double     sparsest = 0; ///< [m] largest spacing of all points in whose own balls the place is
+        glm::dvec3 outward{};    ///< [m^2] sum of overshoots, away from the points
     };
 
-    [[nodiscard]] Sight look(const Surfaces& surfaces, const glm::dvec3& place);
-    [[nodiscard]] bool  accept(Surfaces& surfaces, const NearPoint& nearest, const glm::dvec3& place,
-                               const glm::dvec3& seed) noexcept;
+    /// A plane through points, fitted with a spacing.
+    struct Guess {
+        glm::dvec3 place{};     ///< [m] near the surface
+        glm::dvec3 normal{};    ///< [1] unit
+        double     spacing = 0; ///< [m]
+    };
+
+    /// Which points' own balls a place lies in.
+    struct Around {
+        bool   alike   = false; ///< points about as close as the guess, or closer
+        double sparser = 0;     ///< [m] spacing of the nearest of those much sparser; 0: none
+    };
+
+    [[nodiscard]] Sight                   look(const Surfaces& surfaces, const glm::dvec3& place);
+    [[nodiscard]] Around                  around(const Guess& guess) const noexcept;
+    [[nodiscard]] std::optional<PlaneFit> fit(const Guess& guess, std::span<const SurfacePlane> others) noexcept;
+    [[nodiscard]] bool                    accept(Surfaces& surfaces, const Sight& sight, const glm::dvec3& place,
+                                                 const glm::dvec3& seed) noexcept;
+    static void                           dropContradicting(Surfaces& surfaces) noexcept;
 
     NearPoints& points_;
     PlaneFitter fitter_;
 };
-
-/// Radius of the ball in spacings of the point [1]: the largest empty circle in a random cloud of 10^4 points has a
-/// radius of 1.9.
-inline constexpr double kBall = 2.5;
 
 } // namespace palp

@@ -1,6 +1,9 @@
 #include "engine/program/hand_source.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 
 #include <glm/common.hpp>
@@ -13,6 +16,7 @@
 #include "device/hid/space_mouse.h"
 #include "device/hid/space_mouse_report.h"
 #include "engine/core/contract.h"
+#include "engine/core/nearest_name.h"
 #include "engine/core/quantity.h"
 #include "engine/core/real_time.h"
 #include "engine/session/hand_device.h"
@@ -121,30 +125,34 @@ void script(HandSource& source, HandOptions options, const Scene& scene, const P
     const glm::dvec3 start = source.path->position(source.path->begin());
     source.frame           = falcon ? deviceFrame(start, handPlace(scene, cloud, index).outward) : DeviceFrame{start};
     const HoldingHand hand{*source.path, gripOf(options.grip), source.frame};
-    if (falcon)
-        source.device = std::make_unique<HeldFalcon>(hand);
-    else
+    if (falcon) {
+        source.device = std::make_unique<HeldFalcon>(hand, HeldFalcon::ready(), options.falcon.settings());
+    } else
         source.device = std::make_unique<HeldArm>(hand);
 }
 
-std::unique_ptr<HapticDevice> falconFor(const HandOptions& options)
-{
-    FalconDeviceSettings settings;
-    if (const auto image = falconFirmwarePath(options.firmware); !image.empty())
-        settings.firmware = readFirmware(image);
-    settings.loop.countsPerTorque = options.countsPerTorque;
-    return std::make_unique<FalconDevice>([] { return openFalcon(); }, settings);
-}
+/// "falcon@1-2.3": what `palpate devices` calls it, and where it is plugged in if there are several.
+struct NamedDevice {
+    std::string name, path;
 
-/// The first HID device of that kind.
-std::unique_ptr<HapticDevice> hidFor(const std::string& name, HidSystem& hid)
+    explicit NamedDevice(const std::string& hand) : name(hand.substr(0, hand.find('@')))
+    {
+        if (name.size() < hand.size()) path = hand.substr(name.size() + 1);
+    }
+
+    [[nodiscard]] bool isHeld() const { return name == "falcon" || name == "bridge" || name == "spacemouse"; }
+};
+
+/// The first HID device of that kind, or the one at that path.
+std::unique_ptr<HapticDevice> hidFor(const NamedDevice& wanted, HidSystem& hid)
 {
-    const bool bridge = name == "bridge";
+    const bool bridge = wanted.name == "bridge";
     for (const HidListing& listing : hid.list()) {
+        if (!wanted.path.empty() && listing.path != wanted.path) continue;
         if (bridge && isBridge(listing)) return std::make_unique<HidBridgeDevice>(hid, listing);
         if (!bridge && spaceMouseModel(listing)) return std::make_unique<SpaceMouse>(hid, listing);
     }
-    throw Error("--hand " + name + ": none is plugged in, by " + hidSupport() +
+    throw Error("--hand " + wanted.name + ": none is plugged in" + (wanted.path.empty() ? "" : " at " + wanted.path) +
                 "; palpate devices tells what there is");
 }
 
@@ -154,23 +162,74 @@ void hold(HandSource& source, const HandOptions& options, const Scene& scene, co
 {
     const HandPlace place = handPlace(scene, cloud, index);
     source.frame          = deviceFrame(place.point + scene.startHeight * place.outward, place.outward);
-    if (options.hand == "falcon") {
-        source.device = falconFor(options);
+    const NamedDevice wanted(options.hand);
+    if (wanted.name == "falcon") {
+        source.device = falconFor(options.falcon, wanted.path);
         return;
     }
+    if (!hasHidSupport()) throw Error("--hand " + options.hand + ": this palpate is " + hidSupport());
     source.hid    = std::make_unique<HidapiSystem>();
-    source.device = hidFor(options.hand, *source.hid);
+    source.device = hidFor(wanted, *source.hid);
+}
+
+/// Options that would do nothing.
+void refuseOptionsOfAFalcon(const HandOptions& options)
+{
+    const bool real = NamedDevice(options.hand).name == "falcon", any = real || options.hand == "falcon-emulator";
+    if (!any && (options.falcon.countsPerTorque || options.falcon.eventCharacter))
+        throw Error("--falcon-counts and --falcon-event-character are of --hand falcon, found --hand " + options.hand);
+    if (!real && !options.falcon.firmware.empty())
+        throw Error("--falcon-firmware is of --hand falcon, found --hand " + options.hand);
+}
+
+/// A word that is neither a file nor a hand was meant for one of these.
+void refuseSlips(const std::string& word)
+{
+    static constexpr std::array<std::string_view, 9> kKnown{
+        "press", "circle", "scan", "falcon", "falcon-emulator", "arm", "bridge", "spacemouse", "mouse"};
+    if (std::ranges::find(kKnown, word) != kKnown.end() || NamedDevice(word).isHeld() || std::filesystem::exists(word))
+        return;
+    if (const auto meant = nearestName(word, kKnown))
+        throw Error("--hand " + word + ": there is no such hand or file; did you mean " + std::string(*meant) + "?");
 }
 
 } // namespace
+
+FalconDeviceSettings FalconOptions::settings() const
+{
+    FalconDeviceSettings settings;
+    settings.loop.countsPerTorque = countsPerTorque.value_or(FalconMotors::kCountsPerTorque);
+    settings.start.eventCharacter = eventCharacter;
+    return settings;
+}
+
+void addFalconOptions(CLI::App& command, FalconOptions& options)
+{
+    const CLI::Validator inRange{[](const std::string& text) -> std::string {
+                                     const double counts = parseQuantity(text, Dimension::none, "--falcon-counts");
+                                     if (counts >= 2000 && counts <= 10000) return {};
+                                     return "expected 2000 to 10000, found " + text;
+                                 },
+                                 "[2000 - 10000]"};
+    command.add_option("--falcon-firmware", options.firmware,
+                       "image that a Falcon needs after it was plugged in [FALCON_FIRMWARE]");
+    command
+        .add_option("--falcon-counts", options.countsPerTorque,
+                    "counts per N m of a Falcon's motors, see palpate calibrate [4200]")
+        ->check(inRange);
+    command.add_flag("--falcon-event-character", options.eventCharacter,
+                     "ask the Falcon's bridge to pass on each answer at once; nobody has tried it on a device yet");
+}
 
 HandSource handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
 {
     if (options.hand == "mouse")
         throw Error("--hand mouse: the mouse needs a window, which this command has not; try scan, or --hand arm");
+    refuseSlips(options.hand);
     HandSource source;
     if (!options.seconds.empty()) source.seconds = secondsOf(options.seconds);
-    const bool held = options.hand == "falcon" || options.hand == "bridge" || options.hand == "spacemouse";
+    refuseOptionsOfAFalcon(options);
+    const bool held = NamedDevice(options.hand).isHeld();
     if (held && !options.grip.empty())
         throw Error("--arm: a person holds the " + options.hand + "; leave one of the two out");
     if (held)
@@ -181,20 +240,31 @@ HandSource handFor(const HandOptions& options, const Scene& scene, const PointCl
     return source;
 }
 
+std::unique_ptr<HapticDevice> falconFor(const FalconOptions& options, const std::string& path)
+{
+    FalconDeviceSettings settings = options.settings();
+    settings.path                 = path;
+    if (const auto image = falconFirmwarePath(options.firmware); !image.empty())
+        settings.firmware = readFirmware(image);
+    return std::make_unique<FalconDevice>([path] { return openFalcon(path); }, settings);
+}
+
 void waitForHoming(HapticDevice& device, const std::atomic<bool>& stop)
 {
     if (!device.info().needsHoming || device.info().isSimulation) return;
     const auto start = std::chrono::steady_clock::now();
     Metronome  metronome{std::chrono::milliseconds(1)};
     bool       told = false;
+    double     well = 0; // [s] when it was last without a fault
     device.home();
     for (;;) {
         const double      now   = std::chrono::duration<double>(metronome.wait() - start).count();
         const HapticState state = device.exchange(GovernedForce(), now);
         if (state.homed) break;
         if (stop) throw Error("homing was given up; no force flows before it");
-        constexpr double kPatience = 1; // [s] for the first answers
-        if (now > kPatience && state.fault != DeviceFault::none)
+        constexpr double kPatience = 1; // [s] for the first answers, and for a fault that may pass
+        if (state.fault == DeviceFault::none) well = now;
+        if (now > well + kPatience)
             throw Error(device.info().model + ": lost while it was to be homed (" + name(state.fault) +
                         "); palpate doctor may tell why");
         if (now > kPatience && !told) {

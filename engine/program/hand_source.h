@@ -1,23 +1,40 @@
 #pragma once
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
+#include "device/falcon/falcon_device.h"
 #include "device/hid/hid_port.h"
 #include "engine/session/hand_path.h"
 #include "engine/session/session_parts.h"
 
 namespace palp {
 
+/// What the command line says about a Falcon.
+struct FalconOptions {
+    std::string           firmware;               ///< empty: FALCON_FIRMWARE
+    std::optional<double> countsPerTorque;        ///< of its motors [1/(N m)]; empty: FalconMotors::kCountsPerTorque
+    bool                  eventCharacter = false; ///< see FalconStartSettings
+
+    /// But for the firmware, which only a real one needs.
+    [[nodiscard]] FalconDeviceSettings settings() const;
+};
+
+/// Adds --falcon-firmware, --falcon-counts and --falcon-event-character. Counts that no Falcon's motors have been seen
+/// to need are refused, and NaN: 2000 to 10 000. With much too many the loop swings.
+void addFalconOptions(CLI::App& command, FalconOptions& options);
+
 /// What the command line says about the hand.
 struct HandOptions {
-    std::string hand  = "scan"; ///< press, circle, scan, a file, or a device as `palpate devices` names it
-    std::string speed = "50 mm/s", depth, reach = "10 mm";
-    std::string grip;                   ///< of the hand that holds a simulated arm; empty: forces do not move the hand
-    std::string firmware;               ///< of the Falcon; empty: FALCON_FIRMWARE
-    double      countsPerTorque = 4200; ///< of the Falcon's motors [1/(N m)]
-    std::string seconds;                ///< "5 s"; empty: 5 s, or a file's own length
+    std::string   hand  = "scan"; ///< press, circle, scan, a file, or a device as `palpate devices` names it
+    std::string   speed = "50 mm/s", depth, reach = "10 mm";
+    std::string   grip; ///< of the hand that holds a simulated arm; empty: forces do not move the hand
+    FalconOptions falcon;
+    std::string   seconds; ///< "5 s"; empty: 5 s, or a file's own length
 };
 
 /// A hand that is ready: its device is open.
@@ -35,6 +52,10 @@ struct HandSource {
 /// \throws Error naming the option, the file, or why the device cannot be used
 [[nodiscard]] HandSource handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud,
                                  const NeighbourIndex& index);
+
+/// A Falcon that is plugged in, not opened yet. \param path  of its listing; empty: the first that is usable
+/// \throws Error naming the image, if it cannot be read
+[[nodiscard]] std::unique_ptr<HapticDevice> falconFor(const FalconOptions& options, const std::string& path = {});
 
 /// Waits until somebody has homed the device, telling how on standard error. Devices that need none: nothing.
 /// \param stop  gives up once it is true

@@ -96,6 +96,7 @@ int main(int argumentCount, char** arguments)
                "  palpate render sample:palm --out palm.png      a picture of a touch, without a display\n"
                "  palpate devices                                what this machine can compute on, and feel with\n"
                "  palpate doctor                                 what it lacks, and what helps\n"
+               "  palpate calibrate --mass '200 g'               a Falcon weighs a mass, so that its newtons are true\n"
                "  palpate bench solve                            how fast its solvers are\n"
                "  palpate bench plate --quick                    and how fast those of others\n"
                "Each command explains itself with --help.");
@@ -107,6 +108,7 @@ int main(int argumentCount, char** arguments)
     palp::addDoctorCommand(app);
     palp::addRunCommand(app);
     palp::addRenderCommand(app);
+    palp::addCalibrateCommand(app);
     palp::addBenchCommand(app);
     std::signal(SIGXFSZ, SIG_IGN); // a file beyond the limit on sizes is then a write that fails, with a sentence
     try {

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -18,6 +17,7 @@
 #include "engine/core/quantity.h"
 #include "engine/program/commands.h"
 #include "engine/program/hand_source.h"
+#include "engine/program/interrupt.h"
 #include "engine/program/session_report.h"
 #include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
@@ -43,18 +43,10 @@ struct ReplayOptions {
     bool        compare = false, json = false;
 };
 
-/// Ctrl-C ends the session in order: zero force, a recording that is complete. A second one ends the program.
-std::atomic<bool> interrupted = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may set it");
-
-void onInterrupt(int signal)
-{
-    interrupted = true;
-    std::signal(signal, SIG_DFL);
-}
-
 /// Plays the hand through the scene, with a line on a terminal and a recording if one is wanted.
-SessionSummary play(const SessionParts& parts, double seconds, const OnSample& also)
+/// \param stop  ends it once it is true; may be null
+SessionSummary play(const SessionParts& parts, double seconds, const OnSample& also,
+                    const std::atomic<bool>* stop = nullptr)
 {
     Progress    progress("touching");
     const auto  total = std::size_t(std::llround(1000 * seconds));
@@ -65,7 +57,7 @@ SessionSummary play(const SessionParts& parts, double seconds, const OnSample& a
             if (also) also(sample);
             progress.at(++done, total);
         },
-        &interrupted);
+        stop);
 }
 
 void warn(const std::vector<std::string>& sentences)
@@ -135,7 +127,7 @@ SessionSummary playLive(const RunOptions& o, double seconds, SessionThreads thre
     RealSessionSettings settings;
     settings.seconds = seconds;
     settings.threads = threads;
-    settings.stop    = &interrupted;
+    settings.stop    = &catchInterrupts();
     if (recording) settings.onSample = [recording](const SessionSample& sample) { recording->push(sample); };
     if (line) settings.onView = showLine;
     std::string          warning;
@@ -186,21 +178,22 @@ SessionThreads threadsOf(const RunOptions& o, SessionClock clock)
     return *threads;
 }
 
-std::unique_ptr<Recording> recordingOf(const RunOptions& o, const Scene& scene, const PointCloud& cloud,
-                                       SessionClock clock, const std::string& device)
+std::unique_ptr<Recording> recordingOf(const RunOptions& o, const SessionParts& parts, SessionClock clock,
+                                       const std::string& device)
 {
     if (o.record.empty()) return nullptr;
     SessionInfo info;
-    info.scene    = scene;
+    info.scene    = parts.scene;
     info.versions = {{"palpate", PALPATE_VERSION}, {"compiler", __VERSION__}, {"libraries", PALPATE_LIBRARIES}};
     info.device   = device;
     info.clock    = clock;
     info.command  = o.command;
-    info.cloud    = fingerprint(cloud);
+    info.cloud    = fingerprint(parts.cloud);
+    info.hand     = parts.device.info();
     return std::make_unique<Recording>(o.record, info);
 }
 
-/// Prints what happened. \throws CheckFailed if samples are missing in the recording
+/// Prints what happened. \throws CheckFailed if the force was stopped, or samples are missing in the recording
 void tell(const RunOptions& o, const SessionSummary& summary, const std::string& device, const std::string& hand,
           std::vector<std::string> known, const std::optional<RecordingReport>& report)
 {
@@ -218,6 +211,8 @@ void tell(const RunOptions& o, const SessionSummary& summary, const std::string&
         printText(summary, device, hand);
         if (report) std::cout << "  " << report->samples << " samples in " << o.record << "\n";
     }
+    if (summary.fault != GovernorFault::none || summary.deviceFault == DeviceFault::unplugged)
+        throw CheckFailed("the force was stopped");
     if (report && report->lost > 0)
         throw CheckFailed(o.record + ": " + std::to_string(report->lost) + " samples were lost");
 }
@@ -243,17 +238,17 @@ void run(const RunOptions& o)
     std::vector<std::string> known = assumptions(scene, cloud.report);
     for (const auto& more : {strangeVariables(), warningsOf(scene, cloud.cloud, index), hand.warnings})
         known.insert(known.end(), more.begin(), more.end());
-    std::signal(SIGINT, onInterrupt);
-    std::signal(SIGTERM, onInterrupt);
-    waitForHoming(*hand.device, interrupted);
+    const std::atomic<bool>& stop = catchInterrupts();
+    waitForHoming(*hand.device, stop);
 
     const SessionParts parts{scene, cloud.cloud, index, deformation.solver(), *hand.device, hand.frame};
-    const auto         recording = recordingOf(o, scene, cloud.cloud, clock, device);
+    const auto         recording = recordingOf(o, parts, clock, device);
     warn(known);
+    const OnSample record = [&](const SessionSample& sample) {
+        if (recording) recording->pushWaiting(sample);
+    };
     const auto summary = clock == SessionClock::real ? playLive(o, hand.seconds, threads, parts, recording.get())
-                                                     : play(parts, hand.seconds, [&](const SessionSample& sample) {
-                                                           if (recording) recording->pushWaiting(sample);
-                                                       });
+                                                     : play(parts, hand.seconds, record, &stop);
     std::optional<RecordingReport> report;
     if (recording) report = recording->finish();
     tell(o, summary, device, hand.device->info().model, known, report);
@@ -280,7 +275,7 @@ void replay(const ReplayOptions& o)
     again.folder          = "the replay";
     again.samples.clear();
     const double         seconds = double(session.samples.size()) * 1e-3;
-    ReplayDevice         hand(session.samples);
+    ReplayDevice         hand(session.samples, session.hand);
     const SessionSummary summary = play({scene, cloud.cloud, index, deformation.solver(), hand, {}}, seconds,
                                         [&](const SessionSample& sample) { again.samples.push_back(sample); });
     if (!o.compare) {
@@ -307,7 +302,8 @@ void addRunCommand(CLI::App& app)
     run_->add_option("SCENE", o->scene, "scene file, see samples/scenes")->required();
     run_->add_option("--hand", o->hand.hand,
                      "press, circle or scan about the scene's place; a file of time [s], x, y, z [m]; or a device: "
-                     "falcon, bridge, spacemouse, arm, falcon-emulator (palpate devices tells which there are)")
+                     "falcon, bridge, spacemouse, arm, falcon-emulator (palpate devices tells which are there; of "
+                     "several, falcon@PATH)")
         ->capture_default_str();
     run_->add_option("--seconds", o->hand.seconds, "how long [5 s; a file's own length]");
     run_->add_option("--speed", o->hand.speed, "of press, circle and scan, at most")->capture_default_str();
@@ -319,12 +315,7 @@ void addRunCommand(CLI::App& app)
         "--arm", o->hand.grip,
         "the hand holds a simulated arm with a grip of this stiffness (relaxed '150 N/m', firm '500 N/m'), "
         "so that forces move it");
-    run_->add_option("--falcon-firmware", o->hand.firmware,
-                     "image that a Falcon needs after it was plugged in [FALCON_FIRMWARE]");
-    run_->add_option("--falcon-counts", o->hand.countsPerTorque,
-                     "counts per N m of a Falcon's motors, see palpate calibrate")
-        ->capture_default_str()
-        ->check(CLI::Range(500.0, 50000.0));
+    addFalconOptions(*run_, o->hand.falcon);
     run_->add_option("--clock", o->clock,
                      "real: a tick a millisecond; virtual: as fast as it goes, the same every time")
         ->capture_default_str();

@@ -39,6 +39,12 @@ HeldFalcon::HeldFalcon(const HoldingHand& hand, const Ft232EmulatorSettings& fal
     info_.isSimulation = true;
 }
 
+void HeldFalcon::follow() noexcept
+{
+    led_.reset();
+    running_ = false;
+}
+
 HapticState HeldFalcon::exchange(const GovernedForce& force, double now) noexcept
 {
     if (!running_) begun_ = emulator_.now() - now;
@@ -48,7 +54,12 @@ HapticState HeldFalcon::exchange(const GovernedForce& force, double now) noexcep
 
 glm::dvec3 HeldFalcon::moved(const glm::dvec3& force, double dt)
 {
-    arm_.hold(hand_.at(running_ ? std::max(0.0, emulated_ - begun_) : 0));
+    SimulatedHand hand = hand_.at(running_ ? std::max(0.0, emulated_ - begun_) : 0);
+    if (led_) {
+        hand.target         = *led_;
+        hand.targetVelocity = {};
+    }
+    arm_.hold(hand);
     emulated_ += dt;
     arm_.step(force, dt);
     return arm_.position();

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "device/falcon/falcon_device.h"
 #include "device/falcon/ft232_emulator.h"
 #include "engine/session/held_arm.h"
@@ -23,19 +25,25 @@ public:
     HapticState exchange(const GovernedForce& force, double now) noexcept override;
     void        light(std::uint8_t lights) noexcept override { device_.light(lights); }
 
+    /// The hand leaves its path and holds the grip here instead: for homing. \param target  [m] device's frame
+    void lead(const glm::dvec3& target) noexcept { led_ = target; }
+    /// The hand goes along its path, from the start with the next exchange, whose clock may start anew.
+    void follow() noexcept;
+
     [[nodiscard]] Ft232Emulator& emulator() noexcept { return emulator_; } ///< \thread that of exchange()
 
 private:
     [[nodiscard]] glm::dvec3 moved(const glm::dvec3& force, double dt);
 
-    HoldingHand      hand_;
-    SimulatedArm     arm_;
-    double           emulated_ = 0;     ///< [s] of the emulator's clock that the arm has gone
-    double           begun_    = 0;     ///< [s] of that clock when the session's was 0
-    bool             running_  = false; ///< exchange() was called
-    Ft232Emulator    emulator_;
-    FalconDevice     device_;
-    HapticDeviceInfo info_;
+    HoldingHand               hand_;
+    SimulatedArm              arm_;
+    std::optional<glm::dvec3> led_;              ///< [m] where the hand is held, off its path
+    double                    emulated_ = 0;     ///< [s] of the emulator's clock that the arm has gone
+    double                    begun_    = 0;     ///< [s] of that clock when the session's was 0
+    bool                      running_  = false; ///< exchange() was called since the path began
+    Ft232Emulator             emulator_;
+    FalconDevice              device_;
+    HapticDeviceInfo          info_;
 };
 
 } // namespace palp

@@ -67,7 +67,7 @@ class RealSession {
 public:
     RealSession(const SessionParts& parts, const RealSessionSettings& settings)
         : parts_(parts), settings_(settings), contact_(parts.cloud, parts.index, parts.scene),
-          force_(parts.scene, settings.threads)
+          force_(parts.scene, parts.device.info(), settings.threads)
     {
     }
 
@@ -121,6 +121,7 @@ void RealSession::serve()
         shared_.shown.publish();
         summary_.add(sample);
         if (settings_.onSample) settings_.onSample(sample);
+        if (state.fault == DeviceFault::unplugged) break; // it does not come back without close() and open()
     }
 }
 

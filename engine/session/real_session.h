@@ -40,6 +40,7 @@ struct RealSessionSettings {
 /// A deformation that fails or stalls leaves the servo with its last patch, flagged as stale. In the end, also by an
 /// exception of onView, the device is given zero force.
 /// \param warning  what the system refused of real-time rights; empty if nothing
+/// A device that is unplugged ends the session.
 /// A solver that throws has failed to solve one patch: SessionSummary::why tells.
 /// \throws what onView threw, once all threads have ended; so for onSample, which should not
 SessionSummary runReal(const SessionParts& parts, const RealSessionSettings& settings, std::string& warning);

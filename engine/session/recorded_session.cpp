@@ -174,7 +174,13 @@ RecordedSession readSession(const std::filesystem::path& folder)
     if (file.has("finished")) session.finished = file.json("finished") == "true";
     std::optional<std::uint64_t> expected;
     if (session.finished) expected = file.wholeNumber("samples", 0, std::numeric_limits<int>::max());
-    session.cloud   = file.has("cloud") ? file.text("cloud") : "";
+    session.cloud = file.has("cloud") ? file.text("cloud") : "";
+    if (file.has("hand")) {
+        const JsonObject hand         = file.object("hand");
+        session.hand.model            = hand.text("model");
+        session.hand.maximumForce     = hand.number("maximum_force_N");
+        session.hand.maximumStiffness = hand.number("maximum_stiffness_N_per_m");
+    }
     session.samples = readColumns(folder, expected);
     return session;
 }

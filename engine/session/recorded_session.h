@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "device/haptic_device.h"
 #include "engine/session/scene.h"
 #include "engine/session/session_sample.h"
 
@@ -18,6 +19,7 @@ struct RecordedSession {
     std::string                command;          ///< that recorded it
     std::string                scene;            ///< JSON for parseScene()
     std::string                cloud;            ///< fingerprint() of what was touched
+    HapticDeviceInfo           hand;             ///< its model and limits
     bool                       finished = false; ///< false: killed, or still running
     std::vector<SessionSample> samples;
 };

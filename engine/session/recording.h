@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "device/haptic_device.h"
 #include "engine/session/scene.h"
 #include "engine/session/session_sample.h"
 
@@ -27,6 +28,7 @@ struct SessionInfo {
     SessionClock                       clock = SessionClock::real;
     std::string                        command; ///< line by which the session was started
     std::string                        cloud{}; ///< fingerprint() of what is touched
+    HapticDeviceInfo                   hand{};  ///< the device's model, and its limits, which bound the force
 };
 
 /// What became of a recording.

@@ -6,7 +6,8 @@
 
 namespace palp {
 
-ReplayDevice::ReplayDevice(const std::vector<SessionSample>& samples) : samples_(samples)
+ReplayDevice::ReplayDevice(const std::vector<SessionSample>& samples, const HapticDeviceInfo& limits)
+    : samples_(samples), info_(limits)
 {
     info_.model           = "recorded hand";
     info_.workspaceRadius = std::numeric_limits<double>::infinity();

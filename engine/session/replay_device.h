@@ -12,7 +12,8 @@ namespace palp {
 class ReplayDevice : public HapticDevice {
 public:
     /// \param samples  of RecordedSession; outlive it
-    explicit ReplayDevice(const std::vector<SessionSample>& samples);
+    /// \param limits   of the device that was held then
+    explicit ReplayDevice(const std::vector<SessionSample>& samples, const HapticDeviceInfo& limits = {});
 
     [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }
 

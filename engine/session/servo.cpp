@@ -13,36 +13,43 @@ std::uint32_t flag(SessionFlag which, bool set) noexcept
     return set ? static_cast<std::uint32_t>(which) : 0U;
 }
 
-/// What the sampled spring at the cap takes of the arm's damping, K (T/2 + delay) [N s/m]. One sample of delay; with a
-/// thread of its own the proxy's word is up to two more ticks old.
-double spentDamping(const Scene& scene, int delaySamples)
+/// What the sampled spring at a cap takes of the arm's damping, K (T/2 + delay), with one sample of delay [N s/m].
+double spentDamping(double cap)
 {
-    return scene.stiffnessCap * (0.5 + delaySamples) * 1e-3;
+    return cap * 1.5e-3;
 }
 
+/// [1] samples; with a thread of its own the proxy's word is up to two more ticks old.
 int delayOf(SessionThreads threads)
 {
     return threads == SessionThreads::paper ? 3 : 1;
 }
 
+/// What both the scene wants and the device can do; 0 in a device's list says nothing.
+double lower(double wanted, double possible)
+{
+    return possible > 0 ? std::min(wanted, possible) : wanted;
+}
+
 /// The longer the delay, the lower the cap at a period of 1 ms: the spring then spends what it does with one sample.
-GovernorSettings governorOf(const Scene& scene, SessionThreads threads)
+GovernorSettings governorOf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads)
 {
     GovernorSettings settings;
-    settings.maximumForce              = scene.maxForce;
-    settings.maximumStiffness          = scene.stiffnessCap;
-    settings.stiffnessAtOneMillisecond = scene.stiffnessCap;
+    settings.maximumForce              = lower(scene.maxForce, limits.maximumForce);
+    settings.maximumStiffness          = lower(scene.stiffnessCap, limits.maximumStiffness);
+    settings.stiffnessAtOneMillisecond = settings.maximumStiffness;
     settings.delaySamples              = delayOf(threads);
-    settings.creditedDamping           = spentDamping(scene, 1);
+    settings.creditedDamping           = spentDamping(settings.maximumStiffness);
     return settings;
 }
 
 /// The tank lives on what the cap leaves of an arm's 3.2 N s/m, less a reserve.
-EnergyTankSettings tankOf(const Scene& scene)
+EnergyTankSettings tankOf(const Scene& scene, const HapticDeviceInfo& limits)
 {
     constexpr double   kArm = 2.5; // [N s/m] of 3.2
     EnergyTankSettings settings;
-    settings.damping = std::clamp(kArm - spentDamping(scene, 1), 0.0, settings.damping);
+    const double       left = kArm - spentDamping(lower(scene.stiffnessCap, limits.maximumStiffness));
+    settings.damping        = std::clamp(left, 0.0, settings.damping);
     return settings;
 }
 
@@ -78,9 +85,9 @@ const Held& ContactHalf::tick(double time, const glm::dvec3& hip) noexcept
     return held_;
 }
 
-ForceHalf::ForceHalf(const Scene& scene, SessionThreads threads)
+ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads)
     : law_(scene.patch.forceLaw), thickness_(scene.patch.material.thickness), patchPeriod_(1 / scene.deformationRate),
-      handOver_(scene.handOver), tank_(tankOf(scene)), governor_(governorOf(scene, threads))
+      handOver_(scene.handOver), tank_(tankOf(scene, limits)), governor_(governorOf(scene, limits, threads))
 {
 }
 
@@ -107,8 +114,9 @@ ForceHalf::Wanted ForceHalf::wanted(double stiffness, double dt, const Hand& han
 
 SessionSample ForceHalf::tick(const Beat& beat, const Hand& hand, const Held& held, const PatchNews* newest) noexcept
 {
-    if (hand.buttons & ~buttons_ & kOperatorsButton) governor_.reset();
-    buttons_ = hand.buttons;
+    const bool press = hand.homed && hand.device == DeviceFault::none && (hand.buttons & kOperatorsButton) != 0;
+    pressed_         = press ? pressed_ + 1 : 0;
+    if (pressed_ == kPressTicks) governor_.reset();
 
     const Touch& touch = held.touch;
     if (!touch.touching) handOver_.restart();

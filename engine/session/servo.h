@@ -108,10 +108,14 @@ private:
 /// The second half of a tick: pull -> compliance -> stiffness -> tank -> governor -> force. \thread as ContactHalf
 class ForceHalf {
 public:
-    /// Pressed, it resets the governor's fault: whoever holds the device is its operator. The first button.
+    /// Held down for 20 ms, it resets the governor's fault: whoever holds the device is its operator. The first button,
+    /// and not for an instant: packets may be corrupt.
     static constexpr std::uint32_t kOperatorsButton = 1;
+    static constexpr int           kPressTicks      = 20;
 
-    explicit ForceHalf(const Scene& scene, SessionThreads threads = SessionThreads::servo);
+    /// \param limits  of the device: what it can render bounds what the scene wants
+    explicit ForceHalf(const Scene& scene, const HapticDeviceInfo& limits = {},
+                       SessionThreads threads = SessionThreads::servo);
 
     /// When a tick is, on which clock.
     struct Beat {
@@ -140,7 +144,7 @@ private:
     HandOver      handOver_;
     EnergyTank    tank_;
     ForceGovernor governor_;
-    std::uint32_t buttons_ = 0; ///< of the last tick
+    int           pressed_ = 0; ///< [1] ticks that the operator's button has been down
 };
 
 /// One tick of touch, both halves.
@@ -149,8 +153,8 @@ private:
 /// \thread as its halves
 class Servo {
 public:
-    Servo(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene)
-        : contact_(cloud, index, scene), force_(scene)
+    Servo(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene, const HapticDeviceInfo& limits = {})
+        : contact_(cloud, index, scene), force_(scene, limits)
     {
     }
 

@@ -25,7 +25,7 @@ double secondsSince(Clock::time_point start)
 SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSample& onSample,
                           const std::atomic<bool>* stop)
 {
-    Servo                    servo(parts.cloud, parts.index, parts.scene);
+    Servo                    servo(parts.cloud, parts.index, parts.scene, parts.device.info());
     SessionSummary           summary;
     GovernedForce            force;
     std::optional<PatchNews> inUse, underWay;

@@ -1,5 +1,7 @@
 // Compute time of the proxy per tick: sliding at depth 5 spacings over a random plane with noise of 0.2 spacings, in
-// circles, so that the neighbourhood is always new. Counters in microseconds; the mean is Google Benchmark's own.
+// circles, so that the neighbourhood is always new. The mixed clouds have nine tenths of their points in the middle,
+// `ratio` times closer than outside, and the circle lies half inside of it; lengths are in spacings of the middle,
+// the noise in those of the place. Counters in microseconds; the mean is Google Benchmark's own.
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -7,6 +9,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -32,24 +35,31 @@ struct Scene {
     std::unique_ptr<palp::NeighbourIndex> index;
     double                                half; ///< [spacings] of the side
 
-    explicit Scene(std::size_t count) : half(0.5 * std::sqrt(double(count)))
+    Scene(std::size_t count, int ratio) : half(0.5 * std::sqrt((ratio > 1 ? 0.9 : 1) * double(count)))
     {
         std::mt19937_64                  random(1);
-        std::uniform_real_distribution<> along(-half, half);
+        std::uniform_real_distribution<> unit(-1, 1);
         std::normal_distribution<>       noise(0, 0.2);
-        for (std::size_t i = 0; i < count; ++i) {
-            const double x = along(random), y = along(random);
-            points.push_back(kSpacing * glm::dvec3(x, y, noise(random)));
-        }
+        const auto                       add = [&](std::size_t many, double spacing, double inner, double outer) {
+            for (std::size_t i = 0; i < many;) {
+                const double x = outer * unit(random), y = outer * unit(random);
+                if (std::max(std::abs(x), std::abs(y)) < inner) continue;
+                points.push_back(kSpacing * glm::dvec3(x, y, spacing * noise(random)));
+                ++i;
+            }
+        };
+        const std::size_t sparse = ratio > 1 ? count / 10 : 0;
+        add(count - sparse, 1, 0, half);
+        if (sparse > 0) add(sparse, ratio, half, std::sqrt(half * half + 0.25 * double(sparse) * ratio * ratio));
         index = std::make_unique<palp::NeighbourIndex>(points);
     }
 };
 
-Scene& sceneOf(std::size_t count)
+Scene& sceneOf(std::size_t count, int ratio)
 {
-    static std::map<std::size_t, std::unique_ptr<Scene>> scenes;
-    auto&                                                scene = scenes[count];
-    if (!scene) scene = std::make_unique<Scene>(count);
+    static std::map<std::pair<std::size_t, int>, std::unique_ptr<Scene>> scenes;
+    auto&                                                                scene = scenes[{count, ratio}];
+    if (!scene) scene = std::make_unique<Scene>(count, ratio);
     return *scene;
 }
 
@@ -60,18 +70,26 @@ double quantile(std::vector<double>& values, double share)
     return 1e6 * *at;
 }
 
-/// \param speed  [spacings] per tick
-void slide(benchmark::State& state, std::size_t count, palp::ProxyForm form, double speed)
+struct Case {
+    std::size_t     count = 0;
+    palp::ProxyForm form  = palp::ProxyForm::hybrid;
+    double          speed = 0.1; ///< [spacings] per tick
+    int             ratio = 1;   ///< of spacings outside and in the middle
+};
+
+void slide(benchmark::State& state, const Case& what)
 {
-    const Scene& scene  = sceneOf(count);
+    const Scene& scene  = sceneOf(what.count, what.ratio);
     const double loaded = computeTime();
-    palp::Proxy  proxy(scene.points, *scene.index, {form});
+    palp::Proxy  proxy(scene.points, *scene.index, {what.form});
     state.counters["load_s"] = computeTime() - loaded;
 
-    const double radius = 0.6 * scene.half; // [spacings]
-    const auto   hip    = [&](double tick) {
-        const double angle = speed * tick / radius;
-        return kSpacing * glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), -5);
+    // A mixed cloud's circle lies about a place of the border.
+    const double     radius = what.ratio > 1 ? std::min(3.0 * what.ratio, 0.6 * scene.half) : 0.6 * scene.half;
+    const glm::dvec3 centre = what.ratio > 1 ? glm::dvec3(scene.half, 0, 0) : glm::dvec3(0);
+    const auto       hip    = [&](double tick) {
+        const double angle = what.speed * tick / radius;
+        return kSpacing * (centre + glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), -5));
     };
     proxy.reset(hip(0) + glm::dvec3(0, 0, 20 * kSpacing));
     for (int tick = 0; tick < 100; ++tick) proxy.step(hip(0));
@@ -92,22 +110,28 @@ void slide(benchmark::State& state, std::size_t count, palp::ProxyForm form, dou
     state.counters["lost"]      = lost;
 }
 
-void add(std::size_t count, palp::ProxyForm form, const char* name, double speed)
+void add(const Case& what)
 {
-    const std::string title = std::to_string(count) + "/" + name + "/" + (speed < 0.3 ? "0.1" : "0.5") + " per tick";
-    benchmark::RegisterBenchmark(title.c_str(), [=](benchmark::State& state) { slide(state, count, form, speed); })
+    const char* density = what.ratio > 1 ? "/1:" : "";
+    std::string title   = std::to_string(what.count) + "/" + palp::name(what.form) + density;
+    if (what.ratio > 1) title += std::to_string(what.ratio);
+    title += what.speed < 0.3 ? "/0.1 per tick" : "/0.5 per tick";
+    benchmark::RegisterBenchmark(title.c_str(), [=](benchmark::State& state) { slide(state, what); })
         ->UseManualTime()
         ->Unit(benchmark::kMicrosecond)
-        ->Iterations(form == palp::ProxyForm::hybrid ? 20000 : 5000);
+        ->Iterations(what.form == palp::ProxyForm::hybrid ? 20000 : 5000);
 }
 
 } // namespace
 
 int main(int argc, char** argv)
 {
+    using enum palp::ProxyForm;
     for (const std::size_t count : {40'000, 1'000'000}) {
-        for (const double speed : {0.1, 0.5}) add(count, palp::ProxyForm::hybrid, "hybrid", speed);
-        add(count, palp::ProxyForm::sphere, "sphere", 0.1);
+        for (const double speed : {0.1, 0.5}) add({count, hybrid, speed, 1});
+        for (const int ratio : {10, 40, 100})
+            for (const double speed : {0.1, 0.5}) add({count, hybrid, speed, ratio});
+        add({count, sphere, 0.1, 1});
     }
     benchmark::Initialize(&argc, argv);
     benchmark::RunSpecifiedBenchmarks();

@@ -65,6 +65,17 @@ TEST(ProxyShapes, ALargeBallHoldsADeepHand)
     EXPECT_LT(runs.worstLag, 2) << "prototype: 1.2";
 }
 
+TEST(ProxyShapes, ThePapersFormIsRoughOnALargeBallAndFarBehindADeepHand)
+{
+    const Runs runs = slidesOnBall(60, 0.7, 5, 20, ProxyForm::sphere);
+    SCOPED_TRACE(record(runs));
+    EXPECT_GT(runs.all.angle(), 4) << "prototype: 8.6 on random clouds";
+    EXPECT_GT(runs.worstLag, 2) << "prototype: 4.2";
+    const Runs deep = slidesOnBall(60, 0.7, 40, 20, ProxyForm::sphere);
+    SCOPED_TRACE(record(deep, "depth 40"));
+    EXPECT_GT(deep.worstLag, 10) << "five times what is allowed; prototype: 21. None of these 32 fell through";
+}
+
 TEST(ProxyShapes, ABallOfFiveSpacingsIsRound)
 {
     const Runs runs = slidesOnBall(5, std::numbers::pi, 2.5, 10);
@@ -190,13 +201,14 @@ std::string text(const EdgeRecord& r)
 }
 
 /// Slides over the top towards x > 0, where it ends, at depth 5.
-EdgeRecord slideOff(const std::function<Points(Layout, std::uint64_t)>& object, double speed)
+EdgeRecord slideOff(const std::function<Points(Layout, std::uint64_t)>& object, double speed,
+                    ProxyForm form = ProxyForm::hybrid)
 {
     constexpr double kDepth = 5;
     EdgeRecord       record;
     for (const Layout layout : kLayouts)
         for (int seed = 0; seed < kSeeds; ++seed) {
-            Touch touch(object(layout, kFirstSeed + std::uint64_t(seed)));
+            Touch touch(object(layout, kFirstSeed + std::uint64_t(seed)), {form});
             touch.start({-10, 0.3, 5});
             touch.move({-10, 0.3, -kDepth}, 0.5);
             bool left = false, again = false;
@@ -208,8 +220,8 @@ EdgeRecord slideOff(const std::function<Points(Layout, std::uint64_t)>& object, 
                 record.step = std::max(record.step, touch.pullStep() / kDepth);
             });
             record.again += again;
-            EXPECT_TRUE(left);
-            EXPECT_LT(glm::length(touch.pull()), 0.2) << "it dies away";
+            EXPECT_TRUE(left || form != ProxyForm::hybrid);
+            EXPECT_TRUE(glm::length(touch.pull()) < 0.2 || form != ProxyForm::hybrid) << "it dies away";
         }
     return record;
 }
@@ -249,6 +261,40 @@ TEST(ProxyShapes, OverAThinRimThePullDoesNotJump)
     EXPECT_LT(fast.step, 0.21);
     EXPECT_LT(std::max(slow.jump, fast.jump), 1.1) << "recorded: 1.01, as the hand is outside on three sides";
     EXPECT_EQ(slow.again + fast.again, 0);
+}
+
+// --- The paper's form, or the cases above would be too easy ----------------------------------------------------------
+
+TEST(ProxyShapes, ThePapersFormJumpsAtBordersEdgesAndRims)
+{
+    const auto border = [](Layout layout, std::uint64_t seed) {
+        return Sheet(layout, seed).over(-kHalf, 0, -kHalf, kHalf);
+    };
+    const struct {
+        const char*                                  name;
+        std::function<Points(Layout, std::uint64_t)> object;
+        double                                       least;
+    } cases[] = {{"border", border, 0.8}, {"edge", box, 0.8}, {"rim", plate, 0.8}};
+    for (const auto& [name, object, least] : cases)
+        for (const double speed : {0.1, 0.5}) {
+            const EdgeRecord edge = slideOff(object, speed, ProxyForm::sphere);
+            SCOPED_TRACE(record(text(edge), name));
+            EXPECT_GT(edge.step, least) << "of the force, in one tick; prototype: 1.0 to 1.2";
+        }
+}
+
+TEST(ProxyShapes, ThePapersFormJumpsInAGroove)
+{
+    double step = 0;
+    for (const Layout layout : kLayouts)
+        for (int seed = 0; seed < kSeeds; ++seed) {
+            Touch touch(twoPlanes(layout, kFirstSeed + std::uint64_t(seed), 1), {ProxyForm::sphere});
+            touch.start({10, 0.3, 5});
+            touch.move({10, 0.3, -5}, 0.5);
+            touch.move({-5, 0.3, -5}, 0.1, [&] { step = std::max(step, touch.forceStep() / 5); });
+        }
+    record("step " + std::to_string(step));
+    EXPECT_GT(step, 0.3) << "prototype: 0.45";
 }
 
 } // namespace

@@ -76,22 +76,34 @@ TEST(ProxySheets, NoiseDoesNotLetADeepHandThrough)
     EXPECT_LT(runs.worstLag, 5) << "depth times the error of the slope; prototype: 3.6";
 }
 
+/// How far the proxy moves under a hand that has stopped on noise; infinite if it is lost.
+double chatter(int seed, double depth, ProxyForm form)
+{
+    Touch touch(pointsOf({Layout::random, 0.2}, kFirstSeed + std::uint64_t(seed)), {form});
+    slideFlat(touch, {-5, 0.3, 0}, {5, 0, 0}, depth, 0.1);
+    glm::dvec3 low(1e9), high(-1e9);
+    for (int tick = 0; tick < 60; ++tick) {
+        touch.step(touch.hip());
+        if (tick < 40) continue;
+        low  = glm::min(low, touch.at());
+        high = glm::max(high, touch.at());
+    }
+    return touch.touching() ? glm::length(high - low) : HUGE_VAL;
+}
+
 TEST(ProxySheets, AStillHandIsStill)
 {
     for (int seed = 0; seed < kSeeds; ++seed)
-        for (const double depth : {5.0, 40.0}) {
-            Touch touch(pointsOf({Layout::random, 0.2}, kFirstSeed + std::uint64_t(seed)));
-            slideFlat(touch, {-5, 0.3, 0}, {5, 0, 0}, depth, 0.1);
-            glm::dvec3 low(1e9), high(-1e9);
-            for (int tick = 0; tick < 60; ++tick) {
-                touch.step(touch.hip());
-                if (tick < 40) continue;
-                low  = glm::min(low, touch.at());
-                high = glm::max(high, touch.at());
-            }
-            EXPECT_LT(glm::length(high - low), 1e-4) << "seed " << seed << ", depth " << depth;
-            EXPECT_TRUE(touch.touching());
-        }
+        for (const double depth : {5.0, 40.0})
+            EXPECT_LT(chatter(seed, depth, ProxyForm::hybrid), 1e-4) << "seed " << seed << ", depth " << depth;
+}
+
+TEST(ProxySheets, ThePapersFormIsRestlessUnderADeepHand)
+{
+    int restless = 0;
+    for (int seed = 0; seed < kSeeds; ++seed) restless += chatter(seed, 40, ProxyForm::sphere) > 0.1;
+    record("restless: " + std::to_string(restless));
+    EXPECT_GE(restless, 2) << "of 8 move by more than 0.1, a thousand times what is allowed; recorded: 2";
 }
 
 TEST(ProxySheets, TheNearOneOfTwoIsFelt)
@@ -125,15 +137,24 @@ TEST(ProxySheets, ThePapersFormLosesTheSurface)
     const struct {
         const char* name;
         SheetCase   scene;
-    } cases[] = {{"random, depth 40", {Layout::random, 0, 0, 0, 40}},
-                 {"noise, depth 40", {Layout::random, 0.2, 0, 0, 40}},
-                 {"two sheets 3 apart, 20 beyond", {Layout::random, 0, 3, 0, 23}},
-                 {"hole of 3, depth 20", {Layout::random, 0, 0, 3, 20}},
-                 {"hole of 6", {Layout::random, 0, 0, 6, 5}}};
-    for (const auto& [name, scene] : cases) {
+        int         least; ///< runs lost of 16; half of those recorded, as what is random may fall otherwise
+    } cases[] = {
+        {"random, depth 40", {Layout::random, 0, 0, 0, 40}, 1},
+        {"noise, depth 40", {Layout::random, 0.2, 0, 0, 40}, 2},
+        {"two sheets 2 apart, 20 beyond", {Layout::random, 0, 2, 0, 22}, 1},
+        {"two sheets 3 apart, 20 beyond", {Layout::random, 0, 3, 0, 23}, 2},
+        {"two noisy sheets 2 apart, 20 beyond", {Layout::random, 0.1, 2, 0, 22}, 1},
+        {"two noisy sheets 3 apart, 20 beyond", {Layout::random, 0.2, 3, 0, 23}, 1},
+        {"hole of 3, depth 20", {Layout::random, 0, 0, 3, 20}, 7},
+        {"hole of 6", {Layout::random, 0, 0, 6, 5}, 8},
+    };
+    for (const auto& [name, scene, least] : cases) {
         const Runs runs = slides(scene, ProxyForm::sphere);
-        EXPECT_GT(runs.popped, 0) << record(runs, name);
+        EXPECT_GE(runs.popped, least) << record(runs, name);
     }
+    const Runs behind = slides({Layout::random, 0, 2, 6, 5}, ProxyForm::sphere);
+    SCOPED_TRACE(record(behind, "hole of 6 over a second sheet"));
+    EXPECT_GT(behind.all.forceStep / 5, 0.5) << "held by the second sheet, but with a step; 0.1 is allowed";
 }
 
 TEST(ProxySheets, ThePapersFormIsRoughWhereThePointsAreRandom)

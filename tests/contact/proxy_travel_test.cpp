@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/contract.h"
-#include "tests/contact/allocation_count.h"
 #include "tests/contact/proxy_scenes.h"
+#include "tests/support/allocations.h"
 
 namespace palp {
 namespace {
@@ -23,11 +23,11 @@ Points smallSheets(Layout layout, std::uint64_t seed, double gap, double half)
     return points;
 }
 
-int missedPresses(double gap, ProxyForm form = ProxyForm::hybrid)
+int missedPresses(double gap)
 {
     int missed = 0;
     for (std::uint64_t seed = 0; seed < 100; ++seed) {
-        Touch touch(smallSheets(Layout::random, 5000 + seed, gap, 15), {form});
+        Touch touch(smallSheets(Layout::random, 5000 + seed, gap, 15));
         touch.start({0.2, 0.3, 5});
         touch.move({0.2, 0.3, -gap - 5}, 0.1);
         missed += !touch.touching() || std::abs(touch.at().z) > 1;
@@ -42,9 +42,14 @@ TEST(ProxyTravel, PressesFindTheNearSheet)
     EXPECT_EQ(missedPresses(0), 0);
 }
 
-TEST(ProxyTravel, NoWayIsTooFast)
+struct Missed {
+    int fast = 0; ///< of 300 ways at 8 spacings per tick
+    int jump = 0; ///< of 300 ways in one tick, 60 spacings or more
+};
+
+Missed missedWays(ProxyForm form)
 {
-    int missed = 0, jumped = 0;
+    Missed missed;
     for (int run = 0; run < 300; ++run) {
         const double                     gaps[] = {0, 2, 3};
         std::mt19937_64                  random(7000 + std::uint64_t(run));
@@ -54,16 +59,33 @@ TEST(ProxyTravel, NoWayIsTooFast)
         const double     far = 10 + 50 * unit(random);
         const glm::dvec3 back(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), std::cos(angle));
         const glm::dvec3 end(unit(random), unit(random), -gap - 5);
-        Touch touch(smallSheets(run % 2 ? Layout::random : Layout::lattice, 7000 + std::uint64_t(run), gap, 30));
+        Touch touch(smallSheets(run % 2 ? Layout::random : Layout::lattice, 7000 + std::uint64_t(run), gap, 30),
+                    {form});
         for (const double speed : {8.0, 1e9}) {
             touch.start(end + (speed > 8 ? 60 : far) / std::cos(angle) * back);
             touch.move(end, speed);
             for (int tick = 0; tick < 20; ++tick) touch.step(end);
-            (speed > 8 ? jumped : missed) += !touch.touching() || std::abs(touch.at().z) > 0.5;
+            // The paper's sphere lies on the points with all of its radius, up to three spacings above them.
+            const double high = touch.at().z;
+            const bool   off  = high < -0.5 || high > (form == ProxyForm::hybrid ? 0.5 : 3);
+            (speed > 8 ? missed.jump : missed.fast) += !touch.touching() || off;
         }
     }
-    EXPECT_EQ(missed, 0) << "of 300 at 8 spacings per tick";
-    EXPECT_EQ(jumped, 0) << "of 300 in one jump of 60 spacings or more";
+    return missed;
+}
+
+TEST(ProxyTravel, NoWayIsTooFast)
+{
+    const Missed missed = missedWays(ProxyForm::hybrid);
+    EXPECT_EQ(missed.fast, 0) << "of 300 at 8 spacings per tick";
+    EXPECT_EQ(missed.jump, 0) << "of 300 in one jump of 60 spacings or more";
+}
+
+TEST(ProxyTravel, ThePapersFormAsPublishedMissesSurfacesOnItsWay)
+{
+    const Missed missed = missedWays(ProxyForm::plainSphere);
+    record("fast " + std::to_string(missed.fast) + ", jump " + std::to_string(missed.jump));
+    EXPECT_GE(missed.fast, 8) << "of 300; recorded: 17. The regulated form misses none";
 }
 
 TEST(ProxyTravel, InFreeSpaceTheProxyIsTheHand)
@@ -134,13 +156,13 @@ TEST(ProxyTravel, NothingIsAllocatedAfterConstruction)
     for (const ProxyForm form : {ProxyForm::hybrid, ProxyForm::sphere, ProxyForm::plainSphere}) {
         Touch touch(points, {form});
         touch.start({0, 0, 60});
-        const std::size_t before = allocations();
+        const std::size_t before = allocationsOfThisThread();
         int               felt   = 0;
         for (const glm::dvec3& hip : hips) {
             touch.step(hip);
             felt += touch.touching();
         }
-        EXPECT_EQ(allocations() - before, 0U);
+        EXPECT_EQ(allocationsOfThisThread() - before, 0U);
         EXPECT_GT(felt, 500);
     }
 }

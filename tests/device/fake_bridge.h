@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <deque>
@@ -26,6 +27,7 @@ public:
             const std::lock_guard lock(mutex_);
             heard_ = now_;
             commands_.push_back(command);
+            times_.push_back(std::chrono::steady_clock::now());
             if (!command.enable) stopped_ = false;
             force_ = command.enable && !stopped_ ? command.force : glm::dvec3(0);
         };
@@ -69,15 +71,22 @@ public:
         return commands_;
     }
 
+    [[nodiscard]] std::vector<std::chrono::steady_clock::time_point> times() const ///< of the commands
+    {
+        const std::lock_guard lock(mutex_);
+        return times_;
+    }
+
     BridgeAnswer answer; ///< the next one's; change it between ticks
 
 private:
-    FakeHidDevice&             device_;
-    mutable std::mutex         mutex_;
-    double                     now_ = 0, heard_ = 0; ///< [s]
-    glm::dvec3                 force_{};
-    bool                       stopped_ = false;
-    std::vector<BridgeCommand> commands_;
+    FakeHidDevice&                                     device_;
+    mutable std::mutex                                 mutex_;
+    double                                             now_ = 0, heard_ = 0; ///< [s]
+    glm::dvec3                                         force_{};
+    bool                                               stopped_ = false;
+    std::vector<BridgeCommand>                         commands_;
+    std::vector<std::chrono::steady_clock::time_point> times_;
 };
 
 } // namespace palp

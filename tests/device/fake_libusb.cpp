@@ -79,6 +79,12 @@ std::optional<libusb_transfer_status> outcomeOf(libusb_transfer* transfer, bool 
     if (fake.unplugged) return LIBUSB_TRANSFER_NO_DEVICE;
     if (isIn(transfer)) return std::exchange(fake.inFault, std::nullopt);
     if (!fake.takesBytes) return std::nullopt;
+    if (fake.halted) return LIBUSB_TRANSFER_STALL;
+    if (fake.outFault) {
+        fake.halted = fake.outFault == LIBUSB_TRANSFER_STALL;
+        return std::exchange(fake.outFault, std::nullopt);
+    }
+    if (!fake.answer.empty()) fake.incoming.push_back(fake.answer);
     transfer->actual_length = transfer->length - fake.outShort;
     fake.written.emplace_back(transfer->buffer, transfer->buffer + transfer->actual_length);
     return LIBUSB_TRANSFER_COMPLETED;
@@ -276,6 +282,14 @@ int libusb_cancel_transfer(libusb_transfer* transfer)
     const auto            one = found(transfer);
     if (one == underWay.end()) return LIBUSB_ERROR_NOT_FOUND;
     one->cancelled = fakeOf(transfer).cancels;
+    return 0;
+}
+
+int libusb_clear_halt(libusb_device_handle* handle, unsigned char endpoint)
+{
+    const std::lock_guard guard(fakeUsb().lock);
+    if (endpoint & LIBUSB_ENDPOINT_IN) ++fakeUsb().mistakes;
+    handle->device->fake->halted = false;
     return 0;
 }
 

@@ -22,6 +22,9 @@ struct FakeUsbDevice {
     int                                        openError = 0, claimError = 0, controlError = 0, submitError = 0;
     std::deque<std::vector<unsigned char>>     incoming; ///< each completes one IN transfer, status bytes and all
     std::optional<enum libusb_transfer_status> inFault;  ///< of one IN transfer, once nothing is incoming
+    std::optional<enum libusb_transfer_status> outFault; ///< of one OUT transfer; after a stall all fail until cleared
+    bool                                       halted = false; ///< so it is
+    std::vector<unsigned char>                 answer; ///< to each OUT transfer, status bytes and all; empty: none
     bool                                       unplugged  = false; ///< once nothing is incoming
     bool                                       takesBytes = true;  ///< else OUT transfers stay
     int                                        outShort   = 0;     ///< [bytes] fewer are taken than were sent

@@ -476,6 +476,19 @@ TEST(FalconDevice, WithoutPowerItIsSilentAndOpensAgainByUpload)
     EXPECT_FALSE(bench.state.homed) << "it has to be homed anew";
 }
 
+TEST(FalconDevice, CancellingWhileItIsOpenDoesNotSpoilTheNextOpening)
+{
+    FalconBench bench;
+    bench.device->cancelOpen();
+    bench.device->close();
+    EXPECT_NO_THROW(bench.device->open());
+
+    bench.device->close();
+    bench.device->cancelOpen();
+    EXPECT_THROW(bench.device->open(), Error) << "the next one, where none is open";
+    EXPECT_NO_THROW(bench.device->open()) << "and no other";
+}
+
 TEST(FalconDevice, ButtonsAndLightsPassThrough)
 {
     FalconDeviceSettings settings;
@@ -506,6 +519,23 @@ TEST(FalconDevice, TheRateIsTheTimersOrTheWires)
     std::printf("  exchanges: %.0f Hz with a timer of 1 ms, %.0f Hz with the event character\n", timer, event);
     EXPECT_NEAR(timer, 1000, 2) << "one a period of the timer, but for the first";
     EXPECT_GT(event, 1800) << "two transfers, two wires and the firmware: 514 us";
+}
+
+TEST(FalconDevice, TheServosClockMayStartAnew)
+{
+    FalconBench bench;
+    bench.run(5);
+    const double before = bench.emulator.now();
+
+    double now = 0, worst = 0; // [s]
+    for (; now < 1; now += 2e-3) {
+        const HapticState state = bench.device->exchange({}, now);
+        EXPECT_EQ(state.fault, DeviceFault::none);
+        worst = std::max(worst, std::abs(state.time - now));
+    }
+
+    EXPECT_NEAR(bench.emulator.now() - before, now, 5e-3) << "both go on alike";
+    EXPECT_LE(worst, 2e-3) << "an answer takes 1 to 1.5 ms";
 }
 
 TEST(FalconDevice, AWallIsFeltThroughTheWholeChain)

@@ -12,6 +12,7 @@
 
 #include "device/falcon/ft232_emulator.h"
 #include "engine/core/contract.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palp {
 namespace {
@@ -71,6 +72,23 @@ TEST(FalconDriver, UploadsOnceAndBelievesOnlyAnswers)
     EXPECT_FALSE(started.reply.homed());
     EXPECT_LT(start.emulator.now(), 1.0) << "0.1 s of asking first, 0.6 of bytes, 137 turns of 0.4 ms";
     EXPECT_EQ(start.emulator.falcon().lastTorque(), -1) << "no motor ever moved";
+}
+
+TEST(FalconDriver, TellsEachPieceOfAnUpload)
+{
+    Start                    start;
+    std::vector<std::size_t> pieces;
+    start.settings.onUpload = [&](std::size_t done, std::size_t total) {
+        EXPECT_EQ(total, firmware().size());
+        EXPECT_EQ(start.emulator.falcon().image().size(), done) << "what was echoed has arrived";
+        pieces.push_back(done);
+    };
+
+    static_cast<void>(start.run(firmware()));
+
+    ASSERT_EQ(pieces.size(), 137U) << "8492 bytes in pieces of 62";
+    EXPECT_EQ(pieces.front(), 62U);
+    EXPECT_EQ(pieces.back(), firmware().size());
 }
 
 TEST(FalconDriver, UploadsNothingWhereTheFirmwareRuns)
@@ -199,6 +217,83 @@ TEST(FalconDriver, CancelEndsItWithinATenthOfASecond)
         EXPECT_NE(complaint.find("cancelled"), std::string::npos) << complaint;
         EXPECT_LT(start.emulator.now() - cancelled, 0.1);
     }
+}
+
+TEST(FalconDriver, AnOpenerThatFailsIsAFailedAttempt)
+{
+    for (const int failures : {2, 100}) {
+        Start start;
+        start.settings.attempts    = 4;
+        start.settings.reopenAfter = 1e-3;
+        int         openings       = 0;
+        std::string complaint;
+        int         attempts = 0;
+        try {
+            attempts = startFalcon(
+                           [&]() -> std::unique_ptr<FalconLink> {
+                               ++openings;
+                               if (openings > 1 && openings <= 1 + failures) throw Error("it is busy");
+                               return start.emulator.connect();
+                           },
+                           firmware(), start.settings)
+                           .attempts;
+        } catch (const Error& error) {
+            complaint = error.what();
+        }
+
+        EXPECT_EQ(attempts, failures == 2 ? 3 : 0) << complaint;
+        EXPECT_EQ(complaint.find("4 attempts: it is busy") != std::string::npos, failures == 100) << complaint;
+        EXPECT_EQ(openings, failures == 2 ? 4 : 5);
+    }
+}
+
+TEST(FalconDriver, WaitingToReopenItHeedsTheCancelling)
+{
+    Start start;
+    start.settings.reopenAfter  = 60;
+    int               openings  = 0;
+    const std::string complaint = refusalOf([&] {
+        static_cast<void>(startFalcon(
+            [&]() -> std::unique_ptr<FalconLink> {
+                if (++openings == 1) return start.emulator.connect();
+                start.cancel = true;
+                throw Error("it is busy");
+            },
+            firmware(), start.settings, &start.cancel));
+    });
+
+    EXPECT_NE(complaint.find("cancelled"), std::string::npos) << complaint;
+    EXPECT_EQ(openings, 2);
+}
+
+TEST(FalconDriver, AskedWhatItNeedsAFalconStillTakesItsFirmware)
+{
+    Start      fresh;
+    const auto ask = [](Ft232Emulator& emulator) { return askFalcon(*emulator.connect()); };
+
+    EXPECT_EQ(ask(fresh.emulator), FalconReadiness::noFirmware);
+    EXPECT_LT(fresh.emulator.now(), 0.1);
+    EXPECT_EQ(fresh.run(firmware()).attempts, 1) << "opened anew it listens";
+    EXPECT_EQ(ask(fresh.emulator), FalconReadiness::notHomed);
+
+    Ft232EmulatorSettings settings;
+    settings.falcon.running = settings.falcon.homed = true;
+    Ft232Emulator homed(settings);
+    EXPECT_EQ(ask(homed), FalconReadiness::ready);
+    EXPECT_LT(homed.now(), 0.01) << "two packets";
+    EXPECT_EQ(homed.falcon().command(), FalconCommand{}) << "no force, no lights";
+}
+
+TEST(FalconDriver, WithoutFirmwareALinkThatBrokeIsNotBlamedOnIt)
+{
+    Ft232EmulatorSettings settings;
+    settings.falcon.running = true;
+    Start start(settings);
+    start.emulator.cause({LinkTroubleKind::unplug, 0.011, 0.1});
+
+    const std::string complaint = start.complaint({});
+
+    EXPECT_NE(complaint.find("unplugged"), std::string::npos) << complaint;
 }
 
 TEST(FalconDriver, AFalconThatIsNotThereIsTheOpenersError)

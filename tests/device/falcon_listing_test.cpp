@@ -1,4 +1,5 @@
 // Listing and opening Falcons by libusb, against a stand-in of the library.
+#include <chrono>
 #include <string>
 
 #include "device/falcon/libusb_link.h"
@@ -8,8 +9,17 @@
 namespace palp {
 namespace {
 
+/// What firmware says to each packet, as the chip passes it on.
+std::vector<unsigned char> answerOf(const FalconReply& reply)
+{
+    std::vector<unsigned char> sent{0x01, 0x60};
+    for (const std::uint8_t byte : encode(reply)) sent.push_back(byte);
+    return sent;
+}
+
 TEST_F(FalconUsb, ListsFalconsByTheirPlacesAndNothingElse)
 {
+    falcon_->answer    = answerOf({.homedLegs = 7});
     plugIn(3)->product = 0x6001; // a serial cable
     const auto deep    = plugIn(4);
     deep->bus          = 3;
@@ -23,6 +33,54 @@ TEST_F(FalconUsb, ListsFalconsByTheirPlacesAndNothingElse)
     EXPECT_TRUE(listings[0].usable);
     EXPECT_EQ(listings[0].why + listings[0].help, "");
     EXPECT_EQ(falconSupport(), "libusb-1.0 1.0.26");
+    EXPECT_TRUE(hasFalconSupport());
+}
+
+TEST_F(FalconUsb, TheListingSaysWhatAFalconStillNeeds)
+{
+    using enum FalconReadiness;
+    struct Case {
+        std::vector<unsigned char> answer;
+        FalconReadiness            readiness;
+        const char *               why, *help;
+    };
+    for (const auto& [answer, readiness, why, help] :
+         {Case{{}, noFirmware, "no firmware", "FALCON_FIRMWARE"},
+          Case{{0x01, 0x60, 0x44, 0x2C}, noFirmware, "no firmware", "FALCON_FIRMWARE"}, // not what firmware says
+          Case{answerOf({.homedLegs = 3}), notHomed, "not homed", "pull the grip out"},
+          Case{answerOf({.homedLegs = 7}), ready, "", ""}}) {
+        falcon_->answer = answer;
+        falcon_->written.clear();
+        falcon_->incoming.clear();
+
+        const auto listings = listFalcons();
+
+        ASSERT_EQ(listings.size(), 1u);
+        EXPECT_EQ(listings[0].readiness, readiness) << why;
+        EXPECT_TRUE(listings[0].usable) << why;
+        EXPECT_TRUE(holds(listings[0].why, {why})) << listings[0].why;
+        EXPECT_TRUE(holds(listings[0].help, {help})) << listings[0].help;
+        EXPECT_EQ(listings[0].why.empty(), readiness == ready);
+        EXPECT_EQ(listings[0].help.empty(), readiness == ready);
+        EXPECT_FALSE(falcon_->written.empty());
+        const FalconPacket zero = encode(FalconCommand{});
+        for (const auto& packet : falcon_->written)
+            EXPECT_EQ(packet, std::vector<unsigned char>(zero.begin(), zero.end())) << "no force, no lights";
+        EXPECT_EQ(falcon_->claims, 0) << "let go again";
+    }
+}
+
+TEST_F(FalconUsb, AFalconThatBreaksOffWhileItIsAskedIsNotUsable)
+{
+    falcon_->controlError = LIBUSB_ERROR_PIPE;
+
+    const auto listings = listFalcons();
+
+    ASSERT_EQ(listings.size(), 1u);
+    EXPECT_FALSE(listings[0].usable);
+    EXPECT_FALSE(listings[0].readiness.has_value());
+    EXPECT_TRUE(holds(listings[0].why, {"cannot be asked", "1-2"})) << listings[0].why;
+    EXPECT_TRUE(holds(listings[0].help, {"plug it in anew"}));
 }
 
 TEST_F(FalconUsb, WithoutPermissionTheListingGivesTheLineThatHelps)

@@ -1,8 +1,11 @@
-// A Falcon's own thread, in real time: what waits for whom, and what happens when one side stops. No test here asks how
-// fast it goes: the machine may be busy.
+// A Falcon's own thread, in real time: what waits for whom, and what happens when one side stops. No test here asks
+// how fast it goes, beyond what a busy machine allows.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -21,6 +24,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
+
+constexpr double kBusy = 50e-3; // [s] that a thread may have to wait for a processor
 
 /// The emulator on steady time, for several threads.
 class RealTimeFalcon {
@@ -133,18 +138,30 @@ TEST(FalconThread, CarriesForcesOutAndAnswersIn)
     EXPECT_GT(time, 100 - 1 - (servo.falcon.now() - called)) << "by the servo's clock";
 }
 
-TEST(FalconThread, NotAskedFor100msItEndsTheForceByItself)
+TEST(FalconThread, NotAskedItLetsTheForceFallByItself)
 {
     Servo servo(neverLettingGo());
     servo.device->open();
-    servo.force = governed({1, 0, 0});
-    ASSERT_TRUE(servo.until([&] { return servo.falcon.pushes(); }));
+    servo.force       = governed({1, 0, 0});
+    const auto motors = [](Ft232Emulator& it) { return std::abs(it.falcon().motors()[0]); };
+    int        full   = 0; // [counts]
+    for (int same = 0; same < 30;) {
+        ASSERT_TRUE(servo.until([&] { return servo.falcon.pushes(); }));
+        const int count = servo.falcon.with(motors);
+        same            = count == full ? same + 1 : 0;
+        full            = std::max(full, count);
+    }
+    ASSERT_GT(full, 0);
 
+    servo.state       = servo.device->exchange(servo.force, servo.falcon.now());
     const double left = servo.falcon.now();
     std::this_thread::sleep_for(1s);
     const double last = servo.falcon.with([](Ft232Emulator& it) { return it.falcon().lastTorque(); });
 
-    EXPECT_LT(last - left, 0.5) << "0.1 s, were the machine idle";
+    // 25 ms and an exchange on an idle machine. On a busy one the thread may be without a processor meanwhile, as it
+    // outranks nobody here, and the emulator only hears what it sends; at the old limit of 100 ms this fails.
+    std::printf("  motors at zero %.1f ms after the last exchange\n", (last - left) * 1e3);
+    EXPECT_LT(last - left, 25e-3 + kBusy);
     EXPECT_TRUE(servo.until([&] { return servo.state.fault == DeviceFault::hostTooSlow; }));
     EXPECT_TRUE(servo.until([&] { return servo.state.fault == DeviceFault::none && servo.falcon.pushes(); }));
 }

@@ -188,6 +188,68 @@ TEST_F(FalconUsb, ADeviceThatTakesNothingIsLostAfterATenthOfASecond)
     EXPECT_LT(took, kSoon);
 }
 
+/// Whether it is lost, and not for the reason that the device is gone.
+bool isBroken(const auto& act)
+{
+    try {
+        act();
+    } catch (const LinkGone&) {
+        return false;
+    } catch (const LinkLost&) {
+        return true;
+    }
+    return false;
+}
+
+TEST_F(FalconUsb, WhatALinkThatBrokeIsToldStillGoesOut)
+{
+    std::array<unsigned char, 16> bytes{};
+    const auto                    write = [&](FalconLink& link) { return isBroken([&] { link.write(counted(16)); }); };
+    {
+        const auto link  = openFalcon();
+        falcon_->inFault = LIBUSB_TRANSFER_ERROR;
+        EXPECT_TRUE(isBroken([&] { static_cast<void>(link->read(bytes, kSoon)); }));
+        for (std::size_t n = 1; n <= 3; ++n) {
+            EXPECT_TRUE(write(*link)) << "it says so all the same";
+            EXPECT_EQ(falcon_->written.size(), n);
+        }
+    }
+    falcon_->written.clear();
+    {
+        const auto link   = openFalcon();
+        falcon_->outFault = LIBUSB_TRANSFER_STALL;
+        link->write(counted(16));
+        EXPECT_TRUE(isBroken([&] { static_cast<void>(link->read(bytes, kSoon)); }));
+        EXPECT_TRUE(write(*link));
+        EXPECT_EQ(falcon_->written.size(), 1u) << "the stall was cleared first";
+    }
+    falcon_->written.clear();
+    {
+        const auto link     = openFalcon();
+        falcon_->takesBytes = false;
+        link->write(counted(16));
+        EXPECT_TRUE(write(*link)) << "the first one hangs";
+        falcon_->takesBytes = true;
+        EXPECT_TRUE(write(*link));
+        EXPECT_EQ(falcon_->written.size(), 1u) << "in the place of the one that hung";
+    }
+}
+
+TEST_F(FalconUsb, OnlyADeviceThatIsAwayIsGone)
+{
+    std::array<unsigned char, 16> bytes{};
+    const auto                    link = openFalcon();
+    falcon_->inFault                   = LIBUSB_TRANSFER_ERROR; // as some systems have it when a plug is pulled
+    EXPECT_TRUE(isBroken([&] { static_cast<void>(link->read(bytes, kSoon)); }));
+    falcon_->unplugged = true;
+
+    EXPECT_THROW(link->write(counted(16)), LinkGone);
+    EXPECT_THROW(link->write(counted(16)), LinkGone) << "for good";
+    EXPECT_TRUE(falcon_->written.empty());
+    EXPECT_THROW(static_cast<void>(link->read(bytes, 0)), LinkGone);
+    EXPECT_THROW(link->control(FtdiRequest::reset, 0), LinkGone);
+}
+
 TEST_F(FalconUsb, ShortWritesAndFaultsOfTransfersLoseTheLink)
 {
     std::array<unsigned char, 16> bytes{};

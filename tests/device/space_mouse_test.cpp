@@ -11,8 +11,8 @@
 
 #include "engine/core/contract.h"
 #include "tests/device/fake_hid.h"
-#include "tests/session/allocations.h"
-#include "tests/session/locks.h"
+#include "tests/support/allocations.h"
+#include "tests/support/locks.h"
 
 namespace palp {
 namespace {
@@ -177,6 +177,19 @@ TEST_F(SpaceMouseInVirtualTime, ADeflectionThatNobodyConfirmsEnds)
     device.send(axesReport(1, {0, 0, -35 - 63})); // 0.2 beyond the dead zone: 0.02 m/s
     const double reached = after(2, mouse).position.y;
     EXPECT_NEAR(reached, 0.02 * 0.5, 0.02 * 2e-3) << "for 0.5 s, give or take two ticks";
+    EXPECT_EQ(mouse.axes().push, glm::dvec3(0));
+}
+
+TEST_F(SpaceMouseInVirtualTime, WhenTheServosClockStartsAnewADeflectionStillEnds)
+{
+    SpaceMouse mouse(system, compact(), settings());
+    mouse.open();
+    mouse.exchange({}, now);
+    device.send(axesReport(1, {0, 0, -35 - 63})); // 0.02 m/s
+    after(0.1, mouse);
+    now                  = 0; // a session that starts after homing
+    const double reached = after(2, mouse).position.y;
+    EXPECT_NEAR(reached, 0.02 * 0.5, 0.02 * 3e-3) << "for 0.5 s in all, give or take three ticks";
     EXPECT_EQ(mouse.axes().push, glm::dvec3(0));
 }
 

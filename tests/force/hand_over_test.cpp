@@ -1,32 +1,11 @@
 #include "engine/force/hand_over.h"
 
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <new>
 
 #include <gtest/gtest.h>
 
-namespace {
-std::atomic<long> allocations{0};
-}
-
-// Counts every allocation of this program; what is not counted here goes through these.
-void* operator new(std::size_t size)
-{
-    ++allocations;
-    if (void* memory = std::malloc(size)) return memory;
-    throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept
-{
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept
-{
-    std::free(memory);
-}
+#include "tests/support/allocations.h"
 
 namespace palp {
 namespace {
@@ -231,10 +210,10 @@ TEST(HandOver, AllocatesNothing)
     for (HandOverLaw law : {HandOverLaw::table, HandOverLaw::hold, HandOverLaw::blend}) {
         Servo      servo(law);
         const auto one = tableOf(1, -6, 50), two = tableOf(2, -7, 50);
-        const long before = allocations;
+        const auto before = allocationsOfThisThread();
         for (int n = 0; n < 10; ++n) (void)servo.tick(one);
         for (int n = 0; n < 10; ++n) (void)servo.tick(two);
-        EXPECT_EQ(allocations, before) << name(law);
+        EXPECT_EQ(allocationsOfThisThread(), before) << name(law);
     }
     static_assert(noexcept(std::declval<HandOver>().tick({})));
 }

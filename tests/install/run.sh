@@ -16,6 +16,7 @@ cmake -G "$generator" -S "$source/outside" -B "$place/outside" -DCMAKE_PREFIX_PA
 cmake --build "$place/outside" >"$place/build.log" 2>&1 || { cat "$place/build.log"; exit 1; }
 "$place/outside/outside"
 "$place/moved/bin/palpate" --version
+"$place/moved/bin/falcon_demo" --list | grep -q palm_wart # it finds the scenes that moved with it
 
 # CHOLMOD is in part under the GPL: it must not be in what is passed on, see third_party_notes.md.
 [ ! -e "$place/moved/bin/palpate_peers" ] || { echo 'palpate_peers was installed'; exit 1; }

@@ -31,7 +31,7 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert render devices doctor 'bench solve'; do
+for command in touch solve info convert render devices doctor calibrate 'bench solve'; do
     # shellcheck disable=SC2086  # a command, or one within another
     good "help of $command" $command --help; holds 'Examples:'
     mv out.txt help.txt
@@ -237,6 +237,10 @@ bad 'a grip in a wrong unit' '"N/mm"' run scene.json --arm '150 N/mm'
 bad 'a speed that no hand has' 'up to 100 m/s' run scene.json --speed 1e300
 bad 'a time without end' 'up to 86400 s' run scene.json --seconds 1e9
 bad 'threads without a clock' 'virtual clock has no threads' run scene.json --threads paper --clock virtual
+bad 'counts of no motor' 'expected 2000 to 10000' run scene.json --hand falcon-emulator --falcon-counts 50000
+bad 'counts that are no number' 'nan' run scene.json --hand falcon-emulator --falcon-counts nan
+bad 'counts without a Falcon' 'of --hand falcon' run scene.json --falcon-counts 4300
+bad 'a slip' 'did you mean falcon?' run scene.json --hand falcom
 bad 'a mouse without a window' 'needs a window' run scene.json --hand mouse
 bad 'a table that is too large' '0, 1, 3, 5 or 7' run scene.json --table-size 9
 good 'units of keys' run scene.json --print-config --stiffness-cap '800 N/m' --deformation-rate 30Hz --from 1e300,0,1e300
@@ -263,6 +267,28 @@ data = bytearray(open('session/force.npy', 'rb').read()); data[-1] ^= 1; open('s
     "$palpate" replay session --compare >out.txt 2>err.txt
     [ $? -eq 1 ] && grep -qF 'sample 499' out.txt && passed=$((passed + 1)) || complain "one changed bit is not found: $(cat out.txt err.txt)"
 }
+
+# --- a Falcon weighs a mass: an emulated one, of 5000 counts per N m and an arm of 210 g
+good 'calibrate' calibrate --emulator --json
+holds '"counts_per_torque_before": 4200.0'
+# near KEY EXPECTED SHARE, of tests/device/falcon_calibration_test.cpp
+near() {
+    value=$(sed -n "s/^  \"$1\": \([-+.0-9e]*\).*/\1/p" out.txt)
+    awk -v a="$value" -v b="$2" -v share="$3" 'BEGIN { d = a - b; if (d < 0) d = -d; exit !(a > 0 && d <= share * b) }' &&
+        passed=$((passed + 1)) || complain "calibrate: $1 is $value, expected $2"
+}
+near counts_per_torque 5000 0.005
+near arm_kg 0.21 0.01
+for step in 'emulated' 'lift the grip' 'hang 200 g on the grip' 'hands off'; do
+    grep -qF "$step" err.txt && passed=$((passed + 1)) || complain "calibrate does not say '$step': $(cat err.txt)"
+done
+good 'calibrate, a lighter mass' calibrate --emulator --mass 0.1
+holds '--hand falcon --falcon-counts 499'
+holds 'this Falcon is emulated'
+bad 'a mass that no grip holds' '--mass: expected 50 g to 500 g, found "2 kg"' calibrate --emulator --mass '2 kg'
+bad 'a mass that is none' '--mass' calibrate --emulator --mass '200 N'
+"$palpate" calibrate --emulator --mass '500 g' >out.txt 2>err.txt
+[ $? -eq 1 ] && [ ! -s out.txt ] && grep -qF 'take a lighter mass' err.txt && passed=$((passed + 1)) || complain "a mass beyond the governor: $(cat out.txt err.txt)"
 
 # --- the same numbers every time
 for run in one two; do "$palpate" touch sample:palm --points 8000 --cells 32 --out $run --json >touch.json; done

@@ -146,6 +146,10 @@ TEST_F(SessionFolder, ColumnsThatAKillLeftLongerAreCutToTheShortest)
     force.replace(force.find("(100, 3)"), 8, "(98, 3) ");
     put("force.npy", force);
 
+    EXPECT_TRUE(holds(refusal(), {"force.npy", "100 samples", "found 98", "damaged"})) << "it was finished";
+    std::string description = contentsOf(run / "session.json");
+    description.replace(description.find("\"finished\": true"), 16, "\"finished\": false");
+    put("session.json", description);
     EXPECT_EQ(readSession(run).samples.size(), 98u);
 }
 

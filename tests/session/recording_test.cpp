@@ -27,7 +27,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/session/recorded_session.h"
-#include "tests/session/allocations.h"
+#include "tests/support/allocations.h"
 #include "tests/session/sessions.h"
 #include "tests/support/temporary_folder.h"
 

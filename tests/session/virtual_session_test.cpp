@@ -11,7 +11,7 @@
 #include "engine/session/deformation.h"
 #include "engine/session/hand_device.h"
 #include "engine/session/recorded_session.h"
-#include "tests/session/allocations.h"
+#include "tests/support/allocations.h"
 #include "tests/session/sheet_session.h"
 
 namespace palp {
@@ -165,7 +165,7 @@ TEST(VirtualSession, TheTableReachesAsFarAsAFastHandGoes)
     }
 }
 
-TEST(Servo, TheFirstButtonResetsAFault)
+TEST(Servo, TheFirstButtonHeldDownResetsAFault)
 {
     const SheetSession session(sheetScene(kWart));
     Servo              servo(session.cloud.cloud, session.index, session.scene);
@@ -177,8 +177,41 @@ TEST(Servo, TheFirstButtonResetsAFault)
     (void)servo.tick({2e-3, 1e-3, 1e-3}, hand, nullptr);
     EXPECT_EQ(servo.governor().fault(), GovernorFault::velocityNotFinite) << "it stays";
     hand.buttons = ForceHalf::kOperatorsButton;
-    (void)servo.tick({3e-3, 1e-3, 1e-3}, hand, nullptr);
+    for (int n = 0; n < ForceHalf::kPressTicks; ++n) {
+        EXPECT_EQ(servo.governor().fault(), GovernorFault::velocityNotFinite) << "a glitch is no press: " << n;
+        (void)servo.tick({3e-3 + 1e-3 * n, 1e-3, 1e-3}, hand, nullptr);
+    }
     EXPECT_EQ(servo.governor().fault(), GovernorFault::none);
+}
+
+/// A device that renders little is never asked for more, whatever the scene allows.
+TEST(VirtualSession, TheDevicesLimitsBoundTheForce)
+{
+    class Weak : public HandDevice {
+    public:
+        explicit Weak(const HandPath& hand) : HandDevice(hand), weak_(HandDevice::info())
+        {
+            weak_.maximumForce     = 0.4;
+            weak_.maximumStiffness = 300;
+        }
+        [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return weak_; }
+
+    private:
+        HapticDeviceInfo weak_;
+    };
+    const SheetSession session(sheetScene(R"({"law": "constant", "value": 3e6})"), HandMotion::press, 3);
+    Weak               device(session.hand);
+    Deformation        deformation(session.cloud.cloud, session.index, session.scene);
+    double             most = 0, stiffest = 0; // [N], [N/m]
+    runVirtual({session.scene, session.cloud.cloud, session.index, deformation.solver(), device, {}}, 3,
+               [&](const SessionSample& s) {
+                   const double depth = glm::length(s.proxy - s.hip), force = glm::length(s.force);
+                   most = std::max(most, force);
+                   if (s.time > 1.7 && depth > 0.3e-3) stiffest = std::max(stiffest, force / depth);
+               });
+    EXPECT_NEAR(most, 0.4, 1e-9) << "it would be 450 mN by the stiffness alone";
+    EXPECT_LE(stiffest, 300 * 1.05);
+    EXPECT_GT(stiffest, 250);
 }
 
 TEST(Servo, ATickAllocatesNothing)

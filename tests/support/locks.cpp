@@ -1,4 +1,4 @@
-#include "tests/session/locks.h"
+#include "tests/support/locks.h"
 
 #include <dlfcn.h>
 #include <pthread.h>

@@ -1,0 +1,40 @@
+// What the Falcons that are plugged in need before they can be used; knows no libusb.
+#include "device/falcon/falcon_driver.h"
+#include "device/falcon/libusb_link.h"
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+/// Asks one that can be opened. Its link is closed again: the next one finds a boot loader that listens.
+void ask(FalconListing& listing)
+{
+    try {
+        listing.readiness = askFalcon(*openFalcon(listing.path));
+    } catch (const std::exception& error) { // Error or LinkLost
+        listing.usable = false;
+        listing.why    = std::string("it cannot be asked: ") + error.what();
+        listing.help   = "plug it in anew, without a hub";
+        return;
+    }
+    if (listing.readiness == FalconReadiness::noFirmware) {
+        listing.why  = "no firmware runs on it";
+        listing.help = "set FALCON_FIRMWARE to the file that came with its software; it is uploaded on opening";
+    }
+    if (listing.readiness == FalconReadiness::notHomed) {
+        listing.why  = "it is not homed";
+        listing.help = "pull the grip out as far as it goes, then push it in";
+    }
+}
+
+} // namespace
+
+std::vector<FalconListing> listFalcons()
+{
+    std::vector<FalconListing> listings = findFalcons();
+    for (FalconListing& listing : listings)
+        if (listing.usable) ask(listing);
+    return listings;
+}
+
+} // namespace palp

@@ -1,0 +1,82 @@
+#include "tests/support/allocations.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <new>
+
+// In a file of its own: where a compiler sees malloc() behind new and free() behind delete it calls them mismatched.
+
+namespace {
+thread_local std::size_t allocations = 0;
+}
+
+std::size_t palp::allocationsOfThisThread() noexcept
+{
+    return allocations;
+}
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
+// Everything ends in these, operator new too, and stands before the C library's. What they give, its free() takes.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* memory, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+void* malloc(std::size_t size) noexcept
+{
+    ++allocations;
+    return __libc_malloc(size);
+}
+
+void* calloc(std::size_t count, std::size_t size) noexcept
+{
+    ++allocations;
+    return __libc_calloc(count, size);
+}
+
+void* realloc(void* memory, std::size_t size) noexcept
+{
+    ++allocations;
+    return __libc_realloc(memory, size);
+}
+
+void* memalign(std::size_t alignment, std::size_t size) noexcept
+{
+    ++allocations;
+    return __libc_memalign(alignment, size);
+}
+
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept
+{
+    return memalign(alignment, size);
+}
+
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept
+{
+    *memory = memalign(alignment, size);
+    return *memory ? 0 : ENOMEM;
+}
+}
+
+#else // sanitizers have an allocator of their own: only what goes through operator new is counted
+
+void* operator new(std::size_t size)
+{
+    ++allocations;
+    if (void* const memory = std::malloc(size ? size : 1)) return memory;
+    throw std::bad_alloc();
+}
+
+void operator delete(void* memory) noexcept
+{
+    std::free(memory);
+}
+
+void operator delete(void* memory, std::size_t) noexcept
+{
+    std::free(memory);
+}
+
+#endif
