@@ -4,7 +4,7 @@ set -u
 cd "$1" || exit 1
 
 # From the bottom up; a file may include its own layer and those before it.
-layers='core gpu cloud contact chart force plate pipeline session picture bench program'
+layers='core gpu cloud contact chart force plate pipeline session picture viewer bench program'
 level_of() {
     n=0
     for layer in $layers; do
@@ -50,15 +50,15 @@ wall Embree 'embree[34]/' 'cloud/(embree\.h|neighbour_index\.cpp)'
 wall Eigen 'Eigen/' '(chart|plate)/[a-z_]*\.cpp|bench/eigen_solver\.cpp'
 wall nlohmann-json 'nlohmann/' '[a-z]*/[a-z_]*\.cpp|program/[a-z_]*\.h'
 wall CLI11 'CLI/' 'program/[a-z_]*\.(h|cpp)'
-wall Vulkan 'vulkan/' 'gpu/vulkan_[a-z]*\.(h|cpp)'
+wall Vulkan 'vulkan/' '(gpu|viewer)/vulkan_[a-z]*\.(h|cpp)'
 wall CHOLMOD '(suitesparse/)?cholmod' 'bench/cholmod_solver\.cpp'
 wall nanoflann 'nanoflann' 'bench/nanoflann_search\.cpp'
-wall stb 'stb' 'picture/png\.cpp'
+wall stb 'stb' '(picture/png|viewer/text)\.cpp'
 wall libusb 'libusb' 'falcon/libusb_[a-z]*\.cpp'
 wall hidapi 'hidapi' 'hid/hidapi_[a-z]*\.cpp'
 
 # Public headers name no type of a wrapped library.
-grep -rnE 'RTC[A-Z]|Eigen::|nlohmann::|stbi_|Vk[A-Z]|VK_|libusb_[a-z]|hid_[a-z]*\(' engine device --include='*.h' | grep -vE '^engine/(cloud/embree\.h|gpu/vulkan_[a-z]*\.h|program/)' | grep -vE ':[0-9]+: *//' && complain 'a header names a type of a wrapped library'
+grep -rnE 'RTC[A-Z]|Eigen::|nlohmann::|stbi_|Vk[A-Z]|VK_|libusb_[a-z]|hid_[a-z]*\(' engine device --include='*.h' | grep -vE '^engine/(cloud/embree\.h|(gpu|viewer)/vulkan_[a-z]*\.h|program/)' | grep -vE ':[0-9]+: *//' && complain 'a header names a type of a wrapped library'
 
 [ $bad -eq 0 ] && echo 'every include points downward'
 exit $bad

@@ -1,5 +1,7 @@
 #include "engine/gpu/context.h"
 
+#include <optional>
+
 #include "engine/core/contract.h"
 #include "engine/gpu/backend.h"
 #include "engine/gpu/host_device.h"
@@ -59,8 +61,54 @@ Handles openBest(const ContextSettings& settings)
     return opened;
 }
 
+/// The first usable one of these kinds, in their order.
+std::optional<std::size_t> bestToDraw(const std::vector<DeviceDescription>& list)
+{
+    for (const char* kind : {"discrete", "integrated", "virtual", "software"})
+        for (std::size_t n = 0; n < list.size(); ++n)
+            if (list[n].kind == kind && list[n].refusals.empty()) return n;
+    return std::nullopt;
+}
+
+[[noreturn]] void refuseToDraw(const std::vector<DeviceDescription>& list)
+{
+    std::string sentence = "no Vulkan device can draw";
+    if (list.empty())
+        sentence += ", for none was found: install the vendor's driver, or mesa-vulkan-drivers for one in software";
+    for (const DeviceDescription& device : list)
+        sentence += "\n  " + std::to_string(device.index) + "  " + device.name + ": " +
+                    (device.refusals.empty() ? "of a kind that is not taken by itself" : device.refusals.front());
+    throw DeviceError(sentence);
+}
+
+Handles openToDraw(const ContextSettings& settings)
+{
+    if (isDeviceWord(settings.device, kHostDevice))
+        throw DeviceError("the host computes and cannot draw; name a Vulkan device, such as lavapipe");
+    auto                           instance = std::make_unique<Instance>(settings.validation);
+    const std::vector<Candidate>   found    = candidates(*instance);
+    std::vector<DeviceDescription> list     = descriptionsOf(found);
+    for (std::size_t n = 0; n < list.size(); ++n)
+        if (!found[n].drawFamily) list[n].refusals.emplace_back("it has no queue that draws");
+    const auto open = [&](std::size_t n) {
+        return std::make_unique<VulkanContext>(instance, found[n], settings.patience, Purpose::draw);
+    };
+    if (!isDeviceWord(settings.device, kAutoDevice)) return open(chooseDevice(list, settings.device).value());
+    std::string note;
+    while (const auto place = bestToDraw(list)) try {
+            Handles opened = open(*place);
+            opened->note   = note;
+            return opened;
+        } catch (const Error& error) {
+            list[*place].refusals.emplace_back(error.what());
+            note += (note.empty() ? "" : "; ") + std::string(error.what());
+        }
+    refuseToDraw(list);
+}
+
 Handles open(const ContextSettings& settings)
 {
+    if (settings.purpose == Purpose::draw) return openToDraw(settings);
     if (isDeviceWord(settings.device, kHostDevice)) return openHost(settings); // loads no driver
     const bool best = isDeviceWord(settings.device, kAutoDevice) && settings.validation == Validation::off;
     return best ? openBest(settings) : openWanted(settings);

@@ -21,10 +21,17 @@ enum class Validation {
     gpuAssisted      ///< and accesses beyond the ends of buffers, by instrumented shaders: 9 to 23 times slower
 };
 
+/// What a device is opened for.
+enum class Purpose {
+    compute, ///< kernels
+    draw     ///< pictures, by engine/viewer: a queue that also draws; GPUs first, then software, never the host
+};
+
 struct ContextSettings {
     std::string device     = "auto"; ///< see chooseDevice()
     Validation  validation = Validation::off;
     double      patience   = 0; ///< [s] how long a submission may take; 0: 10 s, or 300 s for a device in software
+    Purpose     purpose    = Purpose::compute;
 };
 
 /// What the device can hold at most.
@@ -41,9 +48,10 @@ class Context {
 public:
     /// Takes 30 to 50 ms where it loads drivers, which it does except for the host.
     ///
-    /// "auto" always opens: a GPU that does not is passed over for the next best, and where all of Vulkan fails there
-    /// is the host; note() tells. With validation it finds a GPU or throws, as nothing is validated on the host.
-    /// \throws UnknownDevice or DeviceError if no device fits the settings; DeviceError also if validation is asked for
+    /// "auto" to compute always opens: a GPU that does not is passed over for the next best, and where all of Vulkan
+    /// fails there is the host; note() tells. With validation it finds a GPU or throws, as nothing is validated on the
+    /// host. \throws UnknownDevice or DeviceError if no device fits the settings; DeviceError also if validation is
+    /// asked for
     ///         and not installed, or on the host
     explicit Context(const ContextSettings& settings = {});
     ~Context();

@@ -52,6 +52,7 @@ void findQueue(Candidate& candidate)
     std::optional<std::uint32_t> best;
     for (std::uint32_t n = 0; n < count; ++n) {
         const VkQueueFlags flags = families[n].queueFlags;
+        if ((flags & VK_QUEUE_GRAPHICS_BIT) && !candidate.drawFamily) candidate.drawFamily = n;
         if (!(flags & VK_QUEUE_COMPUTE_BIT)) continue;
         if (!best || (!(flags & VK_QUEUE_GRAPHICS_BIT) && (families[*best].queueFlags & VK_QUEUE_GRAPHICS_BIT)))
             best = n;

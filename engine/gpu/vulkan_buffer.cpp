@@ -23,9 +23,16 @@ std::vector<VkMemoryPropertyFlags> wishes(Intent intent)
     return {};
 }
 
-/// The first memory type that fits the best wish it can; drivers list types from fast to slow.
-std::optional<std::uint32_t> typeFor(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
-                                     Intent intent)
+std::string mebibytes(std::size_t bytes)
+{
+    const std::size_t whole = bytes >> 20;
+    return whole ? std::to_string(whole) + " MiB" : std::to_string(bytes) + " bytes";
+}
+
+} // namespace
+
+std::optional<std::uint32_t> memoryTypeFor(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
+                                           Intent intent)
 {
     // Memory of special purpose, which must not be taken by chance.
     constexpr VkMemoryPropertyFlags kSpecial =
@@ -38,14 +45,6 @@ std::optional<std::uint32_t> typeFor(const VkPhysicalDeviceMemoryProperties& mem
         }
     return std::nullopt;
 }
-
-std::string mebibytes(std::size_t bytes)
-{
-    const std::size_t whole = bytes >> 20;
-    return whole ? std::to_string(whole) + " MiB" : std::to_string(bytes) + " bytes";
-}
-
-} // namespace
 
 VulkanBuffer::VulkanBuffer(VulkanContext& owner, std::string called, std::size_t size)
     : Handles(owner, std::move(called), size), context(owner)
@@ -79,7 +78,7 @@ std::unique_ptr<Buffer::Handles> VulkanContext::makeBuffer(std::string name, std
 
     VkMemoryRequirements needs;
     vkGetBufferMemoryRequirements(device, buffer, &needs);
-    const auto type = typeFor(memory, needs.memoryTypeBits, intent);
+    const auto type = memoryTypeFor(memory, needs.memoryTypeBits, intent);
     if (!type) throw Error("the GPU " + description.name + " has no memory for the buffer '" + h.name + "'");
     auto allocation            = typed<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
     allocation.allocationSize  = needs.size;

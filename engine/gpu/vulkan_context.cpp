@@ -55,9 +55,10 @@ void check(VkResult result, const char* what)
     }
 }
 
-VulkanContext::VulkanContext(std::unique_ptr<Instance>& entrance, const Candidate& candidate, double wantedPatience)
+VulkanContext::VulkanContext(std::unique_ptr<Instance>& entrance, const Candidate& candidate, double wantedPatience,
+                             Purpose purpose)
 {
-    describe(candidate);
+    describe(candidate, purpose);
     const double usual = description.kind == "software" ? kPatienceSoftware : kPatienceHardware;
     patience           = wantedPatience > 0 ? wantedPatience : usual;
     open(*entrance);
@@ -74,12 +75,12 @@ VulkanContext::~VulkanContext()
     if (device) vkDestroyDevice(device, nullptr);
 }
 
-void VulkanContext::describe(const Candidate& candidate)
+void VulkanContext::describe(const Candidate& candidate, Purpose purpose)
 {
     description         = candidate.description;
     physical            = candidate.physical;
     native              = candidate.limits;
-    family              = candidate.family;
+    family              = purpose == Purpose::draw ? candidate.drawFamily.value() : candidate.family;
     timestampBits       = candidate.timestampBits;
     bitExact            = candidate.driver == VK_DRIVER_ID_MESA_LLVMPIPE;
     limits.buffer       = std::size_t(std::min<VkDeviceSize>(native.maxStorageBufferRange, candidate.maxBufferBytes));
@@ -134,6 +135,11 @@ void VulkanContext::run(std::span<CommandList* const> lists)
 {
     std::vector<VkCommandBuffer> commands;
     for (const CommandList* list : lists) commands.push_back(static_cast<const VulkanList&>(list->handles()).commands);
+    submit(commands);
+}
+
+void VulkanContext::submit(std::span<const VkCommandBuffer> commands)
+{
     if (abandoned) throw DeviceLost("the GPU " + description.name + " hung before and is not used any more");
 
     check(vkResetFences(device, 1, &fence), "reset a fence");

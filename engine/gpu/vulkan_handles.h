@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -20,7 +21,8 @@ public:
     /// \param entrance  is taken over only if the device opens
     /// \param patience  see ContextSettings [s]
     /// \throws DeviceError if the device does not open
-    VulkanContext(std::unique_ptr<Instance>& entrance, const Candidate& candidate, double patience);
+    VulkanContext(std::unique_ptr<Instance>& entrance, const Candidate& candidate, double patience,
+                  Purpose purpose = Purpose::compute);
     ~VulkanContext() override;
 
     std::unique_ptr<Buffer::Handles>      makeBuffer(std::string name, std::size_t bytes, Intent intent) override;
@@ -29,6 +31,9 @@ public:
     std::unique_ptr<CommandList::Handles> makeList() override;
     void                                  run(std::span<CommandList* const> lists) override;
     std::vector<std::string>              takeMessages() override;
+
+    /// Submits what was recorded and waits, as Context::run() does. \throws DeviceLost
+    void submit(std::span<const VkCommandBuffer> commands);
 
     /// Whether an abandoned submission still runs: then nothing may be destroyed, and leaking is better than crashing.
     [[nodiscard]] bool atWork() const { return abandoned && vkGetFenceStatus(device, fence) == VK_NOT_READY; }
@@ -51,9 +56,14 @@ public:
     PFN_vkSetDebugUtilsObjectNameEXT setObjectName = nullptr;
 
 private:
-    void describe(const Candidate& candidate);
+    void describe(const Candidate& candidate, Purpose purpose);
     void open(const Instance& entrance);
 };
+
+/// The first memory type that fits the best wish it can; drivers list types from fast to slow.
+/// \param allowed  the types that the resource may have, a bit each
+[[nodiscard]] std::optional<std::uint32_t> memoryTypeFor(const VkPhysicalDeviceMemoryProperties& memory,
+                                                         std::uint32_t allowed, Intent intent);
 
 /// A handle that is destroyed with its owner, unless the device hangs and is still using it.
 template <class Handle, auto Destroy>

@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,13 +53,14 @@ private:
 
 /// A device that could be opened, or why not.
 struct Candidate {
-    DeviceDescription      description;
-    VkPhysicalDevice       physical      = VK_NULL_HANDLE;
-    VkDriverId             driver        = VkDriverId(0);
-    std::uint32_t          family        = 0; ///< the queue family to compute with
-    std::uint32_t          timestampBits = 0;
-    VkPhysicalDeviceLimits limits{};
-    VkDeviceSize           maxBufferBytes = 0; ///< [byte]
+    DeviceDescription            description;
+    VkPhysicalDevice             physical      = VK_NULL_HANDLE;
+    VkDriverId                   driver        = VkDriverId(0);
+    std::uint32_t                family        = 0; ///< the queue family to compute with
+    std::uint32_t                timestampBits = 0;
+    std::optional<std::uint32_t> drawFamily; ///< the queue family to draw with; empty: none draws
+    VkPhysicalDeviceLimits       limits{};
+    VkDeviceSize                 maxBufferBytes = 0; ///< [byte]
 };
 
 /// Every device, in the order of the drivers. \throws DeviceError if they cannot be listed

@@ -76,10 +76,10 @@ std::uint8_t mixed(std::uint8_t colour, float brightness, float coverage)
 
 } // namespace
 
-Rgb8 surfaceColour(double position)
+Rgb8 surfaceColour(double position, ColourMap map)
 {
     constexpr double kWhite = 0.35; // share of white: the dark end of the map would swallow the shading [1]
-    const Rgb8       colour = colourAt(position);
+    const Rgb8       colour = colourAt(position, map);
     const auto lightened    = [](std::uint8_t c) { return std::uint8_t(std::lround((1 - kWhite) * c + kWhite * 255)); };
     return {lightened(colour.red), lightened(colour.green), lightened(colour.blue)};
 }

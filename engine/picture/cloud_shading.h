@@ -14,7 +14,7 @@ namespace palp {
 
 /// The colour of a value on a surface that faces the light: that of the map, lightened so that shading shows on it.
 /// \param position  along the map, 0 to 1 [1]
-[[nodiscard]] Rgb8 surfaceColour(double position);
+[[nodiscard]] Rgb8 surfaceColour(double position, ColourMap map = ColourMap::viridis);
 
 enum class Paint {
     values, ///< surfaceColour() of the values, which lie in 0 to 1; grey without one

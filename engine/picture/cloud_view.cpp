@@ -233,7 +233,8 @@ std::string cloudViewSvg(std::span<const glm::dvec3> positions, std::span<const 
         drawWorldAxes(svg, camera, corner + glm::dvec2(48, size.y - 48));
         svg.endClip();
         if (shown) {
-            drawColourBar(svg, {&axis, surfaceColour, settings.quantity, found},
+            drawColourBar(svg,
+                          {&axis, [](double position) { return surfaceColour(position); }, settings.quantity, found},
                           corner + glm::dvec2(size.x + 10, 0.5 * (size.y - height)), height);
             width = kSide + size.x + 10 + kColourBarWidth;
         }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <span>
 
 #include "engine/core/contract.h"
 
@@ -30,6 +31,38 @@ constexpr std::array<Rgb8, 16> kViridis = {{
     {253, 231, 37},
 }};
 
+// cividis by Jamie R. Nunez, Christopher R. Anderton and Ryan S. Renslow, "Optimizing colormaps with consideration for
+// color vision deficiency to enable accurate interpretation of scientific data", PLOS ONE 2018 (CC0); ten of its 256
+// colours, evenly spread.
+constexpr std::array<Rgb8, 10> kCividis = {{
+    {0, 34, 78},
+    {18, 53, 112},
+    {59, 73, 108},
+    {87, 93, 109},
+    {112, 113, 115},
+    {138, 134, 120},
+    {165, 156, 116},
+    {195, 179, 105},
+    {225, 204, 85},
+    {254, 232, 56},
+}};
+
+// Not from black to white: a picture's shading and its ground need room beyond both ends.
+constexpr std::array<Rgb8, 2> kGrey = {{{45, 45, 45}, {235, 235, 235}}};
+
+std::span<const Rgb8> coloursOf(ColourMap map)
+{
+    switch (map) {
+    case ColourMap::viridis:
+        return kViridis;
+    case ColourMap::cividis:
+        return kCividis;
+    case ColourMap::grey:
+        return kGrey;
+    }
+    return kViridis;
+}
+
 std::uint8_t byteOf(double unit)
 {
     return std::uint8_t(std::lround(255 * std::clamp(unit, 0.0, 1.0)));
@@ -37,13 +70,27 @@ std::uint8_t byteOf(double unit)
 
 } // namespace
 
-Rgb8 colourAt(double position)
+const char* name(ColourMap map) noexcept
+{
+    constexpr const char* kNames[] = {"viridis", "cividis", "grey"};
+    return kNames[int(map)];
+}
+
+std::optional<ColourMap> colourMapNamed(std::string_view wanted)
+{
+    for (const ColourMap map : {ColourMap::viridis, ColourMap::cividis, ColourMap::grey})
+        if (wanted == name(map)) return map;
+    return std::nullopt;
+}
+
+Rgb8 colourAt(double position, ColourMap map)
 {
     PALP_EXPECT(!std::isnan(position), "a position along a colour map is a number; found NaN");
-    const double      along = std::clamp(position, 0.0, 1.0) * double(kViridis.size() - 1);
-    const std::size_t left  = std::min(std::size_t(along), kViridis.size() - 2);
-    const double      rest  = along - double(left);
-    const Rgb8        a = kViridis[left], b = kViridis[left + 1];
+    const auto        colours = coloursOf(map);
+    const double      along   = std::clamp(position, 0.0, 1.0) * double(colours.size() - 1);
+    const std::size_t left    = std::min(std::size_t(along), colours.size() - 2);
+    const double      rest    = along - double(left);
+    const Rgb8        a = colours[left], b = colours[left + 1];
     const auto mix = [rest](std::uint8_t from, std::uint8_t to) { return byteOf((from + rest * (to - from)) / 255); };
     return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue)};
 }

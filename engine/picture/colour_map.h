@@ -2,7 +2,9 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace palp {
 
@@ -12,11 +14,19 @@ struct Rgb8 {
     auto         operator<=>(const Rgb8&) const = default;
 };
 
-/// The colour of a value on a scale from low (0, dark violet) over green to high (1, yellow); positions outside [0, 1]
-/// take the colour of the nearer end. Lightness grows steadily along the map (viridis), so that it is still in order
-/// when printed in grey and for every kind of colour vision.
+/// Colours from low to high whose lightness grows steadily, so that they are still in order when printed in grey.
+enum class ColourMap {
+    viridis, ///< dark violet, green, yellow: in order for every kind of colour vision
+    cividis, ///< dark blue, grey, yellow: looks nearly the same to every kind of colour vision
+    grey     ///< dark to light
+};
+
+[[nodiscard]] const char*              name(ColourMap map) noexcept;          ///< "viridis", ...
+[[nodiscard]] std::optional<ColourMap> colourMapNamed(std::string_view name); ///< empty if unknown
+
+/// The colour of a value on a scale from low, 0, to high, 1; positions outside take the colour of the nearer end.
 /// \param position  [1], not NaN
-[[nodiscard]] Rgb8 colourAt(double position);
+[[nodiscard]] Rgb8 colourAt(double position, ColourMap map = ColourMap::viridis);
 
 /// "#rrggbb"
 [[nodiscard]] std::string hexColour(Rgb8 colour);

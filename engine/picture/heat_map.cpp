@@ -248,7 +248,7 @@ std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings)
                   {}, true);
 
     const double barLeft = frame.corner.x + frame.size.x + 24;
-    drawColourBar(svg, {&values, colourAt, settings.quantity, found}, {barLeft, top}, barHeight);
+    drawColourBar(svg, {&values, [](double at_) { return colourAt(at_); }, settings.quantity, found}, {barLeft, top}, barHeight);
     const double width  = std::max(barLeft + kColourBarWidth, kFrameLeft + textWidth(settings.title, 16) + 10);
     double       bottom = top + std::max(frame.size.y + kFrameBelow, barHeight) + 6;
     bottom += drawLegend(svg, legend, {kFrameLeft - kLegendSampleWidth / 2, bottom}, width - kFrameLeft);

@@ -93,6 +93,7 @@ int main(int argumentCount, char** arguments)
                "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
                "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
                "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
+               "  palpate render sample:palm --out palm.png      a picture of a touch, without a display\n"
                "  palpate devices                                what this machine can compute on, and feel with\n"
                "  palpate doctor                                 what it lacks, and what helps\n"
                "  palpate calibrate --mass '200 g'               a Falcon weighs a mass, so that its newtons are true\n"
@@ -106,6 +107,7 @@ int main(int argumentCount, char** arguments)
     palp::addDevicesCommand(app);
     palp::addDoctorCommand(app);
     palp::addRunCommand(app);
+    palp::addRenderCommand(app);
     palp::addCalibrateCommand(app);
     palp::addBenchCommand(app);
     std::signal(SIGXFSZ, SIG_IGN); // a file beyond the limit on sizes is then a write that fails, with a sentence

@@ -69,5 +69,20 @@ TEST(ColourMap, HexColourHasTwoDigitsEach)
     EXPECT_EQ(hexColour({1, 171, 255}), "#01abff");
 }
 
+TEST(ColourMap, EveryMapRisesInLightnessAndHasANameOfItsOwn)
+{
+    for (const ColourMap map : {ColourMap::viridis, ColourMap::cividis, ColourMap::grey}) {
+        EXPECT_EQ(colourMapNamed(name(map)), map);
+        double last = -1;
+        for (int n = 0; n <= 200; ++n) {
+            const double now = lightness(colourAt(n / 200.0, map));
+            EXPECT_GE(now, last - 0.4) << name(map) << " at " << n / 200.0 << ": bytes round";
+            last = now;
+        }
+    }
+    EXPECT_EQ(colourMapNamed("jet"), std::nullopt);
+    EXPECT_NE(colourAt(0.5, ColourMap::cividis), colourAt(0.5));
+}
+
 } // namespace
 } // namespace palp

@@ -31,7 +31,7 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert devices doctor calibrate 'bench solve'; do
+for command in touch solve info convert render devices doctor calibrate 'bench solve'; do
     # shellcheck disable=SC2086  # a command, or one within another
     good "help of $command" $command --help; holds 'Examples:'
     mv out.txt help.txt
@@ -463,6 +463,57 @@ full 'touch' touch sample:sheet --points 5000 --cells 16
 full 'info' info skin.ply
 full 'samples' info --samples
 full 'convert' convert skin.ply other.ply
+
+# --- pictures without a display
+small='--points 4000 --cells 32 --size 240x180'
+png() { # png FILE WIDTH HEIGHT: it is a PNG of that size
+    [ "$(od -An -tx1 -N8 "$1" | tr -d ' \n')" = 89504e470d0a1a0a ] && [ "$(od -An -tu1 -j16 -N8 "$1" | awk '{ print $3 * 256 + $4, $7 * 256 + $8 }')" = "$2 $3" ] &&
+        passed=$((passed + 1)) || complain "$1 is no PNG of $2 x $3"
+}
+cat >soft.json <<'JSON'
+{"cloud": "sample:skin", "points": 4000, "cells": 32}
+JSON
+# shellcheck disable=SC2086  # options
+{
+    good 'a picture of a sample' render sample:skin $small --out skin.png
+    holds 'skin.png'
+    png skin.png 240 180
+    good 'the same once more' render sample:skin $small --out again.png
+    cmp -s skin.png again.png && passed=$((passed + 1)) || complain 'the same picture has other bytes'
+    good 'a picture of a scene' render soft.json --size 200x150 --force '0.5 N' --colour stiffness --colour-map cividis --dark --exaggerate 3 --view whole --out soft.png --json
+    for key in '"force": 0.5' '"max_deflection"' '"drawn_on"' '"points": 4000'; do holds "$key"; done
+    good 'a picture of a file' render skin.ply --at 0,0,0.0015 --window 40mm --cells 32 --size 64x48 --out file.png
+    png file.png 64 48
+    good 'pictures along a hand' render soft.json --size 64x48 --frames 3 --hand press --seconds 0.3 --out film.png --json
+    for n in 1 2 3; do png film_000$n.png 64 48; done
+    [ ! -e film.png ] && passed=$((passed + 1)) || complain 'render --frames wrote a picture without a number'
+    env -u DISPLAY -u WAYLAND_DISPLAY "$palpate" render sample:sheet $small --out dark.png >out.txt 2>err.txt && passed=$((passed + 1)) || complain "render needs a display: $(cat err.txt)"
+    bad 'a size without a height' '--size: expected WIDTHxHEIGHT' render sample:skin --out no.png --size 320
+    bad 'a size that is none' '--size' render sample:skin --out no.png --size 0x100
+    bad 'a size beyond devices' '--size' render sample:skin --out no.png --size 5000x100
+    bad 'a size with more behind' '--size' render sample:skin --out no.png --size 320x240px
+    bad 'another kind of file' '.png' render sample:skin --out no.jpg
+    bad 'an unknown colour' 'deflection, stiffness, plain' render sample:skin --out no.png --colour red
+    bad 'an unknown map' 'viridis, cividis, grey' render sample:skin --out no.png --colour-map jet
+    bad 'an unknown view' 'patch, whole' render sample:skin $small --out no.png --view side
+    bad 'a negative exaggeration' '--exaggerate' render sample:skin --out no.png --exaggerate -1
+    bad 'an unknown sample' 'known' render sample:nose --out no.png
+    bad 'a scene that is not there' 'nowhere.json' render nowhere.json --out no.png
+    bad 'a cloud that is not there' 'nowhere.ply' render nowhere.ply --out no.png
+    bad 'a cloud without a place' '--at' render skin.ply --out no.png
+    bad 'a place off the cloud' '1' render sample:skin $small --at 1,1,1 --out no.png
+    bad 'a force of the hand' '--force' render soft.json --frames 2 --force 1N --out no.png
+    bad 'no frames' '--frames' render soft.json --frames 0 --out no.png
+    bad 'a folder that is not there' 'nowhere/no.png' render sample:skin $small --out nowhere/no.png
+    [ ! -e no.png ] && passed=$((passed + 1)) || complain 'a refused picture was written'
+    without "$palpate" render sample:skin $small --out no.png
+    code=$?
+    [ $code -eq 4 ] && grep -qF 'no Vulkan device can draw' err.txt && grep -qF 'mesa-vulkan-drivers' err.txt && [ ! -s out.txt ] && [ ! -e no.png ] && passed=$((passed + 1)) ||
+        complain "render without Vulkan: exit $code, expected 4: $(cat err.txt)"
+    "$palpate" render sample:skin $small --draw-on host --out no.png >out.txt 2>err.txt
+    code=$?
+    [ $code -eq 4 ] && grep -qF 'cannot draw' err.txt && passed=$((passed + 1)) || complain "render on the host: exit $code: $(cat err.txt)"
+}
 
 experiment=$(dirname "$palpate")/paper_experiment
 if [ -x "$experiment" ]; then

@@ -1,0 +1,70 @@
+// view_layout.h - what the pictures of engine/viewer are drawn from (GLSL and C++).
+//
+// A frame is four passes: the nearest depth of all splats; the mean of normals, colours and depths of the splats near
+// that depth; the surface that they make; its light, over which the shapes (proxy, arrows, ...) are drawn.
+// View space: x right, y up, z towards the eye, lengths in m about the scene's own origin.
+#ifndef PALPATE_VIEW_LAYOUT_H
+#define PALPATE_VIEW_LAYOUT_H
+
+#ifdef __cplusplus
+#include <cstdint>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+namespace palp::shared {
+using uint = std::uint32_t;
+using glm::mat4;
+using glm::vec3;
+#define PALPATE_VIEW_CONST inline constexpr uint
+#else
+#define PALPATE_VIEW_CONST const uint
+#endif
+
+// Bindings, the same in every pass.
+PALPATE_VIEW_CONST kBindFrame   = 0; // ViewFrame
+PALPATE_VIEW_CONST kBindSplats  = 1; // ViewSplat[]
+PALPATE_VIEW_CONST kBindShapes  = 2; // ViewCorner[], three to a triangle
+PALPATE_VIEW_CONST kBindDepth   = 3; // nearest depth of all splats [m]
+PALPATE_VIEW_CONST kBindNormals = 4; // sum of weighted normals, and of weights
+PALPATE_VIEW_CONST kBindColours = 5; // sum of weighted colours, and of weighted depths behind the nearest [m]
+PALPATE_VIEW_CONST kBindSurface = 6; // unit normal in view space, and depth [m]; depth 0: nothing there
+PALPATE_VIEW_CONST kBindAlbedo  = 7; // colour of the surface
+
+// No vector crosses a multiple of 16 bytes and sizes are such multiples, so that std430 is the layout of C++.
+struct ViewFrame {
+    mat4  viewFromWorld;
+    mat4  clipFromView;
+    vec3  groundAbove; // colour behind everything, at the top of the picture
+    float width;       // of the picture [px]
+    vec3  groundBelow; // and at its foot
+    float height;      // [px]
+    float widthAtOne;  // half the width of what is seen at depth 1 m, or anywhere if orthographic [m]
+    float heightAtOne; // [m]
+    float cueRadius;   // of the surroundings that tell hollows from humps [m]
+    float cueGain;     // of that [1]
+    float shine;       // of the surface's light, how much is a reflection [1]
+    float unused;
+    float hiddenShare; // how much of a shape shows through the surface [1]
+    uint  orthographic; // 1: the eye is infinitely far away
+};
+
+struct ViewSplat {
+    vec3  position; // [m]
+    float radius;   // [m]
+    vec3  normal;   // unit; the side does not matter
+    uint  colour;   // red in the lowest byte; the highest one: how much of the radius covers what is behind [1/255]
+};
+
+struct ViewCorner {
+    vec3  position; // [m]
+    uint  colour;   // red in the lowest byte
+    vec3  normal;   // unit
+    float unused;
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(ViewSplat) == 32 && sizeof(ViewCorner) == 32 && sizeof(ViewFrame) == 2 * 64 + 4 * 16,
+              "the layout is that of the shaders");
+} // namespace palp::shared
+#endif
+#endif

@@ -1,0 +1,42 @@
+// view_prelude.glsl - what all shaders of a picture share: the frame and the way between depths, places and pixels.
+#extension GL_EXT_samplerless_texture_functions : require
+
+#include "compute_shaders/shared/view_layout.h"
+
+layout(std430, binding = kBindFrame) readonly buffer Frame { ViewFrame frame; };
+
+/// The place in view space of a point of the picture at a depth. \param at [px] \param depth [m]
+vec3 placeAt(vec2 at, float depth)
+{
+    vec2 half_ = vec2(frame.widthAtOne, frame.heightAtOne) * (frame.orthographic == 1u ? 1.0 : depth);
+    vec2 place = vec2(2.0 * at.x / frame.width - 1.0, 1.0 - 2.0 * at.y / frame.height);
+    return vec3(place * half_, -depth);
+}
+
+/// How many pixels a metre measures at a depth [px/m].
+float pixelsPerMetre(float depth)
+{
+    return 0.5 * frame.width / (frame.widthAtOne * (frame.orthographic == 1u ? 1.0 : depth));
+}
+
+/// Unit vector from a place in view space to the eye.
+vec3 toEyeFrom(vec3 place) { return frame.orthographic == 1u ? vec3(0, 0, 1) : normalize(-place); }
+
+// Light from the upper left, as in printed relief.
+const vec3 kLight = normalize(vec3(-0.75, 0.50, 0.43));
+
+/// How bright the light makes a matt surface [1].
+float litBy(vec3 normal)
+{
+    const float kAmbient = 0.46, kDiffuse = 0.80; // of the light [1]
+    const float kWrap = 0.25;                     // how far light reaches around the object [1]
+    float lit = max(0.0, (dot(normal, kLight) + kWrap) / (1.0 + kWrap));
+    return kAmbient + kDiffuse * lit * lit;
+}
+
+/// The light's reflection on a smooth surface [1].
+float reflection(vec3 normal, vec3 place)
+{
+    const float kSharpness = 24.0;
+    return pow(max(0.0, dot(normal, normalize(kLight + toEyeFrom(place)))), kSharpness);
+}

@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/cloud/neighbour_index.h"
+
+namespace palp {
+
+/// What makes a surface of a cloud's points: a normal and a disc for each, from its neighbours at rest.
+class CloudSkin {
+public:
+    /// \param positions  at rest, those that the index was built from [m]
+    /// \throws Error if the cloud has fewer than seven points or most of them coincide
+    CloudSkin(std::span<const glm::dvec3> positions, const NeighbourIndex& index);
+
+    /// Radii of discs whose means make a smooth surface [m].
+    [[nodiscard]] std::span<const double> radii() const noexcept { return radii_; }
+
+    /// Radii of their cores, at most radii(), which alone close the surface and end where the points end: a core
+    /// reaches the places that are farther from all other points [m].
+    [[nodiscard]] std::span<const double> cores() const noexcept { return cores_; }
+
+    /// Normals of the points where they are now, of either side [1]: least squares planes through each point and the
+    /// neighbours it had at rest.
+    /// \param positions  of all points [m]
+    [[nodiscard]] std::vector<glm::dvec3> normals(std::span<const glm::dvec3> positions) const;
+
+    /// The same for a few points whose neighbourhood moved; the others' normals stay.
+    void refit(std::span<const glm::dvec3> positions, std::span<const std::uint32_t> points,
+               std::span<glm::dvec3> normals) const;
+
+private:
+    [[nodiscard]] glm::dvec3 normalOf(std::span<const glm::dvec3> positions, std::size_t point) const;
+    [[nodiscard]] double     coreOf(std::span<const glm::dvec3> positions, std::size_t point, double spacing) const;
+
+    std::size_t                each_ = 0;      // neighbours of a point, itself included [1]
+    std::vector<std::uint32_t> neighbours_;    // point by point
+    std::vector<double>        radii_, cores_; // [m]
+};
+
+} // namespace palp

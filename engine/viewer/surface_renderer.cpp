@@ -1,0 +1,174 @@
+#include "engine/viewer/surface_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/picture/cloud_shading.h"
+#include "engine/viewer/view_shapes.h"
+#include "engine/viewer/vulkan_surface.h"
+
+namespace palp {
+namespace {
+
+std::uint32_t packed(Rgb8 colour)
+{
+    return std::uint32_t(colour.red) | std::uint32_t(colour.green) << 8 | std::uint32_t(colour.blue) << 16 |
+           0xFF000000U;
+}
+
+glm::vec3 light(Rgb8 colour)
+{
+    return glm::vec3(colour.red, colour.green, colour.blue) / 255.0F;
+}
+
+/// Colours of values, each looked up in a table: a live picture asks for thousands.
+class Paintbox {
+public:
+    explicit Paintbox(const ViewColours& colours) : axis_(colours.range, colours.scale, colours.unit, 2)
+    {
+        for (int n = 0; n < kShades; ++n)
+            shades_[std::size_t(n)] = packed(surfaceColour(n / (kShades - 1.0), colours.map));
+    }
+    [[nodiscard]] std::uint32_t of(double value) const
+    {
+        if (!drawable(value, axis_.scale())) return packed(kUndefinedColour);
+        const double position = std::clamp(axis_.position(value), 0.0, 1.0);
+        return shades_[std::size_t(std::lround(position * (kShades - 1)))];
+    }
+
+private:
+    static constexpr int               kShades = 512;
+    Axis                               axis_;
+    std::array<std::uint32_t, kShades> shades_{};
+};
+
+/// \param share  core over disc, 0 to 1 [1]
+std::uint32_t withCore(std::uint32_t colour, double share)
+{
+    return (colour & 0x00FFFFFFU) | std::uint32_t(std::lround(255 * std::clamp(share, 0.0, 1.0))) << 24;
+}
+
+std::vector<shared::ViewSplat> splatsOf(const ViewScene& scene, const glm::dvec3& origin)
+{
+    std::vector<shared::ViewSplat> splats(scene.positions.size());
+    std::optional<Paintbox>        paint;
+    if (!scene.values.empty()) paint.emplace(scene.colours);
+    for (std::size_t n = 0; n < splats.size(); ++n)
+        splats[n] = {
+            glm::vec3(scene.positions[n] - origin), float(scene.radii[n]), glm::vec3(scene.normals[n]),
+            withCore(paint ? paint->of(scene.values[n]) : packed(kPlainColour), scene.cores[n] / scene.radii[n])};
+    return splats;
+}
+
+std::vector<shared::ViewCorner> cornersOf(const ViewScene& scene, const glm::dvec3& origin)
+{
+    std::vector<shared::ViewCorner> corners;
+    for (const ShapeCorner& corner : shapesOf(scene))
+        corners.push_back({glm::vec3(corner.position - origin), packed(corner.colour), glm::vec3(corner.normal), 0});
+    return corners;
+}
+
+/// How far what is drawn reaches from the target [m].
+double reachOf(const ViewScene& scene, const std::vector<shared::ViewCorner>& shapes, const glm::dvec3& target)
+{
+    double reach = 1e-9;
+    for (std::size_t n = 0; n < scene.positions.size(); ++n)
+        reach = std::max(reach, glm::distance(scene.positions[n], target) + scene.radii[n]);
+    for (const shared::ViewCorner& corner : shapes) reach = std::max(reach, double(glm::length(corner.position)));
+    constexpr double kRoom = 1.001; // single precision must not cut off the last point [1]
+    return kRoom * reach;
+}
+
+shared::ViewFrame frameOf(const ViewScene& scene, const Camera& camera, const PictureSize& size, double reach)
+{
+    constexpr float      kCueGain = 5.0F, kShine = 0.10F, kHidden = 0.45F;
+    const CameraMatrices matrices = matricesOf(camera, camera.target, reach, double(size.width) / size.height);
+    const bool           dark     = scene.ground == Ground::dark;
+    shared::ViewFrame    frame;
+    frame.viewFromWorld = glm::mat4(matrices.viewFromWorld);
+    frame.clipFromView  = glm::mat4(matrices.clipFromView);
+    frame.groundAbove   = light(dark ? Rgb8{38, 41, 46} : Rgb8{255, 255, 255});
+    frame.groundBelow   = light(dark ? Rgb8{20, 22, 25} : Rgb8{226, 229, 233});
+    frame.width         = float(size.width * size.finer);
+    frame.height        = float(size.height * size.finer);
+    frame.widthAtOne    = float(matrices.halfAtOne.x);
+    frame.heightAtOne   = float(matrices.halfAtOne.y);
+    frame.cueRadius     = float(scene.cueRadius);
+    frame.cueGain       = scene.cueRadius > 0 ? kCueGain : 0;
+    frame.shine         = kShine;
+    frame.unused        = 0;
+    frame.hiddenShare   = kHidden;
+    frame.orthographic  = camera.projection == Projection::orthographic;
+    return frame;
+}
+
+/// Means over squares of `finer` pixels.
+Image averaged(std::span<const std::uint8_t> pixels, const PictureSize& size)
+{
+    Image             image(size.width, size.height);
+    const std::size_t row = std::size_t(4) * std::size_t(size.width) * std::size_t(size.finer);
+    const unsigned    all = unsigned(size.finer * size.finer);
+    for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) {
+            std::array<unsigned, 3> sum{};
+            for (int j = 0; j < size.finer; ++j)
+                for (int i = 0; i < size.finer; ++i)
+                    for (std::size_t k = 0; k < 3; ++k)
+                        sum[k] +=
+                            pixels[std::size_t(y * size.finer + j) * row + std::size_t(x * size.finer + i) * 4 + k];
+            const auto mean = [&](std::size_t k) { return std::uint8_t((sum[k] + all / 2) / all); };
+            image.at(x, y)  = {mean(0), mean(1), mean(2)};
+        }
+    return image;
+}
+
+} // namespace
+
+struct SurfaceRenderer::Impl {
+    explicit Impl(const gpu::ContextSettings& settings) : context(settings), surface(context) {}
+    gpu::Context  context;
+    VulkanSurface surface;
+};
+
+SurfaceRenderer::SurfaceRenderer(gpu::ContextSettings settings)
+{
+    settings.purpose = gpu::Purpose::draw;
+    impl_            = std::make_unique<Impl>(settings);
+}
+SurfaceRenderer::~SurfaceRenderer()                                     = default;
+SurfaceRenderer::SurfaceRenderer(SurfaceRenderer&&) noexcept            = default;
+SurfaceRenderer& SurfaceRenderer::operator=(SurfaceRenderer&&) noexcept = default;
+
+Image SurfaceRenderer::draw(const ViewScene& scene, const Camera& camera, const PictureSize& size)
+{
+    PALP_EXPECT(size.width > 0 && size.height > 0 && size.finer > 0, "a picture has at least one pixel");
+    PALP_EXPECT(scene.normals.size() == scene.positions.size() && scene.radii.size() == scene.positions.size() &&
+                    scene.cores.size() == scene.positions.size() &&
+                    (scene.values.empty() || scene.values.size() == scene.positions.size()),
+                "every point has a normal, two radii and, if there are values, a value");
+    const auto   splats = splatsOf(scene, camera.target);
+    const auto   shapes = cornersOf(scene, camera.target);
+    const double reach  = reachOf(scene, shapes, camera.target);
+    return averaged(impl_->surface.draw({frameOf(scene, camera, size, reach), splats, shapes}), size);
+}
+
+const gpu::DeviceDescription& SurfaceRenderer::device() const noexcept
+{
+    return impl_->context.device();
+}
+
+const std::string& SurfaceRenderer::note() const noexcept
+{
+    return impl_->context.note();
+}
+
+std::vector<std::string> SurfaceRenderer::takeMessages()
+{
+    return impl_->context.takeMessages();
+}
+
+} // namespace palp

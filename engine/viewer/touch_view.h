@@ -1,0 +1,74 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "engine/pipeline/pipeline.h"
+#include "engine/viewer/camera.h"
+#include "engine/viewer/cloud_skin.h"
+#include "engine/viewer/view_scene.h"
+
+namespace palp {
+
+enum class ViewPaint {
+    deflection, ///< into the surface [m]
+    stiffness,  ///< the cloud's own, modulus or rigidity
+    plain       ///< one colour
+};
+
+[[nodiscard]] const char*              name(ViewPaint paint) noexcept;        ///< "deflection", ...
+[[nodiscard]] std::optional<ViewPaint> viewPaintNamed(std::string_view name); ///< empty if unknown
+
+/// How a touch is shown.
+struct TouchLook {
+    ViewPaint paint        = ViewPaint::deflection;
+    ColourMap map          = ColourMap::viridis;
+    Ground    ground       = Ground::light;
+    double    exaggeration = 1; ///< factor on every displacement [1]
+    double    deepest      = 0; ///< end of the colours of deflections [m]; 0: this touch's own
+    double    strongest    = 0; ///< force whose arrow has the full length [N]; 0: this touch's own
+};
+
+/// Where hand and proxy are, in place of where a hand at rest would have them.
+struct TouchHand {
+    glm::dvec3 hip{};   ///< [m]
+    glm::dvec3 force{}; ///< on the hand [N]
+};
+
+/// A cloud and a touch of it as a scene to draw.
+class TouchView {
+public:
+    /// \param cloud     outlives the view  \param index  of the cloud
+    /// \param settings  of the touches: shapes measure a share of their window and fingertip
+    /// \throws as CloudSkin
+    TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings);
+
+    /// The cloud under a force, or at rest without a patch.
+    /// \param patch  of the cloud, deformed; may be null
+    /// \param force  that presses [N]
+    /// \param hand   empty: at rest, where the force is that of the hand's depth
+    void show(const Patch* patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand = {});
+
+    /// Valid until the next show(); title and note are the caller's to set.
+    [[nodiscard]] ViewScene& scene() noexcept { return scene_; }
+
+private:
+    void bend(const Patch* patch, double force, double exaggeration);
+    void paint(const TouchLook& look);
+    void addShapes(const Patch& patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand);
+
+    const PointCloud&       cloud_;
+    PatchSettings           settings_;
+    CloudSkin               skin_;
+    std::vector<glm::dvec3> restNormals_, positions_, normals_; // [1], [m], [1]
+    std::vector<double>     deflections_;                       // [m]
+    ViewScene               scene_;
+};
+
+/// Looks obliquely at the contact from outside so that the dent shows its depth; the patch fills the picture.
+[[nodiscard]] Camera cameraAt(const Patch& patch, double aspect);
+
+/// A round force under which the patch dents by about a third of a thickness: deep enough to be seen, within theory.
+/// [N]
+[[nodiscard]] double forceThatShows(const Patch& patch, double thickness);
+
+} // namespace palp

@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "engine/gpu/vulkan_handles.h"
+
+// Internal to engine/viewer.
+
+namespace palp {
+
+using Pipeline       = gpu::Owned<VkPipeline, vkDestroyPipeline>;
+using PipelineLayout = gpu::Owned<VkPipelineLayout, vkDestroyPipelineLayout>;
+using SetLayout      = gpu::Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout>;
+
+/// How what is drawn meets what is there.
+enum class Blending {
+    replace,
+    add,  ///< sums
+    cover ///< by the share in alpha
+};
+
+/// Triangles without vertex buffers: shaders fetch what they draw by its number.
+struct DrawSettings {
+    const char*                    name = "";
+    std::span<const std::uint32_t> vertexShader;
+    std::span<const std::uint32_t> fragmentShader;
+    std::uint32_t                  colourImages = 1;
+    Blending                       blending     = Blending::replace;
+    VkCompareOp                    depthTest    = VK_COMPARE_OP_ALWAYS;
+    VkBool32                       writesDepth  = VK_FALSE;
+};
+
+/// Width and height are set when it is used.
+[[nodiscard]] Pipeline makePipeline(const gpu::VulkanContext& context, VkRenderPass pass, VkPipelineLayout layout,
+                                    const DrawSettings& settings);
+
+} // namespace palp

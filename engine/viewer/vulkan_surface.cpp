@@ -1,0 +1,286 @@
+#include "engine/viewer/vulkan_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "compute_shaders/view_blend_frag.spv.h"
+#include "compute_shaders/view_disc_vert.spv.h"
+#include "compute_shaders/view_hidden_frag.spv.h"
+#include "compute_shaders/view_light_frag.spv.h"
+#include "compute_shaders/view_nearest_frag.spv.h"
+#include "compute_shaders/view_screen_vert.spv.h"
+#include "compute_shaders/view_shape_frag.spv.h"
+#include "compute_shaders/view_shape_vert.spv.h"
+#include "compute_shaders/view_splat_vert.spv.h"
+#include "compute_shaders/view_surface_frag.spv.h"
+
+namespace palp {
+namespace {
+
+using gpu::check;
+using gpu::typed;
+
+// Vulkan promises all of these as images to draw into; of the second one, that colours can be added up.
+constexpr VkFormat kDepthTest = VK_FORMAT_D32_SFLOAT, kSums = VK_FORMAT_R16G16B16A16_SFLOAT;
+constexpr VkFormat kDepth = VK_FORMAT_R32_SFLOAT, kSurface = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr VkFormat kColour = VK_FORMAT_R8G8B8A8_UNORM;
+
+constexpr VkImageUsageFlags kDrawn = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+
+constexpr std::uint32_t kBuffers[] = {shared::kBindFrame, shared::kBindSplats, shared::kBindShapes};
+constexpr std::uint32_t kImages[]  = {shared::kBindDepth, shared::kBindNormals, shared::kBindColours,
+                                      shared::kBindSurface, shared::kBindAlbedo};
+
+constexpr std::uint32_t kCornersOfSplat = 6;
+
+/// Anything beyond every depth [m].
+constexpr float kNowhere = 1e30F;
+
+} // namespace
+
+VulkanSurface::VulkanSurface(gpu::Context& context)
+    : owner_(context), context_(static_cast<gpu::VulkanContext&>(context.handles()))
+{
+    makeLayouts();
+    makeSteps();
+}
+
+void VulkanSurface::makeLayouts()
+{
+    std::vector<VkDescriptorSetLayoutBinding> bindings;
+    const VkShaderStageFlags                  stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+    for (const std::uint32_t n : kBuffers)
+        bindings.push_back({n, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, stages, nullptr});
+    for (const std::uint32_t n : kImages)
+        bindings.push_back({n, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
+    auto info         = typed<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+    info.bindingCount = std::uint32_t(bindings.size());
+    info.pBindings    = bindings.data();
+    VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
+    check(vkCreateDescriptorSetLayout(context_.device, &info, nullptr, &setLayout), "make a descriptor set layout");
+    setLayout_ = {context_, setLayout};
+
+    auto layoutInfo           = typed<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+    layoutInfo.setLayoutCount = 1;
+    layoutInfo.pSetLayouts    = &setLayout;
+    VkPipelineLayout layout   = VK_NULL_HANDLE;
+    check(vkCreatePipelineLayout(context_.device, &layoutInfo, nullptr, &layout), "make a pipeline layout");
+    layout_ = {context_, layout};
+
+    const std::array<VkDescriptorPoolSize, 2> sizes{
+        {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::uint32_t(std::size(kBuffers))},
+         {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, std::uint32_t(std::size(kImages))}}};
+    auto poolInfo          = typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
+    poolInfo.maxSets       = 1;
+    poolInfo.poolSizeCount = std::uint32_t(sizes.size());
+    poolInfo.pPoolSizes    = sizes.data();
+    VkDescriptorPool pool  = VK_NULL_HANDLE;
+    check(vkCreateDescriptorPool(context_.device, &poolInfo, nullptr, &pool), "make a descriptor pool");
+    sets_                     = {context_, pool};
+    auto wanted               = typed<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+    wanted.descriptorPool     = pool;
+    wanted.descriptorSetCount = 1;
+    wanted.pSetLayouts        = &setLayout;
+    check(vkAllocateDescriptorSets(context_.device, &wanted, &set_), "make a descriptor set");
+
+    auto commandInfo             = typed<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+    commandInfo.queueFamilyIndex = context_.family;
+    VkCommandPool commandPool    = VK_NULL_HANDLE;
+    check(vkCreateCommandPool(context_.device, &commandInfo, nullptr, &commandPool), "make a command pool");
+    pool_                   = {context_, commandPool};
+    auto list               = typed<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+    list.commandPool        = commandPool;
+    list.level              = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    list.commandBufferCount = 1;
+    check(vkAllocateCommandBuffers(context_.device, &list, &commands_), "make a command buffer");
+}
+
+void VulkanSurface::makeSteps()
+{
+    const PassImage depth{kDepthTest, VK_IMAGE_LAYOUT_UNDEFINED}, none{};
+    const PassImage nearest[] = {{kDepth}}, sums[] = {{kSums}, {kSums}}, surface[] = {{kSurface}, {kColour}};
+    const PassImage picture[] = {{kColour, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL}};
+    nearestStep_.pass         = makePass(context_, nearest, depth);
+    blendStep_.pass           = makePass(context_, sums, none);
+    surfaceStep_.pass         = makePass(context_, surface, none);
+    lightStep_.pass           = makePass(context_, picture, depth);
+
+    const auto add = [this](Step& step, const DrawSettings& settings) {
+        step.pipelines.push_back(makePipeline(context_, step.pass.get(), layout_.get(), settings));
+    };
+    add(nearestStep_, {"nearest depths", view_disc_vert_spv, view_nearest_frag_spv, 1, Blending::replace,
+                       VK_COMPARE_OP_LESS, VK_TRUE});
+    add(blendStep_, {"sums over splats", view_splat_vert_spv, view_blend_frag_spv, 2, Blending::add});
+    add(surfaceStep_, {"surface", view_screen_vert_spv, view_surface_frag_spv, 2});
+    add(lightStep_,
+        {"light", view_screen_vert_spv, view_light_frag_spv, 1, Blending::replace, VK_COMPARE_OP_ALWAYS, VK_TRUE});
+    add(lightStep_, {"hidden shapes", view_shape_vert_spv, view_hidden_frag_spv, 1, Blending::cover,
+                     VK_COMPARE_OP_GREATER, VK_FALSE});
+    add(lightStep_,
+        {"shapes", view_shape_vert_spv, view_shape_frag_spv, 1, Blending::replace, VK_COMPARE_OP_LESS, VK_TRUE});
+}
+
+void VulkanSurface::makeImages()
+{
+    depthTest_.emplace(
+        makeImage(context_, "depth test", size_, kDepthTest, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT));
+    nearest_.emplace(makeImage(context_, "nearest depths", size_, kDepth, kDrawn));
+    normals_.emplace(makeImage(context_, "sums of normals", size_, kSums, kDrawn));
+    colours_.emplace(makeImage(context_, "sums of colours", size_, kSums, kDrawn));
+    surface_.emplace(makeImage(context_, "surface", size_, kSurface, kDrawn));
+    albedo_.emplace(makeImage(context_, "albedo", size_, kColour, kDrawn));
+    picture_.emplace(makeImage(context_, "picture", size_, kColour,
+                               VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
+}
+
+void VulkanSurface::makeFramebuffers()
+{
+    const auto fill = [this](Step& step, std::initializer_list<const VulkanImage*> images) {
+        step.framebuffer = makeFramebuffer(context_, step.pass.get(), size_, std::vector(images));
+    };
+    fill(nearestStep_, {&*nearest_, &*depthTest_});
+    fill(blendStep_, {&*normals_, &*colours_});
+    fill(surfaceStep_, {&*surface_, &*albedo_});
+    fill(lightStep_, {&*picture_, &*depthTest_});
+}
+
+void VulkanSurface::fit(VkExtent2D size)
+{
+    if (size.width == size_.width && size.height == size_.height) return;
+    const std::uint32_t most = context_.native.maxImageDimension2D;
+    if (size.width > most || size.height > most)
+        throw Error("a picture of " + std::to_string(size.width) + " x " + std::to_string(size.height) +
+                    " px is larger than the GPU " + context_.description.name + " can draw (" + std::to_string(most) +
+                    " a side)");
+    size_ = size;
+    for (Step* step : {&nearestStep_, &blendStep_, &surfaceStep_, &lightStep_}) step->framebuffer = {};
+    makeImages();
+    makeFramebuffers();
+    pixels_.emplace(owner_, "pixels", std::size_t(4) * size.width * size.height, gpu::Intent::readback);
+}
+
+namespace {
+
+/// The buffer holds the bytes; it grows by more than is needed, so that it seldom must.
+void fillBuffer(gpu::Context& context, std::optional<gpu::Buffer>& buffer, const char* name,
+                std::span<const std::byte> bytes)
+{
+    constexpr std::size_t kLeast = 4096; // [byte]
+    if (!buffer || buffer->bytes() < bytes.size())
+        buffer.emplace(context, name, std::max(kLeast, bytes.size() + bytes.size() / 4 / 4 * 4), gpu::Intent::upload);
+    if (!bytes.empty()) std::memcpy(buffer->mapped(), bytes.data(), bytes.size());
+}
+
+} // namespace
+
+void VulkanSurface::upload(const SurfaceInput& input)
+{
+    fillBuffer(owner_, frame_, "frame", std::as_bytes(std::span(&input.frame, 1)));
+    fillBuffer(owner_, splats_, "splats", std::as_bytes(input.splats));
+    fillBuffer(owner_, shapes_, "shapes", std::as_bytes(input.shapes));
+}
+
+void VulkanSurface::describe()
+{
+    const gpu::Buffer* const              buffers[] = {&*frame_, &*splats_, &*shapes_};
+    const VulkanImage* const              images[]  = {&*nearest_, &*normals_, &*colours_, &*surface_, &*albedo_};
+    std::array<VkDescriptorBufferInfo, 3> bufferInfos{};
+    std::array<VkDescriptorImageInfo, 5>  imageInfos{};
+    std::vector<VkWriteDescriptorSet>     writes;
+    const auto                            write = [&](std::uint32_t binding, VkDescriptorType type) {
+        auto one       = typed<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
+        one.dstSet     = set_;
+        one.dstBinding = binding;
+        one.descriptorCount = 1;
+        one.descriptorType  = type;
+        return one;
+    };
+    for (std::size_t n = 0; n < bufferInfos.size(); ++n) {
+        const auto& handles = static_cast<const gpu::VulkanBuffer&>(buffers[n]->handles());
+        bufferInfos[n]      = {handles.buffer.get(), 0, VK_WHOLE_SIZE};
+        writes.push_back(write(kBuffers[n], VK_DESCRIPTOR_TYPE_STORAGE_BUFFER));
+        writes.back().pBufferInfo = &bufferInfos[n];
+    }
+    for (std::size_t n = 0; n < imageInfos.size(); ++n) {
+        imageInfos[n] = {VK_NULL_HANDLE, images[n]->view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+        writes.push_back(write(kImages[n], VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE));
+        writes.back().pImageInfo = &imageInfos[n];
+    }
+    vkUpdateDescriptorSets(context_.device, std::uint32_t(writes.size()), writes.data(), 0, nullptr);
+}
+
+void VulkanSurface::begin(const Step& step, std::span<const VkClearValue> clear)
+{
+    auto info            = typed<VkRenderPassBeginInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO);
+    info.renderPass      = step.pass.get();
+    info.framebuffer     = step.framebuffer.get();
+    info.renderArea      = {{0, 0}, size_};
+    info.clearValueCount = std::uint32_t(clear.size());
+    info.pClearValues    = clear.data();
+    vkCmdBeginRenderPass(commands_, &info, VK_SUBPASS_CONTENTS_INLINE);
+}
+
+void VulkanSurface::record(const SurfaceInput& input)
+{
+    check(vkResetCommandPool(context_.device, pool_.get(), 0), "reset a command pool");
+    auto info  = typed<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+    info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    check(vkBeginCommandBuffer(commands_, &info), "record commands");
+    const VkViewport viewport{0, 0, float(size_.width), float(size_.height), 0, 1};
+    const VkRect2D   scissor{{0, 0}, size_};
+    vkCmdSetViewport(commands_, 0, 1, &viewport);
+    vkCmdSetScissor(commands_, 0, 1, &scissor);
+    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set_, 0, nullptr);
+    const auto draw = [this](const Pipeline& pipeline, std::size_t corners) {
+        if (corners == 0) return;
+        vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.get());
+        vkCmdDraw(commands_, std::uint32_t(corners), 1, 0, 0);
+    };
+    VkClearValue zero{}, nowhere{}, farthest{};
+    nowhere.color.float32[0]    = kNowhere;
+    farthest.depthStencil.depth = 1;
+    const VkClearValue first[] = {nowhere, farthest}, two[] = {zero, zero}, last[] = {zero, farthest};
+
+    const std::size_t corners = kCornersOfSplat * input.splats.size();
+    begin(nearestStep_, first);
+    draw(nearestStep_.pipelines[0], corners);
+    vkCmdEndRenderPass(commands_);
+    begin(blendStep_, two);
+    draw(blendStep_.pipelines[0], corners);
+    vkCmdEndRenderPass(commands_);
+    begin(surfaceStep_, two);
+    draw(surfaceStep_.pipelines[0], 3);
+    vkCmdEndRenderPass(commands_);
+    begin(lightStep_, last);
+    draw(lightStep_.pipelines[0], 3);
+    draw(lightStep_.pipelines[1], input.shapes.size());
+    draw(lightStep_.pipelines[2], input.shapes.size());
+    vkCmdEndRenderPass(commands_);
+
+    VkBufferImageCopy whole{};
+    whole.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    whole.imageExtent      = {size_.width, size_.height, 1};
+    const auto& pixels     = static_cast<const gpu::VulkanBuffer&>(pixels_->handles());
+    vkCmdCopyImageToBuffer(commands_, picture_->image.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, pixels.buffer.get(),
+                           1, &whole);
+    auto toHost          = typed<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
+    toHost.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+    toHost.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
+    vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &toHost, 0,
+                         nullptr, 0, nullptr);
+    check(vkEndCommandBuffer(commands_), "end a list of commands");
+}
+
+std::span<const std::uint8_t> VulkanSurface::draw(const SurfaceInput& input)
+{
+    fit({std::uint32_t(input.frame.width), std::uint32_t(input.frame.height)});
+    upload(input);
+    describe();
+    record(input);
+    context_.submit({&commands_, 1});
+    pixels_->makeVisibleToHost();
+    return pixels_->as<std::uint8_t>();
+}
+
+} // namespace palp

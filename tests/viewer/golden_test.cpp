@@ -1,0 +1,94 @@
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+
+#include "engine/cloud/samples.h"
+#include "engine/viewer/annotation.h"
+#include "engine/viewer/surface_renderer.h"
+#include "engine/viewer/touch_view.h"
+#include "tests/support/shader_fixture.h"
+
+// Whole pictures, texts included, to the byte. They hold for the driver that golden/driver.txt names; with another one
+// rounding may differ, and the test is skipped. PALPATE_GOLDEN_WRITE=1 draws them anew: look at them before committing.
+
+namespace palp {
+namespace {
+
+struct GoldenCase {
+    const char* sample;
+    TouchLook   look;
+    Projection  projection = Projection::perspective;
+};
+
+void PrintTo(const GoldenCase& one, std::ostream* stream)
+{
+    *stream << one.sample << " " << name(one.look.paint);
+}
+
+std::string bytesOf(const std::filesystem::path& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class GoldenTest : public ShaderTest, public ::testing::WithParamInterface<GoldenCase> {};
+
+Image pictureOf(const GoldenCase& one, SurfaceRenderer& renderer)
+{
+    constexpr std::size_t kPoints = 4000;
+    const Sample&         sample  = sampleNamed(one.sample);
+    const PointCloud      cloud   = makeSample(sample, kPoints, 1);
+    const NeighbourIndex  index(cloud.positions());
+    PatchSettings         settings;
+    settings.material        = sample.material;
+    settings.foundation      = sample.foundation;
+    settings.window          = sample.window;
+    settings.footprintRadius = sample.footprintRadius;
+    settings.cells           = 32;
+    PlateDevice   host("host");
+    const Contact contact = touchAt(cloud, index, sample.place, sample.from, settings.window / 4);
+    const Patch   patch   = deform(cloud, index, contact, settings, host);
+    TouchView     view(cloud, index, settings);
+    view.show(&patch, forceThatShows(patch, settings.material.thickness), one.look);
+    view.scene().title = std::string("sample:") + one.sample;
+    constexpr PictureSize kSize{320, 240, 2};
+    Camera                camera = cameraAt(patch, double(kSize.width) / kSize.height);
+    camera.projection            = one.projection;
+    Image image                  = renderer.draw(view.scene(), camera, kSize);
+    annotate(image, view.scene(), camera);
+    return image;
+}
+
+TEST_P(GoldenTest, ThePictureIsTheOneThatWasLookedAt)
+{
+    const std::filesystem::path folder = PALPATE_GOLDEN;
+    const std::filesystem::path file   = folder / (std::string(GetParam().sample) + ".png");
+    SurfaceRenderer             renderer({.device = deviceOfTests(), .validation = validation()});
+    const std::string           driver = renderer.device().name + ", " + renderer.device().driver + "\n";
+    const std::string           bytes  = encodePng(pictureOf(GetParam(), renderer));
+    if (std::getenv("PALPATE_GOLDEN_WRITE")) {
+        std::ofstream(file, std::ios::binary) << bytes;
+        std::ofstream(folder / "driver.txt") << driver;
+    }
+    for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << "validation: " << message;
+    if (bytesOf(folder / "driver.txt") != driver)
+        GTEST_SKIP() << "drawn by " << bytesOf(folder / "driver.txt") << "and this is " << driver;
+    if (bytesOf(file) != bytes) {
+        const auto now = std::filesystem::temp_directory_path() / file.filename();
+        std::ofstream(now, std::ios::binary) << bytes;
+        FAIL() << file << " differs from " << now;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Samples, GoldenTest,
+    ::testing::Values(GoldenCase{"skin", {}}, GoldenCase{"palm", {ViewPaint::stiffness, ColourMap::cividis}},
+                      GoldenCase{"ear-lobe", {ViewPaint::deflection, ColourMap::viridis, Ground::dark}},
+                      GoldenCase{"ellipsoid", {ViewPaint::plain, ColourMap::viridis, Ground::light, 2}},
+                      GoldenCase{"sheet", {ViewPaint::deflection, ColourMap::grey}, Projection::orthographic}));
+
+} // namespace
+} // namespace palp
