@@ -32,8 +32,8 @@ constexpr std::array<Rgb8, 16> kViridis = {{
 }};
 
 // cividis by Jamie R. Nunez, Christopher R. Anderton and Ryan S. Renslow, "Optimizing colormaps with consideration for
-// color vision deficiency to enable accurate interpretation of scientific data", PLOS ONE 2018 (CC0); ten of its 256
-// colours, evenly spread.
+// color vision deficiency to enable accurate interpretation of scientific data", PLOS ONE 2018 (a BSD-style licence of
+// Battelle); ten of its 256 colours, evenly spread.
 constexpr std::array<Rgb8, 10> kCividis = {{
     {0, 34, 78},
     {18, 53, 112},
