@@ -11,6 +11,17 @@
 
 namespace palp {
 
+/// What the system says of it.
+inline HidListing ours()
+{
+    HidListing listing;
+    listing.path      = "/dev/hidraw7";
+    listing.usagePage = kBridgeUsagePage;
+    listing.usage     = kBridgeUsage;
+    listing.model     = "Workshop arm";
+    return listing;
+}
+
 /// The firmware of a bridge, as device/README.md tells to write it: the last command counts, with a watchdog.
 /// \thread any; its clock moves by tick() only
 class FakeBridge {
