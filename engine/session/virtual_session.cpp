@@ -20,6 +20,20 @@ double secondsSince(Clock::time_point start)
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// The last that a device hears is zero force, on every way out.
+class ZeroAtLast {
+public:
+    explicit ZeroAtLast(HapticDevice& device) : device_(device) {}
+    ZeroAtLast(const ZeroAtLast&)            = delete;
+    ZeroAtLast& operator=(const ZeroAtLast&) = delete;
+    ~ZeroAtLast() { device_.exchange(GovernedForce(), now); }
+
+    double now = 0; ///< [s] of the servo's clock
+
+private:
+    HapticDevice& device_;
+};
+
 } // namespace
 
 SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSample& onSample,
@@ -29,12 +43,14 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSam
     SessionSummary           summary;
     GovernedForce            force;
     std::optional<PatchNews> inUse, underWay;
+    ZeroAtLast               zero(parts.device);
 
     const auto every = std::max<std::int64_t>(1, std::llround(1 / (parts.scene.deformationRate * kTick))); // ticks
     const auto ticks = std::llround(seconds / kTick);
     for (std::int64_t n = 0; n < ticks; ++n) {
         if (stop && *stop) break;
         const double time = double(n) * kTick;
+        zero.now          = time + kTick;
         if (n % every == 0) {
             if (underWay) inUse = underWay;
             underWay.reset();
@@ -55,7 +71,6 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSam
         summary.add(sample);
         if (onSample) onSample(sample);
     }
-    parts.device.exchange(GovernedForce(), double(ticks) * kTick);
     summary.fault = servo.governor().fault();
     return summary;
 }
