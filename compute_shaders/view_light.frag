@@ -44,18 +44,15 @@ void main()
     vec2 at      = gl_FragCoord.xy;
     vec4 surface = texelFetch(surfaces, ivec2(at), 0);
     if (surface.w == 0.0) {
-        picture      = vec4(mix(frame.groundAbove, frame.groundBelow, at.y / frame.height), 1);
+        picture      = groundAt(at.y);
         gl_FragDepth = 1.0;
         return;
     }
-    const float kDarkest = -0.45, kLightest = 0.18; // bounds of the cue [1]
     const float kWider   = 3.5;                     // a second look finds dents that are wide and shallow [1]
     vec3  place  = placeAt(at, surface.w);
     float hollow = hollowness(at, place, surface.xyz, frame.cueRadius) +
                    hollowness(at, place, surface.xyz, kWider * frame.cueRadius);
-    float facing = max(0.0, dot(surface.xyz, toEyeFrom(place))); // at grazing slopes the depth differs for other reasons
-    float cue    = clamp(-frame.cueGain * facing * facing * hollow, kDarkest, kLightest);
-    float bright = litBy(surface.xyz) * (1.0 + cue);
+    float bright = litBy(surface.xyz) * (1.0 + cueOf(hollow, max(0.0, dot(surface.xyz, toEyeFrom(place)))));
     vec3  colour = texelFetch(albedos, ivec2(at), 0).rgb * bright + frame.shine * reflection(surface.xyz, place);
     picture      = vec4(min(vec3(1), colour), 1);
     vec4 clip    = frame.clipFromView * vec4(place, 1);

@@ -3,7 +3,7 @@
 
 #include "compute_shaders/shared/view_layout.h"
 
-layout(std430, binding = kBindFrame) readonly buffer Frame { ViewFrame frame; };
+layout(std140, binding = kBindFrame) uniform Frame { ViewFrame frame; };
 
 /// The place in view space of a point of the picture at a depth. \param at [px] \param depth [m]
 vec3 placeAt(vec2 at, float depth)
@@ -18,6 +18,9 @@ float pixelsPerMetre(float depth)
 {
     return 0.5 * frame.width / (frame.widthAtOne * (frame.orthographic == 1u ? 1.0 : depth));
 }
+
+/// What is behind everything, at a height in the picture [px].
+vec4 groundAt(float y) { return vec4(mix(frame.groundAbove, frame.groundBelow, y / frame.height), 1); }
 
 /// Unit vector from a place in view space to the eye.
 vec3 toEyeFrom(vec3 place) { return frame.orthographic == 1u ? vec3(0, 0, 1) : normalize(-place); }
@@ -37,6 +40,15 @@ float litBy(vec3 normal)
 /// The light's reflection on a smooth surface [1].
 float reflection(vec3 normal, vec3 place)
 {
-    const float kSharpness = 24.0;
-    return pow(max(0.0, dot(normal, normalize(kLight + toEyeFrom(place)))), kSharpness);
+    float c = max(0.0, dot(normal, normalize(kLight + toEyeFrom(place))));
+    float c2 = c * c, c4 = c2 * c2, c8 = c4 * c4;
+    return c8 * c8 * c8; // the power of 24
+}
+
+/// How much brighter or darker a hump or a hollow is drawn [1]. \param facing  cosine to the eye: at grazing slopes
+/// depths differ for other reasons
+float cueOf(float hollow, float facing)
+{
+    const float kDarkest = -0.45, kLightest = 0.18;
+    return clamp(-frame.cueGain * facing * facing * hollow, kDarkest, kLightest);
 }

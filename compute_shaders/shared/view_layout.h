@@ -1,7 +1,7 @@
 // view_layout.h - what the pictures of engine/viewer are drawn from (GLSL and C++).
 //
-// A frame is four passes: the nearest depth of all splats; the mean of normals, colours and depths of the splats near
-// that depth; the surface that they make; its light, over which the shapes (proxy, arrows, ...) are drawn.
+// A fine frame is four passes: the nearest depth of all splats; the mean of normals, colours and depths of the splats near
+// that depth; the surface that they make; its light, over which the shapes (proxy, arrows, ...) are drawn. A fast one is only the last, with points that are lit one by one.
 // View space: x right, y up, z towards the eye, lengths in m about the scene's own origin.
 #ifndef PALPATE_VIEW_LAYOUT_H
 #define PALPATE_VIEW_LAYOUT_H
@@ -52,7 +52,8 @@ struct ViewSplat {
     vec3  position; // [m]
     float radius;   // [m]
     vec3  normal;   // unit; the side does not matter
-    uint  colour;   // red in the lowest byte; the highest one: how much of the radius covers what is behind [1/255]
+    uint  colour;   // red in the lowest byte; the highest one, in fine pictures: how much of the radius covers what is
+                    // behind [1/255]; in fast ones, whose radius is that part: 1/2 + hollowness [1/255]
 };
 
 struct ViewCorner {

@@ -46,21 +46,26 @@ private:
     std::array<std::uint32_t, kShades> shades_{};
 };
 
-/// \param share  core over disc, 0 to 1 [1]
-std::uint32_t withCore(std::uint32_t colour, double share)
+/// \param alpha  0 to 1 [1]
+std::uint32_t withAlpha(std::uint32_t colour, double alpha)
 {
-    return (colour & 0x00FFFFFFU) | std::uint32_t(std::lround(255 * std::clamp(share, 0.0, 1.0))) << 24;
+    return (colour & 0x00FFFFFFU) | std::uint32_t(std::lround(255 * std::clamp(alpha, 0.0, 1.0))) << 24;
 }
 
-std::vector<shared::ViewSplat> splatsOf(const ViewScene& scene, const glm::dvec3& origin)
+std::vector<shared::ViewSplat> splatsOf(const ViewScene& scene, const glm::dvec3& origin, Detail detail)
 {
     std::vector<shared::ViewSplat> splats(scene.positions.size());
     std::optional<Paintbox>        paint;
     if (!scene.values.empty()) paint.emplace(scene.colours);
-    for (std::size_t n = 0; n < splats.size(); ++n)
-        splats[n] = {
-            glm::vec3(scene.positions[n] - origin), float(scene.radii[n]), glm::vec3(scene.normals[n]),
-            withCore(paint ? paint->of(scene.values[n]) : packed(kPlainColour), scene.cores[n] / scene.radii[n])};
+    for (std::size_t n = 0; n < splats.size(); ++n) {
+        const std::uint32_t colour = paint ? paint->of(scene.values[n]) : packed(kPlainColour);
+        const glm::vec3     position(scene.positions[n] - origin), normal(scene.normals[n]);
+        if (detail == Detail::fine)
+            splats[n] = {position, float(scene.radii[n]), normal, withAlpha(colour, scene.cores[n] / scene.radii[n])};
+        else
+            splats[n] = {position, float(scene.cores[n]), normal,
+                         withAlpha(colour, scene.hollows.empty() ? 0.5 : 0.5 + scene.hollows[n])};
+    }
     return splats;
 }
 
@@ -100,7 +105,6 @@ shared::ViewFrame frameOf(const ViewScene& scene, const Camera& camera, const Pi
     frame.cueRadius     = float(scene.cueRadius);
     frame.cueGain       = scene.cueRadius > 0 ? kCueGain : 0;
     frame.shine         = kShine;
-    frame.unused        = 0;
     frame.hiddenShare   = kHidden;
     frame.orthographic  = camera.projection == Projection::orthographic;
     return frame;
@@ -148,12 +152,13 @@ Image SurfaceRenderer::draw(const ViewScene& scene, const Camera& camera, const 
     PALP_EXPECT(size.width > 0 && size.height > 0 && size.finer > 0, "a picture has at least one pixel");
     PALP_EXPECT(scene.normals.size() == scene.positions.size() && scene.radii.size() == scene.positions.size() &&
                     scene.cores.size() == scene.positions.size() &&
-                    (scene.values.empty() || scene.values.size() == scene.positions.size()),
-                "every point has a normal, two radii and, if there are values, a value");
-    const auto   splats = splatsOf(scene, camera.target);
+                    (scene.values.empty() || scene.values.size() == scene.positions.size()) &&
+                    (scene.hollows.empty() || scene.hollows.size() == scene.positions.size()),
+                "every point has a normal, two radii and, if there are any, a value and a hollow");
+    const auto   splats = splatsOf(scene, camera.target, size.detail);
     const auto   shapes = cornersOf(scene, camera.target);
     const double reach  = reachOf(scene, shapes, camera.target);
-    return averaged(impl_->surface.draw({frameOf(scene, camera, size, reach), splats, shapes}), size);
+    return averaged(impl_->surface.draw({frameOf(scene, camera, size, reach), splats, shapes, size.detail}), size);
 }
 
 const gpu::DeviceDescription& SurfaceRenderer::device() const noexcept

@@ -10,11 +10,17 @@
 
 namespace palp {
 
+enum class Detail {
+    fine, ///< means over discs, lit pixel by pixel
+    fast  ///< discs as they are, lit one by one: for pictures that move where a driver draws in software
+};
+
 /// The size of a picture, and how finely it is drawn.
 struct PictureSize {
-    int width  = 1280; ///< [px]
-    int height = 720;  ///< [px]
-    int finer  = 1;    ///< drawn so many times larger and then averaged: smooth edges for stills [1]
+    int    width  = 1280; ///< [px]
+    int    height = 720;  ///< [px]
+    int    finer  = 1;    ///< drawn so many times larger and then averaged: smooth edges for stills [1]
+    Detail detail = Detail::fine;
 };
 
 /// Draws scenes without a window, on a Vulkan device of its own: a picture never delays a solve.

@@ -11,63 +11,8 @@
 namespace palp {
 namespace {
 
-/// How far the surface lies from the fitted sphere at a place of the chart: the mean over the nearest points of the
-/// sheet on top. Empty where there is no surface.
-std::optional<glm::dvec3> residualAt(const Patch& patch, std::span<const glm::dvec3> positions, const ChartPoint& at)
-{
-    constexpr std::size_t kNear  = 16;// points looked at [1]
-    constexpr double      kFar   = 4; // spacings beyond which there is none [1]
-    constexpr double      kSheet = 1; // spacings below the highest that are still the same sheet [1]
-    std::array<std::pair<double, std::size_t>, kNear> near;
-    near.fill({std::numeric_limits<double>::infinity(), 0});
-    for (std::size_t n = 0; n < patch.positions.size(); ++n) {
-        const double x = patch.positions[n].x - at.x, z = patch.positions[n].z - at.z;
-        if (x * x + z * z >= near.back().first) continue;
-        near.back() = {x * x + z * z, n};
-        std::ranges::sort(near);
-    }
-    if (!(near.back().first < kFar * kFar * patch.spacing * patch.spacing)) return std::nullopt;
-    std::vector<glm::dvec3> residuals;
-    double                  highest = -std::numeric_limits<double>::infinity(); // [m]
-    for (const auto& [distance, n] : near)
-        if (const auto on = patch.chart.lift(patch.positions[n])) {
-            residuals.push_back(positions[patch.points[n]] - *on);
-            highest = std::max(highest, glm::dot(residuals.back(), patch.chart.frame.normal));
-        }
-    glm::dvec3 sum(0);
-    double     count = 0;
-    for (const glm::dvec3& residual : residuals)
-        if (glm::dot(residual, patch.chart.frame.normal) >= highest - kSheet * patch.spacing) {
-            sum += residual;
-            ++count;
-        }
-    return count > 0 ? std::optional(sum / count) : std::nullopt;
-}
-
-/// A line that follows the surface along the window's edge; parts where there is no surface are left out.
-std::vector<ViewSegment> outlineOf(const Patch& patch, std::span<const glm::dvec3> positions)
-{
-    constexpr int    kSteps = 48; // a side [1]
-    const double     width = patch.window.grid.sizeX(), height = patch.window.grid.sizeZ();
-    const ChartPoint corner = patch.window.corner;
-    const auto       place  = [&](int n) -> std::optional<glm::dvec3> {
-        const int        side = n / kSteps % 4;
-        const double     t    = double(n % kSteps) / kSteps;
-        const double     x    = side == 0 ? t : side == 1 ? 1 : side == 2 ? 1 - t : 0;
-        const double     z    = side == 0 ? 0 : side == 1 ? t : side == 2 ? 1 : 1 - t;
-        const ChartPoint at{corner.x + x * width, corner.z + z * height};
-        const auto       on = patch.chart.lift(at), off = residualAt(patch, positions, at);
-        return on && off ? std::optional(*on + *off) : std::nullopt;
-    };
-    std::vector<ViewSegment>  segments;
-    std::optional<glm::dvec3> last = place(0);
-    for (int n = 1; n <= 4 * kSteps; ++n) {
-        const auto next = place(n);
-        if (last && next) segments.push_back({*last, *next});
-        last = next;
-    }
-    return segments;
-}
+/// Shares of the window: large enough to be seen, small enough to leave the dent free [1].
+constexpr double kArrow = 0.006, kOutline = 0.0016, kCue = 0.07;
 
 } // namespace
 
@@ -86,30 +31,50 @@ std::optional<ViewPaint> viewPaintNamed(std::string_view wanted)
 
 TouchView::TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings)
     : cloud_(cloud), settings_(settings), skin_(cloud.positions(), index),
-      restNormals_(skin_.normals(cloud.positions()))
+      restNormals_(skin_.normals(cloud.positions())), normals_(restNormals_),
+      positions_(cloud.positions().begin(), cloud.positions().end()), deflections_(cloud.size()), hollows_(cloud.size())
 {
 }
 
-void TouchView::bend(const Patch* patch, double force, double exaggeration)
+void TouchView::take(const Patch* patch)
 {
-    positions_.assign(cloud_.positions().begin(), cloud_.positions().end());
-    normals_ = restNormals_;
-    deflections_.assign(cloud_.size(), 0);
-    if (!patch) return;
-    positions_   = displaced(cloud_, *patch, exaggeration * force);
-    deflections_ = deflections(cloud_, *patch, force);
-    skin_.refit(positions_, patch->points, normals_);
+    const auto same = [this](const Patch& now) {
+        return now.contact.point == shown_.contact && now.compliance == shown_.compliance &&
+               now.points.size() == shown_.points;
+    };
+    if (patch ? same(*patch) : shown_.points == 0) return;
+    surface_ = patch ? PatchSurface(*patch, cloud_.positions(), kCue * settings_.window) : PatchSurface();
+    shown_   = patch ? Shown{patch->contact.point, patch->compliance, patch->points.size()} : Shown{};
 }
 
-void TouchView::paint(const TouchLook& look)
+void TouchView::bend(double force, double exaggeration)
+{
+    for (const std::uint32_t n : moved_) {
+        positions_[n]   = cloud_.positions()[n];
+        normals_[n]     = restNormals_[n];
+        deflections_[n] = hollows_[n] = 0;
+    }
+    moved_ = surface_.moving;
+    for (std::size_t i = 0; i < moved_.size(); ++i) {
+        const std::uint32_t n = moved_[i];
+        deflections_[n]       = force * surface_.responses[i];
+        positions_[n] += exaggeration * deflections_[n] * surface_.inward;
+        const double side = glm::dot(restNormals_[n], surface_.inward) < 0 ? 1 : -1; // normals have either side
+        hollows_[n]       = side * exaggeration * force * surface_.hollows[i];
+    }
+    skin_.refit(positions_, moved_, normals_);
+}
+
+void TouchView::paint(double force, const TouchLook& look)
 {
     scene_.positions = positions_;
     scene_.normals   = normals_;
     scene_.radii     = skin_.radii();
     scene_.cores     = skin_.cores();
+    scene_.hollows   = hollows_;
     scene_.ground    = look.ground;
     if (look.paint == ViewPaint::deflection) {
-        const double most = look.deepest > 0 ? look.deepest : *std::ranges::max_element(deflections_);
+        const double most = look.deepest > 0 ? look.deepest : std::abs(force) * surface_.mostResponse;
         scene_.values     = deflections_;
         scene_.colours    = {look.map, Scale::linear, {0, most > 0 ? most : 1e-3}, "deflection", "m"};
     } else if (look.paint == ViewPaint::stiffness) {
@@ -140,20 +105,25 @@ void TouchView::addShapes(const Patch& patch, double force, const TouchLook& loo
     const glm::dvec3 against   = hand && glm::length(hand->force) > 0 ? glm::normalize(hand->force) : -inward;
     scene_.force               = ViewSegment{*scene_.proxy, *scene_.proxy + length * against};
     scene_.normal              = ViewSegment{*scene_.proxy, *scene_.proxy - kNormal * longest * inward};
-    scene_.outline             = outlineOf(patch, positions_);
+    const auto placeOf         = [&](const PatchSurface::EdgePlace& e) {
+        return e.rest + look.exaggeration * force * e.response * inward;
+    };
+    for (std::size_t n = 1; n < surface_.edge.size(); ++n)
+        if (!surface_.edge[n].starts)
+            scene_.outline.push_back({placeOf(surface_.edge[n - 1]), placeOf(surface_.edge[n])});
 }
 
 void TouchView::show(const Patch* patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand)
 {
-    // Shares of the window and of the fingertip: large enough to be seen, small enough to leave the dent free.
-    constexpr double kMarker = 0.45, kArrow = 0.006, kOutline = 0.0016, kCue = 0.07; // [1]
-    bend(patch, force, look.exaggeration);
+    constexpr double kMarker = 0.45; // of the fingertip [1]
+    take(patch);
+    bend(force, look.exaggeration);
     scene_               = {};
     scene_.markerRadius  = std::min(kMarker * settings_.footprintRadius, 0.025 * settings_.window);
     scene_.arrowRadius   = kArrow * settings_.window;
     scene_.outlineRadius = kOutline * settings_.window;
     scene_.cueRadius     = kCue * settings_.window;
-    paint(look);
+    paint(force, look);
     if (patch)
         addShapes(*patch, force, look, hand);
     else if (hand)

@@ -5,6 +5,7 @@
 #include "engine/pipeline/pipeline.h"
 #include "engine/viewer/camera.h"
 #include "engine/viewer/cloud_skin.h"
+#include "engine/viewer/patch_surface.h"
 #include "engine/viewer/view_scene.h"
 
 namespace palp {
@@ -52,16 +53,27 @@ public:
     [[nodiscard]] ViewScene& scene() noexcept { return scene_; }
 
 private:
-    void bend(const Patch* patch, double force, double exaggeration);
-    void paint(const TouchLook& look);
+    /// What tells the patch that was shown last from others.
+    struct Shown {
+        glm::dvec3  contact{};      ///< [m]
+        double      compliance = 0; ///< [m/N]
+        std::size_t points     = 0; ///< [1]; 0: none was
+    };
+    void take(const Patch* patch);
+    void bend(double force, double exaggeration);
+    void paint(double force, const TouchLook& look);
     void addShapes(const Patch& patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand);
 
     const PointCloud&       cloud_;
     PatchSettings           settings_;
     CloudSkin               skin_;
-    std::vector<glm::dvec3> restNormals_, positions_, normals_; // [1], [m], [1]
-    std::vector<double>     deflections_;                       // [m]
-    ViewScene               scene_;
+    std::vector<glm::dvec3> restNormals_, normals_, positions_; // [1], [1], [m]
+    std::vector<double>     deflections_, hollows_;             // [m], [1]
+
+    Shown                      shown_;
+    PatchSurface               surface_; // of that patch
+    std::vector<std::uint32_t> moved_;   // points that are not at rest in positions_
+    ViewScene                  scene_;
 };
 
 /// Looks obliquely at the contact from outside so that the dent shows its depth; the patch fills the picture.

@@ -34,6 +34,9 @@ struct ViewScene {
     std::span<const double>     cores;     ///< as many, of the part of each that hides what is behind [m]
     std::span<const double>     values;    ///< as many [unit of `colours`], NaN for none; empty: one plain colour
     ViewColours                 colours;
+    /// As many, or none: how far a dent's surroundings rise above it, on the side of the normal [1]. Only pictures of
+    /// Detail::fast need it, all others see it in the depths.
+    std::span<const double> hollows;
 
     std::optional<glm::dvec3>  proxy;            ///< a ball [m]
     std::optional<glm::dvec3>  hip;              ///< an octahedron, seen through the surface [m]

@@ -19,7 +19,7 @@ enum class Blending {
     cover ///< by the share in alpha
 };
 
-/// Triangles without vertex buffers: shaders fetch what they draw by its number.
+/// Triangles or points without vertex buffers: shaders fetch what they draw by its number.
 struct DrawSettings {
     const char*                    name = "";
     std::span<const std::uint32_t> vertexShader;
@@ -28,6 +28,7 @@ struct DrawSettings {
     Blending                       blending     = Blending::replace;
     VkCompareOp                    depthTest    = VK_COMPARE_OP_ALWAYS;
     VkBool32                       writesDepth  = VK_FALSE;
+    VkPrimitiveTopology            topology     = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
 };
 
 /// Width and height are set when it is used.

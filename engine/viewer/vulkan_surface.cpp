@@ -6,9 +6,12 @@
 
 #include "compute_shaders/view_blend_frag.spv.h"
 #include "compute_shaders/view_disc_vert.spv.h"
+#include "compute_shaders/view_ground_frag.spv.h"
 #include "compute_shaders/view_hidden_frag.spv.h"
 #include "compute_shaders/view_light_frag.spv.h"
 #include "compute_shaders/view_nearest_frag.spv.h"
+#include "compute_shaders/view_point_frag.spv.h"
+#include "compute_shaders/view_point_vert.spv.h"
 #include "compute_shaders/view_screen_vert.spv.h"
 #include "compute_shaders/view_shape_frag.spv.h"
 #include "compute_shaders/view_shape_vert.spv.h"
@@ -34,6 +37,12 @@ constexpr std::uint32_t kImages[]  = {shared::kBindDepth, shared::kBindNormals, 
 
 constexpr std::uint32_t kCornersOfSplat = 6;
 
+/// The frame is uniform: drivers in software then load its numbers once, not once per pixel.
+constexpr VkDescriptorType typeOf(std::uint32_t binding)
+{
+    return binding == shared::kBindFrame ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+}
+
 /// Anything beyond every depth [m].
 constexpr float kNowhere = 1e30F;
 
@@ -50,8 +59,7 @@ void VulkanSurface::makeLayouts()
 {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     const VkShaderStageFlags                  stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-    for (const std::uint32_t n : kBuffers)
-        bindings.push_back({n, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, stages, nullptr});
+    for (const std::uint32_t n : kBuffers) bindings.push_back({n, typeOf(n), 1, stages, nullptr});
     for (const std::uint32_t n : kImages)
         bindings.push_back({n, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 1, VK_SHADER_STAGE_FRAGMENT_BIT, nullptr});
     auto info         = typed<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
@@ -68,8 +76,9 @@ void VulkanSurface::makeLayouts()
     check(vkCreatePipelineLayout(context_.device, &layoutInfo, nullptr, &layout), "make a pipeline layout");
     layout_ = {context_, layout};
 
-    const std::array<VkDescriptorPoolSize, 2> sizes{
-        {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::uint32_t(std::size(kBuffers))},
+    const std::array<VkDescriptorPoolSize, 3> sizes{
+        {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::uint32_t(std::size(kBuffers)) - 1},
          {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, std::uint32_t(std::size(kImages))}}};
     auto poolInfo          = typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
     poolInfo.maxSets       = 1;
@@ -119,6 +128,13 @@ void VulkanSurface::makeSteps()
                      VK_COMPARE_OP_GREATER, VK_FALSE});
     add(lightStep_,
         {"shapes", view_shape_vert_spv, view_shape_frag_spv, 1, Blending::replace, VK_COMPARE_OP_LESS, VK_TRUE});
+    add(lightStep_, {"ground", view_screen_vert_spv, view_ground_frag_spv});
+    add(lightStep_, {.name           = "points",
+                     .vertexShader   = view_point_vert_spv,
+                     .fragmentShader = view_point_frag_spv,
+                     .depthTest      = VK_COMPARE_OP_LESS,
+                     .writesDepth    = VK_TRUE,
+                     .topology       = VK_PRIMITIVE_TOPOLOGY_POINT_LIST});
 }
 
 void VulkanSurface::makeImages()
@@ -199,7 +215,7 @@ void VulkanSurface::describe()
     for (std::size_t n = 0; n < bufferInfos.size(); ++n) {
         const auto& handles = static_cast<const gpu::VulkanBuffer&>(buffers[n]->handles());
         bufferInfos[n]      = {handles.buffer.get(), 0, VK_WHOLE_SIZE};
-        writes.push_back(write(kBuffers[n], VK_DESCRIPTOR_TYPE_STORAGE_BUFFER));
+        writes.push_back(write(kBuffers[n], typeOf(kBuffers[n])));
         writes.back().pBufferInfo = &bufferInfos[n];
     }
     for (std::size_t n = 0; n < imageInfos.size(); ++n) {
@@ -243,17 +259,24 @@ void VulkanSurface::record(const SurfaceInput& input)
     const VkClearValue first[] = {nowhere, farthest}, two[] = {zero, zero}, last[] = {zero, farthest};
 
     const std::size_t corners = kCornersOfSplat * input.splats.size();
-    begin(nearestStep_, first);
-    draw(nearestStep_.pipelines[0], corners);
-    vkCmdEndRenderPass(commands_);
-    begin(blendStep_, two);
-    draw(blendStep_.pipelines[0], corners);
-    vkCmdEndRenderPass(commands_);
-    begin(surfaceStep_, two);
-    draw(surfaceStep_.pipelines[0], 3);
-    vkCmdEndRenderPass(commands_);
+    if (input.detail == Detail::fine) {
+        begin(nearestStep_, first);
+        draw(nearestStep_.pipelines[0], corners);
+        vkCmdEndRenderPass(commands_);
+        begin(blendStep_, two);
+        draw(blendStep_.pipelines[0], corners);
+        vkCmdEndRenderPass(commands_);
+        begin(surfaceStep_, two);
+        draw(surfaceStep_.pipelines[0], 3);
+        vkCmdEndRenderPass(commands_);
+    }
     begin(lightStep_, last);
-    draw(lightStep_.pipelines[0], 3);
+    if (input.detail == Detail::fine) {
+        draw(lightStep_.pipelines[0], 3);
+    } else {
+        draw(lightStep_.pipelines[3], 3);
+        draw(lightStep_.pipelines[4], input.splats.size());
+    }
     draw(lightStep_.pipelines[1], input.shapes.size());
     draw(lightStep_.pipelines[2], input.shapes.size());
     vkCmdEndRenderPass(commands_);

@@ -5,6 +5,7 @@
 
 #include "compute_shaders/shared/view_layout.h"
 #include "engine/gpu/buffer.h"
+#include "engine/viewer/surface_renderer.h"
 #include "engine/viewer/vulkan_image.h"
 #include "engine/viewer/vulkan_pipeline.h"
 
@@ -17,6 +18,7 @@ struct SurfaceInput {
     shared::ViewFrame                   frame{};
     std::span<const shared::ViewSplat>  splats;
     std::span<const shared::ViewCorner> shapes; ///< three to a triangle
+    Detail                              detail = Detail::fine;
 };
 
 /// The four passes of compute_shaders/shared/view_layout.h. Images are made anew when the size changes, buffers when

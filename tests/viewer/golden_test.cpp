@@ -21,6 +21,12 @@ struct GoldenCase {
     const char* sample;
     TouchLook   look;
     Projection  projection = Projection::perspective;
+    Detail      detail     = Detail::fine;
+
+    [[nodiscard]] std::string file() const
+    {
+        return std::string(sample) + (detail == Detail::fast ? "-fast.png" : ".png");
+    }
 };
 
 void PrintTo(const GoldenCase& one, std::ostream* stream)
@@ -54,10 +60,10 @@ Image pictureOf(const GoldenCase& one, SurfaceRenderer& renderer)
     TouchView     view(cloud, index, settings);
     view.show(&patch, forceThatShows(patch, settings.material.thickness), one.look);
     view.scene().title = std::string("sample:") + one.sample;
-    constexpr PictureSize kSize{320, 240, 2};
-    Camera                camera = cameraAt(patch, double(kSize.width) / kSize.height);
-    camera.projection            = one.projection;
-    Image image                  = renderer.draw(view.scene(), camera, kSize);
+    const PictureSize size{320, 240, one.detail == Detail::fine ? 2 : 1, one.detail};
+    Camera            camera = cameraAt(patch, double(size.width) / size.height);
+    camera.projection        = one.projection;
+    Image image              = renderer.draw(view.scene(), camera, size);
     annotate(image, view.scene(), camera);
     return image;
 }
@@ -65,7 +71,7 @@ Image pictureOf(const GoldenCase& one, SurfaceRenderer& renderer)
 TEST_P(GoldenTest, ThePictureIsTheOneThatWasLookedAt)
 {
     const std::filesystem::path folder = PALPATE_GOLDEN;
-    const std::filesystem::path file   = folder / (std::string(GetParam().sample) + ".png");
+    const std::filesystem::path file   = folder / GetParam().file();
     SurfaceRenderer             renderer({.device = deviceOfTests(), .validation = validation()});
     const std::string           driver = renderer.device().name + ", " + renderer.device().driver + "\n";
     const std::string           bytes  = encodePng(pictureOf(GetParam(), renderer));
@@ -88,7 +94,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(GoldenCase{"skin", {}}, GoldenCase{"palm", {ViewPaint::stiffness, ColourMap::cividis}},
                       GoldenCase{"ear-lobe", {ViewPaint::deflection, ColourMap::viridis, Ground::dark}},
                       GoldenCase{"ellipsoid", {ViewPaint::plain, ColourMap::viridis, Ground::light, 2}},
-                      GoldenCase{"sheet", {ViewPaint::deflection, ColourMap::grey}, Projection::orthographic}));
+                      GoldenCase{"sheet", {ViewPaint::deflection, ColourMap::grey}, Projection::orthographic},
+                      GoldenCase{"palm", {ViewPaint::stiffness}, Projection::perspective, Detail::fast},
+                      GoldenCase{"ear-lobe", {ViewPaint::deflection}, Projection::orthographic, Detail::fast}));
 
 } // namespace
 } // namespace palp

@@ -15,8 +15,6 @@
 namespace palp {
 namespace {
 
-constexpr PictureSize kSmall{96, 72, 1};
-
 /// A square sheet seen from above, 100 mm wide.
 struct Sheet {
     explicit Sheet(int side = 60, double dent = 0)
@@ -59,7 +57,8 @@ int brightness(Rgb8 colour)
     return int(colour.red) + int(colour.green) + int(colour.blue);
 }
 
-class SurfaceRendererTest : public ShaderTest {
+/// What holds for fine pictures and for fast ones.
+class SurfaceRendererTest : public ShaderTest, public ::testing::WithParamInterface<Detail> {
 protected:
     void SetUp() override
     {
@@ -74,25 +73,29 @@ protected:
         renderer.reset();
         ShaderTest::TearDown();
     }
+    const PictureSize              small{96, 72, 1, GetParam()};
     std::optional<SurfaceRenderer> renderer;
 };
 
-TEST_F(SurfaceRendererTest, NothingIsTheGround)
+INSTANTIATE_TEST_SUITE_P(Details, SurfaceRendererTest, ::testing::Values(Detail::fine, Detail::fast),
+                         [](const auto& param) { return param.param == Detail::fine ? "fine" : "fast"; });
+
+TEST_P(SurfaceRendererTest, NothingIsTheGround)
 {
     ViewScene   scene;
-    const Image light = renderer->draw(scene, {}, kSmall);
+    const Image light = renderer->draw(scene, {}, small);
     scene.ground      = Ground::dark;
-    const Image dark  = renderer->draw(scene, {}, kSmall);
+    const Image dark  = renderer->draw(scene, {}, small);
 
     EXPECT_GT(brightness(light.at(48, 36)), 3 * 220);
     EXPECT_LT(brightness(dark.at(48, 36)), 3 * 60);
 }
 
-TEST_F(SurfaceRendererTest, ASheetHasNoHolesAndEndsWhereItsPointsEnd)
+TEST_P(SurfaceRendererTest, ASheetHasNoHolesAndEndsWhereItsPointsEnd)
 {
     const Sheet sheet;
-    const Image image = renderer->draw(sheet.scene(), above(), kSmall);
-    const Image empty = renderer->draw({}, above(), kSmall);
+    const Image image = renderer->draw(sheet.scene(), above(), small);
+    const Image empty = renderer->draw({}, above(), small);
 
     int inside = 0, outside = 0; // pixels that differ from what belongs there
     for (int y = 0; y < image.height; ++y)
@@ -107,18 +110,18 @@ TEST_F(SurfaceRendererTest, ASheetHasNoHolesAndEndsWhereItsPointsEnd)
     EXPECT_EQ(outside, 0) << "beyond the border by more than a few spacings";
 }
 
-TEST_F(SurfaceRendererTest, TheSamePictureTwiceIsTheSameToTheBit)
+TEST_P(SurfaceRendererTest, TheSamePictureTwiceIsTheSameToTheBit)
 {
     const Sheet sheet(60, 2e-3);
-    const Image first = renderer->draw(sheet.scene(), above(), kSmall);
-    (void)renderer->draw({}, above(), {40, 50, 2}); // other sizes and buffers in between
-    EXPECT_EQ(renderer->draw(sheet.scene(), above(), kSmall).pixels, first.pixels);
+    const Image first = renderer->draw(sheet.scene(), above(), small);
+    (void)renderer->draw({}, above(), {40, 50, 2, GetParam()}); // other sizes and buffers in between
+    EXPECT_EQ(renderer->draw(sheet.scene(), above(), small).pixels, first.pixels);
 }
 
-TEST_F(SurfaceRendererTest, ADentOfAHundredthOfTheObjectIsPlainlyVisible)
+TEST_P(SurfaceRendererTest, ADentOfAHundredthOfTheObjectIsPlainlyVisible)
 {
-    const Image flat = renderer->draw(Sheet(60).scene(), above(), kSmall);
-    const Image bent = renderer->draw(Sheet(60, 1e-3).scene(), above(), kSmall);
+    const Image flat = renderer->draw(Sheet(60).scene(), above(), small);
+    const Image bent = renderer->draw(Sheet(60, 1e-3).scene(), above(), small);
 
     int most = 0; // difference of a pixel, of 3 * 255
     for (std::size_t n = 0; n < flat.pixels.size(); ++n)
@@ -126,7 +129,24 @@ TEST_F(SurfaceRendererTest, ADentOfAHundredthOfTheObjectIsPlainlyVisible)
     EXPECT_GT(most, 3 * 20) << "as much as between neighbouring steps of a scale of twelve greys";
 }
 
-TEST_F(SurfaceRendererTest, WhatIsNearerHidesWhatIsBehind)
+TEST_P(SurfaceRendererTest, AHollowWithoutASlopeIsDarkerAndAHumpLighter)
+{
+    const Sheet sheet;
+    const auto  brightnessWith = [&](double hollow) {
+        ViewScene                 scene = sheet.scene();
+        const std::vector<double> hollows(sheet.positions.size(), hollow);
+        scene.hollows = hollows;
+        return brightness(renderer->draw(scene, above(), small).at(48, 36));
+    };
+    if (GetParam() == Detail::fine) {
+        EXPECT_EQ(brightnessWith(0.05), brightnessWith(0)) << "seen in the depths, where there is none";
+    } else {
+        EXPECT_LT(brightnessWith(0.05), brightnessWith(0) - 3 * 5);
+        EXPECT_GT(brightnessWith(-0.05), brightnessWith(0) + 3 * 5);
+    }
+}
+
+TEST_P(SurfaceRendererTest, WhatIsNearerHidesWhatIsBehind)
 {
     Sheet               sheet;
     std::vector<double> values(sheet.positions.size(), 0);
@@ -140,25 +160,25 @@ TEST_F(SurfaceRendererTest, WhatIsNearerHidesWhatIsBehind)
     }
     ViewScene scene  = sheet.scene();
     scene.values     = values;
-    const Rgb8 over  = renderer->draw(scene, above(), kSmall).at(48, 36);
+    const Rgb8 over  = renderer->draw(scene, above(), small).at(48, 36);
     Camera     below = above();
     below.toEye      = {0, 0, -1};
-    const Rgb8 under = renderer->draw(scene, below, kSmall).at(48, 36);
+    const Rgb8 under = renderer->draw(scene, below, small).at(48, 36);
 
     EXPECT_GT(over.red, over.blue) << "yellow, the upper sheet";
     EXPECT_GT(under.blue, under.green) << "violet, the lower one";
 }
 
-TEST_F(SurfaceRendererTest, AHiddenHipShinesThroughAndTheOneInFrontIsOpaque)
+TEST_P(SurfaceRendererTest, AHiddenHipShinesThroughAndTheOneInFrontIsOpaque)
 {
     const Sheet sheet;
     ViewScene   scene  = sheet.scene();
-    const Rgb8  bare   = renderer->draw(scene, above(), kSmall).at(48, 36);
+    const Rgb8  bare   = renderer->draw(scene, above(), small).at(48, 36);
     scene.markerRadius = 0.005;
     scene.hip          = glm::dvec3(0, 0, -0.02);
-    const Rgb8 behind  = renderer->draw(scene, above(), kSmall).at(48, 36);
+    const Rgb8 behind  = renderer->draw(scene, above(), small).at(48, 36);
     scene.hip          = glm::dvec3(0, 0, 0.02);
-    const Rgb8 before  = renderer->draw(scene, above(), kSmall).at(48, 36);
+    const Rgb8 before  = renderer->draw(scene, above(), small).at(48, 36);
 
     EXPECT_NE(behind, bare);
     EXPECT_NE(behind, before);
@@ -167,24 +187,24 @@ TEST_F(SurfaceRendererTest, AHiddenHipShinesThroughAndTheOneInFrontIsOpaque)
     EXPECT_GT(hue(behind), hue(bare));
 }
 
-TEST_F(SurfaceRendererTest, AValueWithoutAColourIsGrey)
+TEST_P(SurfaceRendererTest, AValueWithoutAColourIsGrey)
 {
     const Sheet               sheet;
     const std::vector<double> values(sheet.positions.size(), std::nan(""));
     ViewScene                 scene = sheet.scene();
     scene.values                    = values;
-    const Rgb8 colour               = renderer->draw(scene, above(), kSmall).at(48, 36);
+    const Rgb8 colour               = renderer->draw(scene, above(), small).at(48, 36);
 
     EXPECT_NEAR(colour.red, colour.green, 3);
     EXPECT_NEAR(colour.blue, colour.green, 3);
 }
 
-TEST_F(SurfaceRendererTest, AnOrthographicEyeSeesTheSameSizeAtTheTarget)
+TEST_P(SurfaceRendererTest, AnOrthographicEyeSeesTheSameSizeAtTheTarget)
 {
     const Sheet sheet;
-    const Image near = renderer->draw(sheet.scene(), above(), kSmall);
-    const Image far  = renderer->draw(sheet.scene(), otherProjection(above()), kSmall);
-    const Image none = renderer->draw({}, above(), kSmall);
+    const Image near = renderer->draw(sheet.scene(), above(), small);
+    const Image far  = renderer->draw(sheet.scene(), otherProjection(above()), small);
+    const Image none = renderer->draw({}, above(), small);
     const auto  area = [&](const Image& image) {
         int pixels = 0;
         for (std::size_t n = 0; n < image.pixels.size(); ++n) pixels += image.pixels[n] != none.pixels[n];
@@ -193,14 +213,14 @@ TEST_F(SurfaceRendererTest, AnOrthographicEyeSeesTheSameSizeAtTheTarget)
     EXPECT_NEAR(area(near), area(far), 0.03 * area(near));
 }
 
-TEST_F(SurfaceRendererTest, APictureLargerThanTheDeviceDrawsIsRefusedWithItsBound)
+TEST_P(SurfaceRendererTest, APictureLargerThanTheDeviceDrawsIsRefusedWithItsBound)
 {
     const std::string sentence = refusalOf([&] { (void)renderer->draw({}, {}, {1 << 20, 8, 1}); });
     EXPECT_TRUE(holds(sentence, {"1048576 x 8", "larger than"})) << sentence;
-    EXPECT_EQ(renderer->draw({}, {}, kSmall).width, kSmall.width) << "and it still draws";
+    EXPECT_EQ(renderer->draw({}, {}, small).width, small.width) << "and it still draws";
 }
 
-TEST_F(SurfaceRendererTest, TheHostIsRefused)
+TEST_P(SurfaceRendererTest, TheHostIsRefused)
 {
     EXPECT_TRUE(holds(refusalOf([] { SurfaceRenderer({.device = "host"}); }), {"cannot draw", "lavapipe"}));
 }

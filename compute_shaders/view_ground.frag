@@ -1,0 +1,8 @@
+// view_ground.frag - what is behind everything.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "compute_shaders/view_prelude.glsl"
+
+layout(location = 0) out vec4 picture;
+
+void main() { picture = groundAt(gl_FragCoord.y); }

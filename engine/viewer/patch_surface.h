@@ -1,0 +1,33 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/pipeline/pipeline.h"
+
+namespace palp {
+
+/// What the picture of a patch needs and no force changes: made once for each answer of the plate, not for each frame.
+struct PatchSurface {
+    /// A place on the window's edge.
+    struct EdgePlace {
+        glm::dvec3 rest{};           ///< [m]
+        double     response = 0;     ///< deflection per force there [m/N]
+        bool       starts   = false; ///< no line comes from the place before: there is no surface between them
+    };
+
+    std::vector<std::uint32_t> moving;    ///< points of the cloud that a force moves notably
+    std::vector<double>        responses; ///< as many: deflection per force [m/N]
+    std::vector<double>        hollows;   ///< as many: how far the surroundings rise above the dent, per force [1/N]
+    std::vector<EdgePlace>     edge;      ///< once around
+    double                     mostResponse = 0; ///< [m/N] of the grid's nodes
+    glm::dvec3                 inward{};         ///< [1] along which everything moves
+
+    PatchSurface() = default;
+    /// \param positions  of the cloud at rest [m]
+    /// \param cueRadius  of the surroundings that tell hollows from humps [m]
+    PatchSurface(const Patch& patch, std::span<const glm::dvec3> positions, double cueRadius);
+};
+
+} // namespace palp

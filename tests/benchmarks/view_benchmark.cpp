@@ -1,0 +1,86 @@
+// Time of a picture of the ellipsoid at 1280 x 720, touched: fine as for stills, and fast as in the window.
+#include <map>
+#include <memory>
+
+#include <benchmark/benchmark.h>
+
+#include "engine/cloud/samples.h"
+#include "engine/viewer/surface_renderer.h"
+#include "engine/viewer/touch_view.h"
+
+namespace {
+
+using namespace palp;
+
+struct Touched {
+    PointCloud     cloud;
+    NeighbourIndex index;
+    PatchSettings  settings;
+    Patch          patch;
+    TouchView      view;
+
+    static PatchSettings settingsOf(const Sample& sample)
+    {
+        PatchSettings settings;
+        settings.material        = sample.material;
+        settings.foundation      = sample.foundation;
+        settings.window          = sample.window;
+        settings.footprintRadius = sample.footprintRadius;
+        return settings;
+    }
+    static Patch patchOf(const Sample& sample, const PointCloud& cloud, const NeighbourIndex& index,
+                         const PatchSettings& settings)
+    {
+        PlateDevice host("host");
+        return deform(cloud, index, touchAt(cloud, index, sample.place, sample.from, settings.window / 4), settings,
+                      host);
+    }
+
+    explicit Touched(std::size_t points, const Sample& sample = sampleNamed("ellipsoid"))
+        : cloud(makeSample(sample, points, 1)), index(cloud.positions()), settings(settingsOf(sample)),
+          patch(patchOf(sample, cloud, index, settings)), view(cloud, index, settings)
+    {
+    }
+};
+
+Touched& touched(std::size_t points)
+{
+    static std::map<std::size_t, std::unique_ptr<Touched>> all;
+    auto&                                                  one = all[points];
+    if (!one) one = std::make_unique<Touched>(points);
+    return *one;
+}
+
+SurfaceRenderer& renderer()
+{
+    static SurfaceRenderer one;
+    return one;
+}
+
+void draw(benchmark::State& state)
+{
+    Touched&          t = touched(std::size_t(state.range(0)));
+    const PictureSize size{1280, 720, 1, state.range(1) ? Detail::fast : Detail::fine};
+    t.view.show(&t.patch, 1.0, {});
+    const Camera camera = framed(Camera{{}, glm::normalize(glm::dvec3(1, -2, 2)), {0, 0, 1}}, {0, 0, 0},
+                                 0.5 * t.cloud.bounds().diagonal(), 16.0 / 9);
+    static_cast<void>(renderer().draw(t.view.scene(), camera, size)); // compiles the shaders
+    for (auto _ : state) benchmark::DoNotOptimize(renderer().draw(t.view.scene(), camera, size));
+}
+BENCHMARK(draw)
+    ->ArgNames({"points", "fast"})
+    ->ArgsProduct({{40000, 200000}, {0, 1}})
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond);
+
+void bend(benchmark::State& state)
+{
+    Touched& t     = touched(std::size_t(state.range(0)));
+    double   force = 1;
+    for (auto _ : state) t.view.show(&t.patch, force = 3 - force, {});
+}
+BENCHMARK(bend)->ArgNames({"points"})->Arg(40000)->Arg(200000)->Unit(benchmark::kMillisecond);
+
+} // namespace
+
+BENCHMARK_MAIN();
