@@ -23,9 +23,7 @@ void main()
     float facing    = dot(normal, eye);
     float side      = facing < 0.0 ? -1.0 : 1.0;
     normal *= side;
-    float hollow = side * (packed.a - 128.0 / 255.0);
-    vec3  lit    = packed.rgb * litBy(normal) * (1.0 + cueOf(hollow, side * facing)) + frame.shine * reflection(normal, centre);
-    colour       = vec4(min(vec3(1), lit), 1);
+    colour       = vec4(litPoint(packed, normal, side * facing, side, centre), 1);
     slope        = normal.xy / max(side * facing, kSteepest);
     toEye        = vec3(eye.xy, 1.0 + length(eye.xy)); // seen aslant, a disc may be longer than its radius
     gl_Position  = frame.clipFromView * vec4(centre, 1);

@@ -52,3 +52,11 @@ float cueOf(float hollow, float facing)
     const float kDarkest = -0.45, kLightest = 0.18;
     return clamp(-frame.cueGain * facing * facing * hollow, kDarkest, kLightest);
 }
+
+/// A point of a fast picture in the light. \param packed  its colour and hollowness, see ViewSplat
+/// \param side  -1 where the normal was turned round to face the eye
+vec3 litPoint(vec4 packed, vec3 normal, float facing, float side, vec3 place)
+{
+    float hollow = side * (packed.a - 128.0 / 255.0);
+    return min(vec3(1), packed.rgb * litBy(normal) * (1.0 + cueOf(hollow, facing)) + frame.shine * reflection(normal, place));
+}

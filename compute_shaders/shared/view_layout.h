@@ -29,6 +29,11 @@ PALPATE_VIEW_CONST kBindNormals = 4; // sum of weighted normals, and of weights
 PALPATE_VIEW_CONST kBindColours = 5; // sum of weighted colours, and of weighted depths behind the nearest [m]
 PALPATE_VIEW_CONST kBindSurface = 6; // unit normal in view space, and depth [m]; depth 0: nothing there
 PALPATE_VIEW_CONST kBindAlbedo  = 7; // colour of the surface
+PALPATE_VIEW_CONST kBindOverlay = 8; // pixels of the overlay, rows from the top, red in the lowest byte, premultiplied
+PALPATE_VIEW_CONST kBindTiles   = 9; // squares of it that are not empty: column, and row from the 16th bit on
+PALPATE_VIEW_CONST kBindFaces   = 10; // numbers of splats, three to a triangle
+
+PALPATE_VIEW_CONST kTile = 32; // side of such a square [px]
 
 // No vector crosses a multiple of 16 bytes and sizes are such multiples, so that std430 is the layout of C++.
 struct ViewFrame {

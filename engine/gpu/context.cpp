@@ -85,13 +85,13 @@ Handles openToDraw(const ContextSettings& settings)
 {
     if (isDeviceWord(settings.device, kHostDevice))
         throw DeviceError("the host computes and cannot draw; name a Vulkan device, such as lavapipe");
-    auto                           instance = std::make_unique<Instance>(settings.validation);
-    const std::vector<Candidate>   found    = candidates(*instance);
-    std::vector<DeviceDescription> list     = descriptionsOf(found);
+    auto                         instance = std::make_unique<Instance>(settings.validation, settings.windowExtensions);
+    const std::vector<Candidate> found    = candidates(*instance);
+    std::vector<DeviceDescription> list   = descriptionsOf(found);
     for (std::size_t n = 0; n < list.size(); ++n)
         if (!found[n].drawFamily) list[n].refusals.emplace_back("it has no queue that draws");
     const auto open = [&](std::size_t n) {
-        return std::make_unique<VulkanContext>(instance, found[n], settings.patience, Purpose::draw);
+        return std::make_unique<VulkanContext>(instance, found[n], settings.patience, settings.purpose);
     };
     if (!isDeviceWord(settings.device, kAutoDevice)) return open(chooseDevice(list, settings.device).value());
     std::string note;
@@ -108,7 +108,7 @@ Handles openToDraw(const ContextSettings& settings)
 
 Handles open(const ContextSettings& settings)
 {
-    if (settings.purpose == Purpose::draw) return openToDraw(settings);
+    if (settings.purpose != Purpose::compute) return openToDraw(settings);
     if (isDeviceWord(settings.device, kHostDevice)) return openHost(settings); // loads no driver
     const bool best = isDeviceWord(settings.device, kAutoDevice) && settings.validation == Validation::off;
     return best ? openBest(settings) : openWanted(settings);

@@ -24,7 +24,8 @@ enum class Validation {
 /// What a device is opened for.
 enum class Purpose {
     compute, ///< kernels
-    draw     ///< pictures, by engine/viewer: a queue that also draws; GPUs first, then software, never the host
+    draw,    ///< pictures, by engine/viewer: a queue that also draws; GPUs first, then software, never the host
+    show     ///< the same, in a window
 };
 
 struct ContextSettings {
@@ -32,6 +33,7 @@ struct ContextSettings {
     Validation  validation = Validation::off;
     double      patience   = 0; ///< [s] how long a submission may take; 0: 10 s, or 300 s for a device in software
     Purpose     purpose    = Purpose::compute;
+    std::vector<std::string> windowExtensions{}; ///< of Vulkan, that windows need on this desktop; with Purpose::show
 };
 
 /// What the device can hold at most.

@@ -61,7 +61,7 @@ VulkanContext::VulkanContext(std::unique_ptr<Instance>& entrance, const Candidat
     describe(candidate, purpose);
     const double usual = description.kind == "software" ? kPatienceSoftware : kPatienceHardware;
     patience           = wantedPatience > 0 ? wantedPatience : usual;
-    open(*entrance);
+    open(*entrance, purpose);
     instance = std::move(entrance);
 }
 
@@ -80,7 +80,7 @@ void VulkanContext::describe(const Candidate& candidate, Purpose purpose)
     description         = candidate.description;
     physical            = candidate.physical;
     native              = candidate.limits;
-    family              = purpose == Purpose::draw ? candidate.drawFamily.value() : candidate.family;
+    family              = purpose != Purpose::compute ? candidate.drawFamily.value() : candidate.family;
     timestampBits       = candidate.timestampBits;
     bitExact            = candidate.driver == VK_DRIVER_ID_MESA_LLVMPIPE;
     limits.buffer       = std::size_t(std::min<VkDeviceSize>(native.maxStorageBufferRange, candidate.maxBufferBytes));
@@ -89,7 +89,7 @@ void VulkanContext::describe(const Candidate& candidate, Purpose purpose)
     vkGetPhysicalDeviceMemoryProperties(physical, &memory);
 }
 
-void VulkanContext::open(const Instance& entrance)
+void VulkanContext::open(const Instance& entrance, Purpose purpose)
 {
     const float priority       = 1;
     auto        queueInfo      = typed<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
@@ -105,6 +105,11 @@ void VulkanContext::open(const Instance& entrance)
     auto info                       = typed<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features);
     info.queueCreateInfoCount       = 1;
     info.pQueueCreateInfos          = &queueInfo;
+    const char* const swapchain     = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    if (purpose == Purpose::show) {
+        info.enabledExtensionCount   = 1;
+        info.ppEnabledExtensionNames = &swapchain;
+    }
     if (const VkResult result = vkCreateDevice(physical, &info, nullptr, &device); result != VK_SUCCESS) {
         device = VK_NULL_HANDLE;
         throw DeviceError("the GPU " + description.name + " cannot be opened: " + nameOf(result) + " (" +

@@ -57,7 +57,7 @@ public:
 
 private:
     void describe(const Candidate& candidate, Purpose purpose);
-    void open(const Instance& entrance);
+    void open(const Instance& entrance, Purpose purpose);
 };
 
 /// The first memory type that fits the best wish it can; drivers list types from fast to slow.

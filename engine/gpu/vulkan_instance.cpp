@@ -47,7 +47,7 @@ std::vector<VkValidationFeatureEnableEXT> featuresOf(Validation validation)
 
 } // namespace
 
-Instance::Instance(Validation validation)
+Instance::Instance(Validation validation, const std::vector<std::string>& more)
 {
     auto application             = typed<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
     application.pApplicationName = "palpate";
@@ -73,6 +73,7 @@ Instance::Instance(Validation validation)
         info.pNext                             = &features;
     }
     if (debugUtils_) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    for (const std::string& extension : more) extensions.push_back(extension.c_str());
     info.enabledLayerCount       = std::uint32_t(layers.size());
     info.ppEnabledLayerNames     = layers.data();
     info.enabledExtensionCount   = std::uint32_t(extensions.size());

@@ -27,7 +27,8 @@ template <class Structure>
 class Instance {
 public:
     /// \throws DeviceError if validation is asked for and not installed, or if a driver fails; no driver at all is fine
-    explicit Instance(Validation validation);
+    /// \param more  extensions beside our own
+    explicit Instance(Validation validation, const std::vector<std::string>& more = {});
     ~Instance();
     Instance(const Instance&)            = delete;
     Instance& operator=(const Instance&) = delete;

@@ -9,6 +9,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "compute_shaders/shared/view_layout.h"
 #include "engine/core/quantity.h"
 #include "engine/picture/cloud_shading.h"
 #include "engine/viewer/text.h"
@@ -213,6 +214,28 @@ void annotate(Image& image, const ViewScene& scene, const Camera& camera)
     drawTitle(to, scene);
     if (!scene.values.empty()) drawColours(to, scene.colours);
     drawLength(to, camera, drawKey(to, scene));
+}
+
+// Everything is laid on by a share of what is there, so that what black and white become tells both share and colour.
+Overlay annotations(const ViewScene& scene, const Camera& camera, int width, int height)
+{
+    constexpr std::uint8_t kWhite = 255;
+    Image                  onBlack(width, height, {0, 0, 0}), onWhite(width, height, {kWhite, kWhite, kWhite});
+    annotate(onBlack, scene, camera);
+    annotate(onWhite, scene, camera);
+    Overlay           overlay{width, height, std::vector<std::uint32_t>(onBlack.pixels.size()), {}};
+    const int         tile    = int(shared::kTile);
+    const int         columns = (width + tile - 1) / tile;
+    std::vector<bool> used(std::size_t(columns) * std::size_t((height + tile - 1) / tile));
+    for (std::size_t n = 0; n < overlay.pixels.size(); ++n) {
+        const Rgb8 b = onBlack.pixels[n], w = onWhite.pixels[n];
+        const auto alpha  = std::uint32_t(kWhite - (w.green - b.green));
+        overlay.pixels[n] = alpha << 24 | std::uint32_t(b.blue) << 16 | std::uint32_t(b.green) << 8 | b.red;
+        if (alpha > 0) used[n / std::size_t(width) / tile * columns + n % std::size_t(width) / tile] = true;
+    }
+    for (std::size_t n = 0; n < used.size(); ++n)
+        if (used[n]) overlay.tiles.push_back(std::uint32_t(n % std::size_t(columns) | n / std::size_t(columns) << 16));
+    return overlay;
 }
 
 } // namespace palp

@@ -1,4 +1,7 @@
 #pragma once
+#include <cstdint>
+#include <vector>
+
 #include "engine/picture/png.h"
 #include "engine/viewer/camera.h"
 #include "engine/viewer/view_scene.h"
@@ -8,5 +11,14 @@ namespace palp {
 /// Writes what a scene's colours and shapes mean onto its picture: title, colour bar with unit, a key of the shapes and
 /// a bar of a round length. Sizes follow the picture's height; a picture too small for them gets none.
 void annotate(Image& image, const ViewScene& scene, const Camera& camera);
+
+/// The same by itself, to be laid over pictures again and again.
+struct Overlay {
+    int                        width = 0, height = 0; ///< [px]
+    std::vector<std::uint32_t> pixels; ///< rows from the top; red in the lowest byte, premultiplied by alpha
+    std::vector<std::uint32_t> tiles;  ///< squares of shared::kTile that are not empty: column, row << 16
+};
+
+[[nodiscard]] Overlay annotations(const ViewScene& scene, const Camera& camera, int width, int height);
 
 } // namespace palp

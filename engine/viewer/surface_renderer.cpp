@@ -52,8 +52,9 @@ std::uint32_t withAlpha(std::uint32_t colour, double alpha)
     return (colour & 0x00FFFFFFU) | std::uint32_t(std::lround(255 * std::clamp(alpha, 0.0, 1.0))) << 24;
 }
 
-std::vector<shared::ViewSplat> splatsOf(const ViewScene& scene, const glm::dvec3& origin, Detail detail)
+std::vector<shared::ViewSplat> splatsOf(const ViewScene& scene, const Camera& camera, Detail detail)
 {
+    const glm::dvec3&              origin = camera.target;
     std::vector<shared::ViewSplat> splats(scene.positions.size());
     std::optional<Paintbox>        paint;
     if (!scene.values.empty()) paint.emplace(scene.colours);
@@ -66,6 +67,10 @@ std::vector<shared::ViewSplat> splatsOf(const ViewScene& scene, const glm::dvec3
             splats[n] = {position, float(scene.cores[n]), normal,
                          withAlpha(colour, scene.hollows.empty() ? 0.5 : 0.5 + scene.hollows[n])};
     }
+    const glm::vec3 toEye(camera.toEye); // dots face it
+    for (const ViewDot& dot : scene.dots)
+        splats.push_back(
+            {glm::vec3(dot.position - origin), float(dot.radius), toEye, withAlpha(packed(dot.colour), 0.5)});
     return splats;
 }
 
@@ -130,12 +135,54 @@ Image averaged(std::span<const std::uint8_t> pixels, const PictureSize& size)
     return image;
 }
 
+/// A scene as the passes take it.
+class Drawable {
+public:
+    Drawable(const ViewScene& scene, const Camera& camera, const PictureSize& size, const Overlay* overlay)
+        : detail_(size.detail), faces_(scene.faces), overlay_(overlay), dots_(scene.dots.size())
+    {
+        check(scene, size, overlay);
+        splats_ = splatsOf(scene, camera, detail_);
+        shapes_ = cornersOf(scene, camera.target);
+        frame_  = frameOf(scene, camera, size, reachOf(scene, shapes_, camera.target));
+    }
+    [[nodiscard]] SurfaceInput input() const
+    {
+        const std::span<const std::uint32_t> corners(faces_.empty() ? nullptr : faces_.front().data(),
+                                                     3 * faces_.size());
+        return {frame_, splats_, dots_, corners, shapes_, detail_, overlay_};
+    }
+
+private:
+    static void check(const ViewScene& scene, const PictureSize& size, const Overlay* overlay)
+    {
+        const std::size_t points = scene.positions.size();
+        PALP_EXPECT(size.width > 0 && size.height > 0 && size.finer > 0, "a picture has at least one pixel");
+        PALP_EXPECT(scene.normals.size() == points && scene.radii.size() == points && scene.cores.size() == points &&
+                        (scene.values.empty() || scene.values.size() == points) &&
+                        (scene.hollows.empty() || scene.hollows.size() == points),
+                    "every point has a normal, two radii and, if there are any, a value and a hollow");
+        PALP_EXPECT(!overlay ||
+                        (overlay->width == size.width * size.finer && overlay->height == size.height * size.finer),
+                    "an overlay has the size of the picture");
+    }
+
+    Detail                                        detail_;
+    std::span<const std::array<std::uint32_t, 3>> faces_;
+    const Overlay*                                overlay_;
+    std::size_t                                   dots_;
+    std::vector<shared::ViewSplat>                splats_;
+    std::vector<shared::ViewCorner>               shapes_;
+    shared::ViewFrame                             frame_;
+};
+
 } // namespace
 
 struct SurfaceRenderer::Impl {
     explicit Impl(const gpu::ContextSettings& settings) : context(settings), surface(context) {}
-    gpu::Context  context;
-    VulkanSurface surface;
+    gpu::Context                context;
+    VulkanSurface               surface;
+    std::optional<VulkanWindow> window;
 };
 
 SurfaceRenderer::SurfaceRenderer(gpu::ContextSettings settings)
@@ -143,22 +190,43 @@ SurfaceRenderer::SurfaceRenderer(gpu::ContextSettings settings)
     settings.purpose = gpu::Purpose::draw;
     impl_            = std::make_unique<Impl>(settings);
 }
+
+SurfaceRenderer::SurfaceRenderer(gpu::ContextSettings settings, const WindowLink& window)
+{
+    settings.purpose          = gpu::Purpose::show;
+    settings.windowExtensions = window.extensions;
+    impl_                     = std::make_unique<Impl>(settings);
+    auto&      context        = static_cast<gpu::VulkanContext&>(impl_->context.handles());
+    const auto surface        = window.makeSurface(context.instance->get());
+    impl_->window.emplace(context, reinterpret_cast<VkSurfaceKHR>(surface));
+}
+
 SurfaceRenderer::~SurfaceRenderer()                                     = default;
 SurfaceRenderer::SurfaceRenderer(SurfaceRenderer&&) noexcept            = default;
 SurfaceRenderer& SurfaceRenderer::operator=(SurfaceRenderer&&) noexcept = default;
 
-Image SurfaceRenderer::draw(const ViewScene& scene, const Camera& camera, const PictureSize& size)
+Image SurfaceRenderer::draw(const ViewScene& scene, const Camera& camera, const PictureSize& size,
+                            const Overlay* overlay)
 {
-    PALP_EXPECT(size.width > 0 && size.height > 0 && size.finer > 0, "a picture has at least one pixel");
-    PALP_EXPECT(scene.normals.size() == scene.positions.size() && scene.radii.size() == scene.positions.size() &&
-                    scene.cores.size() == scene.positions.size() &&
-                    (scene.values.empty() || scene.values.size() == scene.positions.size()) &&
-                    (scene.hollows.empty() || scene.hollows.size() == scene.positions.size()),
-                "every point has a normal, two radii and, if there are any, a value and a hollow");
-    const auto   splats = splatsOf(scene, camera.target, size.detail);
-    const auto   shapes = cornersOf(scene, camera.target);
-    const double reach  = reachOf(scene, shapes, camera.target);
-    return averaged(impl_->surface.draw({frameOf(scene, camera, size, reach), splats, shapes, size.detail}), size);
+    const Drawable drawable(scene, camera, size, overlay);
+    return averaged(impl_->surface.draw(drawable.input()), size);
+}
+
+bool SurfaceRenderer::show(const ViewScene& scene, const Camera& camera, const PictureSize& size,
+                           const Overlay* overlay)
+{
+    PALP_EXPECT(impl_->window, "a renderer shows pictures in the window that it was made with");
+    PALP_EXPECT(size.finer == 1, "a window's pixels are not averaged");
+    if (!impl_->window->next({std::uint32_t(size.width), std::uint32_t(size.height)})) return false;
+    const Drawable drawable(scene, camera, size, overlay);
+    impl_->surface.draw(drawable.input(), *impl_->window);
+    impl_->window->show();
+    return true;
+}
+
+void SurfaceRenderer::usePanels()
+{
+    impl_->surface.usePanels();
 }
 
 const gpu::DeviceDescription& SurfaceRenderer::device() const noexcept

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,7 +24,15 @@ struct PictureSize {
     Detail detail = Detail::fine;
 };
 
-/// Draws scenes without a window, on a Vulkan device of its own: a picture never delays a solve.
+struct Overlay;
+
+/// How a renderer gets at the window that it shows pictures in, without a type of Vulkan.
+struct WindowLink {
+    std::vector<std::string>            extensions;  ///< of Vulkan, that its desktop needs
+    std::function<std::uint64_t(void*)> makeSurface; ///< from Vulkan's instance to a surface of the window; may throw
+};
+
+/// Draws scenes, with or without a window, on a Vulkan device of its own: a picture never delays a solve.
 ///
 /// Points become round discs in their tangent planes that melt into a closed, lit surface; hollows are darker and humps
 /// lighter, so that a slight dent shows. Shapes behind the surface shine through. On lavapipe the same scene gives the
@@ -33,14 +42,27 @@ public:
     /// \param settings  the purpose is drawing, whatever they say
     /// \throws gpu::DeviceError if no device can draw, gpu::UnknownDevice for a wrong name
     explicit SurfaceRenderer(gpu::ContextSettings settings = {});
+    /// As above, to show pictures in a window too. \throws also what makeSurface throws
+    SurfaceRenderer(gpu::ContextSettings settings, const WindowLink& window);
     ~SurfaceRenderer();
     SurfaceRenderer(SurfaceRenderer&&) noexcept;
     SurfaceRenderer& operator=(SurfaceRenderer&&) noexcept;
 
-    /// The scene without texts; see annotated().
+    /// The scene without texts, unless an overlay brings them; see annotate().
     /// \pre sides from 1 px, as many normals and radii as positions, everything finite
     /// \throws Error if the device cannot draw that large, gpu::DeviceLost
-    [[nodiscard]] Image draw(const ViewScene& scene, const Camera& camera, const PictureSize& size);
+    [[nodiscard]] Image draw(const ViewScene& scene, const Camera& camera, const PictureSize& size,
+                             const Overlay* overlay = nullptr);
+
+    /// The same in the window. \pre made with a window
+    /// \param size  of the window; `finer` must be 1
+    /// \return false: there is nothing to see now, as in a window that is minimised
+    bool show(const ViewScene& scene, const Camera& camera, const PictureSize& size, const Overlay* overlay = nullptr);
+
+    /// From now on what ImGui::Render() leaves is drawn over every picture, which must not be `finer`.
+    /// \pre there is a current ImGui context, which outlives this
+    /// \throws Error in a build without Dear ImGui
+    void usePanels();
 
     [[nodiscard]] const gpu::DeviceDescription& device() const noexcept;
     [[nodiscard]] const std::string&            note() const noexcept; ///< see gpu::Context::note()

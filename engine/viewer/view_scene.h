@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,6 +28,13 @@ struct ViewSegment {
     glm::dvec3 from{}, to{}; ///< [m]
 };
 
+/// A small round mark that faces the eye.
+struct ViewDot {
+    glm::dvec3 position{}; ///< [m]
+    double     radius = 0; ///< [m]
+    Rgb8       colour;
+};
+
 /// Everything that one picture shows. The arrays are the caller's and live while it is drawn.
 struct ViewScene {
     std::span<const glm::dvec3> positions; ///< of the points, deformed [m]
@@ -37,6 +46,9 @@ struct ViewScene {
     /// As many, or none: how far a dent's surroundings rise above it, on the side of the normal [1]. Only pictures of
     /// Detail::fast need it, all others see it in the depths.
     std::span<const double> hollows;
+    /// Triangles of points; empty: discs are the surface.
+    std::span<const std::array<std::uint32_t, 3>> faces;
+    std::vector<ViewDot>                          dots;
 
     std::optional<glm::dvec3>  proxy;            ///< a ball [m]
     std::optional<glm::dvec3>  hip;              ///< an octahedron, seen through the surface [m]
@@ -45,7 +57,8 @@ struct ViewScene {
     std::optional<ViewSegment> normal;
     double                     arrowRadius = 0;   ///< of the force's shaft; the normal's is thinner [m]
     std::vector<ViewSegment>   outline;           ///< of the patch
-    double                     outlineRadius = 0; ///< [m]
+    std::vector<ViewSegment>   sphere;            ///< lines of the fitted sphere
+    double                     outlineRadius = 0; ///< of both [m]
 
     double cueRadius = 0; ///< of the surroundings in whose light hollows are darker [m]; 0: none are
 
@@ -56,7 +69,8 @@ struct ViewScene {
 
 /// Colours of the things in a picture, apart from each other for every kind of colour vision and in shape too.
 inline constexpr Rgb8 kProxyColour = kNamedColours[4], kHipColour = kNamedColours[3], kForceColour = kNamedColours[1],
-                      kNormalColour = kNamedColours[5], kPlainColour = {206, 198, 186};
+                      kNormalColour = kNamedColours[5], kSphereColour = kNamedColours[2],
+                      kPlainColour = {206, 198, 186};
 
 /// Of outlines and texts on this ground.
 [[nodiscard]] constexpr Rgb8 inkOn(Ground ground)

@@ -35,12 +35,12 @@ VkPipelineColorBlendAttachmentState blendingOf(Blending blending)
     state.colorWriteMask =
         VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
     if (blending == Blending::replace) return state;
-    const bool cover          = blending == Blending::cover;
+    const bool sums           = blending == Blending::add;
     state.blendEnable         = VK_TRUE;
-    state.srcColorBlendFactor = cover ? VK_BLEND_FACTOR_SRC_ALPHA : VK_BLEND_FACTOR_ONE;
-    state.dstColorBlendFactor = cover ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA : VK_BLEND_FACTOR_ONE;
+    state.srcColorBlendFactor = blending == Blending::cover ? VK_BLEND_FACTOR_SRC_ALPHA : VK_BLEND_FACTOR_ONE;
+    state.dstColorBlendFactor = sums ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
     state.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
-    state.dstAlphaBlendFactor = cover ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA : VK_BLEND_FACTOR_ONE;
+    state.dstAlphaBlendFactor = sums ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
     return state;
 }
 

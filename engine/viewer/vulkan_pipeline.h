@@ -15,8 +15,9 @@ using SetLayout      = gpu::Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetL
 /// How what is drawn meets what is there.
 enum class Blending {
     replace,
-    add,  ///< sums
-    cover ///< by the share in alpha
+    add,   ///< sums
+    cover, ///< by the share in alpha
+    lay    ///< the same, with colours that are multiplied by it
 };
 
 /// Triangles or points without vertex buffers: shaders fetch what they draw by its number.

@@ -6,10 +6,16 @@
 
 #include "compute_shaders/view_blend_frag.spv.h"
 #include "compute_shaders/view_disc_vert.spv.h"
+#include "compute_shaders/view_face_frag.spv.h"
+#include "compute_shaders/view_face_vert.spv.h"
 #include "compute_shaders/view_ground_frag.spv.h"
 #include "compute_shaders/view_hidden_frag.spv.h"
 #include "compute_shaders/view_light_frag.spv.h"
+#include "compute_shaders/view_litface_frag.spv.h"
+#include "compute_shaders/view_litface_vert.spv.h"
 #include "compute_shaders/view_nearest_frag.spv.h"
+#include "compute_shaders/view_overlay_frag.spv.h"
+#include "compute_shaders/view_overlay_vert.spv.h"
 #include "compute_shaders/view_point_frag.spv.h"
 #include "compute_shaders/view_point_vert.spv.h"
 #include "compute_shaders/view_screen_vert.spv.h"
@@ -17,6 +23,9 @@
 #include "compute_shaders/view_shape_vert.spv.h"
 #include "compute_shaders/view_splat_vert.spv.h"
 #include "compute_shaders/view_surface_frag.spv.h"
+#ifdef PALPATE_PANELS
+#include "engine/viewer/vulkan_panels.h"
+#endif
 
 namespace palp {
 namespace {
@@ -31,7 +40,8 @@ constexpr VkFormat kColour = VK_FORMAT_R8G8B8A8_UNORM;
 
 constexpr VkImageUsageFlags kDrawn = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
 
-constexpr std::uint32_t kBuffers[] = {shared::kBindFrame, shared::kBindSplats, shared::kBindShapes};
+constexpr std::uint32_t kBuffers[] = {shared::kBindFrame,   shared::kBindSplats, shared::kBindShapes,
+                                      shared::kBindOverlay, shared::kBindTiles,  shared::kBindFaces};
 constexpr std::uint32_t kImages[]  = {shared::kBindDepth, shared::kBindNormals, shared::kBindColours,
                                       shared::kBindSurface, shared::kBindAlbedo};
 
@@ -53,7 +63,10 @@ VulkanSurface::VulkanSurface(gpu::Context& context)
 {
     makeLayouts();
     makeSteps();
+    makePipelines();
 }
+
+VulkanSurface::~VulkanSurface() = default;
 
 void VulkanSurface::makeLayouts()
 {
@@ -110,31 +123,37 @@ void VulkanSurface::makeSteps()
     const PassImage depth{kDepthTest, VK_IMAGE_LAYOUT_UNDEFINED}, none{};
     const PassImage nearest[] = {{kDepth}}, sums[] = {{kSums}, {kSums}}, surface[] = {{kSurface}, {kColour}};
     const PassImage picture[] = {{kColour, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL}};
+    const PassImage drawn[]   = {{kColour, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL}};
     nearestStep_.pass         = makePass(context_, nearest, depth);
     blendStep_.pass           = makePass(context_, sums, none);
     surfaceStep_.pass         = makePass(context_, surface, none);
+    faceStep_.pass            = makePass(context_, surface, depth);
     lightStep_.pass           = makePass(context_, picture, depth);
+    panelStep_.pass           = makePass(context_, drawn, none);
+}
 
-    const auto add = [this](Step& step, const DrawSettings& settings) {
-        step.pipelines.push_back(makePipeline(context_, step.pass.get(), layout_.get(), settings));
+void VulkanSurface::makePipelines()
+{
+    const auto made = [this](const Step& step, const DrawSettings& settings) {
+        return makePipeline(context_, step.pass.get(), layout_.get(), settings);
     };
-    add(nearestStep_, {"nearest depths", view_disc_vert_spv, view_nearest_frag_spv, 1, Blending::replace,
-                       VK_COMPARE_OP_LESS, VK_TRUE});
-    add(blendStep_, {"sums over splats", view_splat_vert_spv, view_blend_frag_spv, 2, Blending::add});
-    add(surfaceStep_, {"surface", view_screen_vert_spv, view_surface_frag_spv, 2});
-    add(lightStep_,
-        {"light", view_screen_vert_spv, view_light_frag_spv, 1, Blending::replace, VK_COMPARE_OP_ALWAYS, VK_TRUE});
-    add(lightStep_, {"hidden shapes", view_shape_vert_spv, view_hidden_frag_spv, 1, Blending::cover,
-                     VK_COMPARE_OP_GREATER, VK_FALSE});
-    add(lightStep_,
-        {"shapes", view_shape_vert_spv, view_shape_frag_spv, 1, Blending::replace, VK_COMPARE_OP_LESS, VK_TRUE});
-    add(lightStep_, {"ground", view_screen_vert_spv, view_ground_frag_spv});
-    add(lightStep_, {.name           = "points",
-                     .vertexShader   = view_point_vert_spv,
-                     .fragmentShader = view_point_frag_spv,
-                     .depthTest      = VK_COMPARE_OP_LESS,
-                     .writesDepth    = VK_TRUE,
-                     .topology       = VK_PRIMITIVE_TOPOLOGY_POINT_LIST});
+    constexpr VkCompareOp kAlways = VK_COMPARE_OP_ALWAYS, kLess = VK_COMPARE_OP_LESS, kGreater = VK_COMPARE_OP_GREATER;
+    constexpr Blending    kReplace = Blending::replace;
+    nearestDepths_ =
+        made(nearestStep_, {"nearest depths", view_disc_vert_spv, view_nearest_frag_spv, 1, kReplace, kLess, VK_TRUE});
+    sums_   = made(blendStep_, {"sums over splats", view_splat_vert_spv, view_blend_frag_spv, 2, Blending::add});
+    means_  = made(surfaceStep_, {"surface", view_screen_vert_spv, view_surface_frag_spv, 2});
+    faces_  = made(faceStep_, {"faces", view_face_vert_spv, view_face_frag_spv, 2, kReplace, kLess, VK_TRUE});
+    light_  = made(lightStep_, {"light", view_screen_vert_spv, view_light_frag_spv, 1, kReplace, kAlways, VK_TRUE});
+    ground_ = made(lightStep_, {"ground", view_screen_vert_spv, view_ground_frag_spv});
+    points_ = made(lightStep_, {"points", view_point_vert_spv, view_point_frag_spv, 1, kReplace, kLess, VK_TRUE,
+                                VK_PRIMITIVE_TOPOLOGY_POINT_LIST});
+    litFaces_ =
+        made(lightStep_, {"lit faces", view_litface_vert_spv, view_litface_frag_spv, 1, kReplace, kLess, VK_TRUE});
+    hiddenShapes_ =
+        made(lightStep_, {"hidden shapes", view_shape_vert_spv, view_hidden_frag_spv, 1, Blending::cover, kGreater});
+    shapes_  = made(lightStep_, {"shapes", view_shape_vert_spv, view_shape_frag_spv, 1, kReplace, kLess, VK_TRUE});
+    overlay_ = made(lightStep_, {"overlay", view_overlay_vert_spv, view_overlay_frag_spv, 1, Blending::lay});
 }
 
 void VulkanSurface::makeImages()
@@ -158,7 +177,9 @@ void VulkanSurface::makeFramebuffers()
     fill(nearestStep_, {&*nearest_, &*depthTest_});
     fill(blendStep_, {&*normals_, &*colours_});
     fill(surfaceStep_, {&*surface_, &*albedo_});
+    fill(faceStep_, {&*surface_, &*albedo_, &*depthTest_});
     fill(lightStep_, {&*picture_, &*depthTest_});
+    fill(panelStep_, {&*picture_});
 }
 
 void VulkanSurface::fit(VkExtent2D size)
@@ -170,7 +191,8 @@ void VulkanSurface::fit(VkExtent2D size)
                     " px is larger than the GPU " + context_.description.name + " can draw (" + std::to_string(most) +
                     " a side)");
     size_ = size;
-    for (Step* step : {&nearestStep_, &blendStep_, &surfaceStep_, &lightStep_}) step->framebuffer = {};
+    for (Step* step : {&nearestStep_, &blendStep_, &surfaceStep_, &faceStep_, &lightStep_, &panelStep_})
+        step->framebuffer = {};
     makeImages();
     makeFramebuffers();
     pixels_.emplace(owner_, "pixels", std::size_t(4) * size.width * size.height, gpu::Intent::readback);
@@ -192,22 +214,28 @@ void fillBuffer(gpu::Context& context, std::optional<gpu::Buffer>& buffer, const
 
 void VulkanSurface::upload(const SurfaceInput& input)
 {
-    fillBuffer(owner_, frame_, "frame", std::as_bytes(std::span(&input.frame, 1)));
-    fillBuffer(owner_, splats_, "splats", std::as_bytes(input.splats));
-    fillBuffer(owner_, shapes_, "shapes", std::as_bytes(input.shapes));
+    static const Overlay nothing{};
+    const Overlay&       overlay = input.overlay ? *input.overlay : nothing;
+    fillBuffer(owner_, frameBuffer_, "frame", std::as_bytes(std::span(&input.frame, 1)));
+    fillBuffer(owner_, splatBuffer_, "splats", std::as_bytes(input.splats));
+    fillBuffer(owner_, shapeBuffer_, "shapes", std::as_bytes(input.shapes));
+    fillBuffer(owner_, faceBuffer_, "faces", std::as_bytes(input.faces));
+    fillBuffer(owner_, overlayBuffer_, "overlay", std::as_bytes(std::span(overlay.pixels)));
+    fillBuffer(owner_, tileBuffer_, "tiles of the overlay", std::as_bytes(std::span(overlay.tiles)));
 }
 
 void VulkanSurface::describe()
 {
-    const gpu::Buffer* const              buffers[] = {&*frame_, &*splats_, &*shapes_};
-    const VulkanImage* const              images[]  = {&*nearest_, &*normals_, &*colours_, &*surface_, &*albedo_};
-    std::array<VkDescriptorBufferInfo, 3> bufferInfos{};
-    std::array<VkDescriptorImageInfo, 5>  imageInfos{};
-    std::vector<VkWriteDescriptorSet>     writes;
-    const auto                            write = [&](std::uint32_t binding, VkDescriptorType type) {
-        auto one       = typed<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
-        one.dstSet     = set_;
-        one.dstBinding = binding;
+    const gpu::Buffer* const buffers[] = {&*frameBuffer_,   &*splatBuffer_, &*shapeBuffer_,
+                                          &*overlayBuffer_, &*tileBuffer_,  &*faceBuffer_};
+    const VulkanImage* const images[]  = {&*nearest_, &*normals_, &*colours_, &*surface_, &*albedo_};
+    std::array<VkDescriptorBufferInfo, std::size(kBuffers)> bufferInfos{};
+    std::array<VkDescriptorImageInfo, std::size(kImages)>   imageInfos{};
+    std::vector<VkWriteDescriptorSet>                       writes;
+    const auto                                              write = [&](std::uint32_t binding, VkDescriptorType type) {
+        auto one = typed<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
+        one.dstSet          = set_;
+        one.dstBinding      = binding;
         one.descriptorCount = 1;
         one.descriptorType  = type;
         return one;
@@ -237,7 +265,14 @@ void VulkanSurface::begin(const Step& step, std::span<const VkClearValue> clear)
     vkCmdBeginRenderPass(commands_, &info, VK_SUBPASS_CONTENTS_INLINE);
 }
 
-void VulkanSurface::record(const SurfaceInput& input)
+void VulkanSurface::draw(const Pipeline& pipeline, std::size_t corners, std::size_t first)
+{
+    if (corners == 0) return;
+    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.get());
+    vkCmdDraw(commands_, std::uint32_t(corners), 1, std::uint32_t(first), 0);
+}
+
+void VulkanSurface::beginList()
 {
     check(vkResetCommandPool(context_.device, pool_.get(), 0), "reset a command pool");
     auto info  = typed<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
@@ -248,39 +283,61 @@ void VulkanSurface::record(const SurfaceInput& input)
     vkCmdSetViewport(commands_, 0, 1, &viewport);
     vkCmdSetScissor(commands_, 0, 1, &scissor);
     vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set_, 0, nullptr);
-    const auto draw = [this](const Pipeline& pipeline, std::size_t corners) {
-        if (corners == 0) return;
-        vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline.get());
-        vkCmdDraw(commands_, std::uint32_t(corners), 1, 0, 0);
-    };
+}
+
+/// Normals, depths and colours of what is seen, for the light.
+void VulkanSurface::recordSurface(const SurfaceInput& input)
+{
     VkClearValue zero{}, nowhere{}, farthest{};
     nowhere.color.float32[0]    = kNowhere;
     farthest.depthStencil.depth = 1;
-    const VkClearValue first[] = {nowhere, farthest}, two[] = {zero, zero}, last[] = {zero, farthest};
-
-    const std::size_t corners = kCornersOfSplat * input.splats.size();
-    if (input.detail == Detail::fine) {
-        begin(nearestStep_, first);
-        draw(nearestStep_.pipelines[0], corners);
+    const VkClearValue first[] = {nowhere, farthest}, two[] = {zero, zero}, three[] = {zero, zero, farthest};
+    if (!input.faces.empty()) {
+        begin(faceStep_, three);
+        draw(faces_, input.faces.size());
         vkCmdEndRenderPass(commands_);
-        begin(blendStep_, two);
-        draw(blendStep_.pipelines[0], corners);
-        vkCmdEndRenderPass(commands_);
-        begin(surfaceStep_, two);
-        draw(surfaceStep_.pipelines[0], 3);
-        vkCmdEndRenderPass(commands_);
+        return;
     }
-    begin(lightStep_, last);
-    if (input.detail == Detail::fine) {
-        draw(lightStep_.pipelines[0], 3);
-    } else {
-        draw(lightStep_.pipelines[3], 3);
-        draw(lightStep_.pipelines[4], input.splats.size());
-    }
-    draw(lightStep_.pipelines[1], input.shapes.size());
-    draw(lightStep_.pipelines[2], input.shapes.size());
+    const std::size_t corners = kCornersOfSplat * (input.splats.size() - input.dots);
+    begin(nearestStep_, first);
+    draw(nearestDepths_, corners);
     vkCmdEndRenderPass(commands_);
+    begin(blendStep_, two);
+    draw(sums_, corners);
+    vkCmdEndRenderPass(commands_);
+    begin(surfaceStep_, two);
+    draw(means_, 3);
+    vkCmdEndRenderPass(commands_);
+}
 
+void VulkanSurface::record(const SurfaceInput& input)
+{
+    const std::size_t points = input.splats.size() - input.dots;
+    const bool        fine   = input.detail == Detail::fine;
+    if (fine) recordSurface(input);
+    VkClearValue zero{}, farthest{};
+    farthest.depthStencil.depth = 1;
+    const VkClearValue last[]   = {zero, farthest};
+    begin(lightStep_, last);
+    draw(fine ? light_ : ground_, 3);
+    if (!fine && input.faces.empty()) draw(points_, points);
+    if (!fine) draw(litFaces_, input.faces.size());
+    draw(points_, input.dots, points);
+    draw(hiddenShapes_, input.shapes.size());
+    draw(shapes_, input.shapes.size());
+    if (input.overlay) draw(overlay_, kCornersOfSplat * input.overlay->tiles.size());
+    vkCmdEndRenderPass(commands_);
+#ifdef PALPATE_PANELS
+    if (panels_) {
+        begin(panelStep_, {});
+        panels_->record(commands_);
+        vkCmdEndRenderPass(commands_);
+    }
+#endif
+}
+
+void VulkanSurface::copyToHost()
+{
     VkBufferImageCopy whole{};
     whole.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     whole.imageExtent      = {size_.width, size_.height, 1};
@@ -292,7 +349,12 @@ void VulkanSurface::record(const SurfaceInput& input)
     toHost.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
     vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &toHost, 0,
                          nullptr, 0, nullptr);
+}
+
+void VulkanSurface::submit()
+{
     check(vkEndCommandBuffer(commands_), "end a list of commands");
+    context_.submit({&commands_, 1});
 }
 
 std::span<const std::uint8_t> VulkanSurface::draw(const SurfaceInput& input)
@@ -300,10 +362,32 @@ std::span<const std::uint8_t> VulkanSurface::draw(const SurfaceInput& input)
     fit({std::uint32_t(input.frame.width), std::uint32_t(input.frame.height)});
     upload(input);
     describe();
+    beginList();
     record(input);
-    context_.submit({&commands_, 1});
+    copyToHost();
+    submit();
     pixels_->makeVisibleToHost();
     return pixels_->as<std::uint8_t>();
+}
+
+void VulkanSurface::draw(const SurfaceInput& input, VulkanWindow& window)
+{
+    fit({std::uint32_t(input.frame.width), std::uint32_t(input.frame.height)});
+    upload(input);
+    describe();
+    beginList();
+    record(input);
+    window.copy(commands_, picture_->image.get(), size_);
+    submit();
+}
+
+void VulkanSurface::usePanels()
+{
+#ifdef PALPATE_PANELS
+    panels_ = std::make_unique<VulkanPanels>(context_, panelStep_.pass.get());
+#else
+    throw Error("this build has no panels: it was made without Dear ImGui");
+#endif
 }
 
 } // namespace palp

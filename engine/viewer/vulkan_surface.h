@@ -1,52 +1,75 @@
 #pragma once
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "compute_shaders/shared/view_layout.h"
 #include "engine/gpu/buffer.h"
+#include "engine/viewer/annotation.h"
 #include "engine/viewer/surface_renderer.h"
 #include "engine/viewer/vulkan_image.h"
 #include "engine/viewer/vulkan_pipeline.h"
+#include "engine/viewer/vulkan_window.h"
 
 // Internal to engine/viewer.
 
 namespace palp {
 
+class VulkanPanels;
+
 /// What one picture is drawn from.
 struct SurfaceInput {
     shared::ViewFrame                   frame{};
     std::span<const shared::ViewSplat>  splats;
-    std::span<const shared::ViewCorner> shapes; ///< three to a triangle
-    Detail                              detail = Detail::fine;
+    std::size_t                         dots = 0; ///< the last so many splats are dots, whatever the detail [1]
+    std::span<const std::uint32_t>      faces;    ///< numbers of splats, three to a triangle; empty: splats are drawn
+    std::span<const shared::ViewCorner> shapes;   ///< three to a triangle
+    Detail                              detail  = Detail::fine;
+    const Overlay*                      overlay = nullptr; ///< of the picture's size; may be null
 };
 
-/// The four passes of compute_shaders/shared/view_layout.h. Images are made anew when the size changes, buffers when
-/// they are too small. \thread one
+/// The passes of compute_shaders/shared/view_layout.h. Images are made anew when the size changes, buffers when they
+/// are too small. \thread one
 class VulkanSurface {
 public:
     /// \throws gpu::DeviceError if the device lacks a format
     explicit VulkanSurface(gpu::Context& context);
+    ~VulkanSurface();
+    VulkanSurface(const VulkanSurface&)            = delete;
+    VulkanSurface& operator=(const VulkanSurface&) = delete;
 
     /// Draws and waits. \return rows from the top, red, green, blue, alpha; until the next call
     [[nodiscard]] std::span<const std::uint8_t> draw(const SurfaceInput& input);
 
+    /// Draws into a window that has a next picture.
+    void draw(const SurfaceInput& input, VulkanWindow& window);
+
+    /// From now on the panels of the current ImGui context are drawn over every picture.
+    /// \throws Error in a build without Dear ImGui
+    void usePanels();
+
 private:
-    /// A pass, what it draws into, and with what.
+    /// A pass and what it draws into.
     struct Step {
-        RenderPass            pass;
-        Framebuffer           framebuffer;
-        std::vector<Pipeline> pipelines;
+        RenderPass  pass;
+        Framebuffer framebuffer;
     };
     void makeLayouts();
     void makeSteps();
+    void makePipelines();
     void fit(VkExtent2D size);
     void makeImages();
     void makeFramebuffers();
     void upload(const SurfaceInput& input);
     void describe();
+    void beginList();
     void record(const SurfaceInput& input);
+    void recordSurface(const SurfaceInput& input);
+    void copyToHost();
+    void submit();
     void begin(const Step& step, std::span<const VkClearValue> clear);
+    void draw(const Pipeline& pipeline, std::size_t corners, std::size_t first = 0);
 
     gpu::Context&       owner_;
     gpu::VulkanContext& context_;
@@ -59,8 +82,12 @@ private:
     gpu::Owned<VkCommandPool, vkDestroyCommandPool>       pool_;
     VkCommandBuffer                                       commands_ = VK_NULL_HANDLE;
     std::optional<VulkanImage> depthTest_, nearest_, normals_, colours_, surface_, albedo_, picture_;
-    Step                       nearestStep_, blendStep_, surfaceStep_, lightStep_;
-    std::optional<gpu::Buffer> frame_, splats_, shapes_, pixels_;
+    Step                       nearestStep_, blendStep_, surfaceStep_, faceStep_, lightStep_, panelStep_;
+    Pipeline                   nearestDepths_, sums_, means_, faces_;                                 ///< fine
+    Pipeline                   light_, ground_, points_, litFaces_, hiddenShapes_, shapes_, overlay_; ///< of lightStep_
+    std::optional<gpu::Buffer> frameBuffer_, splatBuffer_, shapeBuffer_, faceBuffer_, overlayBuffer_, tileBuffer_,
+        pixels_;
+    std::unique_ptr<VulkanPanels> panels_; ///< may be null
 };
 
 } // namespace palp

@@ -1,0 +1,28 @@
+#pragma once
+#include "engine/gpu/vulkan_handles.h"
+
+// Internal to engine/viewer; in builds with Dear ImGui.
+
+namespace palp {
+
+/// Draws the panels of the current ImGui context over a picture: the only file that knows ImGui's Vulkan back end.
+/// \thread one
+class VulkanPanels {
+public:
+    /// \param pass  that panels are drawn in
+    VulkanPanels(gpu::VulkanContext& context, VkRenderPass pass);
+    ~VulkanPanels();
+    VulkanPanels(const VulkanPanels&)            = delete;
+    VulkanPanels& operator=(const VulkanPanels&) = delete;
+
+    /// What ImGui::Render() has left, into the pass that is being recorded.
+    void record(VkCommandBuffer commands) const;
+
+private:
+    void uploadFont();
+
+    gpu::VulkanContext&                                   context_;
+    gpu::Owned<VkDescriptorPool, vkDestroyDescriptorPool> sets_;
+};
+
+} // namespace palp
