@@ -4,7 +4,7 @@ set -u
 cd "$1" || exit 1
 
 # From the bottom up; a file may include its own layer and those before it.
-layers='core gpu cloud contact chart force plate pipeline session picture viewer bench program'
+layers='core gpu cloud contact chart force plate pipeline session picture viewer window bench program'
 level_of() {
     n=0
     for layer in $layers; do
@@ -51,6 +51,8 @@ wall Eigen 'Eigen/' '(chart|plate)/[a-z_]*\.cpp|bench/eigen_solver\.cpp'
 wall nlohmann-json 'nlohmann/' '[a-z]*/[a-z_]*\.cpp|program/[a-z_]*\.h'
 wall CLI11 'CLI/' 'program/[a-z_]*\.(h|cpp)'
 wall Vulkan 'vulkan/' '(gpu|viewer)/vulkan_[a-z]*\.(h|cpp)'
+wall GLFW 'GLFW/' 'window/glfw_[a-z]*\.cpp'
+wall ImGui '(imgui|backends/imgui)' '(viewer/vulkan_panels|window/(panel[a-z_]*|glfw_[a-z]*))\.cpp'
 wall CHOLMOD '(suitesparse/)?cholmod' 'bench/cholmod_solver\.cpp'
 wall nanoflann 'nanoflann' 'bench/nanoflann_search\.cpp'
 wall stb 'stb' '(picture/png|viewer/text)\.cpp'

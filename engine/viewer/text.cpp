@@ -19,9 +19,11 @@ __asm__(".section .rodata\n"
         ".balign 16\n"
         "palp_font_begin:\n"
         ".incbin \"" PALPATE_FONT "\"\n"
+        ".global palp_font_end\n"
+        "palp_font_end:\n"
         ".byte 0\n"
         ".text\n");
-extern "C" const unsigned char palp_font_begin[];
+extern "C" const unsigned char palp_font_begin[], palp_font_end[];
 
 namespace palp {
 namespace {
@@ -116,6 +118,11 @@ void drawText(Image& image, glm::dvec2 at, std::string_view text, const TextLine
         drawGlyph(image, at, codes[n], scale, line.colour);
         at.x += advance(codes[n], n + 1 < codes.size() ? codes[n + 1] : 0, scale);
     }
+}
+
+std::span<const unsigned char> fontBytes() noexcept
+{
+    return {palp_font_begin, palp_font_end};
 }
 
 } // namespace palp

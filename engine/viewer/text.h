@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <string_view>
 
 #include <glm/vec2.hpp>
@@ -21,5 +22,8 @@ void drawText(Image& image, glm::dvec2 at, std::string_view text, const TextLine
 
 /// From the first character's start to the last one's end [px].
 [[nodiscard]] double widthOfText(std::string_view text, double size);
+
+/// The font itself, a TrueType file.
+[[nodiscard]] std::span<const unsigned char> fontBytes() noexcept;
 
 } // namespace palp

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <numbers>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -13,6 +13,34 @@ namespace {
 
 /// Shares of the window: large enough to be seen, small enough to leave the dent free [1].
 constexpr double kArrow = 0.006, kOutline = 0.0016, kCue = 0.07;
+
+constexpr double kDot = 0.22; ///< radius of a dot, of the point's core [1]
+
+/// Circles and spokes of the near half of the fitted sphere, as far as a window's edge reaches.
+std::vector<ViewSegment> linesOf(const Chart& chart, double window)
+{
+    constexpr int    kCircles = 6, kSpokes = 12, kAround = 48, kAlong = 12; // [1]
+    constexpr double kQuarter = std::numbers::pi / 2, kTurn = 2 * std::numbers::pi;
+    const double     k = chart.curvature;                                                     // [1/m] signed
+    const double most  = std::min(window, std::abs(k) > 0 ? kQuarter / std::abs(k) : window); // along the surface [m]
+    const auto   at    = [&](double s, double angle) {
+        const double     t      = s * k; // as seen from the centre [rad]
+        const double     aside  = std::abs(t) > 1e-4 ? std::sin(t) / k : s;
+        const double     sinks  = std::abs(t) > 1e-4 ? (1 - std::cos(t)) / k : s * t / 2;
+        const glm::dvec3 radial = std::cos(angle) * chart.frame.east + std::sin(angle) * chart.frame.north;
+        return chart.origin + aside * radial - sinks * chart.frame.normal;
+    };
+    std::vector<ViewSegment> lines;
+    for (int c = 1; c <= kCircles; ++c)
+        for (int n = 0; n < kAround; ++n)
+            lines.push_back(
+                {at(most * c / kCircles, kTurn * n / kAround), at(most * c / kCircles, kTurn * (n + 1) / kAround)});
+    for (int s = 0; s < kSpokes; ++s)
+        for (int n = 0; n < kAlong; ++n)
+            lines.push_back(
+                {at(most * n / kAlong, kTurn * s / kSpokes), at(most * (n + 1) / kAlong, kTurn * s / kSpokes)});
+    return lines;
+}
 
 } // namespace
 
@@ -29,10 +57,12 @@ std::optional<ViewPaint> viewPaintNamed(std::string_view wanted)
     return std::nullopt;
 }
 
-TouchView::TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings)
-    : cloud_(cloud), settings_(settings), skin_(cloud.positions(), index),
+TouchView::TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings,
+                     std::span<const std::array<std::uint32_t, 3>> faces)
+    : cloud_(cloud), settings_(settings), faces_(faces), skin_(cloud.positions(), index),
       restNormals_(skin_.normals(cloud.positions())), normals_(restNormals_),
-      positions_(cloud.positions().begin(), cloud.positions().end()), deflections_(cloud.size()), hollows_(cloud.size())
+      positions_(cloud.positions().begin(), cloud.positions().end()), deflections_(cloud.size()),
+      hollows_(cloud.size()), stiffness_(cloud.stiffness())
 {
 }
 
@@ -79,9 +109,9 @@ void TouchView::paint(double force, const TouchLook& look)
         scene_.colours    = {look.map, Scale::linear, {0, most > 0 ? most : 1e-3}, "deflection", "m"};
     } else if (look.paint == ViewPaint::stiffness) {
         constexpr double kWide = 5; // from such a ratio on a linear scale hides the soft end [1]
-        const auto       range = rangeOf(cloud_.stiffness(), Scale::logarithmic).value_or(ValueRange{});
+        const auto       range = rangeOf(stiffness_, Scale::logarithmic).value_or(ValueRange{});
         const Scale      scale = range.high > kWide * range.low ? Scale::logarithmic : Scale::linear;
-        scene_.values          = cloud_.stiffness();
+        scene_.values          = stiffness_;
         if (cloud_.kind() == StiffnessKind::modulus)
             scene_.colours = {look.map, scale, widened(range, scale), "Young's modulus", "Pa"};
         else
@@ -89,28 +119,57 @@ void TouchView::paint(double force, const TouchLook& look)
     }
 }
 
-void TouchView::addShapes(const Patch& patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand)
+void TouchView::addHand(const Patch& patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand)
 {
     constexpr double kLongest = 0.22, kNormal = 1.35; // of the window; of the force's arrow [1]
     const glm::dvec3 inward = patch.forceDirection();
     const PlateGrid& grid   = patch.window.grid;
     const double     dent   = force * patch.response(grid.cellsX / 2, grid.cellsZ / 2);
-    const glm::dvec3 point  = patch.contact.point;
+    const glm::dvec3 point  = hand && hand->proxy ? *hand->proxy : patch.contact.point;
     const double     felt   = patch.feltStiffness;
-    scene_.proxy            = point + look.exaggeration * dent * inward;
-    scene_.hip              = hand ? hand->hip : point + look.exaggeration * (felt > 0 ? force / felt : dent) * inward;
+    const glm::dvec3 proxy  = point + look.exaggeration * dent * inward;
+    if (look.overlays.markers) {
+        scene_.proxy = proxy;
+        scene_.hip   = hand ? hand->hip : point + look.exaggeration * (felt > 0 ? force / felt : dent) * inward;
+    }
+    if (!look.overlays.arrows) return;
     const double     strongest = look.strongest > 0 ? look.strongest : std::abs(force);
     const double     longest   = kLongest * settings_.window;
-    const double     length    = strongest > 0 ? longest * std::abs(force) / strongest : 0;
+    const double     length    = strongest > 0 ? longest * std::min(1.0, std::abs(force) / strongest) : 0;
     const glm::dvec3 against   = hand && glm::length(hand->force) > 0 ? glm::normalize(hand->force) : -inward;
-    scene_.force               = ViewSegment{*scene_.proxy, *scene_.proxy + length * against};
-    scene_.normal              = ViewSegment{*scene_.proxy, *scene_.proxy - kNormal * longest * inward};
-    const auto placeOf         = [&](const PatchSurface::EdgePlace& e) {
-        return e.rest + look.exaggeration * force * e.response * inward;
+    scene_.force               = ViewSegment{proxy, proxy + length * against};
+    scene_.normal              = ViewSegment{proxy, proxy - kNormal * longest * inward};
+}
+
+void TouchView::addOutline(double force, double exaggeration)
+{
+    const auto placeOf = [&](const PatchSurface::EdgePlace& e) {
+        return e.rest + exaggeration * force * e.response * surface_.inward;
     };
     for (std::size_t n = 1; n < surface_.edge.size(); ++n)
         if (!surface_.edge[n].starts)
             scene_.outline.push_back({placeOf(surface_.edge[n - 1]), placeOf(surface_.edge[n])});
+}
+
+/// What a fit and a chart made of the points.
+void TouchView::addFit(const Patch& patch, const Overlays& overlays)
+{
+    if (overlays.sphere) scene_.sphere = linesOf(patch.chart, settings_.window);
+    if (overlays.projected)
+        for (std::size_t n = 0; n < patch.points.size(); ++n)
+            if (const auto on =
+                    patch.window.holds(patch.positions[n]) ? patch.chart.lift(patch.positions[n]) : std::nullopt)
+                scene_.dots.push_back({*on, kDot * skin_.cores()[patch.points[n]], kProjectedColour});
+}
+
+void TouchView::addGhost(Ground ground)
+{
+    constexpr double kNotable = 0.05; // of the deepest: below it a dot lies in the surface [1]
+    for (std::size_t i = 0; i < surface_.moving.size(); ++i) {
+        const std::uint32_t n = surface_.moving[i];
+        if (std::abs(surface_.responses[i]) > kNotable * surface_.mostResponse)
+            scene_.dots.push_back({cloud_.positions()[n], kDot * skin_.cores()[n], inkOn(ground)});
+    }
 }
 
 void TouchView::show(const Patch* patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand)
@@ -123,11 +182,17 @@ void TouchView::show(const Patch* patch, double force, const TouchLook& look, co
     scene_.arrowRadius   = kArrow * settings_.window;
     scene_.outlineRadius = kOutline * settings_.window;
     scene_.cueRadius     = kCue * settings_.window;
+    scene_.faces         = faces_;
     paint(force, look);
-    if (patch)
-        addShapes(*patch, force, look, hand);
-    else if (hand)
-        scene_.hip = hand->hip;
+    if (patch) {
+        addHand(*patch, force, look, hand);
+        if (look.overlays.outline) addOutline(force, look.exaggeration);
+        addFit(*patch, look.overlays);
+        if (look.overlays.ghost) addGhost(look.ground);
+    } else if (hand && look.overlays.markers) {
+        scene_.hip   = hand->hip;
+        scene_.proxy = hand->proxy;
+    }
 }
 
 Camera cameraAt(const Patch& patch, double aspect)

@@ -19,6 +19,16 @@ enum class ViewPaint {
 [[nodiscard]] const char*              name(ViewPaint paint) noexcept;        ///< "deflection", ...
 [[nodiscard]] std::optional<ViewPaint> viewPaintNamed(std::string_view name); ///< empty if unknown
 
+/// What else may be shown of a touch.
+struct Overlays {
+    bool outline   = true;  ///< of the patch
+    bool arrows    = true;  ///< force and normal
+    bool markers   = true;  ///< proxy and HIP
+    bool ghost     = false; ///< dots where the dent's points are at rest
+    bool sphere    = false; ///< the near half of the fitted sphere
+    bool projected = false; ///< dots where the patch's points lie on that sphere
+};
+
 /// How a touch is shown.
 struct TouchLook {
     ViewPaint paint        = ViewPaint::deflection;
@@ -27,12 +37,14 @@ struct TouchLook {
     double    exaggeration = 1; ///< factor on every displacement [1]
     double    deepest      = 0; ///< end of the colours of deflections [m]; 0: this touch's own
     double    strongest    = 0; ///< force whose arrow has the full length [N]; 0: this touch's own
+    Overlays  overlays{};
 };
 
 /// Where hand and proxy are, in place of where a hand at rest would have them.
 struct TouchHand {
-    glm::dvec3 hip{};   ///< [m]
-    glm::dvec3 force{}; ///< on the hand [N]
+    glm::dvec3                hip{};   ///< [m]
+    glm::dvec3                force{}; ///< on the hand [N]
+    std::optional<glm::dvec3> proxy{}; ///< on the surface at rest [m]; empty: where the patch's contact is
 };
 
 /// A cloud and a touch of it as a scene to draw.
@@ -41,7 +53,12 @@ public:
     /// \param cloud     outlives the view  \param index  of the cloud
     /// \param settings  of the touches: shapes measure a share of their window and fingertip
     /// \throws as CloudSkin
-    TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings);
+    /// \param faces     of the cloud, outlive the view; empty: it has none
+    TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings,
+              std::span<const std::array<std::uint32_t, 3>> faces = {});
+
+    /// Other stiffnesses of the same points from now on. \param stiffness  outlives their use [Pa] or [N m]
+    void repaint(std::span<const double> stiffness) { stiffness_ = stiffness; }
 
     /// The cloud under a force, or at rest without a patch.
     /// \param patch  of the cloud, deformed; may be null
@@ -62,13 +79,18 @@ private:
     void take(const Patch* patch);
     void bend(double force, double exaggeration);
     void paint(double force, const TouchLook& look);
-    void addShapes(const Patch& patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand);
+    void addHand(const Patch& patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand);
+    void addOutline(double force, double exaggeration);
+    void addFit(const Patch& patch, const Overlays& overlays);
+    void addGhost(Ground ground);
 
-    const PointCloud&       cloud_;
-    PatchSettings           settings_;
-    CloudSkin               skin_;
-    std::vector<glm::dvec3> restNormals_, normals_, positions_; // [1], [1], [m]
-    std::vector<double>     deflections_, hollows_;             // [m], [1]
+    const PointCloud&                             cloud_;
+    PatchSettings                                 settings_;
+    std::span<const std::array<std::uint32_t, 3>> faces_;
+    CloudSkin                                     skin_;
+    std::vector<glm::dvec3>                       restNormals_, normals_, positions_; // [1], [1], [m]
+    std::vector<double>                           deflections_, hollows_;             // [m], [1]
+    std::span<const double>                       stiffness_;                         // [Pa] or [N m]
 
     Shown                      shown_;
     PatchSurface               surface_; // of that patch

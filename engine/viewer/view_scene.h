@@ -70,7 +70,7 @@ struct ViewScene {
 /// Colours of the things in a picture, apart from each other for every kind of colour vision and in shape too.
 inline constexpr Rgb8 kProxyColour = kNamedColours[4], kHipColour = kNamedColours[3], kForceColour = kNamedColours[1],
                       kNormalColour = kNamedColours[5], kSphereColour = kNamedColours[2],
-                      kPlainColour = {206, 198, 186};
+                      kProjectedColour = kNamedColours[0], kPlainColour = {206, 198, 186};
 
 /// Of outlines and texts on this ground.
 [[nodiscard]] constexpr Rgb8 inkOn(Ground ground)

@@ -1,0 +1,31 @@
+#pragma once
+#include <memory>
+
+#include <glm/vec2.hpp>
+
+namespace palp {
+
+/// Pointer and buttons where no window gives them to ImGui, as in pictures without a display.
+struct PanelPointer {
+    glm::dvec2 at{-1, -1}; ///< [px]
+    bool       down = false;
+};
+
+/// The one ImGui context of a program: its font, its style, the beginning and the end of its frames. \thread one
+class PanelFrame {
+public:
+    /// \param scale  of a display with many pixels per inch [1]
+    explicit PanelFrame(double scale = 1);
+    ~PanelFrame();
+    PanelFrame(const PanelFrame&)            = delete;
+    PanelFrame& operator=(const PanelFrame&) = delete;
+
+    /// Light or dark, as the ground is.
+    void setDark(bool dark);
+
+    /// A frame without a window. \param size  of the picture [px]
+    void beginWithoutWindow(const glm::ivec2& size, const PanelPointer& pointer = {});
+    void end();
+};
+
+} // namespace palp
