@@ -1,0 +1,40 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "engine/viewer/surface_renderer.h"
+#include "engine/window/input.h"
+
+namespace palp {
+
+/// A window on the desktop. \thread the program's first
+class GlfwWindow {
+public:
+    /// \param size  [px]
+    /// \throws Error, one sentence, if there is no display: and that palpate render needs none
+    GlfwWindow(const std::string& title, const glm::ivec2& size);
+    ~GlfwWindow();
+    GlfwWindow(const GlfwWindow&)            = delete;
+    GlfwWindow& operator=(const GlfwWindow&) = delete;
+
+    /// For the renderer that shows pictures here; the window outlives it.
+    [[nodiscard]] WindowLink link();
+
+    /// What happened since the last call. \param patience  waits so long for something to happen [s]
+    [[nodiscard]] WindowInput poll(double patience = 0);
+
+    /// From now on ImGui hears of pointer and keys first. \pre there is a current ImGui context
+    void feedPanels();
+    /// Begins a frame of ImGui, after feedPanels().
+    void beginPanels();
+
+    void setTitle(const std::string& title);
+
+    [[nodiscard]] double scale() const; ///< see WindowInput::scale
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace palp
