@@ -130,7 +130,6 @@ std::string mixed(std::endian order, const std::vector<double>& stiffness)
                         "comment between properties\nproperty double stiffness\nproperty list uint uchar label\n"
                         "element face 1\nproperty list int uint vertex_index\nelement extra 3\nproperty int no\n"
                         "end_header\n";
-    bytes = replaced(bytes, "int64_", "int");
     for (const int id : {1, 2}) {
         append(bytes, std::uint16_t(id * 300), order);
         for (int k = 0; k < id * 300; ++k) append(bytes, 1.0 / (k + 1), order);
