@@ -18,7 +18,7 @@ constexpr std::uint32_t kNoSlot = std::numeric_limits<std::uint32_t>::max(); ///
 
 /// Radius over which a brush smooths [1], as a share of the brush's, and its bounds in spacings: fewer points would be
 /// no mean, more would cost time that a moving brush does not have.
-constexpr double kSmoothShare = 1.0 / 6, kLeastSpacings = 2, kMostSpacings = 5;
+constexpr double kSmoothShare = 1.0 / 8, kLeastSpacings = 2, kMostSpacings = 4;
 
 constexpr double kDabShare = 1.0 / 8; ///< of the radius, between two dabs of a path
 constexpr double kMostDabs = 1e5;     ///< of a path: some seconds
@@ -110,25 +110,29 @@ std::span<const std::uint32_t> StiffnessPainting::paint(const Brush& brush, doub
 double StiffnessPainting::riseToMean(std::size_t place, double radius)
 {
     // Relative to its own logarithm, so that among equal ones it is exactly zero.
-    double sum = 0, weights = 0;
-    grid_.near(places_[place], radius, [&](std::size_t other, double distance2) {
-        const double weight = 1 - distance2 / (radius * radius);
-        sum += weight * (logarithms_[other] - logarithms_[place]);
+    double       sum = 0, weights = 0;
+    const double own = logarithms_[place], perRadius2 = 1 / (radius * radius);
+    grid_.around(places_[place], radius, [&](std::size_t other, double distance2) {
+        const double inside = 1 - distance2 * perRadius2; // below zero outside
+        const double weight = inside + std::abs(inside);  // twice as much or zero, without a branch to guess
+        sum += weight * (logarithms_[other] - own);
         weights += weight;
-        return false;
     });
-    return sum / weights; // its own weight is 1
+    return sum / weights; // its own weight is 2
 }
 
 std::span<const std::uint32_t> StiffnessPainting::smooth(const Brush& brush)
 {
-    const std::span<const std::uint32_t> points = coveredBy(brush);
-    if (points.empty()) return points;
+    const std::span<const std::uint32_t> covered = coveredBy(brush);
+    if (covered.empty()) return covered;
+    // In order, so that sums have the same bits on every processor.
+    smoothed_.assign(covered.begin(), covered.end());
+    std::sort(smoothed_.begin(), smoothed_.end());
     places_.clear();
     befores_.clear();
     logarithms_.clear();
     double reach = 0; // [m]
-    for (const std::uint32_t point : points) {
+    for (const std::uint32_t point : smoothed_) {
         places_.push_back(original_.positions()[point]);
         befores_.push_back(before(point));
         logarithms_.push_back(std::log(befores_.back()));
@@ -136,14 +140,14 @@ std::span<const std::uint32_t> StiffnessPainting::smooth(const Brush& brush)
     }
     grid_.build(places_, reach);
     const auto [least, most] = std::minmax_element(befores_.begin(), befores_.end());
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t i = 0; i < smoothed_.size(); ++i) {
         const double coverage = brush.coverage(glm::length(places_[i] - brush.centre));
         if (!(coverage > 0)) continue;
-        const double rise = riseToMean(i, smoothingRadius(brush.radius, flood_.spacing(points[i])));
-        cover(points[i], coverage, std::clamp(befores_[i] * std::exp(rise), *least, *most));
+        const double rise = riseToMean(i, smoothingRadius(brush.radius, flood_.spacing(smoothed_[i])));
+        cover(smoothed_[i], coverage, std::clamp(befores_[i] * std::exp(rise), *least, *most));
     }
     if (!inStroke_) endStroke();
-    return points;
+    return smoothed_;
 }
 
 void StiffnessPainting::beginStroke()

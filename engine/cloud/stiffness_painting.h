@@ -53,8 +53,8 @@ public:
     /// \throws Error if the brush or the value is not finite or not above zero
     std::span<const std::uint32_t> paint(const Brush& brush, double value);
 
-    /// One dab towards the mean of the logarithms around each point, as they were when the stroke began: over a sixth
-    /// of the radius, but at least 2 and at most 5 local spacings, weighted by 1 - (distance / that)².
+    /// One dab towards the mean of the logarithms around each point, as they were when the stroke began: over an eighth
+    /// of the radius, but at least 2 and at most 4 local spacings, weighted by 1 - (distance / that)².
     std::span<const std::uint32_t> smooth(const Brush& brush);
 
     /// Takes the last stroke back, to the bit; one that has not ended ends.
@@ -102,10 +102,11 @@ private:
     std::vector<Stroke> undone_; ///< the next to be done again is the last
     std::size_t         historyBytes_ = 0;
 
-    std::vector<glm::dvec3> places_;     ///< [m] scratch of smooth()
-    std::vector<double>     befores_;    ///< [Pa] or [N m] the same
-    std::vector<double>     logarithms_; ///< of befores_, the same
-    PointGrid               grid_;       ///< the same
+    std::vector<std::uint32_t> smoothed_;   ///< scratch of smooth()
+    std::vector<glm::dvec3>    places_;     ///< [m] the same
+    std::vector<double>        befores_;    ///< [Pa] or [N m] the same
+    std::vector<double>        logarithms_; ///< of befores_, the same
+    PointGrid                  grid_;       ///< the same
 };
 
 /// Where the dabs of a stroke along a path are put: an eighth of the radius apart, so that coverage along the path dips

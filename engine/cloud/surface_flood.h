@@ -30,7 +30,7 @@ public:
     /// \throws Error if the cloud has fewer than seven points or most of them coincide
     SurfaceFlood(std::span<const glm::dvec3> positions, const NeighbourIndex& index);
 
-    /// The points of the piece, rising; empty if no point is in the ball. Valid until the next call.
+    /// The points of the piece in no particular order; empty if no point is in the ball. Valid until the next call.
     /// \param centre  [m], finite
     /// \param radius  [m], >= 0
     [[nodiscard]] std::span<const std::uint32_t> reach(const glm::dvec3& centre, double radius);
@@ -45,6 +45,7 @@ private:
     // Scratch: the points of the ball, and what the flood has reached and not yet left, as indices among them.
     std::vector<std::uint32_t> inBall_;
     std::vector<glm::dvec3>    places_; ///< [m]
+    std::vector<double>        steps_;  ///< longest of each [m]
     std::vector<std::uint32_t> reached_;
     std::vector<std::uint32_t> points_;
     PointGrid                  grid_;

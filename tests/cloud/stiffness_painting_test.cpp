@@ -204,7 +204,7 @@ TEST(StiffnessPainting, SmoothingGoesTowardsTheMeanOfLogarithmsAndLeavesEqualsAl
         EXPECT_GE(v, 1e4);
         EXPECT_LE(v, 1e6);
         if (std::abs(places[i].x) > 2.1e-3) {
-            EXPECT_EQ(v, step[i]) << "a sixth of the radius, or 5 spacings: 2 mm";
+            EXPECT_EQ(v, step[i]) << "an eighth of the radius, or four spacings of about 0.4 mm";
         }
         if (glm::length(places[i]) < 2e-3 && std::abs(places[i].x) < 0.2e-3) {
             sum += std::log10(v);
@@ -221,9 +221,9 @@ TEST(StiffnessPainting, SmoothingIsTheStatedMean)
 {
     const auto   places = sheet(16e-3, 0.5e-3, 0);
     Painted      p(places, roughStiffness(places.size()));
-    const Brush  brush{places[10], 40e-3, 1}; // all points; a sixth is more than five spacings, which hold therefore
+    const Brush  brush{places[10], 40e-3, 1}; // all points; an eighth is more than four spacings, which hold therefore
     SurfaceFlood flood(p.cloud.positions(), p.index);
-    const double radius = 5 * flood.spacing(10);
+    const double radius = 4 * flood.spacing(10);
 
     p.painting.smooth(brush);
 
@@ -233,7 +233,7 @@ TEST(StiffnessPainting, SmoothingIsTheStatedMean)
         sum += w * std::log(p.cloud.stiffness()[i]);
         weights += w;
     }
-    EXPECT_NEAR(std::log(p.painting.stiffness()[10]), sum / weights, 1e-12) << "the order of eighty sums";
+    EXPECT_NEAR(std::log(p.painting.stiffness()[10]), sum / weights, 1e-12) << "the order of fifty sums";
 }
 
 /// Strokes of both sorts at random places.
