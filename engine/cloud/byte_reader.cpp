@@ -37,6 +37,19 @@ std::string inQuotes(std::string_view text)
     return '"' + printable(text) + '"';
 }
 
+bool isBlankText(std::string_view text)
+{
+    return std::all_of(text.begin(), text.end(), isBlank);
+}
+
+std::string_view lineEndOf(std::string_view rawLine)
+{
+    std::string_view text = rawLine;
+    for (const char end : {'\n', '\r'})
+        if (!text.empty() && text.back() == end) text.remove_suffix(1);
+    return rawLine.substr(text.size());
+}
+
 ByteReader::ByteReader(std::istream& stream, std::uint64_t size, std::string name)
     : stream_(stream), size_(size), name_(std::move(name)), buffer_(std::size_t(std::min<std::uint64_t>(size, kBlock)))
 {
@@ -71,7 +84,7 @@ void ByteReader::refill(std::size_t needed)
         if (!readMore()) truncated(end_ - begin_);
 }
 
-std::optional<std::string_view> ByteReader::line()
+std::optional<std::string_view> ByteReader::rawLine()
 {
     std::size_t searched = 0; // bytes after begin_ without a line end
     for (;;) {
@@ -86,20 +99,25 @@ std::optional<std::string_view> ByteReader::line()
             if (length > kLongestLine)
                 failAtLine("expected a line of at most " + std::to_string(kLongestLine) +
                            " bytes, found a longer one; is this another kind of file, or one with CR line ends?");
-            std::string_view text(buffer_.data() + begin_, length);
-            begin_ += length + (lineEnd ? 1 : 0);
-            if (!text.empty() && text.back() == '\r') text.remove_suffix(1);
+            const std::string_view text(buffer_.data() + begin_, length + (lineEnd ? 1 : 0));
+            begin_ += text.size();
             return text;
         }
         searched = held;
     }
 }
 
+std::optional<std::string_view> ByteReader::line()
+{
+    const std::optional<std::string_view> raw = rawLine();
+    return raw ? std::optional(raw->substr(0, raw->size() - lineEndOf(*raw).size())) : std::nullopt;
+}
+
 std::optional<std::string_view> ByteReader::lineWithText()
 {
     for (;;) {
         const std::optional<std::string_view> text = line();
-        if (!text || !std::all_of(text->begin(), text->end(), isBlank)) return text;
+        if (!text || !isBlankText(*text)) return text;
     }
 }
 

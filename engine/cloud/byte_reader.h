@@ -15,6 +15,12 @@ namespace palp {
 /// The same in quotes.
 [[nodiscard]] std::string inQuotes(std::string_view text);
 
+/// Whether it holds nothing but blanks, tabs and line ends.
+[[nodiscard]] bool isBlankText(std::string_view text);
+
+/// What ends a line that was read as it stands: LF, CR LF, or at the end of a file CR or nothing.
+[[nodiscard]] std::string_view lineEndOf(std::string_view rawLine);
+
 /// Reads a hostile stream in large blocks and always knows the line and the byte it is at.
 /// \thread one
 class ByteReader {
@@ -26,6 +32,9 @@ public:
     /// The next line without its end (LF or CR LF), or nothing at the end of the file; valid until the next call.
     /// \throws Error if the line is longer than 64 KiB
     [[nodiscard]] std::optional<std::string_view> line();
+
+    /// The same with its end, as the bytes stand in the file.
+    [[nodiscard]] std::optional<std::string_view> rawLine();
 
     /// The next line that holds more than blanks; nothing at the end of the file.
     [[nodiscard]] std::optional<std::string_view> lineWithText();

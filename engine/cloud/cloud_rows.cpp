@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -30,14 +29,6 @@ constexpr std::uint64_t kRowsPerProgress = 1u << 14;
 constexpr std::size_t kLongestList = 40;
 
 constexpr std::array<const char*, kSlots> kSlotNames = {"x", "y", "z", "stiffness"};
-
-/// The shortest text that reads back as the same double.
-std::string shown(double value)
-{
-    std::array<char, 32> text;
-    const auto           end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-    return {text.data(), end};
-}
 
 std::string listed(const std::vector<std::string>& names)
 {
@@ -122,6 +113,12 @@ void checkPositive(const ByteReader& reader, double value, const char* what)
 
 } // namespace
 
+StiffnessKind kindByName(std::string_view property) noexcept
+{
+    return property == "D" || property.ends_with("flexural_rigidity") ? StiffnessKind::rigidity
+                                                                      : StiffnessKind::modulus;
+}
+
 void CloudHeader::readComment(std::string_view comment, const ByteReader& reader)
 {
     const std::string_view key  = nextWord(comment);
@@ -177,12 +174,10 @@ void CloudRows::chooseKind(std::string_view property)
                          "; name the kind of stiffness to overrule it");
         kind_ = *kind;
         why   = "by the file's comment";
-    } else if (property == "D" || property.ends_with("flexural_rigidity")) {
-        kind_ = StiffnessKind::rigidity;
-        why   = "by its name";
     } else {
-        kind_ = StiffnessKind::modulus;
-        why   = "because neither a setting, the file nor the name says otherwise";
+        kind_ = kindByName(property);
+        why   = kind_ == StiffnessKind::rigidity ? "by its name"
+                                                 : "because neither a setting, the file nor the name says otherwise";
     }
     if (header_.stiffnessUnit) report_.statedKind = kindOfUnit(*header_.stiffnessUnit);
     report_.stiffnessSource = "property " + inQuotes(property) + " as " + nameOf(kind_) + " " + why;
@@ -262,6 +257,7 @@ void CloudRows::add(const CloudRow& row, Place place)
         const bool finite = std::all_of(used.begin(), used.end(), [](double v) { return std::isfinite(v); });
         if (finite || !settings_.dropInvalid) refuseRow(used, place);
         ++report_.droppedPoints;
+        droppedRows_.push_back(std::uint32_t(rowsRead_));
         ++rowsRead_;
         return;
     }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,9 @@ using CloudRow = std::array<double, kSlots>;
 inline constexpr std::array<std::string_view, 6> kStiffnessProperties = {
     "stiffness", "scalar_stiffness", "flexural_rigidity", "scalar_flexural_rigidity", "D", "E"};
 
+/// The kind of a stiffness of which only the property's name is known.
+[[nodiscard]] StiffnessKind kindByName(std::string_view property) noexcept;
+
 /// Gives meaning to the numbers of a file: the one place that knows units, ranges and which property is stiffness.
 /// Use: ask `slotOf` which properties to deliver, `add` each row, `finish`.
 /// \thread one
@@ -60,6 +64,9 @@ public:
 
     [[nodiscard]] std::uint64_t rowsRead() const noexcept { return rowsRead_; } ///< dropped ones included
 
+    /// The rows that were left out, rising.
+    [[nodiscard]] std::span<const std::uint32_t> droppedRows() const noexcept { return droppedRows_; }
+
     /// Maps ranges and builds the cloud.
     [[nodiscard]] LoadedCloud finish();
 
@@ -79,6 +86,8 @@ private:
     Progress                 progress_;
 
     std::array<std::optional<std::size_t>, kSlots> columns_; ///< index in CloudHeader::properties; empty: uniform
+
+    std::vector<std::uint32_t> droppedRows_;
 
     std::vector<glm::dvec3> positions_; ///< [m]
     std::vector<double>     stiffness_; ///< [Pa] or [N m], or in the property's unit until mapRange

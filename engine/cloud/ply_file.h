@@ -16,7 +16,8 @@ namespace palp {
                                    const CloudReadSettings& settings);
 
 /// Writes a PLY file of doubles; see formatCloud. Extra fields state their unit in `comment unit NAME UNIT`.
+/// The corners of a face are ints, or uints where an int does not reach.
 void formatPly(std::ostream& stream, const PointCloud& cloud, std::span<const NamedField> extraFields,
-               CloudEncoding encoding);
+               const CloudWriteSettings& settings);
 
 } // namespace palp

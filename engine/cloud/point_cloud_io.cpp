@@ -33,6 +33,11 @@ CloudFormat formatOf(const std::filesystem::path& path)
 
 } // namespace
 
+bool holdsFaces(const std::filesystem::path& path)
+{
+    return formatOf(path) == CloudFormat::ply;
+}
+
 LoadedCloud parseCloud(std::istream& stream, std::uint64_t size, const std::string& name, CloudFormat format,
                        const CloudReadSettings& settings)
 {
@@ -58,9 +63,7 @@ LoadedCloud readCloud(const std::filesystem::path& path, const CloudReadSettings
 {
     const CloudFormat   format = formatOf(path);
     std::ifstream       file   = openForReading(path);
-    std::error_code     failure;
-    const std::uint64_t size = std::filesystem::file_size(path, failure);
-    if (failure) throw Error(path.string() + ": expected a regular file whose size is known: " + failure.message());
+    const std::uint64_t size   = sizeOfFile(path);
     return parseCloud(file, size, path.string(), format, settings);
 }
 
@@ -69,7 +72,7 @@ void formatCloud(std::ostream& stream, CloudFormat format, const PointCloud& clo
 {
     switch (format) {
     case CloudFormat::ply:
-        return formatPly(stream, cloud, extraFields, settings.encoding);
+        return formatPly(stream, cloud, extraFields, settings);
     case CloudFormat::pcd:
         return formatPcd(stream, cloud, extraFields, settings.encoding);
     case CloudFormat::text:

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -58,6 +59,9 @@ struct CloudFileReport {
     std::string                  format;                    ///< such as "PLY, binary little-endian"
     std::size_t                  points             = 0;    ///< in the cloud
     std::size_t                  droppedPoints      = 0;    ///< left out because of NaN or infinity
+    std::size_t                  faces              = 0;    ///< in the file, of any number of corners
+    std::size_t                  degenerateFaces    = 0;    ///< left out: fewer than three corners, or one twice
+    std::size_t                  droppedFaces       = 0;    ///< left out because they lost a point
     std::size_t                  duplicatePositions = 0;    ///< points that lie exactly where an earlier one lies
     std::vector<std::string>     properties;                ///< scalar properties of a point, in file order
     std::string                  lengthUnitSource;          ///< such as "mm, from the file's comment"
@@ -68,14 +72,19 @@ struct CloudFileReport {
     std::optional<StiffnessKind> statedKind;                ///< of the property, by the file's comment
 };
 
+/// Three points by their index, in the order of the file; which side is the outer one is the file's affair.
+using Triangle = std::array<std::uint32_t, 3>;
+
 struct LoadedCloud {
-    PointCloud      cloud;
-    CloudFileReport report;
+    PointCloud            cloud;
+    CloudFileReport       report;
+    std::vector<Triangle> faces{}; ///< of the cloud's points; empty unless a PLY file has faces
 };
 
 /// Reads a cloud; the format is that of the file's extension.
 ///
-/// PLY: ascii and both binary orders, every scalar type; other elements and lists are checked and skipped.
+/// PLY: ascii and both binary orders, every scalar type. Lists vertex_indices or vertex_index of an element face become
+/// triangles; other elements and lists are checked and skipped.
 /// PCD: ascii and binary; fields with COUNT > 1 are skipped. Text: one point per line, `x y z [stiffness]` or named by
 /// a header line or by `columns`. Quality, confidence and intensity never become stiffness unless the user names them.
 /// The same position may occur often, but not be the only one.
@@ -95,7 +104,12 @@ struct NamedField {
 
 struct CloudWriteSettings {
     CloudEncoding encoding = CloudEncoding::binaryLittleEndian; ///< of PLY and PCD
+    std::span<const Triangle>
+        faces{}; ///< to stand beside the points of a PLY file; other formats have no place for them
 };
+
+/// Whether the format of the path's extension has a place for faces. \throws Error if no format has the extension
+[[nodiscard]] bool holdsFaces(const std::filesystem::path& path);
 
 /// Writes a cloud, whole or not at all; the format is that of the extension. Numbers are doubles (or as many digits as
 /// bring the same double back), lengths metres, and comments state both units, so that reading gives the same cloud.

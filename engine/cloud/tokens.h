@@ -1,7 +1,9 @@
 #pragma once
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -47,6 +49,14 @@ namespace palp {
     const auto [stopped, status] = std::from_chars(word.data(), end, number);
     if (status != std::errc() || stopped != end) return std::nullopt;
     return number;
+}
+
+/// The shortest text that reads back as the same float or double.
+template <class Number>
+[[nodiscard]] std::string shown(Number value)
+{
+    std::array<char, 32> text; // the longest is -2.2250738585072014e-308
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
 } // namespace palp

@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/contact/local_spacing.h"
+#include "engine/cloud/local_spacing.h"
 
 namespace palp {
 namespace {

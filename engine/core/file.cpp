@@ -35,6 +35,14 @@ std::ifstream openForReading(const std::filesystem::path& path)
     return file;
 }
 
+std::uint64_t sizeOfFile(const std::filesystem::path& path)
+{
+    std::error_code     failure;
+    const std::uint64_t size = std::filesystem::file_size(path, failure);
+    if (failure) throw Error(path.string() + ": expected a regular file whose size is known: " + failure.message());
+    return size;
+}
+
 std::string readWhole(const std::filesystem::path& path, std::size_t most, const std::string& expected)
 {
     std::ifstream in = openForReading(path);

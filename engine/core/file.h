@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -11,6 +12,10 @@ namespace palp {
 /// Opens a file for binary reading.
 /// \throws Error "PATH: cannot be read: REASON" (missing, a folder, no permission)
 [[nodiscard]] std::ifstream openForReading(const std::filesystem::path& path);
+
+/// [bytes]
+/// \throws Error naming the path if it is no regular file
+[[nodiscard]] std::uint64_t sizeOfFile(const std::filesystem::path& path);
 
 /// The whole of a small file.
 /// \param expected  what such a file is, for the complaint about one that is longer than `most` bytes

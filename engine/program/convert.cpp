@@ -26,19 +26,25 @@ CloudEncoding encodingNamed(const std::string& name)
 
 void convert(const ConvertOptions& options)
 {
-    const CloudWriteSettings settings{encodingNamed(options.encoding)};
-    const LoadedCloud        loaded = options.source.load();
-    writeCloud(options.target, loaded.cloud, {}, settings);
-    const std::vector<std::string> warnings = options.source.warnings(loaded);
+    const CloudEncoding encoding = encodingNamed(options.encoding);
+    const LoadedCloud   loaded   = options.source.load();
+    const bool          faces    = holdsFaces(options.target);
+    writeCloud(options.target, loaded.cloud, {}, {encoding, loaded.faces});
+    std::vector<std::string> warnings = options.source.warnings(loaded);
+    if (!faces && !loaded.faces.empty())
+        warnings.push_back("the " + std::to_string(loaded.faces.size()) +
+                           " triangles are not in it: only PLY holds faces; name a .ply file to keep them");
     if (options.json) {
         nlohmann::json report = cloudJson(options.source, loaded);
         report["written"]     = options.target;
+        report["faces"]       = faces ? loaded.faces.size() : 0;
         report["warnings"]    = warnings;
         std::cout << jsonText(report);
     } else {
-        std::cout << options.target << ": " << loaded.cloud.size() << " points, metres, stiffness in "
-                  << unitOf(loaded.cloud.kind()) << "\n  read as     " << loaded.report.lengthUnitSource
-                  << "\n  stiffness   " << loaded.report.stiffnessSource << "\n";
+        std::cout << options.target << ": " << loaded.cloud.size() << " points, "
+                  << (faces && !loaded.faces.empty() ? std::to_string(loaded.faces.size()) + " triangles, " : "")
+                  << "metres, stiffness in " << unitOf(loaded.cloud.kind()) << "\n  read as     "
+                  << loaded.report.lengthUnitSource << "\n  stiffness   " << loaded.report.stiffnessSource << "\n";
         for (const std::string& line : warnings) std::cout << "  warning     " << line << "\n";
     }
 }

@@ -26,6 +26,17 @@ std::string span3(const nlohmann::json& low, const nlohmann::json& high)
     return text;
 }
 
+/// "1200 triangles of 700 faces (2 left out: ...)"
+std::string facesText(const LoadedCloud& loaded)
+{
+    const CloudFileReport& report = loaded.report;
+    std::string text = std::to_string(loaded.faces.size()) + " triangles of " + std::to_string(report.faces) + " faces";
+    if (report.degenerateFaces > 0)
+        text += ", " + std::to_string(report.degenerateFaces) + " left out: fewer than three corners, or one twice";
+    if (report.droppedFaces > 0) text += ", " + std::to_string(report.droppedFaces) + " left out: lost a point";
+    return text;
+}
+
 void printInfo(const InfoOptions& options)
 {
     const LoadedCloud    loaded = options.source.load();
@@ -52,6 +63,7 @@ void printInfo(const InfoOptions& options)
               << loaded.report.duplicatePositions << " exact duplicates\n  stiffness   "
               << formatQuantity(report["stiffness_min"], unit) << " to "
               << formatQuantity(report["stiffness_max"], unit) << ": " << loaded.report.stiffnessSource << "\n";
+    if (loaded.report.faces > 0) std::cout << "  faces       " << facesText(loaded) << "\n";
     if (!properties.empty()) std::cout << "  properties  " << properties << "\n";
     for (const std::string& line : warnings) std::cout << "  warning     " << line << "\n";
 }

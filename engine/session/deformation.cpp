@@ -28,9 +28,15 @@ FootprintLattice latticeOf(const Scene& scene, const PointCloud& cloud, PlateDev
 } // namespace
 
 Deformation::Deformation(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene)
-    : cloud_(cloud), index_(index), law_(scene.handOver), settings_(scene.patch),
+    : cloud_(&cloud), index_(index), law_(scene.handOver), settings_(scene.patch),
       device_(scene.device, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, cloud, device_))
 {
+}
+
+void Deformation::repaint(const PointCloud& cloud)
+{
+    PALP_EXPECT(cloud.size() == cloud_->size(), "a painted cloud has the points that it had before");
+    cloud_ = &cloud;
 }
 
 DeformationAnswer Deformation::solve(const Touch& touch, double period)
@@ -46,7 +52,7 @@ DeformationAnswer Deformation::solve(const Touch& touch, double period)
 DeformationAnswer Deformation::solveAt(const glm::dvec3& place, const Touch& touch)
 {
     try {
-        PatchWithTable solved = deformWithTable(cloud_, index_, {place, touch.outward}, settings_, lattice_, device_);
+        PatchWithTable solved = deformWithTable(*cloud_, index_, {place, touch.outward}, settings_, lattice_, device_);
         if (!solved.table) return {{}, {}, "the points around the contact determine no surface"};
         Patch& patch    = solved.patch;
         settings_.frame = patch.chart.frame;

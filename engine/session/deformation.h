@@ -37,12 +37,17 @@ public:
         return [this](const Touch& touch, double period) { return solve(touch, period); };
     }
 
+    /// The same points with other stiffnesses from now on. The table's lattice stays that of the first cloud: it depends
+    /// on the mean of the rigidity alone, and through that on how far a foundation lets a dent spread.
+    /// \param cloud  outlives it
+    void repaint(const PointCloud& cloud);
+
     [[nodiscard]] const PlateDevice& device() const noexcept { return device_; }
 
 private:
     [[nodiscard]] DeformationAnswer solveAt(const glm::dvec3& place, const Touch& touch);
 
-    const PointCloud&     cloud_;
+    const PointCloud*     cloud_; ///< never null
     const NeighbourIndex& index_;
     HandOverLaw           law_;
     PatchSettings         settings_; ///< with the frame of the last patch

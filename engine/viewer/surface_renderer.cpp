@@ -167,13 +167,13 @@ private:
                     "an overlay has the size of the picture");
     }
 
-    Detail                                        detail_;
-    std::span<const std::array<std::uint32_t, 3>> faces_;
-    const Overlay*                                overlay_;
-    std::size_t                                   dots_;
-    std::vector<shared::ViewSplat>                splats_;
-    std::vector<shared::ViewCorner>               shapes_;
-    shared::ViewFrame                             frame_;
+    Detail                          detail_;
+    std::span<const Triangle>       faces_;
+    const Overlay*                  overlay_;
+    std::size_t                     dots_;
+    std::vector<shared::ViewSplat>  splats_;
+    std::vector<shared::ViewCorner> shapes_;
+    shared::ViewFrame               frame_;
 };
 
 } // namespace

@@ -58,7 +58,7 @@ std::optional<ViewPaint> viewPaintNamed(std::string_view wanted)
 }
 
 TouchView::TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings,
-                     std::span<const std::array<std::uint32_t, 3>> faces)
+                     std::span<const Triangle> faces)
     : cloud_(cloud), settings_(settings), faces_(faces), skin_(cloud.positions(), index),
       restNormals_(skin_.normals(cloud.positions())), normals_(restNormals_),
       positions_(cloud.positions().begin(), cloud.positions().end()), deflections_(cloud.size()),

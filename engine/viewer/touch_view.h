@@ -55,7 +55,7 @@ public:
     /// \throws as CloudSkin
     /// \param faces     of the cloud, outlive the view; empty: it has none
     TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings,
-              std::span<const std::array<std::uint32_t, 3>> faces = {});
+              std::span<const Triangle> faces = {});
 
     /// Other stiffnesses of the same points from now on. \param stiffness  outlives their use [Pa] or [N m]
     void repaint(std::span<const double> stiffness) { stiffness_ = stiffness; }
@@ -84,13 +84,13 @@ private:
     void addFit(const Patch& patch, const Overlays& overlays);
     void addGhost(Ground ground);
 
-    const PointCloud&                             cloud_;
-    PatchSettings                                 settings_;
-    std::span<const std::array<std::uint32_t, 3>> faces_;
-    CloudSkin                                     skin_;
-    std::vector<glm::dvec3>                       restNormals_, normals_, positions_; // [1], [1], [m]
-    std::vector<double>                           deflections_, hollows_;             // [m], [1]
-    std::span<const double>                       stiffness_;                         // [Pa] or [N m]
+    const PointCloud&         cloud_;
+    PatchSettings             settings_;
+    std::span<const Triangle> faces_;
+    CloudSkin                 skin_;
+    std::vector<glm::dvec3>   restNormals_, normals_, positions_; // [1], [1], [m]
+    std::vector<double>       deflections_, hollows_;             // [m], [1]
+    std::span<const double>   stiffness_;                         // [Pa] or [N m]
 
     Shown                      shown_;
     PatchSurface               surface_; // of that patch

@@ -1,6 +1,4 @@
 #pragma once
-#include <array>
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,6 +6,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "engine/cloud/point_cloud_io.h"
 #include "engine/picture/axis.h"
 #include "engine/picture/colour_map.h"
 
@@ -47,8 +46,8 @@ struct ViewScene {
     /// Detail::fast need it, all others see it in the depths.
     std::span<const double> hollows;
     /// Triangles of points; empty: discs are the surface.
-    std::span<const std::array<std::uint32_t, 3>> faces;
-    std::vector<ViewDot>                          dots;
+    std::span<const Triangle> faces;
+    std::vector<ViewDot>      dots;
 
     std::optional<glm::dvec3>  proxy;            ///< a ball [m]
     std::optional<glm::dvec3>  hip;              ///< an octahedron, seen through the surface [m]

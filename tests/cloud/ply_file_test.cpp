@@ -379,7 +379,7 @@ TEST(PlyFile, WrittenHeadersStateUnitsAndNames)
     const NamedField          field{"deflection", "m", deflection};
     std::ostringstream        stream;
 
-    formatPly(stream, cloud, {&field, 1}, CloudEncoding::ascii);
+    formatPly(stream, cloud, {&field, 1}, {CloudEncoding::ascii});
 
     EXPECT_EQ(stream.str(), "ply\nformat ascii 1.0\ncomment length_unit m\ncomment stiffness_unit N_m\n"
                             "comment unit deflection m\nelement vertex 2\nproperty double x\nproperty double y\n"

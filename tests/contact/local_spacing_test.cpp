@@ -1,4 +1,4 @@
-#include "engine/contact/local_spacing.h"
+#include "engine/cloud/local_spacing.h"
 
 #include <algorithm>
 

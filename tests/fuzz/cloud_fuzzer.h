@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -34,14 +35,17 @@ inline void fuzzExpectSame(const PointCloud& a, const PointCloud& b)
 /// What must hold for every file that is accepted: the report agrees with the cloud, and writing it brings it back.
 inline void fuzzCheckAccepted(const LoadedCloud& loaded, CloudFormat format)
 {
-    const auto& [cloud, report] = loaded;
+    const auto& [cloud, report, faces] = loaded;
     fuzzExpect(report.points == cloud.size() && report.duplicatePositions < cloud.size());
     fuzzExpect(cloud.bounds().diagonal() > 0);
+    for (const Triangle& t : faces)
+        fuzzExpect(std::max({t[0], t[1], t[2]}) < cloud.size() && t[0] != t[1] && t[1] != t[2] && t[2] != t[0]);
     for (const CloudEncoding encoding : {CloudEncoding::binaryLittleEndian, CloudEncoding::ascii}) {
         std::stringstream stream;
-        formatCloud(stream, format, cloud, {}, {encoding});
+        formatCloud(stream, format, cloud, {}, {encoding, faces});
         const LoadedCloud again = parseCloud(stream, stream.str().size(), "again", format);
         fuzzExpectSame(cloud, again.cloud);
+        fuzzExpect(format == CloudFormat::ply ? again.faces == faces : faces.empty());
         fuzzExpect(again.report.duplicatePositions == report.duplicatePositions);
     }
 }

@@ -1,4 +1,4 @@
-#include "engine/contact/local_spacing.h"
+#include "engine/cloud/local_spacing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -86,7 +86,7 @@ std::vector<double> localSpacings(std::span<const glm::dvec3> positions, const N
     PALP_EXPECT(positions.size() == index.size(), "the index is over other points");
     const double usual = index.spacing();
     if (!(usual > 0))
-        throw Error("contact: the cloud has fewer than seven points or most of them coincide, so there is no surface "
+        throw Error("the cloud has fewer than seven points or most of them coincide, so there is no surface "
                     "to touch; are there duplicates?");
 
     std::vector<std::uint32_t> near;

@@ -1,0 +1,44 @@
+#include "engine/cloud/point_grid.h"
+
+#include <glm/common.hpp>
+
+namespace palp {
+namespace {
+
+/// Cubes along the longest side at most: as many as a disc of a thousand points needs; more would cost more to clear
+/// than they save.
+constexpr double kMostCells = 32;
+
+} // namespace
+
+void PointGrid::build(std::span<const glm::dvec3> places, double edge)
+{
+    glm::dvec3 high = places[0];
+    low_            = places[0];
+    for (const glm::dvec3& p : places) {
+        low_ = glm::min(low_, p);
+        high = glm::max(high, p);
+    }
+    const glm::dvec3 size   = high - low_;
+    const double     larger = std::max(edge, std::max({size.x, size.y, size.z}) / kMostCells); // [m]
+    perMetre_               = larger > 0 ? 1 / larger : 0;
+    for (int k = 0; k < 3; ++k) cells_[std::size_t(k)] = int(std::min(size[k] * perMetre_, kMostCells)) + 1;
+
+    cubes_.assign(std::size_t(cells_[0]) * std::size_t(cells_[1]) * std::size_t(cells_[2]), {});
+    cubeAt_.resize(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto [x, y, z] = cellsOf(places[i], 0);
+        cubeAt_[i]           = std::uint32_t((z * cells_[1] + y) * cells_[0] + x);
+        ++cubes_[cubeAt_[i]].end; // as a count
+    }
+    std::uint32_t next = 0;
+    for (Cube& cube : cubes_) {
+        cube.begin = next;
+        next += cube.end;
+        cube.end = cube.begin;
+    }
+    entries_.resize(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) entries_[cubes_[cubeAt_[i]].end++] = {places[i], std::uint32_t(i)};
+}
+
+} // namespace palp
