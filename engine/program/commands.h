@@ -15,6 +15,7 @@ void addDevicesCommand(CLI::App& app);
 void addDoctorCommand(CLI::App& app);
 void addRunCommand(CLI::App& app); ///< run and replay
 void addRenderCommand(CLI::App& app);
+void addViewCommand(CLI::App& app);
 void addCalibrateCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addBenchPlateCommand(CLI::App& bench);
@@ -26,6 +27,9 @@ struct CheckFailed : std::runtime_error {
 
 /// \throws Error naming the first option of the command that was given an empty value
 void refuseEmptyValues(const CLI::App& command);
+
+/// The command line that a command's options are, quoted for a shell.
+[[nodiscard]] std::string commandOf(const CLI::App& command);
 
 /// JSON as all programs print it. A file name may hold bytes that are not UTF-8: JSON cannot, they become U+FFFD.
 template <class Json>

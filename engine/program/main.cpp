@@ -108,6 +108,7 @@ int main(int argumentCount, char** arguments)
     palp::addDoctorCommand(app);
     palp::addRunCommand(app);
     palp::addRenderCommand(app);
+    palp::addViewCommand(app);
     palp::addCalibrateCommand(app);
     palp::addBenchCommand(app);
     std::signal(SIGXFSZ, SIG_IGN); // a file beyond the limit on sizes is then a write that fails, with a sentence

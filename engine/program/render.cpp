@@ -15,6 +15,7 @@
 #include "engine/core/quantity.h"
 #include "engine/program/commands.h"
 #include "engine/program/hand_source.h"
+#include "engine/program/scene_source.h"
 #include "engine/program/solver_choice.h"
 #include "engine/session/virtual_session.h"
 #include "engine/viewer/annotation.h"
@@ -27,13 +28,13 @@ namespace palp {
 namespace {
 
 struct RenderOptions {
-    std::string                                     scene, force, size = "1600x1200", out;
-    std::string                                     colour = "deflection", map = "viridis", exaggerate = "1";
-    std::string                                     drawOn = "auto", view = "patch", hand = "scan", seconds = "2 s";
-    std::map<std::string, std::string, std::less<>> flags; ///< of the scene's keys, as given
-    std::optional<int>                              frames;
-    int                                             finer = 2;
-    bool                                            dark = false, json = false;
+    std::string        scene, force, size = "1600x1200", out;
+    std::string        colour = "deflection", map = "viridis", exaggerate = "1";
+    std::string        drawOn = "auto", view = "patch", hand = "scan", seconds = "2 s";
+    SceneFlags         flags;
+    std::optional<int> frames;
+    int                finer = 2;
+    bool               dark = false, json = false;
 };
 
 /// The value of an option with a fixed set of names, or a sentence that lists them.
@@ -68,25 +69,13 @@ TouchLook lookOf(const RenderOptions& o)
     return look;
 }
 
-/// A scene file; anything else is a cloud, and the scene is what suits it.
-Scene sceneOf(const RenderOptions& o)
-{
-    const SceneOverrides overrides{o.flags, processEnvironment()};
-    if (o.scene.ends_with(".json")) return readScene(o.scene, overrides);
-    if (!o.scene.starts_with("sample:") && !o.flags.contains("place")) {
-        static_cast<void>(openForReading(o.scene)); // a file that is not there is the first thing to say
-        throw Error("--at: expected a place X,Y,Z for a cloud from a file, found none; palpate info " + o.scene +
-                    " shows where the cloud is");
-    }
-    return parseScene(nlohmann::json{{"cloud", o.scene}}.dump(), o.scene, std::filesystem::current_path(), overrides);
-}
-
 /// Everything that is touched and drawn, made once.
 struct Stage {
     explicit Stage(const RenderOptions& o)
-        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(sceneOf(o)), renderer({.device = o.drawOn}),
-          loaded(loadCloud(scene)), index(loaded.cloud.positions()),
-          device(orTheReference([this] { return PlateDevice(scene.device); })), view(loaded.cloud, index, scene.patch)
+        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(sceneFrom(o.scene, o.flags, PlaceNeeded::yes)),
+          renderer({.device = o.drawOn}), loaded(loadCloud(scene)), index(loaded.cloud.positions()),
+          device(orTheReference([this] { return PlateDevice(scene.device); })),
+          view(loaded.cloud, index, scene.patch, loaded.faces)
     {
         sayPassedOver(device.name(), device.note());
         sayPassedOver(renderer.device().name, renderer.note());
@@ -274,17 +263,6 @@ void render(const RenderOptions& o)
     tell(o, stage, o.frames ? film(o, stage) : std::vector{still(o, stage)});
 }
 
-void addSceneKeys(CLI::App& command, const std::shared_ptr<RenderOptions>& o)
-{
-    for (const SceneKey& key : sceneKeys())
-        command
-            .add_option_function<std::string>(
-                key.name == "place" ? "--at,--place" : flagOf(key.name),
-                [o, name = std::string(key.name)](const std::string& text) { o->flags[name] = text; },
-                std::string(key.means) + (key.unit.empty() ? "" : " [" + std::string(key.unit) + "]"))
-            ->group("Values of the scene (over PALPATE_<KEY> and the file)");
-}
-
 } // namespace
 
 void addRenderCommand(CLI::App& app)
@@ -310,7 +288,7 @@ void addRenderCommand(CLI::App& app)
     command->add_option("--draw-on", o->drawOn, "Vulkan device that draws, as \"palpate devices\" names it")
         ->capture_default_str();
     command->add_flag("--json", o->json, "machine-readable, SI units");
-    addSceneKeys(*command, o);
+    addSceneOptions(*command, o->flags);
     command->footer("Examples:\n"
                     "  palpate render sample:ear-lobe --out lobe.png\n"
                     "  palpate render samples/scenes/skin_wart.json --force '1 N' --colour stiffness --out wart.png\n"

@@ -66,6 +66,12 @@ public:
     /// \param hand   empty: at rest, where the force is that of the hand's depth
     void show(const Patch* patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand = {});
 
+    /// Other settings of the same cloud from now on.
+    void use(const PatchSettings& settings) { settings_ = settings; }
+
+    [[nodiscard]] std::span<const glm::dvec3> restNormals() const noexcept { return restNormals_; } ///< of either side [1]
+    [[nodiscard]] std::span<const double>     radii() const noexcept { return skin_.cores(); } ///< of closed discs [m]
+
     /// Valid until the next show(); title and note are the caller's to set.
     [[nodiscard]] ViewScene& scene() noexcept { return scene_; }
 

@@ -61,18 +61,17 @@ void GlfwWindow::Impl::listen()
     glfwSetWindowUserPointer(window, this);
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int mods) {
         if (action != GLFW_RELEASE && keyOf(key) != 0)
-            of(w).input.keys.push_back(
-                {keyOf(key), (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0});
+            of(w).input.keys.push_back({keyOf(key), (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0});
     });
     glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) { of(w).input.wheel += y; });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
         constexpr double kDouble = 0.3; // [s] between the two clicks
         if (button != GLFW_MOUSE_BUTTON_LEFT || action != GLFW_PRESS) return;
-        Impl&        self       = of(w);
-        const double now        = glfwGetTime();
-        self.input.leftPressed  = true;
+        Impl&        self      = of(w);
+        const double now       = glfwGetTime();
+        self.input.leftPressed = true;
         self.input.doubleClick |= now - self.pressed < kDouble;
-        self.pressed            = now;
+        self.pressed = now;
     });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
         for (int n = 0; n < count; ++n) of(w).input.dropped.emplace_back(paths[n]);
@@ -160,9 +159,9 @@ WindowInput GlfwWindow::poll(double patience)
     else
         glfwPollEvents();
     impl_->readState();
-    WindowInput result         = impl_->input;
-    impl_->input.wheel         = 0;
-    impl_->input.leftPressed   = impl_->input.doubleClick = false;
+    WindowInput result       = impl_->input;
+    impl_->input.wheel       = 0;
+    impl_->input.leftPressed = impl_->input.doubleClick = false;
     impl_->input.keys.clear();
     impl_->input.dropped.clear();
     return result;

@@ -9,8 +9,8 @@
 namespace palp {
 
 struct Ray {
-    glm::dvec3 from{};            ///< [m]
-    glm::dvec3 along{0, 0, -1};   ///< [1] unit
+    glm::dvec3 from{};          ///< [m]
+    glm::dvec3 along{0, 0, -1}; ///< [1] unit
 };
 
 /// From the eye through a place of the picture. \param at  from its upper left corner [px] \param size  of it [px]
@@ -18,8 +18,8 @@ struct Ray {
 
 /// A place on a surface of points and its side towards the eye.
 struct Hit {
-    glm::dvec3 point{};            ///< [m]
-    glm::dvec3 outward{0, 0, 1};   ///< [1] unit
+    glm::dvec3 point{};          ///< [m]
+    glm::dvec3 outward{0, 0, 1}; ///< [1] unit
 };
 
 /// Where a ray first meets the discs of a cloud: the mean over the points around there, weighted by (1 - d²/R²)² of

@@ -19,7 +19,8 @@ std::filesystem::path fileOf()
     const char* const config = std::getenv("XDG_CONFIG_HOME");
     const char* const home   = std::getenv("HOME");
     if (config && *config) return std::filesystem::path(config) / "palpate" / "window.json";
-    return home && *home ? std::filesystem::path(home) / ".config" / "palpate" / "window.json" : std::filesystem::path();
+    return home && *home ? std::filesystem::path(home) / ".config" / "palpate" / "window.json"
+                         : std::filesystem::path();
 }
 
 } // namespace

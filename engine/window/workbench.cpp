@@ -1,0 +1,353 @@
+#include "engine/window/workbench.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/quantity.h"
+#include "engine/window/panel_frame.h"
+
+namespace palp {
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+constexpr double kFramePeriod = 1.0 / 60; ///< no display shows more [s]
+constexpr double kLong        = 1e9;      ///< of a session that ends when somebody says so [s]
+
+/// 1, 2 or 5 times a power of ten, at least this: scales that change seldom.
+double roundedUp(double value)
+{
+    if (!(value > 0)) return 0;
+    const double decade = std::pow(10.0, std::floor(std::log10(value)));
+    for (const double digit : {1.0, 2.0, 5.0})
+        if (value <= digit * decade * (1 + 1e-9)) return digit * decade;
+    return 10 * decade;
+}
+
+bool inContact(const SessionView* view)
+{
+    return view && glm::length(view->sample.normal) > 0;
+}
+
+} // namespace
+
+Workbench::Workbench(WorkbenchSettings settings, SurfaceRenderer& renderer)
+    : settings_(std::move(settings)), renderer_(renderer), state_(settings_.state), values_(settings_.values)
+{
+    openWhat(settings_.what);
+    resetCamera();
+}
+
+void Workbench::openWhat(const std::string& what)
+{
+    if (std::filesystem::is_directory(what)) return startReplay(what);
+    auto stage = std::make_unique<Stage>(settings_.open(what, values_));
+    endRecording();
+    stage_ = std::move(stage);
+    what_  = what;
+    replay_.reset();
+    const Scene& scene = stage_->scene();
+    pointer_.emplace(Hit{stage_->place().point, stage_->place().outward}, scene.startHeight,
+                     stage_->painted().bounds());
+    state_.pressDepth   = 0.4 * scene.patch.material.thickness;
+    state_.brush.radius = scene.patch.footprintRadius;
+    state_.brush.value  = *std::ranges::max_element(stage_->painted().stiffness());
+    deepest_            = roundedUp(scene.patch.material.thickness / 5);
+    strongest_          = 1;
+    failed_             = false;
+}
+
+WorkbenchReport Workbench::run(const Poll& poll, const PanelHooks& panels)
+{
+    poll_    = poll;
+    panels_  = panels;
+    started_ = lastFrame_ = lastChange_ = Clock::now();
+    while (!closing_) {
+        stop_ = false;
+        takeChanges();
+        if (failed_)
+            frame(nullptr);
+        else
+            session();
+    }
+    endRecording();
+    return std::move(report_);
+}
+
+/// Touches until something asks for another session.
+void Workbench::session()
+{
+    try {
+        history_.clear();
+        if (beginAt_) pointer_->begin(*std::exchange(beginAt_, std::nullopt));
+        WorkbenchHand hand{&pointer_->device(), pointer_->frame(), kLong};
+        if (replay_)
+            hand = {replay_.get(), {}, double(replayed_->samples.size()) * 1e-3};
+        else if (settings_.hand)
+            hand = settings_.hand(*stage_);
+        hand_ = hand;
+        startRecording();
+        const SessionParts  parts{stage_->scene(),  stage_->loaded().cloud, stage_->index(),
+                                 stage_->solver(), *hand.device,           hand.frame};
+        RealSessionSettings real;
+        real.seconds    = hand.seconds;
+        real.viewPeriod = 1e-4; // as soon as a picture is done the next begins
+        real.stop       = &stop_;
+        real.onView     = [this](const SessionView& view) { frame(&view); };
+        real.onSample   = [this, recording = recording_.get()](const SessionSample& sample) {
+            static_cast<void>(ring_.push(sample)); // curves may have gaps
+            if (recording) recording->push(sample);
+        };
+        std::string          warning;
+        const SessionSummary summary = runReal(parts, real, warning);
+        ended(summary);
+    } catch (const Error& error) {
+        complain(error.what());
+        failed_ = true;
+    }
+}
+
+/// A session has come to its end.
+void Workbench::ended(const SessionSummary& summary)
+{
+    if (recording_ && !recordingWanted_) endRecording();
+    if (stop_ || closing_) return;
+    if (replay_) {
+        replay_.reset();
+        say("the replay is over");
+    } else if (summary.deviceFault != DeviceFault::none) {
+        complain(std::string("the device is ") + name(summary.deviceFault) + ": plug it in again and press R to go on");
+        failed_ = true;
+    } else if (settings_.hand) {
+        failed_ = handOver_ = true; // a script is over
+    }
+}
+
+/// One picture: what happened, what is felt, what is seen.
+void Workbench::frame(const SessionView* view)
+{
+    input_ = poll_(patience());
+    handle(input_);
+    const auto now = Clock::now();
+    if (settings_.seconds > 0 && Seconds(now - started_).count() > settings_.seconds) closing_ = true;
+    if (settings_.stop && *settings_.stop) closing_ = true;
+    if (closing_) restart();
+    for (auto samples = ring_.front(); !samples.empty(); samples = ring_.front()) {
+        for (const SessionSample& sample : samples) history_.add(sample);
+        ring_.pop(samples.size());
+    }
+    const bool active = input_.any() || input_.panelsTakePointer || inContact(view) || replay_ || recording_;
+    if (active || input_.size != drawnSize_) lastChange_ = now;
+    if (closing_ || input_.size.x < 1 || input_.size.y < 1) return;
+    if (stillFine_ && lastChange_ != now) return;
+    drawFrame(view);
+}
+
+double Workbench::patience() const
+{
+    constexpr double kIdle = 0.1; // between looks at a window in which nothing happens [s]
+    if (stillFine_) return kIdle;
+    return std::max(0.0, kFramePeriod - Seconds(Clock::now() - lastFrame_).count());
+}
+
+void Workbench::drawFrame(const SessionView* view)
+{
+    constexpr double kQuick = 12e-3,
+                     kRest  = 0.8; // [s] of a fine picture that is as good as a fast one; until one is due
+    const auto        begin = Clock::now();
+    const bool        rests = Seconds(begin - lastChange_).count() > kRest;
+    const bool        fine  = rests || (fineTime_ > 0 && fineTime_ < kQuick);
+    const PictureSize size{input_.size.x, input_.size.y, 1, fine ? Detail::fine : Detail::fast};
+    showTouch(view);
+    PanelWishes wishes;
+#ifdef PALPATE_PANELS
+    if (panels_.frame) {
+        panels_.frame->setDark(state_.look.ground == Ground::dark);
+        panels_.begin();
+        wishes = drawPanels(state_, content(view), input_.scale);
+        panels_.frame->end();
+    }
+#endif
+    writeTexts(view);
+    const bool shown = renderer_.show(stage_->view().scene(), state_.camera, size, state_.texts ? &texts_ : nullptr);
+    const auto end   = Clock::now();
+    drawnSize_       = input_.size;
+    drawTime_        = Seconds(end - begin).count();
+    if (fine) fineTime_ = drawTime_;
+    stillFine_ = shown && rests && fineTime_ >= kQuick;
+    frameTime_ += 0.1 * (Seconds(end - lastFrame_).count() - frameTime_);
+    if (shown) count(inContact(view), Seconds(end - lastFrame_).count());
+    lastFrame_ = end;
+    perform(wishes);
+}
+
+void Workbench::count(bool touching, double period)
+{
+    constexpr std::size_t kMost = 1'000'000; // five hours [1]
+    ++report_.frames;
+    if (!touching || report_.frameTimes.size() >= kMost) return;
+    report_.frameTimes.push_back(period);
+    report_.drawTimes.push_back(drawTime_);
+}
+
+/// The scene as the session has it now.
+void Workbench::showTouch(const SessionView* view)
+{
+    TouchLook look  = state_.look;
+    double    force = 0;
+    if (view) {
+        force                = glm::length(view->sample.force);
+        const Patch* patch   = view->patch;
+        const double deepest = patch ? force * *std::ranges::max_element(patch->response.values()) : 0;
+        deepest_             = std::max(deepest_, roundedUp(deepest));
+        strongest_           = std::max(strongest_, roundedUp(force));
+    }
+    look.deepest   = deepest_;
+    look.strongest = strongest_;
+    if (view)
+        stage_->view().show(view->patch, force, look,
+                            TouchHand{view->sample.hip, view->sample.force, view->sample.proxy});
+    else
+        stage_->view().show(nullptr, 0, look);
+    if (state_.tool == Tool::paint) addBrush();
+}
+
+/// The brush as a ring on the surface.
+void Workbench::addBrush()
+{
+    constexpr int kSides = 48;
+    const auto    hit    = hitAt(input_);
+    if (!hit || input_.panelsTakePointer) return;
+    const Frame frame = Frame::about(hit->outward);
+    const auto  at    = [&](int n) {
+        const double angle = 2 * 3.14159265358979 * n / kSides;
+        return hit->point + state_.brush.radius * (std::cos(angle) * frame.east + std::sin(angle) * frame.north);
+    };
+    for (int n = 0; n < kSides; ++n) stage_->view().scene().outline.push_back({at(n), at(n + 1)});
+}
+
+/// The texts over the picture, written anew when they change, but not with every frame.
+void Workbench::writeTexts(const SessionView* view)
+{
+    constexpr double kSeldom = 0.25; // [s]
+    if (!state_.texts) return;
+    ViewScene& scene   = stage_->view().scene();
+    scene.title        = std::filesystem::path(what_).stem().string();
+    const double force = view ? glm::length(view->sample.force) : 0;
+    scene.note         = !message_.empty()  ? message_
+                         : !faults_.empty() ? faults_.back()
+                         : force > 0        ? formatQuantity(force, "N")
+                                            : "hold Space and move: touch.  F1: keys";
+    std::string says   = scene.title + "|" + scene.note + "|" + scene.colours.quantity + "|" + name(state_.look.map) +
+                       "|" + std::to_string(scene.colours.range.low) + "|" +
+                       std::to_string(scene.colours.range.high * 1e6) + "|" +
+                       std::to_string(state_.camera.halfHeight()) + "|" + std::to_string(input_.size.x) + "x" +
+                       std::to_string(input_.size.y) + (state_.look.ground == Ground::dark ? "d" : "l") +
+                       (scene.proxy ? "p" : "") + (scene.force ? "f" : "") + (scene.outline.empty() ? "" : "o");
+    const auto now  = Clock::now();
+    const bool fits = texts_.width == input_.size.x && texts_.height == input_.size.y;
+    if (fits && (says == textsOf_ || Seconds(now - textsAt_).count() < kSeldom)) return;
+    texts_   = annotations(scene, state_.camera, input_.size.x, input_.size.y);
+    textsOf_ = std::move(says);
+    textsAt_ = now;
+}
+
+PanelContent Workbench::content(const SessionView* view) const
+{
+    PanelContent now{stage_->scene(), stage_->painted(), history_};
+    if (view) {
+        now.patch      = view->patch;
+        now.force      = glm::length(view->sample.force);
+        now.loopPeriod = view->loopPeriod;
+        now.solveTime  = view->solveTime;
+        now.touching   = true;
+        now.hand       = hand_.device->info().model;
+    }
+    now.frameTime       = frameTime_;
+    now.solvedOn        = stage_->solvedOn();
+    now.drawnOn         = renderer_.device().name;
+    now.drawnInSoftware = renderer_.device().kind == "software";
+    now.replaying       = replay_ != nullptr;
+    now.recording       = recording_ ? recordFolder_ : "";
+    now.title           = std::filesystem::path(what_).filename().string();
+    now.painted         = stage_->painting().changed();
+    now.canUndo         = stage_->painting().canUndo();
+    now.canRedo         = stage_->painting().canRedo();
+    now.faults          = faults_;
+    now.message         = message_;
+    return now;
+}
+
+void Workbench::perform(const PanelWishes& wishes)
+{
+    if (wishes.frame) frameAll();
+    if (wishes.reset) resetCamera();
+    if (wishes.screenshot) screenshot(false);
+    if (wishes.record) toggleRecording();
+    if (wishes.undo) undo();
+    if (wishes.redo) redo();
+    if (wishes.save) savePaint();
+    if (wishes.resetFault) goOn();
+    if (!wishes.values.empty()) change(wishes.values);
+}
+
+void Workbench::goOn()
+{
+    faults_.clear();
+    failed_ = false;
+    restart();
+}
+
+/// Other values of the scene; the object stays if it can. They count from the next session on, which begins at once.
+void Workbench::change(const SceneValues& values)
+{
+    wanted_.merge(SceneValues(values));
+    for (const auto& [key, value] : values) wanted_[key] = value;
+    failed_ = false;
+    restart();
+}
+
+/// Between two sessions: what the user has changed.
+void Workbench::takeChanges()
+{
+    if (!toOpen_.empty()) {
+        try {
+            openWhat(std::exchange(toOpen_, {}));
+            resetCamera();
+            faults_.clear();
+        } catch (const Error& error) {
+            complain(error.what());
+        }
+    }
+    if (wanted_.empty()) return;
+    SceneValues values = values_;
+    for (const auto& [key, value] : std::exchange(wanted_, {})) values[key] = value;
+    try {
+        endRecording(); // it is of the scene before
+        const Scene scene = settings_.open(what_, values);
+        if (sameObject(scene, stage_->scene()))
+            stage_->change(scene);
+        else
+            stage_ = std::make_unique<Stage>(scene);
+        values_ = std::move(values);
+        faults_.clear();
+    } catch (const Error& error) {
+        complain(error.what());
+    }
+}
+
+void Workbench::complain(const std::string& sentence)
+{
+    constexpr std::size_t kMost = 5;
+    if (!faults_.empty() && faults_.back() == sentence) return;
+    faults_.push_back(sentence);
+    if (faults_.size() > kMost) faults_.erase(faults_.begin());
+    lastChange_ = Clock::now();
+}
+
+} // namespace palp
