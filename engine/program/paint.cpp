@@ -164,6 +164,8 @@ void addPaintCommand(CLI::App& app)
         "paint", "paints stiffness onto a cloud, or that of a scene (SCENE.json), with a round brush");
     const auto options = std::make_shared<PaintOptions>();
     options->source.addTo(*command);
+    command->get_option("CLOUD")->description(
+        "a .ply, .pcd, .xyz, .txt or .csv file, sample:NAME, or a scene that ends in .json");
     command
         ->add_option("--stroke", options->strokes,
                      "a stroke of the brush, once for each:\n"
