@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -26,7 +25,7 @@ public:
     template <class Visit>
     void takeNear(const glm::dvec3& place, double radius, Visit&& visit)
     {
-        eachCube(place, radius, [&](Cube& cube) {
+        eachCube(*this, place, radius, [&](Cube& cube) {
             for (std::uint32_t k = cube.begin; k < cube.end;) {
                 const Entry& entry = entries_[k];
                 const double d2    = squaredDistance(entry.place, place);
@@ -43,7 +42,7 @@ public:
     template <class Visit>
     void around(const glm::dvec3& place, double radius, Visit&& visit) const
     {
-        eachCube(place, radius, [&](const Cube& cube) {
+        eachCube(*this, place, radius, [&](const Cube& cube) {
             for (std::uint32_t k = cube.begin; k < cube.end; ++k)
                 visit(std::size_t(entries_[k].index), squaredDistance(entries_[k].place, place));
         });
@@ -76,18 +75,15 @@ private:
         return d.x * d.x + d.y * d.y + d.z * d.z;
     }
 
-    template <class Visit>
-    void eachCube(const glm::dvec3& place, double radius, const Visit& visit) const
+    /// \param grid  this one, const or not, as its cubes are for `visit`
+    template <class Grid, class Visit>
+    static void eachCube(Grid& grid, const glm::dvec3& place, double radius, const Visit& visit)
     {
-        const Cells low = cellsOf(place, -radius), high = cellsOf(place, radius);
+        const Cells low = grid.cellsOf(place, -radius), high = grid.cellsOf(place, radius);
         for (int z = low[2]; z <= high[2]; ++z)
             for (int y = low[1]; y <= high[1]; ++y)
-                for (int x = low[0]; x <= high[0]; ++x) visit(cubes_[std::size_t((z * cells_[1] + y) * cells_[0] + x)]);
-    }
-    template <class Visit>
-    void eachCube(const glm::dvec3& place, double radius, const Visit& visit)
-    {
-        std::as_const(*this).eachCube(place, radius, [&](const Cube& cube) { visit(const_cast<Cube&>(cube)); });
+                for (int x = low[0]; x <= high[0]; ++x)
+                    visit(grid.cubes_[std::size_t((z * grid.cells_[1] + y) * grid.cells_[0] + x)]);
     }
 
     glm::dvec3                 low_{};          ///< [m]

@@ -37,7 +37,7 @@ class StiffnessPainting {
 public:
     /// What the strokes that can be taken back or done again may hold [bytes]: 12 for each point that a stroke changed,
     /// so 5.6 million points. The oldest strokes are forgotten first, but never the last: if it changed more points
-    /// than that, it is what is held.
+    /// than that, it is what is held. Beside that a painting holds 20 bytes for each point of the cloud.
     static constexpr std::size_t kHistoryBytes = std::size_t(64) << 20;
 
     /// \param cloud, index  over the same points; both must outlive this
@@ -55,6 +55,7 @@ public:
 
     /// One dab towards the mean of the logarithms around each point, as they were when the stroke began: over an eighth
     /// of the radius, but at least 2 and at most 4 local spacings, weighted by 1 - (distance / that)².
+    /// Returns and throws as paint().
     std::span<const std::uint32_t> smooth(const Brush& brush);
 
     /// Takes the last stroke back, to the bit; one that has not ended ends.

@@ -146,6 +146,22 @@ double CloudSource::metresPerPlainNumber() const
     return unit.empty() ? 1 : metresPer(unit);
 }
 
+CloudReadSettings CloudSource::readSettings() const
+{
+    CloudReadSettings settings;
+    settings.lengthUnit        = unit;
+    settings.stiffnessProperty = stiffnessProperty;
+    settings.columns           = columns;
+    settings.dropInvalid       = dropInvalid;
+    if (!stiffnessUnit.empty()) settings.stiffnessKind = kindOf(stiffnessUnit);
+    const StiffnessKind kind = settings.stiffnessKind.value_or(StiffnessKind::modulus);
+    if (!range.empty()) settings.range = rangeOf(range, logRange, kind);
+    if (!uniform.empty())
+        settings.uniformStiffness = parseQuantity(
+            uniform, kind == StiffnessKind::modulus ? Dimension::pressure : Dimension::rigidity, "--uniform");
+    return settings;
+}
+
 LoadedCloud CloudSource::load() const
 {
     refuseUseless(*this);
@@ -163,18 +179,9 @@ LoadedCloud CloudSource::load() const
         report.stiffnessSource  = law.empty() ? "the sample's own law [Pa]" : "--stiffness " + law + " [Pa]";
         return {std::move(cloud), std::move(report)};
     }
-    CloudReadSettings settings;
-    settings.lengthUnit        = unit;
-    settings.stiffnessProperty = stiffnessProperty;
-    settings.columns           = columns;
-    settings.dropInvalid       = dropInvalid;
-    if (!stiffnessUnit.empty()) settings.stiffnessKind = kindOf(stiffnessUnit);
-    const StiffnessKind kind = settings.stiffnessKind.value_or(StiffnessKind::modulus);
-    if (!range.empty()) settings.range = rangeOf(range, logRange, kind);
-    if (!uniform.empty())
-        settings.uniformStiffness = parseQuantity(
-            uniform, kind == StiffnessKind::modulus ? Dimension::pressure : Dimension::rigidity, "--uniform");
-    LoadedCloud loaded = readCloud(name, settings);
+    const CloudReadSettings settings = readSettings();
+    const StiffnessKind     kind     = settings.stiffnessKind.value_or(StiffnessKind::modulus);
+    LoadedCloud             loaded   = readCloud(name, settings);
     refuseContradiction(*this, loaded);
     if (law.empty()) return loaded;
 

@@ -26,6 +26,9 @@ struct CloudSource {
     /// Loads or makes the cloud. \throws Error, also if an option was given that cannot apply
     [[nodiscard]] LoadedCloud load() const;
 
+    /// How load() reads a file. \throws Error if a value cannot be understood
+    [[nodiscard]] CloudReadSettings readSettings() const;
+
     /// What was assumed because nobody said so, and a law that changes nothing, in sentences. Empty is good.
     [[nodiscard]] std::vector<std::string> warnings(const LoadedCloud& loaded) const;
 

@@ -91,6 +91,8 @@ int main(int argumentCount, char** arguments)
                "  palpate touch sample:skin --out touch          a poke into a wart, with pictures\n"
                "  palpate info scan.ply --unit mm                what a file holds and how it is understood\n"
                "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
+               "  palpate paint scan.ply --stroke 'at=0,0,30mm radius=5mm value=2MPa' --out wart.ply\n"
+               "                                                 a stiff spot on it; the rest of the file stays\n"
                "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
                "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
                "  palpate render sample:palm --out palm.png      a picture of a touch, without a display\n"
@@ -104,6 +106,7 @@ int main(int argumentCount, char** arguments)
     palp::addSolveCommand(app);
     palp::addInfoCommand(app);
     palp::addConvertCommand(app);
+    palp::addPaintCommand(app);
     palp::addDevicesCommand(app);
     palp::addDoctorCommand(app);
     palp::addRunCommand(app);

@@ -10,7 +10,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 
-#include "engine/contact/local_spacing.h"
+#include "engine/cloud/local_spacing.h"
 
 namespace palp {
 namespace {

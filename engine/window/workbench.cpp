@@ -152,14 +152,15 @@ double Workbench::patience() const
 {
     constexpr double kIdle = 0.1; // between looks at a window in which nothing happens [s]
     if (stillFine_) return kIdle;
-    return std::max(0.0, kFramePeriod - Seconds(Clock::now() - lastFrame_).count());
+    return std::max(0.0, kFramePeriod - Seconds(Clock::now() - lastBegin_).count());
 }
 
 void Workbench::drawFrame(const SessionView* view)
 {
     constexpr double kQuick = 12e-3,
                      kRest  = 0.8; // [s] of a fine picture that is as good as a fast one; until one is due
-    const auto        begin = Clock::now();
+    const auto begin        = Clock::now();
+    lastBegin_              = begin;
     const bool        rests = Seconds(begin - lastChange_).count() > kRest;
     const bool        fine  = rests || (fineTime_ > 0 && fineTime_ < kQuick);
     const PictureSize size{input_.size.x, input_.size.y, 1, fine ? Detail::fine : Detail::fast};

@@ -162,7 +162,7 @@ private:
 
     Overlay           texts_;
     std::string       textsOf_; ///< what they say
-    Clock::time_point textsAt_{}, lastFrame_{}, lastChange_{}, started_{};
+    Clock::time_point textsAt_{}, lastFrame_{}, lastBegin_{}, lastChange_{}, started_{};
     double            frameTime_ = 0, drawTime_ = 0, fineTime_ = 0; ///< [s]
     bool              stillFine_ = false;                           ///< the picture is a fine one of what is there
     WorkbenchReport   report_;

@@ -111,15 +111,16 @@ TEST(FaceRows, AFaceThatLosesAPointIsLeftOutWholeAndTheOthersAreRenumbered)
     CloudReadSettings lenient;
     lenient.dropInvalid      = true;
     const std::string header = "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\n"
-                               "property float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n";
+                               "property float z\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n";
     const std::string points = "0 0 0\nnan 0 0\n1 0 0\n1 1 0\ninf 0 0\n0 1 0\n0 0 1\n";
 
-    const LoadedCloud loaded = ply(header + points + "4 0 2 3 5\n5 0 2 4 3 5\n3 0 1 2\n3 3 5 6\n", lenient);
+    const LoadedCloud loaded =
+        ply(header + points + "4 0 2 3 5\n5 0 2 4 3 5\n3 0 1 2\n3 2 3 1\n3 4 3 2\n3 3 5 6\n", lenient);
 
     EXPECT_EQ(loaded.faces, (Triangles{{0, 1, 2}, {0, 2, 3}, {2, 3, 4}}));
-    EXPECT_EQ(loaded.report.droppedFaces, 2u);
+    EXPECT_EQ(loaded.report.droppedFaces, 4u);
     EXPECT_EQ(loaded.report.degenerateFaces, 0u);
-    EXPECT_EQ(loaded.report.faces, 4u);
+    EXPECT_EQ(loaded.report.faces, 6u);
 }
 
 TEST(FaceRows, AHeaderThatPromisesMoreFacesThanTheFileHoldsIsRefusedBeforeAnythingIsAllocated)

@@ -169,6 +169,18 @@ TEST(PlyRepaint, AMillionBytesOfUnknownElementsAndListsKeepTheirBytes)
     }
 }
 
+TEST(PlyRepaint, ListsOnALineOfTextArePassedOver)
+{
+    const std::string head = "ply\nformat ascii 1.0\nelement camera 1\nproperty list uchar int bits\nelement vertex 2\n"
+                             "property list uchar int seen_by\nproperty float x\nproperty list int float w\n"
+                             "property float y\nproperty float z\nproperty double E\nproperty list uchar int n\n"
+                             "end_header\n2 7 7\n\n";
+
+    const Repainted again = repainted(head + "3 7 7 7 1 0 2 3 7 1 5\n0 4 2 0.5  7 2 3 7 0\n", {8, 9});
+
+    EXPECT_EQ(again.bytes, head + "3 7 7 7 1 0 2 3 8 1 5\n0 4 2 0.5  7 2 3 9 0\n");
+}
+
 TEST(PlyRepaint, WhereThereIsNoStiffnessItIsAppendedAsADoubleWithItsUnit)
 {
     for (const std::string& format : kFormats) {

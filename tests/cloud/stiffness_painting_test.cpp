@@ -236,6 +236,21 @@ TEST(StiffnessPainting, SmoothingIsTheStatedMean)
     EXPECT_NEAR(std::log(p.painting.stiffness()[10]), sum / weights, 1e-12) << "the order of fifty sums";
 }
 
+TEST(StiffnessPainting, AStrokeSmoothsWhatWasThereWhenItBegan)
+{
+    const auto places = sheet(20e-3, 0.5e-3, 0);
+    Painted    once(places, roughStiffness(places.size())), twice(places, roughStiffness(places.size()));
+    once.painting.smooth({{0, 0, 0}, 8e-3, 1});
+    Brush weaker{{0, 0, 0}, 8e-3, 0.5};
+
+    twice.painting.beginStroke();
+    twice.painting.smooth(weaker);
+    twice.painting.smooth({{0, 0, 0}, 8e-3, 1});
+    twice.painting.endStroke();
+
+    EXPECT_EQ(twice.now(), once.now());
+}
+
 /// Strokes of both sorts at random places.
 void strokeAtRandom(StiffnessPainting& painting, std::mt19937_64& random, std::span<const glm::dvec3> places)
 {

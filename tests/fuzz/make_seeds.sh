@@ -15,6 +15,8 @@ printf 'ply\nformat binary_big_endian 1.0\nelement camera 1\nproperty short s\ne
 printf 'ply\nformat ascii 1.0\nelement vertex 3\n'"$xyz"'end_header\nnan 1 2\n1 2 3\n-inf 0 1e-300\n' >ply/invalid
 printf 'ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\n'"$xyz"'end_header\n1234' >ply/liar
 
+printf 'ply\nformat ascii 1.0\nelement vertex 4\n'"$xyz"'property int stiffness\nelement face 3\nproperty uchar flags\nproperty list uchar float vertex_index\nend_header\n0 0 0 1\n1 0 0 2\n0 1 0 3\n0 0 1 4\n7 3 0 1 2\n7 4 0 1 2 3\n7 2 0 1\n' >ply/faces
+
 head='FIELDS x y z E\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\n'
 printf '# .PCD v.7\n# stiffness_unit N_m\nVERSION .7\n'"$head"'DATA ascii\n1 2 3 4\n5 6 7 8\n' >pcd/ascii
 printf 'VERSION .7\n'"$head"'DATA binary\n'"$f1$f1$f1$f1$f2$f2$f1$f2" >pcd/binary

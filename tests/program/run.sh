@@ -31,7 +31,7 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert render devices doctor calibrate 'bench solve'; do
+for command in touch solve info convert paint render devices doctor calibrate 'bench solve'; do
     # shellcheck disable=SC2086  # a command, or one within another
     good "help of $command" $command --help; holds 'Examples:'
     mv out.txt help.txt
@@ -514,6 +514,93 @@ JSON
     code=$?
     [ $code -eq 4 ] && grep -qF 'cannot draw' err.txt && passed=$((passed + 1)) || complain "render on the host: exit $code: $(cat err.txt)"
 }
+
+# --- faces, and stiffness that is painted
+cat >mesh.ply <<'PLY'
+ply
+format ascii 1.0
+comment VCGLIB generated
+comment length_unit mm
+element vertex 9
+property float x
+property float y
+property float z
+property uchar red
+property float quality
+element face 5
+property list uchar int vertex_indices
+end_header
+0 0 0 255 1000
+1 0 0 255 1000
+2 0 0.10 255 1000
+0 1 0 128 1000.0
+1 1 0 128 1000.0
+2 1 0 128 1000.0
+0 2 0 0 1000
+1 2 0 0 1000
+2 2 0 0 1000
+4 0 1 4 3
+4 1 2 5 4
+3 3 4 7
+3 4 4 5
+2 0 1
+PLY
+good 'a mesh' info mesh.ply
+holds '5 triangles of 5 faces, 2 left out: fewer than three corners, or one twice'
+good 'a mesh, for scripts' info mesh.ply --json
+holds '"faces": 5'
+holds '"degenerate_faces": 2'
+good 'a mesh as another' convert mesh.ply mesh2.ply
+holds '5 triangles'
+good 'which has its faces' info mesh2.ply
+holds '5 triangles of 5 faces'
+good 'a mesh as text' convert mesh.ply mesh.csv --json
+holds 'only PLY holds faces'
+sed 's/^3 3 4 7/3 3 4 9/' mesh.ply >hole.ply
+bad 'a face of a point that is not there' 'hole.ply: line 25: face 2: expected the number of a point from 0 to below 9, found 9' info hole.ply
+
+good 'paint one point of a mesh' paint mesh.ply --stiffness-property quality --unit mm --stroke 'at=1,1,0 radius=0.5mm value=2kPa' --out painted.ply
+holds '9 points, 1 with another stiffness'
+holds 'property quality, all else as in mesh.ply'
+holds '--stiffness-property quality'
+sed 's/^1 1 0 128 1000.0/1 1 0 128 2000/' mesh.ply | cmp -s - painted.ply && passed=$((passed + 1)) || complain "painting changed more than a number: $(diff mesh.ply painted.ply)"
+good 'paint where there is no stiffness' paint mesh.ply --stroke 'at=1mm,1mm,0 radius=0.5mm value=2kPa' --out appended.ply --json --uniform 1kPa
+for key in '"appended": true' '"property": "stiffness"' '"changed_points": 1' '"original_kept": true' '"stiffness_max": 2000'; do holds "$key"; done
+grep -q '^1 1 0 128 1000.0 2000$' appended.ply && grep -q '^comment stiffness_unit Pa$' appended.ply && passed=$((passed + 1)) || complain "nothing appended: $(cat appended.ply)"
+good 'paint a sample' paint sample:skin --points 5000 --stroke 'at=0,0,1.5mm radius=6mm value=2MPa strength=0.5' --stroke 'at=0,0,1.5mm;5mm,0,1.5mm radius=4mm smooth' --out wart.ply --json
+for key in '"dabs": 1' '"smooth": true' '"strength": 0.5' '"original_kept": false' '"written": "wart.ply"'; do holds "$key"; done
+good 'the painted cloud is felt' touch wart.ply --at 0,0,1.5mm --window 40mm --cells 32
+good 'paint the cloud of a scene' paint soft.json --stroke 'at=0,0,1.5mm radius=6mm value=2MPa' --out soft.csv
+holds '4000 points, '
+good 'paint over a law of a scene' paint scene.json --stroke 'at=0,0,0 radius=6mm smooth' --out law.ply
+holds 'take the key "stiffness" out'
+good 'painting beside everything' paint sample:skin --points 5000 --stroke 'at=0,0,1.5mm radius=6mm value=1MPa' --stiffness constant:value=1e6 --out same.ply
+holds 'no stroke changed anything'
+mesh='paint mesh.ply --uniform 1kPa --out no.ply --stroke'
+# shellcheck disable=SC2086  # a command and its options
+{
+    bad 'a stroke without a place' '--stroke 1: expected at=' $mesh 'radius=1mm value=1kPa'
+    bad 'a stroke without a radius' '--stroke 1: expected radius=' $mesh 'at=1,1,0 value=1kPa'
+    bad 'a stroke towards nothing' 'either value= or smooth' $mesh 'at=1,1,0 radius=1mm'
+    bad 'a stroke towards both' 'found both' $mesh 'at=1,1,0 radius=1mm smooth value=1kPa'
+    bad 'a slip in a stroke' 'did you mean radius?' $mesh 'at=1,1,0 radios=1mm smooth'
+    bad 'a word twice' 'radius is given twice' $mesh 'at=1,1,0 radius=1mm radius=2mm smooth'
+    bad 'the second stroke' '--stroke 2: ' $mesh 'at=1,1,0 radius=1mm smooth' --stroke 'at=1,1,0 radius=-1mm smooth'
+    bad 'a radius that is none' 'finite number' $mesh 'at=1,1,0 radius=nan smooth'
+    bad 'a place of two numbers' 'three numbers x,y,z' $mesh 'at=1,1 radius=1mm smooth'
+    bad 'a path that ends in nothing' 'x,y,z' $mesh 'at=1,1,0; radius=1mm smooth'
+    bad 'a force as a stiffness' 'unknown unit "N"' $mesh 'at=1,1,0 radius=1mm value=1N'
+    bad 'no stiffness' 'above zero' $mesh 'at=1,1,0 radius=1mm value=0'
+    bad 'too strong' 'up to 1' $mesh 'at=1,1,0 radius=1mm smooth strength=2'
+    bad 'beside the cloud' 'from its nearest point' $mesh 'at=1,1,1m radius=1mm smooth'
+    bad 'no stroke' '--stroke' paint mesh.ply --out no.ply
+    bad 'another kind of file' '.ply' paint mesh.ply --stroke 'at=1,1,0 radius=1mm smooth' --out no.stl
+    bad 'an option of clouds for a scene' '--range: expected a cloud' paint scene.json --range 1kPa,2kPa --out no.ply --stroke 'at=0,0,0 radius=6mm smooth'
+    bad 'a folder that is not there' 'nowhere/no.ply' paint mesh.ply --uniform 1kPa --stroke 'at=1mm,1mm,0 radius=1mm smooth' --out nowhere/no.ply
+}
+[ ! -e no.ply ] && passed=$((passed + 1)) || complain 'a refused painting was written'
+sed 's/^1 2 0 0 1000/nan 2 0 0 1000/' mesh.ply >lost.ply
+bad 'a file that lost points' '1 points were dropped' paint lost.ply --drop-invalid --stroke 'at=1mm,1mm,0 radius=1mm value=1kPa' --out no.ply
 
 experiment=$(dirname "$palpate")/paper_experiment
 if [ -x "$experiment" ]; then

@@ -1,0 +1,38 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/cloud/stiffness_painting.h"
+
+namespace palp {
+
+/// A stroke of a brush as the command line takes it: 'at=X,Y,Z;X,Y,Z radius=5mm value=2MPa strength=0.5'.
+struct StrokeOrder {
+    std::vector<glm::dvec3> path;         ///< corners [m]
+    double                  radius   = 0; ///< [m]
+    double                  strength = 1; ///< [1]
+    std::optional<double>   value;        ///< [Pa] or [N m]; empty: smooths
+};
+
+/// \param what                  opens complaints, such as "--stroke 2"
+/// \param metresPerPlainNumber  of places and radii without a unit
+/// \throws Error naming the word, what was expected and found
+[[nodiscard]] StrokeOrder parseStroke(const std::string& text, const std::string& what, double metresPerPlainNumber,
+                                      StiffnessKind kind);
+
+/// What a stroke did.
+struct StrokeReport {
+    std::size_t dabs   = 0;
+    std::size_t points = 0; ///< that the brush covered
+};
+
+/// Paints a stroke, with progress on a terminal.
+/// \throws Error if a corner of the path is further from the cloud than the radius
+[[nodiscard]] StrokeReport paintStroke(const StrokeOrder& order, const std::string& what, const PointCloud& cloud,
+                                       const NeighbourIndex& index, StiffnessPainting& painting);
+
+} // namespace palp
