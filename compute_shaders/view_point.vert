@@ -25,7 +25,8 @@ void main()
     normal *= side;
     colour       = vec4(litPoint(packed, normal, side * facing, side, centre), 1);
     slope        = normal.xy / max(side * facing, kSteepest);
-    toEye        = vec3(eye.xy, 1.0 + length(eye.xy)); // seen aslant, a disc may be longer than its radius
+    float steep  = sqrt(max(0.0, 1.0 - normal.z * normal.z));
+    toEye        = vec3(eye.xy, 1.0 + steep * length(eye.xy)); // seen aslant, a disc may be longer than its radius
     gl_Position  = frame.clipFromView * vec4(centre, 1);
     gl_PointSize = 2.0 * toEye.z * max(kLeastPixels, splat.radius * pixelsPerMetre(max(1e-6, -centre.z)));
 }

@@ -145,6 +145,12 @@ void VulkanContext::run(std::span<CommandList* const> lists)
 
 void VulkanContext::submit(std::span<const VkCommandBuffer> commands)
 {
+    start(commands);
+    finish();
+}
+
+void VulkanContext::start(std::span<const VkCommandBuffer> commands)
+{
     if (abandoned) throw DeviceLost("the GPU " + description.name + " hung before and is not used any more");
 
     check(vkResetFences(device, 1, &fence), "reset a fence");
@@ -152,6 +158,10 @@ void VulkanContext::submit(std::span<const VkCommandBuffer> commands)
     submit.commandBufferCount = std::uint32_t(commands.size());
     submit.pCommandBuffers    = commands.data();
     check(vkQueueSubmit(queue, 1, &submit, fence), "take a command list");
+}
+
+void VulkanContext::finish()
+{
     const auto     nanoseconds = std::uint64_t(std::ceil(patience * 1e9));
     const VkResult result      = vkWaitForFences(device, 1, &fence, VK_TRUE, nanoseconds);
     if (result == VK_TIMEOUT || result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY)

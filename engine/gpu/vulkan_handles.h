@@ -35,6 +35,10 @@ public:
     /// Submits what was recorded and waits, as Context::run() does. \throws DeviceLost
     void submit(std::span<const VkCommandBuffer> commands);
 
+    /// The two halves of submit(); in between the host is free. \pre what was started has been finished
+    void start(std::span<const VkCommandBuffer> commands);
+    void finish();
+
     /// Whether an abandoned submission still runs: then nothing may be destroyed, and leaking is better than crashing.
     [[nodiscard]] bool atWork() const { return abandoned && vkGetFenceStatus(device, fence) == VK_NOT_READY; }
 

@@ -46,17 +46,6 @@ double metresPerSecond(const std::string& text, const std::string& option)
 /// Of the thickness: the deflection is at most some tenths more than the hand's depth, so theory holds [1].
 constexpr double kDepth = 0.4;
 
-/// "5 s" or "5".
-double secondsOf(const std::string& text)
-{
-    constexpr double kMost  = 86400; // [s] a day
-    std::string      number = text;
-    if (number.ends_with("s")) number.resize(number.size() - 1);
-    const double seconds = parseQuantity(number, Dimension::none, "--seconds");
-    if (seconds > 0 && seconds <= kMost) return seconds;
-    throw Error("--seconds: expected a time above 0 and up to 86400 s, found \"" + text + "\"");
-}
-
 HandPath pathFor(const HandOptions& o, double seconds, const Scene& scene, const PointCloud& cloud,
                  const NeighbourIndex& index)
 {
@@ -194,6 +183,16 @@ void refuseSlips(const std::string& word)
 }
 
 } // namespace
+
+double secondsOf(const std::string& text)
+{
+    constexpr double kMost  = 86400; // [s] a day
+    std::string      number = text;
+    if (number.ends_with("s")) number.resize(number.size() - 1);
+    const double seconds = parseQuantity(number, Dimension::none, "--seconds");
+    if (seconds > 0 && seconds <= kMost) return seconds;
+    throw Error("--seconds: expected a time above 0 and up to 86400 s, found \"" + text + "\"");
+}
 
 FalconDeviceSettings FalconOptions::settings() const
 {

@@ -37,6 +37,9 @@ struct HandOptions {
     std::string   seconds; ///< "5 s"; empty: 5 s, or a file's own length
 };
 
+/// "5 s" or "5" [s]. \throws Error naming --seconds
+[[nodiscard]] double secondsOf(const std::string& text);
+
 /// A hand that is ready: its device is open.
 struct HandSource {
     std::unique_ptr<HidSystem>      hid;  ///< of the device; may be null

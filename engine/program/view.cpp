@@ -116,9 +116,7 @@ void view(const ViewOptions& o)
             waitForHoming(*source.device, catchInterrupts());
             return {source.device.get(), source.frame, source.isHeld() ? 1e9 : source.seconds};
         };
-    else if (!o.hand.seconds.empty())
-        settings.seconds =
-            parseQuantity(o.hand.seconds.substr(0, o.hand.seconds.find('s')), Dimension::none, "--seconds");
+    if (!o.hand.seconds.empty()) settings.seconds = secondsOf(o.hand.seconds);
     const auto paint = viewPaintNamed(o.colour);
     const auto map   = colourMapNamed(o.map);
     if (!paint) throw Error("--colour: unknown name \"" + o.colour + "\"; known: deflection, stiffness, plain");
@@ -138,14 +136,13 @@ void view(const ViewOptions& o)
     GlfwWindow           window("Palpate", sizeOf(o.size));
     gpu::ContextSettings gpu{.device = o.drawOn};
     if (o.validate) gpu.validation = gpu::Validation::synchronization;
-    SurfaceRenderer       renderer(gpu, window.link());
-    Workbench::PanelHooks hooks;
+    SurfaceRenderer renderer(gpu, window.link());
+    PanelFrame*     shown = nullptr;
 #ifdef PALPATE_PANELS
     if (!o.noPanels) {
         panels.emplace(window.scale());
         renderer.usePanels();
-        window.feedPanels();
-        hooks = {&*panels, [&window] { window.beginPanels(); }};
+        shown = &*panels;
     }
 #endif
     glm::ivec2 last{};
@@ -156,7 +153,7 @@ void view(const ViewOptions& o)
             if (input.size.x > 0) last = input.size;
             return input;
         },
-        hooks);
+        shown);
     rememberSize(last);
     tell(o, report, renderer);
     const auto messages = renderer.takeMessages();

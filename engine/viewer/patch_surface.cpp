@@ -54,8 +54,9 @@ std::optional<glm::dvec3> residualAt(const std::vector<Near>& points, const Char
     for (const Near& point : points) {
         const double x = point.at.x - at.x, z = point.at.z - at.z, square = x * x + z * z;
         if (square >= near.back().first) continue;
-        near.back() = {square, &point};
-        std::ranges::sort(near);
+        std::size_t place = kMost - 1;
+        for (; place > 0 && near[place - 1].first > square; --place) near[place] = near[place - 1];
+        near[place] = {square, &point};
     }
     if (!(near.back().first < kFar * kFar * spacing * spacing)) return std::nullopt;
     double highest = -std::numeric_limits<double>::infinity(); // [m]
@@ -98,8 +99,8 @@ class Hollows {
 public:
     explicit Hollows(const Patch& patch, double radius) : grid_(patch.window.grid), response_(patch.response)
     {
-        constexpr int    kTaps = 12, kMostNodes = 33; // of a spiral; along a side: the cue is smooth [1]
-        constexpr double kWider = 3.5;                // a second look finds dents that are wide and shallow [1]
+        constexpr int    kTaps = 8, kMostNodes = 25; // of a spiral; along a side: the cue is smooth [1]
+        constexpr double kWider = 3.5;               // a second look finds dents that are wide and shallow [1]
         const double     turn   = std::numbers::pi * (3 - std::sqrt(5.0));
         for (const double reach : {radius, kWider * radius})
             for (int n = 0; n < kTaps; ++n) {
@@ -143,15 +144,22 @@ PatchSurface::PatchSurface(const Patch& patch, std::span<const glm::dvec3> posit
     : edge(edgeOf(patch, positions)), mostResponse(*std::ranges::max_element(patch.response.values())),
       inward(patch.forceDirection())
 {
-    constexpr double kNotable = 1e-3; // of the largest response: below it neither place nor slope shows [1]
+    // Of the largest response: below the first nothing shows, below the second no slope.
+    constexpr double kNotable = 1e-3, kSlopes = 1e-2; // [1]
     const Hollows    hollowness(patch, cueRadius);
-    for (std::size_t n = 0; n < patch.points.size(); ++n) {
-        if (!(std::abs(patch.pointResponse[n]) > kNotable * mostResponse)) continue;
-        moving.push_back(patch.points[n]);
-        responses.push_back(patch.pointResponse[n]);
-        hollows.push_back(
-            hollowness.of(patch.positions[n].x - patch.window.corner.x, patch.positions[n].z - patch.window.corner.z));
-    }
+    const auto       add = [&](double least, double most) {
+        for (std::size_t n = 0; n < patch.points.size(); ++n) {
+            const double size = std::abs(patch.pointResponse[n]);
+            if (!(size > least * mostResponse && size <= most * mostResponse)) continue;
+            moving.push_back(patch.points[n]);
+            responses.push_back(patch.pointResponse[n]);
+            hollows.push_back(hollowness.of(patch.positions[n].x - patch.window.corner.x,
+                                                  patch.positions[n].z - patch.window.corner.z));
+        }
+    };
+    add(kSlopes, std::numeric_limits<double>::infinity());
+    sloping = moving.size();
+    add(kNotable, kSlopes);
 }
 
 } // namespace palp

@@ -17,10 +17,11 @@ struct PatchSurface {
         bool       starts   = false; ///< no line comes from the place before: there is no surface between them
     };
 
-    std::vector<std::uint32_t> moving;    ///< points of the cloud that a force moves notably
-    std::vector<double>        responses; ///< as many: deflection per force [m/N]
-    std::vector<double>        hollows;   ///< as many: how far the surroundings rise above the dent, per force [1/N]
-    std::vector<EdgePlace>     edge;      ///< once around
+    std::vector<std::uint32_t> moving;      ///< points of the cloud that a force moves notably
+    std::size_t                sloping = 0; ///< the first so many of them have a slope that shows [1]
+    std::vector<double>        responses;   ///< as many: deflection per force [m/N]
+    std::vector<double>        hollows;     ///< as many: how far the surroundings rise above the dent, per force [1/N]
+    std::vector<EdgePlace>     edge;        ///< once around
     double                     mostResponse = 0; ///< [m/N] of the grid's nodes
     glm::dvec3                 inward{};         ///< [1] along which everything moves
 

@@ -52,11 +52,11 @@ std::uint32_t withAlpha(std::uint32_t colour, double alpha)
     return (colour & 0x00FFFFFFU) | std::uint32_t(std::lround(255 * std::clamp(alpha, 0.0, 1.0))) << 24;
 }
 
-std::vector<shared::ViewSplat> splatsOf(const ViewScene& scene, const Camera& camera, Detail detail)
+void fillSplats(std::vector<shared::ViewSplat>& splats, const ViewScene& scene, const Camera& camera, Detail detail)
 {
-    const glm::dvec3&              origin = camera.target;
-    std::vector<shared::ViewSplat> splats(scene.positions.size());
-    std::optional<Paintbox>        paint;
+    const glm::dvec3&       origin = camera.target;
+    std::optional<Paintbox> paint;
+    splats.resize(scene.positions.size());
     if (!scene.values.empty()) paint.emplace(scene.colours);
     for (std::size_t n = 0; n < splats.size(); ++n) {
         const std::uint32_t colour = paint ? paint->of(scene.values[n]) : packed(kPlainColour);
@@ -71,7 +71,6 @@ std::vector<shared::ViewSplat> splatsOf(const ViewScene& scene, const Camera& ca
     for (const ViewDot& dot : scene.dots)
         splats.push_back(
             {glm::vec3(dot.position - origin), float(dot.radius), toEye, withAlpha(packed(dot.colour), 0.5)});
-    return splats;
 }
 
 std::vector<shared::ViewCorner> cornersOf(const ViewScene& scene, const glm::dvec3& origin)
@@ -116,8 +115,9 @@ shared::ViewFrame frameOf(const ViewScene& scene, const Camera& camera, const Pi
 }
 
 /// Means over squares of `finer` pixels.
-Image averaged(std::span<const std::uint8_t> pixels, const PictureSize& size)
+Image averaged(std::span<const std::uint8_t> pixels, const PictureSize& size, VkFormat format)
 {
+    const bool        blueFirst = format == VK_FORMAT_B8G8R8A8_UNORM;
     Image             image(size.width, size.height);
     const std::size_t row = std::size_t(4) * std::size_t(size.width) * std::size_t(size.finer);
     const unsigned    all = unsigned(size.finer * size.finer);
@@ -130,7 +130,7 @@ Image averaged(std::span<const std::uint8_t> pixels, const PictureSize& size)
                         sum[k] +=
                             pixels[std::size_t(y * size.finer + j) * row + std::size_t(x * size.finer + i) * 4 + k];
             const auto mean = [&](std::size_t k) { return std::uint8_t((sum[k] + all / 2) / all); };
-            image.at(x, y)  = {mean(0), mean(1), mean(2)};
+            image.at(x, y)  = {mean(blueFirst ? 2 : 0), mean(1), mean(blueFirst ? 0 : 2)};
         }
     return image;
 }
@@ -138,11 +138,14 @@ Image averaged(std::span<const std::uint8_t> pixels, const PictureSize& size)
 /// A scene as the passes take it.
 class Drawable {
 public:
-    Drawable(const ViewScene& scene, const Camera& camera, const PictureSize& size, const Overlay* overlay)
-        : detail_(size.detail), faces_(scene.faces), overlay_(overlay), dots_(scene.dots.size())
+    void make(const ViewScene& scene, const Camera& camera, const PictureSize& size, const Overlay* overlay)
     {
         check(scene, size, overlay);
-        splats_ = splatsOf(scene, camera, detail_);
+        detail_  = size.detail;
+        faces_   = scene.faces;
+        overlay_ = overlay;
+        dots_    = scene.dots.size();
+        fillSplats(splats_, scene, camera, detail_);
         shapes_ = cornersOf(scene, camera.target);
         frame_  = frameOf(scene, camera, size, reachOf(scene, shapes_, camera.target));
     }
@@ -167,10 +170,10 @@ private:
                     "an overlay has the size of the picture");
     }
 
-    Detail                          detail_;
+    Detail                          detail_ = Detail::fine;
     std::span<const Triangle>       faces_;
-    const Overlay*                  overlay_;
-    std::size_t                     dots_;
+    const Overlay*                  overlay_ = nullptr;
+    std::size_t                     dots_    = 0;
     std::vector<shared::ViewSplat>  splats_;
     std::vector<shared::ViewCorner> shapes_;
     shared::ViewFrame               frame_;
@@ -179,16 +182,18 @@ private:
 } // namespace
 
 struct SurfaceRenderer::Impl {
-    explicit Impl(const gpu::ContextSettings& settings) : context(settings), surface(context) {}
-    gpu::Context                context;
-    VulkanSurface               surface;
-    std::optional<VulkanWindow> window;
+    explicit Impl(const gpu::ContextSettings& settings) : context(settings) {}
+    gpu::Context                 context;
+    std::optional<VulkanWindow>  window;
+    std::optional<VulkanSurface> surface;
+    Drawable                     drawable; ///< keeps its memory from picture to picture
 };
 
 SurfaceRenderer::SurfaceRenderer(gpu::ContextSettings settings)
 {
     settings.purpose = gpu::Purpose::draw;
     impl_            = std::make_unique<Impl>(settings);
+    impl_->surface.emplace(impl_->context);
 }
 
 SurfaceRenderer::SurfaceRenderer(gpu::ContextSettings settings, const WindowLink& window)
@@ -199,6 +204,7 @@ SurfaceRenderer::SurfaceRenderer(gpu::ContextSettings settings, const WindowLink
     auto&      context        = static_cast<gpu::VulkanContext&>(impl_->context.handles());
     const auto surface        = window.makeSurface(context.instance->get());
     impl_->window.emplace(context, reinterpret_cast<VkSurfaceKHR>(surface));
+    impl_->surface.emplace(impl_->context, impl_->window->format());
 }
 
 SurfaceRenderer::~SurfaceRenderer()                                     = default;
@@ -208,8 +214,9 @@ SurfaceRenderer& SurfaceRenderer::operator=(SurfaceRenderer&&) noexcept = defaul
 Image SurfaceRenderer::draw(const ViewScene& scene, const Camera& camera, const PictureSize& size,
                             const Overlay* overlay)
 {
-    const Drawable drawable(scene, camera, size, overlay);
-    return averaged(impl_->surface.draw(drawable.input()), size);
+    if (impl_->window) present();
+    impl_->drawable.make(scene, camera, size, overlay);
+    return averaged(impl_->surface->draw(impl_->drawable.input()), size, impl_->surface->format());
 }
 
 bool SurfaceRenderer::show(const ViewScene& scene, const Camera& camera, const PictureSize& size,
@@ -217,16 +224,21 @@ bool SurfaceRenderer::show(const ViewScene& scene, const Camera& camera, const P
 {
     PALP_EXPECT(impl_->window, "a renderer shows pictures in the window that it was made with");
     PALP_EXPECT(size.finer == 1, "a window's pixels are not averaged");
+    impl_->drawable.make(scene, camera, size, overlay); // while the one before is being drawn
+    present();
     if (!impl_->window->next({std::uint32_t(size.width), std::uint32_t(size.height)})) return false;
-    const Drawable drawable(scene, camera, size, overlay);
-    impl_->surface.draw(drawable.input(), *impl_->window);
-    impl_->window->show();
+    impl_->surface->start(impl_->drawable.input(), *impl_->window);
     return true;
+}
+
+void SurfaceRenderer::present()
+{
+    if (impl_->surface->finish()) impl_->window->show();
 }
 
 void SurfaceRenderer::usePanels()
 {
-    impl_->surface.usePanels();
+    impl_->surface->usePanels();
 }
 
 const gpu::DeviceDescription& SurfaceRenderer::device() const noexcept

@@ -54,10 +54,14 @@ public:
     [[nodiscard]] Image draw(const ViewScene& scene, const Camera& camera, const PictureSize& size,
                              const Overlay* overlay = nullptr);
 
-    /// The same in the window. \pre made with a window
+    /// The same in the window: begins to draw, and shows the picture that was begun before. So the host is free while
+    /// a picture is drawn, and what one sees is one picture old; present() shows the last. \pre made with a window
     /// \param size  of the window; `finer` must be 1
     /// \return false: there is nothing to see now, as in a window that is minimised
     bool show(const ViewScene& scene, const Camera& camera, const PictureSize& size, const Overlay* overlay = nullptr);
+
+    /// Shows in the window what show() began, once it is done. Nothing was begun: does nothing.
+    void present();
 
     /// From now on what ImGui::Render() leaves is drawn over every picture, which must not be `finer`.
     /// \pre there is a current ImGui context, which outlives this

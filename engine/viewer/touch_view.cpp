@@ -92,7 +92,7 @@ void TouchView::bend(double force, double exaggeration)
         const double side = glm::dot(restNormals_[n], surface_.inward) < 0 ? 1 : -1; // normals have either side
         hollows_[n]       = side * exaggeration * force * surface_.hollows[i];
     }
-    skin_.refit(positions_, moved_, normals_);
+    skin_.refit(positions_, std::span(moved_).first(surface_.sloping), normals_);
 }
 
 void TouchView::paint(double force, const TouchLook& look)

@@ -69,8 +69,11 @@ public:
     /// Other settings of the same cloud from now on.
     void use(const PatchSettings& settings) { settings_ = settings; }
 
-    [[nodiscard]] std::span<const glm::dvec3> restNormals() const noexcept { return restNormals_; } ///< of either side [1]
-    [[nodiscard]] std::span<const double>     radii() const noexcept { return skin_.cores(); } ///< of closed discs [m]
+    [[nodiscard]] std::span<const glm::dvec3> restNormals() const noexcept
+    {
+        return restNormals_;
+    }                                                                                      ///< of either side [1]
+    [[nodiscard]] std::span<const double> radii() const noexcept { return skin_.cores(); } ///< of closed discs [m]
 
     /// Valid until the next show(); title and note are the caller's to set.
     [[nodiscard]] ViewScene& scene() noexcept { return scene_; }

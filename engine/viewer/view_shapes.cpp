@@ -12,6 +12,7 @@ namespace {
 using Corners = std::vector<ShapeCorner>;
 
 constexpr int    kAround = 24; ///< sides of what is round [1]
+constexpr int    kThin   = 6;  ///< and of lines, which nobody sees them of [1]
 constexpr double kTurn   = 2 * std::numbers::pi;
 
 /// A point of a body of revolution, seen along its axis, and the normal there.
@@ -32,15 +33,16 @@ struct Axes {
 };
 
 /// The surface between two rings about an axis through `foot`.
-void addBelt(Corners& corners, const glm::dvec3& foot, const Axes& axes, const Ring& low, const Ring& high, Rgb8 colour)
+void addBelt(Corners& corners, const glm::dvec3& foot, const Axes& axes, const Ring& low, const Ring& high, Rgb8 colour,
+             int sides = kAround)
 {
     const auto corner = [&](const Ring& ring, int n) {
-        const double     angle   = kTurn * n / kAround;
+        const double     angle   = kTurn * n / sides;
         const glm::dvec3 outward = std::cos(angle) * axes.u + std::sin(angle) * axes.v;
         return ShapeCorner{foot + ring.along * axes.along + ring.radius * outward,
                            glm::normalize(ring.normalAlong * axes.along + ring.normalOutward * outward), colour};
     };
-    for (int n = 0; n < kAround; ++n)
+    for (int n = 0; n < sides; ++n)
         for (const auto& [ring, side] :
              {std::pair{&low, n}, {&low, n + 1}, {&high, n + 1}, {&low, n}, {&high, n + 1}, {&high, n}})
             corners.push_back(corner(*ring, side));
@@ -88,7 +90,7 @@ void addLine(Corners& corners, const ViewSegment& line, double radius, Rgb8 colo
 {
     const double length = glm::distance(line.from, line.to);
     if (length > 0)
-        addBelt(corners, line.from, Axes((line.to - line.from) / length), {0, radius}, {length, radius}, colour);
+        addBelt(corners, line.from, Axes((line.to - line.from) / length), {0, radius}, {length, radius}, colour, kThin);
 }
 
 } // namespace

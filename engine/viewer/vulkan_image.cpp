@@ -61,9 +61,7 @@ VkAttachmentDescription attachment(const PassImage& image, bool depth)
     VkAttachmentDescription description{};
     description.format  = image.format;
     description.samples = VK_SAMPLE_COUNT_1_BIT;
-    description.loadOp =
-        image.before == VK_IMAGE_LAYOUT_UNDEFINED ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
-    description.initialLayout = image.before;
+    description.loadOp  = VK_ATTACHMENT_LOAD_OP_CLEAR;
     description.storeOp =
         image.after == VK_IMAGE_LAYOUT_UNDEFINED ? VK_ATTACHMENT_STORE_OP_DONT_CARE : VK_ATTACHMENT_STORE_OP_STORE;
     description.stencilLoadOp  = VK_ATTACHMENT_LOAD_OP_DONT_CARE;

@@ -24,13 +24,12 @@ struct VulkanImage {
 struct PassImage {
     VkFormat      format = VK_FORMAT_UNDEFINED;
     VkImageLayout after  = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL; ///< UNDEFINED: nobody needs it afterwards
-    VkImageLayout before = VK_IMAGE_LAYOUT_UNDEFINED;                ///< UNDEFINED: it is cleared; else drawn over
 };
 
 using RenderPass  = gpu::Owned<VkRenderPass, vkDestroyRenderPass>;
 using Framebuffer = gpu::Owned<VkFramebuffer, vkDestroyFramebuffer>;
 
-/// A pass that draws into its images. What passes and copies before it wrote is seen by it, and what
+/// A pass that clears its images and draws into them. What passes and copies before it wrote is seen by it, and what
 /// it writes by those after it.
 /// \param depth  its image for depths; of format UNDEFINED: none
 [[nodiscard]] RenderPass makePass(const gpu::VulkanContext& context, std::span<const PassImage> colours,

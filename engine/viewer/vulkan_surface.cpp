@@ -58,15 +58,21 @@ constexpr float kNowhere = 1e30F;
 
 } // namespace
 
-VulkanSurface::VulkanSurface(gpu::Context& context)
-    : owner_(context), context_(static_cast<gpu::VulkanContext&>(context.handles()))
+VulkanSurface::VulkanSurface(gpu::Context& context, VkFormat picture)
+    : owner_(context), context_(static_cast<gpu::VulkanContext&>(context.handles())), format_(picture)
 {
     makeLayouts();
     makeSteps();
     makePipelines();
 }
 
-VulkanSurface::~VulkanSurface() = default;
+VulkanSurface::~VulkanSurface()
+{
+    try {
+        finish();
+    } catch (const Error&) { // what hangs is leaked
+    }
+}
 
 void VulkanSurface::makeLayouts()
 {
@@ -122,14 +128,12 @@ void VulkanSurface::makeSteps()
 {
     const PassImage depth{kDepthTest, VK_IMAGE_LAYOUT_UNDEFINED}, none{};
     const PassImage nearest[] = {{kDepth}}, sums[] = {{kSums}, {kSums}}, surface[] = {{kSurface}, {kColour}};
-    const PassImage picture[] = {{kColour, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL}};
-    const PassImage drawn[]   = {{kColour, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL}};
+    const PassImage picture[] = {{format_, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL}};
     nearestStep_.pass         = makePass(context_, nearest, depth);
     blendStep_.pass           = makePass(context_, sums, none);
     surfaceStep_.pass         = makePass(context_, surface, none);
     faceStep_.pass            = makePass(context_, surface, depth);
     lightStep_.pass           = makePass(context_, picture, depth);
-    panelStep_.pass           = makePass(context_, drawn, none);
 }
 
 void VulkanSurface::makePipelines()
@@ -165,7 +169,7 @@ void VulkanSurface::makeImages()
     colours_.emplace(makeImage(context_, "sums of colours", size_, kSums, kDrawn));
     surface_.emplace(makeImage(context_, "surface", size_, kSurface, kDrawn));
     albedo_.emplace(makeImage(context_, "albedo", size_, kColour, kDrawn));
-    picture_.emplace(makeImage(context_, "picture", size_, kColour,
+    picture_.emplace(makeImage(context_, "picture", size_, format_,
                                VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
 }
 
@@ -179,7 +183,6 @@ void VulkanSurface::makeFramebuffers()
     fill(surfaceStep_, {&*surface_, &*albedo_});
     fill(faceStep_, {&*surface_, &*albedo_, &*depthTest_});
     fill(lightStep_, {&*picture_, &*depthTest_});
-    fill(panelStep_, {&*picture_});
 }
 
 void VulkanSurface::fit(VkExtent2D size)
@@ -191,8 +194,7 @@ void VulkanSurface::fit(VkExtent2D size)
                     " px is larger than the GPU " + context_.description.name + " can draw (" + std::to_string(most) +
                     " a side)");
     size_ = size;
-    for (Step* step : {&nearestStep_, &blendStep_, &surfaceStep_, &faceStep_, &lightStep_, &panelStep_})
-        step->framebuffer = {};
+    for (Step* step : {&nearestStep_, &blendStep_, &surfaceStep_, &faceStep_, &lightStep_}) step->framebuffer = {};
     makeImages();
     makeFramebuffers();
     pixels_.emplace(owner_, "pixels", std::size_t(4) * size.width * size.height, gpu::Intent::readback);
@@ -326,14 +328,10 @@ void VulkanSurface::record(const SurfaceInput& input)
     draw(hiddenShapes_, input.shapes.size());
     draw(shapes_, input.shapes.size());
     if (input.overlay) draw(overlay_, kCornersOfSplat * input.overlay->tiles.size());
-    vkCmdEndRenderPass(commands_);
 #ifdef PALPATE_PANELS
-    if (panels_) {
-        begin(panelStep_, {});
-        panels_->record(commands_);
-        vkCmdEndRenderPass(commands_);
-    }
+    if (panels_) panels_->record(commands_);
 #endif
+    vkCmdEndRenderPass(commands_);
 }
 
 void VulkanSurface::copyToHost()
@@ -351,12 +349,6 @@ void VulkanSurface::copyToHost()
                          nullptr, 0, nullptr);
 }
 
-void VulkanSurface::submit()
-{
-    check(vkEndCommandBuffer(commands_), "end a list of commands");
-    context_.submit({&commands_, 1});
-}
-
 std::span<const std::uint8_t> VulkanSurface::draw(const SurfaceInput& input)
 {
     fit({std::uint32_t(input.frame.width), std::uint32_t(input.frame.height)});
@@ -365,12 +357,13 @@ std::span<const std::uint8_t> VulkanSurface::draw(const SurfaceInput& input)
     beginList();
     record(input);
     copyToHost();
-    submit();
+    check(vkEndCommandBuffer(commands_), "end a list of commands");
+    context_.submit({&commands_, 1});
     pixels_->makeVisibleToHost();
     return pixels_->as<std::uint8_t>();
 }
 
-void VulkanSurface::draw(const SurfaceInput& input, VulkanWindow& window)
+void VulkanSurface::start(const SurfaceInput& input, VulkanWindow& window)
 {
     fit({std::uint32_t(input.frame.width), std::uint32_t(input.frame.height)});
     upload(input);
@@ -378,13 +371,23 @@ void VulkanSurface::draw(const SurfaceInput& input, VulkanWindow& window)
     beginList();
     record(input);
     window.copy(commands_, picture_->image.get(), size_);
-    submit();
+    check(vkEndCommandBuffer(commands_), "end a list of commands");
+    context_.start({&commands_, 1});
+    started_ = true;
+}
+
+bool VulkanSurface::finish()
+{
+    if (!started_) return false;
+    started_ = false;
+    context_.finish();
+    return true;
 }
 
 void VulkanSurface::usePanels()
 {
 #ifdef PALPATE_PANELS
-    panels_ = std::make_unique<VulkanPanels>(context_, panelStep_.pass.get());
+    panels_ = std::make_unique<VulkanPanels>(context_, lightStep_.pass.get());
 #else
     throw Error("this build has no panels: it was made without Dear ImGui");
 #endif

@@ -34,16 +34,22 @@ struct SurfaceInput {
 class VulkanSurface {
 public:
     /// \throws gpu::DeviceError if the device lacks a format
-    explicit VulkanSurface(gpu::Context& context);
+    /// \param picture  format of the pictures, of eight bits a channel
+    explicit VulkanSurface(gpu::Context& context, VkFormat picture = VK_FORMAT_R8G8B8A8_UNORM);
     ~VulkanSurface();
     VulkanSurface(const VulkanSurface&)            = delete;
     VulkanSurface& operator=(const VulkanSurface&) = delete;
 
-    /// Draws and waits. \return rows from the top, red, green, blue, alpha; until the next call
+    /// Draws and waits. \return rows from the top, channels in the order of format(); until the next call
     [[nodiscard]] std::span<const std::uint8_t> draw(const SurfaceInput& input);
 
-    /// Draws into a window that has a next picture.
-    void draw(const SurfaceInput& input, VulkanWindow& window);
+    [[nodiscard]] VkFormat format() const noexcept { return format_; }
+
+    /// Begins to draw into a window that has a next picture; finish() ends it. In between the host may prepare the next
+    /// one. \pre finished
+    void start(const SurfaceInput& input, VulkanWindow& window);
+    /// \return whether something had been started
+    bool finish();
 
     /// From now on the panels of the current ImGui context are drawn over every picture.
     /// \throws Error in a build without Dear ImGui
@@ -67,12 +73,13 @@ private:
     void record(const SurfaceInput& input);
     void recordSurface(const SurfaceInput& input);
     void copyToHost();
-    void submit();
     void begin(const Step& step, std::span<const VkClearValue> clear);
     void draw(const Pipeline& pipeline, std::size_t corners, std::size_t first = 0);
 
     gpu::Context&       owner_;
     gpu::VulkanContext& context_;
+    bool                started_ = false;
+    VkFormat            format_;
     VkExtent2D          size_{};
 
     SetLayout                                             setLayout_;
@@ -82,7 +89,7 @@ private:
     gpu::Owned<VkCommandPool, vkDestroyCommandPool>       pool_;
     VkCommandBuffer                                       commands_ = VK_NULL_HANDLE;
     std::optional<VulkanImage> depthTest_, nearest_, normals_, colours_, surface_, albedo_, picture_;
-    Step                       nearestStep_, blendStep_, surfaceStep_, faceStep_, lightStep_, panelStep_;
+    Step                       nearestStep_, blendStep_, surfaceStep_, faceStep_, lightStep_;
     Pipeline                   nearestDepths_, sums_, means_, faces_;                                 ///< fine
     Pipeline                   light_, ground_, points_, litFaces_, hiddenShapes_, shapes_, overlay_; ///< of lightStep_
     std::optional<gpu::Buffer> frameBuffer_, splatBuffer_, shapeBuffer_, faceBuffer_, overlayBuffer_, tileBuffer_,

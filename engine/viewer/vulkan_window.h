@@ -18,12 +18,15 @@ public:
     VulkanWindow(const VulkanWindow&)            = delete;
     VulkanWindow& operator=(const VulkanWindow&) = delete;
 
+    /// Of the pictures: eight bits each of red, green, blue and alpha, in one order or the other.
+    [[nodiscard]] VkFormat format() const noexcept { return format_.format; }
+
     /// The next picture that can be drawn over, made anew if the window's size has changed.
     /// \param size  of the window [px]
     /// \return false: there is none now, as with a window that is minimised
     [[nodiscard]] bool next(VkExtent2D size);
 
-    /// Copies an image in the layout TRANSFER_SRC_OPTIMAL onto that picture, scaled if it must be.
+    /// Copies an image of that format, in the layout TRANSFER_SRC_OPTIMAL, onto that picture, scaled if it must be.
     void copy(VkCommandBuffer commands, VkImage image, VkExtent2D size) const;
 
     /// Shows it, once what was recorded is done.

@@ -7,10 +7,6 @@
 #include <vulkan/vulkan.h>
 
 #include <GLFW/glfw3.h>
-#ifdef PALPATE_PANELS
-#include <backends/imgui_impl_glfw.h>
-#include <imgui.h>
-#endif
 
 #include "engine/core/contract.h"
 
@@ -32,6 +28,21 @@ int keyOf(int key)
         return kTabKey;
     case GLFW_KEY_ESCAPE:
         return kEscapeKey;
+    case GLFW_KEY_ENTER:
+    case GLFW_KEY_KP_ENTER:
+        return kEnterKey;
+    case GLFW_KEY_BACKSPACE:
+        return kBackspaceKey;
+    case GLFW_KEY_DELETE:
+        return kDeleteKey;
+    case GLFW_KEY_LEFT:
+        return kLeftKey;
+    case GLFW_KEY_RIGHT:
+        return kRightKey;
+    case GLFW_KEY_HOME:
+        return kHomeKey;
+    case GLFW_KEY_END:
+        return kEndKey;
     case GLFW_KEY_F1:
         return kF1Key;
     case GLFW_KEY_F5:
@@ -47,12 +58,14 @@ int keyOf(int key)
 
 struct GlfwWindow::Impl {
     GLFWwindow* window = nullptr;
-    WindowInput input;           ///< collected since the last poll
-    double      pressed = -1e9;  ///< when the left button went down last [s]
-    bool        panels  = false; ///< ImGui hears first
+    WindowInput input;             ///< collected since the last poll
+    double      pressed = -1e9;    ///< when the left button went down last [s]
+    glm::ivec2  pixels{}, units{}; ///< size of the picture [px], of the window as the desktop measures
+    glm::dvec2  at{};              ///< the pointer, as the desktop measures
 
     static Impl& of(GLFWwindow* window) { return *static_cast<Impl*>(glfwGetWindowUserPointer(window)); }
     void         listen();
+    void         ask();
     void         readState();
 };
 
@@ -73,41 +86,43 @@ void GlfwWindow::Impl::listen()
         self.input.doubleClick |= now - self.pressed < kDouble;
         self.pressed = now;
     });
+    glfwSetCharCallback(window, [](GLFWwindow* w, unsigned int code) { of(w).input.typed.push_back(code); });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
         for (int n = 0; n < count; ++n) of(w).input.dropped.emplace_back(paths[n]);
     });
 }
 
-/// What GLFW keeps itself: sizes, places, what is held.
+/// Sizes, and where the pointer is, in the desktop's units. Asking costs a round trip to the desktop each, which shows
+/// while pictures are on the way there: after this one, GLFW tells.
+void GlfwWindow::Impl::ask()
+{
+    glfwGetFramebufferSize(window, &pixels.x, &pixels.y);
+    glfwGetWindowSize(window, &units.x, &units.y);
+    glfwGetCursorPos(window, &at.x, &at.y);
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int x, int y) { of(w).pixels = {x, y}; });
+    glfwSetWindowSizeCallback(window, [](GLFWwindow* w, int x, int y) { of(w).units = {x, y}; });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) { of(w).at = {x, y}; });
+    glfwSetWindowContentScaleCallback(window,
+                                      [](GLFWwindow* w, float x, float) { of(w).input.scale = std::max(1.0F, x); });
+}
+
+/// What is held, and everything in pixels.
 void GlfwWindow::Impl::readState()
 {
-    const auto held   = [this](int key) { return glfwGetKey(window, key) == GLFW_PRESS; };
-    const auto button = [this](int which) { return glfwGetMouseButton(window, which) == GLFW_PRESS; };
-    int        width = 0, height = 0, wide = 0, high = 0;
-    glfwGetFramebufferSize(window, &width, &height);
-    glfwGetWindowSize(window, &wide, &high);
-    glm::dvec2 at;
-    glfwGetCursorPos(window, &at.x, &at.y);
-    if (wide > 0 && high > 0) at *= glm::dvec2(width, height) / glm::dvec2(wide, high); // screens' units are no pixels
-    float scale = 1, unused = 1;
-    glfwGetWindowContentScale(window, &scale, &unused);
+    const auto held    = [this](int key) { return glfwGetKey(window, key) == GLFW_PRESS; };
+    const auto button  = [this](int which) { return glfwGetMouseButton(window, which) == GLFW_PRESS; };
+    glm::dvec2 pointer = at;
+    if (units.x > 0 && units.y > 0) pointer *= glm::dvec2(pixels) / glm::dvec2(units);
 
-    input.moved   = input.size.x > 0 ? at - input.pointer : glm::dvec2(0);
-    input.pointer = at;
-    input.size    = {width, height};
-    input.scale   = std::max(1.0F, scale);
+    input.moved   = input.size.x > 0 ? pointer - input.pointer : glm::dvec2(0);
+    input.pointer = pointer;
+    input.size    = pixels;
     input.left    = button(GLFW_MOUSE_BUTTON_LEFT);
     input.right   = button(GLFW_MOUSE_BUTTON_RIGHT);
     input.middle  = button(GLFW_MOUSE_BUTTON_MIDDLE);
     input.shift   = held(GLFW_KEY_LEFT_SHIFT) || held(GLFW_KEY_RIGHT_SHIFT);
     input.touch   = held(GLFW_KEY_SPACE) || held(GLFW_KEY_H);
     input.closing = glfwWindowShouldClose(window) != 0;
-#ifdef PALPATE_PANELS
-    if (panels) {
-        input.panelsTakePointer = ImGui::GetIO().WantCaptureMouse;
-        input.panelsTakeKeys    = ImGui::GetIO().WantTextInput;
-    }
-#endif
 }
 
 GlfwWindow::GlfwWindow(const std::string& title, const glm::ivec2& size) : impl_(std::make_unique<Impl>())
@@ -127,13 +142,12 @@ GlfwWindow::GlfwWindow(const std::string& title, const glm::ivec2& size) : impl_
         throw Error("no window can be opened on this display" + why + kHint);
     }
     impl_->listen();
+    impl_->ask();
+    impl_->input.scale = scale();
 }
 
 GlfwWindow::~GlfwWindow()
 {
-#ifdef PALPATE_PANELS
-    if (impl_->panels) ImGui_ImplGlfw_Shutdown();
-#endif
     glfwDestroyWindow(impl_->window);
     glfwTerminate();
 }
@@ -163,23 +177,9 @@ WindowInput GlfwWindow::poll(double patience)
     impl_->input.wheel       = 0;
     impl_->input.leftPressed = impl_->input.doubleClick = false;
     impl_->input.keys.clear();
+    impl_->input.typed.clear();
     impl_->input.dropped.clear();
     return result;
-}
-
-void GlfwWindow::feedPanels()
-{
-#ifdef PALPATE_PANELS
-    impl_->panels = ImGui_ImplGlfw_InitForVulkan(impl_->window, true);
-#endif
-}
-
-void GlfwWindow::beginPanels()
-{
-#ifdef PALPATE_PANELS
-    ImGui_ImplGlfw_NewFrame();
-    ImGui::NewFrame();
-#endif
 }
 
 void GlfwWindow::setTitle(const std::string& title)

@@ -23,11 +23,6 @@ public:
     /// What happened since the last call. \param patience  waits so long for something to happen [s]
     [[nodiscard]] WindowInput poll(double patience = 0);
 
-    /// From now on ImGui hears of pointer and keys first. \pre there is a current ImGui context
-    void feedPanels();
-    /// Begins a frame of ImGui, after feedPanels().
-    void beginPanels();
-
     void setTitle(const std::string& title);
 
     [[nodiscard]] double scale() const; ///< see WindowInput::scale

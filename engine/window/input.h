@@ -7,7 +7,20 @@
 namespace palp {
 
 /// Keys that are no characters; all others are their capital letter, digit or sign.
-enum SpecialKey : int { kTabKey = 256, kEscapeKey, kF1Key, kF5Key, kF6Key };
+enum SpecialKey : int {
+    kTabKey = 256,
+    kEscapeKey,
+    kEnterKey,
+    kBackspaceKey,
+    kDeleteKey,
+    kLeftKey,
+    kRightKey,
+    kHomeKey,
+    kEndKey,
+    kF1Key,
+    kF5Key,
+    kF6Key
+};
 
 struct KeyPress {
     int  key     = 0; ///< 'F', '7', '[', or a SpecialKey
@@ -27,9 +40,11 @@ struct WindowInput {
     bool leftPressed = false, doubleClick = false;    ///< just now
 
     std::vector<KeyPress>              keys;
-    std::vector<std::filesystem::path> dropped; ///< files and folders that were let fall here
-    bool                               panelsTakePointer = false, panelsTakeKeys = false;
+    std::vector<char32_t>              typed;           ///< characters, for texts
+    std::vector<std::filesystem::path> dropped;         ///< files and folders that were let fall here
     bool                               closing = false; ///< somebody asks the window to close
+
+    bool panelsTakePointer = false, panelsTakeKeys = false; ///< what follows is not for the object
 
     /// Whether anything is there that may change the picture.
     [[nodiscard]] bool any() const

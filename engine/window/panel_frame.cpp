@@ -1,5 +1,7 @@
 #include "engine/window/panel_frame.h"
 
+#include <algorithm>
+
 #include <imgui.h>
 
 #include "engine/viewer/text.h"
@@ -52,6 +54,51 @@ void PanelFrame::beginWithoutWindow(const glm::ivec2& size, const PanelPointer& 
     io.MousePos     = ImVec2(float(pointer.at.x), float(pointer.at.y));
     io.MouseDown[0] = pointer.down;
     ImGui::NewFrame();
+}
+
+namespace {
+
+struct EditKey {
+    int      key;
+    ImGuiKey meaning;
+};
+constexpr EditKey kEditKeys[] = {{kTabKey, ImGuiKey_Tab},          {kEscapeKey, ImGuiKey_Escape},
+                                 {kEnterKey, ImGuiKey_Enter},      {kBackspaceKey, ImGuiKey_Backspace},
+                                 {kDeleteKey, ImGuiKey_Delete},    {kLeftKey, ImGuiKey_LeftArrow},
+                                 {kRightKey, ImGuiKey_RightArrow}, {kHomeKey, ImGuiKey_Home},
+                                 {kEndKey, ImGuiKey_End}};
+
+bool pressed(const WindowInput& input, int key)
+{
+    return std::ranges::any_of(input.keys, [key](const KeyPress& press) { return press.key == key; });
+}
+
+} // namespace
+
+// Fed by us, not by ImGui's back end for GLFW: that asks the desktop for the focus in every frame and waits for the
+// answer, behind the picture that is on its way there.
+WindowInput PanelFrame::begin(WindowInput input)
+{
+    const auto now  = std::chrono::steady_clock::now();
+    ImGuiIO&   io   = ImGui::GetIO();
+    io.DisplaySize  = ImVec2(float(input.size.x), float(input.size.y));
+    io.DeltaTime    = std::clamp(std::chrono::duration<float>(now - last_).count(), 1e-3F, 0.2F);
+    last_           = now;
+    io.MousePos     = ImVec2(float(input.pointer.x), float(input.pointer.y));
+    io.MouseDown[0] = input.left || input.leftPressed; // a click may begin and end between two pictures
+    io.MouseDown[1] = input.right;
+    io.MouseDown[2] = input.middle;
+    io.MouseWheel += float(input.wheel);
+    for (const char32_t code : input.typed) io.AddInputCharacter(unsigned(code));
+#if IMGUI_VERSION_NUM >= 18700
+    for (const EditKey& edit : kEditKeys) io.AddKeyEvent(edit.meaning, pressed(input, edit.key));
+#else
+    for (const EditKey& edit : kEditKeys) io.KeysDown[io.KeyMap[edit.meaning] = edit.key] = pressed(input, edit.key);
+#endif
+    ImGui::NewFrame();
+    input.panelsTakePointer = io.WantCaptureMouse;
+    input.panelsTakeKeys    = io.WantTextInput;
+    return input;
 }
 
 void PanelFrame::end()

@@ -1,7 +1,9 @@
 #pragma once
-#include <memory>
+#include <chrono>
 
 #include <glm/vec2.hpp>
+
+#include "engine/window/input.h"
 
 namespace palp {
 
@@ -25,7 +27,14 @@ public:
 
     /// A frame without a window. \param size  of the picture [px]
     void beginWithoutWindow(const glm::ivec2& size, const PanelPointer& pointer = {});
+
+    /// A frame with what happened in a window. \return the same, with what the panels take for themselves
+    [[nodiscard]] WindowInput begin(WindowInput input);
+
     void end();
+
+private:
+    std::chrono::steady_clock::time_point last_{}; ///< frame of a window
 };
 
 } // namespace palp

@@ -62,7 +62,7 @@ void Workbench::openWhat(const std::string& what)
     failed_             = false;
 }
 
-WorkbenchReport Workbench::run(const Poll& poll, const PanelHooks& panels)
+WorkbenchReport Workbench::run(const Poll& poll, PanelFrame* panels)
 {
     poll_    = poll;
     panels_  = panels;
@@ -132,6 +132,7 @@ void Workbench::ended(const SessionSummary& summary)
 void Workbench::frame(const SessionView* view)
 {
     input_ = poll_(patience());
+    beginPanels();
     handle(input_);
     const auto now = Clock::now();
     if (settings_.seconds > 0 && Seconds(now - started_).count() > settings_.seconds) closing_ = true;
@@ -143,9 +144,26 @@ void Workbench::frame(const SessionView* view)
     }
     const bool active = input_.any() || input_.panelsTakePointer || inContact(view) || replay_ || recording_;
     if (active || input_.size != drawnSize_) lastChange_ = now;
-    if (closing_ || input_.size.x < 1 || input_.size.y < 1) return;
-    if (stillFine_ && lastChange_ != now) return;
+    if (closing_ || input_.size.x < 1 || input_.size.y < 1 || (stillFine_ && lastChange_ != now)) return rest();
     drawFrame(view);
+}
+
+void Workbench::beginPanels()
+{
+#ifdef PALPATE_PANELS
+    if (!panels_) return;
+    panels_->setDark(state_.look.ground == Ground::dark);
+    input_ = panels_->begin(std::move(input_));
+#endif
+}
+
+/// No new picture: the last one stays.
+void Workbench::rest()
+{
+#ifdef PALPATE_PANELS
+    if (panels_) panels_->end();
+#endif
+    renderer_.present();
 }
 
 double Workbench::patience() const
@@ -167,11 +185,9 @@ void Workbench::drawFrame(const SessionView* view)
     showTouch(view);
     PanelWishes wishes;
 #ifdef PALPATE_PANELS
-    if (panels_.frame) {
-        panels_.frame->setDark(state_.look.ground == Ground::dark);
-        panels_.begin();
+    if (panels_) {
         wishes = drawPanels(state_, content(view), input_.scale);
-        panels_.frame->end();
+        panels_->end();
     }
 #endif
     writeTexts(view);

@@ -50,8 +50,8 @@ struct WorkbenchSettings {
     /// What a new recording says of itself. May be empty: nothing is recorded.
     std::function<SessionInfo(const Stage& stage, const HapticDevice& device)> recorded;
 
-    const std::atomic<bool>* stop = nullptr; ///< closes the window once it is true; may be null
-    SpaceMouse* camera = nullptr; ///< moves the camera; may be null
+    const std::atomic<bool>* stop   = nullptr; ///< closes the window once it is true; may be null
+    SpaceMouse*              camera = nullptr; ///< moves the camera; may be null
 };
 
 /// How the window did.
@@ -71,14 +71,9 @@ public:
 
     /// What happened since the last picture; may wait so long [s] for something to happen.
     using Poll = std::function<WindowInput(double patience)>;
-    /// How panels are drawn; without a frame there are none.
-    struct PanelHooks {
-        PanelFrame*           frame = nullptr; ///< outlives run()
-        std::function<void()> begin;           ///< a frame of ImGui
-    };
-
     /// Touches and shows until the window is closed.
-    WorkbenchReport run(const Poll& poll, const PanelHooks& panels);
+    /// \param panels  outlives it; null: there are none
+    WorkbenchReport run(const Poll& poll, PanelFrame* panels);
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -88,6 +83,8 @@ private:
     void                       session();
     void                       ended(const SessionSummary& summary);
     void                       frame(const SessionView* view);
+    void                       beginPanels();
+    void                       rest();
     void                       drawFrame(const SessionView* view);
     void                       showTouch(const SessionView* view);
     void                       addBrush();
@@ -140,7 +137,7 @@ private:
     std::unique_ptr<ReplayDevice>  replay_;
 
     Poll              poll_;
-    PanelHooks        panels_;
+    PanelFrame*       panels_ = nullptr;
     WindowInput       input_;
     std::atomic<bool> stop_            = false; ///< the session ends, and the next one begins
     bool              closing_         = false;
