@@ -99,25 +99,88 @@ protected:
     }
 };
 
-TEST_F(PanelsGoldenTest, AWindowWhileAHandPresses)
-{
-    constexpr PictureSize kSize{1280, 720, 1, Detail::fast};
-    PanelFrame            frame;
-    SurfaceRenderer       renderer({.device = deviceOfTests(), .validation = validation()});
-    renderer.usePanels();
-    Pressed   pressed;
-    ViewState state;
-    state.camera           = cameraAt(*pressed.patch, double(kSize.width) / kSize.height);
-    state.look.paint       = ViewPaint::stiffness;
-    const PanelContent now = pressed.content();
-    pressed.view.show(now.patch, now.force, state.look);
-    for (int n = 0; n < 3; ++n) { // panels settle their sizes in two frames
-        frame.beginWithoutWindow({kSize.width, kSize.height});
-        static_cast<void>(drawPanels(state, now, 1));
-        frame.end();
+/// What a picture of the window shows.
+struct Shown {
+    PictureSize size{1280, 720, 1, Detail::fast};
+    double      scale = 1;
+    ViewState   state{};
+};
+
+class PanelsGolden : public PanelsGoldenTest {
+protected:
+    Image pictureOf(Shown shown, const PanelContent& now, SurfaceRenderer& renderer, PanelFrame& frame)
+    {
+        const PictureSize& size = shown.size;
+        shown.state.camera      = cameraAt(*pressed_.patch, double(size.width) / size.height);
+        frame.setDark(shown.state.look.ground == Ground::dark);
+        pressed_.view.show(now.patch, now.force, shown.state.look);
+        for (int n = 0; n < 3; ++n) { // panels settle their sizes in two frames
+            frame.beginWithoutWindow({size.width, size.height});
+            static_cast<void>(drawPanels(shown.state, now, shown.scale));
+            frame.end();
+        }
+        const Overlay texts = annotations(pressed_.view.scene(), shown.state.camera, size.width, size.height);
+        return renderer.draw(pressed_.view.scene(), shown.state.camera, size, &texts);
     }
-    const Overlay texts = annotations(pressed.view.scene(), state.camera, kSize.width, kSize.height);
-    expectGolden("panels", renderer.draw(pressed.view.scene(), state.camera, kSize, &texts), renderer);
+
+    void expectGolden(const std::string& name, const Shown& shown, const PanelContent& now)
+    {
+        PanelFrame      frame(shown.scale);
+        SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
+        renderer.usePanels();
+        const Image image = pictureOf(shown, now, renderer, frame);
+        PanelsGoldenTest::expectGolden(name, image, renderer);
+    }
+
+    Pressed pressed_;
+};
+
+TEST_F(PanelsGolden, AWindowWhileAHandPresses)
+{
+    Shown shown;
+    shown.state.look.paint = ViewPaint::stiffness;
+
+    expectGolden("panels", shown, pressed_.content());
+}
+
+TEST_F(PanelsGolden, DarkAndLargeAtTwiceTheScale)
+{
+    Shown shown{{1920, 1080, 1, Detail::fast}, 2};
+    shown.state.look.ground = Ground::dark;
+    shown.state.look.map    = ColourMap::cividis;
+    PanelContent now        = pressed_.content();
+    now.recording           = "recordings/2016-05-20";
+
+    expectGolden("panels-dark", shown, now);
+}
+
+TEST_F(PanelsGolden, ABrushAndTheSheetOfKeys)
+{
+    Shown shown;
+    shown.state.tool       = Tool::paint;
+    shown.state.keys       = true;
+    shown.state.look.paint = ViewPaint::stiffness;
+    PanelContent now       = pressed_.content();
+    now.painted = now.canUndo = true;
+    now.message               = "saved as palm.ply";
+
+    expectGolden("panels-paint", shown, now);
+}
+
+TEST_F(PanelsGolden, NothingFeltYetAndAFault)
+{
+    Shown         shown;
+    SessionSample sample;
+    sample.time   = 1;
+    sample.faults = static_cast<std::uint32_t>(GovernorFault::tooFast);
+    pressed_.history.clear();
+    pressed_.history.add(sample);
+    PanelContent now = pressed_.content();
+    now.patch        = nullptr;
+    now.force = now.solveTime = now.loopPeriod = 0;
+    now.faults = {"The cloud ends within the window: the patch is free there. Take a smaller window."};
+
+    expectGolden("panels-fault", shown, now);
 }
 
 } // namespace
