@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include <imgui.h>
 
@@ -16,7 +18,7 @@ constexpr double kWide = 10; ///< a larger ratio of rigidities is shown on a log
 
 /// One of the two maps.
 struct ChartMap {
-    const char*  title;
+    std::string  title; ///< with the unit
     ChartSamples samples;
     Axis         axis;
 };
@@ -101,12 +103,16 @@ void drawBar(const PanelDesk& desk, const ChartMap& map, ImVec2 corner, float si
         draw->AddRectFilled(ImVec2(corner.x + side * float(n) / kSteps, corner.y),
                             ImVec2(corner.x + side * float(n + 1) / kSteps, corner.y + high),
                             packed(surfaceColour((n + 0.5) / kSteps, desk.state.look.map)));
-    for (const Tick& tick : map.axis.ticks()) {
-        const float at   = corner.x + side * float(map.axis.position(tick.value));
-        const float wide = ImGui::CalcTextSize(tick.label.c_str()).x;
+    // From the right, as far as there is room.
+    float free = corner.x + side + 1;
+    for (auto tick = map.axis.ticks().rbegin(); tick != map.axis.ticks().rend(); ++tick) {
+        const float at   = corner.x + side * float(map.axis.position(tick->value));
+        const float wide = ImGui::CalcTextSize(tick->label.c_str()).x;
+        const float left = std::clamp(at - wide / 2, corner.x, corner.x + side - wide);
         draw->AddLine(ImVec2(at, corner.y + high), ImVec2(at, corner.y + high + 3 * s), text);
-        draw->AddText(ImVec2(std::clamp(at - wide / 2, corner.x, corner.x + side - wide), corner.y + high + 3 * s),
-                      text, tick.label.c_str());
+        if (left + wide > free) continue;
+        draw->AddText(ImVec2(left, corner.y + high + 3 * s), text, tick->label.c_str());
+        free = left - 0.4F * ImGui::GetFontSize();
     }
 }
 
@@ -114,9 +120,9 @@ void drawBar(const PanelDesk& desk, const ChartMap& map, ImVec2 corner, float si
 std::optional<ImVec2> drawMap(const PanelDesk& desk, const Patch& patch, const ChartMap& map, float side)
 {
     ImGui::BeginGroup();
-    ImGui::TextUnformatted(map.axis.title(map.title).c_str());
+    ImGui::TextUnformatted(map.title.c_str());
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    ImGui::InvisibleButton(map.title, ImVec2(side, side));
+    ImGui::InvisibleButton(map.title.c_str(), ImVec2(side, side));
     std::optional<ImVec2> pointed;
     if (const ImVec2 mouse = ImGui::GetMousePos(); ImGui::IsItemHovered())
         pointed = ImVec2((mouse.x - corner.x) / side, 1 - (mouse.y - corner.y) / side);
@@ -136,12 +142,30 @@ void drawReadOut(const PanelDesk& desk, const Patch& patch, const std::optional<
     const auto node = [](float share, int cells) { return std::clamp(int(share * float(cells) + 0.5F), 0, cells); };
     const int  i    = pointed ? node(pointed->x, grid.cellsX) : grid.cellsX / 2;
     const int  j    = pointed ? node(pointed->y, grid.cellsZ) : grid.cellsZ / 2;
-    toned(desk, Tone::faint, pointed ? "under the pointer" : "at the contact; point at a map for other places");
+    toned(desk, Tone::faint, pointed ? "under the pointer" : "at the contact, or point at a map");
     reading(desk, Half::left, "x", formatted("%.1f mm", 1e3 * (patch.window.corner.x + i * grid.spacingX)));
     reading(desk, Half::right, "z", formatted("%.1f mm", 1e3 * (patch.window.corner.z + j * grid.spacingZ)));
     reading(desk, Half::left, "D", formatQuantity(patch.plate.rigidity(i, j), "N m"));
     reading(desk, Half::right, "w", formatted("%.4f mm", 1e3 * desk.content.force * patch.response(i, j)));
     reading(desk, "sides", edgesText(patch.plate.edges));
+}
+
+ChartMap rigidityMap(const Patch& patch)
+{
+    ChartSamples samples = chartSamples(patch.plate.rigidity, 1);
+    const auto   range   = rangeOf(samples.values, Scale::logarithmic).value_or(ValueRange{1, 1});
+    const Scale  scale   = range.high > kWide * range.low ? Scale::logarithmic : Scale::linear;
+    const Axis   axis(range, scale, "N m", 3);
+    return {axis.title("D"), std::move(samples), axis};
+}
+
+ChartMap dentMap(const Patch& patch, double force)
+{
+    constexpr double kFlat   = 1e-6;                                      // [mm] less is shown as nothing
+    ChartSamples     samples = chartSamples(patch.response, 1e3 * force); // [mm]
+    const auto       range   = rangeOf(samples.values, Scale::linear).value_or(ValueRange{0, 1});
+    const Axis       axis({std::min(0.0, range.low), std::max(range.high, kFlat)}, Scale::linear, "", 3);
+    return {axis.unit().empty() ? "w [mm]" : "w [" + axis.unit() + " mm]", std::move(samples), axis};
 }
 
 } // namespace
@@ -153,16 +177,9 @@ void drawChartSection(PanelDesk& desk)
         tonedWrapped(desk, Tone::faint, "Nothing is bent yet: touch the surface. Hold Space and point at the object.");
         return;
     }
-    ChartSamples   rigidity = chartSamples(patch->plate.rigidity, 1);
-    ChartSamples   dent     = chartSamples(patch->response, desk.content.force);
-    const auto     range    = rangeOf(rigidity.values, Scale::logarithmic).value_or(ValueRange{1, 1});
-    const Scale    scale    = range.high > kWide * range.low ? Scale::logarithmic : Scale::linear;
-    const auto     deepest  = rangeOf(dent.values, Scale::linear).value_or(ValueRange{0, 1});
-    const float    gap      = 12 * desk.scale;
-    const float    side     = std::floor((ImGui::GetContentRegionAvail().x - gap) / 2);
-    const ChartMap d{"D", std::move(rigidity), Axis(range, scale, "N m", 3)};
-    const ChartMap w{"w", std::move(dent),
-                     Axis({std::min(0.0, deepest.low), std::max(deepest.high, 1e-9)}, Scale::linear, "m", 3)};
+    const float    gap  = 12 * desk.scale;
+    const float    side = std::floor((ImGui::GetContentRegionAvail().x - gap) / 2);
+    const ChartMap d = rigidityMap(*patch), w = dentMap(*patch, desk.content.force);
     auto           pointed = drawMap(desk, *patch, d, side);
     ImGui::SameLine(0, gap);
     if (const auto there = drawMap(desk, *patch, w, side)) pointed = there;

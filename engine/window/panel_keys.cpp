@@ -12,7 +12,7 @@ struct KeyLine {
 
 constexpr KeyLine kPointer[] = {
     {"left drag", "orbit"},    {"right or shift drag", "pan"}, {"wheel", "zoom"},     {"double click", "set the pivot"},
-    {"F", "frame the object"}, {"R", "reset the view"},        {"O", "orthographic"}, {"1  3  7", "along x, y, z"},
+    {"F", "frame the object"}, {"R", "reset the view"},        {"O", "orthographic"}, {"1  3  7", "along the axes"},
 };
 constexpr KeyLine kTouch[] = {
     {"hold Space or H", "touch; wheel is depth"},
@@ -36,12 +36,10 @@ template <std::size_t n>
 void drawLines(const PanelDesk& desk, const char* title, const KeyLine (&lines)[n])
 {
     toned(desk, Tone::accent, title);
-    const float left = ImGui::GetCursorPosX();
     for (const KeyLine& line : lines) {
         ImGui::TextUnformatted(line.key);
-        ImGui::SameLine(left + 140 * desk.scale, 0);
+        ImGui::SameLine(150 * desk.scale, 0); // from where the group begins
         toned(desk, Tone::faint, line.does);
-        ImGui::SetCursorPosX(left);
     }
     ImGui::NewLine();
 }
@@ -51,6 +49,7 @@ void drawLines(const PanelDesk& desk, const char* title, const KeyLine (&lines)[
 void drawKeySheet(PanelDesk& desk)
 {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowBgAlpha(0.98F); // it is read, not looked through
     ImGui::SetNextWindowPos(ImVec2(screen.x / 2, screen.y / 2), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
     ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(screen.x, screen.y));
     if (ImGui::Begin("Keys", &desk.state.keys,

@@ -164,7 +164,7 @@ void badge(const char* text, Rgb8 fill)
 
 void tip(const char* text)
 {
-    if (!ImGui::IsItemHovered()) return;
+    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(kTipWidth * ImGui::GetFontSize() / 15);
     ImGui::TextUnformatted(text);

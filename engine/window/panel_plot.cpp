@@ -9,9 +9,10 @@
 namespace palp {
 namespace {
 
-constexpr float kGutter   = 34; ///< left of a plot, for its numbers, at scale 1 [px]
-constexpr float kMostTick = 26; ///< of the height that a number along y takes, at scale 1 [px]
-constexpr float kDash     = 4;  ///< of a dashed stroke, at scale 1 [px]
+constexpr float kGutter     = 34; ///< left of a plot, for its numbers, at scale 1 [px]
+constexpr float kMostTick   = 18; ///< of the height that a number along y takes, at scale 1 [px]
+constexpr float kDash       = 4;  ///< of a dashed stroke, at scale 1 [px]
+constexpr int   kTicksAlong = 5;  ///< numbers below a plot, at most [1]
 
 ImVec2 vec(const glm::vec2& v)
 {
@@ -29,15 +30,15 @@ double roundEnd(double value, double least)
 }
 
 PanelPlot::PanelPlot(const PanelDesk& desk, const PanelPlotSettings& settings)
-    : desk_(desk), x_(settings.x, settings.xScale, "", 7),
-      y_(settings.y, Scale::linear, "", std::max(2, int(settings.height / kMostTick))), down_(settings.yDown)
+    : desk_(desk), x_(settings.x, settings.xScale, "", kTicksAlong),
+      y_(settings.y, Scale::linear, "", int(settings.height / kMostTick)), down_(settings.yDown)
 {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float  s = desk.scale, font = ImGui::GetFontSize();
     low_       = {at.x + kGutter * s, at.y + 0.3F * font};
     high_      = {at.x + ImGui::GetContentRegionAvail().x - 0.5F * font, low_.y + settings.height * s};
     legendEnd_ = high_.x - 4 * s;
-    ImGui::InvisibleButton(settings.title, ImVec2(high_.x + 0.5F * font - at.x, high_.y + 1.2F * font - at.y));
+    ImGui::InvisibleButton(settings.title, ImVec2(high_.x + 0.5F * font - at.x, high_.y + 1.05F * font - at.y));
     pointed_ = ImGui::IsItemHovered();
     drawFrame(settings);
 }
@@ -56,14 +57,17 @@ void PanelPlot::drawFrame(const PanelPlotSettings& settings) const
     const Rgb8          ink  = inkOn(desk_.state.look.ground);
     const std::uint32_t text = packed(colourOf(Tone::faint, desk_.dark())), grid = packed(ink, 0.14);
     draw->AddRectFilled(vec(low_), vec(high_), packed(ink, 0.03));
-    const std::vector<Tick>& along = x_.ticks();
-    for (std::size_t n = 0; n < along.size(); ++n) {
-        const float       at    = pixel(along[n].value, y_.range().low).x;
-        const bool        last  = n + 1 == along.size();
-        const std::string label = last ? along[n].label + " " + settings.xUnit : along[n].label;
+    // From the right: the last number has the unit, and those that it leaves no room for have only their line.
+    float free = high_.x + 0.5F * font;
+    for (auto tick = x_.ticks().rbegin(); tick != x_.ticks().rend(); ++tick) {
+        const float       at    = pixel(tick->value, y_.range().low).x;
+        const std::string label = tick == x_.ticks().rbegin() ? tick->label + " " + settings.xUnit : tick->label;
         const float       wide  = ImGui::CalcTextSize(label.c_str()).x;
+        const float       left  = std::min(at - wide / 2, high_.x + 0.5F * font - wide);
         draw->AddLine(ImVec2(at, low_.y), ImVec2(at, high_.y), grid, 1);
-        draw->AddText(ImVec2(std::min(at - wide / 2, high_.x + 0.5F * font - wide), high_.y + 1), text, label.c_str());
+        if (left + wide > free) continue;
+        draw->AddText(ImVec2(left, high_.y + 1), text, label.c_str());
+        free = left - 0.4F * font;
     }
     for (const Tick& tick : y_.ticks()) {
         const float at = pixel(x_.range().low, tick.value).y, wide = ImGui::CalcTextSize(tick.label.c_str()).x;
@@ -126,8 +130,8 @@ void PanelPlot::bars(std::span<const float> heights, Tone tone)
 void PanelPlot::mark(double x, Tone tone)
 {
     const float at = pixel(x, y_.range().low).x;
-    ImGui::GetWindowDrawList()->AddLine(ImVec2(at, low_.y), ImVec2(at, high_.y), packed(colourOf(tone, desk_.dark())),
-                                        1.5F * desk_.scale);
+    ImGui::GetWindowDrawList()->AddLine(ImVec2(at, low_.y + 1.2F * ImGui::GetFontSize()), ImVec2(at, high_.y),
+                                        packed(colourOf(tone, desk_.dark())), 1.5F * desk_.scale);
 }
 
 void PanelPlot::legend(const char* text, Tone tone, Stroke stroke)

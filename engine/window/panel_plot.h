@@ -35,7 +35,7 @@ public:
     /// Bars side by side over the whole of x; heights in the unit of y, zero for none.
     void bars(std::span<const float> heights, Tone tone);
 
-    /// An upright line at a value of x.
+    /// An upright line at a value of x, below the title.
     void mark(double x, Tone tone);
 
     /// In the upper right corner, from right to left: a stroke and what it means.

@@ -100,6 +100,31 @@ void drawLaw(PanelDesk& desk)
     }
 }
 
+/// Two opposite sides of the window in one line.
+void drawSides(PanelDesk& desk, const char* label, Edge PlateEdges::*low, Edge PlateEdges::*high)
+{
+    labelOf(desk, label, "edges");
+    const PlateEdges now   = desk.content.scene.patch.edges;
+    const float      width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemInnerSpacing.x) / 2;
+    for (Edge PlateEdges::*const side : {low, high}) {
+        ImGui::PushID(label);
+        ImGui::PushID(side == low ? 0 : 1);
+        if (side == high) ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+        ImGui::SetNextItemWidth(width);
+        const bool open = ImGui::BeginCombo("##side", name(now.*side), ImGuiComboFlags_NoArrowButton);
+        if (!open) explain(desk, "edges");
+        for (const Edge edge : {Edge::clamped, Edge::supported, Edge::free}) {
+            if (!open || !ImGui::Selectable(name(edge), edge == now.*side) || edge == now.*side) continue;
+            PlateEdges changed          = now;
+            changed.*side               = edge;
+            desk.wishes.values["edges"] = edgesText(changed);
+        }
+        if (open) ImGui::EndCombo();
+        ImGui::PopID();
+        ImGui::PopID();
+    }
+}
+
 } // namespace
 
 void drawSceneSection(PanelDesk& desk)
@@ -109,6 +134,9 @@ void drawSceneSection(PanelDesk& desk)
         ImGui::Separator();
         for (const SceneNumber& number : group.numbers) drawNumber(desk, number);
         for (const SceneChoice& choice : group.choices) drawChoice(desk, choice);
+        if (!group.edges) continue;
+        drawSides(desk, "edges x0, x1", &PlateEdges::x0, &PlateEdges::x1);
+        drawSides(desk, "edges z0, z1", &PlateEdges::z0, &PlateEdges::z1);
     }
 }
 

@@ -23,9 +23,9 @@ void drawPeriods(const PanelDesk& desk)
     std::vector<float>           heights;
     for (const float count : counts) heights.push_back(std::log10(1 + count));
     const double most = std::max(1.0, double(*std::ranges::max_element(heights)));
-    PanelPlot    plot(desk, {"ticks per period, logarithmic",
+    PanelPlot    plot(desk, {"ticks, log scale",
                              {1e3 * TouchHistory::kShortest, 1e3 * TouchHistory::kLongest},
-                             {0, 1.5 * most},
+                             {0, 1.6 * most},
                              "ms",
                              64,
                              Scale::logarithmic,
@@ -57,7 +57,7 @@ void drawDevice(const PanelDesk& desk, const char* role, const std::string& devi
 {
     ImGui::AlignTextToFramePadding();
     toned(desk, Tone::faint, role);
-    ImGui::SameLine(52 * desk.scale + ImGui::GetStyle().WindowPadding.x, 0);
+    ImGui::SameLine(66 * desk.scale + ImGui::GetStyle().WindowPadding.x, 0);
     if (software) {
         badge("software", colourOf(Tone::warning, false));
         tip("This machine draws without a GPU: pictures are slower, forces are not");
@@ -78,10 +78,10 @@ void drawTimingSection(PanelDesk& desk)
     drawPeriods(desk);
     drawPlate(desk);
     const bool draws = content.frameTime > 0;
-    reading(desk, Half::left, "picture", orDash(draws, formatted("%.1f ms", 1e3 * content.frameTime)));
-    reading(desk, Half::right, "pictures", orDash(draws, formatted("%.0f per s", draws ? 1 / content.frameTime : 0)));
-    drawDevice(desk, "plate", content.solvedOn, false);
-    drawDevice(desk, "picture", content.drawnOn, content.drawnInSoftware);
+    reading(desk, Half::left, "frame", orDash(draws, formatted("%.1f ms", 1e3 * content.frameTime)));
+    reading(desk, Half::right, "frames", orDash(draws, formatted("%.0f per s", draws ? 1 / content.frameTime : 0)));
+    drawDevice(desk, "plate on", content.solvedOn, false);
+    drawDevice(desk, "drawn on", content.drawnOn, content.drawnInSoftware);
 }
 
 } // namespace palp

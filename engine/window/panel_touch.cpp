@@ -49,9 +49,12 @@ void drawNumbers(const PanelDesk& desk)
     const double         kc     = patch ? patch->contactStiffness : 0;
     const bool           known  = held && now.compliance > 0 && kc > 0;
     const double         felt   = known ? feltStiffness(desk.content.scene.patch.forceLaw, kc, now.compliance) : 0;
+    const double         cap    = desk.content.scene.stiffnessCap; // [N/m]
     reading(desk, Half::left, "force", formatted("%.2f N", glm::length(now.force)));
     reading(desk, Half::right, "depth", orDash(formatted("%.2f mm", penetration(now) * 1e3)));
-    reading(desk, Half::left, "felt", known ? formatted("%.0f N/m", felt) : "\u2013");
+    reading(desk, Half::left, "felt",
+            !known ? "\u2013" : formatted("%.0f N/m%s", std::min(felt, cap), felt > cap ? " cap" : ""));
+    if (known && felt > cap) tip("As stiff as the scene lets it be: stiffness_cap");
     reading(desk, Half::right, "rigidity", orDash(formatQuantity(now.rigidity, "N m")));
     reading(desk, Half::left, "dent", orDash(formatted("%.3f mm", now.maxDeflection * 1e3)));
     readingOfAge(desk, Half::right, "patch");
@@ -95,7 +98,7 @@ void drawProfile(const PanelDesk& desk)
 {
     const Patch* const patch = desk.content.patch;
     if (!patch || !patch->deformed()) {
-        toned(desk, Tone::faint, "No patch yet: hold Space and point at the object.");
+        tonedWrapped(desk, Tone::faint, "No patch yet: hold Space and point at the object.");
         return;
     }
     const Window&    window = patch->window;

@@ -66,8 +66,8 @@ void drawViewSection(PanelDesk& desk)
     drawColours(desk);
     labelled(desk, "exaggerate", "Factor on every displacement in the picture; forces stay what they are (X)");
     const double least = 1, most = 20;
-    ImGui::SliderScalar("##exaggeration", ImGuiDataType_Double, &desk.state.look.exaggeration, &least, &most, "x %.1f",
-                        ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    ImGui::SliderScalar("##exaggeration", ImGuiDataType_Double, &desk.state.look.exaggeration, &least, &most,
+                        "\u00d7 %.1f", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     drawToggles(desk);
     drawButtons(desk);
     labelled(desk, "tool", "The pointer carries a hand that touches, or a brush of stiffness (B)");

@@ -29,8 +29,10 @@ public:
         ImGui::PushStyleVar(ImGuiStyleVar_ScrollbarSize, 10 * s);
         ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
         const Rgb8 ink = inkOn(dark ? Ground::dark : Ground::light), blue = colourOf(Tone::accent, dark);
+        // As what fades below the texts of the picture: a hint of it stays.
+        colour(ImGuiCol_WindowBg, dark ? Rgb8{30, 32, 36} : Rgb8{246, 247, 248}, 0.92);
         colour(ImGuiCol_Text, ink, 1);
-        colour(ImGuiCol_FrameBg, ink, 0.08);
+        colour(ImGuiCol_FrameBg, ink, 0.10);
         colour(ImGuiCol_FrameBgHovered, blue, 0.25);
         colour(ImGuiCol_FrameBgActive, blue, 0.35);
         colour(ImGuiCol_Button, ink, 0.10);
@@ -40,8 +42,8 @@ public:
         colour(ImGuiCol_HeaderHovered, blue, 0.25);
         colour(ImGuiCol_HeaderActive, blue, 0.40);
         colour(ImGuiCol_CheckMark, blue, 1);
-        colour(ImGuiCol_SliderGrab, blue, 0.75);
-        colour(ImGuiCol_SliderGrabActive, blue, 1);
+        colour(ImGuiCol_SliderGrab, blue, 0.45);
+        colour(ImGuiCol_SliderGrabActive, blue, 0.7);
     }
     ~Style()
     {

@@ -43,10 +43,6 @@ std::vector<SceneChoice> patchChoices()
          "sampling",
          {"log-mean", "nearest"},
          [](const S& s) { return std::string(name(s.patch.sampling)); }},
-        {"edges",
-         "edges",
-         {"clamped", "supported", "free", "x0=free", "x0=free,x1=free", "x0=supported,x1=supported"},
-         [](const S& s) { return edgesText(s.patch.edges); }},
         {"tolerance",
          "tolerance",
          {"1e-2", "1e-3", "1e-4", "1e-5", "1e-6"},
@@ -89,9 +85,9 @@ std::vector<SceneChoice> servoChoices()
 std::span<const SceneControls> sceneControls()
 {
     static const std::array kControls = {
-        SceneControls{"material", materialNumbers(), {}},
-        SceneControls{"patch", patchNumbers(), patchChoices()},
-        SceneControls{"hand", servoNumbers(), servoChoices()},
+        SceneControls{materialNumbers(), {}},
+        SceneControls{patchNumbers(), patchChoices(), true},
+        SceneControls{servoNumbers(), servoChoices()},
     };
     return kControls;
 }

@@ -29,14 +29,14 @@ struct SceneChoice {
     std::string (*of)(const Scene&); ///< the value now, as an option is spelt
 };
 
-/// In the order in which they are shown, by what they say something about.
+/// What is shown together, in the order in which it is shown.
 struct SceneControls {
-    const char*              title;
     std::vector<SceneNumber> numbers;
     std::vector<SceneChoice> choices;
+    bool                     edges = false; ///< the edges of the window belong here
 };
 
-/// All that may change while one touches, but for the law of stiffness.
+/// All that may change while one touches, but for the law of stiffness and the edges: a text, and four names.
 [[nodiscard]] std::span<const SceneControls> sceneControls();
 
 /// A number as a wish or a flag says it: "4 mm".

@@ -123,6 +123,16 @@ protected:
         return renderer.draw(pressed_.view.scene(), shown.state.camera, size, &texts);
     }
 
+    /// Presses and lets go of the pointer.
+    static void click(const glm::dvec2& at, Shown& shown, const PanelContent& now, PanelFrame& frame)
+    {
+        for (const bool down : {false, true, false}) { // ImGui counts a press where the pointer already was
+            frame.beginWithoutWindow({shown.size.width, shown.size.height}, {at, down});
+            static_cast<void>(drawPanels(shown.state, now, shown.scale));
+            frame.end();
+        }
+    }
+
     void expectGolden(const std::string& name, const Shown& shown, const PanelContent& now)
     {
         PanelFrame      frame(shown.scale);
@@ -152,6 +162,41 @@ TEST_F(PanelsGolden, DarkAndLargeAtTwiceTheScale)
     now.recording           = "recordings/2016-05-20";
 
     expectGolden("panels-dark", shown, now);
+}
+
+/// The left part of a picture.
+Image columnOf(const Image& image, int width)
+{
+    Image column(width, image.height, {});
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < width; ++x) column.at(x, y) = image.at(x, y);
+    return column;
+}
+
+TEST_F(PanelsGolden, TheOtherSectionsOpenAtAClick)
+{
+    constexpr int    kColumn = 300;                                                     // [px]
+    constexpr double kView = 39, kTouch = 60, kChart = 81, kTiming = 102, kScene = 123; // headers while all are closed
+    Shown            shown;
+    const PanelContent now = pressed_.content();
+    PanelFrame         frame;
+    SurfaceRenderer    renderer({.device = deviceOfTests(), .validation = validation()});
+    renderer.usePanels();
+    const auto at = [&](double y) { click({60, y}, shown, now, frame); };
+
+    static_cast<void>(pictureOf(shown, now, renderer, frame));
+    at(kView);
+    at(kTouch);
+    at(kTiming);
+    at(kChart);
+    const Image chart = pictureOf(shown, now, renderer, frame);
+    at(kChart);
+    at(kTiming);
+    at(kScene);
+    const Image scene = pictureOf(shown, now, renderer, frame);
+
+    PanelsGoldenTest::expectGolden("panels-chart", columnOf(chart, kColumn), renderer);
+    PanelsGoldenTest::expectGolden("panels-scene", columnOf(scene, kColumn), renderer);
 }
 
 TEST_F(PanelsGolden, ABrushAndTheSheetOfKeys)
