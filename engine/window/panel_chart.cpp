@@ -38,12 +38,13 @@ void drawSide(const PanelDesk& desk, ImVec2 from, ImVec2 to, Edge edge)
         draw->AddLine(from, to, ink, edge == Edge::clamped ? 4 * s : 1.5F * s);
         return;
     }
-    constexpr int kDashes = 12;
-    for (int n = 0; n < kDashes; ++n) {
+    const float dash = 6 * s, length = std::hypot(to.x - from.x, to.y - from.y);
+    const int   dashes = std::max(2, int(length / dash));
+    for (int n = 0; n < dashes; ++n) {
         const auto at = [&](float share) {
             return ImVec2(from.x + (to.x - from.x) * share, from.y + (to.y - from.y) * share);
         };
-        draw->AddLine(at(float(n) / kDashes), at((float(n) + 0.5F) / kDashes), ink, 2 * s);
+        draw->AddLine(at(float(n) / float(dashes)), at((float(n) + 0.6F) / float(dashes)), ink, 2 * s);
     }
 }
 
@@ -72,7 +73,7 @@ void drawField(const PanelDesk& desk, const ChartMap& map, ImVec2 corner, float 
         }
 }
 
-/// Sides, contact and fingertip over a field.
+/// Contact, fingertip and sides over a field.
 void drawMarks(const PanelDesk& desk, const Patch& patch, ImVec2 corner, float side)
 {
     ImDrawList* const draw = ImGui::GetWindowDrawList();
@@ -86,6 +87,8 @@ void drawMarks(const PanelDesk& desk, const Patch& patch, ImVec2 corner, float s
         draw->AddLine(ImVec2(contact.x - 5 * s, contact.y), ImVec2(contact.x + 5 * s, contact.y), ink, thick);
         draw->AddLine(ImVec2(contact.x, contact.y - 5 * s), ImVec2(contact.x, contact.y + 5 * s), ink, thick);
     }
+    const float fingertip = side * float(desk.content.scene.patch.footprintRadius / grid.sizeX());
+    draw->AddCircle(contact, fingertip, IM_COL32(255, 255, 255, 150), 0, s);
     const PlateEdges& edges = patch.plate.edges;
     drawSide(desk, {corner.x, corner.y}, {corner.x, end.y}, edges.x0);
     drawSide(desk, {end.x, corner.y}, {end.x, end.y}, edges.x1);
@@ -143,11 +146,25 @@ void drawReadOut(const PanelDesk& desk, const Patch& patch, const std::optional<
     const int  i    = pointed ? node(pointed->x, grid.cellsX) : grid.cellsX / 2;
     const int  j    = pointed ? node(pointed->y, grid.cellsZ) : grid.cellsZ / 2;
     toned(desk, Tone::faint, pointed ? "under the pointer" : "at the contact, or point at a map");
-    reading(desk, Half::left, "x", formatted("%.1f mm", 1e3 * (patch.window.corner.x + i * grid.spacingX)));
-    reading(desk, Half::right, "z", formatted("%.1f mm", 1e3 * (patch.window.corner.z + j * grid.spacingZ)));
+    reading(desk, Half::left, "x, right", formatted("%.1f mm", 1e3 * (patch.window.corner.x + i * grid.spacingX)));
+    reading(desk, Half::right, "z, up", formatted("%.1f mm", 1e3 * (patch.window.corner.z + j * grid.spacingZ)));
     reading(desk, Half::left, "D", formatQuantity(patch.plate.rigidity(i, j), "N m"));
     reading(desk, Half::right, "w", formatted("%.4f mm", 1e3 * desk.content.force * patch.response(i, j)));
-    reading(desk, "sides", edgesText(patch.plate.edges));
+}
+
+/// How each kind of side is drawn.
+void drawKeyOfSides(const PanelDesk& desk)
+{
+    const float sample = 16 * desk.scale, gap = 4 * desk.scale;
+    for (const Edge edge : {Edge::clamped, Edge::supported, Edge::free}) {
+        if (edge != Edge::clamped) ImGui::SameLine(0, 3 * gap);
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float  y  = at.y + 0.55F * ImGui::GetFontSize();
+        drawSide(desk, {at.x, y}, {at.x + sample, y}, edge);
+        ImGui::Dummy(ImVec2(sample, ImGui::GetFontSize()));
+        ImGui::SameLine(0, gap);
+        toned(desk, Tone::faint, name(edge));
+    }
 }
 
 ChartMap rigidityMap(const Patch& patch)
@@ -161,7 +178,7 @@ ChartMap rigidityMap(const Patch& patch)
 
 ChartMap dentMap(const Patch& patch, double force)
 {
-    constexpr double kFlat   = 1e-6;                                      // [mm] less is shown as nothing
+    constexpr double kFlat   = 0.01;                                      // [mm] dents of less have the colours of none
     ChartSamples     samples = chartSamples(patch.response, 1e3 * force); // [mm]
     const auto       range   = rangeOf(samples.values, Scale::linear).value_or(ValueRange{0, 1});
     const Axis       axis({std::min(0.0, range.low), std::max(range.high, kFlat)}, Scale::linear, "", 3);
@@ -183,6 +200,7 @@ void drawChartSection(PanelDesk& desk)
     auto           pointed = drawMap(desk, *patch, d, side);
     ImGui::SameLine(0, gap);
     if (const auto there = drawMap(desk, *patch, w, side)) pointed = there;
+    drawKeyOfSides(desk);
     drawReadOut(desk, *patch, pointed);
 }
 

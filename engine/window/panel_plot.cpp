@@ -23,7 +23,8 @@ ImVec2 vec(const glm::vec2& v)
 
 double roundEnd(double value, double least)
 {
-    const double most = std::max(value, least), decade = std::pow(10.0, std::floor(std::log10(most)));
+    const double most   = drawable(value, Scale::linear) ? std::max(value, least) : least;
+    const double decade = std::pow(10.0, std::floor(std::log10(most)));
     for (const double digit : {1.0, 2.0, 3.0, 5.0})
         if (digit * decade >= most * (1 - 1e-9)) return digit * decade; // rounding of the decade
     return 10 * decade;
@@ -45,8 +46,10 @@ PanelPlot::PanelPlot(const PanelDesk& desk, const PanelPlotSettings& settings)
 
 glm::vec2 PanelPlot::pixel(double x, double y) const
 {
-    const double     up = y_.position(y);
-    const glm::dvec2 share(x_.position(x), down_ ? up : 1 - up);
+    // Not much beyond the frame, and somewhere even if it is no number: what draws is not asked about infinity.
+    const auto       near = [](double share) { return std::isnan(share) ? 0.0 : std::clamp(share, -1.0, 2.0); };
+    const double     up   = near(y_.position(y));
+    const glm::dvec2 share(near(x_.position(x)), down_ ? up : 1 - up);
     return low_ + glm::vec2(share) * (high_ - low_);
 }
 

@@ -58,7 +58,7 @@ private:
 };
 
 /// The least of 1, 2, 3 and 5 times a power of ten that is no less than a value: the end of an axis that seldom moves.
-/// \param least  what the end never falls below
+/// \param least  what the end never falls below, and is if the value cannot be drawn; > 0
 [[nodiscard]] double roundEnd(double value, double least);
 
 } // namespace palp

@@ -22,10 +22,6 @@ void drawBadges(const PanelDesk& desk)
         tip(("Into " + content.recording + "; F5 ends it").c_str());
     }
     if (desk.state.tool == Tool::paint) show("paint", kNamedColours[3]);
-    if (content.drawnInSoftware) {
-        show("software", colourOf(Tone::warning, false));
-        tip("This machine draws without a GPU: pictures are slower, forces are not");
-    }
     if (needsAttention(content)) {
         show("fault: see Touch", colourOf(Tone::fault, false));
         const GovernorFault fault = governorFault(content.history.newest());
@@ -57,6 +53,7 @@ float drawStatusLine(PanelDesk& desk)
         const float        wide    = ImGui::CalcTextSize(message.c_str()).x;
         ImGui::SameLine(std::max(ImGui::GetCursorPosX() + pad, ImGui::GetWindowContentRegionMax().x - wide));
         ImGui::TextUnformatted(message.c_str());
+        if (!message.empty()) tip(message.c_str()); // a long one ends beyond the window
         if (message.empty()) {
             constexpr const char* kHint = "F1 keys";
             ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(kHint).x);

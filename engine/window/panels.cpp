@@ -14,7 +14,6 @@ constexpr float kWidth       = 300;  ///< of the column, at scale 1 [px]
 constexpr float kMostOfWidth = 0.6F; ///< of a narrow window [1]
 constexpr float kSmallWidth  = 700,
                 kSmallHeight = 480; ///< a smaller window has sections closed at first [px at scale 1]
-constexpr float kTallHeight  = 980; ///< a higher one has more of them open at first [px at scale 1]
 
 /// Calm and compact: less room around everything than Dear ImGui takes by itself.
 class Style {
@@ -66,14 +65,13 @@ private:
 struct Section {
     const char* title;
     void (*draw)(PanelDesk&);
-    bool open;          ///< at first
-    bool openWhereTall; ///< at first, in a high window
+    float openFrom; ///< height of a window in which it is open at first [px at scale 1]
 };
 
+/// As much is open as fits without scrolling.
 constexpr Section kSections[] = {
-    {"View", drawViewSection, true, true},     {"Touch", drawTouchSection, true, true},
-    {"Chart", drawChartSection, false, true},  {"Timing", drawTimingSection, false, true},
-    {"Scene", drawSceneSection, false, false},
+    {"View", drawViewSection, kSmallHeight}, {"Touch", drawTouchSection, 720},  {"Chart", drawChartSection, 960},
+    {"Timing", drawTimingSection, 1180},     {"Scene", drawSceneSection, 1660},
 };
 
 bool header(const char* title, bool open)
@@ -99,7 +97,7 @@ void drawColumn(PanelDesk& desk, float top, float foot)
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     const float  s = desk.scale, wide = std::min(kWidth * s, kMostOfWidth * screen.x);
     const float  most  = std::max(screen.y - top - foot, 4 * ImGui::GetFontSize());
-    const bool   small = screen.x < kSmallWidth * s || screen.y < kSmallHeight * s, tall = screen.y >= kTallHeight * s;
+    const bool   small = screen.x < kSmallWidth * s || screen.y < kSmallHeight * s;
     ImGui::SetNextWindowPos(ImVec2(0, top));
     ImGui::SetNextWindowSizeConstraints(ImVec2(wide, 0), ImVec2(wide, most));
     ImGui::SetNextWindowSize(ImVec2(wide, 0)); // as high as what is open in it
@@ -109,7 +107,7 @@ void drawColumn(PanelDesk& desk, float top, float foot)
         closeWhereSmall(small);
         if (desk.state.tool == Tool::paint && header("Paint", true)) drawPaintSection(desk);
         for (const Section& section : kSections)
-            if (header(section.title, !small && (tall ? section.openWhereTall : section.open))) section.draw(desk);
+            if (header(section.title, !small && screen.y >= section.openFrom * s)) section.draw(desk);
     }
     ImGui::End();
 }

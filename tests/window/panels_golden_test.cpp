@@ -104,6 +104,7 @@ struct Shown {
     PictureSize size{1280, 720, 1, Detail::fast};
     double      scale = 1;
     ViewState   state{};
+    glm::dvec2  pointer{-1, -1}; ///< [px]
 };
 
 class PanelsGolden : public PanelsGoldenTest {
@@ -115,7 +116,7 @@ protected:
         frame.setDark(shown.state.look.ground == Ground::dark);
         pressed_.view.show(now.patch, now.force, shown.state.look);
         for (int n = 0; n < 3; ++n) { // panels settle their sizes in two frames
-            frame.beginWithoutWindow({size.width, size.height});
+            frame.beginWithoutWindow({size.width, size.height}, {shown.pointer, false});
             static_cast<void>(drawPanels(shown.state, now, shown.scale));
             frame.end();
         }
@@ -178,9 +179,12 @@ TEST_F(PanelsGolden, TheOtherSectionsOpenAtAClick)
     constexpr int    kColumn = 300;                                                     // [px]
     constexpr double kView = 39, kTouch = 60, kChart = 81, kTiming = 102, kScene = 123; // headers while all are closed
     Shown            shown;
-    const PanelContent now = pressed_.content();
-    PanelFrame         frame;
-    SurfaceRenderer    renderer({.device = deviceOfTests(), .validation = validation()});
+    PanelContent     now   = pressed_.content();
+    Patch            mixed = *pressed_.patch; // bent as it was: this is how sides are drawn
+    mixed.plate.edges      = {Edge::clamped, Edge::free, Edge::supported, Edge::clamped};
+    now.patch              = &mixed;
+    PanelFrame      frame;
+    SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
     renderer.usePanels();
     const auto at = [&](double y) { click({60, y}, shown, now, frame); };
 
@@ -189,14 +193,16 @@ TEST_F(PanelsGolden, TheOtherSectionsOpenAtAClick)
     at(kTouch);
     at(kTiming);
     at(kChart);
+    shown.pointer     = {100, 150};
     const Image chart = pictureOf(shown, now, renderer, frame);
+    shown.pointer     = {60, 574};
     at(kChart);
     at(kTiming);
     at(kScene);
     const Image scene = pictureOf(shown, now, renderer, frame);
 
     PanelsGoldenTest::expectGolden("panels-chart", columnOf(chart, kColumn), renderer);
-    PanelsGoldenTest::expectGolden("panels-scene", columnOf(scene, kColumn), renderer);
+    PanelsGoldenTest::expectGolden("panels-scene", columnOf(scene, kColumn + 100), renderer);
 }
 
 TEST_F(PanelsGolden, ABrushAndTheSheetOfKeys)
