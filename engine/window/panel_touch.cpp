@@ -104,7 +104,7 @@ void drawProfile(const PanelDesk& desk)
     const Window&    window = patch->window;
     const auto       x = profile(*patch, desk.content.force, true), z = profile(*patch, desk.content.force, false);
     const double     deepest = double(std::max(*std::ranges::max_element(x), *std::ranges::max_element(z)));
-    const double     end     = roundEnd(1.05 * deepest, 0.01);
+    const double     end     = roundEnd(deepest, 0.01);
     const ValueRange across{
         1e3 * std::min(window.corner.x, window.corner.z),
         1e3 * std::max(window.corner.x + window.grid.sizeX(), window.corner.z + window.grid.sizeZ())}; // [mm]

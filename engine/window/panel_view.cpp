@@ -22,7 +22,7 @@ void drawToggles(PanelDesk& desk)
 {
     TouchLook&  look   = desk.state.look;
     Overlays&   over   = look.overlays;
-    const float middle = ImGui::GetWindowContentRegionMin().x + 0.46F * ImGui::GetWindowContentRegionWidth();
+    const float middle = ImGui::GetCursorPosX() + 0.46F * ImGui::GetContentRegionAvail().x;
     const auto  second = [middle] { ImGui::SameLine(middle); };
     ImGui::Checkbox("patch outline", &over.outline);
     second();

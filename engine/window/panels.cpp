@@ -68,10 +68,10 @@ struct Section {
     float openFrom; ///< height of a window in which it is open at first [px at scale 1]
 };
 
-/// As much is open as fits without scrolling.
+/// As much is open as fits without scrolling: in low windows what is felt, since how it looks has keys too.
 constexpr Section kSections[] = {
-    {"View", drawViewSection, kSmallHeight}, {"Touch", drawTouchSection, 720},  {"Chart", drawChartSection, 960},
-    {"Timing", drawTimingSection, 1180},     {"Scene", drawSceneSection, 1660},
+    {"View", drawViewSection, 700},      {"Touch", drawTouchSection, kSmallHeight}, {"Chart", drawChartSection, 960},
+    {"Timing", drawTimingSection, 1180}, {"Scene", drawSceneSection, 1660},
 };
 
 bool header(const char* title, bool open)

@@ -57,6 +57,23 @@ protected:
         frame(to, false);
         frame(to, false);
     }
+    void type(const char* text)
+    {
+        ImGui::GetIO().AddInputCharactersUTF8(text);
+        frame({-1, -1}, false);
+    }
+    void pressEnter()
+    {
+        for (const bool down : {true, false}) {
+#if IMGUI_VERSION_NUM < 18700
+            ImGui::GetIO().KeyMap[ImGuiKey_Enter] = 1;
+            ImGui::GetIO().KeysDown[1]            = down;
+#else
+            ImGui::GetIO().AddKeyEvent(ImGuiKey_Enter, down);
+#endif
+            frame({-1, -1}, false);
+        }
+    }
     /// Closes the two sections that are open at first, and opens the one of the scene below them.
     void openScene()
     {
@@ -169,6 +186,18 @@ TEST_F(PanelsClick, ALawToStartFromIsAWish)
 
     ASSERT_TRUE(wishes_.values.contains("stiffness"));
     EXPECT_TRUE(wishes_.values.at("stiffness").starts_with("linear:from=")) << wishes_.values.at("stiffness");
+}
+
+TEST_F(PanelsClick, ALawThatIsTypedIsAWishOnceEnterIsPressed)
+{
+    openScene();
+    click({200, 145});
+    type("constant:value=3e5");
+    EXPECT_TRUE(wishes_.values.empty());
+    pressEnter();
+
+    ASSERT_TRUE(wishes_.values.contains("stiffness"));
+    EXPECT_EQ(wishes_.values.at("stiffness"), "constant:value=3e5");
 }
 
 TEST_F(PanelsClick, AFaultIsLeftByItsButton)

@@ -105,7 +105,17 @@ struct Shown {
     double      scale = 1;
     ViewState   state{};
     glm::dvec2  pointer{-1, -1}; ///< [px]
+    int         kept = 1280;     ///< of its width, from the left [px]
 };
+
+/// The left part of a picture.
+Image leftOf(const Image& image, int width)
+{
+    Image column(width, image.height, {});
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < width; ++x) column.at(x, y) = image.at(x, y);
+    return column;
+}
 
 class PanelsGolden : public PanelsGoldenTest {
 protected:
@@ -140,7 +150,7 @@ protected:
         SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
         renderer.usePanels();
         const Image image = pictureOf(shown, now, renderer, frame);
-        PanelsGoldenTest::expectGolden(name, image, renderer);
+        PanelsGoldenTest::expectGolden(name, leftOf(image, shown.kept), renderer);
     }
 
     Pressed pressed_;
@@ -159,19 +169,11 @@ TEST_F(PanelsGolden, DarkAndLargeAtTwiceTheScale)
     Shown shown{{1920, 1080, 1, Detail::fast}, 2};
     shown.state.look.ground = Ground::dark;
     shown.state.look.map    = ColourMap::cividis;
+    shown.kept              = 960;
     PanelContent now        = pressed_.content();
     now.recording           = "recordings/2016-05-20";
 
     expectGolden("panels-dark", shown, now);
-}
-
-/// The left part of a picture.
-Image columnOf(const Image& image, int width)
-{
-    Image column(width, image.height, {});
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < width; ++x) column.at(x, y) = image.at(x, y);
-    return column;
 }
 
 TEST_F(PanelsGolden, TheOtherSectionsOpenAtAClick)
@@ -195,19 +197,20 @@ TEST_F(PanelsGolden, TheOtherSectionsOpenAtAClick)
     at(kChart);
     shown.pointer     = {100, 150};
     const Image chart = pictureOf(shown, now, renderer, frame);
-    shown.pointer     = {60, 574};
+    shown.pointer     = {25, 574};
     at(kChart);
     at(kTiming);
     at(kScene);
     const Image scene = pictureOf(shown, now, renderer, frame);
 
-    PanelsGoldenTest::expectGolden("panels-chart", columnOf(chart, kColumn), renderer);
-    PanelsGoldenTest::expectGolden("panels-scene", columnOf(scene, kColumn + 100), renderer);
+    PanelsGoldenTest::expectGolden("panels-chart", leftOf(chart, kColumn), renderer);
+    PanelsGoldenTest::expectGolden("panels-scene", leftOf(scene, kColumn + 100), renderer);
 }
 
 TEST_F(PanelsGolden, ABrushAndTheSheetOfKeys)
 {
     Shown shown;
+    shown.kept             = 980;
     shown.state.tool       = Tool::paint;
     shown.state.keys       = true;
     shown.state.look.paint = ViewPaint::stiffness;
@@ -222,6 +225,7 @@ TEST_F(PanelsGolden, NothingFeltYetAndAFault)
 {
     Shown         shown;
     SessionSample sample;
+    shown.kept    = 460;
     sample.time   = 1;
     sample.faults = static_cast<std::uint32_t>(GovernorFault::tooFast);
     pressed_.history.clear();
