@@ -146,17 +146,13 @@ TEST_F(PanelsClick, AValueOfTheSceneIsAWishOnceItsSliderIsLetGo)
 TEST_F(PanelsClick, ASliderThatComesBackToItsValueWishesNothing)
 {
     openScene();
-    const double now = scene_.patch.material.poissonRatio;
-    drag({273, 209}, {150, 209}, [this] {
-        frame({700, 209}, true);
-        frame({273, 209}, true);
-    });
+    const glm::dvec2 value{273, 209}, elsewhere{150, 209};
+    frame(value, false);
+    for (const glm::dvec2& at : {value, elsewhere, value}) frame(at, true);
+    frame(value, false);
+    frame(value, false);
 
-    // Where it began to be pressed is the value to the pixel; what is let go there may be one step of 0.01 off.
-    if (!wishes_.values.empty()) {
-        EXPECT_NEAR(std::stod(wishes_.values.at("poisson")), now, 0.01);
-    }
-    EXPECT_LE(wishes_.values.size(), 1U);
+    EXPECT_TRUE(wishes_.values.empty()) << wishes_.values.begin()->second;
 }
 
 TEST_F(PanelsClick, AnotherMapIsAWish)
