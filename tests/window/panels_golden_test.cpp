@@ -99,25 +99,143 @@ protected:
     }
 };
 
-TEST_F(PanelsGoldenTest, AWindowWhileAHandPresses)
+/// What a picture of the window shows.
+struct Shown {
+    PictureSize size{1280, 720, 1, Detail::fast};
+    double      scale = 1;
+    ViewState   state{};
+    glm::dvec2  pointer{-1, -1}; ///< [px]
+    int         kept = 1280;     ///< of its width, from the left [px]
+};
+
+/// The left part of a picture.
+Image leftOf(const Image& image, int width)
 {
-    constexpr PictureSize kSize{1280, 720, 1, Detail::fast};
-    PanelFrame            frame;
-    SurfaceRenderer       renderer({.device = deviceOfTests(), .validation = validation()});
-    renderer.usePanels();
-    Pressed   pressed;
-    ViewState state;
-    state.camera           = cameraAt(*pressed.patch, double(kSize.width) / kSize.height);
-    state.look.paint       = ViewPaint::stiffness;
-    const PanelContent now = pressed.content();
-    pressed.view.show(now.patch, now.force, state.look);
-    for (int n = 0; n < 3; ++n) { // panels settle their sizes in two frames
-        frame.beginWithoutWindow({kSize.width, kSize.height});
-        static_cast<void>(drawPanels(state, now, 1));
-        frame.end();
+    Image column(width, image.height, {});
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < width; ++x) column.at(x, y) = image.at(x, y);
+    return column;
+}
+
+class PanelsGolden : public PanelsGoldenTest {
+protected:
+    Image pictureOf(Shown shown, const PanelContent& now, SurfaceRenderer& renderer, PanelFrame& frame)
+    {
+        const PictureSize& size = shown.size;
+        shown.state.camera      = cameraAt(*pressed_.patch, double(size.width) / size.height);
+        frame.setDark(shown.state.look.ground == Ground::dark);
+        pressed_.view.show(now.patch, now.force, shown.state.look);
+        for (int n = 0; n < 3; ++n) { // panels settle their sizes in two frames
+            frame.beginWithoutWindow({size.width, size.height}, {shown.pointer, false});
+            static_cast<void>(drawPanels(shown.state, now, shown.scale));
+            frame.end();
+        }
+        const Overlay texts = annotations(pressed_.view.scene(), shown.state.camera, size.width, size.height);
+        return renderer.draw(pressed_.view.scene(), shown.state.camera, size, &texts);
     }
-    const Overlay texts = annotations(pressed.view.scene(), state.camera, kSize.width, kSize.height);
-    expectGolden("panels", renderer.draw(pressed.view.scene(), state.camera, kSize, &texts), renderer);
+
+    /// Presses and lets go of the pointer.
+    static void click(const glm::dvec2& at, Shown& shown, const PanelContent& now, PanelFrame& frame)
+    {
+        for (const bool down : {false, true, false}) { // ImGui counts a press where the pointer already was
+            frame.beginWithoutWindow({shown.size.width, shown.size.height}, {at, down});
+            static_cast<void>(drawPanels(shown.state, now, shown.scale));
+            frame.end();
+        }
+    }
+
+    void expectGolden(const std::string& name, const Shown& shown, const PanelContent& now)
+    {
+        PanelFrame      frame(shown.scale);
+        SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
+        renderer.usePanels();
+        const Image image = pictureOf(shown, now, renderer, frame);
+        PanelsGoldenTest::expectGolden(name, leftOf(image, shown.kept), renderer);
+    }
+
+    Pressed pressed_;
+};
+
+TEST_F(PanelsGolden, AWindowWhileAHandPresses)
+{
+    Shown shown;
+    shown.state.look.paint = ViewPaint::stiffness;
+
+    expectGolden("panels", shown, pressed_.content());
+}
+
+TEST_F(PanelsGolden, DarkAndLargeAtTwiceTheScale)
+{
+    Shown shown{{1920, 1080, 1, Detail::fast}, 2};
+    shown.state.look.ground = Ground::dark;
+    shown.state.look.map    = ColourMap::cividis;
+    shown.kept              = 960;
+    PanelContent now        = pressed_.content();
+    now.recording           = "recordings/2016-05-20";
+
+    expectGolden("panels-dark", shown, now);
+}
+
+TEST_F(PanelsGolden, TheOtherSectionsOpenAtAClick)
+{
+    constexpr int    kColumn = 300;                                                     // [px]
+    constexpr double kView = 39, kTouch = 60, kChart = 81, kTiming = 102, kScene = 123; // headers while all are closed
+    Shown            shown;
+    PanelContent     now   = pressed_.content();
+    Patch            mixed = *pressed_.patch; // bent as it was: this is how sides are drawn
+    mixed.plate.edges      = {Edge::clamped, Edge::free, Edge::supported, Edge::clamped};
+    now.patch              = &mixed;
+    PanelFrame      frame;
+    SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
+    renderer.usePanels();
+    const auto at = [&](double y) { click({60, y}, shown, now, frame); };
+
+    static_cast<void>(pictureOf(shown, now, renderer, frame));
+    at(kView);
+    at(kTouch);
+    at(kTiming);
+    at(kChart);
+    shown.pointer     = {100, 150};
+    const Image chart = pictureOf(shown, now, renderer, frame);
+    shown.pointer     = {25, 574};
+    at(kChart);
+    at(kTiming);
+    at(kScene);
+    const Image scene = pictureOf(shown, now, renderer, frame);
+
+    PanelsGoldenTest::expectGolden("panels-chart", leftOf(chart, kColumn), renderer);
+    PanelsGoldenTest::expectGolden("panels-scene", leftOf(scene, kColumn + 100), renderer);
+}
+
+TEST_F(PanelsGolden, ABrushAndTheSheetOfKeys)
+{
+    Shown shown;
+    shown.kept             = 980;
+    shown.state.tool       = Tool::paint;
+    shown.state.keys       = true;
+    shown.state.look.paint = ViewPaint::stiffness;
+    PanelContent now       = pressed_.content();
+    now.painted = now.canUndo = true;
+    now.message               = "saved as palm.ply";
+
+    expectGolden("panels-paint", shown, now);
+}
+
+TEST_F(PanelsGolden, NothingFeltYetAndAFault)
+{
+    Shown         shown;
+    SessionSample sample;
+    shown.kept    = 460;
+    sample.time   = 1;
+    sample.faults = static_cast<std::uint32_t>(GovernorFault::tooFast);
+    pressed_.history.clear();
+    pressed_.history.add(sample);
+    PanelContent now = pressed_.content();
+    now.patch        = nullptr;
+    now.force = now.solveTime = now.loopPeriod = 0;
+    now.faults = {"The cloud ends within the window: the patch is free there. Take a smaller window."};
+
+    expectGolden("panels-fault", shown, now);
 }
 
 } // namespace
