@@ -30,8 +30,9 @@ PALPATE_VIEW_CONST kBindColours = 5; // sum of weighted colours, and of weighted
 PALPATE_VIEW_CONST kBindSurface = 6; // unit normal in view space, and depth [m]; depth 0: nothing there
 PALPATE_VIEW_CONST kBindAlbedo  = 7; // colour of the surface
 PALPATE_VIEW_CONST kBindOverlay = 8; // pixels of the overlay, rows from the top, red in the lowest byte, premultiplied
-PALPATE_VIEW_CONST kBindTiles   = 9; // squares of it that are not empty: column, and row from the 16th bit on
+PALPATE_VIEW_CONST kBindTiles   = 9; // squares of it, then of the panels, that are not empty: column, and row from the 16th bit on
 PALPATE_VIEW_CONST kBindFaces   = 10; // numbers of splats, three to a triangle
+PALPATE_VIEW_CONST kBindPanels  = 11; // colours of the panels, premultiplied
 
 PALPATE_VIEW_CONST kTile = 32; // side of such a square [px]
 

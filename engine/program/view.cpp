@@ -141,7 +141,6 @@ void view(const ViewOptions& o)
 #ifdef PALPATE_PANELS
     if (!o.noPanels) {
         panels.emplace(window.scale());
-        renderer.usePanels();
         shown = &*panels;
     }
 #endif

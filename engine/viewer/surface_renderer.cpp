@@ -236,9 +236,10 @@ void SurfaceRenderer::present()
     if (impl_->surface->finish()) impl_->window->show();
 }
 
-void SurfaceRenderer::usePanels()
+void SurfaceRenderer::takePanels()
 {
-    impl_->surface->usePanels();
+    if (impl_->window) present();
+    impl_->surface->takePanels();
 }
 
 const gpu::DeviceDescription& SurfaceRenderer::device() const noexcept

@@ -63,10 +63,10 @@ public:
     /// Shows in the window what show() began, once it is done. Nothing was begun: does nothing.
     void present();
 
-    /// From now on what ImGui::Render() leaves is drawn over every picture, which must not be `finer`.
-    /// \pre there is a current ImGui context, which outlives this
+    /// What ImGui::Render() has left is laid over every picture of the size that ImGui knows, until the next call or a
+    /// picture of another size. \pre there is a current ImGui context, which outlives this
     /// \throws Error in a build without Dear ImGui
-    void usePanels();
+    void takePanels();
 
     [[nodiscard]] const gpu::DeviceDescription& device() const noexcept;
     [[nodiscard]] const std::string&            note() const noexcept; ///< see gpu::Context::note()

@@ -1,8 +1,12 @@
 #include "engine/viewer/vulkan_panels.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <backends/imgui_impl_vulkan.h>
 #include <imgui.h>
 
+#include "compute_shaders/shared/view_layout.h"
 #include "engine/core/contract.h"
 
 namespace palp {
@@ -84,6 +88,36 @@ VulkanPanels::~VulkanPanels()
 void VulkanPanels::record(VkCommandBuffer commands) const
 {
     if (ImDrawData* const data = ImGui::GetDrawData()) ImGui_ImplVulkan_RenderDrawData(data, commands);
+}
+
+VkExtent2D VulkanPanels::size()
+{
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    return {std::uint32_t(size.x), std::uint32_t(size.y)};
+}
+
+std::vector<std::uint32_t> VulkanPanels::tiles()
+{
+    std::vector<std::uint32_t> tiles;
+    const ImDrawData* const    data = ImGui::GetDrawData();
+    if (!data) return tiles;
+    const float       tile    = float(shared::kTile);
+    const int         columns = int(std::ceil(data->DisplaySize.x / tile)), rows = int(std::ceil(data->DisplaySize.y / tile));
+    std::vector<bool> used(std::size_t(columns) * std::size_t(rows));
+    for (int n = 0; n < data->CmdListsCount; ++n)
+        for (const ImDrawCmd& command : data->CmdLists[n]->CmdBuffer) {
+            if (command.ElemCount == 0) continue;
+            const ImVec4& clip  = command.ClipRect; // left, top, right, bottom [px]
+            const int     left  = std::max(0, int(clip.x / tile)), top = std::max(0, int(clip.y / tile));
+            const int     right = std::min(columns, int(std::ceil(clip.z / tile)));
+            const int     foot  = std::min(rows, int(std::ceil(clip.w / tile)));
+            for (int y = top; y < foot; ++y)
+                for (int x = left; x < right; ++x) used[std::size_t(y * columns + x)] = true;
+        }
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x)
+            if (used[std::size_t(y * columns + x)]) tiles.push_back(std::uint32_t(x) | std::uint32_t(y) << 16);
+    return tiles;
 }
 
 } // namespace palp

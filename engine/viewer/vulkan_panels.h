@@ -1,4 +1,7 @@
 #pragma once
+#include <cstdint>
+#include <vector>
+
 #include "engine/gpu/vulkan_handles.h"
 
 // Internal to engine/viewer; in builds with Dear ImGui.
@@ -17,6 +20,10 @@ public:
 
     /// What ImGui::Render() has left, into the pass that is being recorded.
     void record(VkCommandBuffer commands) const;
+
+    /// Squares of shared::kTile of a picture that it covers, as Overlay::tiles has them.
+    [[nodiscard]] static std::vector<std::uint32_t> tiles();
+    [[nodiscard]] static VkExtent2D                 size(); ///< of that picture [px]
 
 private:
     void uploadFont();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "compute_shaders/view_blend_frag.spv.h"
 #include "compute_shaders/view_disc_vert.spv.h"
@@ -16,6 +17,7 @@
 #include "compute_shaders/view_nearest_frag.spv.h"
 #include "compute_shaders/view_overlay_frag.spv.h"
 #include "compute_shaders/view_overlay_vert.spv.h"
+#include "compute_shaders/view_panel_frag.spv.h"
 #include "compute_shaders/view_point_frag.spv.h"
 #include "compute_shaders/view_point_vert.spv.h"
 #include "compute_shaders/view_screen_vert.spv.h"
@@ -43,7 +45,7 @@ constexpr VkImageUsageFlags kDrawn = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IM
 constexpr std::uint32_t kBuffers[] = {shared::kBindFrame,   shared::kBindSplats, shared::kBindShapes,
                                       shared::kBindOverlay, shared::kBindTiles,  shared::kBindFaces};
 constexpr std::uint32_t kImages[]  = {shared::kBindDepth, shared::kBindNormals, shared::kBindColours,
-                                      shared::kBindSurface, shared::kBindAlbedo};
+                                      shared::kBindSurface, shared::kBindAlbedo, shared::kBindPanels};
 
 constexpr std::uint32_t kCornersOfSplat = 6;
 
@@ -158,6 +160,7 @@ void VulkanSurface::makePipelines()
         made(lightStep_, {"hidden shapes", view_shape_vert_spv, view_hidden_frag_spv, 1, Blending::cover, kGreater});
     shapes_  = made(lightStep_, {"shapes", view_shape_vert_spv, view_shape_frag_spv, 1, kReplace, kLess, VK_TRUE});
     overlay_ = made(lightStep_, {"overlay", view_overlay_vert_spv, view_overlay_frag_spv, 1, Blending::lay});
+    panel_ = made(lightStep_, {"panels", view_overlay_vert_spv, view_panel_frag_spv, 1, Blending::lay});
 }
 
 void VulkanSurface::makeImages()
@@ -169,6 +172,7 @@ void VulkanSurface::makeImages()
     colours_.emplace(makeImage(context_, "sums of colours", size_, kSums, kDrawn));
     surface_.emplace(makeImage(context_, "surface", size_, kSurface, kDrawn));
     albedo_.emplace(makeImage(context_, "albedo", size_, kColour, kDrawn));
+    panelImage_.emplace(makeImage(context_, "panels", size_, kColour, kDrawn));
     picture_.emplace(makeImage(context_, "picture", size_, format_,
                                VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT));
 }
@@ -182,6 +186,7 @@ void VulkanSurface::makeFramebuffers()
     fill(blendStep_, {&*normals_, &*colours_});
     fill(surfaceStep_, {&*surface_, &*albedo_});
     fill(faceStep_, {&*surface_, &*albedo_, &*depthTest_});
+    fill(panelStep_, {&*panelImage_});
     fill(lightStep_, {&*picture_, &*depthTest_});
 }
 
@@ -194,7 +199,8 @@ void VulkanSurface::fit(VkExtent2D size)
                     " px is larger than the GPU " + context_.description.name + " can draw (" + std::to_string(most) +
                     " a side)");
     size_ = size;
-    for (Step* step : {&nearestStep_, &blendStep_, &surfaceStep_, &faceStep_, &lightStep_}) step->framebuffer = {};
+    freshPanels_ = panels_ != nullptr; // into the new image
+    for (Step* step : {&nearestStep_, &blendStep_, &surfaceStep_, &faceStep_, &panelStep_, &lightStep_}) step->framebuffer = {};
     makeImages();
     makeFramebuffers();
     pixels_.emplace(owner_, "pixels", std::size_t(4) * size.width * size.height, gpu::Intent::readback);
@@ -223,14 +229,17 @@ void VulkanSurface::upload(const SurfaceInput& input)
     fillBuffer(owner_, shapeBuffer_, "shapes", std::as_bytes(input.shapes));
     fillBuffer(owner_, faceBuffer_, "faces", std::as_bytes(input.faces));
     fillBuffer(owner_, overlayBuffer_, "overlay", std::as_bytes(std::span(overlay.pixels)));
-    fillBuffer(owner_, tileBuffer_, "tiles of the overlay", std::as_bytes(std::span(overlay.tiles)));
+    tiles_ = overlay.tiles;
+    if (panelSize_.width != size_.width || panelSize_.height != size_.height) panelTiles_.clear();
+    tiles_.insert(tiles_.end(), panelTiles_.begin(), panelTiles_.end());
+    fillBuffer(owner_, tileBuffer_, "tiles", std::as_bytes(std::span(tiles_)));
 }
 
 void VulkanSurface::describe()
 {
     const gpu::Buffer* const buffers[] = {&*frameBuffer_,   &*splatBuffer_, &*shapeBuffer_,
                                           &*overlayBuffer_, &*tileBuffer_,  &*faceBuffer_};
-    const VulkanImage* const images[]  = {&*nearest_, &*normals_, &*colours_, &*surface_, &*albedo_};
+    const VulkanImage* const images[] = {&*nearest_, &*normals_, &*colours_, &*surface_, &*albedo_, &*panelImage_};
     std::array<VkDescriptorBufferInfo, std::size(kBuffers)> bufferInfos{};
     std::array<VkDescriptorImageInfo, std::size(kImages)>   imageInfos{};
     std::vector<VkWriteDescriptorSet>                       writes;
@@ -280,6 +289,11 @@ void VulkanSurface::beginList()
     auto info  = typed<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
     info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     check(vkBeginCommandBuffer(commands_, &info), "record commands");
+    bindAll();
+}
+
+void VulkanSurface::bindAll()
+{
     const VkViewport viewport{0, 0, float(size_.width), float(size_.height), 0, 1};
     const VkRect2D   scissor{{0, 0}, size_};
     vkCmdSetViewport(commands_, 0, 1, &viewport);
@@ -316,6 +330,7 @@ void VulkanSurface::record(const SurfaceInput& input)
 {
     const std::size_t points = input.splats.size() - input.dots;
     const bool        fine   = input.detail == Detail::fine;
+    recordPanels();
     if (fine) recordSurface(input);
     VkClearValue zero{}, farthest{};
     farthest.depthStencil.depth = 1;
@@ -328,10 +343,22 @@ void VulkanSurface::record(const SurfaceInput& input)
     draw(hiddenShapes_, input.shapes.size());
     draw(shapes_, input.shapes.size());
     if (input.overlay) draw(overlay_, kCornersOfSplat * input.overlay->tiles.size());
-#ifdef PALPATE_PANELS
-    if (panels_) panels_->record(commands_);
-#endif
+    draw(panel_, kCornersOfSplat * panelTiles_.size(), kCornersOfSplat * (tiles_.size() - panelTiles_.size()));
     vkCmdEndRenderPass(commands_);
+}
+
+/// Panels are drawn when they have changed, because a driver in software takes as long for them as for the surface.
+void VulkanSurface::recordPanels()
+{
+#ifdef PALPATE_PANELS
+    if (!std::exchange(freshPanels_, false)) return;
+    const VkClearValue nothing[] = {{}};
+    begin(panelStep_, nothing);
+    panels_->record(commands_);
+    vkCmdEndRenderPass(commands_);
+    // It has set its own viewport and bound its own descriptors.
+    bindAll();
+#endif
 }
 
 void VulkanSurface::copyToHost()
@@ -384,10 +411,14 @@ bool VulkanSurface::finish()
     return true;
 }
 
-void VulkanSurface::usePanels()
+void VulkanSurface::takePanels()
 {
 #ifdef PALPATE_PANELS
-    panels_ = std::make_unique<VulkanPanels>(context_, lightStep_.pass.get());
+    if (!panels_) panels_ = std::make_unique<VulkanPanels>(context_, panelStep_.pass.get());
+    finish(); // what is being drawn reads them
+    panelTiles_  = VulkanPanels::tiles();
+    panelSize_   = VulkanPanels::size();
+    freshPanels_ = true;
 #else
     throw Error("this build has no panels: it was made without Dear ImGui");
 #endif

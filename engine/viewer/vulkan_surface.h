@@ -51,9 +51,9 @@ public:
     /// \return whether something had been started
     bool finish();
 
-    /// From now on the panels of the current ImGui context are drawn over every picture.
+    /// What ImGui::Render() has left is laid over every picture from now on, until the next call or another size.
     /// \throws Error in a build without Dear ImGui
-    void usePanels();
+    void takePanels();
 
 private:
     /// A pass and what it draws into.
@@ -71,6 +71,8 @@ private:
     void describe();
     void beginList();
     void record(const SurfaceInput& input);
+    void recordPanels();
+    void bindAll();
     void recordSurface(const SurfaceInput& input);
     void copyToHost();
     void begin(const Step& step, std::span<const VkClearValue> clear);
@@ -88,13 +90,17 @@ private:
     VkDescriptorSet                                       set_ = VK_NULL_HANDLE;
     gpu::Owned<VkCommandPool, vkDestroyCommandPool>       pool_;
     VkCommandBuffer                                       commands_ = VK_NULL_HANDLE;
-    std::optional<VulkanImage> depthTest_, nearest_, normals_, colours_, surface_, albedo_, picture_;
-    Step                       nearestStep_, blendStep_, surfaceStep_, faceStep_, lightStep_;
+    std::optional<VulkanImage> depthTest_, nearest_, normals_, colours_, surface_, albedo_, panelImage_, picture_;
+    Step                       nearestStep_, blendStep_, surfaceStep_, faceStep_, panelStep_, lightStep_;
     Pipeline                   nearestDepths_, sums_, means_, faces_;                                 ///< fine
-    Pipeline                   light_, ground_, points_, litFaces_, hiddenShapes_, shapes_, overlay_; ///< of lightStep_
+    Pipeline                   light_, ground_, points_, litFaces_, hiddenShapes_, shapes_, overlay_, panel_; ///< of lightStep_
     std::optional<gpu::Buffer> frameBuffer_, splatBuffer_, shapeBuffer_, faceBuffer_, overlayBuffer_, tileBuffer_,
         pixels_;
     std::unique_ptr<VulkanPanels> panels_; ///< may be null
+    std::vector<std::uint32_t>    tiles_;  ///< of the overlay, then of the panels
+    std::vector<std::uint32_t>    panelTiles_;
+    VkExtent2D                    panelSize_{}; ///< of the picture that they are for [px]
+    bool                          freshPanels_ = false; ///< are to be drawn
 };
 
 } // namespace palp

@@ -148,12 +148,30 @@ void Workbench::frame(const SessionView* view)
     drawFrame(view);
 }
 
+/// A frame of ImGui, if one is due: at once where the user is at the panels, and a few times a second else, because
+/// drawing them takes as long as drawing the object.
 void Workbench::beginPanels()
 {
 #ifdef PALPATE_PANELS
-    if (!panels_) return;
+    constexpr double kSeldom = 0.1; // [s]
+    const auto       now     = Clock::now();
+    const bool       glides  = input_.moved != glm::dvec2(0) && !input_.touch;
+    const bool       presses = input_.left || input_.leftPressed || leftBefore_ || !input_.keys.empty();
+    const bool       orbits  = presses && !panelsTakePointer_ && input_.left;
+    const bool       resized = input_.size != drawnSize_;
+    panelsDue_ = panels_ && ((glides && !orbits) || (presses && !orbits) || !input_.typed.empty() || resized ||
+                             Seconds(now - panelsAt_).count() > kSeldom);
+    leftBefore_ = input_.left;
+    if (!panelsDue_) {
+        input_.panelsTakePointer = panelsTakePointer_;
+        input_.panelsTakeKeys    = panelsTakeKeys_;
+        return;
+    }
+    panelsAt_ = now;
     panels_->setDark(state_.look.ground == Ground::dark);
-    input_ = panels_->begin(std::move(input_));
+    input_             = panels_->begin(std::move(input_));
+    panelsTakePointer_ = input_.panelsTakePointer;
+    panelsTakeKeys_    = input_.panelsTakeKeys;
 #endif
 }
 
@@ -161,7 +179,7 @@ void Workbench::beginPanels()
 void Workbench::rest()
 {
 #ifdef PALPATE_PANELS
-    if (panels_) panels_->end();
+    if (panelsDue_) panels_->end();
 #endif
     renderer_.present();
 }
@@ -185,9 +203,10 @@ void Workbench::drawFrame(const SessionView* view)
     showTouch(view);
     PanelWishes wishes;
 #ifdef PALPATE_PANELS
-    if (panels_) {
+    if (panelsDue_) {
         wishes = drawPanels(state_, content(view), input_.scale);
         panels_->end();
+        renderer_.takePanels();
     }
 #endif
     writeTexts(view);

@@ -138,6 +138,9 @@ private:
 
     Poll              poll_;
     PanelFrame*       panels_ = nullptr;
+    bool              panelsDue_ = false; ///< a frame of ImGui has begun
+    bool              panelsTakePointer_ = false, panelsTakeKeys_ = false, leftBefore_ = false; ///< as of the last one
+    Clock::time_point panelsAt_{};
     WindowInput       input_;
     std::atomic<bool> stop_            = false; ///< the session ends, and the next one begins
     bool              closing_         = false;

@@ -148,7 +148,6 @@ protected:
     {
         PanelFrame      frame(shown.scale);
         SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
-        renderer.usePanels();
         const Image image = pictureOf(shown, now, renderer, frame);
         PanelsGoldenTest::expectGolden(name, leftOf(image, shown.kept), renderer);
     }
@@ -187,7 +186,6 @@ TEST_F(PanelsGolden, TheOtherSectionsOpenAtAClick)
     now.patch              = &mixed;
     PanelFrame      frame;
     SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
-    renderer.usePanels();
     const auto at = [&](double y) { click({60, y}, shown, now, frame); };
 
     static_cast<void>(pictureOf(shown, now, renderer, frame));
