@@ -11,8 +11,15 @@ struct KeyLine {
 };
 
 constexpr KeyLine kPointer[] = {
-    {"left drag", "orbit"},    {"right or shift drag", "pan"}, {"wheel", "zoom"},     {"double click", "set the pivot"},
-    {"F", "frame the object"}, {"R", "reset the view"},        {"O", "orthographic"}, {"1  3  7", "along the axes"},
+    {"left drag", "orbit"},
+    {"right or shift drag", "pan"},
+    {"middle drag", "orbit while painting"},
+    {"wheel", "zoom"},
+    {"double click", "set the pivot"},
+    {"F", "frame the object"},
+    {"R", "reset, also a fault"},
+    {"O", "orthographic"},
+    {"1  3  7", "along the axes"},
 };
 constexpr KeyLine kTouch[] = {
     {"hold Space or H", "touch; wheel is depth"},
@@ -29,7 +36,11 @@ constexpr KeyLine kShown[] = {
     {"G", "surface at rest"},          {"S", "fitted sphere"},   {"J", "projected points"},
 };
 constexpr KeyLine kProgram[] = {
-    {"Tab", "panels"}, {"T", "texts"}, {"P", "screenshot"}, {"F1", "this sheet"}, {"close the window", "quit"},
+    {"Tab", "panels"},
+    {"T", "texts"},
+    {"P  Shift+P", "picture, with panels"},
+    {"F1", "this sheet"},
+    {"close the window", "quit"},
 };
 
 template <std::size_t n>

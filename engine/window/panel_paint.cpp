@@ -34,11 +34,10 @@ void drawPaintSection(PanelDesk& desk)
     ImGui::EndDisabled();
     slider(desk, "strength", "How far one stroke goes from what is there to what is painted", brush.strength, 1e-2, 1,
            100, "%.0f %%", false);
-    desk.wishes.undo |= buttonIf(desk.content.canUndo, "undo", "Takes the last stroke back (Ctrl+Z)");
+    desk.wishes.undo |= buttonIf(desk.content.canUndo, "undo  Ctrl+Z", "Takes the last stroke back");
     ImGui::SameLine();
-    desk.wishes.redo |= buttonIf(desk.content.canRedo, "redo", "Paints it again (Ctrl+Y)");
-    ImGui::SameLine();
-    desk.wishes.save |= buttonIf(desk.content.painted, "save", "Writes the cloud as PLY (Ctrl+S)");
+    desk.wishes.redo |= buttonIf(desk.content.canRedo, "redo  Ctrl+Y", "Paints it again");
+    desk.wishes.save |= buttonIf(desk.content.painted, "save  Ctrl+S", "Writes the cloud as PLY");
     ImGui::SameLine();
     toned(desk, desk.content.painted ? Tone::warning : Tone::faint, desk.content.painted ? "not saved" : "unchanged");
 }

@@ -117,7 +117,8 @@ void readingOfAge(const PanelDesk& desk, Half half, const char* label)
 {
     const SessionSample& now   = desk.content.history.newest();
     const bool           stale = (now.faults & static_cast<std::uint32_t>(SessionFlag::stalePatch)) != 0;
-    if (!(now.compliance > 0) || !std::isfinite(now.patchAge)) return reading(desk, half, label, "\u2013");
+    if (!desk.content.touching || !(now.compliance > 0) || !std::isfinite(now.patchAge))
+        return reading(desk, half, label, "\u2013");
     constexpr double  kOld = 10; // [s] from here on nobody needs the number
     const std::string age  = now.patchAge < kOld ? formatted("%.0f ms", 1e3 * now.patchAge) : "> 10 s";
     reading(desk, half, label, stale ? age + " stale" : age, stale ? Tone::warning : Tone::good);

@@ -27,9 +27,13 @@ void drawFaults(PanelDesk& desk)
         toned(desk, Tone::fault, name(fault));
         tonedWrapped(desk, Tone::fault, adviceOn(fault).reason);
         tonedWrapped(desk, Tone::plain, adviceOn(fault).remedy);
-        if (ImGui::SmallButton("start anew")) desk.wishes.resetFault = true;
     }
     for (const std::string& sentence : desk.content.faults) tonedWrapped(desk, Tone::fault, sentence);
+    if (needsAttention(desk.content)) {
+        if (ImGui::SmallButton("start anew")) desk.wishes.resetFault = true;
+        tip("Forgets what is told here and begins a new session (R)");
+    }
+    if (!desk.content.touching) return;
     for (const std::string& sentence : notesOn(desk.content.history.newest()))
         tonedWrapped(desk, Tone::warning, sentence);
 }
@@ -43,14 +47,14 @@ double penetration(const SessionSample& sample)
 void drawNumbers(const PanelDesk& desk)
 {
     const SessionSample& now    = desk.content.history.newest();
-    const bool           held   = now.normal != glm::dvec3(0);
+    const bool           held   = desk.content.touching && now.normal != glm::dvec3(0);
     const Patch* const   patch  = desk.content.patch;
     const auto           orDash = [held](const std::string& text) { return held ? text : "\u2013"; };
     const double         kc     = patch ? patch->contactStiffness : 0;
     const bool           known  = held && now.compliance > 0 && kc > 0;
     const double         felt   = known ? feltStiffness(desk.content.scene.patch.forceLaw, kc, now.compliance) : 0;
     const double         cap    = desk.content.scene.stiffnessCap; // [N/m]
-    reading(desk, Half::left, "force", formatted("%.2f N", glm::length(now.force)));
+    reading(desk, Half::left, "force", desk.content.touching ? formatted("%.2f N", glm::length(now.force)) : "\u2013");
     reading(desk, Half::right, "depth", orDash(formatted("%.2f mm", penetration(now) * 1e3)));
     reading(desk, Half::left, "felt",
             !known ? "\u2013" : formatted("%.0f N/m%s", std::min(felt, cap), felt > cap ? " cap" : ""));

@@ -5,7 +5,7 @@
 namespace palp {
 namespace {
 
-constexpr double kLeastDepth = 0.01, kMostDepth = 20; ///< of the hand below the surface [mm]
+constexpr double kDeepest = 3; ///< of the hand below the surface, and its highest above it, per thickness [1]
 
 void drawColours(PanelDesk& desk)
 {
@@ -52,11 +52,25 @@ void drawButtons(PanelDesk& desk)
     ImGui::SameLine();
     desk.wishes.reset |= buttonIf(true, "reset", "The view as it was in the beginning (R)");
     ImGui::SameLine();
-    desk.wishes.screenshot |= buttonIf(true, "screenshot", "Writes this picture as a file (P)");
+    desk.wishes.screenshot |=
+        buttonIf(true, "screenshot", "Writes the picture as a file, without panels (P; Shift+P with them)");
     ImGui::SameLine();
     const bool recording = !desk.content.recording.empty();
     desk.wishes.record |= buttonIf(true, recording ? "stop##record" : "record##record",
                                    recording ? "Ends the recording (F5)" : "Records what is felt (F5)");
+}
+
+void drawTool(PanelDesk& desk)
+{
+    labelled(desk, "tool", "The pointer carries a hand that touches, or a brush of stiffness (B)");
+    if (const auto tool = segments(desk, "tool", int(desk.state.tool), {"touch", "paint"}))
+        desk.state.tool = Tool(*tool);
+    labelled(desk, "press depth", "How far below the surface the pointer carries the hand: the wheel, while touching");
+    const double most = 1e3 * kDeepest * desk.content.scene.patch.material.thickness, least = -most; // [mm]
+    double       depth = 1e3 * desk.state.pressDepth;                                                // [mm]
+    if (ImGui::SliderScalar("##depth", ImGuiDataType_Double, &depth, &least, &most, "%.2f mm",
+                            ImGuiSliderFlags_AlwaysClamp))
+        desk.state.pressDepth = depth * 1e-3;
 }
 
 } // namespace
@@ -70,14 +84,7 @@ void drawViewSection(PanelDesk& desk)
                         "\u00d7 %.1f", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
     drawToggles(desk);
     drawButtons(desk);
-    labelled(desk, "tool", "The pointer carries a hand that touches, or a brush of stiffness (B)");
-    if (const auto tool = segments(desk, "tool", int(desk.state.tool), {"touch", "paint"}))
-        desk.state.tool = Tool(*tool);
-    labelled(desk, "press depth", "How far below the surface the pointer carries the hand: the wheel, while touching");
-    double depth = desk.state.pressDepth * 1e3; // [mm]
-    if (ImGui::SliderScalar("##depth", ImGuiDataType_Double, &depth, &kLeastDepth, &kMostDepth, "%.2f mm",
-                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp))
-        desk.state.pressDepth = depth * 1e-3;
+    drawTool(desk);
 }
 
 } // namespace palp
