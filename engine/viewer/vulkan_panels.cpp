@@ -101,14 +101,14 @@ std::vector<std::uint32_t> VulkanPanels::tiles()
     std::vector<std::uint32_t> tiles;
     const ImDrawData* const    data = ImGui::GetDrawData();
     if (!data) return tiles;
-    const float       tile    = float(shared::kTile);
-    const int         columns = int(std::ceil(data->DisplaySize.x / tile)), rows = int(std::ceil(data->DisplaySize.y / tile));
+    const float tile    = float(shared::kTile);
+    const int   columns = int(std::ceil(data->DisplaySize.x / tile)), rows = int(std::ceil(data->DisplaySize.y / tile));
     std::vector<bool> used(std::size_t(columns) * std::size_t(rows));
     for (int n = 0; n < data->CmdListsCount; ++n)
         for (const ImDrawCmd& command : data->CmdLists[n]->CmdBuffer) {
             if (command.ElemCount == 0) continue;
-            const ImVec4& clip  = command.ClipRect; // left, top, right, bottom [px]
-            const int     left  = std::max(0, int(clip.x / tile)), top = std::max(0, int(clip.y / tile));
+            const ImVec4& clip = command.ClipRect; // left, top, right, bottom [px]
+            const int     left = std::max(0, int(clip.x / tile)), top = std::max(0, int(clip.y / tile));
             const int     right = std::min(columns, int(std::ceil(clip.z / tile)));
             const int     foot  = std::min(rows, int(std::ceil(clip.w / tile)));
             for (int y = top; y < foot; ++y)

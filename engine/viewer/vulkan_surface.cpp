@@ -44,8 +44,8 @@ constexpr VkImageUsageFlags kDrawn = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IM
 
 constexpr std::uint32_t kBuffers[] = {shared::kBindFrame,   shared::kBindSplats, shared::kBindShapes,
                                       shared::kBindOverlay, shared::kBindTiles,  shared::kBindFaces};
-constexpr std::uint32_t kImages[]  = {shared::kBindDepth, shared::kBindNormals, shared::kBindColours,
-                                      shared::kBindSurface, shared::kBindAlbedo, shared::kBindPanels};
+constexpr std::uint32_t kImages[]  = {shared::kBindDepth,   shared::kBindNormals, shared::kBindColours,
+                                      shared::kBindSurface, shared::kBindAlbedo,  shared::kBindPanels};
 
 constexpr std::uint32_t kCornersOfSplat = 6;
 
@@ -131,10 +131,12 @@ void VulkanSurface::makeSteps()
     const PassImage depth{kDepthTest, VK_IMAGE_LAYOUT_UNDEFINED}, none{};
     const PassImage nearest[] = {{kDepth}}, sums[] = {{kSums}, {kSums}}, surface[] = {{kSurface}, {kColour}};
     const PassImage picture[] = {{format_, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL}};
+    const PassImage panels[]  = {{kColour}};
     nearestStep_.pass         = makePass(context_, nearest, depth);
     blendStep_.pass           = makePass(context_, sums, none);
     surfaceStep_.pass         = makePass(context_, surface, none);
     faceStep_.pass            = makePass(context_, surface, depth);
+    panelStep_.pass           = makePass(context_, panels, none);
     lightStep_.pass           = makePass(context_, picture, depth);
 }
 
@@ -160,7 +162,7 @@ void VulkanSurface::makePipelines()
         made(lightStep_, {"hidden shapes", view_shape_vert_spv, view_hidden_frag_spv, 1, Blending::cover, kGreater});
     shapes_  = made(lightStep_, {"shapes", view_shape_vert_spv, view_shape_frag_spv, 1, kReplace, kLess, VK_TRUE});
     overlay_ = made(lightStep_, {"overlay", view_overlay_vert_spv, view_overlay_frag_spv, 1, Blending::lay});
-    panel_ = made(lightStep_, {"panels", view_overlay_vert_spv, view_panel_frag_spv, 1, Blending::lay});
+    panel_   = made(lightStep_, {"panels", view_overlay_vert_spv, view_panel_frag_spv, 1, Blending::lay});
 }
 
 void VulkanSurface::makeImages()
@@ -198,9 +200,10 @@ void VulkanSurface::fit(VkExtent2D size)
         throw Error("a picture of " + std::to_string(size.width) + " x " + std::to_string(size.height) +
                     " px is larger than the GPU " + context_.description.name + " can draw (" + std::to_string(most) +
                     " a side)");
-    size_ = size;
+    size_        = size;
     freshPanels_ = panels_ != nullptr; // into the new image
-    for (Step* step : {&nearestStep_, &blendStep_, &surfaceStep_, &faceStep_, &panelStep_, &lightStep_}) step->framebuffer = {};
+    for (Step* step : {&nearestStep_, &blendStep_, &surfaceStep_, &faceStep_, &panelStep_, &lightStep_})
+        step->framebuffer = {};
     makeImages();
     makeFramebuffers();
     pixels_.emplace(owner_, "pixels", std::size_t(4) * size.width * size.height, gpu::Intent::readback);
@@ -239,7 +242,7 @@ void VulkanSurface::describe()
 {
     const gpu::Buffer* const buffers[] = {&*frameBuffer_,   &*splatBuffer_, &*shapeBuffer_,
                                           &*overlayBuffer_, &*tileBuffer_,  &*faceBuffer_};
-    const VulkanImage* const images[] = {&*nearest_, &*normals_, &*colours_, &*surface_, &*albedo_, &*panelImage_};
+    const VulkanImage* const images[]  = {&*nearest_, &*normals_, &*colours_, &*surface_, &*albedo_, &*panelImage_};
     std::array<VkDescriptorBufferInfo, std::size(kBuffers)> bufferInfos{};
     std::array<VkDescriptorImageInfo, std::size(kImages)>   imageInfos{};
     std::vector<VkWriteDescriptorSet>                       writes;

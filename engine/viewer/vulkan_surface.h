@@ -92,14 +92,14 @@ private:
     VkCommandBuffer                                       commands_ = VK_NULL_HANDLE;
     std::optional<VulkanImage> depthTest_, nearest_, normals_, colours_, surface_, albedo_, panelImage_, picture_;
     Step                       nearestStep_, blendStep_, surfaceStep_, faceStep_, panelStep_, lightStep_;
-    Pipeline                   nearestDepths_, sums_, means_, faces_;                                 ///< fine
-    Pipeline                   light_, ground_, points_, litFaces_, hiddenShapes_, shapes_, overlay_, panel_; ///< of lightStep_
+    Pipeline                   nearestDepths_, sums_, means_, faces_;                       ///< fine
+    Pipeline light_, ground_, points_, litFaces_, hiddenShapes_, shapes_, overlay_, panel_; ///< of lightStep_
     std::optional<gpu::Buffer> frameBuffer_, splatBuffer_, shapeBuffer_, faceBuffer_, overlayBuffer_, tileBuffer_,
         pixels_;
     std::unique_ptr<VulkanPanels> panels_; ///< may be null
     std::vector<std::uint32_t>    tiles_;  ///< of the overlay, then of the panels
     std::vector<std::uint32_t>    panelTiles_;
-    VkExtent2D                    panelSize_{}; ///< of the picture that they are for [px]
+    VkExtent2D                    panelSize_{};         ///< of the picture that they are for [px]
     bool                          freshPanels_ = false; ///< are to be drawn
 };
 

@@ -29,6 +29,9 @@ PanelFrame::PanelFrame(double scale)
     // ImGui asks for a pointer that it does not write through.
     io.Fonts->AddFontFromMemoryTTF(const_cast<unsigned char*>(bytes.data()), int(bytes.size()),
                                    kFontSize * float(scale), &font, kGlyphs);
+#if IMGUI_VERSION_NUM < 19200 // later ones do that while they draw
+    io.Fonts->Build();
+#endif
     ImGui::GetStyle().ScaleAllSizes(float(scale));
     setDark(false);
 }

@@ -159,7 +159,7 @@ void Workbench::beginPanels()
     const bool       presses = input_.left || input_.leftPressed || leftBefore_ || !input_.keys.empty();
     const bool       orbits  = presses && !panelsTakePointer_ && input_.left;
     const bool       resized = input_.size != drawnSize_;
-    panelsDue_ = panels_ && ((glides && !orbits) || (presses && !orbits) || !input_.typed.empty() || resized ||
+    panelsDue_  = panels_ && ((glides && !orbits) || (presses && !orbits) || !input_.typed.empty() || resized ||
                              Seconds(now - panelsAt_).count() > kSeldom);
     leftBefore_ = input_.left;
     if (!panelsDue_) {
@@ -272,14 +272,16 @@ void Workbench::writeTexts(const SessionView* view)
 {
     constexpr double kSeldom = 0.25; // [s]
     if (!state_.texts) return;
-    ViewScene& scene   = stage_->view().scene();
-    scene.title        = std::filesystem::path(what_).stem().string();
-    const double force = view ? glm::length(view->sample.force) : 0;
-    scene.note         = !message_.empty()  ? message_
-                         : !faults_.empty() ? faults_.back()
-                         : force > 0        ? formatQuantity(force, "N")
-                                            : "hold Space and move: touch.  F1: keys";
-    std::string says   = scene.title + "|" + scene.note + "|" + scene.colours.quantity + "|" + name(state_.look.map) +
+    ViewScene& scene = stage_->view().scene();
+    if (!(panels_ && state_.panels)) { // which say all this themselves
+        const double force = view ? glm::length(view->sample.force) : 0;
+        scene.title        = std::filesystem::path(what_).stem().string();
+        scene.note         = !message_.empty()  ? message_
+                             : !faults_.empty() ? faults_.back()
+                             : force > 0        ? formatQuantity(force, "N")
+                                                : "hold Space and move: touch.  F1: keys";
+    }
+    std::string says = scene.title + "|" + scene.note + "|" + scene.colours.quantity + "|" + name(state_.look.map) +
                        "|" + std::to_string(scene.colours.range.low) + "|" +
                        std::to_string(scene.colours.range.high * 1e6) + "|" +
                        std::to_string(state_.camera.halfHeight()) + "|" + std::to_string(input_.size.x) + "x" +

@@ -137,8 +137,8 @@ private:
     std::unique_ptr<ReplayDevice>  replay_;
 
     Poll              poll_;
-    PanelFrame*       panels_ = nullptr;
-    bool              panelsDue_ = false; ///< a frame of ImGui has begun
+    PanelFrame*       panels_            = nullptr;
+    bool              panelsDue_         = false; ///< a frame of ImGui has begun
     bool              panelsTakePointer_ = false, panelsTakeKeys_ = false, leftBefore_ = false; ///< as of the last one
     Clock::time_point panelsAt_{};
     WindowInput       input_;

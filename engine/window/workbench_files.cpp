@@ -36,6 +36,7 @@ void Workbench::screenshot(bool withPanels)
             writeFileWhole(file, [&](std::ostream& stream) { stream << encodePng(image); });
         } else {
             Image image = renderer_.draw(scene, state_.camera, size);
+            scene.title = std::filesystem::path(what_).stem().string();
             scene.note.clear();
             annotate(image, scene, state_.camera);
             writeFileWhole(file, [&](std::ostream& stream) { stream << encodePng(image); });

@@ -130,6 +130,7 @@ protected:
             static_cast<void>(drawPanels(shown.state, now, shown.scale));
             frame.end();
         }
+        renderer.takePanels();
         const Overlay texts = annotations(pressed_.view.scene(), shown.state.camera, size.width, size.height);
         return renderer.draw(pressed_.view.scene(), shown.state.camera, size, &texts);
     }
