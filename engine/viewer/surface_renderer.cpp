@@ -238,7 +238,7 @@ void SurfaceRenderer::present()
 
 void SurfaceRenderer::takePanels()
 {
-    if (impl_->window) present();
+    if (impl_->window && !impl_->surface->hasPanels()) present();
     impl_->surface->takePanels();
 }
 

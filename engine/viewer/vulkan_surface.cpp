@@ -25,6 +25,7 @@
 #include "compute_shaders/view_shape_vert.spv.h"
 #include "compute_shaders/view_splat_vert.spv.h"
 #include "compute_shaders/view_surface_frag.spv.h"
+#include "engine/core/contract.h"
 #ifdef PALPATE_PANELS
 #include "engine/viewer/vulkan_panels.h"
 #endif
@@ -417,8 +418,8 @@ bool VulkanSurface::finish()
 void VulkanSurface::takePanels()
 {
 #ifdef PALPATE_PANELS
+    PALP_EXPECT(panels_ || !started_, "the first panels are made while nothing is being drawn");
     if (!panels_) panels_ = std::make_unique<VulkanPanels>(context_, panelStep_.pass.get());
-    finish(); // what is being drawn reads them
     panelTiles_  = VulkanPanels::tiles();
     panelSize_   = VulkanPanels::size();
     freshPanels_ = true;

@@ -55,6 +55,8 @@ public:
     /// \throws Error in a build without Dear ImGui
     void takePanels();
 
+    [[nodiscard]] bool hasPanels() const noexcept { return panels_ != nullptr; }
+
 private:
     /// A pass and what it draws into.
     struct Step {

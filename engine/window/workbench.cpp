@@ -153,7 +153,7 @@ void Workbench::frame(const SessionView* view)
 void Workbench::beginPanels()
 {
 #ifdef PALPATE_PANELS
-    constexpr double kSeldom = 0.1; // [s]
+    constexpr double kSeldom = 0.2; // [s]
     const auto       now     = Clock::now();
     const bool       glides  = input_.moved != glm::dvec2(0) && !input_.touch;
     const bool       presses = input_.left || input_.leftPressed || leftBefore_ || !input_.keys.empty();
