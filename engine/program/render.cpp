@@ -15,6 +15,7 @@
 #include "engine/core/quantity.h"
 #include "engine/program/commands.h"
 #include "engine/program/hand_source.h"
+#include "engine/program/scene_source.h"
 #include "engine/program/solver_choice.h"
 #include "engine/session/virtual_session.h"
 #include "engine/viewer/annotation.h"
@@ -27,13 +28,13 @@ namespace palp {
 namespace {
 
 struct RenderOptions {
-    std::string                                     scene, force, size = "1600x1200", out;
-    std::string                                     colour = "deflection", map = "viridis", exaggerate = "1";
-    std::string                                     drawOn = "auto", view = "patch", hand = "scan", seconds = "2 s";
-    std::map<std::string, std::string, std::less<>> flags; ///< of the scene's keys, as given
-    std::optional<int>                              frames;
-    int                                             finer = 2;
-    bool                                            dark = false, json = false;
+    SceneSource        scene;
+    std::string        force, size = "1600x1200", out;
+    std::string        colour = "deflection", map = "viridis", exaggerate = "1";
+    std::string        drawOn = "auto", view = "patch", hand = "scan", seconds = "2 s";
+    std::optional<int> frames;
+    int                finer = 2;
+    bool               dark = false, json = false;
 };
 
 /// The value of an option with a fixed set of names, or a sentence that lists them.
@@ -68,23 +69,10 @@ TouchLook lookOf(const RenderOptions& o)
     return look;
 }
 
-/// A scene file; anything else is a cloud, and the scene is what suits it.
-Scene sceneOf(const RenderOptions& o)
-{
-    const SceneOverrides overrides{o.flags, processEnvironment()};
-    if (o.scene.ends_with(".json")) return readScene(o.scene, overrides);
-    if (!o.scene.starts_with("sample:") && !o.flags.contains("place")) {
-        static_cast<void>(openForReading(o.scene)); // a file that is not there is the first thing to say
-        throw Error("--at: expected a place X,Y,Z for a cloud from a file, found none; palpate info " + o.scene +
-                    " shows where the cloud is");
-    }
-    return parseScene(nlohmann::json{{"cloud", o.scene}}.dump(), o.scene, std::filesystem::current_path(), overrides);
-}
-
 /// Everything that is touched and drawn, made once.
 struct Stage {
     explicit Stage(const RenderOptions& o)
-        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(sceneOf(o)), renderer({.device = o.drawOn}),
+        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.device = o.drawOn}),
           loaded(loadCloud(scene)), index(loaded.cloud.positions()),
           device(orTheReference([this] { return PlateDevice(scene.device); })), view(loaded.cloud, index, scene.patch)
     {
@@ -126,11 +114,6 @@ double deepestOf(const Patch& patch, double force)
     return force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
 }
 
-std::string titleOf(const RenderOptions& o)
-{
-    return o.scene.starts_with("sample:") ? o.scene : std::filesystem::path(o.scene).stem().string();
-}
-
 std::string noteOf(const Stage& stage, const Patch& patch, double force)
 {
     std::string note = formatQuantity(force, "N") + ", " + formatQuantity(deepestOf(patch, force), "m") + " deep in " +
@@ -170,7 +153,7 @@ Written still(const RenderOptions& o, Stage& stage)
                                              : parseQuantity(o.force, Dimension::force, "--force");
     if (!(std::abs(force) <= kMost)) throw Error("--force: expected at most 1e6 N, found \"" + o.force + "\"");
     stage.view.show(&patch, force, stage.look);
-    stage.view.scene().title = titleOf(o);
+    stage.view.scene().title = o.scene.title();
     stage.view.scene().note  = noteOf(stage, patch, force);
     Written written          = write(stage, cameraFor(o, stage, patch), o.out);
     written.force            = force;
@@ -229,7 +212,7 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage)
         const double         force = glm::length(s.force);
         const Patch*         bent  = force > 0 ? &*patch++ : nullptr;
         stage.view.show(bent, force, look, TouchHand{s.hip, s.force});
-        stage.view.scene().title = titleOf(o);
+        stage.view.scene().title = o.scene.title();
         stage.view.scene().note  = formatQuantity(s.time, "s") + ", " + formatQuantity(force, "N");
         written.push_back(write(stage, camera, frameFile(o.out, int(n) + 1)));
         written.back().force   = force;
@@ -243,7 +226,7 @@ void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>
 {
     if (o.json) {
         nlohmann::ordered_json all;
-        all["scene"]     = o.scene;
+        all["scene"]     = o.scene.name;
         all["points"]    = stage.loaded.cloud.size();
         all["size"]      = {stage.size.width, stage.size.height};
         all["drawn_on"]  = stage.renderer.device().name;
@@ -274,24 +257,12 @@ void render(const RenderOptions& o)
     tell(o, stage, o.frames ? film(o, stage) : std::vector{still(o, stage)});
 }
 
-void addSceneKeys(CLI::App& command, const std::shared_ptr<RenderOptions>& o)
-{
-    for (const SceneKey& key : sceneKeys())
-        command
-            .add_option_function<std::string>(
-                key.name == "place" ? "--at,--place" : flagOf(key.name),
-                [o, name = std::string(key.name)](const std::string& text) { o->flags[name] = text; },
-                std::string(key.means) + (key.unit.empty() ? "" : " [" + std::string(key.unit) + "]"))
-            ->group("Values of the scene (over PALPATE_<KEY> and the file)");
-}
-
 } // namespace
 
 void addRenderCommand(CLI::App& app)
 {
     CLI::App*  command = app.add_subcommand("render", "pictures of a touched object, without a display");
     const auto o       = std::make_shared<RenderOptions>();
-    command->add_option("SCENE", o->scene, "scene file, cloud file or sample:NAME")->required();
     command->add_option("--out", o->out, "PNG file; with --frames a number is added before .png")->required();
     command->add_option("--size", o->size, "of the picture [px]")->capture_default_str();
     command->add_option("--finer", o->finer, "drawn so many times larger, then averaged: smooth edges")
@@ -310,7 +281,7 @@ void addRenderCommand(CLI::App& app)
     command->add_option("--draw-on", o->drawOn, "Vulkan device that draws, as \"palpate devices\" names it")
         ->capture_default_str();
     command->add_flag("--json", o->json, "machine-readable, SI units");
-    addSceneKeys(*command, o);
+    o->scene.addTo(*command);
     command->footer("Examples:\n"
                     "  palpate render sample:ear-lobe --out lobe.png\n"
                     "  palpate render samples/scenes/skin_wart.json --force '1 N' --colour stiffness --out wart.png\n"

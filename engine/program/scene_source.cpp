@@ -1,0 +1,41 @@
+#include "engine/program/scene_source.h"
+
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/file.h"
+
+namespace palp {
+
+void SceneSource::addTo(CLI::App& command)
+{
+    command.add_option("SCENE", name, "scene file, cloud file or sample:NAME")->required();
+    for (const SceneKey& key : sceneKeys())
+        command
+            .add_option_function<std::string>(
+                key.name == "place" ? "--at,--place" : flagOf(key.name),
+                [this, text = std::string(key.name)](const std::string& value) { flags[text] = value; },
+                std::string(key.means) + (key.unit.empty() ? "" : " [" + std::string(key.unit) + "]"))
+            ->group("Values of the scene (over PALPATE_<KEY> and the file)");
+}
+
+Scene SceneSource::load() const
+{
+    const SceneOverrides overrides{flags, processEnvironment()};
+    if (name.ends_with(".json")) return readScene(name, overrides);
+    if (!name.starts_with("sample:") && !flags.contains("place")) {
+        static_cast<void>(openForReading(name)); // a file that is not there is the first thing to say
+        throw Error("--at: expected a place X,Y,Z for a cloud from a file, found none; palpate info " + name +
+                    " shows where the cloud is");
+    }
+    return parseScene(nlohmann::json{{"cloud", name}}.dump(), name, std::filesystem::current_path(), overrides);
+}
+
+std::string SceneSource::title() const
+{
+    return name.starts_with("sample:") ? name : std::filesystem::path(name).stem().string();
+}
+
+} // namespace palp

@@ -1,0 +1,28 @@
+#pragma once
+#include <functional>
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/session/scene.h"
+
+namespace palp {
+
+/// The options by which programs are given a scene: a scene file, a cloud file or sample:NAME, and a flag for each key.
+struct SceneSource {
+    std::string                                     name;
+    std::map<std::string, std::string, std::less<>> flags; ///< of the scene's keys, as given
+
+    /// Adds SCENE and the flags to a command; `this` must outlive its parsing.
+    void addTo(CLI::App& command);
+
+    /// A scene file; anything else is a cloud, and the scene is what suits it.
+    /// \throws Error as readScene() does, and for a cloud file without a place
+    [[nodiscard]] Scene load() const;
+
+    /// "sample:skin", or the file's name without its ending.
+    [[nodiscard]] std::string title() const;
+};
+
+} // namespace palp
