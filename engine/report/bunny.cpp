@@ -19,8 +19,9 @@ namespace {
 
 constexpr double     kDiagonal = 0.2502; ///< of the original's bounds [m]
 constexpr double     kSameSize = 0.02;   ///< off from it, relative, is still the original: copies have fewer points [1]
-constexpr double     kEar      = 22e-3;  ///< from the tip of the ear to where it ends [m]
-constexpr double     kForce    = 0.05;   ///< [N]
+constexpr double     kEar      = 40e-3;  ///< length of an ear [m]
+constexpr double     kWindow   = 18e-3;  ///< lies on the flat side of an ear [m]
+constexpr double     kForce    = 0.03;   ///< [N]
 constexpr PlateEdges kFromItsRoot{Edge::free, Edge::free, Edge::free, Edge::clamped};
 
 /// The cloud in the original's size, and the factor that took.
@@ -45,46 +46,88 @@ Bunny readBunny(const std::filesystem::path& file)
 
 /// Where the ear is pressed, and which way it hangs.
 struct Ear {
-    glm::dvec3 place{}; ///< [m]
-    Frame      frame;   ///< normal out of its flat side, north towards its root
+    glm::dvec3 place{};  ///< [m]
+    Frame      frame;    ///< normal out of its flat side, north towards its root
+    glm::dvec3 middle{}; ///< of the ear's thickness, below the place [m]
 };
 
-/// Direction in which the points spread least [1].
-glm::dvec3 thinDirection(const std::vector<glm::dvec3>& points, const glm::dvec3& middle)
+/// Spread of points about their middle: the sum of the outer products [m^2].
+glm::dmat3 spreadOf(const std::vector<glm::dvec3>& points, const glm::dvec3& middle)
 {
     glm::dmat3 spread(0);
     for (const glm::dvec3& p : points) spread += glm::outerProduct(p - middle, p - middle);
-    const double trace = spread[0][0] + spread[1][1] + spread[2][2];
-    glm::dvec3   d     = glm::normalize(glm::dvec3(0.36, 0.48, 0.80));        // any that is not an axis of the ear
-    for (int n = 0; n < 500; ++n) d = glm::normalize(trace * d - spread * d); // the least becomes the largest
+    return spread;
+}
+
+/// Eigenvector of the largest eigenvalue, by the power method [1].
+glm::dvec3 longest(const glm::dmat3& spread)
+{
+    glm::dvec3 d = glm::normalize(glm::dvec3(0.36, 0.48, 0.80)); // any that is perpendicular to no ear
+    for (int n = 0; n < 1000; ++n) d = glm::normalize(spread * d);
     return d;
+}
+
+/// That of the least: the longest of what is left of the trace.
+glm::dvec3 shortest(const glm::dmat3& spread)
+{
+    return longest(glm::dmat3(spread[0][0] + spread[1][1] + spread[2][2]) - spread);
+}
+
+glm::dvec3 middleOf(const std::vector<glm::dvec3>& points)
+{
+    glm::dvec3 sum(0);
+    for (const glm::dvec3& p : points) sum += p / double(points.size());
+    return sum;
 }
 
 /// The ear that reaches highest; y is up, as in the original.
 Ear earOf(const PointCloud& cloud, const NeighbourIndex& index)
 {
     const auto       positions = cloud.positions();
-    const glm::dvec3 tip =
+    const glm::dvec3 top =
         *std::max_element(positions.begin(), positions.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
-    std::vector<glm::dvec3> points;
-    glm::dvec3              middle(0);
-    for (const std::uint32_t n : index.gather(tip, kEar)) points.push_back(positions[n]);
-    for (const glm::dvec3& p : points) middle += p / double(points.size());
-    const glm::dvec3 normal = thinDirection(points, middle);
-    // The side that bulges: farthest out near the middle.
-    glm::dvec3 place = tip;
-    double     most  = -1;
-    for (const glm::dvec3& p : points) {
-        const double height = glm::dot(p - middle, normal);
-        if (glm::length(p - middle - height * normal) < 3e-3 && std::abs(height) > most) {
+    std::vector<glm::dvec3> ear, slice;
+    for (const std::uint32_t n : index.gather(top, kEar)) ear.push_back(positions[n]);
+    const glm::dvec3 middle = middleOf(ear);
+    glm::dvec3       along  = longest(spreadOf(ear, middle)); // from the root to the tip
+    if (glm::dot(top - middle, along) < 0) along = -along;
+    double tip = 0; // beyond the middle [m]
+    for (const glm::dvec3& p : ear) tip = std::max(tip, glm::dot(p - middle, along));
+
+    // Nearly half a window from the tip (the surface bends, so that it is half along it), in the middle of the width,
+    // on the side that lies farther out there.
+    for (const glm::dvec3& p : ear)
+        if (std::abs(glm::dot(p - middle, along) - (tip - 0.36 * kWindow)) < kWindow / 10) slice.push_back(p);
+    const glm::dvec3 here = middleOf(slice);
+    // The slice is thin along the ear too, which does not count: there it is made long.
+    const glm::dvec3 flat  = shortest(spreadOf(slice, here) + spreadOf(ear, middle) * glm::outerProduct(along, along));
+    glm::dvec3       place = here;
+    double           most  = -1;
+    for (const glm::dvec3& p : slice) {
+        const double height = glm::dot(p - here, flat);
+        if (glm::length(p - here - height * flat) < kWindow / 10 && std::abs(height) > most) {
             most  = std::abs(height);
             place = p;
         }
     }
-    const glm::dvec3 out   = glm::dot(place - middle, normal) > 0 ? normal : -normal;
-    const glm::dvec3 root  = middle - tip;
-    const glm::dvec3 north = glm::normalize(root - glm::dot(root, out) * out);
-    return {place, {out, glm::cross(north, out), north}};
+    const glm::dvec3 out   = glm::dot(place - here, flat) > 0 ? flat : -flat;
+    const glm::dvec3 north = glm::normalize(glm::dot(along, out) * out - along);
+    return {place, {out, glm::cross(north, out), north}, here};
+}
+
+/// The ear's skin on the side of the finger. The other one is 5 mm behind: a sphere through both would have the ear's
+/// thickness and not its shape.
+PointCloud skinOf(const PointCloud& cloud, const NeighbourIndex& index, const Ear& ear)
+{
+    std::vector<glm::dvec3> positions;
+    std::vector<double>     stiffness;
+    for (const std::uint32_t n : index.gather(ear.place, kEar / 2)) {
+        const glm::dvec3& p = cloud.positions()[n];
+        if (glm::dot(p - ear.middle, ear.frame.normal) < 0) continue;
+        positions.push_back(p);
+        stiffness.push_back(cloud.stiffness()[n]);
+    }
+    return {positions, stiffness, cloud.kind()};
 }
 
 } // namespace
@@ -101,20 +144,23 @@ const std::string& bunnyTerms()
 void addBunny(Section& lobe, const std::filesystem::path& file, const ReportRun& run)
 {
     const Bunny          bunny = readBunny(file);
-    const NeighbourIndex index(bunny.cloud.positions());
-    const Ear            ear = earOf(bunny.cloud, index);
+    const NeighbourIndex all(bunny.cloud.positions());
+    const Ear            ear  = earOf(bunny.cloud, all);
+    const PointCloud     skin = skinOf(bunny.cloud, all, ear);
+    const NeighbourIndex index(skin.positions());
     PatchSettings        settings{.material        = {4e-3, 0.45},
-                                  .window          = 16e-3,
+                                  .window          = kWindow,
                                   .cells           = run.quick ? 32 : 64,
                                   .footprintRadius = 2e-3,
                                   .frame           = ear.frame};
-    Table table{"An ear of the bunny under " + formatQuantity(kForce, "N") + ", 300 kPa throughout, window 16 mm.",
+    Table                table{"The outer skin of an ear of the bunny under " + formatQuantity(kForce, "N") +
+                    ", 300 kPa throughout, window 18 mm.",
                 {"edges", "under the finger", "at the ear's tip", "felt stiffness"},
                 {}};
     for (const auto& [name, edges] :
          {std::pair("clamped all around", PlateEdges{}), std::pair("free but for its root", kFromItsRoot)}) {
         settings.edges    = edges;
-        const Patch patch = deform(bunny.cloud, index, {ear.place, ear.frame.normal}, settings, run.device);
+        const Patch patch = deform(skin, index, {ear.place, ear.frame.normal}, settings, run.device);
         if (!patch.deformed())
             throw Error(file.string() + ": the points of its highest ear determine no surface; is y up, as in the "
                                         "original?");
@@ -128,9 +174,11 @@ void addBunny(Section& lobe, const std::filesystem::path& file, const ReportRun&
         lobe.numbers.push_back({stem + "deflection_of_tip", "m", {tip}});
         const PressedPatch pressed{&patch, kForce, ""};
         lobe.figures.push_back(
-            {std::string("An ear of the bunny, ") + name + ", displacements twice as large.",
-             surfaceSvg(bunny.cloud, {&pressed, 1}, {std::string("The bunny's ear, ") + name, 2, {0, 0, 0}, true})});
+            {std::string("The outer skin of an ear, its root above: ") + name + ", displacements twice as large.",
+             surfaceSvg(skin, {&pressed, 1}, {std::string("The bunny's ear, ") + name, 2, {0, 0, 0}, true})});
     }
+    lobe.numbers.push_back({"bunny/place", "m", {ear.place.x, ear.place.y, ear.place.z}});
+    lobe.numbers.push_back({"bunny/normal", "1", {ear.frame.normal.x, ear.frame.normal.y, ear.frame.normal.z}});
     lobe.numbers.push_back({"bunny/factor", "1", {bunny.factor}});
     lobe.numbers.push_back({"bunny/points", "1", {double(bunny.cloud.size())}});
     lobe.text.push_back(bunnyTerms() +

@@ -18,11 +18,11 @@ namespace palp::report {
 namespace {
 
 constexpr std::array<Map, 3> kMaps      = {Map::gallPeters, Map::lambertCylindrical, Map::lambertAzimuthal};
-constexpr double             kRadius    = 50e-3;                      ///< of the sphere [m]
-constexpr double             kHalfAngle = std::numbers::pi / 18;      ///< of the cap: 10 degrees [rad]
-constexpr double             kModulus   = 0.6e6;                      ///< [Pa]
-constexpr double             kPoke      = 0.1 * kRadius * kHalfAngle; ///< of the poke, round on the sphere: nearly a point [m]
-constexpr Material           kSkin{};
+constexpr double             kRadius    = 50e-3;                 ///< of the sphere [m]
+constexpr double             kHalfAngle = std::numbers::pi / 18; ///< of the cap: 10 degrees [rad]
+constexpr double             kModulus   = 0.6e6;                 ///< [Pa]
+constexpr double   kPoke = 0.1 * kRadius * kHalfAngle; ///< of the poke, round on the sphere: nearly a point [m]
+constexpr Material kSkin{};
 
 /// A dent of 1 N in one map, and where it was computed.
 struct Dent {
@@ -186,8 +186,9 @@ Section mapsPart(const ReportRun& run)
              fixed(100 * (1 - gall.deepest / caps.back().shape.deepest), 0) +
              " % too shallow. Own window: right depth, " + fixed(own.elongation(), 2) + " times as long as wide.",
          "the same plate, poke and sphere in three maps", Verdict::inPart,
-         "It preserves area and distorts shape; Lambert's azimuthal map preserves area and is round to " +
-             percent(caps.back().shape.elongation() - 1) + "."});
+         "It preserves area and distorts shape; Lambert's azimuthal map preserves area too and its dent is round "
+         "(elongation " +
+             fixed(caps.back().shape.elongation(), 3) + ")."});
     section.tables.push_back(std::move(table));
     return section;
 }

@@ -179,8 +179,7 @@ Section stabilityPart(const ReportRun& run)
              std::to_string(total.takenOver) + " needed the direct solver; largest error " + formatNumber(total.worst) +
              ".",
          "random maps, all edges, each answer beside a direct one", bad == 0 ? Verdict::holds : Verdict::inPart,
-         bad == 0 ? "With our solver it is, however rough the map. With the published iteration it "
-                    "is not: see part e."
+         bad == 0 ? "Ours does, however rough the map. The published iteration diverges: see part e."
                   : "Some plates were not solved to the tolerance."});
     return section;
 }
