@@ -12,7 +12,7 @@ constexpr const char* kStyle =
     "caption{text-align:left;caption-side:top;color:#444}"
     "td,th{padding:.2rem .8rem .2rem 0;text-align:left;vertical-align:top;border-bottom:1px solid #ddd}"
     ".figures{display:grid;grid-template-columns:repeat(auto-fit,minmax(30rem,1fr));gap:1.5rem}"
-    "figure{margin:0}figure svg{width:100%;height:auto;max-height:34rem}figcaption{color:#444}"
+    "figure{margin:0}figure>svg{width:100%;height:auto;max-height:34rem}figcaption{color:#444}"
     ".holds{font-weight:bold;color:#005b8f}.inPart{font-weight:bold;color:#7a5200}.fails{font-weight:bold;color:#"
     "a33b00}"
     "p{max-width:50rem}code{background:#f2f2f2;padding:.1rem .3rem}"

@@ -106,7 +106,7 @@ Section perceptionPart(const ReportRun& run)
          "a hand slides 60 mm through the whole pipeline in virtual time; a prediction, no study with people",
          most.right >= 0.9 && floor < kMostFloor ? Verdict::holds : Verdict::inPart,
          most.right >= 0.9 && floor < kMostFloor
-             ? "So large a change should be noticed by nearly all, and it is not an artefact."
+             ? "The prediction agrees: so large a change should be noticed by nearly all, and it is no artefact."
              : "The predicted score is lower, or part of what is felt is an artefact."});
     return section;
 }
