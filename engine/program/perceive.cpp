@@ -162,16 +162,17 @@ void perceive(const PerceiveOptions& o)
 {
     expectSvg("--out", o.out);
     expectSvg("--picture", o.picture);
-    Felt                   felt(o);
-    const FeltLine         line = feltLine(felt.scene, felt.loaded.cloud, felt.index,
+    Felt                  felt(o);
+    const FeltLine        line = feltLine(felt.scene, felt.loaded.cloud, felt.index,
                                    o.along.empty() ? std::optional<glm::dvec3>() : parsePoint(o.along, "--along"),
-                                           reachOf(o, felt.scene));
-    Progress               progress("feeling");
-    const ScenePerception  found = perceive(felt.scene, felt.loaded.cloud, felt.index, line, o.places, felt.device);
+                                          reachOf(o, felt.scene));
+    Progress              progress("feeling");
+    const auto            onStep = [&](std::size_t done, std::size_t total) { progress.at(done, total); };
+    const ScenePerception found =
+        perceive(felt.scene, felt.loaded.cloud, felt.index, line, o.places, felt.device, onStep);
     std::optional<FeltMap> map;
     if (!o.picture.empty())
-        map = feltMap(felt.loaded.cloud, felt.index, felt.scene.patch, std::size_t(o.mapPlaces), felt.device,
-                      [&](std::size_t done, std::size_t total) { progress.at(done, total); });
+        map = feltMap(felt.loaded.cloud, felt.index, felt.scene.patch, std::size_t(o.mapPlaces), felt.device, onStep);
     if (!o.out.empty())
         write(o.out, pathSvg(found, felt.scene.patch.forceLaw, "Felt stiffness along the path: " + o.scene.title()));
     constexpr double kTypicalWeber = kWeberFractions[1];

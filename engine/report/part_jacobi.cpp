@@ -1,6 +1,7 @@
 // What the published iteration does: undamped Jacobi, stopped when the change from sweep to sweep is small.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "engine/bench/accuracy.h"
@@ -33,7 +34,8 @@ struct Course {
 };
 
 /// Every sweep at first, later every fiftieth part of those made.
-Course courseOf(int nodes, double omega, int sweeps)
+/// \param onSweeps  is told how many are done
+Course courseOf(int nodes, double omega, int sweeps, const std::function<void(int)>& onSweeps)
 {
     const Plate         plate = bench::plateOf("linear", 10, nodes);
     const NodeField     force = bench::fingertip(plate.grid);
@@ -46,6 +48,7 @@ Course courseOf(int nodes, double omega, int sweeps)
         const NodeField before = jacobi.answer();
         jacobi.sweep(1);
         done += skipped + 1;
+        onSweeps(done);
         const NodeField w = jacobi.answer();
         course.sweeps.push_back(done);
         course.change.push_back(bench::errorOf(before, w));
@@ -78,11 +81,15 @@ Section jacobiPart(const ReportRun& run)
     const std::vector<int> nodes           = run.quick ? std::vector{17, 33} : std::vector{33, 65};
     const int              sweeps          = run.quick ? 20'000 : 1'000'000;
     constexpr int          kUndampedSweeps = 60; // by then the answer is 10^20 times too large
-    std::vector<Course>    all{courseOf(nodes.front(), kUndamped, kUndampedSweeps)};
-    for (const int side : nodes) {
-        run.step(all.size(), nodes.size() + 1);
-        all.push_back(courseOf(side, kDamped, sweeps));
-    }
+    std::vector<Course>    all;
+    const auto             watched = [&](int side, double omega, int most) {
+        const std::size_t before = all.size();
+        all.push_back(courseOf(side, omega, most, [&](int done) {
+            run.step(before * std::size_t(sweeps) + std::size_t(done), (nodes.size() + 1) * std::size_t(sweeps));
+        }));
+    };
+    watched(nodes.front(), kUndamped, kUndampedSweeps);
+    for (const int side : nodes) watched(side, kDamped, sweeps);
 
     Section       section{'e', "Jacobi's iteration and when to stop it", {}, {}, {}, {}, {}, {}};
     const Course& undamped = all.front();

@@ -20,19 +20,27 @@ std::string withLess(const std::string& scene, bool quick)
     return quick ? scene.substr(0, scene.rfind('}')) + R"(, "points": 6000, "cells": 32})" : scene;
 }
 
-void feel(Felt& felt, Section& section, const ReportRun& run)
+/// \param number, count  of the object, for progress
+void feel(Felt& felt, Section& section, const ReportRun& run, std::size_t number, std::size_t count)
 {
+    static constexpr std::size_t kSteps = 100; // of an object: half along the path, half for the map
+    const auto                   part   = [&](std::size_t first) {
+        return [&run, from = number * kSteps + first, count](std::size_t done, std::size_t total) {
+            run.step(from + kSteps / 2 * done / total, count * kSteps);
+        };
+    };
     constexpr int        kMapPlaces = 500;
     const Scene          scene      = parseScene(withLess(felt.scene, run.quick), felt.name, ".");
     const LoadedCloud    loaded     = loadCloud(scene);
     const NeighbourIndex index(loaded.cloud.positions());
     const FeltLine       line = feltLine(scene, loaded.cloud, index, {}, felt.reach);
-    felt.perception           = perceive(scene, loaded.cloud, index, line, run.quick ? 11 : 41, run.device);
+    felt.perception           = perceive(scene, loaded.cloud, index, line, run.quick ? 11 : 41, run.device, part(0));
     section.figures.push_back({"A finger at rest, one that slides, and one that slides over the same points with one "
                                "stiffness: what varies there is the program's own doing.",
                                pathSvg(felt.perception, scene.patch.forceLaw, "Felt along the path: " + felt.name)});
     if (!felt.map) return;
-    const FeltMap map = feltMap(loaded.cloud, index, scene.patch, run.quick ? 60 : kMapPlaces, run.device);
+    const FeltMap map =
+        feltMap(loaded.cloud, index, scene.patch, run.quick ? 60 : kMapPlaces, run.device, part(kSteps / 2));
     section.figures.push_back(
         {"How surely a place is told from the object's typical one if 15 % is the smallest change "
          "that is noticed: 0.5 is guessing.",
@@ -88,8 +96,7 @@ Section perceptionPart(const ReportRun& run)
                 {}};
     double floor = 0;
     for (Felt& felt : all) {
-        run.step(std::size_t(&felt - all.data()), all.size());
-        feel(felt, section, run);
+        feel(felt, section, run, std::size_t(&felt - all.data()), all.size());
         addNumbers(section, felt);
         for (const NoticedSteps& n : felt.perception.sliding) {
             table.rows.push_back({felt.name, percent(n.weber), fixed(n.whole, 2), fixed(n.passing, 2),

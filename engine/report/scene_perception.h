@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -35,8 +36,10 @@ struct ScenePerception {
 
 /// Feels the scene's object and its homogeneous twin.
 /// \param places  at rest along the path, at least 2
+/// \param onStep  (done, total) of some seconds each; may be empty
 /// \throws as windowsAlong() and strokeAlong()
 [[nodiscard]] ScenePerception perceive(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
-                                       const FeltLine& line, int places, PlateDevice& device);
+                                       const FeltLine& line, int places, PlateDevice& device,
+                                       const std::function<void(std::size_t, std::size_t)>& onStep = {});
 
 } // namespace palp::report
