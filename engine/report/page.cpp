@@ -92,7 +92,8 @@ std::string reportPage(std::span<const Section> sections, const Origins& origins
             "content=\"width=device-width\"><title>Palpate: the paper, computed again</title>\n<style>"
          << kStyle << "</style></head><body>\n<h1>The paper, computed again</h1>\n"
          << "<p>Kumari and Chaudhuri, “Haptic Rendering of Thin, Deformable Objects with Spatially Varying Stiffness” "
-            "(arXiv 2005.11799). Every figure and number below was made by one command, <code>"
+            "(arXiv 2005.11799). Its claims are in our words. Every figure and number below was made by one command, "
+            "<code>"
          << escaped(origins.command)
          << "</code>. The numbers are in <a href=\"numbers.json\">numbers.json</a>, what a clock measured is in <a "
             "href=\"timings.json\">timings.json</a>.</p>\n";
