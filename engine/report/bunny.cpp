@@ -170,6 +170,7 @@ void addBunny(Section& lobe, const std::filesystem::path& file, const ReportRun&
             {name, formatQuantity(here, "m"), formatQuantity(tip, "m"), formatQuantity(patch.feltStiffness, "N/m")});
         const std::string stem = std::string("bunny/") + (edges == PlateEdges{} ? "clamped/" : "free/");
         lobe.numbers.push_back({stem + "compliance", "m/N", {patch.compliance}});
+        lobe.numbers.push_back({stem + "sphere_misfit", "m", {patch.sphere.fit.misfit}});
         lobe.numbers.push_back({stem + "deflection", "m", {here}});
         lobe.numbers.push_back({stem + "deflection_of_tip", "m", {tip}});
         const PressedPatch pressed{&patch, kForce, ""};
