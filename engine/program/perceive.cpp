@@ -1,4 +1,4 @@
-#include <cmath>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -16,6 +16,7 @@
 #include "engine/program/solver_choice.h"
 #include "engine/report/perception_figures.h"
 #include "engine/report/scene_perception.h"
+#include "engine/report/section.h"
 
 // palpate perceive: what a person would notice of an object's stiffness, predicted.
 
@@ -67,13 +68,6 @@ void write(const std::string& file, const std::string& text)
     writeFileWhole(file, [&](std::ostream& stream) { stream << text; });
 }
 
-std::string keyOf(double weber)
-{
-    char text[16];
-    std::snprintf(text, sizeof text, "%.2f", weber);
-    return text;
-}
-
 nlohmann::ordered_json jsonOf(const std::array<NoticedSteps, 3>& noticed)
 {
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -113,36 +107,26 @@ nlohmann::ordered_json jsonOf(const PerceiveOptions& o, const Felt& felt, const 
     for (const double weber : kWeberFractions) {
         std::size_t told = 0;
         for (const double stiffness : map->stiffness) told += noticeableSteps(stiffness, map->typical, weber) >= 1;
-        all["map"]["told_apart"][keyOf(weber)] = double(told) / double(map->stiffness.size());
+        all["map"]["told_apart"][fixed(weber, 2)] = double(told) / double(map->stiffness.size());
     }
     return all;
 }
 
-std::string fixed(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2f", value);
-    return text;
-}
-
 void print(const PerceiveOptions& o, const Felt& felt, const ScenePerception& p, const std::optional<FeltMap>& map)
 {
-    const auto least = [&](auto better) {
-        double best = p.places.front().felt(felt.scene.patch.forceLaw);
-        for (const FeltPlace& place : p.places)
-            best = better(best, place.felt(felt.scene.patch.forceLaw)) ? best : place.felt(felt.scene.patch.forceLaw);
-        return best;
-    };
+    const ForceLaw law = felt.scene.patch.forceLaw;
+    const auto [softest, hardest] =
+        std::minmax_element(p.places.begin(), p.places.end(),
+                            [&](const FeltPlace& a, const FeltPlace& b) { return a.felt(law) < b.felt(law); });
     std::printf("%s: a prediction, not a study with people\n", o.scene.name.c_str());
     std::printf("felt stiffness along %s: %s to %s\n\n", formatQuantity(2 * p.line.reach, "m").c_str(),
-                formatQuantity(least(std::less<>()), "N/m").c_str(),
-                formatQuantity(least(std::greater<>()), "N/m").c_str());
+                formatQuantity(softest->felt(law), "N/m").c_str(), formatQuantity(hardest->felt(law), "N/m").c_str());
     std::printf("%-26s%14s%14s%14s\n", "smallest change noticed", "7 %", "15 %", "22 %");
     const auto row = [](const char* what, const std::array<NoticedSteps, 3>& noticed, double NoticedSteps::*number) {
         std::printf("%-26s", what);
         for (const NoticedSteps& n : noticed) {
             const double value = n.*number;
-            std::printf("%14s", (value < 0.1 ? formatNumber(value) : fixed(value)).c_str());
+            std::printf("%14s", (value < 0.1 ? formatNumber(value) : fixed(value, 2)).c_str());
         }
         std::printf("\n");
     };
