@@ -63,7 +63,6 @@ stand_in dpkg-query 'printf "install ok installed"'
 stand_in cmake "echo \"cmake \$*\" >>'$place/calls'; : >'$place/build/CMakeCache.txt'"
 stand_in ctest "echo \"ctest \$*\" >>'$place/calls'"
 mkdir -p "$place/build/bin"
-cp "$place/bin/ctest" "$place/build/bin/paper_experiment"
 cp "$place/bin/ctest" "$place/build/bin/palpate"
 check 'the demo in a fresh clone' 0 'index.html' env PALPATE_BUILD="$place/build" sh samples/demo.sh
 calls 'the demo in a fresh clone builds no tests' '-DPALPATE_TESTS=OFF'

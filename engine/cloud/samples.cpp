@@ -4,26 +4,15 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <string>
 
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/uniform.h"
 
 namespace palp {
 namespace {
-
-/// The standard fixes the bits of mt19937_64 but not of its distributions; this one is the same everywhere.
-class Uniform {
-public:
-    explicit Uniform(std::uint64_t seed) : bits_(seed) {}
-    double operator()() { return double(bits_() >> 11) * 0x1p-53; } ///< in [0, 1)
-    double operator()(double low, double high) { return low + (high - low) * (*this)(); }
-
-private:
-    std::mt19937_64 bits_;
-};
 
 double bump(double dx, double dy, double sigma)
 {

@@ -166,7 +166,9 @@ void drawMarkers(SvgDrawing& svg, const CloudViewSettings& s, const CloudCamera&
 void drawScaleBar(SvgDrawing& svg, const CloudCamera& camera, glm::dvec2 rightEnd)
 {
     constexpr double kLongest = 160; // [px]
-    const Axis       axis({0, kLongest / camera.pixelsPerMetre}, Scale::linear, "m", 2);
+    const ValueRange range{0, kLongest / camera.pixelsPerMetre};
+    Axis             axis(range, Scale::linear, "m", 2);
+    if (axis.ticks().size() < 2) axis = Axis(range, Scale::linear, "m", 3); // 4 to 5: steps of 5 leave only zero
     const double     length  = axis.ticks().back().value;
     const glm::dvec2 leftEnd = rightEnd - glm::dvec2(length * camera.pixelsPerMetre, 0);
     svg.line(leftEnd, rightEnd, {"#1a1a1a", 2.5});

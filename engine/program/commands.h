@@ -17,6 +17,8 @@ void addDoctorCommand(CLI::App& app);
 void addRunCommand(CLI::App& app); ///< run and replay
 void addRenderCommand(CLI::App& app);
 void addViewCommand(CLI::App& app);
+void addPerceiveCommand(CLI::App& app);
+void addPaperCommand(CLI::App& app);
 void addCalibrateCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 void addBenchPlateCommand(CLI::App& bench);

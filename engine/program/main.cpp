@@ -96,6 +96,8 @@ int main(int argumentCount, char** arguments)
                "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
                "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
                "  palpate render sample:palm --out palm.png      a picture of a touch, without a display\n"
+               "  palpate perceive sample:skin                   what a person would notice of it, predicted\n"
+               "  palpate paper --out report                     the paper's experiments, computed again\n"
                "  palpate devices                                what this machine can compute on, and feel with\n"
                "  palpate doctor                                 what it lacks, and what helps\n"
                "  palpate calibrate --mass '200 g'               a Falcon weighs a mass, so that its newtons are true\n"
@@ -112,6 +114,8 @@ int main(int argumentCount, char** arguments)
     palp::addRunCommand(app);
     palp::addRenderCommand(app);
     palp::addViewCommand(app);
+    palp::addPerceiveCommand(app);
+    palp::addPaperCommand(app);
     palp::addCalibrateCommand(app);
     palp::addBenchCommand(app);
     std::signal(SIGXFSZ, SIG_IGN); // a file beyond the limit on sizes is then a write that fails, with a sentence

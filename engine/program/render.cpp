@@ -28,10 +28,10 @@ namespace palp {
 namespace {
 
 struct RenderOptions {
-    std::string        scene, force, size = "1600x1200", out;
+    SceneSource        scene;
+    std::string        force, size = "1600x1200", out;
     std::string        colour = "deflection", map = "viridis", exaggerate = "1";
     std::string        drawOn = "auto", view = "patch", hand = "scan", seconds = "2 s";
-    SceneFlags         flags;
     std::optional<int> frames;
     int                finer = 2;
     bool               dark = false, json = false;
@@ -72,8 +72,8 @@ TouchLook lookOf(const RenderOptions& o)
 /// Everything that is touched and drawn, made once.
 struct Stage {
     explicit Stage(const RenderOptions& o)
-        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(sceneFrom(o.scene, o.flags, PlaceNeeded::yes)),
-          renderer({.device = o.drawOn}), loaded(loadCloud(scene)), index(loaded.cloud.positions()),
+        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.device = o.drawOn}),
+          loaded(loadCloud(scene)), index(loaded.cloud.positions()),
           device(orTheReference([this] { return PlateDevice(scene.device); })),
           view(loaded.cloud, index, scene.patch, loaded.faces)
     {
@@ -115,11 +115,6 @@ double deepestOf(const Patch& patch, double force)
     return force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
 }
 
-std::string titleOf(const RenderOptions& o)
-{
-    return o.scene.starts_with("sample:") ? o.scene : std::filesystem::path(o.scene).stem().string();
-}
-
 std::string noteOf(const Stage& stage, const Patch& patch, double force)
 {
     std::string note = formatQuantity(force, "N") + ", " + formatQuantity(deepestOf(patch, force), "m") + " deep in " +
@@ -159,7 +154,7 @@ Written still(const RenderOptions& o, Stage& stage)
                                              : parseQuantity(o.force, Dimension::force, "--force");
     if (!(std::abs(force) <= kMost)) throw Error("--force: expected at most 1e6 N, found \"" + o.force + "\"");
     stage.view.show(&patch, force, stage.look);
-    stage.view.scene().title = titleOf(o);
+    stage.view.scene().title = o.scene.title();
     stage.view.scene().note  = noteOf(stage, patch, force);
     Written written          = write(stage, cameraFor(o, stage, patch), o.out);
     written.force            = force;
@@ -218,7 +213,7 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage)
         const double         force = glm::length(s.force);
         const Patch*         bent  = force > 0 ? &*patch++ : nullptr;
         stage.view.show(bent, force, look, TouchHand{s.hip, s.force});
-        stage.view.scene().title = titleOf(o);
+        stage.view.scene().title = o.scene.title();
         stage.view.scene().note  = formatQuantity(s.time, "s") + ", " + formatQuantity(force, "N");
         written.push_back(write(stage, camera, frameFile(o.out, int(n) + 1)));
         written.back().force   = force;
@@ -232,7 +227,7 @@ void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>
 {
     if (o.json) {
         nlohmann::ordered_json all;
-        all["scene"]     = o.scene;
+        all["scene"]     = o.scene.name;
         all["points"]    = stage.loaded.cloud.size();
         all["size"]      = {stage.size.width, stage.size.height};
         all["drawn_on"]  = stage.renderer.device().name;
@@ -269,7 +264,6 @@ void addRenderCommand(CLI::App& app)
 {
     CLI::App*  command = app.add_subcommand("render", "pictures of a touched object, without a display");
     const auto o       = std::make_shared<RenderOptions>();
-    command->add_option("SCENE", o->scene, "scene file, cloud file or sample:NAME")->required();
     command->add_option("--out", o->out, "PNG file; with --frames a number is added before .png")->required();
     command->add_option("--size", o->size, "of the picture [px]")->capture_default_str();
     command->add_option("--finer", o->finer, "drawn so many times larger, then averaged: smooth edges")
@@ -288,7 +282,7 @@ void addRenderCommand(CLI::App& app)
     command->add_option("--draw-on", o->drawOn, "Vulkan device that draws, as \"palpate devices\" names it")
         ->capture_default_str();
     command->add_flag("--json", o->json, "machine-readable, SI units");
-    addSceneOptions(*command, o->flags);
+    o->scene.addTo(*command);
     command->footer("Examples:\n"
                     "  palpate render sample:ear-lobe --out lobe.png\n"
                     "  palpate render samples/scenes/skin_wart.json --force '1 N' --colour stiffness --out wart.png\n"

@@ -9,28 +9,39 @@
 
 namespace palp {
 
-Scene sceneFrom(const std::string& what, const SceneFlags& flags, PlaceNeeded place)
+void SceneSource::addTo(CLI::App& command)
 {
-    const SceneOverrides overrides{flags, processEnvironment()};
-    if (what.ends_with(".json")) return readScene(what, overrides);
-    if (!what.starts_with("sample:")) {
-        static_cast<void>(openForReading(what)); // a file that is not there is the first thing to say
-        if (place == PlaceNeeded::yes && !flags.contains("place"))
-            throw Error("--at: expected a place X,Y,Z for a cloud from a file, found none; palpate info " + what +
-                        " shows where the cloud is");
-    }
-    return parseScene(nlohmann::json{{"cloud", what}}.dump(), what, std::filesystem::current_path(), overrides);
+    command.add_option("SCENE", name, "scene file, cloud file or sample:NAME")->required();
+    addFlagsTo(command);
 }
 
-void addSceneOptions(CLI::App& command, SceneFlags& flags)
+void SceneSource::addFlagsTo(CLI::App& command)
 {
     for (const SceneKey& key : sceneKeys())
         command
             .add_option_function<std::string>(
                 key.name == "place" ? "--at,--place" : flagOf(key.name),
-                [&flags, name = std::string(key.name)](const std::string& text) { flags[name] = text; },
+                [this, text = std::string(key.name)](const std::string& value) { flags[text] = value; },
                 std::string(key.means) + (key.unit.empty() ? "" : " [" + std::string(key.unit) + "]"))
             ->group("Values of the scene (over PALPATE_<KEY> and the file)");
+}
+
+Scene SceneSource::load(PlaceNeeded place) const
+{
+    const SceneOverrides overrides{flags, processEnvironment()};
+    if (name.ends_with(".json")) return readScene(name, overrides);
+    if (!name.starts_with("sample:") && !flags.contains("place")) {
+        static_cast<void>(openForReading(name)); // a file that is not there is the first thing to say
+        if (place == PlaceNeeded::yes)
+            throw Error("--at: expected a place X,Y,Z for a cloud from a file, found none; palpate info " + name +
+                        " shows where the cloud is");
+    }
+    return parseScene(nlohmann::json{{"cloud", name}}.dump(), name, std::filesystem::current_path(), overrides);
+}
+
+std::string SceneSource::title() const
+{
+    return name.starts_with("sample:") ? name : std::filesystem::path(name).stem().string();
 }
 
 } // namespace palp

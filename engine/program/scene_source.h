@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <map>
 #include <string>
 
@@ -8,17 +9,24 @@
 
 namespace palp {
 
-/// Values of scene keys, as given on a command line.
-using SceneFlags = std::map<std::string, std::string, std::less<>>;
-
 /// Whether a bare cloud file needs a place to be touched at.
 enum class PlaceNeeded { yes, no };
 
-/// A scene file; anything else is a cloud, and the scene is what suits it.
-/// \throws Error as readScene(); for a cloud file without a place, if one is needed
-[[nodiscard]] Scene sceneFrom(const std::string& what, const SceneFlags& flags, PlaceNeeded place);
+/// The options by which programs are given a scene: a scene file, a cloud file or sample:NAME, and a flag for each key.
+struct SceneSource {
+    std::string                                     name;
+    std::map<std::string, std::string, std::less<>> flags; ///< of the scene's keys, as given
 
-/// Adds every key of a scene as an option; `place` is called --at too.
-void addSceneOptions(CLI::App& command, SceneFlags& flags);
+    /// Adds SCENE and the flags to a command; `this` must outlive its parsing.
+    void addTo(CLI::App& command);
+    void addFlagsTo(CLI::App& command); ///< the flags alone
+
+    /// A scene file; anything else is a cloud, and the scene is what suits it.
+    /// \throws Error as readScene() does, and for a cloud file without a place, if one is needed
+    [[nodiscard]] Scene load(PlaceNeeded place = PlaceNeeded::yes) const;
+
+    /// "sample:skin", or the file's name without its ending.
+    [[nodiscard]] std::string title() const;
+};
 
 } // namespace palp

@@ -23,8 +23,8 @@ namespace {
 
 struct ViewOptions {
     HandOptions hand;
-    std::string what = "sample:palm", drawOn = "auto", colour = "deflection", map = "viridis", size;
-    SceneFlags  flags;
+    std::string drawOn = "auto", colour = "deflection", map = "viridis", size;
+    SceneSource scene{"sample:palm", {}};
     std::string command;
     bool        dark = false, json = false, noPanels = false, validate = false;
 };
@@ -103,10 +103,10 @@ std::unique_ptr<SpaceMouse> capFor(const ViewOptions& o, HidSystem& system)
 void view(const ViewOptions& o)
 {
     WorkbenchSettings settings;
-    settings.what   = o.what;
-    settings.values = o.flags;
+    settings.what   = o.scene.name;
+    settings.values = o.scene.flags;
     settings.open   = [](const std::string& what, const SceneValues& values) {
-        return sceneFrom(what, values, PlaceNeeded::no);
+        return SceneSource{what, values}.load(PlaceNeeded::no);
     };
     settings.recorded = [&o](const Stage& stage, const HapticDevice& device) { return infoOf(o, stage, device); };
     HandSource source;
@@ -177,7 +177,8 @@ void addViewCommand(CLI::App& app)
     CLI::App*  command = app.add_subcommand("view", "an object in a window, touched with the mouse");
     const auto o       = std::make_shared<ViewOptions>();
     o->hand.hand       = "mouse";
-    command->add_option("SCENE", o->what, "scene file, cloud file, sample:NAME or the folder of a recorded session")
+    command
+        ->add_option("SCENE", o->scene.name, "scene file, cloud file, sample:NAME or the folder of a recorded session")
         ->capture_default_str();
     command
         ->add_option("--hand", o->hand.hand,
@@ -195,7 +196,7 @@ void addViewCommand(CLI::App& app)
     command->add_flag("--validate", o->validate, "under Vulkan's validation layer; any message is exit code 1");
     command->add_flag("--json", o->json, "machine-readable, SI units");
     addFalconOptions(*command, o->hand.falcon);
-    addSceneOptions(*command, o->flags);
+    o->scene.addFlagsTo(*command);
     command->footer("Hold Space over the object and move: that touches it, the wheel is depth. F1 shows all keys.\n"
                     "Examples:\n"
                     "  palpate view\n"

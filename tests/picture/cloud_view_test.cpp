@@ -272,5 +272,16 @@ TEST(CloudView, RefusesSettingsThatMakeNoPicture)
     EXPECT_THROW((void)cloudViewSvg(points, {}, settings), ContractViolation);
 }
 
+TEST(CloudView, TheScaleBarHasALengthWhateverTheSize)
+{
+    for (const double halfWidth : {1e-3, 9e-3, 10.5e-3, 12e-3, 13.9e-3, 20e-3, 60e-3}) { // 12e-3: 4.27 mm at most
+        CloudViewSettings settings;
+        settings.window = CloudWindow{{0, 0, 0}, halfWidth};
+        const auto svg  = cloudViewSvg(sphere(100), {}, settings);
+        for (const char* unit : {"mm", "\u00b5m", "m"})
+            EXPECT_FALSE(hasText(svg, std::string("0 ") + unit)) << halfWidth;
+    }
+}
+
 } // namespace
 } // namespace palp

@@ -31,7 +31,7 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert paint render devices doctor calibrate 'bench solve'; do
+for command in touch solve info convert paint render view perceive paper devices doctor calibrate 'bench solve'; do
     # shellcheck disable=SC2086  # a command, or one within another
     good "help of $command" $command --help; holds 'Examples:'
     mv out.txt help.txt
@@ -610,6 +610,38 @@ if [ -x "$experiment" ]; then
     full 'help of the experiment' --help
     palpate=$keep
 fi
+# --- what would be noticed
+good 'perceive' perceive soft.json --places 5 --reach 8mm --out path.svg --picture object.svg --picture-places 20
+holds 'a prediction, not a study'
+for file in path.svg object.svg; do [ -s $file ] && passed=$((passed + 1)) || complain "perceive did not write $file"; done
+good 'perceive as JSON' perceive soft.json --places 5 --reach 8mm --along 0,1,0 --json
+for key in '"prediction": true' '"weber_fraction": 0.07' '"floor_is_low": true' '"right_answers"' '"steps_in_passing"' '"felt_stiffness"' '"direction"'; do holds "$key"; done
+bad 'a path that leaves the surface' 'along the surface' perceive soft.json --along 0,0,1
+bad 'a path without a direction' 'expected a vector' perceive soft.json --along 0,0,0
+bad 'a reach of nothing' '--reach' perceive soft.json --reach 0
+bad 'a reach of infinity' '--reach' perceive soft.json --reach inf
+bad 'a picture of another kind' '.svg' perceive soft.json --out path.png
+bad 'an object of another kind' '.svg' perceive soft.json --picture object.png
+bad 'a scene that is not there' 'nowhere.json' perceive nowhere.json
+
+# --- the paper, computed again: all of it at once, and again what has clocks in it
+good 'the paper' paper --quick --device host --out paper
+for part in a b c d e f g h; do holds "$part  "; done
+for file in index.html numbers.json timings.json; do [ -s paper/$file ] && passed=$((passed + 1)) || complain "paper did not write $file"; done
+for word in 'does not hold' 'A quick run' '<svg' 'commit'; do grep -qF "$word" paper/index.html && passed=$((passed + 1)) || complain "the page lacks '$word'"; done
+good 'parts of the paper' paper --quick --device host --only a,c,d --out one
+good 'the same parts again' paper --quick --device host --only a,c,d --out two --json
+holds '"timings"'
+cmp -s one/numbers.json two/numbers.json && passed=$((passed + 1)) || complain 'the same numbers have other bytes'
+cmp -s one/timings.json two/timings.json && complain 'two clocks agree to the last digit' || passed=$((passed + 1))
+bad 'a part that is not there' '--only' paper --out no --only a,z
+bad 'parts without a comma' '--only' paper --out no --only ab
+bad 'a bunny without its part' '--bunny' paper --out no --only a --bunny skin.ply
+bad 'a bunny that is not there' 'nowhere.ply' paper --out no --bunny nowhere.ply
+bad 'an empty folder name' '--out' paper --out ''
+[ ! -e no ] && passed=$((passed + 1)) || complain 'a refused report left a folder'
+: >taken
+bad 'a folder that is a file' 'taken' paper --quick --device host --only g --out taken
 
 # --- a folder without touch.json holds no whole set
 mkdir -p broken/profile.svg && : >broken/touch.json

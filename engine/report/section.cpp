@@ -1,0 +1,43 @@
+#include "engine/report/section.h"
+
+#include <cstdio>
+
+#include "engine/core/contract.h"
+
+namespace palp::report {
+
+const char* name(Verdict verdict) noexcept
+{
+    switch (verdict) {
+    case Verdict::holds:
+        return "holds";
+    case Verdict::inPart:
+        return "holds in part";
+    case Verdict::fails:
+        return "does not hold";
+    }
+    return "unknown";
+}
+
+const std::vector<double>& Section::number(std::string_view wanted) const
+{
+    for (const Quantity& quantity : numbers)
+        if (quantity.name == wanted) return quantity.values;
+    throw Error("section " + std::string(1, letter) + " has no number \"" + std::string(wanted) + "\"");
+}
+
+std::string percent(double share)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g %%", 100 * share);
+    return text;
+}
+
+std::string fixed(double value, int decimals)
+{
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f", decimals, value);
+    return text;
+}
+
+} // namespace palp::report
