@@ -142,11 +142,12 @@ private:
     bool              panelsTakePointer_ = false, panelsTakeKeys_ = false, leftBefore_ = false; ///< as of the last one
     Clock::time_point panelsAt_{};
     WindowInput       input_;
-    std::atomic<bool> stop_            = false; ///< the session ends, and the next one begins
-    bool              closing_         = false;
-    bool              failed_          = false; ///< no session can run until something changes
-    bool              handOver_        = false; ///< the script is over
-    bool              painting_        = false; ///< a stroke has begun
+    std::atomic<bool> stop_     = false; ///< the session ends, and the next one begins
+    bool              closing_  = false;
+    bool              failed_   = false; ///< no session can run until something changes
+    bool              handOver_ = false; ///< the script is over
+    bool              painting_ = false; ///< a stroke has begun
+    glm::dvec3        lastDab_{};        ///< of it [m]
     bool              recordingWanted_ = false;
     SceneValues       wanted_;      ///< for the next session
     std::string       toOpen_;      ///< the same

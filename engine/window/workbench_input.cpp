@@ -175,15 +175,20 @@ void Workbench::paintWith(const WindowInput& input)
     }
     const auto hit = hitAt(input);
     if (!hit || (painting_ && input.moved == glm::dvec2(0))) return;
+    std::vector<glm::dvec3> path{hit->point};
+    if (painting_) path.insert(path.begin(), lastDab_);
     stage_->paint([&](StiffnessPainting& painting) {
         if (!painting_) painting.beginStroke();
-        const Brush brush{hit->point, state_.brush.radius, state_.brush.strength};
-        if (state_.brush.smooths)
-            painting.smooth(brush);
-        else
-            painting.paint(brush, state_.brush.value);
+        for (const glm::dvec3& place : dabsAlong(path, state_.brush.radius, stage_->painted(), stage_->index())) {
+            const Brush brush{place, state_.brush.radius, state_.brush.strength};
+            if (state_.brush.smooths)
+                painting.smooth(brush);
+            else
+                painting.paint(brush, state_.brush.value);
+        }
     });
     painting_ = true;
+    lastDab_  = hit->point;
     if (recording_) {
         endRecordingSoon();
         restart();
