@@ -60,7 +60,11 @@ HapticState MouseDevice::exchange(const GovernedForce& force, double now) noexce
     const Target& target = *target_.held(); // the constructor has left one
 
     const double passed = state_.sequence == 0 ? 0 : now - state_.time;
-    if (!std::isfinite(passed) || passed < 0) return state_; // a clock that makes no sense: nothing moves
+    if (!std::isfinite(passed)) return state_; // a clock that makes no sense: nothing moves
+    if (passed < 0) {                          // another session's clock: it goes on from there
+        state_.time = now;
+        return state_;
+    }
     // With e = x - target and c = v + e/s: e(t) = (e + c t) exp(-t/s), v(t) = (v - c t/s) exp(-t/s).
     const double     s = settings_.settle, decay = std::exp(-passed / s);
     const glm::dvec3 away = state_.position - target.point, rush = state_.velocity + away / s;

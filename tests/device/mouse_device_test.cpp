@@ -93,6 +93,19 @@ TEST(MouseDevice, NonsenseDoesNotMoveIt)
     EXPECT_THROW(MouseDevice({.rest = {nan, 0, 0}}), Error);
 }
 
+TEST(MouseDevice, AnotherSessionsClockMovesItFromWhereItIs)
+{
+    MouseDevice mouse;
+    mouse.open();
+    mouse.target({0.01, 0, 0});
+    const glm::dvec3 before = after(mouse, 1, 1000).position;
+    mouse.target({0.02, 0, 0});
+    EXPECT_EQ(mouse.exchange({}, 0).position, before) << "an hour earlier: no jump";
+    HapticState state;
+    for (int n = 1; n <= 200; ++n) state = mouse.exchange({}, n * 1e-3);
+    EXPECT_NEAR(state.position.x, 0.02, 1e-5) << "and it goes on: exp(-10) of the way is left";
+}
+
 TEST(MouseDevice, TheWindowsThreadDisturbsNoTick)
 {
     MouseDevice mouse;
