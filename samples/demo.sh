@@ -1,6 +1,6 @@
 #!/bin/sh
-# Installs what is missing (asks first unless root), builds, touches a wart, and computes the paper again, with a page of
-# pictures.
+# Installs what is missing (asks first unless root), builds, touches objects and draws them, and computes the paper
+# again: a page of pictures, and one of claims.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 . engine/prepare.sh
@@ -34,9 +34,33 @@ if [ -n "$dry_run" ]; then say "would write $out/index.html"; exit 0; fi
 say '== a wart under the skin'
 "$build/bin/palpate" touch sample:skin --out "$out/skin" || exit 1
 say
-say '== the paper, computed again: one to two minutes on two cores'
-"$build/bin/palpate" paper --out "$out" || exit 1
+say '== objects that are touched'
+draw() { # name of the picture, what stands below it, and what palpate render takes
+    name=$1 caption=$2
+    shift 2
+    "$build/bin/palpate" render "$@" --size 1000x700 --out "$out/$name.png" || exit 1
+    figures="$figures<figure><img src=\"$name.png\" alt=\"$caption\"><figcaption>$caption</figcaption></figure>
+"
+}
+figures=
+draw skin 'Skin with a wart of ten times its stiffness, pressed beside it' sample:skin
+draw palm 'A palm with four stiff tendons; colours are the stiffness' sample:palm --colour stiffness
+draw lobe 'An ear lobe, clamped around the patch as the paper has it' sample:ear-lobe --dark
+draw ellipsoid 'The ellipsoid of 40 000 points, displacements three times as large' sample:ellipsoid --exaggerate 3 --colour plain
 say
-say "claims, pictures and tables: $out/index.html; the wart: $out/skin"
-say "next: $build/bin/palpate touch sample:palm --at 14mm,5mm,0 --out touch"
+say '== the paper, computed again: one to two minutes on two cores'
+"$build/bin/palpate" paper --out "$out/paper" || exit 1
+cat >"$out/index.html" <<HTML
+<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><title>Palpate: what the demo made</title>
+<style>body{font:16px/1.5 sans-serif;margin:2em auto;max-width:64em;padding:0 1em;color:#1a1a1a}figure{display:inline-block;width:calc(50% - 1em);margin:.5em 0}
+img{width:100%}figcaption{font-size:.9em}@media(max-width:50em){figure{width:100%}}</style></head><body>
+<h1>What the demo made</h1>
+<p><a href="paper/index.html">The paper's claims, computed again</a>, each beside our figure. The <a href="skin/">wart in numbers and charts</a>. To touch these yourself: <code>$build/bin/palpate view</code>, hold Space and move.</p>
+$figures</body></html>
+HTML
+say
+say "pictures: $out/index.html; the paper's claims: $out/paper/index.html; the wart: $out/skin"
+say "next: $build/bin/palpate view   (a window; hold Space over the object and move)"
+say "      $build/bin/palpate touch sample:palm --at 14mm,5mm,0 --out touch"
 say "      your own cloud: $build/bin/palpate info FILE --unit mm"
