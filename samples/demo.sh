@@ -35,6 +35,7 @@ say '== a wart under the skin'
 "$build/bin/palpate" touch sample:skin --out "$out/skin" || exit 1
 say
 say '== objects that are touched'
+mkdir -p "$out" || exit 1
 draw() { # name of the picture, what stands below it, and what palpate render takes
     name=$1 caption=$2
     shift 2
