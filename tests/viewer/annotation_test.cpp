@@ -32,6 +32,38 @@ TEST(Annotation, TheColourBarHasTheColoursOfTheSurface)
     EXPECT_EQ(count(image, surfaceColour(0.5, ColourMap::viridis)), 0u);
 }
 
+TEST(Annotation, LaidOverAPictureItIsWhatItIsInThePicture)
+{
+    const double value = 1;
+    ViewScene    scene;
+    scene.values  = {&value, 1};
+    scene.colours = {ColourMap::viridis, Scale::linear, {0, 1e-3}, "deflection", "m"};
+    scene.proxy   = glm::dvec3(0);
+    scene.title   = "a title";
+    Image       image(330, 250, {200, 120, 40});
+    const Image below = image;
+    annotate(image, scene, {});
+    const Overlay overlay = annotations(scene, {}, 330, 250);
+
+    int                               most = 0, outside = 0; // difference, of 255; pixels in no tile
+    const std::vector<std::uint32_t>& tiles = overlay.tiles;
+    for (int y = 0; y < 250; ++y)
+        for (int x = 0; x < 330; ++x) {
+            const std::uint32_t pixel = overlay.pixels[std::size_t(y * 330 + x)];
+            const auto          laid  = [&](int shift, int under) {
+                return int(pixel >> shift & 255U) + (under * (255 - int(pixel >> 24)) + 127) / 255;
+            };
+            const Rgb8 under = below.at(x, y), is = image.at(x, y);
+            most = std::max({most, std::abs(laid(0, under.red) - is.red), std::abs(laid(8, under.green) - is.green),
+                             std::abs(laid(16, under.blue) - is.blue)});
+            const auto tile = std::uint32_t(x / 32) | std::uint32_t(y / 32) << 16;
+            outside += pixel != 0 && std::ranges::find(tiles, tile) == tiles.end();
+        }
+    EXPECT_LE(most, 3) << "three layers at most, each rounded once here and once there";
+    EXPECT_EQ(outside, 0);
+    EXPECT_LT(tiles.size(), 11U * 8U) << "the middle is left out";
+}
+
 TEST(Annotation, TheKeyNamesOnlyWhatIsThere)
 {
     ViewScene scene;

@@ -149,7 +149,7 @@ protected:
     {
         PanelFrame      frame(shown.scale);
         SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
-        const Image image = pictureOf(shown, now, renderer, frame);
+        const Image     image = pictureOf(shown, now, renderer, frame);
         PanelsGoldenTest::expectGolden(name, leftOf(image, shown.kept), renderer);
     }
 
@@ -187,7 +187,7 @@ TEST_F(PanelsGolden, TheOtherSectionsOpenAtAClick)
     now.patch              = &mixed;
     PanelFrame      frame;
     SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
-    const auto at = [&](double y) { click({60, y}, shown, now, frame); };
+    const auto      at = [&](double y) { click({60, y}, shown, now, frame); };
 
     static_cast<void>(pictureOf(shown, now, renderer, frame));
     at(kView);
