@@ -23,7 +23,7 @@ namespace {
 
 struct ViewOptions {
     HandOptions hand;
-    std::string drawOn = "auto", colour = "deflection", map = "viridis", size;
+    std::string drawOn = "auto", colour = "stiffness", map = "viridis", size;
     SceneSource scene{"sample:palm", {}};
     std::string command;
     bool        dark = false, json = false, noPanels = false, validate = false;
@@ -112,6 +112,7 @@ void view(const ViewOptions& o)
     HandSource source;
     if (o.hand.hand != "mouse")
         settings.hand = [&](const Stage& stage) -> WorkbenchHand {
+            source = {}; // a device is opened once at a time
             source = handFor(o.hand, stage.scene(), stage.loaded().cloud, stage.index());
             waitForHoming(*source.device, catchInterrupts());
             return {source.device.get(), source.frame, source.isHeld() ? 1e9 : source.seconds};
@@ -154,6 +155,7 @@ void view(const ViewOptions& o)
         },
         shown);
     rememberSize(last);
+    if (!report.said.empty()) std::cerr << "palpate: " << report.said << "\n";
     tell(o, report, renderer);
     const auto messages = renderer.takeMessages();
     for (const std::string& message : messages) std::cerr << "palpate: validation: " << message << "\n";

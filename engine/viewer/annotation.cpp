@@ -134,6 +134,19 @@ std::vector<KeyEntry> keyOf(const ViewScene& scene)
                            const double side = std::max(std::abs(p.x), std::abs(p.y));
                            return side > 0.62 && side < 0.85;
                        }});
+    const auto hasDots = [&](Rgb8 colour) {
+        return std::ranges::any_of(scene.dots, [&](const ViewDot& dot) { return dot.colour == colour; });
+    };
+    const auto dots = [](glm::dvec2 p) {
+        return std::min(glm::length(p - glm::dvec2(-0.45, 0.3)), glm::length(p - glm::dvec2(0.4, -0.3))) < 0.35;
+    };
+    if (hasDots(inkOn(scene.ground))) key.push_back({"surface at rest", inkOn(scene.ground), dots});
+    if (hasDots(kProjectedColour)) key.push_back({"projected points", kProjectedColour, dots});
+    if (!scene.sphere.empty())
+        key.push_back({"fitted sphere", kSphereColour, [](glm::dvec2 p) {
+                           const double radius = glm::length(p);
+                           return radius < 0.9 && (radius > 0.7 || std::abs(p.x) < 0.1 || std::abs(p.y) < 0.1);
+                       }});
     return key;
 }
 

@@ -130,7 +130,9 @@ void TouchView::addHand(const Patch& patch, double force, const TouchLook& look,
     const glm::dvec3 proxy  = point + look.exaggeration * dent * inward;
     if (look.overlays.markers) {
         scene_.proxy = proxy;
-        scene_.hip   = hand ? hand->hip : point + look.exaggeration * (felt > 0 ? force / felt : dent) * inward;
+        // What is drawn deeper than it is takes the hand along.
+        const glm::dvec3 deeper = (look.exaggeration - 1) * dent * inward;
+        scene_.hip = hand ? hand->hip + deeper : point + look.exaggeration * (felt > 0 ? force / felt : dent) * inward;
     }
     if (!look.overlays.arrows) return;
     const double     strongest = look.strongest > 0 ? look.strongest : std::abs(force);

@@ -19,16 +19,6 @@ using Seconds = std::chrono::duration<double>;
 constexpr double kFramePeriod = 1.0 / 60; ///< no display shows more [s]
 constexpr double kLong        = 1e9;      ///< of a session that ends when somebody says so [s]
 
-/// 1, 2 or 5 times a power of ten, at least this: scales that change seldom.
-double roundedUp(double value)
-{
-    if (!(value > 0)) return 0;
-    const double decade = std::pow(10.0, std::floor(std::log10(value)));
-    for (const double digit : {1.0, 2.0, 5.0})
-        if (value <= digit * decade * (1 + 1e-9)) return digit * decade;
-    return 10 * decade;
-}
-
 bool inContact(const SessionView* view)
 {
     return view && glm::length(view->sample.normal) > 0;
@@ -51,15 +41,24 @@ void Workbench::openWhat(const std::string& what)
     stage_ = std::move(stage);
     what_  = what;
     replay_.reset();
+    replayed_.reset();
+    useObject();
+}
+
+/// What suits the object: the hand over it, the brush, the scales of colours and arrows, which stay as they are while
+/// it is touched, so that deeper and stronger always looks so.
+void Workbench::useObject()
+{
     const Scene& scene = stage_->scene();
     pointer_.emplace(Hit{stage_->place().point, stage_->place().outward}, scene.startHeight,
                      stage_->painted().bounds());
     state_.pressDepth   = 0.4 * scene.patch.material.thickness;
     state_.brush.radius = scene.patch.footprintRadius;
     state_.brush.value  = *std::ranges::max_element(stage_->painted().stiffness());
-    deepest_            = roundedUp(scene.patch.material.thickness / 5);
-    strongest_          = 1;
+    deepest_            = 0.5 * scene.patch.material.thickness; // as far as theory goes
+    strongest_          = 0.5 * scene.maxForce;
     failed_             = false;
+    paintSaved_         = true;
 }
 
 WorkbenchReport Workbench::run(const Poll& poll, PanelFrame* panels)
@@ -76,6 +75,10 @@ WorkbenchReport Workbench::run(const Poll& poll, PanelFrame* panels)
             session();
     }
     endRecording();
+    if (stage_->painting().changed() && !paintSaved_) { // nothing is lost
+        savePaint();
+        report_.said = message_;
+    }
     return std::move(report_);
 }
 
@@ -92,8 +95,8 @@ void Workbench::session()
             hand = settings_.hand(*stage_);
         hand_ = hand;
         startRecording();
-        const SessionParts  parts{stage_->scene(),  stage_->loaded().cloud, stage_->index(),
-                                 stage_->solver(), *hand.device,           hand.frame};
+        const SessionParts  parts{stage_->scene(), stage_->loaded().cloud, stage_->index(),
+                                 solver(),        *hand.device,           hand.frame};
         RealSessionSettings real;
         real.seconds    = hand.seconds;
         real.viewPeriod = 1e-4; // as soon as a picture is done the next begins
@@ -107,6 +110,7 @@ void Workbench::session()
         const SessionSummary summary = runReal(parts, real, warning);
         ended(summary);
     } catch (const Error& error) {
+        endRecording();
         complain(error.what());
         failed_ = true;
     }
@@ -115,7 +119,7 @@ void Workbench::session()
 /// A session has come to its end.
 void Workbench::ended(const SessionSummary& summary)
 {
-    if (recording_ && !recordingWanted_) endRecording();
+    endRecording(); // one session, one recording
     if (stop_ || closing_) return;
     if (replay_) {
         replay_.reset();
@@ -134,6 +138,7 @@ void Workbench::frame(const SessionView* view)
     input_ = poll_(patience());
     beginPanels();
     handle(input_);
+    unsolved_.take();
     const auto now = Clock::now();
     if (settings_.seconds > 0 && Seconds(now - started_).count() > settings_.seconds) closing_ = true;
     if (settings_.stop && *settings_.stop) closing_ = true;
@@ -187,7 +192,7 @@ void Workbench::rest()
 double Workbench::patience() const
 {
     constexpr double kIdle = 0.1; // between looks at a window in which nothing happens [s]
-    if (stillFine_) return kIdle;
+    if (stillFine_ || input_.size.x < 1 || input_.size.y < 1) return kIdle;
     return std::max(0.0, kFramePeriod - Seconds(Clock::now() - lastBegin_).count());
 }
 
@@ -210,7 +215,7 @@ void Workbench::drawFrame(const SessionView* view)
     }
 #endif
     writeTexts(view);
-    const bool shown = renderer_.show(stage_->view().scene(), state_.camera, size, state_.texts ? &texts_ : nullptr);
+    const bool shown = renderer_.show(stage_->view().scene(), state_.camera, size, textsFor(size));
     const auto end   = Clock::now();
     drawnSize_       = input_.size;
     drawTime_        = Seconds(end - begin).count();
@@ -237,16 +242,12 @@ void Workbench::showTouch(const SessionView* view)
     TouchLook look  = state_.look;
     double    force = 0;
     if (view) {
-        force                = glm::length(view->sample.force);
-        const Patch* patch   = view->patch;
-        const double deepest = patch ? force * *std::ranges::max_element(patch->response.values()) : 0;
-        deepest_             = std::max(deepest_, roundedUp(deepest));
-        strongest_           = std::max(strongest_, roundedUp(force));
+        force = glm::length(view->sample.force);
     }
     look.deepest   = deepest_;
     look.strongest = strongest_;
     if (view)
-        stage_->view().show(view->patch, force, look,
+        stage_->view().show(inContact(view) || force > 0 ? view->patch : nullptr, force, look,
                             TouchHand{view->sample.hip, view->sample.force, view->sample.proxy});
     else
         stage_->view().show(nullptr, 0, look);
@@ -281,12 +282,13 @@ void Workbench::writeTexts(const SessionView* view)
                              : force > 0        ? formatQuantity(force, "N")
                                                 : "hold Space and move: touch.  F1: keys";
     }
-    std::string says = scene.title + "|" + scene.note + "|" + scene.colours.quantity + "|" + name(state_.look.map) +
-                       "|" + std::to_string(scene.colours.range.low) + "|" +
-                       std::to_string(scene.colours.range.high * 1e6) + "|" +
-                       std::to_string(state_.camera.halfHeight()) + "|" + std::to_string(input_.size.x) + "x" +
-                       std::to_string(input_.size.y) + (state_.look.ground == Ground::dark ? "d" : "l") +
-                       (scene.proxy ? "p" : "") + (scene.force ? "f" : "") + (scene.outline.empty() ? "" : "o");
+    std::string says =
+        scene.title + "|" + scene.note + "|" + scene.colours.quantity + "|" + name(state_.look.map) + "|" +
+        std::to_string(scene.colours.range.low) + "|" + std::to_string(scene.colours.range.high * 1e6) + "|" +
+        std::to_string(state_.camera.halfHeight()) + "|" + std::to_string(input_.size.x) + "x" +
+        std::to_string(input_.size.y) + (state_.look.ground == Ground::dark ? "d" : "l") + (scene.proxy ? "p" : "") +
+        (scene.force ? "f" : "") + (scene.outline.empty() ? "" : "o") + (scene.sphere.empty() ? "" : "s") +
+        std::to_string(int(state_.look.overlays.ghost) + 2 * int(state_.look.overlays.projected));
     const auto now  = Clock::now();
     const bool fits = texts_.width == input_.size.x && texts_.height == input_.size.y;
     if (fits && (says == textsOf_ || Seconds(now - textsAt_).count() < kSeldom)) return;
@@ -303,7 +305,7 @@ PanelContent Workbench::content(const SessionView* view) const
         now.force      = glm::length(view->sample.force);
         now.loopPeriod = view->loopPeriod;
         now.solveTime  = view->solveTime;
-        now.touching   = true;
+        now.touching   = inContact(view);
         now.hand       = hand_.device->info().model;
     }
     now.frameTime       = frameTime_;
@@ -317,7 +319,9 @@ PanelContent Workbench::content(const SessionView* view) const
     now.canUndo         = stage_->painting().canUndo();
     now.canRedo         = stage_->painting().canRedo();
     now.faults          = faults_;
-    now.message         = message_;
+    if (const std::string* const why = unsolved_.held(); view && why && !why->empty())
+        now.faults.push_back("the plate cannot be solved here: " + *why);
+    now.message = message_;
     return now;
 }
 
@@ -353,30 +357,82 @@ void Workbench::change(const SceneValues& values)
 /// Between two sessions: what the user has changed.
 void Workbench::takeChanges()
 {
-    if (!toOpen_.empty()) {
+    if (!toOpen_.empty() && mayDiscard()) {
+        const SceneValues before = std::exchange(values_, {}); // they were for another object
         try {
-            openWhat(std::exchange(toOpen_, {}));
+            openWhat(toOpen_);
             resetCamera();
             faults_.clear();
         } catch (const Error& error) {
+            values_ = before;
             complain(error.what());
         }
     }
+    toOpen_.clear();
     if (wanted_.empty()) return;
     SceneValues values = values_;
     for (const auto& [key, value] : std::exchange(wanted_, {})) values[key] = value;
     try {
-        endRecording(); // it is of the scene before
-        const Scene scene = settings_.open(what_, values);
-        if (sameObject(scene, stage_->scene()))
+        const Scene scene = sceneWith(values);
+        if (sameObject(scene, stage_->scene())) {
             stage_->change(scene);
-        else
+        } else if (mayDiscard()) {
             stage_ = std::make_unique<Stage>(scene);
+            useObject();
+        } else {
+            return;
+        }
+        if (replay_) say("the replay has ended: the scene is another one");
+        replay_.reset();
         values_ = std::move(values);
         faults_.clear();
     } catch (const Error& error) {
         complain(error.what());
     }
+}
+
+/// The scene that is shown, with other values.
+Scene Workbench::sceneWith(const SceneValues& values) const
+{
+    if (!replayed_) return settings_.open(what_, values);
+    Scene scene = parseScene(replayed_->scene, what_, std::filesystem::current_path(), {values, {}});
+    if (!values.contains("device")) scene.device = stage_->scene().device;
+    return scene;
+}
+
+/// Whether what is painted may go: it is saved, or the user has asked twice.
+bool Workbench::mayDiscard()
+{
+    if (!stage_->painting().changed() || paintSaved_ || std::exchange(warned_, true)) {
+        warned_ = false;
+        return true;
+    }
+    complain("what is painted is not saved: Ctrl+S saves it, asking for the same again discards it");
+    return false;
+}
+
+/// The stage's, with an ear for what it cannot solve.
+PatchSolver Workbench::solver()
+{
+    return [this, solve = stage_->solver()](const Touch& touch, double period) {
+        const auto note = [this](const std::string& why) {
+            unsolved_.draft() = why;
+            unsolved_.publish();
+        };
+        try {
+            DeformationAnswer answer = solve(touch, period);
+            note(answer.news ? "" : answer.why);
+            return answer;
+        } catch (const std::exception& error) {
+            note(error.what());
+            throw;
+        }
+    };
+}
+
+const Overlay* Workbench::textsFor(const PictureSize& size) const
+{
+    return state_.texts && texts_.width == size.width && texts_.height == size.height ? &texts_ : nullptr;
 }
 
 void Workbench::complain(const std::string& sentence)

@@ -58,6 +58,7 @@ struct WorkbenchSettings {
 struct WorkbenchReport {
     std::uint64_t       frames = 0, touchingFrames = 0; ///< [1]
     std::vector<double> frameTimes; ///< of the frames while something was touched: from one to the next [s]
+    std::string         said;       ///< what the user must still know; may be empty
     std::vector<double> drawTimes;  ///< of the same: making the picture [s]
 };
 
@@ -79,26 +80,31 @@ private:
     using Clock = std::chrono::steady_clock;
 
     // workbench.cpp
-    void                       openWhat(const std::string& what);
-    void                       session();
-    void                       ended(const SessionSummary& summary);
-    void                       frame(const SessionView* view);
-    void                       beginPanels();
-    void                       rest();
-    void                       drawFrame(const SessionView* view);
-    void                       showTouch(const SessionView* view);
-    void                       addBrush();
-    [[nodiscard]] double       patience() const;
-    [[nodiscard]] PanelContent content(const SessionView* view) const;
-    void                       writeTexts(const SessionView* view);
-    void                       count(bool touching, double period);
-    void                       perform(const PanelWishes& wishes);
-    void                       change(const SceneValues& values);
-    void                       takeChanges();
-    void                       goOn();
-    void                       restart() { stop_ = true; }
-    void                       say(const std::string& message) { message_ = message; }
-    void                       complain(const std::string& sentence);
+    void                         openWhat(const std::string& what);
+    void                         session();
+    void                         ended(const SessionSummary& summary);
+    void                         frame(const SessionView* view);
+    void                         beginPanels();
+    void                         rest();
+    void                         drawFrame(const SessionView* view);
+    void                         showTouch(const SessionView* view);
+    void                         addBrush();
+    [[nodiscard]] double         patience() const;
+    [[nodiscard]] PanelContent   content(const SessionView* view) const;
+    void                         writeTexts(const SessionView* view);
+    void                         count(bool touching, double period);
+    void                         perform(const PanelWishes& wishes);
+    void                         change(const SceneValues& values);
+    void                         takeChanges();
+    void                         useObject();
+    [[nodiscard]] Scene          sceneWith(const SceneValues& values) const;
+    [[nodiscard]] bool           mayDiscard();
+    [[nodiscard]] PatchSolver    solver();
+    [[nodiscard]] const Overlay* textsFor(const PictureSize& size) const;
+    void                         goOn();
+    void                         restart() { stop_ = true; }
+    void                         say(const std::string& message) { message_ = message; }
+    void                         complain(const std::string& sentence);
 
     // workbench_input.cpp
     void                             handle(const WindowInput& input);
@@ -110,6 +116,7 @@ private:
     void                             redo();
     void                             moveByCap();
     void                             showKeys();
+    void                             letGo();
     void                             open(const std::filesystem::path& path);
     void                             frameAll();
     void                             resetCamera();
@@ -120,7 +127,6 @@ private:
     void screenshot(bool withPanels);
     void toggleRecording();
     void startRecording();
-    void endRecordingSoon() { recordingWanted_ = false; } ///< when the session that is running has ended
     void endRecording();
     void startReplay(const std::filesystem::path& folder);
     void savePaint();
@@ -149,11 +155,15 @@ private:
     bool              painting_ = false; ///< a stroke has begun
     glm::dvec3        lastDab_{};        ///< of it [m]
     bool              recordingWanted_ = false;
-    SceneValues       wanted_;      ///< for the next session
-    std::string       toOpen_;      ///< the same
-    WorkbenchHand     hand_;        ///< of the session that runs, or ran
-    glm::ivec2        drawnSize_{}; ///< [px]
-    double            capTime_ = 0; ///< when the SpaceMouse was asked last [s]
+    bool              letGo_           = false;    ///< until Space is pressed anew
+    bool      paintSaved_ = true, warned_ = false; ///< the last stroke is on disk; the user knows that it is not
+    ViewPaint paintBefore_ = ViewPaint::stiffness; ///< that the brush was taken
+    Latest<std::string> unsolved_;                 ///< why the last patch was not; empty: it was
+    SceneValues         wanted_;                   ///< for the next session
+    std::string         toOpen_;                   ///< the same
+    WorkbenchHand       hand_;                     ///< of the session that runs, or ran
+    glm::ivec2          drawnSize_{};              ///< [px]
+    double              capTime_ = 0;              ///< when the SpaceMouse was asked last [s]
 
     SampleRing<SessionSample>  ring_{4096}; ///< from the servo: four seconds
     TouchHistory               history_;

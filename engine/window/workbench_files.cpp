@@ -32,7 +32,7 @@ void Workbench::screenshot(bool withPanels)
         const PictureSize size{input_.size.x, input_.size.y, withPanels ? 1 : 2, Detail::fine};
         ViewScene&        scene = stage_->view().scene();
         if (withPanels) {
-            const Image image = renderer_.draw(scene, state_.camera, size, state_.texts ? &texts_ : nullptr);
+            const Image image = renderer_.draw(scene, state_.camera, size, textsFor(size));
             writeFileWhole(file, [&](std::ostream& stream) { stream << encodePng(image); });
         } else {
             Image image = renderer_.draw(scene, state_.camera, size);
@@ -50,10 +50,9 @@ void Workbench::screenshot(bool withPanels)
 /// The session begins anew with a recording, or goes on without one.
 void Workbench::toggleRecording()
 {
-    if (recording_) {
-        endRecordingSoon();
+    if (recording_) { // ends with its session
         say("recorded " + recordFolder_);
-    } else if (!settings_.recorded || replay_ || stage_->painting().changed()) {
+    } else if (!settings_.recorded || replay_ || failed_ || stage_->painting().changed()) {
         return say(stage_->painting().changed() ? "save the paint first and open it: recordings are of files"
                                                 : "nothing can be recorded now");
     } else {
@@ -64,14 +63,13 @@ void Workbench::toggleRecording()
 
 void Workbench::startRecording()
 {
-    if (!recordingWanted_ || recording_) return;
+    if (!std::exchange(recordingWanted_, false)) return;
     try {
         recordFolder_ = freeName("session", "").string();
         recording_    = std::make_unique<Recording>(recordFolder_, settings_.recorded(*stage_, *hand_.device),
                                                  [](const std::string&) {});
         say("recording " + recordFolder_);
     } catch (const Error& error) {
-        recordingWanted_ = false;
         complain(error.what());
     }
 }
@@ -79,7 +77,6 @@ void Workbench::startRecording()
 /// \pre no session runs
 void Workbench::endRecording()
 {
-    recordingWanted_ = false;
     if (!recording_) return;
     const RecordingReport report = recording_->finish();
     recording_.reset();
@@ -103,8 +100,7 @@ void Workbench::startReplay(const std::filesystem::path& folder)
         stage_->change(scene);
     endRecording();
     what_ = folder.string();
-    pointer_.emplace(Hit{stage_->place().point, stage_->place().outward}, scene.startHeight,
-                     stage_->painted().bounds());
+    useObject();
     replayed_ = std::move(session);
     replay_   = std::make_unique<ReplayDevice>(replayed_->samples, replayed_->hand);
     if (!replayed_->cloud.empty() && replayed_->cloud != fingerprint(stage_->loaded().cloud))
@@ -128,6 +124,7 @@ void Workbench::savePaint()
         } else {
             writeCloud(target, stage_->painted(), {}, {});
         }
+        paintSaved_ = true;
         say("saved " + target.string() + ", property " + property);
     } catch (const Error& error) {
         complain(error.what());

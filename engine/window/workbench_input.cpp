@@ -83,6 +83,8 @@ void Workbench::handleKey(const KeyPress& press)
         return screenshot(press.shift);
     case 'B':
         state_.tool = next(state_.tool, 2);
+        if (state_.tool == Tool::paint) paintBefore_ = state_.look.paint;
+        state_.look.paint = state_.tool == Tool::paint ? ViewPaint::stiffness : paintBefore_; // what is painted is seen
         return say(state_.tool == Tool::paint ? "brush: left button paints, [ and ] size, Ctrl+Z takes back"
                                               : "hold Space and move: touch");
     case '[':
@@ -100,12 +102,22 @@ void Workbench::handleKey(const KeyPress& press)
     case kF6Key:
         return lastRecording_.empty() ? say("nothing has been recorded yet: F5 records") : open(lastRecording_);
     case kEscapeKey:
-        if (pointer_) pointer_->release();
-        state_.keys = false;
-        return say("let go; close the window to quit");
+        return letGo();
     default:
         return;
     }
+}
+
+/// Lets go of the object, whatever the hand is; never quits.
+void Workbench::letGo()
+{
+    state_.keys = false;
+    letGo_      = true; // until Space is pressed anew
+    if (pointer_) pointer_->release();
+    if (!settings_.hand || failed_) return say("let go; close the window to quit");
+    failed_ = true; // the session ends, and its last force is none
+    restart();
+    say("let go: no force; R takes the object again, closing the window quits");
 }
 
 /// Without panels the keys are told in a line.
@@ -149,7 +161,9 @@ std::optional<Hit> Workbench::hitAt(const WindowInput& input) const
 void Workbench::touch(const WindowInput& input)
 {
     if (settings_.hand || replay_ || !pointer_) return;
-    if (!input.touch || input.panelsTakeKeys) return pointer_->release();
+    if (!input.touch) letGo_ = false;
+    if (!input.touch || input.panelsTakeKeys || letGo_) return pointer_->release();
+    if (input.panelsTakePointer) return; // over a panel the hand stays where it is
     const double     thickness = stage_->scene().patch.material.thickness;
     constexpr double kStep = 0.05, kMost = 3; // of the thickness: a notch, and how deep and high it goes [1]
     state_.pressDepth =
@@ -159,7 +173,6 @@ void Workbench::touch(const WindowInput& input)
     if (!hit || pointer_->press(*hit, state_.pressDepth) || beginAt_) return;
     beginAt_ = *hit; // the object is in between: the hand begins anew, there
     if (recording_) {
-        endRecordingSoon();
         say("the recording has ended: the hand went round the object");
     }
     restart();
@@ -187,10 +200,10 @@ void Workbench::paintWith(const WindowInput& input)
                 painting.paint(brush, state_.brush.value);
         }
     });
-    painting_ = true;
-    lastDab_  = hit->point;
+    painting_   = true;
+    paintSaved_ = false;
+    lastDab_    = hit->point;
     if (recording_) {
-        endRecordingSoon();
         restart();
         say("the recording has ended: what it was of is being painted");
     }
@@ -198,12 +211,14 @@ void Workbench::paintWith(const WindowInput& input)
 
 void Workbench::undo()
 {
+    paintSaved_ = false;
     stage_->paint([](StiffnessPainting& painting) { painting.undo(); });
     lastChange_ = Clock::now();
 }
 
 void Workbench::redo()
 {
+    paintSaved_ = false;
     stage_->paint([](StiffnessPainting& painting) { painting.redo(); });
     lastChange_ = Clock::now();
 }
