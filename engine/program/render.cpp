@@ -152,7 +152,9 @@ Written still(const RenderOptions& o, Stage& stage)
     constexpr double kMost = 1e6; // [N]
     const double     force = o.force.empty() ? forceThatShows(patch, stage.scene.patch.material.thickness)
                                              : parseQuantity(o.force, Dimension::force, "--force");
-    if (!(std::abs(force) <= kMost)) throw Error("--force: expected at most 1e6 N, found \"" + o.force + "\"");
+    if (!(force >= 0 && force <= kMost)) throw Error("--force: expected 0 to 1e6 N, found \"" + o.force + "\"");
+    for (const std::string& sentence : warnings(patch, stage.scene.patch, force))
+        std::cerr << "palpate: warning: " << sentence << "\n";
     stage.view.show(&patch, force, stage.look);
     stage.view.scene().title = o.scene.title();
     stage.view.scene().note  = noteOf(stage, patch, force);

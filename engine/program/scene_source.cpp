@@ -36,7 +36,10 @@ Scene SceneSource::load(PlaceNeeded place) const
             throw Error("--at: expected a place X,Y,Z for a cloud from a file, found none; palpate info " + name +
                         " shows where the cloud is");
     }
-    return parseScene(nlohmann::json{{"cloud", name}}.dump(), name, std::filesystem::current_path(), overrides);
+    nlohmann::json scene{{"cloud", name}};
+    if (place == PlaceNeeded::no && !name.starts_with("sample:") && !flags.contains("place"))
+        scene["place"] = {0, 0, 0}; // whoever needs none finds one
+    return parseScene(scene.dump(), name, std::filesystem::current_path(), overrides);
 }
 
 std::string SceneSource::title() const

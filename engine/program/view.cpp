@@ -154,7 +154,7 @@ void view(const ViewOptions& o)
             return input;
         },
         shown);
-    rememberSize(last);
+    if (o.size.empty()) rememberSize(last);
     if (!report.said.empty()) std::cerr << "palpate: " << report.said << "\n";
     tell(o, report, renderer);
     const auto messages = renderer.takeMessages();

@@ -30,6 +30,9 @@ public:
     /// Lets go: springs back to where it hovers.
     void release();
 
+    /// Where it is, or hovers.
+    [[nodiscard]] const Hit& at() const noexcept { return at_; }
+
     [[nodiscard]] bool pressing() const noexcept { return pressing_; }
 
 private:

@@ -87,7 +87,8 @@ void Workbench::session()
 {
     try {
         history_.clear();
-        if (beginAt_) pointer_->begin(*std::exchange(beginAt_, std::nullopt));
+        // A session begins outside of the object: which side a hand is on is known from where it comes.
+        pointer_->begin(std::exchange(beginAt_, std::nullopt).value_or(pointer_->at()));
         WorkbenchHand hand{&pointer_->device(), pointer_->frame(), kLong};
         if (replay_)
             hand = {replay_.get(), {}, double(replayed_->samples.size()) * 1e-3};
@@ -110,6 +111,7 @@ void Workbench::session()
         const SessionSummary summary = runReal(parts, real, warning);
         ended(summary);
     } catch (const Error& error) {
+        if (report_.frames == 0) throw; // nobody has seen anything yet
         endRecording();
         complain(error.what());
         failed_ = true;
@@ -128,7 +130,8 @@ void Workbench::ended(const SessionSummary& summary)
         complain(std::string("the device is ") + name(summary.deviceFault) + ": plug it in again and press R to go on");
         failed_ = true;
     } else if (settings_.hand) {
-        failed_ = handOver_ = true; // a script is over
+        failed_ = true;
+        say("the hand has come to its end: R starts it again");
     }
 }
 
@@ -315,7 +318,7 @@ PanelContent Workbench::content(const SessionView* view) const
     now.replaying       = replay_ != nullptr;
     now.recording       = recording_ ? recordFolder_ : "";
     now.title           = std::filesystem::path(what_).filename().string();
-    now.painted         = stage_->painting().changed();
+    now.painted         = stage_->painting().changed() && !paintSaved_;
     now.canUndo         = stage_->painting().canUndo();
     now.canRedo         = stage_->painting().canRedo();
     now.faults          = faults_;

@@ -151,7 +151,6 @@ private:
     std::atomic<bool> stop_     = false; ///< the session ends, and the next one begins
     bool              closing_  = false;
     bool              failed_   = false; ///< no session can run until something changes
-    bool              handOver_ = false; ///< the script is over
     bool              painting_ = false; ///< a stroke has begun
     glm::dvec3        lastDab_{};        ///< of it [m]
     bool              recordingWanted_ = false;

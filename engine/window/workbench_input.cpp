@@ -45,7 +45,7 @@ void Workbench::handleKey(const KeyPress& press)
         return frameAll();
     case 'R':
         resetCamera();
-        return failed_ && !handOver_ ? goOn() : void();
+        return failed_ ? goOn() : void();
     case 'O':
         state_.camera = otherProjection(state_.camera);
         return;
