@@ -34,7 +34,7 @@ struct RenderOptions {
     std::string        drawOn = "auto", view = "patch", hand = "scan", seconds = "2 s";
     std::optional<int> frames;
     int                finer = 2;
-    bool               dark = false, json = false;
+    bool               dark = false, json = false, ghost = false, sphere = false, projected = false;
 };
 
 /// The value of an option with a fixed set of names, or a sentence that lists them.
@@ -60,10 +60,13 @@ PictureSize sizeOf(const std::string& text, int finer)
 TouchLook lookOf(const RenderOptions& o)
 {
     TouchLook look;
-    look.paint        = named(viewPaintNamed(o.colour), "--colour", o.colour, "deflection, stiffness, plain");
-    look.map          = named(colourMapNamed(o.map), "--colour-map", o.map, "viridis, cividis, grey");
-    look.ground       = o.dark ? Ground::dark : Ground::light;
-    look.exaggeration = parseQuantity(o.exaggerate, Dimension::none, "--exaggerate");
+    look.paint              = named(viewPaintNamed(o.colour), "--colour", o.colour, "deflection, stiffness, plain");
+    look.map                = named(colourMapNamed(o.map), "--colour-map", o.map, "viridis, cividis, grey");
+    look.ground             = o.dark ? Ground::dark : Ground::light;
+    look.overlays.ghost     = o.ghost;
+    look.overlays.sphere    = o.sphere;
+    look.overlays.projected = o.projected;
+    look.exaggeration       = parseQuantity(o.exaggerate, Dimension::none, "--exaggerate");
     if (!(look.exaggeration >= 0 && look.exaggeration <= 1000))
         throw Error("--exaggerate: expected a factor from 0 to 1000, found \"" + o.exaggerate + "\"");
     return look;
@@ -278,6 +281,9 @@ void addRenderCommand(CLI::App& app)
     command->add_option("--exaggerate", o->exaggerate, "factor on every displacement")->capture_default_str();
     command->add_option("--view", o->view, "patch: what bends; whole: the object")->capture_default_str();
     command->add_flag("--dark", o->dark, "a dark ground");
+    command->add_flag("--ghost", o->ghost, "dots where the dent is at rest");
+    command->add_flag("--sphere", o->sphere, "the near half of the fitted sphere");
+    command->add_flag("--projected", o->projected, "dots where the points lie on that sphere");
     command->add_option("--frames", o->frames, "so many pictures along the path of --hand, in virtual time");
     command->add_option("--hand", o->hand, "of --frames: press, circle, scan or a file")->capture_default_str();
     command->add_option("--seconds", o->seconds, "of --frames: how long the hand goes")->capture_default_str();

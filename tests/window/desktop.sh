@@ -60,6 +60,8 @@ until_ 'a recording' 20 test -s session-0001/samples.csv
 xdotool mousemove --window "$window" 420 260 keydown space sleep 1 mousemove --window "$window" 440 260 sleep 1 \
     click 5 sleep 0.5 keyup space
 xdotool key --window "$window" F5 sleep 0.5
+# a recording that begins while the hand presses begins outside of the object, and letting go leaves no force
+xdotool keydown space sleep 0.7 key F5 sleep 1.5 keyup space sleep 0.7 key F5 sleep 0.5
 # paint, take back, paint, save
 xdotool key --window "$window" b sleep 0.2 mousemove --window "$window" 420 260 mousedown 1 sleep 0.2 \
     mousemove --window "$window" 440 270 sleep 0.3 mouseup 1 sleep 0.2 key --window "$window" ctrl+z sleep 0.2 \
@@ -72,7 +74,9 @@ xdotool key --window "$window" shift+p
 until_ 'a picture of the window' 40 test -s palpate-0002.png
 # replay what was recorded, resize, close
 xdotool key --window "$window" F6 sleep 2
-xdotool windowsize "$window" 800 600 sleep 1
+xdotool windowsize "$window" 800 600 sleep 1 key --window "$window" shift+p
+until_ 'a picture after the replay' 40 test -s palpate-0003.png
+[ "$(od -An -tu1 -j16 -N8 palpate-0003.png | tr -s ' ')" = ' 0 0 3 32 0 0 2 88' ] || fail 'after resizing a picture has not 800 x 600 px'
 xdotool key --window "$window" Escape sleep 0.2
 kill -0 "$program" 2>/dev/null || fail 'Escape must not quit'
 kill -TERM "$program" # without a window manager nothing can ask the window itself
@@ -89,6 +93,8 @@ grep -q '"frames": [1-9]' out || fail 'no picture was shown'
 grep -q stiffness info || fail 'the painted cloud has no stiffness'
 "$palpate" replay session-0001 >/dev/null 2>replay # real time: refused, but read
 grep -q 'real time' replay || { fail 'the recording cannot be read'; cat replay; }
+last=$(tail -1 session-0002/samples.csv | cut -d, -f11-13) # its force [N]
+[ "$last" = 0,0,0 ] || fail "a force was left after letting go: $last"
 # did the hand feel anything?
 awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n ~ /^force.*z/ || $n == "force_z") column = n } NR > 1 && column && ($column > 0.05 || $column < -0.05) { felt = 1 } END { exit !felt }' session-0001/samples.csv ||
     { fail 'no force was felt while touching'; head -2 session-0001/samples.csv; }
