@@ -156,14 +156,14 @@ Written still(const RenderOptions& o, Stage& stage)
     const double     force = o.force.empty() ? forceThatShows(patch, stage.scene.patch.material.thickness)
                                              : parseQuantity(o.force, Dimension::force, "--force");
     if (!(force >= 0 && force <= kMost)) throw Error("--force: expected 0 to 1e6 N, found \"" + o.force + "\"");
-    for (const std::string& sentence : warnings(patch, stage.scene.patch, force))
-        std::cerr << "palpate: warning: " << sentence << "\n";
     stage.view.show(&patch, force, stage.look);
     stage.view.scene().title = o.scene.title();
     stage.view.scene().note  = noteOf(stage, patch, force);
     Written written          = write(stage, cameraFor(o, stage, patch), o.out);
     written.force            = force;
     written.deepest          = deepestOf(patch, force);
+    for (const std::string& sentence : warnings(patch, stage.scene.patch, force))
+        std::cerr << "palpate: warning: " << sentence << "\n";
     return written;
 }
 
