@@ -1,7 +1,3 @@
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include <gtest/gtest.h>
 
@@ -9,10 +5,10 @@
 #include "engine/viewer/annotation.h"
 #include "engine/viewer/surface_renderer.h"
 #include "engine/viewer/touch_view.h"
+#include "tests/support/golden_picture.h"
 #include "tests/support/shader_fixture.h"
 
-// Whole pictures, texts included, to the byte. They hold for the driver that golden/driver.txt names; with another one
-// rounding may differ, and the test is skipped. PALPATE_GOLDEN_WRITE=1 draws them anew: look at them before committing.
+// Whole pictures, texts included, to the byte; see tests/support/golden_picture.h.
 
 namespace palp {
 namespace {
@@ -32,12 +28,6 @@ struct GoldenCase {
 void PrintTo(const GoldenCase& one, std::ostream* stream)
 {
     *stream << one.sample << " " << name(one.look.paint);
-}
-
-std::string bytesOf(const std::filesystem::path& file)
-{
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 class GoldenTest : public ShaderTest, public ::testing::WithParamInterface<GoldenCase> {};
@@ -70,23 +60,8 @@ Image pictureOf(const GoldenCase& one, SurfaceRenderer& renderer)
 
 TEST_P(GoldenTest, ThePictureIsTheOneThatWasLookedAt)
 {
-    const std::filesystem::path folder = PALPATE_GOLDEN;
-    const std::filesystem::path file   = folder / GetParam().file();
-    SurfaceRenderer             renderer({.device = deviceOfTests(), .validation = validation()});
-    const std::string           driver = renderer.device().name + ", " + renderer.device().driver + "\n";
-    const std::string           bytes  = encodePng(pictureOf(GetParam(), renderer));
-    if (std::getenv("PALPATE_GOLDEN_WRITE")) {
-        std::ofstream(file, std::ios::binary) << bytes;
-        std::ofstream(folder / "driver.txt") << driver;
-    }
-    for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << "validation: " << message;
-    if (bytesOf(folder / "driver.txt") != driver)
-        GTEST_SKIP() << "drawn by " << bytesOf(folder / "driver.txt") << "and this is " << driver;
-    if (bytesOf(file) != bytes) {
-        const auto now = std::filesystem::temp_directory_path() / file.filename();
-        std::ofstream(now, std::ios::binary) << bytes;
-        FAIL() << file << " differs from " << now;
-    }
+    SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
+    expectGolden(PALPATE_GOLDEN, GetParam().file(), pictureOf(GetParam(), renderer), renderer);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -1,7 +1,3 @@
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include <gtest/gtest.h>
 
@@ -13,18 +9,13 @@
 #include "engine/viewer/surface_renderer.h"
 #include "engine/window/panel_frame.h"
 #include "engine/window/panels.h"
+#include "tests/support/golden_picture.h"
 #include "tests/support/shader_fixture.h"
 
-// Whole windows without a window, panels included, to the byte; see tests/viewer/golden_test.cpp for how they are made.
+// Whole windows without a window, panels included, to the byte; see tests/support/golden_picture.h.
 
 namespace palp {
 namespace {
-
-std::string bytesOf(const std::filesystem::path& file)
-{
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// A hand that has pressed a palm for a while, on the virtual clock.
 struct Pressed {
@@ -76,26 +67,6 @@ protected:
     {
         if (onHost()) GTEST_SKIP() << "the host does not draw";
         ShaderTest::SetUp();
-    }
-
-    void expectGolden(const std::string& name, const Image& image, SurfaceRenderer& renderer)
-    {
-        const std::filesystem::path folder = PALPATE_GOLDEN, file = folder / (name + ".png");
-        const std::string           driver = renderer.device().name + ", " + renderer.device().driver + "\n";
-        const std::string           bytes  = encodePng(image);
-        for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << "validation: " << message;
-        if (std::getenv("PALPATE_GOLDEN_WRITE")) {
-            std::filesystem::create_directories(folder);
-            std::ofstream(file, std::ios::binary) << bytes;
-            std::ofstream(folder / "driver.txt") << driver;
-        }
-        if (bytesOf(folder / "driver.txt") != driver)
-            GTEST_SKIP() << "drawn by " << bytesOf(folder / "driver.txt") << "and this is " << driver;
-        if (bytesOf(file) != bytes) {
-            const auto now = std::filesystem::temp_directory_path() / file.filename();
-            std::ofstream(now, std::ios::binary) << bytes;
-            FAIL() << file << " differs from " << now;
-        }
     }
 };
 
@@ -150,7 +121,7 @@ protected:
         PanelFrame      frame(shown.scale);
         SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
         const Image     image = pictureOf(shown, now, renderer, frame);
-        PanelsGoldenTest::expectGolden(name, leftOf(image, shown.kept), renderer);
+        palp::expectGolden(PALPATE_GOLDEN, name + ".png", leftOf(image, shown.kept), renderer);
     }
 
     Pressed pressed_;
@@ -202,8 +173,8 @@ TEST_F(PanelsGolden, TheOtherSectionsOpenAtAClick)
     at(kScene);
     const Image scene = pictureOf(shown, now, renderer, frame);
 
-    PanelsGoldenTest::expectGolden("panels-chart", leftOf(chart, kColumn), renderer);
-    PanelsGoldenTest::expectGolden("panels-scene", leftOf(scene, kColumn + 100), renderer);
+    palp::expectGolden(PALPATE_GOLDEN, "panels-chart.png", leftOf(chart, kColumn), renderer);
+    palp::expectGolden(PALPATE_GOLDEN, "panels-scene.png", leftOf(scene, kColumn + 100), renderer);
 }
 
 TEST_F(PanelsGolden, ABrushAndTheSheetOfKeys)
