@@ -13,7 +13,8 @@ export XDG_CONFIG_HOME
 
 # A display of our own, of a number that is free.
 mkfifo number
-Xvfb -displayfd 3 -screen 0 1400x900x24 3>number 2>xvfb.log &
+# -noreset: otherwise the server starts anew whenever its last client leaves, and refuses whom it meets meanwhile.
+Xvfb -displayfd 3 -noreset -screen 0 1400x900x24 3>number 2>xvfb.log &
 server=$!
 read -r display <number
 DISPLAY=:$display
