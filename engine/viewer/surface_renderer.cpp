@@ -8,6 +8,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/picture/cloud_shading.h"
+#include "engine/viewer/picture_change.h"
 #include "engine/viewer/view_shapes.h"
 #include "engine/viewer/vulkan_surface.h"
 
@@ -88,8 +89,10 @@ double reachOf(const ViewScene& scene, const std::vector<shared::ViewCorner>& sh
     for (std::size_t n = 0; n < scene.positions.size(); ++n)
         reach = std::max(reach, glm::distance(scene.positions[n], target) + scene.radii[n]);
     for (const shared::ViewCorner& corner : shapes) reach = std::max(reach, double(glm::length(corner.position)));
-    constexpr double kRoom = 1.001; // single precision must not cut off the last point [1]
-    return kRoom * reach;
+    // In steps, because whatever changes a frame draws all of the picture; with room, because single precision must not
+    // cut off the last point [1].
+    constexpr double kRoom = 1.001, kStep = 1.25;
+    return kRoom * std::pow(kStep, std::ceil(std::log(reach) / std::log(kStep)));
 }
 
 shared::ViewFrame frameOf(const ViewScene& scene, const Camera& camera, const PictureSize& size, double reach)
@@ -135,48 +138,71 @@ Image averaged(std::span<const std::uint8_t> pixels, const PictureSize& size, Vk
     return image;
 }
 
-/// A scene as the passes take it.
+void check(const ViewScene& scene, const PictureSize& size, const Overlay* overlay)
+{
+    const std::size_t points = scene.positions.size();
+    PALP_EXPECT(size.width > 0 && size.height > 0 && size.finer > 0, "a picture has at least one pixel");
+    PALP_EXPECT(scene.normals.size() == points && scene.radii.size() == points && scene.cores.size() == points &&
+                    (scene.values.empty() || scene.values.size() == points) &&
+                    (scene.hollows.empty() || scene.hollows.size() == points),
+                "every point has a normal, two radii and, if there are any, a value and a hollow");
+    PALP_EXPECT(!overlay || (overlay->width == size.width * size.finer && overlay->height == size.height * size.finer),
+                "an overlay has the size of the picture");
+}
+
+/// A scene as the passes take it, and the one before. The memory is kept from picture to picture.
 class Drawable {
 public:
     void make(const ViewScene& scene, const Camera& camera, const PictureSize& size, const Overlay* overlay)
     {
         check(scene, size, overlay);
-        detail_  = size.detail;
-        faces_   = scene.faces;
-        overlay_ = overlay;
-        dots_    = scene.dots.size();
-        fillSplats(splats_, scene, camera, detail_);
-        shapes_ = cornersOf(scene, camera.target);
-        frame_  = frameOf(scene, camera, size, reachOf(scene, shapes_, camera.target));
+        std::swap(now_, before_);
+        now_.input.detail = size.detail;
+        now_.input.dots   = scene.dots.size();
+        fillSplats(now_.splats, scene, camera, size.detail);
+        now_.shapes = cornersOf(scene, camera.target);
+        now_.faces.clear();
+        for (const Triangle& face : scene.faces) now_.faces.insert(now_.faces.end(), face.begin(), face.end());
+        now_.input.frame  = frameOf(scene, camera, size, reachOf(scene, now_.shapes, camera.target));
+        now_.input.splats = now_.splats;
+        now_.input.shapes = now_.shapes;
+        now_.input.faces  = now_.faces;
+        compare(overlay);
     }
-    [[nodiscard]] SurfaceInput input() const
-    {
-        const std::span<const std::uint32_t> corners(faces_.empty() ? nullptr : faces_.front().data(),
-                                                     3 * faces_.size());
-        return {frame_, splats_, dots_, corners, shapes_, detail_, overlay_};
-    }
+    [[nodiscard]] const SurfaceInput& input() const { return now_.input; }
+
+    /// The picture that was made has not been drawn.
+    void forget() { drawn_ = false; }
 
 private:
-    static void check(const ViewScene& scene, const PictureSize& size, const Overlay* overlay)
+    struct Slot {
+        std::vector<shared::ViewSplat>  splats;
+        std::vector<shared::ViewCorner> shapes;
+        std::vector<std::uint32_t>      faces;
+        SurfaceInput                    input; ///< of the above
+    };
+
+    void compare(const Overlay* overlay)
     {
-        const std::size_t points = scene.positions.size();
-        PALP_EXPECT(size.width > 0 && size.height > 0 && size.finer > 0, "a picture has at least one pixel");
-        PALP_EXPECT(scene.normals.size() == points && scene.radii.size() == points && scene.cores.size() == points &&
-                        (scene.values.empty() || scene.values.size() == points) &&
-                        (scene.hollows.empty() || scene.hollows.size() == points),
-                    "every point has a normal, two radii and, if there are any, a value and a hollow");
-        PALP_EXPECT(!overlay ||
-                        (overlay->width == size.width * size.finer && overlay->height == size.height * size.finer),
-                    "an overlay has the size of the picture");
+        static const Overlay nothing{};
+        const Overlay&       texts = overlay ? *overlay : nothing;
+        SurfaceInput&        input = now_.input;
+        input.overlay              = overlay;
+        input.changed              = drawn_ ? changedPart(before_.input, input) : std::nullopt;
+        const bool      sameSize   = texts_.width == texts.width && texts_.height == texts.height;
+        const PixelRect written    = sameSize ? changedPart(texts_, texts) : PixelRect{};
+        input.sameOverlay          = drawn_ && sameSize && written.empty();
+        if (!sameSize)
+            input.changed.reset();
+        else if (input.changed)
+            input.changed = unionOf(*input.changed, written);
+        if (!input.sameOverlay) texts_ = texts;
+        drawn_ = true;
     }
 
-    Detail                          detail_ = Detail::fine;
-    std::span<const Triangle>       faces_;
-    const Overlay*                  overlay_ = nullptr;
-    std::size_t                     dots_    = 0;
-    std::vector<shared::ViewSplat>  splats_;
-    std::vector<shared::ViewCorner> shapes_;
-    shared::ViewFrame               frame_;
+    Slot    now_, before_;
+    Overlay texts_; ///< of the picture made last
+    bool    drawn_ = false;
 };
 
 } // namespace
@@ -226,7 +252,10 @@ bool SurfaceRenderer::show(const ViewScene& scene, const Camera& camera, const P
     PALP_EXPECT(size.finer == 1, "a window's pixels are not averaged");
     impl_->drawable.make(scene, camera, size, overlay); // while the one before is being drawn
     present();
-    if (!impl_->window->next({std::uint32_t(size.width), std::uint32_t(size.height)})) return false;
+    if (!impl_->window->next({std::uint32_t(size.width), std::uint32_t(size.height)})) {
+        impl_->drawable.forget();
+        return false;
+    }
     impl_->surface->start(impl_->drawable.input(), *impl_->window);
     return true;
 }

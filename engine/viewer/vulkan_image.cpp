@@ -68,7 +68,8 @@ VkAttachmentDescription attachment(const PassImage& image, bool depth)
     description.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
     const VkImageLayout during =
         depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-    description.finalLayout = image.after == VK_IMAGE_LAYOUT_UNDEFINED ? during : image.after;
+    description.initialLayout = image.before;
+    description.finalLayout   = image.after == VK_IMAGE_LAYOUT_UNDEFINED ? during : image.after;
     return description;
 }
 

@@ -24,6 +24,7 @@ struct VulkanImage {
 struct PassImage {
     VkFormat      format = VK_FORMAT_UNDEFINED;
     VkImageLayout after  = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL; ///< UNDEFINED: nobody needs it afterwards
+    VkImageLayout before = VK_IMAGE_LAYOUT_UNDEFINED; ///< other than that: what is outside of the pass's area stays
 };
 
 using RenderPass  = gpu::Owned<VkRenderPass, vkDestroyRenderPass>;

@@ -139,6 +139,9 @@ void VulkanSurface::makeSteps()
     faceStep_.pass            = makePass(context_, surface, depth);
     panelStep_.pass           = makePass(context_, panels, none);
     lightStep_.pass           = makePass(context_, picture, depth);
+
+    const PassImage again[] = {{format_, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL}};
+    lightAgain_             = makePass(context_, again, depth);
 }
 
 void VulkanSurface::makePipelines()
@@ -202,6 +205,7 @@ void VulkanSurface::fit(VkExtent2D size)
                     " px is larger than the GPU " + context_.description.name + " can draw (" + std::to_string(most) +
                     " a side)");
     size_        = size;
+    fresh_       = true;
     freshPanels_ = panels_ != nullptr; // into the new image
     for (Step* step : {&nearestStep_, &blendStep_, &surfaceStep_, &faceStep_, &panelStep_, &lightStep_})
         step->framebuffer = {};
@@ -232,7 +236,8 @@ void VulkanSurface::upload(const SurfaceInput& input)
     fillBuffer(owner_, splatBuffer_, "splats", std::as_bytes(input.splats));
     fillBuffer(owner_, shapeBuffer_, "shapes", std::as_bytes(input.shapes));
     fillBuffer(owner_, faceBuffer_, "faces", std::as_bytes(input.faces));
-    fillBuffer(owner_, overlayBuffer_, "overlay", std::as_bytes(std::span(overlay.pixels)));
+    if (!input.sameOverlay || !overlayBuffer_)
+        fillBuffer(owner_, overlayBuffer_, "overlay", std::as_bytes(std::span(overlay.pixels)));
     tiles_ = overlay.tiles;
     if (panelSize_.width != size_.width || panelSize_.height != size_.height) panelTiles_.clear();
     tiles_.insert(tiles_.end(), panelTiles_.begin(), panelTiles_.end());
@@ -269,15 +274,22 @@ void VulkanSurface::describe()
     vkUpdateDescriptorSets(context_.device, std::uint32_t(writes.size()), writes.data(), 0, nullptr);
 }
 
-void VulkanSurface::begin(const Step& step, std::span<const VkClearValue> clear)
+void VulkanSurface::begin(VkRenderPass pass, const Step& step, const VkRect2D& where,
+                          std::span<const VkClearValue> clear)
 {
     auto info            = typed<VkRenderPassBeginInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO);
-    info.renderPass      = step.pass.get();
+    info.renderPass      = pass;
     info.framebuffer     = step.framebuffer.get();
-    info.renderArea      = {{0, 0}, size_};
+    info.renderArea      = where;
     info.clearValueCount = std::uint32_t(clear.size());
     info.pClearValues    = clear.data();
     vkCmdBeginRenderPass(commands_, &info, VK_SUBPASS_CONTENTS_INLINE);
+    vkCmdSetScissor(commands_, 0, 1, &where);
+}
+
+void VulkanSurface::begin(const Step& step, std::span<const VkClearValue> clear)
+{
+    begin(step.pass.get(), step, {{0, 0}, size_}, clear);
 }
 
 void VulkanSurface::draw(const Pipeline& pipeline, std::size_t corners, std::size_t first)
@@ -299,9 +311,7 @@ void VulkanSurface::beginList()
 void VulkanSurface::bindAll()
 {
     const VkViewport viewport{0, 0, float(size_.width), float(size_.height), 0, 1};
-    const VkRect2D   scissor{{0, 0}, size_};
     vkCmdSetViewport(commands_, 0, 1, &viewport);
-    vkCmdSetScissor(commands_, 0, 1, &scissor);
     vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set_, 0, nullptr);
 }
 
@@ -330,16 +340,30 @@ void VulkanSurface::recordSurface(const SurfaceInput& input)
     vkCmdEndRenderPass(commands_);
 }
 
+namespace {
+
+VkRect2D areaOf(const PixelRect& part)
+{
+    return {{part.left, part.top}, {std::uint32_t(part.right - part.left), std::uint32_t(part.bottom - part.top)}};
+}
+
+} // namespace
+
 void VulkanSurface::record(const SurfaceInput& input)
 {
     const std::size_t points = input.splats.size() - input.dots;
     const bool        fine   = input.detail == Detail::fine;
+    const bool        whole  = std::exchange(fresh_, false) || freshPanels_ || !input.changed;
     recordPanels();
+    if (!whole && input.changed->empty()) return;
     if (fine) recordSurface(input);
     VkClearValue zero{}, farthest{};
     farthest.depthStencil.depth = 1;
     const VkClearValue last[]   = {zero, farthest};
-    begin(lightStep_, last);
+    if (whole)
+        begin(lightStep_, last);
+    else
+        begin(lightAgain_.get(), lightStep_, areaOf(*input.changed), last);
     draw(fine ? light_ : ground_, 3);
     if (!fine && input.faces.empty()) draw(points_, points);
     if (!fine) draw(litFaces_, input.faces.size());

@@ -4,10 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "compute_shaders/shared/view_layout.h"
 #include "engine/gpu/buffer.h"
-#include "engine/viewer/annotation.h"
-#include "engine/viewer/surface_renderer.h"
+#include "engine/viewer/surface_input.h"
 #include "engine/viewer/vulkan_image.h"
 #include "engine/viewer/vulkan_pipeline.h"
 #include "engine/viewer/vulkan_window.h"
@@ -17,17 +15,6 @@
 namespace palp {
 
 class VulkanPanels;
-
-/// What one picture is drawn from.
-struct SurfaceInput {
-    shared::ViewFrame                   frame{};
-    std::span<const shared::ViewSplat>  splats;
-    std::size_t                         dots = 0; ///< the last so many splats are dots, whatever the detail [1]
-    std::span<const std::uint32_t>      faces;    ///< numbers of splats, three to a triangle; empty: splats are drawn
-    std::span<const shared::ViewCorner> shapes;   ///< three to a triangle
-    Detail                              detail  = Detail::fine;
-    const Overlay*                      overlay = nullptr; ///< of the picture's size; may be null
-};
 
 /// The passes of compute_shaders/shared/view_layout.h. Images are made anew when the size changes, buffers when they
 /// are too small. \thread one
@@ -77,12 +64,14 @@ private:
     void bindAll();
     void recordSurface(const SurfaceInput& input);
     void copyToHost();
+    void begin(VkRenderPass pass, const Step& step, const VkRect2D& where, std::span<const VkClearValue> clear);
     void begin(const Step& step, std::span<const VkClearValue> clear);
     void draw(const Pipeline& pipeline, std::size_t corners, std::size_t first = 0);
 
     gpu::Context&       owner_;
     gpu::VulkanContext& context_;
     bool                started_ = false;
+    bool                fresh_   = true; ///< nothing has been drawn into picture_ yet
     VkFormat            format_;
     VkExtent2D          size_{};
 
@@ -94,6 +83,7 @@ private:
     VkCommandBuffer                                       commands_ = VK_NULL_HANDLE;
     std::optional<VulkanImage> depthTest_, nearest_, normals_, colours_, surface_, albedo_, panelImage_, picture_;
     Step                       nearestStep_, blendStep_, surfaceStep_, faceStep_, panelStep_, lightStep_;
+    RenderPass                 lightAgain_; ///< as lightStep_'s, over a picture that stays where it does not draw
     Pipeline                   nearestDepths_, sums_, means_, faces_;                       ///< fine
     Pipeline light_, ground_, points_, litFaces_, hiddenShapes_, shapes_, overlay_, panel_; ///< of lightStep_
     std::optional<gpu::Buffer> frameBuffer_, splatBuffer_, shapeBuffer_, faceBuffer_, overlayBuffer_, tileBuffer_,

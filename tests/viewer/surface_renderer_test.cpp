@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/cloud/neighbour_index.h"
+#include "engine/viewer/annotation.h"
 #include "engine/viewer/cloud_skin.h"
 #include "tests/support/shader_fixture.h"
 #include "tests/support/temporary_folder.h"
@@ -116,6 +117,36 @@ TEST_P(SurfaceRendererTest, TheSamePictureTwiceIsTheSameToTheBit)
     const Image first = renderer->draw(sheet.scene(), above(), small);
     (void)renderer->draw({}, above(), {40, 50, 2, GetParam()}); // other sizes and buffers in between
     EXPECT_EQ(renderer->draw(sheet.scene(), above(), small).pixels, first.pixels);
+}
+
+/// Pictures of a touch that goes on, each drawn over the one before, are those of a renderer that begins anew.
+TEST_P(SurfaceRendererTest, APictureDrawnOverTheOneBeforeIsTheOneDrawnAnew)
+{
+    SurfaceRenderer   anew({.device = deviceOfTests(), .validation = validation()});
+    const PictureSize size{160, 120, 1, GetParam()};
+    const Triangle    faces[] = {{0, 59, 3540}, {59, 3540, 3599}, {100, 1900, 2000}};
+    for (int step = 0; step < 24; ++step) {
+        const Sheet  sheet(60, 1e-3 * (step / 4)); // four are alike but for the hand
+        ViewScene    scene = sheet.scene();
+        const double x     = 0.003 * step - 0.03; // [m]
+        scene.hip = scene.proxy = glm::dvec3(x, 0.01, 0.002);
+        scene.markerRadius      = 0.003;
+        scene.arrowRadius       = 0.0005;
+        if (step % 3) scene.force = ViewSegment{{x, 0.01, 0}, {x, 0.01, 0.03}};
+        if (step % 4 == 1) scene.dots = {{{-x, 0.03, 0.001}, 0.001, kHipColour}, {{x, -0.03, 0.001}, 1e-5, kHipColour}};
+        if (step % 7 == 6) scene.ground = Ground::dark;
+        if (step > 18) scene.faces = faces;
+        Camera camera = above();
+        if (step > 12) camera = orbited(camera, {0.4, 1.2}); // a point's square is wider than its disc, seen aslant
+        if (step == 16) camera.projection = Projection::orthographic;
+        if (step % 6 != 5) scene.title = step % 2 ? "one" : "another one";
+        const Overlay texts = annotations(scene, camera, size.width, size.height);
+
+        const Image over = renderer->draw(scene, camera, size, step % 11 == 10 ? nullptr : &texts);
+        (void)anew.draw({}, {}, {8, 8});
+        EXPECT_EQ(over.pixels, anew.draw(scene, camera, size, step % 11 == 10 ? nullptr : &texts).pixels) << step;
+    }
+    for (const std::string& message : anew.takeMessages()) ADD_FAILURE() << "validation: " << message;
 }
 
 TEST_P(SurfaceRendererTest, ADentOfAHundredthOfTheObjectIsPlainlyVisible)
