@@ -28,5 +28,6 @@ void main()
     float steep  = sqrt(max(0.0, 1.0 - normal.z * normal.z));
     toEye        = vec3(eye.xy, 1.0 + steep * length(eye.xy)); // seen aslant, a disc may be longer than its radius
     gl_Position  = frame.clipFromView * vec4(centre, 1);
-    gl_PointSize = 2.0 * toEye.z * max(kLeastPixels, splat.radius * pixelsPerMetre(max(1e-6, -centre.z)));
+    gl_PointSize = 2.0 * toEye.z * max(kLeastPixels, abs(splat.radius) * pixelsPerMetre(max(1e-6, -centre.z)));
+    if (splat.radius < 0.0 && facing < 0.0) gl_Position = kUnseen;
 }

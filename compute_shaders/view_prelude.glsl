@@ -25,6 +25,9 @@ vec4 groundAt(float y) { return vec4(mix(frame.groundAbove, frame.groundBelow, y
 /// Unit vector from a place in view space to the eye.
 vec3 toEyeFrom(vec3 place) { return frame.orthographic == 1u ? vec3(0, 0, 1) : normalize(-place); }
 
+/// A place that nothing is drawn at: of a closed object's inner side.
+const vec4 kUnseen = vec4(2, 2, 2, 1);
+
 // Light from the upper left, as in printed relief.
 const vec3 kLight = normalize(vec3(-0.75, 0.50, 0.43));
 

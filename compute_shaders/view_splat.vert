@@ -24,12 +24,13 @@ void main()
     ViewSplat splat = splats[gl_VertexIndex / 6];
     vec3 centre     = (frame.viewFromWorld * vec4(splat.position, 1)).xyz;
     normal          = mat3(frame.viewFromWorld) * splat.normal;
-    if (dot(normal, toEyeFrom(centre)) < 0.0) normal = -normal;
+    bool away       = dot(normal, toEyeFrom(centre)) < 0.0;
+    if (away) normal = -normal;
     colour = unpackUnorm4x8(splat.colour).rgb;
 
     // A disc smaller than a pixel may fall between the pixels' middles, and a dense cloud show holes.
     const float kLeastPixels = 1.0;
-    radius      = max(splat.radius, kLeastPixels / pixelsPerMetre(max(1e-6, -centre.z)));
+    radius      = max(abs(splat.radius), kLeastPixels / pixelsPerMetre(max(1e-6, -centre.z)));
     vec3 aside  = normalize(cross(normal, abs(normal.x) < 0.7 ? vec3(1, 0, 0) : vec3(0, 1, 0)));
     within      = kCorners[gl_VertexIndex % 6];
 #ifdef PALPATE_DEPTH
@@ -38,5 +39,5 @@ void main()
 #endif
     vec3 place  = centre + radius * (within.x * aside + within.y * cross(normal, aside));
     depth       = -place.z;
-    gl_Position = frame.clipFromView * vec4(place, 1);
+    gl_Position = away && splat.radius < 0.0 ? kUnseen : frame.clipFromView * vec4(place, 1);
 }

@@ -56,8 +56,8 @@ struct ViewFrame {
 
 struct ViewSplat {
     vec3  position; // [m]
-    float radius;   // [m]
-    vec3  normal;   // unit; the side does not matter
+    float radius;   // [m]; negative: only the side of the normal is seen, and the radius is its size
+    vec3  normal;   // unit
     uint  colour;   // red in the lowest byte; the highest one, in fine pictures: how much of the radius covers what is
                     // behind [1/255]; in fast ones, whose radius is that part: 1/2 + hollowness [1/255]
 };

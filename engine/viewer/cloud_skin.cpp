@@ -126,7 +126,10 @@ std::vector<glm::dvec3> CloudSkin::normals(std::span<const glm::dvec3> positions
 void CloudSkin::refit(std::span<const glm::dvec3> positions, std::span<const std::uint32_t> points,
                       std::span<glm::dvec3> normals) const
 {
-    for (const std::uint32_t n : points) normals[n] = normalOf(positions, n);
+    for (const std::uint32_t n : points) {
+        const glm::dvec3 fitted = normalOf(positions, n);
+        normals[n]              = glm::dot(fitted, normals[n]) < 0 ? -fitted : fitted;
+    }
 }
 
 } // namespace palp

@@ -28,7 +28,13 @@ public:
     /// \param positions  of all points [m]
     [[nodiscard]] std::vector<glm::dvec3> normals(std::span<const glm::dvec3> positions) const;
 
-    /// The same for a few points whose neighbourhood moved; the others' normals stay.
+    /// Turns the normals of one side to one side, and those of closed pieces of the surface outwards.
+    /// \param positions, normals  of all points at rest [m], [1]
+    /// \return for each point 1 if it belongs to a closed piece, of which only the outside can be seen; else 0
+    [[nodiscard]] std::vector<std::uint8_t> turnOutwards(std::span<const glm::dvec3> positions,
+                                                         std::span<glm::dvec3>       normals) const;
+
+    /// Normals of a few points whose neighbourhood moved, on the side on which they were; the others' stay.
     void refit(std::span<const glm::dvec3> positions, std::span<const std::uint32_t> points,
                std::span<glm::dvec3> normals) const;
 

@@ -49,7 +49,7 @@ public:
         high_                = glm::max(high_, glm::vec2(x, y) + reach);
     }
     /// A point's square is at most so much wider than its disc, seen aslant from near by, see view_point.vert.
-    void add(const ViewSplat& splat) { add(splat.position, 2 * splat.radius); }
+    void add(const ViewSplat& splat) { add(splat.position, 2 * std::abs(splat.radius)); }
     void add(const ViewCorner& corner) { add(corner.position, 0); }
 
     [[nodiscard]] std::optional<PixelRect> rect() const

@@ -62,10 +62,12 @@ void fillSplats(std::vector<shared::ViewSplat>& splats, const ViewScene& scene, 
     for (std::size_t n = 0; n < splats.size(); ++n) {
         const std::uint32_t colour = paint ? paint->of(scene.values[n]) : packed(kPlainColour);
         const glm::vec3     position(scene.positions[n] - origin), normal(scene.normals[n]);
+        const float         side = !scene.oneSided.empty() && scene.oneSided[n] ? -1.0F : 1.0F;
         if (detail == Detail::fine)
-            splats[n] = {position, float(scene.radii[n]), normal, withAlpha(colour, scene.cores[n] / scene.radii[n])};
+            splats[n] = {position, side * float(scene.radii[n]), normal,
+                         withAlpha(colour, scene.cores[n] / scene.radii[n])};
         else
-            splats[n] = {position, float(scene.cores[n]), normal,
+            splats[n] = {position, side * float(scene.cores[n]), normal,
                          withAlpha(colour, scene.hollows.empty() ? 0.5 : 0.5 + scene.hollows[n])};
     }
     const glm::vec3 toEye(camera.toEye); // dots face it
@@ -144,8 +146,9 @@ void check(const ViewScene& scene, const PictureSize& size, const Overlay* overl
     PALP_EXPECT(size.width > 0 && size.height > 0 && size.finer > 0, "a picture has at least one pixel");
     PALP_EXPECT(scene.normals.size() == points && scene.radii.size() == points && scene.cores.size() == points &&
                     (scene.values.empty() || scene.values.size() == points) &&
-                    (scene.hollows.empty() || scene.hollows.size() == points),
-                "every point has a normal, two radii and, if there are any, a value and a hollow");
+                    (scene.hollows.empty() || scene.hollows.size() == points) &&
+                    (scene.oneSided.empty() || scene.oneSided.size() == points),
+                "every point has a normal, two radii and, if there are any, a value, a hollow and its sides");
     PALP_EXPECT(!overlay || (overlay->width == size.width * size.finer && overlay->height == size.height * size.finer),
                 "an overlay has the size of the picture");
 }

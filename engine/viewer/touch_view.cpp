@@ -60,9 +60,9 @@ std::optional<ViewPaint> viewPaintNamed(std::string_view wanted)
 TouchView::TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings,
                      std::span<const Triangle> faces)
     : cloud_(cloud), settings_(settings), faces_(faces), skin_(cloud.positions(), index),
-      restNormals_(skin_.normals(cloud.positions())), normals_(restNormals_),
-      positions_(cloud.positions().begin(), cloud.positions().end()), deflections_(cloud.size()),
-      hollows_(cloud.size()), stiffness_(cloud.stiffness())
+      restNormals_(skin_.normals(cloud.positions())), oneSided_(skin_.turnOutwards(cloud.positions(), restNormals_)),
+      normals_(restNormals_), positions_(cloud.positions().begin(), cloud.positions().end()),
+      deflections_(cloud.size()), hollows_(cloud.size()), stiffness_(cloud.stiffness())
 {
 }
 
@@ -102,6 +102,7 @@ void TouchView::paint(double force, const TouchLook& look)
     scene_.radii     = skin_.radii();
     scene_.cores     = skin_.cores();
     scene_.hollows   = hollows_;
+    scene_.oneSided  = oneSided_;
     scene_.ground    = look.ground;
     if (look.paint == ViewPaint::deflection) {
         const double most = look.deepest > 0 ? look.deepest : std::abs(force) * surface_.mostResponse;

@@ -97,9 +97,11 @@ private:
     PatchSettings             settings_;
     std::span<const Triangle> faces_;
     CloudSkin                 skin_;
-    std::vector<glm::dvec3>   restNormals_, normals_, positions_; // [1], [1], [m]
-    std::vector<double>       deflections_, hollows_;             // [m], [1]
-    std::span<const double>   stiffness_;                         // [Pa] or [N m]
+    std::vector<glm::dvec3>   restNormals_; // [1]
+    std::vector<std::uint8_t> oneSided_;
+    std::vector<glm::dvec3>   normals_, positions_;   // [1], [m]
+    std::vector<double>       deflections_, hollows_; // [m], [1]
+    std::span<const double>   stiffness_;             // [Pa] or [N m]
 
     Shown                      shown_;
     PatchSurface               surface_; // of that patch

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -45,6 +46,8 @@ struct ViewScene {
     /// As many, or none: how far a dent's surroundings rise above it, on the side of the normal [1]. Only pictures of
     /// Detail::fast need it, all others see it in the depths.
     std::span<const double> hollows;
+    /// As many, or none: 1 where only the side of the normal can be seen, as of closed objects; 0: both sides.
+    std::span<const std::uint8_t> oneSided;
     /// Triangles of points; empty: discs are the surface.
     std::span<const Triangle> faces;
     std::vector<ViewDot>      dots;
