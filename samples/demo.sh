@@ -47,7 +47,15 @@ figures=
 draw skin 'Skin with a wart of ten times its stiffness, pressed beside it' sample:skin
 draw palm 'A palm with four stiff tendons; colours are the stiffness' sample:palm --colour stiffness
 draw lobe 'An ear lobe, clamped around the patch as the paper has it' sample:ear-lobe --dark
-draw ellipsoid 'The ellipsoid of 40 000 points, displacements three times as large' sample:ellipsoid --exaggerate 3 --colour plain
+touched=$figures figures=
+say
+say "== what the paper's figures show"
+draw contact 'The contact: the proxy stays on the surface, the HIP is in it; the force on the hand is along the normal' sample:ellipsoid --window 16mm --footprint-radius 3mm --colour plain
+draw sphere 'The points near the contact projected (blue) to the sphere fitted to them; black: the surface at rest' sample:ellipsoid --sphere --projected --ghost
+for law in linear hyperbolic; do
+    draw $law-soft "Rigidity $law along the object: 0.25 N at its soft end, displacements four times as large" samples/scenes/ellipsoid_$law.json --at=-30mm,0,30mm --force 0.25N --exaggerate 4 --view whole
+    draw $law-stiff "Rigidity $law: the same force at its stiff end" samples/scenes/ellipsoid_$law.json --at=30mm,0,30mm --force 0.25N --exaggerate 4 --view whole
+done
 say
 say '== the paper, computed again: one to two minutes on two cores'
 "$build/bin/palpate" paper --out "$out/paper" || exit 1
@@ -58,6 +66,9 @@ cat >"$out/index.html" <<HTML
 img{width:100%}figcaption{font-size:.9em}@media(max-width:50em){figure{width:100%}}</style></head><body>
 <h1>What the demo made</h1>
 <p><a href="paper/index.html">The paper's claims, computed again</a>, each beside our figure. The <a href="skin/">wart in numbers and charts</a>. To touch these yourself: <code>$build/bin/palpate view</code>, hold Space and move.</p>
+<h2>Objects, touched</h2>
+$touched<h2>What the paper's figures show</h2>
+<p>Five places in one picture, with a table, are in <a href="paper/index.html">part a</a> of the other page; an ear lobe that may bend at its edges in part b.</p>
 $figures</body></html>
 HTML
 say
