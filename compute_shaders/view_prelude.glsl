@@ -60,6 +60,6 @@ float cueOf(float hollow, float facing)
 /// \param side  -1 where the normal was turned round to face the eye
 vec3 litPoint(vec4 packed, vec3 normal, float facing, float side, vec3 place)
 {
-    float hollow = side * (packed.a - 128.0 / 255.0);
+    float hollow = side * (packed.a - 128.0 / 255.0) / float(kHollow);
     return min(vec3(1), packed.rgb * litBy(normal) * (1.0 + cueOf(hollow, facing)) + frame.shine * reflection(normal, place));
 }

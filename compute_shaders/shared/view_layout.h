@@ -34,6 +34,8 @@ PALPATE_VIEW_CONST kBindTiles   = 9; // squares of it, then of the panels, that 
 PALPATE_VIEW_CONST kBindFaces   = 10; // numbers of splats, three to a triangle
 PALPATE_VIEW_CONST kBindPanels  = 11; // colours of the panels, premultiplied
 
+PALPATE_VIEW_CONST kHollow = 4; // beyond 1/8 nothing gets darker or lighter, see cueOf() [1]
+
 PALPATE_VIEW_CONST kTile = 32; // side of such a square [px]
 
 // No vector crosses a multiple of 16 bytes and sizes are such multiples, so that std430 is the layout of C++.
@@ -59,7 +61,7 @@ struct ViewSplat {
     float radius;   // [m]; negative: only the side of the normal is seen, and the radius is its size
     vec3  normal;   // unit
     uint  colour;   // red in the lowest byte; the highest one, in fine pictures: how much of the radius covers what is
-                    // behind [1/255]; in fast ones, whose radius is that part: 1/2 + hollowness [1/255]
+                    // behind [1/255]; in fast ones, whose radius is that part: 1/2 + kHollow times hollowness [1/255]
 };
 
 struct ViewCorner {

@@ -123,6 +123,16 @@ std::vector<glm::dvec3> CloudSkin::normals(std::span<const glm::dvec3> positions
     return result;
 }
 
+std::vector<double> CloudSkin::smoothed(std::span<const double> values) const
+{
+    std::vector<double> result(values.size());
+    for (std::size_t n = 0; n < values.size(); ++n) {
+        for (const std::uint32_t k : std::span(neighbours_).subspan(n * each_, each_)) result[n] += values[k];
+        result[n] /= double(each_);
+    }
+    return result;
+}
+
 void CloudSkin::refit(std::span<const glm::dvec3> positions, std::span<const std::uint32_t> points,
                       std::span<glm::dvec3> normals) const
 {

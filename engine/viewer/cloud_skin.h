@@ -34,6 +34,9 @@ public:
     [[nodiscard]] std::vector<std::uint8_t> turnOutwards(std::span<const glm::dvec3> positions,
                                                          std::span<glm::dvec3>       normals) const;
 
+    /// Values of all points, each the mean over the point's neighbours.
+    [[nodiscard]] std::vector<double> smoothed(std::span<const double> values) const;
+
     /// Normals of a few points whose neighbourhood moved, on the side on which they were; the others' stay.
     void refit(std::span<const glm::dvec3> positions, std::span<const std::uint32_t> points,
                std::span<glm::dvec3> normals) const;

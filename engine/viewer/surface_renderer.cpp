@@ -68,7 +68,7 @@ void fillSplats(std::vector<shared::ViewSplat>& splats, const ViewScene& scene, 
                          withAlpha(colour, scene.cores[n] / scene.radii[n])};
         else
             splats[n] = {position, side * float(scene.cores[n]), normal,
-                         withAlpha(colour, scene.hollows.empty() ? 0.5 : 0.5 + scene.hollows[n])};
+                         withAlpha(colour, scene.hollows.empty() ? 0.5 : 0.5 + shared::kHollow * scene.hollows[n])};
     }
     const glm::vec3 toEye(camera.toEye); // dots face it
     for (const ViewDot& dot : scene.dots)

@@ -8,6 +8,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/viewer/rest_relief.h"
+
 namespace palp {
 namespace {
 
@@ -59,11 +61,26 @@ std::optional<ViewPaint> viewPaintNamed(std::string_view wanted)
 
 TouchView::TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings,
                      std::span<const Triangle> faces)
-    : cloud_(cloud), settings_(settings), faces_(faces), skin_(cloud.positions(), index),
+    : cloud_(cloud), settings_(settings), spacing_(index.spacing()), faces_(faces), skin_(cloud.positions(), index),
       restNormals_(skin_.normals(cloud.positions())), oneSided_(skin_.turnOutwards(cloud.positions(), restNormals_)),
       normals_(restNormals_), positions_(cloud.positions().begin(), cloud.positions().end()),
-      deflections_(cloud.size()), hollows_(cloud.size()), stiffness_(cloud.stiffness())
+      deflections_(cloud.size()), stiffness_(cloud.stiffness())
 {
+    findRelief();
+}
+
+void TouchView::findRelief()
+{
+    // Each point sees it in the noise of its own normal.
+    relief_  = skin_.smoothed(restRelief(cloud_.positions(), restNormals_, spacing_, kCue * settings_.window));
+    hollows_ = relief_;
+}
+
+void TouchView::use(const PatchSettings& settings)
+{
+    const bool sameReach = settings.window == settings_.window;
+    settings_            = settings;
+    if (!sameReach) findRelief();
 }
 
 void TouchView::take(const Patch* patch)
@@ -82,7 +99,8 @@ void TouchView::bend(double force, double exaggeration)
     for (const std::uint32_t n : moved_) {
         positions_[n]   = cloud_.positions()[n];
         normals_[n]     = restNormals_[n];
-        deflections_[n] = hollows_[n] = 0;
+        deflections_[n] = 0;
+        hollows_[n]     = relief_[n];
     }
     moved_ = surface_.moving;
     for (std::size_t i = 0; i < moved_.size(); ++i) {
@@ -90,7 +108,7 @@ void TouchView::bend(double force, double exaggeration)
         deflections_[n]       = force * surface_.responses[i];
         positions_[n] += exaggeration * deflections_[n] * surface_.inward;
         const double side = glm::dot(restNormals_[n], surface_.inward) < 0 ? 1 : -1; // normals have either side
-        hollows_[n]       = side * exaggeration * force * surface_.hollows[i];
+        hollows_[n]       = relief_[n] + side * exaggeration * force * surface_.hollows[i];
     }
     skin_.refit(positions_, std::span(moved_).first(surface_.sloping), normals_);
 }

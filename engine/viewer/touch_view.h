@@ -67,13 +67,11 @@ public:
     void show(const Patch* patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand = {});
 
     /// Other settings of the same cloud from now on.
-    void use(const PatchSettings& settings) { settings_ = settings; }
+    void use(const PatchSettings& settings);
 
-    [[nodiscard]] std::span<const glm::dvec3> restNormals() const noexcept
-    {
-        return restNormals_;
-    }                                                                                      ///< of either side [1]
-    [[nodiscard]] std::span<const double> radii() const noexcept { return skin_.cores(); } ///< of closed discs [m]
+    /// Those of closed objects point outwards [1].
+    [[nodiscard]] std::span<const glm::dvec3> restNormals() const noexcept { return restNormals_; }
+    [[nodiscard]] std::span<const double>     radii() const noexcept { return skin_.cores(); } ///< of closed discs [m]
 
     /// Valid until the next show(); title and note are the caller's to set.
     [[nodiscard]] ViewScene& scene() noexcept { return scene_; }
@@ -85,6 +83,7 @@ private:
         double      compliance = 0; ///< [m/N]
         std::size_t points     = 0; ///< [1]; 0: none was
     };
+    void findRelief();
     void take(const Patch* patch);
     void bend(double force, double exaggeration);
     void paint(double force, const TouchLook& look);
@@ -95,11 +94,13 @@ private:
 
     const PointCloud&         cloud_;
     PatchSettings             settings_;
+    double                    spacing_; // of the cloud [m]
     std::span<const Triangle> faces_;
     CloudSkin                 skin_;
     std::vector<glm::dvec3>   restNormals_; // [1]
     std::vector<std::uint8_t> oneSided_;
     std::vector<glm::dvec3>   normals_, positions_;   // [1], [m]
+    std::vector<double>       relief_;                // at rest [1]
     std::vector<double>       deflections_, hollows_; // [m], [1]
     std::span<const double>   stiffness_;             // [Pa] or [N m]
 
