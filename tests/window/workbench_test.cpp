@@ -426,12 +426,30 @@ TEST_F(WorkbenchTest, WhileSomethingLargeIsOpenedTheWindowSaysSoAndLives)
     });
     wait("words", [this] { return screen_.said == "opening sample:palm ..."; });
     wait("pictures", [&] { return screen_.pictures > then + 5; });
-    step("paint that would be lost", [this](WindowInput& input) { input.left = true; });
     step("it is there", [&](WindowInput&) { opened = true; });
     wait("the palm", [this] { return screen_.points != 2000; });
     run();
 
     EXPECT_EQ(complaints_, "");
+}
+
+TEST_F(WorkbenchTest, NothingIsPaintedOnAnObjectThatIsAboutToGo)
+{
+    settings_.values["stiffness"] = kRamp;
+    std::atomic<bool> fails       = false;
+    settings_.open                = [&](const std::string& what, const SceneValues& values) {
+        if (what == "sample:sheet") return sceneOf(what, values);
+        while (!fails) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        throw Error("it cannot be opened");
+    };
+    wait("the object", [this] { return screen_.points == 2000; });
+    press('B');
+    drop("other");
+    wait("words", [this] { return screen_.said == "opening other ..."; });
+    step("a dab", [](WindowInput& input) { input.left = true; });
+    step("it fails, so that the old object and its paint can be looked at", [&](WindowInput&) { fails = true; });
+    wait("a sentence", [this] { return complainedOf("it cannot be opened"); });
+    EXPECT_EQ(run().said, "") << "or else: that paint was saved";
 }
 
 TEST_F(WorkbenchTest, WhoIsToHomeADeviceIsToldAndMayGiveUp)
