@@ -29,23 +29,36 @@ double Bounds::diagonal() const noexcept
 }
 
 PointCloud::PointCloud(std::vector<glm::dvec3> positions, std::vector<double> stiffness, StiffnessKind kind)
-    : positions_(std::move(positions)), stiffness_(std::move(stiffness)), kind_(kind)
+    : positions_(std::make_shared<const std::vector<glm::dvec3>>(std::move(positions))),
+      stiffness_(std::move(stiffness)), kind_(kind)
 {
-    PALP_EXPECT(positions_.size() == stiffness_.size(), std::to_string(positions_.size()) + " positions, " +
-                                                            std::to_string(stiffness_.size()) + " stiffnesses");
-    if (positions_.empty()) throw Error("the cloud is empty: expected at least one point");
-    bounds_ = {positions_.front(), positions_.front()};
-    for (std::size_t i = 0; i < positions_.size(); ++i) {
-        const glm::dvec3& p = positions_[i];
+    if (positions_->empty()) throw Error("the cloud is empty: expected at least one point");
+    bounds_ = {positions_->front(), positions_->front()};
+    for (std::size_t i = 0; i < positions_->size(); ++i) {
+        const glm::dvec3& p = (*positions_)[i];
         if (!finite(p))
             throw Error("point " + std::to_string(i) + ": expected a finite position, found (" + std::to_string(p.x) +
                         ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + ")");
-        if (!(stiffness_[i] > 0) || !std::isfinite(stiffness_[i]))
-            throw Error("point " + std::to_string(i) + ": expected a finite stiffness above zero [" + unitOf(kind_) +
-                        "], found " + std::to_string(stiffness_[i]));
         bounds_.low  = glm::min(bounds_.low, p);
         bounds_.high = glm::max(bounds_.high, p);
     }
+    checkStiffness();
+}
+
+PointCloud::PointCloud(const PointCloud& points, std::vector<double> stiffness)
+    : positions_(points.positions_), stiffness_(std::move(stiffness)), kind_(points.kind_), bounds_(points.bounds_)
+{
+    checkStiffness();
+}
+
+void PointCloud::checkStiffness() const
+{
+    PALP_EXPECT(positions_->size() == stiffness_.size(), std::to_string(positions_->size()) + " positions, " +
+                                                             std::to_string(stiffness_.size()) + " stiffnesses");
+    for (std::size_t i = 0; i < stiffness_.size(); ++i)
+        if (!(stiffness_[i] > 0) || !std::isfinite(stiffness_[i]))
+            throw Error("point " + std::to_string(i) + ": expected a finite stiffness above zero [" + unitOf(kind_) +
+                        "], found " + std::to_string(stiffness_[i]));
 }
 
 double PointCloud::rigidity(std::size_t point, const Material& material) const noexcept

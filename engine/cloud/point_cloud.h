@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -39,9 +40,13 @@ public:
     /// \throws Error naming the first point that breaks the invariant
     PointCloud(std::vector<glm::dvec3> positions, std::vector<double> stiffness, StiffnessKind kind);
 
-    [[nodiscard]] std::size_t                 size() const noexcept { return positions_.size(); }
-    [[nodiscard]] std::span<const glm::dvec3> positions() const noexcept { return positions_; } ///< [m]
-    [[nodiscard]] std::span<const double>     stiffness() const noexcept { return stiffness_; } ///< [Pa] or [N m]
+    /// The same points, which both then share, with other stiffnesses of the same kind: a quarter of the memory is new.
+    /// \throws Error as above
+    PointCloud(const PointCloud& points, std::vector<double> stiffness);
+
+    [[nodiscard]] std::size_t                 size() const noexcept { return stiffness_.size(); }
+    [[nodiscard]] std::span<const glm::dvec3> positions() const noexcept { return *positions_; } ///< [m]
+    [[nodiscard]] std::span<const double>     stiffness() const noexcept { return stiffness_; }  ///< [Pa] or [N m]
     [[nodiscard]] StiffnessKind               kind() const noexcept { return kind_; }
     [[nodiscard]] const Bounds&               bounds() const noexcept { return bounds_; }
 
@@ -49,10 +54,12 @@ public:
     [[nodiscard]] double modulus(std::size_t point, const Material&) const noexcept;  ///< [Pa]
 
 private:
-    std::vector<glm::dvec3> positions_;
-    std::vector<double>     stiffness_;
-    StiffnessKind           kind_;
-    Bounds                  bounds_;
+    void checkStiffness() const;
+
+    std::shared_ptr<const std::vector<glm::dvec3>> positions_; ///< never null
+    std::vector<double>                            stiffness_;
+    StiffnessKind                                  kind_;
+    Bounds                                         bounds_;
 };
 
 } // namespace palp

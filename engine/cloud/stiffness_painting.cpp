@@ -209,7 +209,7 @@ std::span<const std::uint32_t> StiffnessPainting::redo()
 
 PointCloud StiffnessPainting::cloud() const
 {
-    return {{original_.positions().begin(), original_.positions().end()}, stiffness_, original_.kind()};
+    return {original_, stiffness_};
 }
 
 std::vector<glm::dvec3> dabsAlong(std::span<const glm::dvec3> path, double radius, const PointCloud& cloud,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
@@ -194,6 +195,13 @@ LoadedCloud CloudSource::load() const
         PointCloud({loaded.cloud.positions().begin(), loaded.cloud.positions().end()}, std::move(stiffness), kind);
     loaded.report.stiffnessSource = "--stiffness " + law + " [" + unitOf(kind) + "]";
     return loaded;
+}
+
+void refuseSourceAsTarget(const std::string& option, const std::string& source, const std::string& target)
+{
+    std::error_code none; // no such file: no danger
+    if (!std::filesystem::equivalent(source, target, none) || none) return;
+    throw Error(option + ": " + target + " is the cloud that is read, which would be lost; name another file");
 }
 
 std::string placeText(const glm::dvec3& place, double diagonal, double metresPerUnit)

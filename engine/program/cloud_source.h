@@ -39,6 +39,12 @@ struct CloudSource {
     [[nodiscard]] double metresPerPlainNumber() const;
 };
 
+/// A command that reads a cloud and writes another never takes the one for the other: what it read would be gone.
+/// Anything else that is there is replaced, by every command, once the new file is whole.
+/// \param option  that names the target
+/// \throws Error if both are the same file
+void refuseSourceAsTarget(const std::string& option, const std::string& source, const std::string& target);
+
 /// "x,y,z" as --at takes it, to about a thousandth of a cloud of that diagonal [m].
 [[nodiscard]] std::string placeText(const glm::dvec3& place, double diagonal, double metresPerUnit = 1);
 

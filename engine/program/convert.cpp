@@ -27,8 +27,9 @@ CloudEncoding encodingNamed(const std::string& name)
 void convert(const ConvertOptions& options)
 {
     const CloudEncoding encoding = encodingNamed(options.encoding);
-    const LoadedCloud   loaded   = options.source.load();
-    const bool          faces    = holdsFaces(options.target);
+    refuseSourceAsTarget("TARGET", options.source.name, options.target);
+    const LoadedCloud loaded = options.source.load();
+    const bool        faces  = holdsFaces(options.target);
     writeCloud(options.target, loaded.cloud, {}, {encoding, loaded.faces});
     std::vector<std::string> warnings = options.source.warnings(loaded);
     if (!faces && !loaded.faces.empty())

@@ -248,9 +248,10 @@ std::unique_ptr<HapticDevice> falconFor(const FalconOptions& options, const std:
     return std::make_unique<FalconDevice>([path] { return openFalcon(path); }, settings);
 }
 
-void waitForHoming(HapticDevice& device, const std::atomic<bool>& stop)
+bool waitForHoming(HapticDevice& device, const std::atomic<bool>& stop,
+                   const std::function<void(const std::string&)>& tell)
 {
-    if (!device.info().needsHoming || device.info().isSimulation) return;
+    if (!device.info().needsHoming || device.info().isSimulation) return false;
     const auto start = std::chrono::steady_clock::now();
     Metronome  metronome{std::chrono::milliseconds(1)};
     bool       told = false;
@@ -267,12 +268,18 @@ void waitForHoming(HapticDevice& device, const std::atomic<bool>& stop)
             throw Error(device.info().model + ": lost while it was to be homed (" + name(state.fault) +
                         "); palpate doctor may tell why");
         if (now > kPatience && !told) {
-            std::cerr << "palpate: home the " << device.info().model
-                      << ": pull the grip all the way out, then push it all the way in; its red light goes out\n";
+            tell("home the " + device.info().model +
+                 ": pull the grip all the way out, then push it all the way in; its red light goes out");
             told = true;
         }
     }
-    if (told) std::cerr << "palpate: homed\n";
+    return told;
+}
+
+void waitForHoming(HapticDevice& device, const std::atomic<bool>& stop)
+{
+    const auto tell = [](const std::string& sentence) { std::cerr << "palpate: " << sentence << "\n"; };
+    if (waitForHoming(device, stop, tell)) tell("homed");
 }
 
 } // namespace palp

@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -60,9 +61,15 @@ struct HandSource {
 /// \throws Error naming the image, if it cannot be read
 [[nodiscard]] std::unique_ptr<HapticDevice> falconFor(const FalconOptions& options, const std::string& path = {});
 
-/// Waits until somebody has homed the device, telling how on standard error. Devices that need none: nothing.
+/// Waits until somebody has homed the device. Devices that need none: nothing.
 /// \param stop  gives up once it is true
+/// \param tell  is told how, once that takes longer than a second
+/// \return whether it had told
 /// \throws Error if the device is lost, or `stop` came first
+bool waitForHoming(HapticDevice& device, const std::atomic<bool>& stop,
+                   const std::function<void(const std::string&)>& tell);
+
+/// The same with words on standard error.
 void waitForHoming(HapticDevice& device, const std::atomic<bool>& stop);
 
 } // namespace palp

@@ -105,9 +105,10 @@ nlohmann::json jsonOf(const StrokeOrder& order, const StrokeReport& report)
 void paint(const PaintOptions& o)
 {
     static_cast<void>(holdsFaces(o.out)); // a name of no format is the first thing to say
-    Canvas                   canvas = canvasOf(o.source);
-    const PointCloud&        cloud  = canvas.loaded.cloud;
-    const std::string        unit   = cloud.kind() == StiffnessKind::modulus ? "Pa" : "N m";
+    Canvas canvas = canvasOf(o.source);
+    refuseSourceAsTarget("--out", canvas.file.empty() ? o.source.name : canvas.file, o.out);
+    const PointCloud&        cloud = canvas.loaded.cloud;
+    const std::string        unit  = cloud.kind() == StiffnessKind::modulus ? "Pa" : "N m";
     std::vector<StrokeOrder> orders;
     const auto               what = [](std::size_t k) { return "--stroke " + std::to_string(k + 1); };
     for (std::size_t k = 0; k < o.strokes.size(); ++k)

@@ -260,6 +260,8 @@ void render(const RenderOptions& o)
     if (o.frames && !o.force.empty())
         throw Error("--force: with --frames the hand decides how hard it presses; leave one of the two out");
     Stage stage(o);
+    for (const std::string& sentence : assumptions(stage.scene, stage.loaded.report))
+        std::cerr << "palpate: warning: " << sentence << "\n";
     tell(o, stage, o.frames ? film(o, stage) : std::vector{still(o, stage)});
 }
 

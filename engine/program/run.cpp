@@ -18,6 +18,7 @@
 #include "engine/program/commands.h"
 #include "engine/program/hand_source.h"
 #include "engine/program/interrupt.h"
+#include "engine/program/scene_source.h"
 #include "engine/program/session_report.h"
 #include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
@@ -63,17 +64,6 @@ SessionSummary play(const SessionParts& parts, double seconds, const OnSample& a
 void warn(const std::vector<std::string>& sentences)
 {
     for (const std::string& sentence : sentences) std::cerr << "palpate: warning: " << sentence << "\n";
-}
-
-/// What the cloud did not say and nobody else did.
-std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& report)
-{
-    std::vector<std::string> said;
-    if (report.lengthUnitAssumed)
-        said.emplace_back("assumed metres: the scene has no length_unit, and the file no comment that names one");
-    if (report.stiffnessAssumed && scene.stiffness.empty())
-        said.emplace_back("no stiffness in the file: uniform 300 kPa assumed; the scene's stiffness says otherwise");
-    return said;
 }
 
 /// Variables of the environment that were likely meant for a key.

@@ -47,4 +47,14 @@ std::string SceneSource::title() const
     return name.starts_with("sample:") ? name : std::filesystem::path(name).stem().string();
 }
 
+std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& report)
+{
+    std::vector<std::string> said;
+    if (report.lengthUnitAssumed)
+        said.emplace_back("assumed metres: the scene has no length_unit, and the file no comment that names one");
+    if (report.stiffnessAssumed && scene.stiffness.empty())
+        said.emplace_back("no stiffness in the file: uniform 300 kPa assumed; the scene's stiffness says otherwise");
+    return said;
+}
+
 } // namespace palp

@@ -2,6 +2,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -28,5 +29,8 @@ struct SceneSource {
     /// "sample:skin", or the file's name without its ending.
     [[nodiscard]] std::string title() const;
 };
+
+/// What a cloud's file did not say and nobody else did, in sentences.
+[[nodiscard]] std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& report);
 
 } // namespace palp

@@ -61,6 +61,7 @@ void tell(const ViewOptions& o, const WorkbenchReport& report, const SurfaceRend
                                              {"frame_p50_s", median},
                                              {"frame_p99_s", slow},
                                              {"draw_p50_s", quantileOf(report.drawTimes, 0.5)},
+                                             {"real_time", report.realTime},
                                              {"drawn_on", renderer.device().name}});
         return;
     }
@@ -111,12 +112,14 @@ void view(const ViewOptions& o)
     settings.recorded = [&o](const Stage& stage, const HapticDevice& device) { return infoOf(o, stage, device); };
     HandSource source;
     if (o.hand.hand != "mouse")
-        settings.hand = [&](const Stage& stage) -> WorkbenchHand {
+        settings.hand = [&](const Stage& stage, const HandWait& wait) -> WorkbenchHand {
             source = {}; // a device is opened once at a time
             source = handFor(o.hand, stage.scene(), stage.loaded().cloud, stage.index());
-            waitForHoming(*source.device, catchInterrupts());
+            waitForHoming(*source.device, wait.givenUp, wait.tell);
             return {source.device.get(), source.frame, source.isHeld() ? 1e9 : source.seconds};
         };
+    settings.assumed    = assumptions;
+    settings.complained = [](const std::string& sentence) { std::cerr << "palpate: " << sentence << "\n"; };
     if (!o.hand.seconds.empty()) settings.seconds = secondsOf(o.hand.seconds);
     const auto paint = viewPaintNamed(o.colour);
     const auto map   = colourMapNamed(o.map);
@@ -146,8 +149,10 @@ void view(const ViewOptions& o)
     }
 #endif
     glm::ivec2 last{};
-    Workbench  bench(settings, renderer);
-    const auto report = bench.run(
+    settings.titled = [&window](const std::string& name) { window.setTitle(name + " - Palpate"); };
+    WindowScreen screen(renderer);
+    Workbench    bench(settings, screen);
+    const auto   report = bench.run(
         [&](double patience) {
             WindowInput input = window.poll(patience);
             if (input.size.x > 0) last = input.size;

@@ -242,7 +242,8 @@ void RealSession::look()
         if (shared_.shown.take()) {
             const Shown& shown = *shared_.shown.held();
             settings_.onView({shown.sample, shown.loopPeriod, patch ? patch->solveTime : 0, shown.buttons,
-                              patch && patch->patch ? &*patch->patch : nullptr});
+                              patch && patch->patch ? &*patch->patch : nullptr,
+                              warning_}); // written before the first `shown`
         }
         lock.lock();
     }

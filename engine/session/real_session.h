@@ -12,11 +12,12 @@ namespace palp {
 
 /// What one may look at while a session runs; valid during the call that shows it.
 struct SessionView {
-    SessionSample sample;               ///< the newest
-    double        loopPeriod = 0;       ///< of the servo, a mean over 0.1 s [s]
-    double        solveTime  = 0;       ///< of the last patch [s]; 0: none yet
-    std::uint32_t buttons    = 0;       ///< of the device
-    const Patch*  patch      = nullptr; ///< the last one: displaced(cloud, *patch, |force|) is the surface; may be null
+    SessionSample    sample;          ///< the newest
+    double           loopPeriod = 0;  ///< of the servo, a mean over 0.1 s [s]
+    double           solveTime  = 0;  ///< of the last patch [s]; 0: none yet
+    std::uint32_t    buttons    = 0;  ///< of the device
+    const Patch*     patch = nullptr; ///< the last one: displaced(cloud, *patch, |force|) is the surface; may be null
+    std::string_view warning{};       ///< what the system refused of real-time rights; empty if nothing
 };
 
 /// What a session in real time needs beside its parts.

@@ -160,7 +160,11 @@ std::optional<SessionDifference> differenceIn(const SessionColumn& column, const
 RecordedSession readSession(const std::filesystem::path& folder)
 {
     const std::filesystem::path path = folder / "session.json";
-    const JsonObject            file =
+    std::error_code             none;
+    if (std::filesystem::is_directory(folder, none) && !std::filesystem::exists(path, none))
+        throw Error(folder.string() + ": expected the folder of a recorded session, found no session.json in it; " +
+                    "palpate run --record makes one, and so does F5 in the window");
+    const JsonObject file =
         JsonObject::parse(readWhole(path, kMostOfDescription, "the description of a session"), path.string());
     if (!file.has("format") || file.wholeNumber("format", 1, std::numeric_limits<int>::max()) != 1)
         throw Error(path.string() + ": expected \"format\": 1, found " +

@@ -112,6 +112,7 @@ constexpr auto kObject = JsonObject::Kind::object;
 
 void readLaw(Scene& scene, const Given& given)
 {
+    if (given.text == "own") return scene.stiffness.clear();
     try { // across any region: the cloud is not there yet
         static_cast<void>(parseSpatialLaw(given.text, {-1, -1, -1}, {1, 1, 1}, SpatialLaw::Space::volume));
     } catch (const Error& error) {
@@ -181,7 +182,7 @@ constexpr std::array kKeys = {
         },
         [](const S& s) { return orNothing(s.lengthUnit); }},
     Key{{"stiffness", "Pa", "law of Young's modulus over the cloud, in place of the cloud's own",
-         "a law such as {\"law\":\"linear\",\"from\":3e5,\"to\":3e6,\"axis\":\"x\"}"},
+         "a law such as {\"law\":\"linear\",\"from\":3e5,\"to\":3e6,\"axis\":\"x\"}, or own"},
         {kObject},
         readLaw,
         [](const S& s) { return s.stiffness.starts_with('{') ? s.stiffness : orNothing(s.stiffness); }},

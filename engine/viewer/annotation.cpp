@@ -22,8 +22,8 @@ constexpr int kLeastWidth = 200, kLeastHeight = 150; ///< a smaller picture has 
 /// Draws on a picture in multiples of its font's size.
 class Annotator {
 public:
-    Annotator(Image& image, Ground ground)
-        : image_(image), ink_(inkOn(ground)), ground_(ground), size_(std::clamp(image.height / 46.0, 10.0, 40.0))
+    Annotator(Image& image, Ground ground, double scale)
+        : image_(image), ink_(inkOn(ground)), ground_(ground), size_(annotationSize(image.height, scale))
     {
     }
 
@@ -220,22 +220,27 @@ void drawLength(Annotator& to, const Camera& camera, const glm::dvec2& taken)
 
 } // namespace
 
-void annotate(Image& image, const ViewScene& scene, const Camera& camera)
+double annotationSize(int height, double scale)
 {
-    if (image.width < kLeastWidth || image.height < kLeastHeight) return;
-    Annotator to(image, scene.ground);
+    return scale * std::clamp(height / scale / 46, 10.0, 40.0);
+}
+
+void annotate(Image& image, const ViewScene& scene, const Camera& camera, double scale)
+{
+    if (image.width < kLeastWidth * scale || image.height < kLeastHeight * scale) return;
+    Annotator to(image, scene.ground, scale);
     drawTitle(to, scene);
     if (!scene.values.empty()) drawColours(to, scene.colours);
     drawLength(to, camera, drawKey(to, scene));
 }
 
 // Everything is laid on by a share of what is there, so that what black and white become tells both share and colour.
-Overlay annotations(const ViewScene& scene, const Camera& camera, int width, int height)
+Overlay annotations(const ViewScene& scene, const Camera& camera, int width, int height, double scale)
 {
     constexpr std::uint8_t kWhite = 255;
     Image                  onBlack(width, height, {0, 0, 0}), onWhite(width, height, {kWhite, kWhite, kWhite});
-    annotate(onBlack, scene, camera);
-    annotate(onWhite, scene, camera);
+    annotate(onBlack, scene, camera, scale);
+    annotate(onWhite, scene, camera, scale);
     Overlay           overlay{width, height, std::vector<std::uint32_t>(onBlack.pixels.size()), {}};
     const int         tile    = int(shared::kTile);
     const int         columns = (width + tile - 1) / tile;

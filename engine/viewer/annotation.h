@@ -10,7 +10,11 @@ namespace palp {
 
 /// Writes what a scene's colours and shapes mean onto its picture: title, colour bar with unit, a key of the shapes and
 /// a bar of a round length. Sizes follow the picture's height; a picture too small for them gets none.
-void annotate(Image& image, const ViewScene& scene, const Camera& camera);
+/// \param scale  of a display with many pixels per inch [1]
+void annotate(Image& image, const ViewScene& scene, const Camera& camera, double scale = 1);
+
+/// Size of their font in a picture of that height [px].
+[[nodiscard]] double annotationSize(int height, double scale = 1);
 
 /// The same by itself, to be laid over pictures again and again.
 struct Overlay {
@@ -19,6 +23,7 @@ struct Overlay {
     std::vector<std::uint32_t> tiles;  ///< squares of shared::kTile that are not empty: column, row << 16
 };
 
-[[nodiscard]] Overlay annotations(const ViewScene& scene, const Camera& camera, int width, int height);
+[[nodiscard]] Overlay annotations(const ViewScene& scene, const Camera& camera, int width, int height,
+                                  double scale = 1);
 
 } // namespace palp

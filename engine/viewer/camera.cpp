@@ -30,6 +30,16 @@ glm::dvec3 Camera::upwards() const
     return glm::cross(toEye, right());
 }
 
+glm::dvec3 Camera::middle() const
+{
+    return target - halfHeight() * (centre.x * right() + centre.y * upwards());
+}
+
+glm::dvec3 Camera::eye() const
+{
+    return middle() + distance * toEye;
+}
+
 double Camera::halfHeight() const
 {
     return distance * std::tan(kFieldOfView / 2);
@@ -86,7 +96,7 @@ CameraMatrices matricesOf(const Camera& camera, const glm::dvec3& origin, double
 {
     constexpr double kNearest = 0.02; // of the distance: nearer than that nothing is drawn in perspective [1]
     const glm::dvec3 right = camera.right(), up = camera.upwards();
-    const glm::dvec3 eye = camera.target + camera.distance * camera.toEye - origin;
+    const glm::dvec3 eye = camera.eye() - origin;
     CameraMatrices   result;
     for (int k = 0; k < 3; ++k) {
         result.viewFromWorld[k] = {right[k], up[k], camera.toEye[k], 0};

@@ -11,14 +11,19 @@ enum class Projection { perspective, orthographic };
 ///
 /// Invariant: toEye and up are unit vectors that are not parallel; distance > 0.
 struct Camera {
-    glm::dvec3 target{};       ///< in the middle of the picture, and what the camera turns about [m]
+    glm::dvec3 target{};       ///< what the camera turns about, seen at `centre` [m]
     glm::dvec3 toEye{0, 0, 1}; ///< from the target to the eye [1]
     glm::dvec3 up{0, 1, 0};    ///< stays upright in the picture as the camera turns [1]
     double     distance   = 1; ///< of the eye from the target [m]
     Projection projection = Projection::perspective;
+    /// Where the target is seen: from the middle of the picture to the right and upwards, in halves of its height [1].
+    /// Not zero where something covers a part of the picture.
+    glm::dvec2 centre{};
 
     [[nodiscard]] glm::dvec3 right() const;   ///< to the right of the picture [1]
     [[nodiscard]] glm::dvec3 upwards() const; ///< upwards in the picture [1]
+    [[nodiscard]] glm::dvec3 middle() const;  ///< what is in the middle of the picture, as far as the target [m]
+    [[nodiscard]] glm::dvec3 eye() const;     ///< in front of it [m]
 
     /// Half of what is seen at the target, from its middle to its upper edge [m]: the same for both projections.
     [[nodiscard]] double halfHeight() const;
@@ -39,7 +44,9 @@ inline constexpr double kFieldOfView = 0.52;
 [[nodiscard]] Camera dollied(const Camera& camera, double factor);
 
 /// The whole of a ball is in the picture, with a little room around it.
-/// \param radius  > 0 [m] \param aspect  width over height of the picture [1]
+/// \param radius  > 0 [m]
+/// \param aspect  width over height of the picture; of a part of it about `centre`, its smaller side over that height
+/// [1]
 [[nodiscard]] Camera framed(const Camera& camera, const glm::dvec3& centre, double radius, double aspect);
 
 /// The other projection; what is at the target keeps its size.

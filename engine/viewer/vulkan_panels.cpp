@@ -85,6 +85,17 @@ VulkanPanels::~VulkanPanels()
     if (!context_.atWork()) ImGui_ImplVulkan_Shutdown();
 }
 
+// The back end sets the number of the texture, and building a font takes it away. Later ones follow the font
+// themselves.
+bool VulkanPanels::fontHasChanged()
+{
+#if IMGUI_VERSION_NUM < 19200
+    return !ImGui::GetIO().Fonts->TexID;
+#else
+    return false;
+#endif
+}
+
 void VulkanPanels::record(VkCommandBuffer commands) const
 {
     if (ImDrawData* const data = ImGui::GetDrawData()) ImGui_ImplVulkan_RenderDrawData(data, commands);

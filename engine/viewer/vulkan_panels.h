@@ -25,6 +25,9 @@ public:
     [[nodiscard]] static std::vector<std::uint32_t> tiles();
     [[nodiscard]] static VkExtent2D                 size(); ///< of that picture [px]
 
+    /// The font's pictures have been made anew since one of these has taken them.
+    [[nodiscard]] static bool fontHasChanged();
+
 private:
     void uploadFont();
 

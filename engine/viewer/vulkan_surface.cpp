@@ -439,10 +439,20 @@ bool VulkanSurface::finish()
     return true;
 }
 
+bool VulkanSurface::hasPanels() const
+{
+#ifdef PALPATE_PANELS
+    return panels_ && !VulkanPanels::fontHasChanged();
+#else
+    return false;
+#endif
+}
+
 void VulkanSurface::takePanels()
 {
 #ifdef PALPATE_PANELS
-    PALP_EXPECT(panels_ || !started_, "the first panels are made while nothing is being drawn");
+    PALP_EXPECT(hasPanels() || !started_, "the first panels, and those of another font, are made between two pictures");
+    if (!hasPanels()) panels_.reset(); // the back end can take a font once only
     if (!panels_) panels_ = std::make_unique<VulkanPanels>(context_, panelStep_.pass.get());
     panelTiles_  = VulkanPanels::tiles();
     panelSize_   = VulkanPanels::size();

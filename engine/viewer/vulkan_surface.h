@@ -42,7 +42,8 @@ public:
     /// \throws Error in a build without Dear ImGui
     void takePanels();
 
-    [[nodiscard]] bool hasPanels() const noexcept { return panels_ != nullptr; }
+    /// Whether takePanels() may be called while a picture is being drawn.
+    [[nodiscard]] bool hasPanels() const;
 
 private:
     /// A pass and what it draws into.

@@ -5,14 +5,9 @@
 #include <imgui.h>
 
 #include "engine/viewer/text.h"
+#include "engine/window/panel_layout.h"
 
 namespace palp {
-namespace {
-
-constexpr float kFontSize = 15; ///< at scale 1 [px]
-
-} // namespace
-
 PanelFrame::PanelFrame(double scale)
 {
     IMGUI_CHECKVERSION();
@@ -20,6 +15,20 @@ PanelFrame::PanelFrame(double scale)
     ImGuiIO& io    = ImGui::GetIO();
     io.IniFilename = nullptr; // where panels are is ours to say
     io.LogFilename = nullptr;
+    setScale(scale);
+}
+
+PanelFrame::~PanelFrame()
+{
+    ImGui::DestroyContext();
+}
+
+void PanelFrame::setScale(double scale)
+{
+    if (scale == scale_) return;
+    scale_      = scale;
+    ImGuiIO& io = ImGui::GetIO();
+    io.Fonts->Clear();
     ImFontConfig font;
     font.FontDataOwnedByAtlas = false;
     const auto bytes          = fontBytes();
@@ -28,21 +37,18 @@ PanelFrame::PanelFrame(double scale)
                                           0x2190, 0x2193, 0x2212, 0x2212, 0x2265, 0x2265, 0};
     // ImGui asks for a pointer that it does not write through.
     io.Fonts->AddFontFromMemoryTTF(const_cast<unsigned char*>(bytes.data()), int(bytes.size()),
-                                   kFontSize * float(scale), &font, kGlyphs);
+                                   kPanelFont * float(scale), &font, kGlyphs);
 #if IMGUI_VERSION_NUM < 19200 // later ones do that while they draw
     io.Fonts->Build();
 #endif
+    ImGui::GetStyle() = ImGuiStyle(); // sizes are scaled from those of scale 1
     ImGui::GetStyle().ScaleAllSizes(float(scale));
-    setDark(false);
-}
-
-PanelFrame::~PanelFrame()
-{
-    ImGui::DestroyContext();
+    setDark(dark_);
 }
 
 void PanelFrame::setDark(bool dark)
 {
+    dark_ = dark;
     dark ? ImGui::StyleColorsDark() : ImGui::StyleColorsLight();
     ImGuiStyle& style    = ImGui::GetStyle();
     style.WindowRounding = style.FrameRounding = 3;
@@ -82,6 +88,7 @@ bool pressed(const WindowInput& input, int key)
 // answer, behind the picture that is on its way there.
 WindowInput PanelFrame::begin(WindowInput input)
 {
+    setScale(input.scale);
     const auto now  = std::chrono::steady_clock::now();
     ImGuiIO&   io   = ImGui::GetIO();
     io.DisplaySize  = ImVec2(float(input.size.x), float(input.size.y));

@@ -25,15 +25,21 @@ public:
     /// Light or dark, as the ground is.
     void setDark(bool dark);
 
+    /// Another display: font and distances in its pixels from now on. The same as before: nothing.
+    /// \pre between two frames
+    void setScale(double scale);
+
     /// A frame without a window. \param size  of the picture [px]
     void beginWithoutWindow(const glm::ivec2& size, const PanelPointer& pointer = {});
 
-    /// A frame with what happened in a window. \return the same, with what the panels take for themselves
+    /// A frame with what happened in a window, at its scale. \return the same, with what the panels take for themselves
     [[nodiscard]] WindowInput begin(WindowInput input);
 
     void end();
 
 private:
+    double                                scale_ = 0; ///< [1]; 0: not set yet
+    bool                                  dark_  = false;
     std::chrono::steady_clock::time_point last_{}; ///< frame of a window
 };
 

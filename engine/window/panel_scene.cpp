@@ -10,7 +10,8 @@
 namespace palp {
 namespace {
 
-constexpr float kLabels = 118; ///< width of this section's labels, at scale 1 [px]
+constexpr float kLabels   = 118; ///< width of this section's labels, at scale 1 [px]
+constexpr float kOwnWidth = 44;  ///< of the button beside a law, at scale 1 [px]
 
 const SceneKey& keyNamed(std::string_view name)
 {
@@ -76,7 +77,8 @@ void drawChoice(PanelDesk& desk, const SceneChoice& choice)
 
 void drawLaw(PanelDesk& desk)
 {
-    constexpr std::size_t kRoom = 1024; // [bytes] for what is typed
+    constexpr std::size_t kRoom = 1024;  // [bytes] for what is typed
+    constexpr const char* kOwn  = "own"; // as the scene's key says: no law
     const std::string&    now   = desk.content.scene.stiffness;
     std::vector<char>     text(now.size() + kRoom);
     std::memcpy(text.data(), now.c_str(), now.size() + 1);
@@ -84,12 +86,17 @@ void drawLaw(PanelDesk& desk)
     toned(desk, Tone::faint, "stiffness");
     explain(desk, "stiffness");
     ImGui::SameLine(kLabels * desk.scale + ImGui::GetStyle().WindowPadding.x, 0);
-    ImGui::SetNextItemWidth(-1);
+    ImGui::SetNextItemWidth(now.empty() ? -1 : -kOwnWidth * desk.scale);
     if (ImGui::InputTextWithHint("##law", "the cloud's own", text.data(), text.size(),
                                  ImGuiInputTextFlags_EnterReturnsTrue) &&
-        *text.data() && now != text.data())
-        desk.wishes.values["stiffness"] = text.data();
+        now != text.data())
+        desk.wishes.values["stiffness"] = *text.data() ? text.data() : kOwn;
     explain(desk, "stiffness");
+    if (!now.empty()) { // its way back
+        ImGui::SameLine();
+        if (ImGui::SmallButton(kOwn)) desk.wishes.values["stiffness"] = kOwn;
+        tip("Takes the cloud's own stiffness again");
+    }
     bool first = true;
     for (const char* law : {"constant", "linear", "hyperbolic", "gaussian"}) {
         if (!first) ImGui::SameLine();

@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 
+#include "engine/window/panel_layout.h"
 #include "engine/window/panel_parts.h"
 #include "engine/window/touch_faults.h"
 
@@ -33,7 +34,7 @@ void drawBadges(const PanelDesk& desk)
 
 float drawStatusLine(PanelDesk& desk)
 {
-    const float  pad = 5 * desk.scale, high = ImGui::GetTextLineHeight() + 2 * pad;
+    const float  pad = kStatusPad * desk.scale, high = statusHeight(desk.scale);
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(0, 0));
     ImGui::SetNextWindowSize(ImVec2(screen.x, high));

@@ -75,6 +75,7 @@ void drawTimingSection(PanelDesk& desk)
     const bool          runs    = content.loopPeriod > 0;
     reading(desk, Half::left, "servo", orDash(runs, formatted("%.0f Hz", runs ? 1 / content.loopPeriod : 0)));
     reading(desk, Half::right, "period", orDash(runs, formatted("%.3f ms", 1e3 * content.loopPeriod)));
+    if (!content.realTime.empty()) tonedWrapped(desk, Tone::warning, content.realTime);
     drawPeriods(desk);
     drawPlate(desk);
     const bool draws = content.frameTime > 0;

@@ -4,16 +4,15 @@
 
 #include <imgui.h>
 
+#include "engine/window/panel_layout.h"
 #include "engine/window/panel_parts.h"
 #include "engine/window/touch_faults.h"
 
 namespace palp {
 namespace {
 
-constexpr float kWidth       = 300;  ///< of the column, at scale 1 [px]
-constexpr float kMostOfWidth = 0.6F; ///< of a narrow window [1]
-constexpr float kSmallWidth  = 700,
-                kSmallHeight = 480; ///< a smaller window has sections closed at first [px at scale 1]
+/// A smaller window has sections closed at first [px at scale 1].
+constexpr float kSmallWidth = 700, kSmallHeight = 480;
 
 /// Calm and compact: less room around everything than Dear ImGui takes by itself.
 class Style {
@@ -95,7 +94,7 @@ void closeWhereSmall(bool small)
 void drawColumn(PanelDesk& desk, float top, float foot)
 {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    const float  s = desk.scale, wide = std::min(kWidth * s, kMostOfWidth * screen.x);
+    const float  s = desk.scale, wide = columnWidth(screen.x, s);
     const float  most  = std::max(screen.y - top - foot, 4 * ImGui::GetFontSize());
     const bool   small = screen.x < kSmallWidth * s || screen.y < kSmallHeight * s;
     ImGui::SetNextWindowPos(ImVec2(0, top));
@@ -121,9 +120,8 @@ PanelWishes drawPanels(ViewState& state, const PanelContent& content, double sca
     const Style style(desk.dark(), desk.scale);
     // A fault is shown whether or not there are panels: without them, no hand would know why it feels nothing.
     if (state.panels || needsAttention(content)) {
-        const float top = drawStatusLine(desk);
-        // The key of the shapes is at the foot; see annotate().
-        const float foot = state.texts ? 3 * std::clamp(ImGui::GetIO().DisplaySize.y / 46, 10.0F, 40.0F) : 0;
+        const float top  = drawStatusLine(desk);
+        const float foot = state.texts ? footHeight(ImGui::GetIO().DisplaySize.y, desk.scale) : 0;
         if (state.panels) drawColumn(desk, top, foot);
     }
     if (state.keys) drawKeySheet(desk);

@@ -28,8 +28,9 @@ struct PanelContent {
     std::string              recording{};             ///< its folder; empty: none
     std::string              title{};                 ///< of what is touched
     bool                     painted = false, canUndo = false, canRedo = false;
-    std::vector<std::string> faults{};  ///< what is wrong now, each a sentence with its remedy
-    std::string              message{}; ///< of the last thing done: "saved ..."; may be empty
+    std::vector<std::string> faults{};   ///< what is wrong now, each a sentence with its remedy
+    std::string              message{};  ///< of the last thing done: "saved ..."; may be empty
+    std::string              realTime{}; ///< what the system refused of real-time rights; empty if nothing
 };
 
 /// What the user asked for in a panel, to be done by the window.

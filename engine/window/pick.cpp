@@ -11,8 +11,8 @@ Ray rayThrough(const Camera& camera, const glm::dvec2& at, const glm::dvec2& siz
 {
     const double     half = camera.halfHeight();                                        // [m] at the target
     const glm::dvec2 share(2 * at.x / size.y - size.x / size.y, 1 - 2 * at.y / size.y); // of half the height
-    const glm::dvec3 there = camera.target + half * (share.x * camera.right() + share.y * camera.upwards());
-    const glm::dvec3 eye   = camera.target + camera.distance * camera.toEye;
+    const glm::dvec3 there = camera.middle() + half * (share.x * camera.right() + share.y * camera.upwards());
+    const glm::dvec3 eye   = camera.eye();
     if (camera.projection == Projection::perspective) return {eye, glm::normalize(there - eye)};
     return {there + camera.distance * camera.toEye, -camera.toEye};
 }

@@ -10,6 +10,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/window/panel_frame.h"
+#include "engine/window/panel_layout.h"
 
 namespace palp {
 namespace {
@@ -26,46 +27,19 @@ bool inContact(const SessionView* view)
 
 } // namespace
 
-Workbench::Workbench(WorkbenchSettings settings, SurfaceRenderer& renderer)
-    : settings_(std::move(settings)), renderer_(renderer), state_(settings_.state), values_(settings_.values)
+Workbench::Workbench(WorkbenchSettings settings, Screen& screen)
+    : settings_(std::move(settings)), screen_(screen), state_(settings_.state), values_(settings_.values)
 {
-    openWhat(settings_.what);
-    resetCamera();
 }
 
-void Workbench::openWhat(const std::string& what)
-{
-    if (std::filesystem::is_directory(what)) return startReplay(what);
-    auto stage = std::make_unique<Stage>(settings_.open(what, values_));
-    endRecording();
-    stage_ = std::move(stage);
-    what_  = what;
-    replay_.reset();
-    replayed_.reset();
-    useObject();
-}
-
-/// What suits the object: the hand over it, the brush, the scales of colours and arrows, which stay as they are while
-/// it is touched, so that deeper and stronger always looks so.
-void Workbench::useObject()
-{
-    const Scene& scene = stage_->scene();
-    pointer_.emplace(Hit{stage_->place().point, stage_->place().outward}, scene.startHeight,
-                     stage_->painted().bounds());
-    state_.pressDepth   = 0.4 * scene.patch.material.thickness;
-    state_.brush.radius = scene.patch.footprintRadius;
-    state_.brush.value  = *std::ranges::max_element(stage_->painted().stiffness());
-    deepest_            = 0.5 * scene.patch.material.thickness; // as far as theory goes
-    strongest_          = 0.5 * scene.maxForce;
-    failed_             = false;
-    paintSaved_         = true;
-}
+Workbench::~Workbench() = default;
 
 WorkbenchReport Workbench::run(const Poll& poll, PanelFrame* panels)
 {
     poll_    = poll;
     panels_  = panels;
     started_ = lastFrame_ = lastChange_ = Clock::now();
+    openFirst();
     while (!closing_) {
         stop_ = false;
         takeChanges();
@@ -75,7 +49,7 @@ WorkbenchReport Workbench::run(const Poll& poll, PanelFrame* panels)
             session();
     }
     endRecording();
-    if (stage_->painting().changed() && !paintSaved_) { // nothing is lost
+    if (stage_ && stage_->painting().changed() && !paintSaved_) { // nothing is lost
         savePaint();
         report_.said = message_;
     }
@@ -92,9 +66,13 @@ void Workbench::session()
         WorkbenchHand hand{&pointer_->device(), pointer_->frame(), kLong};
         if (replay_)
             hand = {replay_.get(), {}, double(replayed_->samples.size()) * 1e-3};
-        else if (settings_.hand)
-            hand = settings_.hand(*stage_);
-        hand_ = hand;
+        else if (settings_.hand) {
+            const auto ready = readyHand();
+            if (!ready) return;
+            hand = *ready;
+        }
+        hand_  = hand;
+        begun_ = true;
         startRecording();
         const SessionParts  parts{stage_->scene(), stage_->loaded().cloud, stage_->index(),
                                  solver(),        *hand.device,           hand.frame};
@@ -107,11 +85,10 @@ void Workbench::session()
             static_cast<void>(ring_.push(sample)); // curves may have gaps
             if (recording) recording->push(sample);
         };
-        std::string          warning;
-        const SessionSummary summary = runReal(parts, real, warning);
+        const SessionSummary summary = runReal(parts, real, report_.realTime);
         ended(summary);
     } catch (const Error& error) {
-        if (report_.frames == 0) throw; // nobody has seen anything yet
+        if (!begun_) throw; // nothing works yet: that is for whoever started the program
         endRecording();
         complain(error.what());
         failed_ = true;
@@ -139,6 +116,7 @@ void Workbench::ended(const SessionSummary& summary)
 void Workbench::frame(const SessionView* view)
 {
     input_ = poll_(patience());
+    aim();
     beginPanels();
     handle(input_);
     unsolved_.take();
@@ -151,9 +129,27 @@ void Workbench::frame(const SessionView* view)
         ring_.pop(samples.size());
     }
     const bool active = input_.any() || input_.panelsTakePointer || inContact(view) || replay_ || recording_;
+    if (view && report_.realTime.empty()) report_.realTime = view->warning;
     if (active || input_.size != drawnSize_) lastChange_ = now;
-    if (closing_ || input_.size.x < 1 || input_.size.y < 1 || (stillFine_ && lastChange_ != now)) return rest();
+    const bool changed = lastChange_ > lastBegin_;
+    if (closing_ || input_.size.x < 1 || input_.size.y < 1 || (stillFine_ && !changed)) return rest();
     drawFrame(view);
+}
+
+/// Puts the object into what the panels leave free, and brings it there gently when they come and go.
+void Workbench::aim()
+{
+    constexpr double kGlide = 0.08, kLongest = 0.05; // [s] in which a third of the way is left; of a step
+    constexpr double kThere = 1e-3;                  // of half the height: no step is seen [1]
+    if (input_.size.x < 1 || input_.size.y < 1) return;
+    const PictureArea area =
+        panels_ ? freeArea(state_, input_.size, input_.scale) : PictureArea{{0, 0}, glm::dvec2(input_.size)};
+    const glm::dvec2 wanted = centreOf(area, input_.size), left = wanted - state_.camera.centre;
+    if (left != glm::dvec2(0)) lastChange_ = Clock::now();
+    const double since   = std::min(kLongest, Seconds(Clock::now() - lastBegin_).count()); // [s]
+    const bool   jumps   = input_.size != drawnSize_ || glm::length(left) < kThere;
+    state_.camera.centre = jumps ? wanted : state_.camera.centre + (1 - std::exp(-since / kGlide)) * left;
+    if (std::exchange(toFrame_, false)) frameAll();
 }
 
 /// A frame of ImGui, if one is due: at once where the user is at the panels, and a few times a second else, because
@@ -189,7 +185,7 @@ void Workbench::rest()
 #ifdef PALPATE_PANELS
     if (panelsDue_) panels_->end();
 #endif
-    renderer_.present();
+    screen_.present();
 }
 
 double Workbench::patience() const
@@ -214,11 +210,11 @@ void Workbench::drawFrame(const SessionView* view)
     if (panelsDue_) {
         wishes = drawPanels(state_, content(view), input_.scale);
         panels_->end();
-        renderer_.takePanels();
+        screen_.takePanels();
     }
 #endif
     writeTexts(view);
-    const bool shown = renderer_.show(stage_->view().scene(), state_.camera, size, textsFor(size));
+    const bool shown = screen_.show(stage_->view().scene(), state_.camera, size, textsFor(size));
     const auto end   = Clock::now();
     drawnSize_       = input_.size;
     drawTime_        = Seconds(end - begin).count();
@@ -280,22 +276,23 @@ void Workbench::writeTexts(const SessionView* view)
     if (!(panels_ && state_.panels)) { // which say all this themselves
         const double force = view ? glm::length(view->sample.force) : 0;
         scene.title        = std::filesystem::path(what_).stem().string();
-        scene.note         = !message_.empty()  ? message_
+        scene.note         = !saying().empty()  ? saying()
                              : !faults_.empty() ? faults_.back()
                              : force > 0        ? formatQuantity(force, "N")
                                                 : "hold Space and move: touch.  F1: keys";
     }
-    std::string says =
-        scene.title + "|" + scene.note + "|" + scene.colours.quantity + "|" + name(state_.look.map) + "|" +
-        std::to_string(scene.colours.range.low) + "|" + std::to_string(scene.colours.range.high * 1e6) + "|" +
-        std::to_string(state_.camera.halfHeight()) + "|" + std::to_string(input_.size.x) + "x" +
-        std::to_string(input_.size.y) + (state_.look.ground == Ground::dark ? "d" : "l") + (scene.proxy ? "p" : "") +
-        (scene.force ? "f" : "") + (scene.outline.empty() ? "" : "o") + (scene.sphere.empty() ? "" : "s") +
-        std::to_string(int(state_.look.overlays.ghost) + 2 * int(state_.look.overlays.projected));
+    std::string says = scene.title + "|" + scene.note + "|" + scene.colours.quantity + "|" + name(state_.look.map) +
+                       "|" + std::to_string(scene.colours.range.low) + "|" +
+                       std::to_string(scene.colours.range.high * 1e6) + "|" +
+                       std::to_string(state_.camera.halfHeight()) + "|" + std::to_string(input_.size.x) + "x" +
+                       std::to_string(input_.size.y) + (state_.look.ground == Ground::dark ? "d" : "l") +
+                       std::to_string(input_.scale) + (scene.proxy ? "p" : "") + (scene.force ? "f" : "") +
+                       (scene.outline.empty() ? "" : "o") + (scene.sphere.empty() ? "" : "s") +
+                       std::to_string(int(state_.look.overlays.ghost) + 2 * int(state_.look.overlays.projected));
     const auto now  = Clock::now();
     const bool fits = texts_.width == input_.size.x && texts_.height == input_.size.y;
     if (fits && (says == textsOf_ || Seconds(now - textsAt_).count() < kSeldom)) return;
-    texts_   = annotations(scene, state_.camera, input_.size.x, input_.size.y);
+    texts_   = annotations(scene, state_.camera, input_.size.x, input_.size.y, input_.scale);
     textsOf_ = std::move(says);
     textsAt_ = now;
 }
@@ -313,8 +310,8 @@ PanelContent Workbench::content(const SessionView* view) const
     }
     now.frameTime       = frameTime_;
     now.solvedOn        = stage_->solvedOn();
-    now.drawnOn         = renderer_.device().name;
-    now.drawnInSoftware = renderer_.device().kind == "software";
+    now.drawnOn         = screen_.device().name;
+    now.drawnInSoftware = screen_.device().kind == "software";
     now.replaying       = replay_ != nullptr;
     now.recording       = recording_ ? recordFolder_ : "";
     now.title           = std::filesystem::path(what_).filename().string();
@@ -324,7 +321,8 @@ PanelContent Workbench::content(const SessionView* view) const
     now.faults          = faults_;
     if (const std::string* const why = unsolved_.held(); view && why && !why->empty())
         now.faults.push_back("the plate cannot be solved here: " + *why);
-    now.message = message_;
+    now.message  = saying();
+    now.realTime = report_.realTime;
     return now;
 }
 
@@ -346,72 +344,6 @@ void Workbench::goOn()
     faults_.clear();
     failed_ = false;
     restart();
-}
-
-/// Other values of the scene; the object stays if it can. They count from the next session on, which begins at once.
-void Workbench::change(const SceneValues& values)
-{
-    wanted_.merge(SceneValues(values));
-    for (const auto& [key, value] : values) wanted_[key] = value;
-    failed_ = false;
-    restart();
-}
-
-/// Between two sessions: what the user has changed.
-void Workbench::takeChanges()
-{
-    if (!toOpen_.empty() && mayDiscard()) {
-        const SceneValues before = std::exchange(values_, {}); // they were for another object
-        try {
-            openWhat(toOpen_);
-            resetCamera();
-            faults_.clear();
-        } catch (const Error& error) {
-            values_ = before;
-            complain(error.what());
-        }
-    }
-    toOpen_.clear();
-    if (wanted_.empty()) return;
-    SceneValues values = values_;
-    for (const auto& [key, value] : std::exchange(wanted_, {})) values[key] = value;
-    try {
-        const Scene scene = sceneWith(values);
-        if (sameObject(scene, stage_->scene())) {
-            stage_->change(scene);
-        } else if (mayDiscard()) {
-            stage_ = std::make_unique<Stage>(scene);
-            useObject();
-        } else {
-            return;
-        }
-        if (replay_) say("the replay has ended: the scene is another one");
-        replay_.reset();
-        values_ = std::move(values);
-        faults_.clear();
-    } catch (const Error& error) {
-        complain(error.what());
-    }
-}
-
-/// The scene that is shown, with other values.
-Scene Workbench::sceneWith(const SceneValues& values) const
-{
-    if (!replayed_) return settings_.open(what_, values);
-    Scene scene = parseScene(replayed_->scene, what_, std::filesystem::current_path(), {values, {}});
-    if (!values.contains("device")) scene.device = stage_->scene().device;
-    return scene;
-}
-
-/// Whether what is painted may go: it is saved, or the user has asked twice.
-bool Workbench::mayDiscard()
-{
-    if (!stage_->painting().changed() || paintSaved_ || std::exchange(warned_, true)) {
-        warned_ = false;
-        return true;
-    }
-    complain("what is painted is not saved: Ctrl+S saves it, asking for the same again discards it");
-    return false;
 }
 
 /// The stage's, with an ear for what it cannot solve.
@@ -442,6 +374,7 @@ void Workbench::complain(const std::string& sentence)
 {
     constexpr std::size_t kMost = 5;
     if (!faults_.empty() && faults_.back() == sentence) return;
+    if (settings_.complained) settings_.complained(sentence);
     faults_.push_back(sentence);
     if (faults_.size() > kMost) faults_.erase(faults_.begin());
     lastChange_ = Clock::now();

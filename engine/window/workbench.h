@@ -2,109 +2,88 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "device/hid/space_mouse.h"
 #include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
 #include "engine/session/recording.h"
 #include "engine/session/replay_device.h"
 #include "engine/session/sample_ring.h"
-#include "engine/viewer/annotation.h"
-#include "engine/viewer/surface_renderer.h"
 #include "engine/window/input.h"
 #include "engine/window/panels.h"
 #include "engine/window/pointer_hand.h"
-#include "engine/window/stage.h"
-#include "engine/window/view_state.h"
+#include "engine/window/screen.h"
+#include "engine/window/workbench_settings.h"
 
 namespace palp {
 
 class PanelFrame;
 
-/// Values of scene keys that the user has set, as flags take them.
-using SceneValues = std::map<std::string, std::string, std::less<>>;
-
-/// A hand that is not the pointer: a script or a device. All of it outlives the workbench's use.
-struct WorkbenchHand {
-    HapticDevice* device = nullptr; ///< open
-    DeviceFrame   frame;
-    double        seconds = 5; ///< how long it goes [s]
-};
-
-/// What the program gives to a workbench.
-struct WorkbenchSettings {
-    std::string what;   ///< scene file, cloud file, sample or recorded session
-    SceneValues values; ///< over the scene's
-    ViewState   state;
-    double      seconds = 0; ///< closes by itself after so long [s]; 0: when it is told to
-
-    /// A scene from what the user names. \throws Error
-    std::function<Scene(const std::string& what, const SceneValues& values)> open;
-    /// The hand for a scene; empty: the pointer. \throws Error
-    std::function<WorkbenchHand(const Stage& stage)> hand;
-    /// What a new recording says of itself. May be empty: nothing is recorded.
-    std::function<SessionInfo(const Stage& stage, const HapticDevice& device)> recorded;
-
-    const std::atomic<bool>* stop   = nullptr; ///< closes the window once it is true; may be null
-    SpaceMouse*              camera = nullptr; ///< moves the camera; may be null
-};
-
-/// How the window did.
-struct WorkbenchReport {
-    std::uint64_t       frames = 0, touchingFrames = 0; ///< [1]
-    std::vector<double> frameTimes; ///< of the frames while something was touched: from one to the next [s]
-    std::string         said;       ///< what the user must still know; may be empty
-    std::vector<double> drawTimes;  ///< of the same: making the picture [s]
-};
-
 /// Everything between what happens in a window and the picture in it: camera, pointer, paint, session, panels. It knows
 /// no window: run() is called with where input comes from. \thread the window's
 class Workbench {
 public:
-    /// \param renderer  with a window; outlives this
-    /// \throws Error as WorkbenchSettings::open and Stage do
-    Workbench(WorkbenchSettings settings, SurfaceRenderer& renderer);
+    /// \param screen  outlives this
+    Workbench(WorkbenchSettings settings, Screen& screen);
+    ~Workbench();
 
     /// What happened since the last picture; may wait so long [s] for something to happen.
     using Poll = std::function<WindowInput(double patience)>;
-    /// Touches and shows until the window is closed.
+    /// Opens, touches and shows until the window is closed. What takes long, such as reading a cloud, goes on on a
+    /// thread of its own, and the window says so meanwhile.
     /// \param panels  outlives it; null: there are none
+    /// \throws Error as WorkbenchSettings::open, Stage and WorkbenchSettings::hand do, before the first session
     WorkbenchReport run(const Poll& poll, PanelFrame* panels);
+
+    /// Other values of the scene, from the next session on, which begins at once; the object stays if it can. What a
+    /// scene does not take changes nothing and is complained of. Call it from `poll`, or as a panel does.
+    void change(const SceneValues& values);
 
 private:
     using Clock = std::chrono::steady_clock;
+    struct Opened;
+
+    // workbench_open.cpp
+    void                                       openFirst();
+    void                                       openOther(const std::string& what);
+    void                                       takeValues(const SceneValues& wanted);
+    [[nodiscard]] std::function<Opened()>      opener(const std::string& what, const SceneValues& values) const;
+    void                                       adopt(const std::string& what, Opened opened);
+    void                                       useObject();
+    void                                       tellAssumptions();
+    void                                       showNothing(const std::string& what);
+    void                                       takeChanges();
+    [[nodiscard]] Scene                        sceneWith(const SceneValues& values) const;
+    [[nodiscard]] bool                         mayDiscard();
+    [[nodiscard]] std::optional<WorkbenchHand> readyHand();
+    template <class Work>
+    auto meanwhile(const std::string& doing, Work work);
 
     // workbench.cpp
-    void                         openWhat(const std::string& what);
-    void                         session();
-    void                         ended(const SessionSummary& summary);
-    void                         frame(const SessionView* view);
-    void                         beginPanels();
-    void                         rest();
-    void                         drawFrame(const SessionView* view);
-    void                         showTouch(const SessionView* view);
-    void                         addBrush();
-    [[nodiscard]] double         patience() const;
-    [[nodiscard]] PanelContent   content(const SessionView* view) const;
-    void                         writeTexts(const SessionView* view);
-    void                         count(bool touching, double period);
-    void                         perform(const PanelWishes& wishes);
-    void                         change(const SceneValues& values);
-    void                         takeChanges();
-    void                         useObject();
-    [[nodiscard]] Scene          sceneWith(const SceneValues& values) const;
-    [[nodiscard]] bool           mayDiscard();
-    [[nodiscard]] PatchSolver    solver();
-    [[nodiscard]] const Overlay* textsFor(const PictureSize& size) const;
-    void                         goOn();
-    void                         restart() { stop_ = true; }
-    void                         say(const std::string& message) { message_ = message; }
-    void                         complain(const std::string& sentence);
+    void                             session();
+    void                             ended(const SessionSummary& summary);
+    void                             frame(const SessionView* view);
+    void                             beginPanels();
+    void                             rest();
+    void                             drawFrame(const SessionView* view);
+    void                             showTouch(const SessionView* view);
+    void                             addBrush();
+    [[nodiscard]] double             patience() const;
+    [[nodiscard]] PanelContent       content(const SessionView* view) const;
+    void                             writeTexts(const SessionView* view);
+    void                             count(bool touching, double period);
+    void                             perform(const PanelWishes& wishes);
+    void                             aim();
+    [[nodiscard]] PatchSolver        solver();
+    [[nodiscard]] const Overlay*     textsFor(const PictureSize& size) const;
+    void                             goOn();
+    void                             restart() { stop_ = true; }
+    void                             say(const std::string& message) { message_ = message; }
+    [[nodiscard]] const std::string& saying() const { return doing_.empty() ? message_ : doing_; }
+    void                             complain(const std::string& sentence);
 
     // workbench_input.cpp
     void                             handle(const WindowInput& input);
@@ -128,11 +107,10 @@ private:
     void toggleRecording();
     void startRecording();
     void endRecording();
-    void startReplay(const std::filesystem::path& folder);
     void savePaint();
 
     WorkbenchSettings              settings_;
-    SurfaceRenderer&               renderer_;
+    Screen&                        screen_;
     ViewState                      state_;
     SceneValues                    values_; ///< that panels have changed
     std::string                    what_;
@@ -148,13 +126,17 @@ private:
     bool              panelsTakePointer_ = false, panelsTakeKeys_ = false, leftBefore_ = false; ///< as of the last one
     Clock::time_point panelsAt_{};
     WindowInput       input_;
-    std::atomic<bool> stop_     = false; ///< the session ends, and the next one begins
-    bool              closing_  = false;
-    bool              failed_   = false; ///< no session can run until something changes
-    bool              painting_ = false; ///< a stroke has begun
-    glm::dvec3        lastDab_{};        ///< of it [m]
-    bool              recordingWanted_ = false;
-    bool              letGo_           = false;    ///< until Space is pressed anew
+    std::atomic<bool> stop_    = false; ///< the session ends, and the next one begins
+    bool              closing_ = false;
+    bool              begun_   = false;    ///< a session has: what goes wrong now is shown, and not thrown
+    std::string       doing_;              ///< what goes on on another thread; empty: nothing, and one may paint
+    Latest<std::string> handSays_;         ///< what the user is to do for it
+    bool                failed_   = false; ///< no session can run until something changes
+    bool                painting_ = false; ///< a stroke has begun
+    glm::dvec3          lastDab_{};        ///< of it [m]
+    bool                recordingWanted_ = false;
+    bool                toFrame_         = true;   ///< once the size of the picture is known
+    bool                letGo_           = false;  ///< until Space is pressed anew
     bool      paintSaved_ = true, warned_ = false; ///< the last stroke is on disk; the user knows that it is not
     ViewPaint paintBefore_ = ViewPaint::stiffness; ///< that the brush was taken
     Latest<std::string> unsolved_;                 ///< why the last patch was not; empty: it was

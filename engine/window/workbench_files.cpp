@@ -32,10 +32,10 @@ void Workbench::screenshot(bool withPanels)
         const PictureSize size{input_.size.x, input_.size.y, withPanels ? 1 : 2, Detail::fine};
         ViewScene&        scene = stage_->view().scene();
         if (withPanels) {
-            const Image image = renderer_.draw(scene, state_.camera, size, textsFor(size));
+            const Image image = screen_.draw(scene, state_.camera, size, textsFor(size));
             writeFileWhole(file, [&](std::ostream& stream) { stream << encodePng(image); });
         } else {
-            Image image = renderer_.draw(scene, state_.camera, size);
+            Image image = screen_.draw(scene, state_.camera, size, nullptr);
             scene.title = std::filesystem::path(what_).stem().string();
             scene.note.clear();
             annotate(image, scene, state_.camera);
@@ -85,26 +85,6 @@ void Workbench::endRecording()
         complain(*report.stopped);
     else if (report.lost > 0)
         complain(recordFolder_ + ": " + std::to_string(report.lost) + " samples were lost");
-}
-
-void Workbench::startReplay(const std::filesystem::path& folder)
-{
-    RecordedSession session = readSession(folder);
-    if (session.samples.empty())
-        throw Error(folder.string() + ": there are no samples in it, so there is nothing to replay");
-    Scene scene  = palp::sceneOf(session);
-    scene.device = stage_ ? stage_->scene().device : "auto";
-    if (!stage_ || !sameObject(scene, stage_->scene()) || stage_->painting().changed())
-        stage_ = std::make_unique<Stage>(scene);
-    else
-        stage_->change(scene);
-    endRecording();
-    what_ = folder.string();
-    useObject();
-    replayed_ = std::move(session);
-    replay_   = std::make_unique<ReplayDevice>(replayed_->samples, replayed_->hand);
-    if (!replayed_->cloud.empty() && replayed_->cloud != fingerprint(stage_->loaded().cloud))
-        complain("the cloud is not the one that was recorded: " + scene.cloud + " has changed");
 }
 
 void Workbench::savePaint()

@@ -5,6 +5,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
+#include "engine/window/panel_layout.h"
 #include "engine/window/workbench.h"
 
 // What keys and pointer do.
@@ -180,7 +181,7 @@ void Workbench::touch(const WindowInput& input)
 
 void Workbench::paintWith(const WindowInput& input)
 {
-    const bool paints = state_.tool == Tool::paint && input.left && !input.shift;
+    const bool paints = state_.tool == Tool::paint && input.left && !input.shift && doing_.empty();
     if (!paints) {
         if (painting_) stage_->paint([](StiffnessPainting& painting) { painting.endStroke(); });
         painting_ = false;
@@ -211,6 +212,7 @@ void Workbench::paintWith(const WindowInput& input)
 
 void Workbench::undo()
 {
+    if (!doing_.empty()) return;
     paintSaved_ = false;
     stage_->paint([](StiffnessPainting& painting) { painting.undo(); });
     lastChange_ = Clock::now();
@@ -218,6 +220,7 @@ void Workbench::undo()
 
 void Workbench::redo()
 {
+    if (!doing_.empty()) return;
     paintSaved_ = false;
     stage_->paint([](StiffnessPainting& painting) { painting.redo(); });
     lastChange_ = Clock::now();
@@ -243,17 +246,24 @@ void Workbench::moveByCap()
 void Workbench::frameAll()
 {
     const Bounds& bounds = stage_->painted().bounds();
-    const double  aspect = input_.size.y > 0 ? double(input_.size.x) / input_.size.y : 16.0 / 9;
-    state_.camera        = framed(state_.camera, bounds.centre(), 0.5 * bounds.diagonal(), aspect);
+    if (input_.size.y < 1) {
+        toFrame_ = true;
+        return;
+    }
+    const glm::dvec2 room = panels_ ? freeArea(state_, input_.size, input_.scale).size : glm::dvec2(input_.size);
+    const double     side = std::min(room.x, room.y) / input_.size.y; // of the height of the picture [1]
+    state_.camera         = framed(state_.camera, bounds.centre(), 0.5 * bounds.diagonal(), side);
 }
 
 void Workbench::resetCamera()
 {
-    const Frame frame    = Frame::about(stage_->place().outward);
-    state_.camera        = Camera{};
-    state_.camera.up     = frame.normal;
-    state_.camera.toEye  = glm::normalize(0.75 * frame.normal + 0.25 * frame.east - 0.6 * frame.north);
-    state_.camera.target = stage_->place().point;
+    const Frame      frame  = Frame::about(stage_->place().outward);
+    const glm::dvec2 centre = state_.camera.centre;
+    state_.camera           = Camera{};
+    state_.camera.centre    = centre;
+    state_.camera.up        = frame.normal;
+    state_.camera.toEye     = glm::normalize(0.75 * frame.normal + 0.25 * frame.east - 0.6 * frame.north);
+    state_.camera.target    = stage_->place().point;
     frameAll();
 }
 

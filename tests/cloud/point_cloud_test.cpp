@@ -29,6 +29,21 @@ TEST(PointCloud, KeepsWhatItIsGivenInOrder)
     EXPECT_EQ(cloud.kind(), StiffnessKind::rigidity);
 }
 
+TEST(PointCloud, OtherStiffnessesShareThePoints)
+{
+    const PointCloud cloud({{1, 2, 3}, {-4, 5, 0}}, {10, 20}, StiffnessKind::rigidity);
+    const PointCloud other(cloud, {30, 40});
+
+    EXPECT_EQ(other.positions().data(), cloud.positions().data());
+    EXPECT_EQ(other.stiffness()[1], 40);
+    EXPECT_EQ(cloud.stiffness()[1], 20);
+    EXPECT_EQ(other.kind(), StiffnessKind::rigidity);
+    EXPECT_EQ(other.bounds().low, cloud.bounds().low);
+    EXPECT_EQ(other.size(), 2U);
+    EXPECT_THROW(PointCloud(cloud, {30, kNan}), Error);
+    EXPECT_THROW(PointCloud(cloud, {30}), ContractViolation);
+}
+
 TEST(PointCloud, BoundsEncloseEveryPointTightly)
 {
     const PointCloud cloud({{1, 2, 3}, {-4, 5, 0}, {0, 0, 7}}, {1, 1, 1}, StiffnessKind::modulus);

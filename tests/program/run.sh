@@ -484,6 +484,8 @@ JSON
     for key in '"force": 0.5' '"max_deflection"' '"drawn_on"' '"points": 4000'; do holds "$key"; done
     good 'a picture of a file' render skin.ply --at 0,0,0.0015 --window 40mm --cells 32 --size 64x48 --out file.png
     png file.png 64 48
+    good 'a picture of a bare file' render bare.csv --at 0,0,0 --window 20m --cells 32 --size 64x48 --footprint-radius 2m --thickness 0.5 --out bare.png
+    grep -q 'assumed metres' err.txt && grep -q '300 kPa assumed' err.txt && passed=$((passed + 1)) || complain "render does not say what it assumed: $(cat err.txt)"
     good 'pictures along a hand' render soft.json --size 64x48 --frames 3 --hand press --seconds 0.3 --out film.png --json
     for n in 1 2 3; do png film_000$n.png 64 48; done
     [ ! -e film.png ] && passed=$((passed + 1)) || complain 'render --frames wrote a picture without a number'
@@ -594,6 +596,10 @@ mesh='paint mesh.ply --uniform 1kPa --out no.ply --stroke'
     bad 'too strong' 'up to 1' $mesh 'at=1,1,0 radius=1mm smooth strength=2'
     bad 'beside the cloud' 'from its nearest point' $mesh 'at=1,1,1m radius=1mm smooth'
     bad 'no stroke' '--stroke' paint mesh.ply --out no.ply
+    cp mesh.ply itself.ply
+    bad 'the cloud itself' '--out: ./itself.ply is the cloud that is read' paint itself.ply --uniform 1kPa --stroke 'at=1mm,1mm,0 radius=1mm value=2kPa' --out ./itself.ply
+    bad 'the cloud itself, converted' 'TARGET: itself.ply is the cloud that is read' convert itself.ply itself.ply --unit mm
+    cmp -s mesh.ply itself.ply && passed=$((passed + 1)) || complain 'a cloud was written over'
     bad 'another kind of file' '.ply' paint mesh.ply --stroke 'at=1,1,0 radius=1mm smooth' --out no.stl
     bad 'an option of clouds for a scene' '--range: expected a cloud' paint scene.json --range 1kPa,2kPa --out no.ply --stroke 'at=0,0,0 radius=6mm smooth'
     bad 'a folder that is not there' 'nowhere/no.ply' paint mesh.ply --uniform 1kPa --stroke 'at=1mm,1mm,0 radius=1mm smooth' --out nowhere/no.ply

@@ -25,10 +25,10 @@ class RealSessions : public ::testing::TestWithParam<SessionThreads> {
 protected:
     SessionSummary run(const SheetSession& session, const PatchSolver& solver, const RealSessionSettings& settings)
     {
-        HandDevice  device(session.hand);
-        std::string warning;
-        return runReal({session.scene, session.cloud.cloud, session.index, solver, device, {}}, settings, warning);
+        HandDevice device(session.hand);
+        return runReal({session.scene, session.cloud.cloud, session.index, solver, device, {}}, settings, warning_);
     }
+    std::string warning_; ///< of run()
 };
 
 INSTANTIATE_TEST_SUITE_P(Both, RealSessions, ::testing::Values(SessionThreads::servo, SessionThreads::paper),
@@ -48,7 +48,9 @@ TEST_P(RealSessions, TheThreadsServeAHandAndEnd)
         ++seen;
         finite = finite && std::isfinite(glm::length(s.force));
     };
-    settings.onView = [&](const SessionView& view) {
+    std::string warned = "nothing was seen";
+    settings.onView    = [&](const SessionView& view) {
+        warned = view.warning;
         if (!view.patch) return;
         ++patches;
         EXPECT_EQ(view.patch->points.size(), view.patch->pointResponse.size()) << "whole, while the next one is made";
@@ -56,6 +58,7 @@ TEST_P(RealSessions, TheThreadsServeAHandAndEnd)
         EXPECT_GT(view.solveTime, 0);
     };
     const SessionSummary summary = run(session, deformation.solver(), settings);
+    EXPECT_EQ(warned, warning_) << "of real-time rights; empty where they are given";
     EXPECT_EQ(summary.ticks, seen);
     EXPECT_GT(summary.ticks, 20U);
     EXPECT_LE(summary.ticks, 601U);

@@ -140,6 +140,14 @@ TEST_F(SessionFolder, ItsSceneAndItsHandComeBack)
     EXPECT_EQ(hand.exchange({}, 0).fault, DeviceFault::unplugged) << "there is no more";
 }
 
+TEST_F(SessionFolder, AFolderWithoutASessionIsSaidToBeNone)
+{
+    std::filesystem::create_directory(folder / "empty");
+    const std::string refused = refusalOf([&] { static_cast<void>(readSession(folder / "empty")); });
+    EXPECT_TRUE(palp::holds(refused, {"empty: expected the folder of a recorded session", "F5", "--record"}))
+        << refused;
+}
+
 TEST_F(SessionFolder, ColumnsThatAKillLeftLongerAreCutToTheShortest)
 {
     std::string force = contentsOf(run / "force.npy");

@@ -32,6 +32,19 @@ TEST(Annotation, TheColourBarHasTheColoursOfTheSurface)
     EXPECT_EQ(count(image, surfaceColour(0.5, ColourMap::viridis)), 0u);
 }
 
+TEST(Annotation, TwiceTheScaleIsTwiceTheSizeInTwiceThePicture)
+{
+    for (const int height : {150, 480, 720, 4000})
+        EXPECT_DOUBLE_EQ(annotationSize(2 * height, 2), 2 * annotationSize(height)) << height;
+    EXPECT_EQ(annotationSize(480, 2), 20) << "the least that can be read, at scale 2";
+    ViewScene scene;
+    scene.title = "a title";
+    Image once(640, 480, kGround), twice(640, 480, kGround);
+    annotate(once, scene, {});
+    annotate(twice, scene, {}, 2);
+    EXPECT_GT(double(count(twice, inkOn(scene.ground))), 2 * double(count(once, inkOn(scene.ground)))) << "darker";
+}
+
 TEST(Annotation, LaidOverAPictureItIsWhatItIsInThePicture)
 {
     const double value = 1;

@@ -28,6 +28,21 @@ glm::dvec3 seen(const CameraMatrices& matrices, const glm::dvec3& place, const g
     return glm::dvec3(clip) / clip.w;
 }
 
+TEST(Camera, TheTargetIsSeenAtTheCentreWhereverThatIs)
+{
+    for (Camera camera : {someCamera(), otherProjection(someCamera())}) {
+        camera.centre                 = {0.4, -0.25};
+        const CameraMatrices matrices = matricesOf(camera, {}, 0.2, 1.5);
+        const glm::dvec3     at       = seen(matrices, camera.target, {});
+        EXPECT_NEAR(at.x, 0.4 / 1.5, kRounding) << "of half the width";
+        EXPECT_NEAR(at.y, 0.25, kRounding) << "downwards";
+        const glm::dvec3 middle = seen(matrices, camera.middle(), {});
+        EXPECT_NEAR(middle.x, 0, kRounding);
+        EXPECT_NEAR(middle.y, 0, kRounding);
+        EXPECT_NEAR(glm::distance(camera.eye(), camera.middle()), camera.distance, kRounding);
+    }
+}
+
 TEST(Camera, TheTargetIsInTheMiddleAndUpIsUp)
 {
     for (const Camera& camera : {someCamera(), otherProjection(someCamera())}) {

@@ -1,9 +1,10 @@
 #!/bin/sh
 # The real window on a display without a screen, with keys and a pointer that xdotool moves, all under Vulkan's
-# validation layer with synchronization checks: any message fails. Arguments: palpate, and a folder that may be emptied.
+# validation layer with synchronization checks: any message fails. Arguments: palpate, a folder that may be emptied, and
+# palp_desktop_client, which closes the window as a window manager does and lets files fall on it as a file manager does.
 set -u
-palpate=$1 work=$2
-for tool in Xvfb xdotool; do
+palpate=$1 work=$2 client=$3
+for tool in Xvfb xdotool "$client"; do
     command -v $tool >/dev/null 2>&1 || { echo "$tool is missing"; exit 77; }
 done
 env -u DISPLAY -u WAYLAND_DISPLAY "$palpate" view 2>&1 </dev/null | grep -q 'made without GLFW' && { echo 'palpate opens no windows in this build'; exit 77; }
@@ -40,12 +41,27 @@ until_() {
         sleep 0.1
     done
 }
+# waits until the program has ended, in good order: description
+ended() {
+    n=0
+    while kill -0 "$program" 2>/dev/null && [ $n -lt 200 ]; do n=$((n + 1)); sleep 0.1; done
+    kill -0 "$program" 2>/dev/null && { fail "$1 does not end it within 20 s"; return; }
+    wait "$program"
+    status=$?
+    program=
+    [ $status -eq 0 ] || fail "$1: exit status $status"
+}
+# starts it with these arguments more, and waits for the window
+start() {
+    : >err
+    "$palpate" view "$@" --size 640x480 --validate --json --device host >out 2>>err &
+    program=$!
+    until_ 'a window' 60 shows || exit 1
+    window=$(xdotool search --onlyvisible --name Palpate | head -1)
+}
 shows() { [ -n "$(xdotool search --onlyvisible --name Palpate)" ]; }
 
-"$palpate" view sample:skin --points 4000 --size 640x480 --validate --json --device host >out 2>err &
-program=$!
-until_ 'a window' 60 shows || exit 1
-window=$(xdotool search --onlyvisible --name Palpate | head -1)
+start sample:skin --points 4000
 sleep 2 # first pictures compile the shaders
 xdotool windowfocus --sync "$window" # what is held down goes to the window that has the focus
 
@@ -80,13 +96,8 @@ until_ 'a picture after the replay' 40 test -s palpate-0003.png
 [ "$(od -An -tu1 -j16 -N8 palpate-0003.png | tr -s ' ')" = ' 0 0 3 32 0 0 2 88' ] || fail 'after resizing a picture has not 800 x 600 px'
 xdotool key --window "$window" Escape sleep 0.2
 kill -0 "$program" 2>/dev/null || fail 'Escape must not quit'
-kill -TERM "$program" # without a window manager nothing can ask the window itself
-n=0
-while kill -0 "$program" 2>/dev/null && [ $n -lt 200 ]; do n=$((n + 1)); sleep 0.1; done
-wait "$program"
-status=$?
-program=
-[ $status -eq 0 ] || fail "exit status $status"
+"$client" "$window" close || fail 'the window cannot be asked to close'
+ended 'closing the window'
 [ -s err ] && { fail 'it complained:'; cat err; }
 grep -q '"frames": [1-9]' out || fail 'no picture was shown'
 
@@ -99,6 +110,55 @@ last=$(tail -1 session-0002/samples.csv | cut -d, -f11-13) # its force [N]
 # did the hand feel anything?
 awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n ~ /^force.*z/ || $n == "force_z") column = n } NR > 1 && column && ($column > 0.05 || $column < -0.05) { felt = 1 } END { exit !felt }' session-0001/samples.csv ||
     { fail 'no force was felt while touching'; head -2 session-0001/samples.csv; }
+
+# Files that fall on the window: what is shown then, a recording tells.
+says() { grep -q -- "$1" err; }
+recorded_as() { # description, name of the cloud
+    number=$((number + 1))
+    session=session-000$number
+    xdotool key --window "$window" F5
+    until_ "$1: a recording" 20 test -s $session/samples.csv
+    grep -q -- "$2" $session/session.json || { fail "$1: not what is shown"; grep -o '"cloud"[^,]*' $session/session.json; }
+    xdotool key --window "$window" F5 sleep 0.3
+}
+fall() { "$client" "$window" drop "$@" || fail "cannot let $* fall"; }
+titled() { xdotool getwindowname "$window" | grep -qF -- "$1"; }
+number=2
+mkdir "files of 50%"
+awful="files of 50%/Ann's pad #1 ä.ply"
+"$palpate" convert sample:sheet --points 1500 "$awful" >/dev/null
+"$palpate" convert sample:palm --points 1500 plain.ply >/dev/null
+echo '{"cloud": "sample:ear-lobe", "points": 1500, "cells": 32}' >lobe.json
+echo 'this is no cloud' >text.ply
+printf 'ply\nformat binary_little_endian 1.0\nelement vertex 123456789012\nproperty float x\nproperty float y\nproperty float z\nend_header\n' >hostile.ply
+mkdir empty
+start sample:skin --points 1500
+sleep 1
+fall "$awful"
+until_ 'an awful path' 20 titled "Ann's pad #1"
+recorded_as 'a path with blanks, an apostrophe, a percent sign and an umlaut' "Ann's pad #1"
+fall lobe.json
+until_ 'a scene' 20 titled lobe.json
+recorded_as 'a scene' sample:ear-lobe
+fall plain.ply
+until_ 'a cloud' 20 titled plain.ply
+recorded_as 'a cloud' plain.ply
+[ -s err ] && { fail 'good files were complained of:'; cat err; }
+for bad in text.ply hostile.ply empty; do
+    fall $bad
+    until_ "a sentence on $bad" 10 says "palpate: $bad\|palpate: .*/$bad"
+    [ "$(wc -l <err)" -eq 1 ] || { fail "$bad: not one sentence"; cat err; }
+    : >err
+done
+recorded_as 'the object stays after bad files' plain.ply
+fall session-0001
+until_ 'a session' 20 titled session-0001
+# a hand that moved for some seconds: nothing can be recorded while it is replayed
+xdotool key --window "$window" F5 sleep 0.3
+[ -e session-000$((number + 1)) ] && fail 'a session is not replayed: it is being recorded'
+[ -s err ] && { fail 'a session was complained of:'; cat err; }
+kill -TERM "$program"
+ended 'being told to end'
 
 # Without a display there is a sentence, and another way.
 env -u DISPLAY -u WAYLAND_DISPLAY "$palpate" view sample:skin >out 2>err

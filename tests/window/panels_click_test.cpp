@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -194,6 +196,59 @@ TEST_F(PanelsClick, ALawThatIsTypedIsAWishOnceEnterIsPressed)
 
     ASSERT_TRUE(wishes_.values.contains("stiffness"));
     EXPECT_EQ(wishes_.values.at("stiffness"), "constant:value=3e5");
+}
+
+TEST_F(PanelsClick, ALawIsLeftByItsButtonOrByTypingNothing)
+{
+    openScene();
+    click({278, 145});
+    EXPECT_TRUE(wishes_.values.empty()) << "there is no law to be left";
+    scene_.stiffness = "constant:value=3e5";
+    settle();
+    click({278, 145});
+
+    ASSERT_TRUE(wishes_.values.contains("stiffness"));
+    EXPECT_EQ(wishes_.values.at("stiffness"), "own");
+}
+
+/// Corners of all that is drawn: left, top, right, foot [px].
+std::array<float, 4> extentOfWhatIsDrawn()
+{
+    std::array<float, 4>    extent{1e9F, 1e9F, -1e9F, -1e9F};
+    const ImDrawData* const data = ImGui::GetDrawData();
+    for (int n = 0; n < data->CmdListsCount; ++n)
+        for (const ImDrawVert& corner : data->CmdLists[n]->VtxBuffer) {
+            extent[0] = std::min(extent[0], corner.pos.x);
+            extent[1] = std::min(extent[1], corner.pos.y);
+            if (corner.pos.y > 30 * ImGui::GetFontSize() / 15)
+                extent[2] = std::max(extent[2], corner.pos.x); // the column's
+            extent[3] = std::max(extent[3], corner.pos.y);
+        }
+    return extent;
+}
+
+TEST_F(PanelsClick, OnADisplayOfTwiceTheScalePanelsAreTwiceAsLargeAndBackAsBefore)
+{
+    std::array<std::array<float, 4>, 3> extents;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const int scale = k == 1 ? 2 : 1;
+        frame_.setScale(scale);
+        unsigned char* pixels = nullptr;
+        int            width = 0, height = 0;
+        ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+        for (int n = 0; n < 3; ++n) {
+            frame_.beginWithoutWindow(scale * kSize, {});
+            EXPECT_EQ(ImGui::GetFontSize(), 15.0F * float(scale));
+            static_cast<void>(drawPanels(state_, content_, scale));
+            frame_.end();
+        }
+        extents[k] = extentOfWhatIsDrawn();
+    }
+    EXPECT_EQ(extents[2], extents[0]);
+    for (std::size_t side = 0; side < 4; ++side)
+        EXPECT_NEAR(extents[1][side], 2 * extents[0][side], 12) << "a dozen lines, each rounded to a pixel";
+    EXPECT_GT(extents[0][3], 300);
+    EXPECT_NEAR(extents[0][2], 300, 1) << "the column";
 }
 
 TEST_F(PanelsClick, AFaultIsLeftByItsButton)

@@ -135,6 +135,7 @@ TEST_F(PanelsGolden, AWindowWhileAHandPresses)
     expectGolden("panels", shown, pressed_.content());
 }
 
+/// Begun at scale 1, as a window that is moved from one display to another.
 TEST_F(PanelsGolden, DarkAndLargeAtTwiceTheScale)
 {
     Shown shown{{1920, 1080, 1, Detail::fast}, 2};
@@ -144,7 +145,16 @@ TEST_F(PanelsGolden, DarkAndLargeAtTwiceTheScale)
     PanelContent now        = pressed_.content();
     now.recording           = "recordings/2016-05-20";
 
-    expectGolden("panels-dark", shown, now);
+    PanelFrame      frame;
+    SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
+    Shown           before = shown;
+    before.size            = {960, 540, 1, Detail::fast};
+    before.scale           = 1;
+    static_cast<void>(pictureOf(before, now, renderer, frame));
+    frame.setScale(shown.scale);
+    const Image image = pictureOf(shown, now, renderer, frame);
+
+    palp::expectGolden(PALPATE_GOLDEN, "panels-dark.png", leftOf(image, shown.kept), renderer);
 }
 
 TEST_F(PanelsGolden, TheOtherSectionsOpenAtAClick)

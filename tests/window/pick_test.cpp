@@ -29,6 +29,21 @@ struct Sheets {
     std::vector<double>     radii;
 };
 
+TEST(RayThrough, GoesWhereACameraWithACentreSees)
+{
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+        Camera camera;
+        camera.target     = {0.1, 0.2, 0.3};
+        camera.distance   = 0.5;
+        camera.projection = projection;
+        camera.centre     = {0.3, -0.2};
+        const glm::dvec2 size(800, 600), at = 0.5 * size + 300.0 * glm::dvec2(0.3, 0.2);
+        const Ray        ray   = rayThrough(camera, at, size);
+        const double     along = glm::dot(camera.target - ray.from, ray.along);
+        EXPECT_NEAR(glm::distance(ray.from + along * ray.along, camera.target), 0, 1e-12) << "rounding [m]";
+    }
+}
+
 TEST(Pick, MeetsTheNearerSheetWhereTheRayDoes)
 {
     const Sheets     sheets;

@@ -75,8 +75,9 @@ TEST(SceneControls, EveryLawToStartFromSpansTheCloud)
     for (const char* law : {"constant", "linear", "hyperbolic", "gaussian"}) {
         SceneOverrides overrides;
         overrides.flags["stiffness"] = lawPreset(law, scene, cloud);
-        const Scene changed = parseScene(R"({"cloud": "sample:palm", "points": 500})", "a test", ".", overrides);
-        for (const double modulus : loadCloud(changed).cloud.stiffness()) {
+        const Scene       changed = parseScene(R"({"cloud": "sample:palm", "points": 500})", "a test", ".", overrides);
+        const LoadedCloud made    = loadCloud(changed);
+        for (const double modulus : made.cloud.stiffness()) {
             ASSERT_GE(modulus, 0.99 * low) << law << ": three digits are written";
             ASSERT_LE(modulus, 1.01 * high) << law << ": three digits are written";
         }
