@@ -68,7 +68,7 @@ events() {
 
 # A window stays open until somebody closes it: wait for it, ask the program to end, expect 0.
 open_window() { # command
-    DISPLAY=:$display timeout 60 sh -c "exec ${1%%#*}" </dev/null >out 2>err &
+    DISPLAY=:$display timeout 300 sh -c "exec ${1%%#*}" </dev/null >out 2>err &
     program=$!
     n=0
     while ! DISPLAY=:$display xdotool search --onlyvisible --name Palpate >/dev/null 2>&1; do
@@ -77,10 +77,10 @@ open_window() { # command
         sleep 0.1
     done
     sleep 1
-    kill -TERM $program 2>/dev/null # timeout hands it on
+    kill -TERM $program 2>/dev/null # timeout hands it on, and ends with the program's own code
     wait $program
     found=$?
-    # 124 would be timeout's own; a program that it was told to end gives its own code
+    [ $n -le 400 ] || { echo "FAILED: no window in 40 s: $1"; failed=1; }
     [ $found -eq 0 ] || { echo "FAILED ($found, in a window): $1"; cat err; failed=1; }
 }
 
@@ -95,7 +95,7 @@ run() { # one command, with the code and the words that are expected of it
     *)
         expected "${1%%  #*}"
         if [ "$code" -ne 0 ] && [ -n "$falcon" ]; then case $1 in *falcon*) echo "passed over, a Falcon is plugged in: $1"; return ;; esac; fi
-        timeout 120 sh -c "$1" </dev/null >out 2>err
+        timeout 600 sh -c "$1" </dev/null >out 2>err
         found=$?
         ;;
     esac
@@ -103,7 +103,7 @@ run() { # one command, with the code and the words that are expected of it
     if [ "$found" -ne "$code" ]; then
         echo "FAILED: $1"
         echo "  exit code $found, expected $code"
-        tail -5 out err
+        cat out err | tail -5
         failed=1
     elif [ -n "$says" ] && ! grep -q "$says" out err; then
         # A build without GLFW has no windows, and says so.
