@@ -71,7 +71,7 @@ open_window() { # command
     DISPLAY=:$display timeout 300 sh -c "exec ${1%%#*}" </dev/null >out 2>err &
     program=$!
     n=0
-    while ! DISPLAY=:$display xdotool search --onlyvisible --name Palpate >/dev/null 2>&1; do
+    while [ -z "$(DISPLAY=:$display xdotool search --onlyvisible --name Palpate 2>/dev/null)" ]; do
         n=$((n + 1))
         if [ $n -gt 400 ] || ! kill -0 $program 2>/dev/null; then break; fi
         sleep 0.1
