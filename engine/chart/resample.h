@@ -14,6 +14,8 @@ namespace palp {
 [[nodiscard]] std::optional<Sampling> samplingNamed(std::string_view name);
 
 /// The part of the chart that bends: a grid of fixed size with the contact on its middle node.
+/// \differs the paper bends the neighbourhood, whatever its points span: a clamped plate's compliance grows with its
+///          area, so that the scatter of the points would be felt
 struct Window {
     PlateGrid  grid;
     ChartPoint corner; ///< chart position of node (0, 0) [m]

@@ -116,7 +116,7 @@ Matrix5 prattConstraint()
     return c;
 }
 
-/// The coefficients of the fit, scaled so that u^T C u = 1 (see \differs of fitSphere).
+/// The coefficients of the fit, scaled so that u^T C u = 1 (see fitSphere).
 Vector5 prattVector(const Eigen::JacobiSVD<Matrix5>& svd)
 {
     // Points exactly on a sphere have a last singular value of 0; raised to rounding it stays the smallest by far, and

@@ -43,7 +43,7 @@ struct HandedCompliance {
 /// Where a new table disagrees with the old one at the contact, the difference is carried as an offset of ln c, and of
 /// ln k_c, which dies at 1 % per millisecond, or within one period if that is faster.
 /// \thread the servo's; no allocation, lock or throw
-/// \source our own prototype, with slopes in place of twice as many footprints; engine/README.md has what was measured
+/// \source our own prototype, with slopes in place of twice as many footprints; README.md here has what was measured
 class HandOver {
 public:
     explicit HandOver(HandOverLaw law = HandOverLaw::table) noexcept : law_(law) {}

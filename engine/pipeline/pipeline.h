@@ -36,7 +36,7 @@ struct PatchSettings {
     std::optional<Frame> frame{}; ///< chart axes carried from the neighbouring contact
 };
 
-/// The two ways to run the pipeline; see design notes in engine/README.md.
+/// The two ways to run the pipeline; engine/method.md says how they differ.
 enum class Preset {
     palpate, ///< what we hold to be right
     paper    ///< as Kumari & Chaudhuri published it
@@ -96,7 +96,7 @@ struct Patch {
 ///         the cloud, or if the hand's direction runs along the surface
 /// \thread as the device; announces factorisations of many seconds on a terminal
 /// \source Kumari & Chaudhuri 2016, sections 2.1 to 2.6
-/// \differs see differencesFromPaper() and engine/README.md
+/// \differs as differencesFromPaper() says of the settings; engine/method.md has every difference and why
 [[nodiscard]] Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
                            const PatchSettings& settings, PlateDevice& device);
 
@@ -129,7 +129,8 @@ struct PatchWithTable {
                                              const FootprintLattice& lattice, PlateDevice& device);
 
 /// The whole cloud under `force` [N] at the patch's contact: p_i + force * response_i * forceDirection.
-/// \source the back projection that the paper's equation 9 leaves empty
+/// \source Kumari & Chaudhuri 2016, eq. 9
+/// \differs that equation is empty in print: what moves, how far and along what is ours
 [[nodiscard]] std::vector<glm::dvec3> displaced(const PointCloud& cloud, const Patch& patch, double force);
 
 /// Deflection of every point of the cloud under `force` [N], positive into the surface [m].

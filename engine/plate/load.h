@@ -30,6 +30,8 @@ namespace palp {
 /// The fingertip: pressure proportional to (1 - (r/radius)^2)^2 within `radius` [m] of (x, z), integrated on
 /// sub-cells, shared bilinearly and divided by its own sum, so that the total is exactly `force` [N].
 /// \throws Error if the footprint does not lie wholly on the plate or is smaller than one spacing
+/// \differs the paper puts the device's force, |F|, where its equation has a pressure, and does not say on what area;
+///          here the area is a constant of the scene, so that the answer depends neither on the grid nor on the points
 [[nodiscard]] NodeField footprintLoad(const PlateGrid& grid, double force, double x, double z, double radius);
 
 /// Bilinear interpolation of a node field at (x, z) [m], which must lie on the plate.

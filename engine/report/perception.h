@@ -25,6 +25,7 @@ inline constexpr std::array<double, 3> kWeberFractions = {0.07, 0.15, 0.22};
 /// is told right in three of four trials; 1/2 is guessing [1].
 /// \source Green & Swets 1966, "Signal Detection Theory and Psychophysics": two alternatives, Gaussian noise, here of
 ///         the logarithm of stiffness
+/// \differs the paper reports that about 90 % of its users perceived the change; this predicts, and asks nobody
 [[nodiscard]] double rightAnswers(double steps) noexcept;
 
 /// Largest minus smallest value among samples that lie at most `within` apart along a path [unit of values]; infinity

@@ -44,6 +44,8 @@ struct RealSessionSettings {
 /// A device that is unplugged ends the session.
 /// A solver that throws has failed to solve one patch: SessionSummary::why tells.
 /// \throws what onView threw, once all threads have ended; so for onSample, which should not
+/// \differs the paper has a thread each for proxy and force, which makes the force a tick or two late; here one thread
+///          does both, and SessionThreads::paper keeps two
 SessionSummary runReal(const SessionParts& parts, const RealSessionSettings& settings, std::string& warning);
 
 } // namespace palp

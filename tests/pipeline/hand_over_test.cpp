@@ -35,7 +35,7 @@ std::string describe(const char* scene, HandOverLaw law, double rate, double spe
     return text;
 }
 
-/// For --gtest_output: engine/README.md has these numbers.
+/// For --gtest_output: engine/force/README.md has these numbers.
 void record(const std::string& what)
 {
     ::testing::Test::RecordProperty(what.substr(0, what.find(": error")), what.substr(what.find("error")));

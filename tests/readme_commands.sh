@@ -1,0 +1,168 @@
+#!/bin/sh
+# Runs what a page tells its reader to type, in order, as a reader would: every line of each ```sh block and every inline
+# command that begins with "palpate ". A ```json block becomes the .json file that the command before it names.
+# Arguments: the checkout, palpate, a folder that may be emptied, pages of the checkout. A command that a page gains is run
+# as it is, and must exit 0.
+set -u
+checkout=$1 palpate=$2
+scratch=$3"/reader's folder" # a path with a space and an apostrophe
+rm -rf "$scratch"
+mkdir -p "$scratch/build" && cd "$scratch" || exit 1
+scratch=$PWD
+shift 3
+
+# What the commands find: the samples, the programs, and the scan that the pages speak of. Outputs stay here.
+ln -s "$checkout/samples" samples
+ln -s "$(dirname "$palpate")" build/bin
+make_scan() { # a sheet in millimetres at z = 30, a point a millimetre, "quality" from 0 at its sides to 1 in the middle
+    awk 'BEGIN {
+        print "ply\nformat ascii 1.0\nelement vertex 5041\nproperty float x\nproperty float y\nproperty float z\nproperty float quality\nend_header"
+        for (x = -35; x <= 35; ++x) for (y = -35; y <= 35; ++y) print x, y, 30, 1 - (x < 0 ? -x : x) / 35
+    }'
+}
+make_scan >scan.ply
+
+# Commands that do not end with 0 here, each with its exit code, what it must say, the words that it is known by and why.
+# Where a Falcon is plugged in these are passed over: no test may move a device.
+expected() {
+    case $1 in
+    *'--hand falcon '* | *'--hand falcon') code=2 says='no Novint Falcon is plugged in' ;; # a machine without one
+    *'palpate view'*) code=2 says='palpate render makes pictures without a display' ;;     # DISPLAY is unset
+    *) code=0 says= ;;
+    esac
+}
+
+# events: "run", "json" or "unknown", a tab, and the command, the file's name, or what is wrong
+events() {
+    awk -v tick='`' '
+    function emit(kind, text) { print kind "\t" text }
+    function inline(line,    parts, n, k) {
+        n = split(line, parts, tick)
+        for (k = 2; k < n; k += 2) if (parts[k] ~ /^palpate /) { command("build/bin/" parts[k]) }
+    }
+    function command(text,    words, n, k) {
+        emit("run", text)
+        n = split(text, words, " ")
+        for (k = 1; k <= n; ++k) if (words[k] ~ /\.json$/ && words[k] !~ /\//) json = words[k]
+        if (json != "") last = json
+        json = ""
+    }
+    substr($0, 1, 3) == tick tick tick {
+        if (block != "") { block = ""; next }
+        block = substr($0, 4)
+        if (block == "json" && last == "") { emit("unknown", "line " NR ": a JSON block without a command before it that names a .json file"); block = "none" }
+        else if (block == "json") printf "" >last
+        else if (block != "sh") { emit("unknown", "line " NR ": a block of kind \"" block "\": teach the test what its reader does with it"); block = "none" }
+        next
+    }
+    block == "sh" {
+        if (sub(/\\$/, "")) { held = held $0; next }
+        text = held $0; held = ""
+        if (text !~ /^ *(#|$)/) command(text)
+        next
+    }
+    block == "json" { print >last; next }
+    block == "" { inline($0) }
+    END { if (block != "") emit("unknown", "a block that does not end") }' "$1"
+}
+
+# A window stays open until somebody closes it: wait for it, ask the program to end, expect 0.
+open_window() { # command
+    DISPLAY=:$display timeout 300 sh -c "exec ${1%%#*}" </dev/null >out 2>err &
+    program=$!
+    n=0
+    while [ -z "$(DISPLAY=:$display xdotool search --onlyvisible --name Palpate 2>/dev/null)" ]; do
+        n=$((n + 1))
+        if [ $n -gt 400 ] || ! kill -0 $program 2>/dev/null; then break; fi
+        sleep 0.1
+    done
+    sleep 1
+    kill -TERM $program 2>/dev/null # timeout hands it on, and ends with the program's own code
+    wait $program
+    found=$?
+    [ $n -le 400 ] || { echo "FAILED: no window in 40 s: $1"; failed=1; }
+    [ $found -eq 0 ] || { echo "FAILED ($found, in a window): $1"; cat err; failed=1; }
+}
+
+run() { # one command, with the code and the words that are expected of it
+    case $1 in
+    'sh tests/run.sh'* | 'sh samples/demo.sh'*)
+        # The first would run this test again, the second builds for minutes: their --dry-run says what they would do.
+        script=${1%%#*}
+        (cd "$checkout" && sh -c "$script --dry-run") </dev/null >out 2>err
+        found=$? code=0 says=would
+        ;;
+    *)
+        expected "${1%%  #*}"
+        if [ "$code" -ne 0 ] && [ -n "$falcon" ]; then case $1 in *falcon*) echo "passed over, a Falcon is plugged in: $1"; return ;; esac; fi
+        timeout 600 sh -c "$1" </dev/null >out 2>err
+        found=$?
+        ;;
+    esac
+    ran=$((ran + 1))
+    if [ "$found" -ne "$code" ]; then
+        echo "FAILED: $1"
+        echo "  exit code $found, expected $code"
+        cat out err | tail -5
+        failed=1
+    elif [ -n "$says" ] && ! grep -q "$says" out err; then
+        # A build without GLFW has no windows, and says so.
+        if ! grep -q 'made without GLFW' err; then echo "FAILED: $1"; echo "  it does not say \"$says\":"; cat out err; failed=1; fi
+    fi
+    case $1 in *'palpate view'*) [ -z "$display" ] || grep -q 'made without GLFW' err || open_window "$1" ;; esac
+}
+
+check() { # page
+    events "$1" >events.txt
+    while IFS='	' read -r kind text <&4; do
+        case $kind in
+        run) run "$text" ;;
+        *) echo "FAILED: $1: $text"; failed=1 ;;
+        esac
+    done 4<events.txt
+}
+
+unset DISPLAY WAYLAND_DISPLAY FALCON_FIRMWARE
+XDG_CONFIG_HOME=$scratch/config
+export XDG_CONFIG_HOME
+falcon=$(build/bin/palpate devices | grep '^falcon  ')
+display= server=
+if command -v Xvfb >/dev/null 2>&1 && command -v xdotool >/dev/null 2>&1; then
+    mkfifo number
+    Xvfb -displayfd 3 -noreset -screen 0 1400x900x24 3>number 2>xvfb.log & # -noreset: see window/desktop.sh
+    server=$!
+    trap 'kill $server 2>/dev/null' EXIT
+    read -r display <number
+else
+    echo 'no Xvfb or no xdotool: windows are not opened'
+fi
+
+failed=0
+for page in "$@"; do
+    ran=0
+    check "$checkout/$page"
+    [ $ran -gt 0 ] || { echo "FAILED: no command was found in $page"; failed=1; }
+    echo "$page: $ran commands"
+done
+
+# The test itself finds what is wrong: a page of mistakes, each of which it must name.
+cat >mistakes.md <<'PAGE'
+`palpate info --samplez` and `palpate info absent.ply`
+```sh
+build/bin/palpate touch sample:skn
+```
+```python
+print()
+```
+```json
+{}
+```
+PAGE
+before=$failed failed=0 ran=0
+check mistakes.md >mistakes.txt
+found=$(grep -c '^FAILED' mistakes.txt)
+failed=$before
+[ "$found" -eq 5 ] || { echo "FAILED: of five mistakes in a page $found were found:"; cat mistakes.txt; failed=1; }
+
+[ $failed -eq 0 ] && echo 'every command of these pages does what they say'
+exit $failed
