@@ -231,7 +231,8 @@ void annotate(Image& image, const ViewScene& scene, const Camera& camera, double
     Annotator to(image, scene.ground, scale);
     drawTitle(to, scene);
     if (!scene.values.empty()) drawColours(to, scene.colours);
-    drawLength(to, camera, drawKey(to, scene));
+    const glm::dvec2 taken = drawKey(to, scene);
+    if (!scene.positions.empty()) drawLength(to, camera, taken); // of nothing there is no length
 }
 
 // Everything is laid on by a share of what is there, so that what black and white become tells both share and colour.

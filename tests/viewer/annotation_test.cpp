@@ -90,6 +90,19 @@ TEST(Annotation, TheKeyNamesOnlyWhatIsThere)
     EXPECT_EQ(count(image, kForceColour), 0u);
 }
 
+TEST(Annotation, OnlyWhatHasPointsHasALength)
+{
+    const glm::dvec3 point(0);
+    ViewScene        scene;
+    Image            nothing(320, 240, kGround), something(320, 240, kGround);
+    annotate(nothing, scene, {});
+    scene.positions = {&point, 1};
+    annotate(something, scene, {});
+
+    EXPECT_EQ(count(nothing, kGround), nothing.pixels.size());
+    EXPECT_GT(count(something, inkOn(scene.ground)), 0U);
+}
+
 TEST(Annotation, APictureTooSmallForTextsHasNone)
 {
     ViewScene scene;

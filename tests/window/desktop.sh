@@ -45,7 +45,7 @@ until_() {
 ended() {
     n=0
     while kill -0 "$program" 2>/dev/null && [ $n -lt 200 ]; do n=$((n + 1)); sleep 0.1; done
-    kill -0 "$program" 2>/dev/null && { fail "$1 does not end it within 20 s"; return; }
+    kill -0 "$program" 2>/dev/null && { fail "$1 does not end it within 20 s"; kill -9 "$program"; return; }
     wait "$program"
     status=$?
     program=

@@ -178,6 +178,7 @@ protected:
         if (begun_ && !steps_.front().until()) {
             if (sinceStep() < kPatience) return input_;
             ADD_FAILURE() << "waited in vain: " << steps_.front().what << "; complaints: " << complaints_;
+            inVain_ = true;
             steps_.resize(1);
         }
         if (begun_) steps_.pop_front();
@@ -212,6 +213,7 @@ protected:
     std::deque<Step>      steps_;
     bool                  begun_ = false; ///< the first of them
     Clock::time_point     stepAt_;
+    std::atomic<bool>     inVain_ = false; ///< a step has not come to pass: who waits for another, waits no more
     std::string           complaints_;
 };
 
@@ -415,7 +417,7 @@ TEST_F(WorkbenchTest, WhileSomethingLargeIsOpenedTheWindowSaysSoAndLives)
 {
     std::atomic<bool> opened = false;
     settings_.open           = [&](const std::string& what, const SceneValues& values) {
-        while (what != "sample:sheet" && !opened) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        while (what != "sample:sheet" && !opened && !inVain_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         return sceneOf(what, values);
     };
     wait("the object", [this] { return screen_.points == 2000; });
@@ -439,7 +441,7 @@ TEST_F(WorkbenchTest, NothingIsPaintedOnAnObjectThatIsAboutToGo)
     std::atomic<bool> fails       = false;
     settings_.open                = [&](const std::string& what, const SceneValues& values) {
         if (what == "sample:sheet") return sceneOf(what, values);
-        while (!fails) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        while (!fails && !inVain_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         throw Error("it cannot be opened");
     };
     wait("the object", [this] { return screen_.points == 2000; });
@@ -458,7 +460,7 @@ TEST_F(WorkbenchTest, WhoIsToHomeADeviceIsToldAndMayGiveUp)
     settings_.hand = [&](const Stage& stage, const HandWait& wait) {
         if (++asked == 2) return WorkbenchHand{&hand_, deviceFrame(stage.place().point, stage.place().outward), 1e9};
         wait.tell("home it: pull the grip out");
-        while (!wait.givenUp) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        while (!wait.givenUp && !inVain_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         ++gaveUp;
         throw Error("homing was given up");
     };
@@ -478,7 +480,7 @@ TEST_F(WorkbenchTest, ClosingWhileADeviceIsToBeHomedEnds)
 {
     settings_.hand = [&](const Stage&, const HandWait& wait) -> WorkbenchHand {
         wait.tell("home it");
-        while (!wait.givenUp) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        while (!wait.givenUp && !inVain_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
         throw Error("homing was given up");
     };
     wait("advice", [this] { return screen_.said_("home it"); });
