@@ -50,6 +50,9 @@ struct WorkbenchSettings {
     /// What a new recording says of itself. May be empty: nothing is recorded.
     std::function<SessionInfo(const Stage& stage, const HapticDevice& device)> recorded;
 
+    /// Sees the samples of the object that was named first, on the window's thread. May be empty.
+    OnSample onSample;
+
     const std::atomic<bool>* stop   = nullptr; ///< closes the window once it is true; may be null
     SpaceMouse*              camera = nullptr; ///< moves the camera; may be null
 };
@@ -91,6 +94,7 @@ private:
     void                         addBrush();
     [[nodiscard]] double         patience() const;
     [[nodiscard]] PanelContent   content(const SessionView* view) const;
+    [[nodiscard]] bool           panelsShown() const { return panels_ && state_.panels && !state_.blind; }
     void                         writeTexts(const SessionView* view);
     void                         count(bool touching, double period);
     void                         perform(const PanelWishes& wishes);
@@ -116,6 +120,7 @@ private:
     void                             redo();
     void                             moveByCap();
     void                             showKeys();
+    void                             mark();
     void                             letGo();
     void                             open(const std::filesystem::path& path);
     void                             frameAll();
@@ -173,6 +178,7 @@ private:
     Overlay           texts_;
     std::string       textsOf_; ///< what they say
     Clock::time_point textsAt_{}, lastFrame_{}, lastBegin_{}, lastChange_{}, started_{};
+    Clock::time_point markedAt_{};                                  ///< when a place was declared last
     double            frameTime_ = 0, drawTime_ = 0, fineTime_ = 0; ///< [s]
     bool              stillFine_ = false;                           ///< the picture is a fine one of what is there
     WorkbenchReport   report_;
