@@ -60,7 +60,8 @@ Answers answersIn(const std::vector<std::string>& folders)
             const auto rows = study::readTrials(participant / "trials.csv");
             all.rows.insert(all.rows.end(), rows.begin(), rows.end());
             all.participants += !rows.empty();
-            for (const auto& [name, stiffness] : file.value("felt_stiffness_N_per_m", Json::object()).items())
+            const Json felt = file.value("felt_stiffness_N_per_m", Json::object());
+            for (const auto& [name, stiffness] : felt.items())
                 if (stiffness.is_number()) all.stiffnesses[name] = stiffness;
         }
     return all;

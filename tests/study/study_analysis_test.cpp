@@ -71,11 +71,12 @@ TEST(Analysis, TheBootstrapIsAsWideAsTheStandardErrorSays)
     std::vector<TrialRow> rows;
     for (int p = 0; p < 40; ++p)
         for (int n = 0; n < 3; ++n) // who likes it likes it every time: 40 independent answers, not 120
-            rows.push_back(rowOf("P" + std::to_string(p), "rating", "soft", p % 2 ? "2" : "4"));
+            rows.push_back(rowOf(std::string("P").append(std::to_string(p)), "rating", "soft", p % 2 ? "2" : "4"));
 
     const AnswerSummary s = analyse(rows, {})[0];
 
-    const double expected = 2 * 1.96 / std::sqrt(40.0); // sd 1; 2000 samples know a percentile to some 5 %, ties add 0.05
+    const double expected =
+        2 * 1.96 / std::sqrt(40.0); // sd 1; 2000 samples know a percentile to some 5 %, ties add 0.05
     EXPECT_NEAR(s.meanInterval->high - s.meanInterval->low, expected, 0.15 * expected);
     EXPECT_EQ(*s.mean, 3);
 }

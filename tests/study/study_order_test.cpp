@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -18,12 +19,12 @@ StudyPlan plan(int conditions, const std::string& tasks, int repetitions = 1, in
 {
     const TemporaryFolder folder;
     static_cast<void>(folder.write("sheet.json", R"({"cloud": "sample:sheet"})"));
-    std::string list;
+    std::ostringstream text;
+    text << R"({"title": "t", "seed": )" << seed << R"(, "repetitions": )" << repetitions << R"(, "conditions": [)";
     for (int n = 0; n < conditions; ++n)
-        list += (n ? "," : "") + std::string(R"({"name": ")") + char('a' + n) + R"(", "scene": "sheet.json"})";
-    return parsePlan(R"({"title": "t", "seed": )" + std::to_string(seed) + R"(, "repetitions": )" +
-                         std::to_string(repetitions) + R"(, "conditions": [)" + list + R"(], "tasks": [)" + tasks + "]}",
-                     "plan.json", folder.path());
+        text << (n ? "," : "") << R"({"name": ")" << char('a' + n) << R"(", "scene": "sheet.json"})";
+    text << R"(], "tasks": [)" << tasks << "]}";
+    return parsePlan(text.str(), "plan.json", folder.path());
 }
 
 const std::string kRating = R"({"name": "real", "kind": "rating", "statement": "It felt real."})";
@@ -65,7 +66,7 @@ TEST(WilliamsDesign, EachConditionFollowsEachOtherEquallyOften)
 
 TEST(WilliamsDesign, IsThePublishedSquareOfFour)
 {
-    // Williams 1949, as in Jones & Kenward 2014, "Design and Analysis of Cross-Over Trials", table 4.2, up to letters.
+    // Williams 1949, up to letters: ABDC, BCAD, CDBA, DACB.
     EXPECT_EQ(williamsDesign(4), (std::vector<Order>{{0, 1, 3, 2}, {1, 2, 0, 3}, {2, 3, 1, 0}, {3, 0, 2, 1}}));
     EXPECT_EQ(williamsDesign(1), std::vector<Order>{{0}});
 }
@@ -109,7 +110,8 @@ TEST(StudyOrder, PairsComeEquallyOftenInEitherOrderAndTheRightAnswerFollows)
             ASSERT_TRUE(trial.second && trial.right);
             ++times[{trial.first, *trial.second}];
             turned.push_back(int(trial.first));
-            EXPECT_EQ(*trial.right, trial.first == 0 ? "second" : "first") << "the second as listed is right, a is first";
+            EXPECT_EQ(*trial.right, trial.first == 0 ? "second" : "first")
+                << "the second as listed is right, a is first";
         }
         EXPECT_EQ(times.size(), 4u);
         for (const auto& [pair, n] : times) EXPECT_EQ(n, 3);
@@ -120,7 +122,7 @@ TEST(StudyOrder, PairsComeEquallyOftenInEitherOrderAndTheRightAnswerFollows)
 
 TEST(StudyOrder, AnOddNumberOfRepetitionsIsEvenedOutOverTwoParticipants)
 {
-    const StudyPlan study = plan(3, kPairs, 3);
+    const StudyPlan                                    study = plan(3, kPairs, 3);
     std::map<std::pair<std::size_t, std::size_t>, int> times;
     for (const std::uint64_t p : {1, 2})
         for (const Trial& trial : trialsOf(study, p)) ++times[{trial.first, *trial.second}];
@@ -133,7 +135,8 @@ TEST(StudyOrder, AParticipantsNameEndsInItsNumber)
     EXPECT_EQ(participantNumber("12"), 12u);
     EXPECT_EQ(participantNumber("group-2_p030"), 30u);
     for (const char* bad : {"", "P", "P0", "../P1", "P 1", "-P1", "P1.", "P99999999999999999999"})
-        EXPECT_NE(refusalOf([&] { static_cast<void>(participantNumber(bad)); }).find("--participant"), std::string::npos)
+        EXPECT_NE(refusalOf([&] { static_cast<void>(participantNumber(bad)); }).find("--participant"),
+                  std::string::npos)
             << bad;
 }
 
@@ -199,8 +202,10 @@ TEST(StudyPlan, BadOnesAreRefusedInOneSentence)
     refused(a, R"({"name": "n", "kind": "yes-no", "question": "?", "yes_for": ["aa"]})", "name of a condition");
     refused(a, R"({"name": "n", "kind": "yes-no", "question": "?", "yes_for": ["a"], "no_for": ["a"]})", "already");
     refused(a + "," + b, R"({"name": "n", "kind": "two-alternative", "question": "?", "pairs": [["a"]]})", "two names");
-    refused(a + "," + b, R"({"name": "n", "kind": "two-alternative", "question": "?", "pairs": [["a", "a"]]})", "twice");
-    refused(a + "," + b, R"({"name": "n", "kind": "two-alternative", "question": "?", "pairs": [["a", "b"]], "right": "b"})",
+    refused(a + "," + b, R"({"name": "n", "kind": "two-alternative", "question": "?", "pairs": [["a", "a"]]})",
+            "twice");
+    refused(a + "," + b,
+            R"({"name": "n", "kind": "two-alternative", "question": "?", "pairs": [["a", "b"]], "right": "b"})",
             "first or second");
     refused(a, kRating, "repetitions", R"(, "repetitions": 0)");
     refused(a, kRating, "seconds", R"(, "seconds": 0)");
