@@ -237,7 +237,8 @@ void addSessionOptions(CLI::App& command, SessionOptions& options)
 {
     command
         .add_option("--hand", options.hand.hand,
-                    "press, circle or scan about the scene's place; a file of time [s], x, y, z [m]; or a device: "
+                    "press, circle or scan about the scene's place; a file of time [s], x, y, z [m], perhaps buttons; "
+                    "or a device: "
                     "falcon, bridge, spacemouse, arm, falcon-emulator (palpate devices tells which are there; of "
                     "several, falcon@PATH)")
         ->capture_default_str();

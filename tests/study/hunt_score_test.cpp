@@ -128,7 +128,8 @@ TEST(HuntScore, AnInstantsPressAFaultAndTheAirDeclareNothing)
     Played played;
     played.declare(kFirst, ForceHalf::kPressTicks - 1);
     for (int n = 0; n < 100; ++n) played.air(2);
-    played.fault(8); // the governor has stopped: the button is its operator's
+    played.touch(kFirst); // lets the button go
+    played.fault(8);      // the governor has stopped: the button is its operator's
     played.declare(kFirst);
 
     EXPECT_EQ(played.score().declarations.size(), 0u);
