@@ -4,7 +4,7 @@ set -u
 cd "$1" || exit 1
 
 # From the bottom up; a file may include its own layer and those before it.
-layers='core gpu cloud contact chart force plate pipeline session picture viewer window bench report program'
+layers='core gpu cloud contact chart force plate pipeline session picture viewer window bench report study program'
 level_of() {
     n=0
     for layer in $layers; do

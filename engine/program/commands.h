@@ -15,6 +15,8 @@ void addSolveCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
 void addDoctorCommand(CLI::App& app);
 void addRunCommand(CLI::App& app); ///< run and replay
+void addHuntCommand(CLI::App& app);
+void addStudyCommand(CLI::App& app);
 void addRenderCommand(CLI::App& app);
 void addViewCommand(CLI::App& app);
 void addPerceiveCommand(CLI::App& app);

@@ -95,6 +95,9 @@ int main(int argumentCount, char** arguments)
                "                                                 a stiff spot on it; the rest of the file stays\n"
                "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
                "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
+               "  palpate hunt samples/scenes/nodule_hunt.json   a hand looks for hidden nodules, and is scored\n"
+               "  palpate study samples/studies/paper.json --participant P01 --out study   blinded trials, a table of "
+               "answers\n"
                "  palpate render sample:palm --out palm.png      a picture of a touch, without a display\n"
                "  palpate perceive sample:skin                   what a person would notice of it, predicted\n"
                "  palpate paper --out report                     the paper's experiments, computed again\n"
@@ -112,6 +115,8 @@ int main(int argumentCount, char** arguments)
     palp::addDevicesCommand(app);
     palp::addDoctorCommand(app);
     palp::addRunCommand(app);
+    palp::addHuntCommand(app);
+    palp::addStudyCommand(app);
     palp::addRenderCommand(app);
     palp::addViewCommand(app);
     palp::addPerceiveCommand(app);

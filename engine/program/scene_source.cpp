@@ -15,15 +15,22 @@ void SceneSource::addTo(CLI::App& command)
     addFlagsTo(command);
 }
 
-void SceneSource::addFlagsTo(CLI::App& command)
+void SceneSource::addFlagsTo(CLI::App& command, Seed seed)
 {
-    for (const SceneKey& key : sceneKeys())
+    const auto flagsOf = [&](std::string_view key) {
+        if (key == "place") return std::string("--at,--place");
+        if (seed == Seed::ofTheHunt && key == "hunt_seed") return std::string("--seed,--hunt-seed");
+        return flagOf(key);
+    };
+    for (const SceneKey& key : sceneKeys()) {
+        if (seed == Seed::ofTheHunt && key.name == "seed") continue; // of the sample's points: in the file alone
         command
             .add_option_function<std::string>(
-                key.name == "place" ? "--at,--place" : flagOf(key.name),
+                flagsOf(key.name),
                 [this, text = std::string(key.name)](const std::string& value) { flags[text] = value; },
                 std::string(key.means) + (key.unit.empty() ? "" : " [" + std::string(key.unit) + "]"))
             ->group("Values of the scene (over PALPATE_<KEY> and the file)");
+    }
 }
 
 Scene SceneSource::load(PlaceNeeded place) const

@@ -20,7 +20,9 @@ struct SceneSource {
 
     /// Adds SCENE and the flags to a command; `this` must outlive its parsing.
     void addTo(CLI::App& command);
-    void addFlagsTo(CLI::App& command); ///< the flags alone
+    /// The flags alone. In a hunt --seed hides the nodules anew, as --hunt-seed; else it is that of a sample's points.
+    enum class Seed { ofTheSample, ofTheHunt };
+    void addFlagsTo(CLI::App& command, Seed seed = Seed::ofTheSample);
 
     /// A scene file; anything else is a cloud, and the scene is what suits it.
     /// \throws Error as readScene() does, and for a cloud file without a place, if one is needed

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -9,6 +11,7 @@
 #include "engine/core/quantity.h"
 #include "engine/program/commands.h"
 #include "engine/program/hand_source.h"
+#include "engine/program/hunt_report.h"
 #include "engine/program/interrupt.h"
 #include "engine/program/scene_source.h"
 #include "engine/window/glfw_window.h"
@@ -52,17 +55,20 @@ double quantileOf(std::vector<double> values, double share)
     return *at;
 }
 
-void tell(const ViewOptions& o, const WorkbenchReport& report, const SurfaceRenderer& renderer)
+void tell(const ViewOptions& o, const WorkbenchReport& report, const SurfaceRenderer& renderer,
+          const std::optional<study::HuntScore>& score)
 {
     const double median = quantileOf(report.frameTimes, 0.5), slow = quantileOf(report.frameTimes, 0.99);
     if (o.json) {
-        std::cout << jsonText(nlohmann::json{{"frames", report.frames},
-                                             {"touching_frames", report.frameTimes.size()},
-                                             {"frame_p50_s", median},
-                                             {"frame_p99_s", slow},
-                                             {"draw_p50_s", quantileOf(report.drawTimes, 0.5)},
-                                             {"real_time", report.realTime},
-                                             {"drawn_on", renderer.device().name}});
+        nlohmann::json all{{"frames", report.frames},
+                           {"touching_frames", report.frameTimes.size()},
+                           {"frame_p50_s", median},
+                           {"frame_p99_s", slow},
+                           {"draw_p50_s", quantileOf(report.drawTimes, 0.5)},
+                           {"real_time", report.realTime},
+                           {"drawn_on", renderer.device().name}};
+        if (score) all["hunt"] = jsonOf(*score);
+        std::cout << jsonText(all);
         return;
     }
     std::cout << report.frames << " pictures on " << renderer.device().name;
@@ -101,9 +107,20 @@ std::unique_ptr<SpaceMouse> capFor(const ViewOptions& o, HidSystem& system)
     return nullptr;
 }
 
+/// The scorer of a scene in which something is hidden; empty for any other, and for recorded sessions.
+std::optional<study::HuntScorer> scorerFor(const SceneSource& source)
+{
+    if (std::filesystem::is_directory(source.name)) return {};
+    const Scene scene = source.load(PlaceNeeded::no);
+    if (!scene.hunt) return {};
+    return std::make_optional<study::HuntScorer>(scene, loadCloud(scene).cloud);
+}
+
 void view(const ViewOptions& o)
 {
     WorkbenchSettings settings;
+    auto              scorer = scorerFor(o.scene);
+    if (scorer) settings.onSample = [&scorer](const SessionSample& sample) { scorer->add(sample); };
     settings.what   = o.scene.name;
     settings.values = o.scene.flags;
     settings.open   = [](const std::string& what, const SceneValues& values) {
@@ -161,7 +178,9 @@ void view(const ViewOptions& o)
         shown);
     if (o.size.empty()) rememberSize(last);
     if (!report.said.empty()) std::cerr << "palpate: " << report.said << "\n";
-    tell(o, report, renderer);
+    const auto score = scorer ? std::optional(scorer->score()) : std::nullopt;
+    tell(o, report, renderer, score);
+    if (score && !o.json) printText(*score, *o.scene.load(PlaceNeeded::no).hunt);
     const auto messages = renderer.takeMessages();
     for (const std::string& message : messages) std::cerr << "palpate: validation: " << message << "\n";
     if (!messages.empty()) throw CheckFailed("the validation layer has complained");
@@ -208,6 +227,7 @@ void addViewCommand(CLI::App& app)
                     "Examples:\n"
                     "  palpate view\n"
                     "  palpate view samples/scenes/skin_wart.json --colour stiffness\n"
+                    "  palpate view samples/scenes/nodule_hunt.json --hunt-seed 7     hidden nodules: M declares one\n"
                     "  palpate view scan.ply --length-unit mm --at 12mm,0,30mm\n"
                     "  palpate view sample:ellipsoid --hand circle --seconds 10 --json");
     command->callback([command, o] {

@@ -19,6 +19,7 @@ HapticState HandDevice::exchange(const GovernedForce& /*force*/, double now) noe
     state.position = hand_.position(hand_.begin() + now);
     motion_.add(now, state.position);
     state.velocity = motion_.velocity();
+    state.buttons  = hand_.buttons(hand_.begin() + now);
     state.homed = state.inBox = true;
     state.fault               = DeviceFault::none;
     return state;

@@ -108,6 +108,35 @@ void demandColumns(const Words& words, std::size_t columns, const std::string& w
                 "; decimals have a point, and further columns need a header line");
 }
 
+/// The word of a line in a column that is counted from 0; empty if there are fewer.
+std::string_view wordAt(std::string_view line, std::size_t column)
+{
+    for (;; --column) {
+        line.remove_prefix(std::min(line.find_first_not_of(kBetween), line.size()));
+        const std::string_view word = line.substr(0, line.find_first_of(kBetween));
+        if (column == 0 || word.empty()) return word;
+        line.remove_prefix(word.size());
+    }
+}
+
+/// Where a header has buttons; 0 (where time is): nowhere.
+std::size_t buttonsIn(std::string_view header, std::size_t columns)
+{
+    for (std::size_t k = 4; k < columns; ++k)
+        if (wordAt(header, k) == "buttons") return k;
+    return 0;
+}
+
+std::uint32_t buttonsOf(std::string_view word, const std::string& where)
+{
+    constexpr std::uint64_t kMost = 0xFFFF; // as many as a session records
+    const auto              bits  = parseCount(word);
+    if (!bits || *bits > kMost)
+        throw Error(where + ": expected buttons as a whole number from 0 to 65535, one bit each, found \"" +
+                    plain(word) + "\"");
+    return std::uint32_t(*bits);
+}
+
 HandSample sampleOf(const std::array<std::string_view, 4>& words, const std::string& where)
 {
     std::array<double, 4> numbers{};
@@ -214,11 +243,17 @@ glm::dvec3 HandPath::position(double time) const noexcept
     return a.position + (time - a.time) / (b.time - a.time) * (b.position - a.position);
 }
 
+std::uint32_t HandPath::buttons(double time) const noexcept
+{
+    if (!(time >= samples_.front().time)) return 0; // NaN too
+    return (std::ranges::upper_bound(samples_, time, {}, &HandSample::time) - 1)->buttons;
+}
+
 HandPath parseHand(std::istream& in, const std::string& name)
 {
     constexpr std::size_t kLongestLine = 1 << 16; // [bytes] a file without line ends is no text, and may be endless
     Checked               checked;
-    std::size_t           columns = 4;
+    std::size_t           columns = 4, buttons = 0;
     std::vector<char>     line(kLongestLine);
     for (std::size_t number = 1; in.getline(line.data(), std::streamsize(line.size())); ++number) {
         const std::string          where = name + ": line " + std::to_string(number);
@@ -229,10 +264,13 @@ HandPath parseHand(std::istream& in, const std::string& name)
         if (words.count == 0 || words.first[0].starts_with('#')) continue;
         if (checked.samples.empty() && isHeader(words.first, where)) {
             columns = std::max(words.count, columns);
+            buttons = buttonsIn(rest, columns);
             continue;
         }
         demandColumns(words, columns, where);
-        checked.add(sampleOf(words.first, where), where);
+        HandSample sample = sampleOf(words.first, where);
+        if (buttons > 0) sample.buttons = buttonsOf(wordAt(rest, buttons), where);
+        checked.add(sample, where);
     }
     if (!in.eof())
         throw Error(name + ": expected lines of numbers, found one longer than " + std::to_string(kLongestLine) +

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <iosfwd>
 #include <optional>
@@ -16,8 +17,9 @@ namespace palp {
 
 /// Where a scripted hand is at one time.
 struct HandSample {
-    double     time = 0;   ///< [s]
-    glm::dvec3 position{}; ///< of the HIP [m]
+    double        time = 0;    ///< [s]
+    glm::dvec3    position{};  ///< of the HIP [m]
+    std::uint32_t buttons = 0; ///< that are down from here on, as HapticState::buttons
 };
 
 /// A scripted hand: straight lines between samples.
@@ -38,6 +40,9 @@ public:
     /// The hand at a time [s]: at rest at the first sample before it begins, at the last after it has ended.
     [[nodiscard]] glm::dvec3 position(double time) const noexcept;
 
+    /// The buttons that are down at a time [s]: those of the last sample up to then.
+    [[nodiscard]] std::uint32_t buttons(double time) const noexcept;
+
     [[nodiscard]] double begin() const noexcept { return samples_.front().time; }             ///< [s]
     [[nodiscard]] double duration() const noexcept { return samples_.back().time - begin(); } ///< [s]
     [[nodiscard]] double fastest() const noexcept { return fastest_; }                        ///< [m/s]
@@ -49,7 +54,8 @@ private:
 };
 
 /// Reads a hand from a file of rows time [s], x, y, z [m]; further columns are skipped where a header line has them
-/// too, so that samples.csv of a recorded session is a hand.
+/// too, so that samples.csv of a recorded session is a hand. But for one that is called "buttons", in text: a whole
+/// number, bit i of which says that button i is down.
 ///
 /// .npy: an array of shape (n, 4) or wider. Any other extension: text, one sample a line, numbers between commas,
 /// semicolons, blanks or tabs; lines that start with '#' are comments; a header line is skipped if its first name

@@ -33,7 +33,8 @@ HeldArm::HeldArm(const HoldingHand& hand, const SimulatedArmSettings& arm) : han
 
 HapticState HeldArm::exchange(const GovernedForce& force, double now) noexcept
 {
-    const HapticState state = arm_.exchange(force, now); // on to now, by the hand of the last tick
+    HapticState state = arm_.exchange(force, now); // on to now, by the hand of the last tick
+    state.buttons     = hand_.path.buttons(hand_.path.begin() + now);
     arm_.hold(hand_.at(now));
     return state;
 }

@@ -49,6 +49,10 @@ HapticState HeldFalcon::exchange(const GovernedForce& force, double now) noexcep
 {
     if (!running_) begun_ = emulator_.now() - now;
     running_ = true;
+    if (const std::uint32_t wanted = hand_.path.buttons(hand_.path.begin() + now); wanted != pressed_) {
+        emulator_.falcon().press(std::uint8_t(wanted));
+        pressed_ = wanted;
+    }
     return device_.exchange(force, now);
 }
 

@@ -41,6 +41,7 @@ private:
     double                    emulated_ = 0;     ///< [s] of the emulator's clock that the arm has gone
     double                    begun_    = 0;     ///< [s] of that clock when the session's was 0
     bool                      running_  = false; ///< exchange() was called since the path began
+    std::uint32_t             pressed_  = 0;     ///< buttons of the path that are down
     Ft232Emulator             emulator_;
     FalconDevice              device_;
     HapticDeviceInfo          info_;

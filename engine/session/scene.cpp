@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -26,7 +25,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::string_view kSamplePrefix = "sample:";
 /// A key that editors look for in a file, and that says nothing about the scene.
 constexpr std::string_view kSchemaKey = "$schema";
 /// The largest scene file that is read [bytes]: real ones have a thousand.
@@ -93,17 +91,12 @@ std::string quoted(const std::string& text)
 
 std::string vectorJson(const glm::dvec3& v)
 {
-    return "[" + number(v.x) + "," + number(v.y) + "," + number(v.z) + "]";
+    return Json{v.x, v.y, v.z}.dump();
 }
 
 std::string orNothing(const std::string& text)
 {
     return text.empty() ? "" : quoted(text);
-}
-
-bool isSample(const Scene& scene)
-{
-    return scene.cloud.starts_with(kSamplePrefix);
 }
 
 constexpr auto kNumber = JsonObject::Kind::number;
@@ -306,6 +299,16 @@ constexpr std::array kKeys = {
         {kNumber},
         [](S& s, const Given& g) { s.startHeight = g.quantity(D::length, 0, 1); },
         [](const S& s) { return number(s.startHeight); }},
+    Key{{"hunt", "", "nodules that are hidden under the surface, and what counts when somebody looks for them",
+         "a hunt such as {\"nodules\":[{\"at\":[0,0,0],\"radius\":4e-3,\"modulus\":3e6}]}"},
+        {kObject},
+        [](S& s, const Given& g) { s.hunt = parseHunt(g.text, g.what); },
+        [](const S& s) { return s.hunt ? huntJson(*s.hunt) : ""; }},
+    Key{{"hunt_seed", "1", "hides the nodules anew, at other places for each number; absent: where the hunt has them",
+         "a whole number from 0 to 4294967295"},
+        {kNumber},
+        [](S& s, const Given& g) { s.huntSeed = g.count(0, 4294967295); },
+        [](const S& s) { return s.huntSeed ? std::to_string(*s.huntSeed) : ""; }},
 };
 
 /// A value of a file in the spelling of a flag.
@@ -369,7 +372,7 @@ void readCloudKey(Scene& scene, const Said& said, const std::filesystem::path& f
     if (said.text.empty()) Given{said.text, said.what, kKeys.front().key.expected}.refuse();
     if (isSample(scene)) {
         try {
-            static_cast<void>(sampleNamed(scene.cloud.substr(kSamplePrefix.size())));
+            static_cast<void>(sampleNamed(sampleName(scene)));
         } catch (const Error& error) {
             throw Error(said.what + ": " + error.what());
         }
@@ -391,7 +394,7 @@ void readCloudKey(Scene& scene, const Said& said, const std::filesystem::path& f
 /// What suits the cloud, where nobody says anything else.
 void takeSample(Scene& scene)
 {
-    const Sample& sample        = sampleNamed(std::string_view(scene.cloud).substr(kSamplePrefix.size()));
+    const Sample& sample        = sampleNamed(sampleName(scene));
     scene.points                = sample.points;
     scene.patch.material        = sample.material;
     scene.patch.foundation      = sample.foundation;
@@ -425,6 +428,8 @@ void refuseContradictions(const Scene& scene, const std::map<std::string, std::s
     if (!(2 * scene.patch.footprintRadius < scene.patch.window))
         refuse(whatSays("footprint_radius"), "a fingertip within the window of " + number(scene.patch.window) + " m",
                "a radius of " + number(scene.patch.footprintRadius) + " m");
+    if (scene.huntSeed && !scene.hunt)
+        refuse(whatSays("hunt_seed"), "a key \"hunt\" beside it", "none; nothing is hidden in this scene");
     if (scene.dynamicFriction > scene.staticFriction)
         refuse(whatSays("dynamic_friction"), "at most static_friction, " + number(scene.staticFriction),
                number(scene.dynamicFriction));
@@ -569,54 +574,6 @@ std::string printConfig(const Scene& scene, ConfigFormat format)
             {"value", json}, {"unit", key.key.unit}, {"origin", palp::name(origin.origin)}, {"where", origin.where}};
     }
     return format == ConfigFormat::text ? text.str() : all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-LoadedCloud loadCloud(const Scene& scene)
-{
-    const auto lawAcross = [&](const Bounds& bounds) {
-        return parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume);
-    };
-    if (isSample(scene)) {
-        const Sample&             sample = sampleNamed(std::string_view(scene.cloud).substr(kSamplePrefix.size()));
-        std::optional<SpatialLaw> law;
-        if (!scene.stiffness.empty()) law = lawAcross(boundsOf(sample));
-        CloudFileReport report;
-        report.format           = "procedural sample";
-        report.points           = scene.points;
-        report.lengthUnitSource = "m, by construction";
-        report.stiffnessSource  = law ? "the scene's law [Pa]" : "the sample's own law [Pa]";
-        return {makeSample(sample, scene.points, scene.seed, law), std::move(report)};
-    }
-    CloudReadSettings settings;
-    settings.lengthUnit = scene.lengthUnit;
-    LoadedCloud loaded  = readCloud(scene.cloud, settings);
-    if (scene.stiffness.empty()) return loaded;
-    const SpatialLaw    law = lawAcross(loaded.cloud.bounds());
-    std::vector<double> stiffness;
-    stiffness.reserve(loaded.cloud.size());
-    for (const glm::dvec3& p : loaded.cloud.positions()) stiffness.push_back(law(p));
-    loaded.cloud = PointCloud({loaded.cloud.positions().begin(), loaded.cloud.positions().end()}, std::move(stiffness),
-                              StiffnessKind::modulus);
-    loaded.report.stiffnessSource = "the scene's law [Pa]";
-    return loaded;
-}
-
-std::string fingerprint(const PointCloud& cloud)
-{
-    std::uint64_t hash = 14695981039346656037U;
-    const auto    add  = [&](double value) {
-        std::uint64_t bits = std::bit_cast<std::uint64_t>(value);
-        for (int k = 0; k < 8; ++k, bits >>= 8U) hash = (hash ^ (bits & 0xFFU)) * 1099511628211U;
-    };
-    for (const glm::dvec3& p : cloud.positions()) {
-        add(p.x);
-        add(p.y);
-        add(p.z);
-    }
-    for (const double stiffness : cloud.stiffness()) add(stiffness);
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-    return text;
 }
 
 } // namespace palp

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -15,6 +16,7 @@
 #include "engine/contact/proxy.h"
 #include "engine/force/hand_over.h"
 #include "engine/pipeline/pipeline.h"
+#include "engine/session/hunt.h"
 
 namespace palp {
 
@@ -60,6 +62,9 @@ struct Scene {
     glm::dvec3                place{};             ///< [m] on the cloud, where there is something to feel
     std::optional<glm::dvec3> from{};              ///< [1] the hand's side there; empty: away from the cloud's middle
     double                    startHeight = 10e-3; ///< [m] of the hand above `place` when the session starts
+
+    std::optional<Hunt>          hunt{};     ///< nodules that are hidden in the cloud, see engine/session/hunt.h
+    std::optional<std::uint64_t> huntSeed{}; ///< places them anew [1]
 
     std::map<std::string, ValueOrigin, std::less<>> origins; ///< of every key that has a value
 };
@@ -111,9 +116,24 @@ enum class ConfigFormat { text, json };
 /// Every key with its value, its unit and where the value came from: what `--print-config` shows.
 [[nodiscard]] std::string printConfig(const Scene& scene, ConfigFormat format);
 
-/// The cloud with the scene's law, if it has one.
-/// \throws Error as readCloud() does
+inline constexpr std::string_view kSamplePrefix = "sample:";
+
+/// Whether the cloud is a procedural one, and its name without the prefix.
+[[nodiscard]] inline bool isSample(const Scene& scene)
+{
+    return scene.cloud.starts_with(kSamplePrefix);
+}
+[[nodiscard]] inline std::string_view sampleName(const Scene& scene)
+{
+    return std::string_view(scene.cloud).substr(kSamplePrefix.size());
+}
+
+/// The cloud with the scene's law, if it has one, and the nodules of its hunt.
+/// \throws Error as readCloud() and hiddenNodules() do
 [[nodiscard]] LoadedCloud loadCloud(const Scene& scene);
+
+/// The nodules that loadCloud() has hidden in this cloud; none without a hunt.
+[[nodiscard]] std::vector<Nodule> nodulesOf(const Scene& scene, const PointCloud& cloud);
 
 /// 16 hexadecimal digits that tell clouds apart: FNV-1a over the bits of places and stiffnesses. Not against malice.
 [[nodiscard]] std::string fingerprint(const PointCloud& cloud);

@@ -15,7 +15,8 @@ PointerHand::PointerHand(const Hit& start, double height, const Bounds& bounds)
 void PointerHand::begin(const Hit& at)
 {
     at_       = at;
-    pressing_ = false;
+    pressing_ = marking_ = false;
+    target_              = above(at, height_);
     MouseDeviceSettings settings;
     settings.reach = reach_;
     settings.rest  = above(at, height_) - origin_;
@@ -34,6 +35,20 @@ bool PointerHand::press(const Hit& at, double depth)
     pressing_ = true;
     target(above(at, -depth));
     return true;
+}
+
+void PointerHand::target(const glm::dvec3& place)
+{
+    constexpr std::uint32_t kButton = 2; // the second: the first is the operator's
+    target_                         = place;
+    device_->target(place - origin_, marking_ ? kButton : 0);
+}
+
+void PointerHand::mark(bool down)
+{
+    if (down == marking_) return;
+    marking_ = down;
+    target(target_);
 }
 
 void PointerHand::release()

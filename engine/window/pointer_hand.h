@@ -27,6 +27,10 @@ public:
     /// The hand begins anew, hovering over a place. \pre no session runs
     void begin(const Hit& at);
 
+    /// Holds the device's button down, or lets it go: in a hunt that declares the place. Costs nothing if nothing
+    /// changes.
+    void mark(bool down);
+
     /// Lets go: springs back to where it hovers.
     void release();
 
@@ -37,13 +41,14 @@ public:
 
 private:
     [[nodiscard]] glm::dvec3 above(const Hit& hit, double height) const { return hit.point + height * hit.outward; }
-    void                     target(const glm::dvec3& place) { device_->target(place - origin_); }
+    void                     target(const glm::dvec3& place);
 
     double                       height_; ///< [m]
     double                       reach_;  ///< [m]
     glm::dvec3                   origin_; ///< of the device's frame [m]
     Hit                          at_;     ///< where it is, or hovers
-    bool                         pressing_ = false;
+    bool                         pressing_ = false, marking_ = false;
+    glm::dvec3                   target_{}; ///< [m]
     std::unique_ptr<MouseDevice> device_;
 };
 

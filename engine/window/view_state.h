@@ -24,6 +24,7 @@ struct ViewState {
     bool panels = true;  ///< are shown
     bool keys   = false; ///< the sheet of keys is shown
     bool texts  = true;  ///< title, colour bar, key and scale are shown
+    bool blind  = false; ///< something is hidden in the object: nothing is shown that tells where
 
     Tool        tool = Tool::touch;
     BrushChoice brush;

@@ -125,7 +125,10 @@ void Workbench::frame(const SessionView* view)
     if (settings_.stop && *settings_.stop) closing_ = true;
     if (closing_) restart();
     for (auto samples = ring_.front(); !samples.empty(); samples = ring_.front()) {
-        for (const SessionSample& sample : samples) history_.add(sample);
+        for (const SessionSample& sample : samples) {
+            history_.add(sample);
+            if (settings_.onSample && what_ == settings_.what) settings_.onSample(sample);
+        }
         ring_.pop(samples.size());
     }
     const bool active = input_.any() || input_.panelsTakePointer || inContact(view) || replay_ || recording_;
@@ -163,8 +166,9 @@ void Workbench::beginPanels()
     const bool       presses = input_.left || input_.leftPressed || leftBefore_ || !input_.keys.empty();
     const bool       orbits  = presses && !panelsTakePointer_ && input_.left;
     const bool       resized = input_.size != drawnSize_;
-    panelsDue_  = panels_ && ((glides && !orbits) || (presses && !orbits) || !input_.typed.empty() || resized ||
-                             Seconds(now - panelsAt_).count() > kSeldom);
+    panelsDue_               = panels_ && !state_.blind &&
+                 ((glides && !orbits) || (presses && !orbits) || !input_.typed.empty() || resized ||
+                  Seconds(now - panelsAt_).count() > kSeldom);
     leftBefore_ = input_.left;
     if (!panelsDue_) {
         input_.panelsTakePointer = panelsTakePointer_;
@@ -273,12 +277,13 @@ void Workbench::writeTexts(const SessionView* view)
     constexpr double kSeldom = 0.25; // [s]
     if (!state_.texts) return;
     ViewScene& scene = stage_->view().scene();
-    if (!(panels_ && state_.panels)) { // which say all this themselves
+    if (!panelsShown()) { // which say all this themselves
         const double force = view ? glm::length(view->sample.force) : 0;
         scene.title        = std::filesystem::path(what_).stem().string();
         scene.note         = !saying().empty()  ? saying()
                              : !faults_.empty() ? faults_.back()
                              : force > 0        ? formatQuantity(force, "N")
+                             : state_.blind     ? "hold Space and move: touch.  M: there is a nodule here"
                                                 : "hold Space and move: touch.  F1: keys";
     }
     std::string says = scene.title + "|" + scene.note + "|" + scene.colours.quantity + "|" + name(state_.look.map) +

@@ -73,6 +73,7 @@ private:
     void                             addBrush();
     [[nodiscard]] double             patience() const;
     [[nodiscard]] PanelContent       content(const SessionView* view) const;
+    [[nodiscard]] bool               panelsShown() const { return panels_ && state_.panels && !state_.blind; }
     void                             writeTexts(const SessionView* view);
     void                             count(bool touching, double period);
     void                             perform(const PanelWishes& wishes);
@@ -95,6 +96,7 @@ private:
     void                             redo();
     void                             moveByCap();
     void                             showKeys();
+    void                             mark();
     void                             letGo();
     void                             open(const std::filesystem::path& path);
     void                             frameAll();
@@ -155,6 +157,7 @@ private:
     Overlay           texts_;
     std::string       textsOf_; ///< what they say
     Clock::time_point textsAt_{}, lastFrame_{}, lastBegin_{}, lastChange_{}, started_{};
+    Clock::time_point markedAt_{};                                  ///< when a place was declared last
     double            frameTime_ = 0, drawTime_ = 0, fineTime_ = 0; ///< [s]
     bool              stillFine_ = false;                           ///< the picture is a fine one of what is there
     WorkbenchReport   report_;

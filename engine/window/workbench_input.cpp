@@ -40,6 +40,8 @@ void Workbench::handleKey(const KeyPress& press)
         if (press.key == 'S') savePaint();
         return;
     }
+    if (state_.blind && (press.key == 'V' || press.key == 'J' || press.key == 'B'))
+        return say("not while something is hidden: it would show where");
     Overlays& shown = state_.look.overlays;
     switch (press.key) {
     case 'F':
@@ -88,6 +90,8 @@ void Workbench::handleKey(const KeyPress& press)
         state_.look.paint = state_.tool == Tool::paint ? ViewPaint::stiffness : paintBefore_; // what is painted is seen
         return say(state_.tool == Tool::paint ? "brush: left button paints, [ and ] size, Ctrl+Z takes back"
                                               : "hold Space and move: touch");
+    case 'M':
+        return mark();
     case '[':
     case ']':
         state_.brush.radius *= press.key == '[' ? 0.8 : 1.25;
@@ -121,9 +125,20 @@ void Workbench::letGo()
     say("let go: no force; R takes the object again, closing the window quits");
 }
 
+/// The pointer's hand declares the place that it is on.
+void Workbench::mark()
+{
+    if (!state_.blind) return say("M declares a hidden nodule; nothing is hidden in this scene");
+    if (!pointer_ || settings_.hand || replay_) return say("the hand's own button declares");
+    markedAt_ = Clock::now();
+    pointer_->mark(true);
+    say(pointer_->pressing() ? "declared: there is a nodule here" : "nothing is touched: hold Space over the place");
+}
+
 /// Without panels the keys are told in a line.
 void Workbench::showKeys()
 {
+    if (state_.blind) return say(state_.keys ? "Space touch, wheel depth, M declare, F frame, R reset, F5 record" : "");
 #ifndef PALPATE_PANELS
     say(state_.keys
             ? "Space touch, wheel depth, B brush, F frame, R reset, O orthographic, C V colours, L light, G S J "
@@ -162,6 +177,8 @@ std::optional<Hit> Workbench::hitAt(const WindowInput& input) const
 void Workbench::touch(const WindowInput& input)
 {
     if (settings_.hand || replay_ || !pointer_) return;
+    constexpr auto kHeld = std::chrono::milliseconds(60); // thrice what declares
+    if (Clock::now() - markedAt_ > kHeld) pointer_->mark(false);
     if (!input.touch) letGo_ = false;
     if (!input.touch || input.panelsTakeKeys || letGo_) return pointer_->release();
     if (input.panelsTakePointer) return; // over a panel the hand stays where it is

@@ -153,6 +153,12 @@ void Workbench::useObject()
     strongest_          = 0.5 * scene.maxForce;
     failed_             = false;
     paintSaved_         = true;
+    state_.blind        = scene.hunt.has_value();
+    if (state_.blind) { // what is hidden stays hidden
+        state_.look.paint              = ViewPaint::plain;
+        state_.look.overlays.projected = false;
+        state_.tool                    = Tool::touch;
+    }
 }
 
 void Workbench::change(const SceneValues& values)

@@ -51,6 +51,9 @@ struct WorkbenchSettings {
     /// What was assumed of a cloud because nobody said so, in sentences. May be empty.
     std::function<std::vector<std::string>(const Scene& scene, const CloudFileReport& report)> assumed;
 
+    /// Sees the samples of the object that was named first, on the window's thread. May be empty.
+    OnSample onSample;
+
     const std::atomic<bool>* stop   = nullptr; ///< closes the window once it is true; may be null
     SpaceMouse*              camera = nullptr; ///< moves the camera; may be null
 };

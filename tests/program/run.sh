@@ -31,7 +31,7 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert paint render view perceive paper devices doctor calibrate 'bench solve'; do
+for command in touch solve info convert paint render view hunt study perceive paper devices doctor calibrate 'bench solve'; do
     # shellcheck disable=SC2086  # a command, or one within another
     good "help of $command" $command --help; holds 'Examples:'
     mv out.txt help.txt

@@ -13,6 +13,7 @@
 
 #include "engine/cloud/samples.h"
 #include "engine/core/npy.h"
+#include "engine/session/hand_device.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palp {
@@ -57,6 +58,26 @@ TEST(HandPath, AtTheTimeOfASampleItIsThatSampleBitForBitAndBeyondTheEndsItRests)
     EXPECT_EQ(hand.position(-1), samples.front().position);
     EXPECT_EQ(hand.position(99), samples.back().position);
     EXPECT_EQ(hand.position(std::nan("")), samples.front().position);
+}
+
+TEST(HandPath, AColumnOfButtonsIsPressedFromItsSampleOn)
+{
+    const HandPath hand = parsed("time,x,y,z,force,buttons\n0,0,0,0,9,0\n1,0,0,0,9,2\n2,0,0,0,9,0\n");
+
+    EXPECT_EQ(hand.buttons(-1), 0u);
+    EXPECT_EQ(hand.buttons(0.999), 0u);
+    EXPECT_EQ(hand.buttons(1), 2u);
+    EXPECT_EQ(hand.buttons(1.999), 2u);
+    EXPECT_EQ(hand.buttons(3), 0u);
+    HandDevice device(hand);
+    EXPECT_EQ(device.exchange({}, 0.5).buttons, 0u);
+    EXPECT_EQ(device.exchange({}, 1.5).buttons, 2u);
+    for (const char* wrong : {"-1", "65536", "left", "1.5"})
+        EXPECT_NE(refusalOf([&] {
+                      static_cast<void>(parsed(std::string("t,x,y,z,buttons\n0,0,0,0,0\n1,0,0,0,") + wrong + "\n"));
+                  }).find("line 3: expected buttons"),
+                  std::string::npos)
+            << wrong;
 }
 
 TEST(HandPath, IsContinuousAndNeverFasterThanItSays)

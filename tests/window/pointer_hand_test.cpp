@@ -28,6 +28,20 @@ TEST(PointerHand, HoversPressesAndSpringsBack)
     EXPECT_NEAR(glm::distance(settled(hand, time), {0.02, 0, 10e-3}), 0, 1e-9);
 }
 
+TEST(PointerHand, AMarkIsTheDevicesSecondButtonWhereverTheHandGoes)
+{
+    double      time = 0;
+    PointerHand hand({{0, 0, 0}, {0, 0, 1}}, 10e-3, kBox);
+    ASSERT_TRUE(hand.press({{0.01, 0, 0}, {0, 0, 1}}, 1e-3));
+    hand.mark(true);
+    EXPECT_EQ(hand.device().exchange({}, time += 1e-3).buttons, 2u);
+    EXPECT_NEAR(glm::distance(settled(hand, time), {0.01, 0, -1e-3}), 0, 1e-9) << "it stays where it presses";
+    ASSERT_TRUE(hand.press({{0.02, 0, 0}, {0, 0, 1}}, 1e-3));
+    EXPECT_EQ(hand.device().exchange({}, time += 1e-3).buttons, 2u);
+    hand.mark(false);
+    EXPECT_EQ(hand.device().exchange({}, time += 1e-3).buttons, 0u);
+}
+
 TEST(PointerHand, DoesNotGoThroughTheObjectToItsOtherSide)
 {
     double      time = 0;

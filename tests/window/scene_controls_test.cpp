@@ -32,8 +32,9 @@ TEST(SceneControls, EveryKeyOfASceneIsThereOrCannotChangeWhileOneTouches)
 {
     // What is touched, where, and on which device: a new session, not another value. The law and the edges have fields
     // of their own, and the size of the table follows from the rate.
-    std::set<std::string_view> found{"cloud", "points", "seed",         "length_unit", "stiffness", "device",
-                                     "place", "from",   "start_height", "table_size",  "edges"};
+    std::set<std::string_view> found{"cloud",  "points", "seed",     "length_unit",  "stiffness",
+                                     "device", "place",  "from",     "start_height", "table_size",
+                                     "edges",  "hunt",   "hunt_seed"};
     for (const SceneControls& group : sceneControls()) {
         for (const SceneNumber& number : group.numbers) EXPECT_TRUE(found.insert(number.key).second) << number.key;
         for (const SceneChoice& choice : group.choices) EXPECT_TRUE(found.insert(choice.key).second) << choice.key;

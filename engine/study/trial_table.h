@@ -1,0 +1,48 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palp::study {
+
+/// One row of a participant's table: a trial that was felt and answered.
+struct TrialRow {
+    std::string         participant;
+    std::uint64_t       trial = 0, block = 0; ///< from 1
+    std::string         task, kind;
+    std::string         first, second;                ///< conditions; second empty but for pairs
+    std::string         question, answer;             ///< "1" to "5"; yes, no; first, second
+    std::optional<bool> correct;                      ///< empty: no answer is right
+    double              reactionTime = 0;             ///< from the question to the answer [s]
+    std::uint64_t       seed         = 0;             ///< the plan's
+    std::string         firstSession, secondSession;  ///< folders, from the study's
+    double              meanForce = 0, peakForce = 0; ///< over the time in contact [N]
+    std::string         version;                      ///< of the program, with its commit
+};
+
+/// The rows of a table that was written by TrialTable. A last line without its end was cut by a crash: it counts as not
+/// written.
+/// \throws Error naming the file, the line, what was expected and found
+[[nodiscard]] std::vector<TrialRow> readTrials(const std::filesystem::path& file);
+
+/// A participant's table on disk: RFC 4180, one line a trial, each written at once and flushed to the disk before
+/// append() returns, so that a crash costs at most the trial that was under way.
+class TrialTable {
+public:
+    /// Makes the table, or takes up the one that is there; a line that was cut is removed.
+    /// \throws Error naming the file and the reason
+    explicit TrialTable(std::filesystem::path file);
+
+    [[nodiscard]] const std::vector<TrialRow>& rows() const noexcept { return rows_; }
+
+    /// \throws Error naming the file and the reason: then nothing of the row stays
+    void append(const TrialRow& row);
+
+private:
+    std::filesystem::path file_;
+    std::vector<TrialRow> rows_;
+};
+
+} // namespace palp::study

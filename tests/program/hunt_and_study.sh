@@ -1,0 +1,130 @@
+#!/bin/sh
+# Hunts and studies as their users meet them: scored, recorded, resumed after a crash, analysed, and refused in one
+# sentence. Arguments: the program, and the checkout.
+set -u
+palpate=$1 samples=$2/samples
+place=$(mktemp -d "${TMPDIR:-/tmp}/palpate studies XXXXXX") || exit 1
+trap 'rm -rf "$place"' EXIT
+cd "$place" || exit 1
+
+failed=0 passed=0
+complain() { echo "FAILED: $*"; failed=$((failed + 1)); }
+pass() { passed=$((passed + 1)); }
+good() { # good DESCRIPTION ARGUMENTS...: exit code 0; standard input from the file "input"
+    what=$1; shift
+    if "$palpate" "$@" >out.txt 2>err.txt <input; then pass; else complain "$what: exit $? $(cat err.txt)"; fi
+}
+holds() { grep -qF -- "$1" out.txt && pass || complain "output lacks '$1': $(head -c 900 out.txt)"; }
+bad() { # bad DESCRIPTION WORD ARGUMENTS...: exit code 2, one line that holds WORD, nothing on standard output
+    what=$1 word=$2; shift 2
+    "$palpate" "$@" >out.txt 2>err.txt <input
+    code=$?
+    [ $code -eq 2 ] || { complain "$what: exit $code, expected 2: $(cat err.txt)"; return; }
+    grep -qF -- "$word" err.txt || { complain "$what: '$word' is not in: $(cat err.txt)"; return; }
+    [ "$(wc -l <err.txt)" -eq 1 ] || { complain "$what: more than one line: $(cat err.txt)"; return; }
+    [ ! -s out.txt ] && pass || complain "$what: printed something to standard output"
+}
+: >input
+
+# --- a hunt
+scene=$samples/scenes/nodule_hunt.json hand=$samples/scenes/nodule_hunt_hand.csv
+good 'a scripted hand hunts' hunt "$scene" --hand "$hand" --clock virtual --record session --out hunt.svg --json
+for word in '"found": 3' '"false_alarms": 1' '"mark_formula"' '"edge_traced": 1.0' '"declared_in_air": 0'; do holds "$word"; done
+grep -E '"(found|mark|coverage|impulse_N_s|time_s)"' out.txt >live.txt
+grep -q 'Nodules found: 3 of 4' hunt.svg && pass || complain 'the picture does not say what was found'
+good 'the recording scores the same' hunt --score session --json
+grep -E '"(found|mark|coverage|impulse_N_s|time_s)"' out.txt | cmp -s - live.txt && pass || complain 'a recording scores otherwise'
+good 'as a table' hunt --score session
+holds 'found 3 of 4 nodules, 1 false alarms'
+good 'in real time' hunt "$scene" --hand "$hand" --seconds 1
+holds 'nothing was declared'
+good 'hidden anew' hunt "$scene" --hand "$hand" --clock virtual --seed 7 --json
+holds '"found": '
+grep -A3 centre_m out.txt >seven.txt
+good 'the same again' hunt "$scene" --hand "$hand" --clock virtual --seed 7 --json
+grep -A3 centre_m out.txt | cmp -s - seven.txt && pass || complain 'the same seed hides elsewhere'
+good 'another seed' hunt "$scene" --hand "$hand" --clock virtual --seed 8 --json
+grep -A3 centre_m out.txt | cmp -s - seven.txt && complain 'another seed hides at the same places' || pass
+bad 'nothing is hidden' 'nothing is hidden' hunt "$samples/scenes/skin_wart.json" --clock virtual
+bad 'a seed of nothing' 'nothing is hidden' hunt "$samples/scenes/skin_wart.json" --seed 3
+bad 'both a scene and a recording' '--score' hunt "$scene" --score session
+bad 'no recording' 'session.json' hunt --score nowhere
+bad 'a hunt as a flag' 'nodule 1' hunt "$scene" --hunt '{"nodules":[{"at":[0,0,0],"radius":"nan","modulus":1e6}]}'
+
+# --- a study
+cat >sheet.json <<'JSON'
+{"cloud": "sample:sheet", "points": 4000, "thickness": "4 mm", "foundation": "1.74 MPa/m", "window": "70 mm", "cells": 16, "footprint_radius": "4.4 mm"}
+JSON
+cat >plan.json <<'JSON'
+{"title": "t", "seconds": 0.2, "hand": "press", "conditions": [
+ {"name": "SECRETSOFT", "scene": "sheet.json", "values": {"stiffness": {"law": "constant", "value": 3e5}}},
+ {"name": "SECRETSTIFF", "scene": "sheet.json", "values": {"stiffness": {"law": "constant", "value": 4e5}}}],
+ "tasks": [{"name": "real", "kind": "rating", "statement": "It felt real.", "least": "no", "most": "yes"},
+  {"name": "stiffer", "kind": "two-alternative", "question": "Which felt stiffer?", "pairs": [["SECRETSOFT", "SECRETSTIFF"]], "right": "second"}]}
+JSON
+good 'the order' study plan.json --participant P01 --order
+holds 'SECRETSOFT'
+cp out.txt order.txt
+good 'the order again' study plan.json --participant P01 --order
+cmp -s out.txt order.txt && pass || complain 'the order differs from run to run'
+good 'of another' study plan.json --participant P02 --order
+cmp -s out.txt order.txt && complain 'two participants have the same order' || pass
+table=study/P01/trials.csv
+printf '\n7\nfive\n4\nq\n' >input
+good 'a participant pauses' study plan.json --participant P01 --out study --clock virtual
+holds 'Trial 1 of 3'
+holds 'please answer 1 to 5'
+holds 'Paused after 1 of 3'
+grep -q SECRET out.txt err.txt && complain "the participant can read a condition's name" || pass
+[ "$(wc -l <$table)" -eq 2 ] && pass || complain "a row is missing: $(cat $table)"
+printf 'P01,2,1,real,rating,SECRETS' >>$table # as a crash within a row leaves it
+mkdir -p study/P01/trial_002 && echo '{}' >study/P01/trial_002/session.json # and within a session
+printf '\n5\n\n\n1\n' >input
+good 'and goes on after a crash' study plan.json --participant P01 --out study --clock virtual --json
+for word in '"done": 3' '"paused": false'; do holds "$word"; done
+cut -d, -f1-3 $table >columns.txt
+printf 'participant,trial,block\nP01,1,1\nP01,2,1\nP01,3,2\n' | cmp -s - columns.txt && pass || complain "trials lost or repeated: $(cat $table)"
+grep -q 'P01/trial_002_again2' $table && pass || complain 'the session that was cut was written over'
+good 'nothing is left' study plan.json --participant P01 --out study --clock virtual
+holds '3 of 3 trials'
+[ "$(wc -l <$table)" -eq 4 ] && pass || complain 'a finished study got another row'
+good 'its sessions are sessions' replay study/P01/trial_001 --compare
+# Killed at once: between two trials, while the keyboard is waited for.
+mkfifo keys
+"$palpate" study plan.json --participant P02 --out study --clock virtual <keys >out.txt 2>err.txt &
+process=$!
+exec 3>keys
+printf '\n2\n' >&3
+tries=0
+until [ -f study/P02/trials.csv ] && [ "$(wc -l <study/P02/trials.csv)" -eq 2 ] || [ $tries -ge 300 ]; do sleep 0.1; tries=$((tries + 1)); done
+kill -9 $process; exec 3>&-; wait $process 2>/dev/null
+printf '\n3\n\n\n2\n' >input
+good 'the killed one goes on' study plan.json --participant P02 --out study --clock virtual --json
+cut -d, -f1-3 study/P02/trials.csv >columns.txt
+printf 'participant,trial,block\nP02,1,1\nP02,2,1\nP02,3,2\n' | cmp -s - columns.txt && pass || complain "trials lost or repeated after a kill: $(cat study/P02/trials.csv)"
+: >input
+good 'analysed' study --analyse study --plot shares.svg --json
+for word in '"participants": 2' '"trials": 6' '"wilson_95"' '"noticeable_steps"' '"mean_bootstrap_95"'; do holds "$word"; done
+good 'in words' study --analyse study
+holds 'predicted, not measured'
+grep -q 'share of trials' shares.svg && pass || complain 'the plot has no axis'
+sed 's/4e5/5e5/' plan.json >changed.json
+bad 'the plan has changed' 'has changed since' study changed.json --participant P01 --out study --clock virtual
+sed -i 's/4 mm/5 mm/' sheet.json
+bad 'a scene of it has changed' 'has changed since' study plan.json --participant P01 --out study --clock virtual
+sed -i 's/5 mm/4 mm/' sheet.json
+sed -i '2s/P01/P03/' $table
+bad 'a changed table' 'was the table changed' study plan.json --participant P01 --out study --clock virtual
+bad 'no participant' '--participant' study plan.json --out study
+bad 'no number' 'end in a number' study plan.json --participant Jo --out study
+bad 'a way out of the folder' '--participant' study plan.json --participant ../P1 --out study
+bad 'no folder' '--out' study plan.json --participant P01
+bad 'the plan says how long' 'the plan says how long' study plan.json --participant P01 --out study --seconds 3
+bad 'no plan' 'PLAN' study --participant P01
+bad 'no such plan' 'none.json' study none.json --participant P01 --out study
+bad 'nothing to analyse' 'trials.csv' study --analyse .
+bad 'a plot of nothing' '--plot' study plan.json --participant P01 --plot x.svg
+[ ! -e study/Jo ] && [ ! -e P1 ] && pass || complain 'a refused study left a folder'
+
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]
