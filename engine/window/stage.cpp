@@ -1,6 +1,7 @@
 #include "engine/window/stage.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -57,7 +58,7 @@ PatchSolver Stage::solver()
 {
     return [this](const Touch& touch, double period) {
         if (fresh_.take()) {
-            solved_ = *fresh_.held();
+            const auto before = std::exchange(solved_, *fresh_.held()); // repaint() looks at it once more
             deformation_->repaint(*solved_);
         }
         return deformation_->solve(touch, period);

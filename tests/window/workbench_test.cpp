@@ -109,7 +109,7 @@ protected:
         return parseScene(R"({"cloud": ")" + what + R"(", "place": [0, 0, 0]})", what, ".", {values, {}});
     }
 
-    /// \param until  the next step comes then; at the latest after ten seconds, which fails
+    /// \param until  the next step comes then; at the latest after forty seconds, which fails
     void step(
         const std::string& what, const std::function<void(WindowInput&)>& act,
         const std::function<bool()>& until = [] { return true; })
@@ -174,7 +174,7 @@ protected:
         input_.dropped.clear();
         input_.moved               = {};
         input_.closing             = false;
-        constexpr double kPatience = 10; // [s]
+        constexpr double kPatience = 40; // [s] sanitizers make all of it ten times slower
         if (begun_ && !steps_.front().until()) {
             if (sinceStep() < kPatience) return input_;
             ADD_FAILURE() << "waited in vain: " << steps_.front().what << "; complaints: " << complaints_;
