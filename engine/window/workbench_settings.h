@@ -9,6 +9,7 @@
 #include "device/hid/space_mouse.h"
 #include "engine/session/recording.h"
 #include "engine/session/session_parts.h"
+#include "engine/session/session_summary.h"
 #include "engine/window/stage.h"
 #include "engine/window/view_state.h"
 
