@@ -108,7 +108,8 @@ void drawProfile(const PanelDesk& desk)
     const Window&    window = patch->window;
     const auto       x = profile(*patch, desk.content.force, true), z = profile(*patch, desk.content.force, false);
     const double     deepest = double(std::max(*std::ranges::max_element(x), *std::ranges::max_element(z)));
-    const double     end     = roundEnd(deepest, 0.01);
+    const double     least   = desk.content.force > 0 ? 0.02 : 0.2; // [mm] labels of smaller ones have no room
+    const double     end     = roundEnd(deepest, least);
     const ValueRange across{
         1e3 * std::min(window.corner.x, window.corner.z),
         1e3 * std::max(window.corner.x + window.grid.sizeX(), window.corner.z + window.grid.sizeZ())}; // [mm]
