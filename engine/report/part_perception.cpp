@@ -109,11 +109,12 @@ Section perceptionPart(const ReportRun& run)
     section.claims.push_back(
         {"About 90 % of the users perceived the change of stiffness over the object.",
          "Predicted for the ellipsoid: J = " + fixed(most.whole, 1) + " for W = 15 %, right in " +
-             fixed(100 * most.right, 0) + " % of trials; largest floor of all objects " + formatNumber(floor) + ".",
+             fixed(100 * most.right, 0) + " % of trials; largest floor of these objects " + formatNumber(floor) + ".",
          "a hand slides 60 mm through the whole pipeline in virtual time; a prediction, no study with people",
          most.right >= 0.9 && floor < kMostFloor ? Verdict::holds : Verdict::inPart,
          most.right >= 0.9 && floor < kMostFloor
-             ? "The prediction agrees: so large a change should be noticed by nearly all, and it is no artefact."
+             ? "Consistent, not a test of it: between its ends so large a change should be noticed by all, and it is "
+               "no artefact. How far apart the places were that the users compared is not published."
              : "The predicted score is lower, or part of what is felt is an artefact."});
     return section;
 }

@@ -217,8 +217,7 @@ Section placesPart(const ReportRun& run)
             run.step(all.size(), 4);
             all.push_back(press(cloud, index, law, preset, run));
             addNumbers(section, all.back());
-            if (preset == Preset::palpate || law == std::string("linear"))
-                surfaces.push_back(surfaceFigure(cloud, all.back()));
+            surfaces.push_back(surfaceFigure(cloud, all.back()));
         }
     }
     section.claims.push_back(claimOf(all));

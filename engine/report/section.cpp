@@ -1,5 +1,6 @@
 #include "engine/report/section.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "engine/core/contract.h"
@@ -29,7 +30,7 @@ const std::vector<double>& Section::number(std::string_view wanted) const
 std::string percent(double share)
 {
     char text[32];
-    std::snprintf(text, sizeof text, "%.2g %%", 100 * share);
+    std::snprintf(text, sizeof text, std::abs(share) < 0.1 ? "%.2g %%" : "%.0f %%", 100 * share);
     return text;
 }
 
