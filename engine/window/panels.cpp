@@ -119,12 +119,13 @@ PanelWishes drawPanels(ViewState& state, const PanelContent& content, double sca
     PanelDesk   desk{state, content, wishes, float(scale)};
     const Style style(desk.dark(), desk.scale);
     // A fault is shown whether or not there are panels: without them, no hand would know why it feels nothing.
-    if (state.panels || needsAttention(content)) {
+    const bool column = state.panels && !state.blind;
+    if (column || needsAttention(content)) {
         const float top  = drawStatusLine(desk);
         const float foot = state.texts ? footHeight(ImGui::GetIO().DisplaySize.y, desk.scale) : 0;
-        if (state.panels) drawColumn(desk, top, foot);
+        if (column) drawColumn(desk, top, foot);
     }
-    if (state.keys) drawKeySheet(desk);
+    if (state.keys && !state.blind) drawKeySheet(desk);
     return wishes;
 }
 

@@ -166,9 +166,8 @@ void Workbench::beginPanels()
     const bool       presses = input_.left || input_.leftPressed || leftBefore_ || !input_.keys.empty();
     const bool       orbits  = presses && !panelsTakePointer_ && input_.left;
     const bool       resized = input_.size != drawnSize_;
-    panelsDue_               = panels_ && !state_.blind &&
-                 ((glides && !orbits) || (presses && !orbits) || !input_.typed.empty() || resized ||
-                  Seconds(now - panelsAt_).count() > kSeldom);
+    panelsDue_  = panels_ && ((glides && !orbits) || (presses && !orbits) || !input_.typed.empty() || resized ||
+                             Seconds(now - panelsAt_).count() > kSeldom);
     leftBefore_ = input_.left;
     if (!panelsDue_) {
         input_.panelsTakePointer = panelsTakePointer_;

@@ -93,6 +93,19 @@ protected:
     PanelFrame   frame_;
 };
 
+TEST_F(PanelsClick, WhileSomethingIsHiddenNoPanelIsThereToTell)
+{
+    const auto drawn = [this] {
+        settle();
+        return ImGui::GetDrawData()->TotalVtxCount;
+    };
+    EXPECT_GT(drawn(), 100);
+    state_.blind = true;
+    EXPECT_EQ(drawn(), 0) << "also those that were there before";
+    state_.keys = true;
+    EXPECT_EQ(drawn(), 0) << "the sheet has keys that do not work now";
+}
+
 TEST_F(PanelsClick, TheViewChangesAtOnce)
 {
     click({205, 60});
