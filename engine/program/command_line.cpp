@@ -1,6 +1,16 @@
 #include "engine/program/commands.h"
 
+#include <filesystem>
+
+#include "engine/core/contract.h"
+
 namespace palp {
+
+void demandSvg(const std::string& option, const std::string& file)
+{
+    if (!file.empty() && std::filesystem::path(file).extension() != ".svg")
+        throw Error(option + ": expected a file that ends in .svg, found \"" + file + "\"");
+}
 
 std::string commandOf(const CLI::App& command)
 {

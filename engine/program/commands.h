@@ -33,6 +33,11 @@ struct CheckFailed : std::runtime_error {
 /// \throws Error naming the first option of the command that was given an empty value
 void refuseEmptyValues(const CLI::App& command);
 
+/// So that no slip writes a picture over a scene, a hand or a table.
+/// \param option  opens the complaint
+/// \throws Error unless the file's name ends in .svg, or is empty: no picture
+void demandSvg(const std::string& option, const std::string& file);
+
 /// The command line that a command's options are, quoted for a shell.
 [[nodiscard]] std::string commandOf(const CLI::App& command);
 

@@ -182,6 +182,17 @@ void refuseSlips(const std::string& word)
         throw Error("--hand " + word + ": there is no such hand or file; did you mean " + std::string(*meant) + "?");
 }
 
+/// What the words alone tell.
+void demandNamed(const HandOptions& options)
+{
+    if (options.hand == "mouse")
+        throw Error("--hand mouse: the mouse needs a window, which this command has not; try scan, or --hand arm");
+    refuseSlips(options.hand);
+    refuseOptionsOfAFalcon(options);
+    if (NamedDevice(options.hand).isHeld() && !options.grip.empty())
+        throw Error("--arm: a person holds the " + options.hand + "; leave one of the two out");
+}
+
 } // namespace
 
 double secondsOf(const std::string& text)
@@ -220,17 +231,22 @@ void addFalconOptions(CLI::App& command, FalconOptions& options)
                      "ask the Falcon's bridge to pass on each answer at once; nobody has tried it on a device yet");
 }
 
+void demandGood(const HandOptions& options)
+{
+    demandNamed(options);
+    if (!options.seconds.empty()) static_cast<void>(secondsOf(options.seconds));
+    if (!options.grip.empty()) static_cast<void>(gripOf(options.grip));
+    const bool simulated = options.hand == "arm" || options.hand == "falcon-emulator";
+    if (!simulated && !NamedDevice(options.hand).isHeld() && !motionNamed(options.hand))
+        static_cast<void>(readHand(options.hand));
+}
+
 HandSource handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
 {
-    if (options.hand == "mouse")
-        throw Error("--hand mouse: the mouse needs a window, which this command has not; try scan, or --hand arm");
-    refuseSlips(options.hand);
+    demandNamed(options);
     HandSource source;
     if (!options.seconds.empty()) source.seconds = secondsOf(options.seconds);
-    refuseOptionsOfAFalcon(options);
     const bool held = NamedDevice(options.hand).isHeld();
-    if (held && !options.grip.empty())
-        throw Error("--arm: a person holds the " + options.hand + "; leave one of the two out");
     if (held)
         hold(source, options, scene, cloud, index);
     else

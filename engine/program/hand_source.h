@@ -57,6 +57,11 @@ struct HandSource {
 [[nodiscard]] HandSource handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud,
                                  const NeighbourIndex& index);
 
+/// What can be said of the options before a hand is there: its name, its numbers, a file that can be read. Whether a
+/// device is plugged in shows when it is opened.
+/// \throws Error naming the option
+void demandGood(const HandOptions& options);
+
 /// A Falcon that is plugged in, not opened yet. \param path  of its listing; empty: the first that is usable
 /// \throws Error naming the image, if it cannot be read
 [[nodiscard]] std::unique_ptr<HapticDevice> falconFor(const FalconOptions& options, const std::string& path = {});

@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -16,8 +17,10 @@
 namespace palp {
 namespace {
 
+constexpr const char* kDefaultScene = "samples/scenes/nodule_hunt.json";
+
 struct HuntOptions {
-    SceneSource    scene{"samples/scenes/nodule_hunt.json", {}};
+    SceneSource    scene{kDefaultScene, {}};
     SessionOptions session;
     std::string    score, out;
     bool           json = false;
@@ -46,6 +49,14 @@ void tell(const HuntOptions& o, const Scene& scene, const PointCloud& cloud, con
     printText(score, *scene.hunt);
 }
 
+/// The scene of who named none is there in a checkout alone.
+void demandScene(const HuntOptions& o)
+{
+    if (o.scene.name == kDefaultScene && !std::filesystem::exists(kDefaultScene))
+        throw Error(std::string("SCENE: ") + kDefaultScene +
+                    " was not found here; name a scene file with a \"hunt\", or go to the folder of palpate's samples");
+}
+
 /// A session that was recorded.
 void scoreRecorded(const HuntOptions& o)
 {
@@ -62,8 +73,10 @@ void scoreRecorded(const HuntOptions& o)
 
 void hunt(const HuntOptions& o)
 {
+    demandSvg("--out", o.out);
     if (!o.score.empty()) return scoreRecorded(o);
     demandGood(o.session);
+    demandScene(o);
     const Scene          scene = o.scene.load();
     const LoadedCloud    cloud = loadCloud(scene);
     const NeighbourIndex index(cloud.cloud.positions());

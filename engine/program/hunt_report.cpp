@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "engine/core/quantity.h"
+#include "engine/program/counted.h"
 
 namespace palp {
 namespace {
@@ -69,8 +70,9 @@ nlohmann::json jsonOf(const HuntScore& s)
 
 void printText(const HuntScore& s, const Hunt& hunt)
 {
-    std::cout << "found " << s.found << " of " << s.nodules.size() << " nodules, " << s.falseAlarms
-              << " false alarms; mark " << percent(s.mark) << " = " << HuntScore::kMarkFormula << "\n";
+    std::cout << "found " << s.found << " of " << s.nodules.size() << " nodules, "
+              << counted(s.falseAlarms, "false alarm") << "; mark " << percent(s.mark) << " = "
+              << HuntScore::kMarkFormula << "\n";
     std::cout.flush(); // the table is printed by the other library
     printRow("nodule", "radius", "modulus", "found at", "off by", "edge traced");
     for (std::size_t i = 0; i < s.nodules.size(); ++i) {

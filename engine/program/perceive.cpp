@@ -57,12 +57,6 @@ double reachOf(const PerceiveOptions& o, const Scene& scene)
     return reach;
 }
 
-void expectSvg(const std::string& option, const std::string& file)
-{
-    if (!file.empty() && std::filesystem::path(file).extension() != ".svg")
-        throw Error(option + ": expected a file that ends in .svg, found \"" + file + "\"");
-}
-
 void write(const std::string& file, const std::string& text)
 {
     writeFileWhole(file, [&](std::ostream& stream) { stream << text; });
@@ -144,8 +138,8 @@ void print(const PerceiveOptions& o, const Felt& felt, const ScenePerception& p,
 
 void perceive(const PerceiveOptions& o)
 {
-    expectSvg("--out", o.out);
-    expectSvg("--picture", o.picture);
+    demandSvg("--out", o.out);
+    demandSvg("--picture", o.picture);
     Felt                  felt(o);
     const FeltLine        line = feltLine(felt.scene, felt.loaded.cloud, felt.index,
                                    o.along.empty() ? std::optional<glm::dvec3>() : parsePoint(o.along, "--along"),

@@ -20,6 +20,11 @@ struct StudyOptions {
 
 void study_(const StudyOptions& o, bool handGiven)
 {
+    demandSvg("--plot", o.plot);
+    const bool runs = !o.run.plan.empty() || !o.run.participant.empty() || !o.out.empty() || o.order;
+    if (!o.analyse.empty() && runs)
+        throw Error("--analyse reads what was answered: PLAN, --participant, --out and --order are of a run; leave one "
+                    "of the two out");
     if (!o.analyse.empty()) return analyseStudies(o.analyse, o.plot, o.run.json);
     if (!o.plot.empty()) throw Error("--plot is of --analyse; leave one of the two out");
     if (o.run.plan.empty()) throw Error("PLAN: expected the file of a study's plan, found none; see samples/studies");
@@ -35,6 +40,7 @@ void study_(const StudyOptions& o, bool handGiven)
     run.session.hand.seconds = std::to_string(plan.seconds);
     if (!handGiven) run.session.hand.hand = plan.hand;
     demandGood(run.session);
+    demandGood(run.session.hand);
     const StudyProgress went = runStudy(run, plan);
     if (run.json)
         std::cout << jsonText(nlohmann::json{{"participant", run.participant},

@@ -10,6 +10,7 @@
 #include "engine/core/file.h"
 #include "engine/core/quantity.h"
 #include "engine/program/commands.h"
+#include "engine/program/counted.h"
 #include "engine/program/study_run.h"
 #include "engine/study/study_analysis.h"
 
@@ -118,7 +119,7 @@ std::string decimals(double value)
 
 void printText(const AnswerSummary& s)
 {
-    std::cout << s.task << ", " << s.what << " (" << s.participants << " participants)\n";
+    std::cout << s.task << ", " << s.what << " (" << counted(s.participants, "participant") << ")\n";
     if (s.mean) {
         std::cout << "  rating " << decimals(*s.mean) << " on average";
         if (s.meanInterval)
@@ -170,10 +171,9 @@ void analyseStudies(const std::vector<std::string>& folders, const std::filesyst
         std::cout << jsonText(Json{{"participants", all.participants}, {"trials", all.rows.size()}, {"answers", list}});
         return;
     }
-    std::cout
-        << all.rows.size() << " trials of " << all.participants
-        << " participants; intervals of 95 %: shares by Wilson's score, which takes trials for independent, means "
-           "by a bootstrap over participants\n";
+    std::cout << counted(all.rows.size(), "trial") << " of " << counted(all.participants, "participant")
+              << "; intervals of 95 %: shares by Wilson's score, which takes trials for independent, means "
+                 "by a bootstrap over participants\n";
     for (const AnswerSummary& s : summaries) printText(s);
 }
 

@@ -1,6 +1,7 @@
 #include "engine/program/study_run.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +10,9 @@
 #include <map>
 
 #include <glm/geometric.hpp>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
 
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
@@ -29,6 +33,8 @@ using study::TrialRow;
 using Json = nlohmann::json;
 
 constexpr const char* kStudyFile   = "study.json";
+constexpr std::size_t kLongestLine = 1000;                  ///< [bytes] that is kept of an answer
+constexpr int         kMostStrange = 20;                    ///< [1] answers in a row, where nobody can be asked again
 constexpr std::size_t kLargestFile = std::size_t(16) << 20; ///< [bytes] of it
 
 /// A condition, ready to be touched.
@@ -52,8 +58,35 @@ struct Felt {
     }
 };
 
+using Answers = std::map<std::string, std::string>; ///< what is typed, what the table says
+
 /// The participant wants to go on later.
 struct Paused {};
+
+/// Keys that were hit while an object was touched answer nothing.
+void forgetKeys()
+{
+    if (isatty(STDIN_FILENO) != 0) ::tcflush(STDIN_FILENO, TCIFLUSH);
+}
+
+/// A line from the keyboard or the file that stands for it. \throws Paused at its end or at Ctrl-C
+std::string keyedLine()
+{
+    constexpr int            kLook = 100; // [ms] so often Ctrl-C is asked for, should it come between two waits
+    const std::atomic<bool>& stop  = catchInterrupts();
+    std::string              text;
+    for (char c = 0;;) {
+        pollfd    keys{STDIN_FILENO, POLLIN, 0};
+        const int ready = ::poll(&keys, 1, kLook);
+        if (stop) throw Paused();
+        if (ready <= 0) continue;
+        const ssize_t got = ::read(STDIN_FILENO, &c, 1);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0 && text.empty()) throw Paused();
+        if (got <= 0 || c == '\n') return text;
+        if (text.size() < kLongestLine) text += c; // no answer is as long
+    }
+}
 
 /// Force over the time in contact.
 struct ForceTally {
@@ -94,16 +127,19 @@ public:
             say("\nPaused after " + std::to_string(table_->rows().size()) + " of " + std::to_string(trials_.size()) +
                 " trials; the same command goes on.\n");
         }
+        tellUnfelt();
         return {table_->rows().size(), trials_.size(), paused, folder_ / "trials.csv"};
     }
 
 private:
     void                      agree();
     void                      demandOurs() const;
+    void                      tellUnfelt() const;
     TrialRow                  trial(std::size_t number);
     std::string               touch(std::size_t condition, const std::string& name, ForceTally& force);
     [[nodiscard]] std::string ask(const Task& task) const;
     [[nodiscard]] std::string line() const;
+    [[nodiscard]] std::string answerAmong(const Answers& known, const std::string& wanted) const;
     void                      begin(const std::string& what) const;
     void say(const std::string& text) const { (run_.json ? std::cerr : std::cout) << text << std::flush; }
 
@@ -115,10 +151,22 @@ private:
     std::optional<study::TrialTable> table_;
 };
 
+/// Without the place where a device is plugged in, which may be another tomorrow.
+std::string wordOf(const Json& value)
+{
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    return text.substr(0, text.find('@'));
+}
+
 /// The study's file is written once; later it must say the same.
 void Sitting::agree()
 {
-    Json now{{"format", 1}, {"participant", run_.participant}, {"title", plan_.title}, {"plan", plan_.canonical}};
+    Json now{{"format", 1},
+             {"participant", run_.participant},
+             {"title", plan_.title},
+             {"plan", plan_.canonical},
+             {"hand", run_.session.hand.hand},
+             {"clock", run_.session.clock}};
     for (std::size_t k = 0; k < felt_.size(); ++k) now["clouds"].push_back(fingerprint(felt_[k].cloud.cloud));
     std::error_code ignored;
     if (std::filesystem::exists(folder_ / kStudyFile, ignored)) {
@@ -127,6 +175,11 @@ void Sitting::agree()
             if (before[key] != now[key])
                 throw Error((folder_ / kStudyFile).string() + ": expected the plan that this participant began with, " +
                             "found that " + run_.plan + " or a scene of it has changed since; take another --out");
+        for (const char* key : {"hand", "clock"})
+            if (before.contains(key) && wordOf(before[key]) != wordOf(now[key])) // earlier versions did not keep them
+                throw Error((folder_ / kStudyFile).string() + ": expected the --" + key +
+                            " that this participant began with, " + before[key].dump() + ", found " + now[key].dump() +
+                            "; trials could not be compared; take another --out");
         return;
     }
     makeFolder(folder_);
@@ -152,11 +205,19 @@ void Sitting::demandOurs() const
                     ": expected the trials of this participant in their order, found others; was the table changed?");
 }
 
+/// For the experimenter: answers that say nothing of what was to be touched.
+void Sitting::tellUnfelt() const
+{
+    for (const TrialRow& row : table_->rows())
+        if (row.peakForce <= 0)
+            std::cerr << "palpate: trial " << row.trial << ": nothing was felt: the hand never touched, or it had no "
+                      << "force; its answer says nothing\n";
+}
+
 std::string Sitting::line() const
 {
-    std::string text;
-    if (!std::getline(std::cin, text) || catchInterrupts()) throw Paused();
-    const auto good = text.find_first_not_of(" \t\r");
+    std::string text = keyedLine();
+    const auto  good = text.find_first_not_of(" \t\r");
     if (good == std::string::npos) return "";
     text = text.substr(good, text.find_last_not_of(" \t\r") - good + 1);
     std::ranges::transform(text, text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
@@ -164,30 +225,44 @@ std::string Sitting::line() const
     return text;
 }
 
+/// Asks again until the answer is a known one.
+/// \throws Error after many others in a row that no terminal sent: a file's end may be far
+std::string Sitting::answerAmong(const Answers& known, const std::string& wanted) const
+{
+    for (int strange = 1;; ++strange) {
+        const std::string text   = line();
+        const auto        answer = known.find(text);
+        if (answer != known.end()) return answer->second;
+        if (strange >= kMostStrange && isatty(STDIN_FILENO) == 0) {
+            say("\n");
+            throw Error("standard input: expected one that would " + wanted + ", found " +
+                        std::to_string(kMostStrange) +
+                        " other lines in a row; this trial is not recorded, the same command goes on with it");
+        }
+        say("  please " + wanted + ", or q: ");
+    }
+}
+
 void Sitting::begin(const std::string& what) const
 {
+    forgetKeys();
     say(what + " Enter begins, q pauses: ");
-    static_cast<void>(line());
+    static_cast<void>(answerAmong({{"", ""}}, "press Enter alone"));
 }
 
 std::string Sitting::ask(const Task& task) const
 {
-    const bool rating = task.kind == TaskKind::rating, pair = task.kind == TaskKind::twoAlternative;
-    static const std::map<std::string, std::string> kRatings{
-        {"1", "1"}, {"2", "2"}, {"3", "3"}, {"4", "4"}, {"5", "5"}};
-    static const std::map<std::string, std::string> kYesNo{{"y", "yes"}, {"yes", "yes"}, {"n", "no"}, {"no", "no"}};
-    static const std::map<std::string, std::string> kPair{
-        {"1", "first"}, {"first", "first"}, {"2", "second"}, {"second", "second"}};
-    const auto&       known  = rating ? kRatings : pair ? kPair : kYesNo;
-    const std::string choice = rating ? "1 to 5" : pair ? "1 or 2" : "y or n";
-    const auto        end    = [](const std::string& meaning) { return meaning.empty() ? "" : " (" + meaning + ")"; };
+    const bool           rating = task.kind == TaskKind::rating, pair = task.kind == TaskKind::twoAlternative;
+    static const Answers kRatings{{"1", "1"}, {"2", "2"}, {"3", "3"}, {"4", "4"}, {"5", "5"}};
+    static const Answers kYesNo{{"y", "yes"}, {"yes", "yes"}, {"n", "no"}, {"no", "no"}};
+    static const Answers kPair{{"1", "first"}, {"first", "first"}, {"2", "second"}, {"second", "second"}};
+    const auto&          known  = rating ? kRatings : pair ? kPair : kYesNo;
+    const std::string    choice = rating ? "1 to 5" : pair ? "1 or 2" : "y or n";
+    const auto           end = [](const std::string& meaning) { return meaning.empty() ? "" : " (" + meaning + ")"; };
+    forgetKeys();
     say(task.question + "\n" + (rating ? "  1" + end(task.least) + " to 5" + end(task.most) : "  " + choice) +
         "; q pauses: ");
-    for (;;) {
-        const auto answer = known.find(line());
-        if (answer != known.end()) return answer->second;
-        say("  please answer " + choice + ", or q: ");
-    }
+    return answerAmong(known, "answer " + choice);
 }
 
 /// One touch. \return the session's folder, from the study's

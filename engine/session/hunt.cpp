@@ -129,6 +129,16 @@ public:
         }
     }
 
+    /// Who looks for them looks there alone.
+    void demandInGround(const std::vector<Nodule>& nodules) const
+    {
+        for (std::size_t i = 0; hunt_.ground > 0 && i < nodules.size(); ++i)
+            if (const double away = glm::distance(nodules[i].centre, place_); away > hunt_.ground)
+                throw Error("hunt: nodule " + std::to_string(i + 1) +
+                            ": key \"at\": expected a middle within the \"ground\", " + length(hunt_.ground) +
+                            " about the scene's place, found one that is " + length(away) + " from it");
+    }
+
     /// Random middles for nodules of these radii: the largest first, which find room most hardly.
     void scatter(std::vector<Nodule>& nodules, Uniform& random) const
     {
@@ -180,6 +190,16 @@ private:
     double            footprint_; ///< [m]
 };
 
+/// \param change  of the stiffness at most, relative [1]
+void demandFelt(std::size_t nodule, const Nodule& one, double change)
+{
+    constexpr double kLeast = 1e-3; // [1] a seventieth of what a finger tells apart (Weber fraction 0.07)
+    if (change < kLeast)
+        throw Error("hunt: nodule " + std::to_string(nodule + 1) +
+                    ": key \"modulus\": expected another than the object has there, found " +
+                    formatQuantity(one.modulus, "Pa") + ", which nobody can feel");
+}
+
 /// Evenly in the logarithm.
 double between(double low, double high, Uniform& random)
 {
@@ -216,6 +236,9 @@ Hunt parseHunt(std::string_view text, const std::string& what)
     if (object.has("ground")) hunt.ground = within(object, "ground", kRadius);
     if (object.has("press_force")) hunt.pressForce = within(object, "press_force", kForce);
     if (object.has("too_hard")) hunt.tooHard = within(object, "too_hard", kForce);
+    if (hunt.pressForce > hunt.tooHard)
+        throw Error(what + ": key \"press_force\": expected at most \"too_hard\", " +
+                    formatQuantity(hunt.tooHard, "N") + ", found " + formatQuantity(hunt.pressForce, "N"));
     return hunt;
 }
 
@@ -249,19 +272,25 @@ std::vector<Nodule> hiddenNodules(const Hunt& hunt, const std::optional<std::uin
         places.scatter(nodules, random);
     }
     places.demandOnObject(nodules);
+    places.demandInGround(nodules);
     return nodules;
 }
 
 PointCloud withNodules(const PointCloud& cloud, const std::vector<Nodule>& nodules, const Material& material)
 {
     std::vector<double> stiffness(cloud.stiffness().begin(), cloud.stiffness().end());
-    for (const Nodule& nodule : nodules) {
-        const double there =
+    for (std::size_t n = 0; n < nodules.size(); ++n) {
+        const Nodule& nodule = nodules[n];
+        double        change = 0;
+        const double  there =
             cloud.kind() == StiffnessKind::modulus ? nodule.modulus : material.rigidity(nodule.modulus);
         for (std::size_t i = 0; i < stiffness.size(); ++i) {
             const double share = nodule.share(glm::distance(cloud.positions()[i], nodule.centre));
-            if (share > 0) stiffness[i] *= std::pow(there / stiffness[i], share);
+            if (share <= 0) continue;
+            change = std::max(change, std::abs(there / stiffness[i] - 1));
+            stiffness[i] *= std::pow(there / stiffness[i], share);
         }
+        demandFelt(n, nodule, change);
     }
     return {{cloud.positions().begin(), cloud.positions().end()}, std::move(stiffness), cloud.kind()};
 }

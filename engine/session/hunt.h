@@ -56,6 +56,7 @@ struct Hunt {
                                                 double footprintRadius);
 
 /// The cloud with the nodules laid over its stiffness: E = E0^(1-s) E_nodule^s with s = Nodule::share().
+/// \throws Error naming a nodule that changes the stiffness so little that nobody can feel it
 [[nodiscard]] PointCloud withNodules(const PointCloud& cloud, const std::vector<Nodule>& nodules,
                                      const Material& material);
 

@@ -161,8 +161,10 @@ RecordedSession readSession(const std::filesystem::path& folder)
 {
     const std::filesystem::path path = folder / "session.json";
     std::error_code             none;
-    if (std::filesystem::is_directory(folder, none) && !std::filesystem::exists(path, none))
-        throw Error(folder.string() + ": expected the folder of a recorded session, found no session.json in it; " +
+    const bool                  isFolder = std::filesystem::is_directory(folder, none);
+    if (std::filesystem::exists(folder, none) && !std::filesystem::exists(path, none))
+        throw Error(folder.string() + ": expected the folder of a recorded session, found " +
+                    (isFolder ? "no session.json in it; " : "a file; ") +
                     "palpate run --record makes one, and so does F5 in the window");
     const JsonObject file =
         JsonObject::parse(readWhole(path, kMostOfDescription, "the description of a session"), path.string());

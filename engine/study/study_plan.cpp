@@ -9,6 +9,7 @@
 #include "engine/core/file.h"
 #include "engine/core/json_object.h"
 #include "engine/core/nearest_name.h"
+#include "engine/force/governor.h"
 
 namespace palp::study {
 namespace {
@@ -17,8 +18,9 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kLargestFile    = std::size_t(1) << 20; ///< [bytes] real plans have a few thousand
 constexpr int         kMostConditions = 26, kMostTasks = 20, kMostRepetitions = 100; ///< [1] more tire everybody out
-constexpr double      kMostSeconds = 3600;                                           ///< of one touch [s]
-constexpr std::size_t kLongestText = 500; ///< [bytes] of what a participant reads at once
+constexpr double      kLeastSeconds = GovernorSettings{}.engageTime; ///< of one touch [s]: before it no force is whole
+constexpr double      kMostSeconds  = 3600;                          ///< of one touch [s]
+constexpr std::size_t kLongestText  = 500;                           ///< [bytes] of what a participant reads at once
 
 /// A text that a terminal and a table can show.
 std::string textOf(const JsonObject& object, const char* key)
@@ -218,7 +220,8 @@ StudyPlan parsePlan(std::string_view text, const std::string& name, const std::f
     plan.title = textOf(file, "title");
     if (file.has("seed")) plan.seed = std::uint64_t(file.wholeNumber("seed", 0, 2147483647));
     if (file.has("seconds")) plan.seconds = file.positiveNumber("seconds");
-    if (!(plan.seconds <= kMostSeconds)) file.refuse("seconds", "a time above 0 and up to 3600 s");
+    if (!(plan.seconds >= kLeastSeconds && plan.seconds <= kMostSeconds))
+        file.refuse("seconds", "a time from 1.5 s, which a force needs to come on, to 3600 s");
     if (file.has("hand")) plan.hand = textOf(file, "hand");
     if (file.has("repetitions")) plan.repetitions = file.wholeNumber("repetitions", 1, kMostRepetitions);
     for (const JsonObject& one : objectsIn(file, "conditions", "condition", kMostConditions)) {

@@ -35,7 +35,7 @@ grep -q 'Nodules found: 3 of 4' hunt.svg && pass || complain 'the picture does n
 good 'the recording scores the same' hunt --score session --json
 grep -E '"(found|mark|coverage|impulse_N_s|time_s)"' out.txt | cmp -s - live.txt && pass || complain 'a recording scores otherwise'
 good 'as a table' hunt --score session
-holds 'found 3 of 4 nodules, 1 false alarms'
+holds 'found 3 of 4 nodules, 1 false alarm;'
 good 'in real time' hunt "$scene" --hand "$hand" --seconds 1
 holds 'nothing was declared'
 good 'hidden anew' hunt "$scene" --hand "$hand" --clock virtual --seed 7 --json
@@ -49,6 +49,15 @@ bad 'nothing is hidden' 'nothing is hidden' hunt "$samples/scenes/skin_wart.json
 bad 'a seed of nothing' 'nothing is hidden' hunt "$samples/scenes/skin_wart.json" --seed 3
 bad 'both a scene and a recording' '--score' hunt "$scene" --score session
 bad 'no recording' 'session.json' hunt --score nowhere
+cp "$scene" scene.json
+bad 'a picture over the scene' 'ends in .svg' hunt scene.json --hand "$hand" --clock virtual --out scene.json
+cmp -s "$scene" scene.json && pass || complain 'a hunt wrote over its scene'
+bad 'a picture over a recording' 'ends in .svg' hunt --score session --out session/session.json
+bad 'no default scene here' 'name a scene file' hunt
+bad 'a file is no recording' 'palpate run --record' hunt --score hunt.svg
+bad 'a nodule out of the ground' '"ground"' hunt "$scene" --hunt '{"nodules":[{"at":[0.03,0,0],"radius":0.004,"modulus":1e6}],"ground":0.02}'
+bad 'a nodule like the rest' 'key "modulus"' hunt "$scene" --hunt '{"nodules":[{"at":[0,0,0],"radius":0.004,"modulus":3e5}]}'
+bad 'a press that is too hard' 'key "press_force"' hunt "$scene" --hunt '{"nodules":[{"at":[0,0,0],"radius":0.004,"modulus":1e6}],"press_force":3,"too_hard":1}'
 bad 'a hunt as a flag' 'nodule 1' hunt "$scene" --hunt '{"nodules":[{"at":[0,0,0],"radius":"nan","modulus":1e6}]}'
 
 # --- a study
@@ -56,7 +65,7 @@ cat >sheet.json <<'JSON'
 {"cloud": "sample:sheet", "points": 4000, "thickness": "4 mm", "foundation": "1.74 MPa/m", "window": "70 mm", "cells": 16, "footprint_radius": "4.4 mm"}
 JSON
 cat >plan.json <<'JSON'
-{"title": "t", "seconds": 0.2, "hand": "press", "conditions": [
+{"title": "t", "seconds": 1.6, "hand": "press", "conditions": [
  {"name": "SECRETSOFT", "scene": "sheet.json", "values": {"stiffness": {"law": "constant", "value": 3e5}}},
  {"name": "SECRETSTIFF", "scene": "sheet.json", "values": {"stiffness": {"law": "constant", "value": 4e5}}}],
  "tasks": [{"name": "real", "kind": "rating", "statement": "It felt real.", "least": "no", "most": "yes"},
@@ -69,7 +78,23 @@ good 'the order again' study plan.json --participant P01 --order
 cmp -s out.txt order.txt && pass || complain 'the order differs from run to run'
 good 'of another' study plan.json --participant P02 --order
 cmp -s out.txt order.txt && complain 'two participants have the same order' || pass
+sed 's/1\.6/1.4/' plan.json >short.json
 table=study/P01/trials.csv
+{ printf 'x\n\n'; seq 11 30; } >input # a line that does not begin, one that does, 20 that answer nothing
+"$palpate" study plan.json --participant P09 --out strange --clock virtual <input >out.txt 2>err.txt
+[ $? -eq 2 ] && grep -q '20 other lines in a row' err.txt && [ "$(wc -l <err.txt)" -eq 1 ] && pass || complain "strange answers: $(cat err.txt)"
+holds 'please press Enter alone'
+[ "$(wc -l <strange/P09/trials.csv)" -eq 1 ] && pass || complain 'an answer that was none is in the table'
+mkfifo quiet # Ctrl-C while the keyboard is waited for
+"$palpate" study plan.json --participant P08 --out strange --clock virtual <quiet >out.txt 2>err.txt &
+process=$!
+exec 3>quiet
+tries=0
+until grep -q 'Enter begins' out.txt || [ $tries -ge 300 ]; do sleep 0.1; tries=$((tries + 1)); done
+sleep 0.3 # it reads by now
+kill -INT $process; wait $process && pass || complain "Ctrl-C at a prompt: exit $?"
+exec 3>&-
+holds 'Paused after 0 of 3'
 printf '\n7\nfive\n4\nq\n' >input
 good 'a participant pauses' study plan.json --participant P01 --out study --clock virtual
 holds 'Trial 1 of 3'
@@ -123,8 +148,22 @@ bad 'the plan says how long' 'the plan says how long' study plan.json --particip
 bad 'no plan' 'PLAN' study --participant P01
 bad 'no such plan' 'none.json' study none.json --participant P01 --out study
 bad 'nothing to analyse' 'trials.csv' study --analyse .
+bad 'a plot over a table' 'ends in .svg' study --analyse study --plot $table
+head -1 $table | grep -q '^participant' && pass || complain 'a plot wrote over a table'
+bad 'another clock' 'the --clock that' study plan.json --participant P02 --out study
+bad 'another hand' 'the --hand that' study plan.json --participant P02 --out study --clock virtual --hand scan
+bad 'no such hand' '--hand pres:' study plan.json --participant P04 --out study --hand pres
+bad 'no hand in the file' 'sheet.json' study plan.json --participant P04 --out study --hand sheet.json
+printf '0,0,0,0.02\n2,0,0,0.02\n' >air.csv # above the sheet
+printf '\n3\nq\n' >input
+good 'a hand in the air' study plan.json --participant P05 --out air --clock virtual --hand air.csv
+grep -q 'trial 1: nothing was felt' err.txt && pass || complain "nobody says that nothing was felt: $(cat err.txt)"
+: >input
+bad 'a run and an analysis' '--analyse' study plan.json --analyse study
+bad 'a folder and an analysis' '--analyse' study --analyse study --out other
+bad 'too short to feel' 'a force needs to come on' study short.json --participant P01 --out study
 bad 'a plot of nothing' '--plot' study plan.json --participant P01 --plot x.svg
-[ ! -e study/Jo ] && [ ! -e P1 ] && pass || complain 'a refused study left a folder'
+[ ! -e study/P04 ] && [ ! -e study/Jo ] && [ ! -e P1 ] && pass || complain 'a refused study left a folder'
 
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

@@ -210,6 +210,7 @@ TEST(StudyPlan, BadOnesAreRefusedInOneSentence)
     refused(a, kRating, "repetitions", R"(, "repetitions": 0)");
     refused(a, kRating, "seconds", R"(, "seconds": 0)");
     refused(a, kRating, "seconds", R"(, "seconds": 1e9)");
+    refused(a, kRating, "1.5 s, which a force needs", R"(, "seconds": 1.4)");
     refused(a, kRating, "hands", R"(, "hands": "scan")");
 }
 

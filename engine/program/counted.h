@@ -1,0 +1,13 @@
+#pragma once
+#include <cstddef>
+#include <string>
+
+namespace palp {
+
+/// "1 trial", "2 trials".
+[[nodiscard]] inline std::string counted(std::size_t number, const std::string& what)
+{
+    return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
+}
+
+} // namespace palp
