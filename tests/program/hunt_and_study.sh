@@ -2,6 +2,7 @@
 # Hunts and studies as their users meet them: scored, recorded, resumed after a crash, analysed, and refused in one
 # sentence. Arguments: the program, and the checkout.
 set -u
+exec </dev/null # whoever runs this may leave a keyboard open, and a study would wait for it
 palpate=$1 samples=$2/samples
 place=$(mktemp -d "${TMPDIR:-/tmp}/palpate studies XXXXXX") || exit 1
 trap 'rm -rf "$place"' EXIT
