@@ -57,15 +57,15 @@ HapticState ArmDevice::exchange(const GovernedForce& force, double now) noexcept
     state_.fault    = !good ? DeviceFault::badForce : late ? DeviceFault::hostTooSlow : DeviceFault::none;
     // A step holds the force of the step before: what was given the last time acted until now.
     if (late) arm_.step({}, kHostStall);
-    const double    left   = std::min(passed, kLongest) - (late ? kHostStall : 0);
-    const ArmSample sample = arm_.step(state_.fault == DeviceFault::none ? wanted : glm::dvec3(0), left);
-    ticked_                = true;
-    last_                  = now;
-    state_.time            = now;
-    state_.position        = sample.position;
-    state_.velocity        = sample.velocity;
-    state_.inBox           = sample.inBox;
-    state_.missed          = 0;
+    const double   left   = std::min(passed, kLongest) - (late ? kHostStall : 0);
+    const ArmState sample = arm_.step(state_.fault == DeviceFault::none ? wanted : glm::dvec3(0), left);
+    ticked_               = true;
+    last_                 = now;
+    state_.time           = now;
+    state_.position       = sample.position;
+    state_.velocity       = sample.velocity;
+    state_.inBox          = sample.inBox;
+    state_.missed         = 0;
     ++state_.sequence;
     return state_;
 }

@@ -5,6 +5,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
+#include "engine/core/enum_names.h"
 #include "engine/core/governed_force.h"
 
 namespace palp {
@@ -40,7 +41,20 @@ enum class DeviceFault : std::uint8_t {
     startingUp  = 8, ///< being opened: upload, first exchange
     hostTooSlow = 9  ///< exchange() was not called for 100 ms; the force had long gone by then
 };
-[[nodiscard]] const char* name(DeviceFault fault) noexcept; ///< "none", "unplugged", ...
+constexpr auto namesOf(DeviceFault)
+{
+    using enum DeviceFault;
+    return std::to_array<NamedValue<DeviceFault>>({{none, "none"},
+                                                   {closed, "closed"},
+                                                   {unplugged, "unplugged"},
+                                                   {silent, "silent"},
+                                                   {garbled, "garbled"},
+                                                   {kinematics, "kinematics"},
+                                                   {ownWatchdog, "own-watchdog"},
+                                                   {badForce, "bad-force"},
+                                                   {startingUp, "starting-up"},
+                                                   {hostTooSlow, "host-too-slow"}});
+}
 
 /// The device as of its last good answer, in its own frame: x right, y up, z towards the user, the origin in the middle
 /// of its workspace.

@@ -30,7 +30,7 @@ SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, const glm::dvec
     window_.add(time_, encoded());
 }
 
-ArmSample SimulatedArm::step(const glm::dvec3& force, double period) noexcept
+ArmState SimulatedArm::step(const glm::dvec3& force, double period) noexcept
 {
     if (!(period > 0) || !std::isfinite(period)) return sample();
     const double whole       = force.x + force.y + force.z;
@@ -45,7 +45,7 @@ ArmSample SimulatedArm::step(const glm::dvec3& force, double period) noexcept
     return sample();
 }
 
-ArmSample SimulatedArm::sample() const noexcept
+ArmState SimulatedArm::sample() const noexcept
 {
     const glm::dvec3 place = encoded();
     return {time_, place, window_.velocity(), glm::length(place) <= settings_.boxRadius};

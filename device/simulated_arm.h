@@ -18,7 +18,7 @@ struct SimulatedArmSettings {
     double encoderStep    = 48e-6; ///< [m] per axis; 0 is continuous
     double velocityWindow = 15e-3; ///< [s] over which positions are differenced; drivers take 15 to 20 ms
     double halfWorkspace  = 0.05;  ///< [m] per axis; the arm stops dead there
-    double boxRadius      = 0.045; ///< [m] sphere about the origin, inside which ArmSample::inBox holds
+    double boxRadius      = 0.045; ///< [m] sphere about the origin, inside which ArmState::inBox holds
     int    delaySamples   = 1;     ///< [1] from a force to its effect, 0 to 7; beside the hold until the next one
 };
 
@@ -31,7 +31,7 @@ struct SimulatedHand {
 };
 
 /// What the device's driver would know.
-struct ArmSample {
+struct ArmState {
     double     time = 0;     ///< [s]
     glm::dvec3 position{};   ///< [m] in whole encoder steps
     glm::dvec3 velocity{};   ///< [m/s] of those positions, over the window
@@ -60,9 +60,9 @@ public:
     /// \param force   [N] on the hand; one that is not finite counts as none
     /// \param period  [s] not above zero or not finite: no time goes by
     /// \return the sample at the end of the period
-    ArmSample step(const glm::dvec3& force, double period) noexcept;
+    ArmState step(const glm::dvec3& force, double period) noexcept;
 
-    [[nodiscard]] ArmSample         sample() const noexcept;
+    [[nodiscard]] ArmState          sample() const noexcept;
     [[nodiscard]] const glm::dvec3& position() const noexcept { return position_; } ///< [m] true, between encoder steps
     [[nodiscard]] const glm::dvec3& velocity() const noexcept { return velocity_; } ///< [m/s] true
 

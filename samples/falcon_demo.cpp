@@ -21,10 +21,10 @@
 #include "device/falcon/falcon_device.h"
 #include "device/falcon/falcon_firmware.h"
 #include "device/falcon/libusb_link.h"
+#include "engine/compute/processor_error.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/core/real_time.h"
-#include "engine/gpu/device_error.h"
 #include "engine/session/deformation.h"
 #include "engine/session/held_falcon.h"
 #include "engine/session/real_session.h"
@@ -297,9 +297,9 @@ void home(Falcon& falcon)
 
 void showLine(const SessionView& view)
 {
-    const SessionSample& s = view.sample;
-    Hand                 hand;
-    HapticState          state;
+    const TickRecord& s = view.sample;
+    Hand              hand;
+    HapticState       state;
     hand.setBits(s.device);
     state.fault = hand.device;
     state.homed = hand.homed;
@@ -387,7 +387,7 @@ int main(int argumentCount, char** arguments)
         return palp::complain((std::string(error.what()) + "; see --help").c_str(), 2);
     } catch (const palp::Interrupted&) {
         std::puts("ended   before the scene; no force flowed");
-    } catch (const palp::gpu::DeviceError& error) {
+    } catch (const palp::compute::ProcessorError& error) {
         return palp::complain(error.what(), 4);
     } catch (const palp::Error& error) {
         return palp::complain(error.what(), 2);

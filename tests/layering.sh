@@ -3,8 +3,15 @@
 set -u
 cd "$1" || exit 1
 
-# From the bottom up; a file may include its own layer and those before it.
-layers='core gpu cloud contact chart force plate pipeline session picture viewer window bench report study program'
+# From the bottom up; a file may include its own folder and those before it. A folder's own subfolders count as it.
+layers='core compute cloud contact chart plate force pipeline session tools/plot tools/render tools/gui tools/bench tools/paper tools/study tools/cli'
+# The layer of a path below engine/, and its place in the list.
+layer_of() {
+    case $1 in
+    tools/*/*) rest=${1#tools/}; echo "tools/${rest%%/*}" ;;
+    *) echo "${1%%/*}" ;;
+    esac
+}
 level_of() {
     n=0
     for layer in $layers; do
@@ -17,50 +24,60 @@ level_of() {
 bad=0
 complain() { echo "$*"; bad=1; }
 
-for folder in engine/*/; do
-    layer=$(basename "$folder")
+# Every file of every depth: the folders that hold sources are found, not listed.
+files=$(find engine -name '*.h' -o -name '*.cpp' | sort)
+session=$(level_of session)
+for folder in $(for file in $files; do dirname "$file"; done | sort -u); do
+    layer=$(layer_of "${folder#engine/}/")
     level=$(level_of "$layer")
-    [ "$level" = none ] && { complain "$folder is not a known layer: add it to tests/layering.sh"; continue; }
-    for file in "$folder"*.h "$folder"*.cpp; do
+    [ "$level" = none ] && { complain "$folder is in no known layer: add it to tests/layering.sh"; continue; }
+    for file in "$folder"/*.h "$folder"/*.cpp; do
         [ -f "$file" ] || continue
-        for target in $(sed -n 's|^ *# *include *"engine/\([a-z_]*\)/.*|\1|p' "$file"); do
-            other=$(level_of "$target")
-            [ "$other" != none ] && [ "$other" -le "$level" ] || complain "$file includes engine/$target, which is above it"
-        done
-        sed -n 's|^ *# *include *"\([^"]*\)".*|\1|p' "$file" | while read -r name; do
+        for name in $(sed -n 's|^ *# *include *"\([^"]*\)".*|\1|p' "$file"); do
             case $name in
-            engine/* | compute_shaders/shared/* | compute_shaders/*.spv.h | stb/*) ;;
-            device/*) [ "$level" -ge "$(level_of session)" ] || echo "$file includes \"$name\": only sessions and programs know devices" ;;
-            *) echo "$file includes \"$name\": write project includes from the root" ;;
+            engine/*)
+                target=$(layer_of "${name#engine/}")
+                other=$(level_of "$target")
+                [ "$other" != none ] && [ "$other" -le "$level" ] || complain "$file includes engine/$target, which is above it"
+                ;;
+            compute_shaders/shared/* | compute_shaders/*.spv.h | stb/*) ;;
+            device/*) [ "$level" -ge "$session" ] || complain "$file includes \"$name\": only sessions and tools know devices" ;;
+            *) complain "$file includes \"$name\": write project includes from the root" ;;
             esac
-        done | grep . && bad=1
+        done
     done
 done
+
+# The oracle shares no code with what it judges.
+shared=$(grep -rnE '^ *# *include *"(engine/plate/(multigrid|host)|engine/compute|compute_shaders)/' engine/plate/reference)
+[ -z "$shared" ] || complain "the reference solver shares code with the solver that it judges: $shared"
 
 # A device knows forces and positions, nothing of objects.
 others=$(grep -rnE '^ *# *include *"' device --include="*.h" --include="*.cpp" | grep -vE '"(device|engine/core)/')
 [ -z "$others" ] || complain "device/ includes more than engine/core: $others"
 
-# library: pattern of its includes: folders that may hold them
+# library: pattern of its includes: files that may hold them
 wall() {
     found=$(grep -rlE "^ *# *include *[<\"]$2" engine device --include='*.h' --include='*.cpp' | grep -vE "^(engine|device)/($3)$")
     [ -z "$found" ] || complain "$1 is included outside its wall: $found"
 }
 wall Embree 'embree[34]/' 'cloud/(embree\.h|neighbour_index\.cpp)'
-wall Eigen 'Eigen/' '(chart|plate)/[a-z_]*\.cpp|bench/eigen_solver\.cpp'
-wall nlohmann-json 'nlohmann/' '[a-z]*/[a-z_]*\.cpp|program/[a-z_]*\.h'
-wall CLI11 'CLI/' 'program/[a-z_]*\.(h|cpp)'
-wall Vulkan 'vulkan/' '(gpu|viewer)/vulkan_[a-z]*\.(h|cpp)|window/glfw_window\.cpp'
-wall GLFW 'GLFW/' 'window/glfw_[a-z]*\.cpp'
-wall ImGui '(imgui|backends/imgui)' '(viewer/vulkan_panels|window/(panel[a-z_]*|glfw_[a-z]*))\.cpp'
-wall CHOLMOD '(suitesparse/)?cholmod' 'bench/cholmod_solver\.cpp'
-wall nanoflann 'nanoflann' 'bench/nanoflann_search\.cpp'
-wall stb 'stb' '(picture/png|viewer/text)\.cpp'
+wall Eigen 'Eigen/' '(chart|plate|plate/reference|plate/multigrid)/[a-z_]*\.cpp|tools/bench/eigen_solver\.cpp'
+wall nlohmann-json 'nlohmann/' '[a-z/]*/[a-z_]*\.cpp|tools/cli/[a-z_]*\.h'
+wall CLI11 'CLI/' 'tools/cli/[a-z_]*\.(h|cpp)'
+wall Vulkan 'vulkan/' '(compute|tools/render)/vulkan_[a-z]*\.(h|cpp)|tools/gui/glfw_window\.cpp'
+wall GLFW 'GLFW/' 'tools/gui/glfw_[a-z]*\.cpp'
+wall ImGui '(imgui|backends/imgui)' 'tools/(render/vulkan_panels|gui/(panel[a-z_]*|glfw_[a-z]*))\.cpp'
+wall CHOLMOD '(suitesparse/)?cholmod' 'tools/bench/cholmod_solver\.cpp'
+wall nanoflann 'nanoflann' 'tools/bench/nanoflann_search\.cpp'
+wall stb 'stb' 'tools/(plot/png|render/text)\.cpp'
 wall libusb 'libusb' 'falcon/libusb_[a-z]*\.cpp'
 wall hidapi 'hidapi' 'hid/hidapi_[a-z]*\.cpp'
 
 # Public headers name no type of a wrapped library.
-grep -rnE 'RTC[A-Z]|Eigen::|nlohmann::|stbi_|Vk[A-Z]|VK_|libusb_[a-z]|hid_[a-z]*\(' engine device --include='*.h' | grep -vE '^engine/(cloud/embree\.h|(gpu|viewer)/vulkan_[a-z]*\.h|program/)' | grep -vE ':[0-9]+: *//' && complain 'a header names a type of a wrapped library'
+grep -rnE 'RTC[A-Z]|Eigen::|nlohmann::|stbi_|Vk[A-Z]|VK_|libusb_[a-z]|hid_[a-z]*\(' engine device --include='*.h' |
+    grep -vE '^engine/(cloud/embree\.h|(compute|tools/render)/vulkan_[a-z]*\.h|tools/cli/)' | grep -vE ':[0-9]+: *//' &&
+    complain 'a header names a type of a wrapped library'
 
 [ $bad -eq 0 ] && echo 'every include points downward'
 exit $bad

@@ -22,7 +22,7 @@
 // Include plate_grid.h first.
 //
 // Domain   any node that is not held; nodes out of the grid are never asked for
-// Source   energy as in engine/plate/plate_energy.h; moment form after Kumari & Chaudhuri 2016, eqs 6 to 8
+// Source   energy as in engine/plate/reference/plate_energy.h; moment form after Kumari & Chaudhuri 2016, eqs 6 to 8
 
 bool isHingedX(PlateLevel g, int i)
 {

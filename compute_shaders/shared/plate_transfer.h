@@ -1,6 +1,6 @@
 // plate_transfer.h - cubic interpolation between two levels, and its transpose (GLSL and C++).
 //
-// One axis at a time, by tables that the host makes once per pair of levels (engine/plate/transfer_table.h): they know
+// One axis at a time, by tables that the host makes once per pair of levels (engine/plate/multigrid/transfer_table.h): they know
 // the ghosts beyond each kind of side, and sizes that do not divide by two. A fourth-order equation needs transfers
 // whose orders sum to more than four: bilinear interpolation makes the cycle diverge. Restriction is exactly the
 // transpose, because residuals are forces; a symmetric cycle can then precondition conjugate gradients. Include
@@ -20,8 +20,7 @@ real prolongedAt(int i, int j)
     real sum = real(0);
     for (int m = 0; m < kFineWeights; ++m) {
         real row = real(0);
-        for (int n = 0; n < kFineWeights; ++n)
-            row += real(tableZ(atZ + 1 + n)) * coarseValue(firstX + m, firstZ + n);
+        for (int n = 0; n < kFineWeights; ++n) row += real(tableZ(atZ + 1 + n)) * coarseValue(firstX + m, firstZ + n);
         sum += real(tableX(atX + 1 + m)) * row;
     }
     return sum;

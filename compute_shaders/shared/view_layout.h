@@ -1,4 +1,4 @@
-// view_layout.h - what the pictures of engine/viewer are drawn from (GLSL and C++).
+// view_layout.h - what the pictures of engine/tools/render are drawn from (GLSL and C++).
 //
 // A fine frame is four passes: the nearest depth of all splats; the mean of normals, colours and depths of the splats near
 // that depth; the surface that they make; its light, over which the shapes (proxy, arrows, ...) are drawn. A fast one is only the last, with points that are lit one by one.
@@ -30,9 +30,10 @@ PALPATE_VIEW_CONST kBindColours = 5; // sum of weighted colours, and of weighted
 PALPATE_VIEW_CONST kBindSurface = 6; // unit normal in view space, and depth [m]; depth 0: nothing there
 PALPATE_VIEW_CONST kBindAlbedo  = 7; // colour of the surface
 PALPATE_VIEW_CONST kBindOverlay = 8; // pixels of the overlay, rows from the top, red in the lowest byte, premultiplied
-PALPATE_VIEW_CONST kBindTiles   = 9; // squares of it, then of the panels, that are not empty: column, and row from the 16th bit on
-PALPATE_VIEW_CONST kBindFaces   = 10; // numbers of splats, three to a triangle
-PALPATE_VIEW_CONST kBindPanels  = 11; // colours of the panels, premultiplied
+PALPATE_VIEW_CONST kBindTiles =
+    9; // squares of it, then of the panels, that are not empty: column, and row from the 16th bit on
+PALPATE_VIEW_CONST kBindFaces  = 10; // numbers of splats, three to a triangle
+PALPATE_VIEW_CONST kBindPanels = 11; // colours of the panels, premultiplied
 
 PALPATE_VIEW_CONST kHollow = 4; // beyond 1/8 nothing gets darker or lighter, see cueOf() [1]
 
@@ -52,7 +53,7 @@ struct ViewFrame {
     float cueGain;     // of that [1]
     float shine;       // of the surface's light, how much is a reflection [1]
     float unused;
-    float hiddenShare; // how much of a shape shows through the surface [1]
+    float hiddenShare;  // how much of a shape shows through the surface [1]
     uint  orthographic; // 1: the eye is infinitely far away
 };
 

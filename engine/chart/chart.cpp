@@ -14,10 +14,6 @@
 namespace palp {
 namespace {
 
-constexpr std::array kMapNames = {std::pair{Map::gallPeters, "gall-peters"},
-                                  std::pair{Map::lambertCylindrical, "lambert-cylindrical"},
-                                  std::pair{Map::lambertAzimuthal, "lambert-azimuthal"}};
-
 // How far beyond the rim of the hemisphere a point may lie by rounding [rad]: keeps the rim itself in the chart, and
 // lift(project(rim)) too. The maps go on smoothly there, so nothing depends on its size.
 constexpr double kRim = 1e-12;
@@ -51,20 +47,6 @@ void expectUnit(const glm::dvec3& normal)
 }
 
 } // namespace
-
-const char* name(Map map) noexcept
-{
-    for (const auto& [known, text] : kMapNames)
-        if (known == map) return text;
-    return "unknown";
-}
-
-std::optional<Map> mapNamed(std::string_view name)
-{
-    for (const auto& [known, text] : kMapNames)
-        if (name == text) return known;
-    return {};
-}
 
 Frame Frame::about(const glm::dvec3& normal)
 {

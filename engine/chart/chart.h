@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/chart/sphere_fit.h"
+#include "engine/core/enum_names.h"
 #include "engine/core/grid.h"
 
 namespace palp {
@@ -15,9 +16,13 @@ enum class Map {
     lambertCylindrical, ///< x = r alpha, z = r sin beta: undistorted at the contact and along its parallel
     lambertAzimuthal    ///< equal-area about the contact: undistorted there and isotropic around it
 };
-
-[[nodiscard]] const char*        name(Map map) noexcept;          ///< "gall-peters", ...
-[[nodiscard]] std::optional<Map> mapNamed(std::string_view name); ///< empty if unknown
+constexpr auto namesOf(Map)
+{
+    using enum Map;
+    return std::to_array<NamedValue<Map>>({{gallPeters, "gall-peters"},
+                                           {lambertCylindrical, "lambert-cylindrical"},
+                                           {lambertAzimuthal, "lambert-azimuthal"}});
+}
 
 /// Right-handed axes at the contact: east x north = normal.
 struct Frame {

@@ -97,7 +97,7 @@ PALPATE_PART int factorsOf(double ratio, double scale, const double* table, int 
 }
 
 struct Task {
-    const Window&               window;
+    const PatchWindow&          window;
     std::span<const ChartPoint> positions;
     std::span<const double>     rigidities;
     double                      width;
@@ -273,7 +273,7 @@ private:
 
 } // namespace
 
-LogMeanSums::LogMeanSums(const Window& window, std::span<const ChartPoint> positions,
+LogMeanSums::LogMeanSums(const PatchWindow& window, std::span<const ChartPoint> positions,
                          std::span<const double> rigidities, double width)
     : grid_(window.grid), stride_(std::size_t(grid_.nodesZ() + kLanes)),
       sums_(2 * std::size_t(grid_.nodesX()) * stride_)
@@ -290,7 +290,7 @@ void LogMeanSums::means(int i, std::span<double> row) const
     meansPortable(weight, weight + stride_, row);
 }
 
-bool surelyCovered(const Window& window, std::span<const ChartPoint> positions, double width)
+bool surelyCovered(const PatchWindow& window, std::span<const ChartPoint> positions, double width)
 {
     constexpr double       kCertain = 1 - 1e-9; // of a distance: far more than rounding [1]
     const PlateGrid&       grid     = window.grid;

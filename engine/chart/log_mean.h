@@ -12,7 +12,7 @@ namespace palp {
 class LogMeanSums {
 public:
     /// \param width  standard deviation of the Gaussian [m]
-    LogMeanSums(const Window& window, std::span<const ChartPoint> positions, std::span<const double> rigidities,
+    LogMeanSums(const PatchWindow& window, std::span<const ChartPoint> positions, std::span<const double> rigidities,
                 double width);
 
     /// exp of the mean of ln D [N m] of one row of nodes; not a number where no point reaches.
@@ -29,6 +29,6 @@ private:
 ///
 /// A point lies within half a spacing of its nearest node along either axis. So it is near to all nodes around that one
 /// which are near to the farthest corner of its cell: cells are marked, and the marks grown.
-[[nodiscard]] bool surelyCovered(const Window& window, std::span<const ChartPoint> positions, double width);
+[[nodiscard]] bool surelyCovered(const PatchWindow& window, std::span<const ChartPoint> positions, double width);
 
 } // namespace palp

@@ -13,7 +13,7 @@ namespace palp {
 namespace {
 
 /// The rigidity of the nearest point where there is no mean yet, and the number of nodes without a point nearby.
-void takeNearest(const Window& window, std::span<const ChartPoint> positions, std::span<const double> rigidities,
+void takeNearest(const PatchWindow& window, std::span<const ChartPoint> positions, std::span<const double> rigidities,
                  double nearby, Resampled& result)
 {
     const PlateGrid&                 grid    = window.grid;
@@ -39,26 +39,14 @@ bool areFinite(std::span<const ChartPoint> positions)
 
 } // namespace
 
-const char* name(Sampling sampling) noexcept
-{
-    return sampling == Sampling::logMean ? "log-mean" : "nearest";
-}
-
-std::optional<Sampling> samplingNamed(std::string_view text)
-{
-    for (Sampling sampling : {Sampling::logMean, Sampling::nearest})
-        if (name(sampling) == text) return sampling;
-    return {};
-}
-
-Window Window::square(double size, int cells)
+PatchWindow PatchWindow::square(double size, int cells)
 {
     PALP_EXPECT(size > 0 && std::isfinite(size), "window size " + std::to_string(size) + " m");
     PALP_EXPECT(cells >= 2 && cells % 2 == 0, std::to_string(cells) + " cells; the contact must be a node");
     return {{cells, cells, size / cells, size / cells}, {-size / 2, -size / 2}};
 }
 
-bool Window::holds(const ChartPoint& p) const noexcept
+bool PatchWindow::holds(const ChartPoint& p) const noexcept
 {
     return p.x >= corner.x && p.x <= corner.x + grid.sizeX() && p.z >= corner.z && p.z <= corner.z + grid.sizeZ();
 }
@@ -68,8 +56,8 @@ double kernelReach(double pointSpacing, double nodeSpacing) noexcept
     return kSamplingReach * samplingWidth(pointSpacing, nodeSpacing);
 }
 
-Resampled resampleRigidity(const Window& window, std::span<const ChartPoint> positions,
-                           std::span<const double> rigidities, Sampling sampling, double pointSpacing)
+Resampled resampleRigidity(const PatchWindow& window, std::span<const ChartPoint> positions,
+                           std::span<const double> rigidities, Resampling sampling, double pointSpacing)
 {
     PALP_EXPECT(!positions.empty() && positions.size() == rigidities.size(),
                 std::to_string(positions.size()) + " positions, " + std::to_string(rigidities.size()) + " rigidities");
@@ -79,7 +67,7 @@ Resampled resampleRigidity(const Window& window, std::span<const ChartPoint> pos
     PALP_EXPECT(areFinite(positions), "a point is not finite");
 
     Resampled result{NodeField(grid, std::numeric_limits<double>::quiet_NaN()), 0};
-    if (sampling == Sampling::logMean) {
+    if (sampling == Resampling::logMean) {
         const LogMeanSums sums(window, positions, rigidities, width);
         const auto        nodes = std::size_t(grid.nodesZ());
         for (int i = 0; i < grid.nodesX(); ++i)

@@ -6,23 +6,20 @@
 
 #include "engine/chart/chart.h"
 #include "engine/core/grid.h"
-#include "engine/core/sampling.h"
+#include "engine/core/resampling.h"
 
 namespace palp {
-
-[[nodiscard]] const char*             name(Sampling sampling) noexcept; ///< "log-mean", "nearest"
-[[nodiscard]] std::optional<Sampling> samplingNamed(std::string_view name);
 
 /// The part of the chart that bends: a grid of fixed size with the contact on its middle node.
 /// \differs the paper bends the neighbourhood, whatever its points span: a clamped plate's compliance grows with its
 ///          area, so that the scatter of the points would be felt
-struct Window {
+struct PatchWindow {
     PlateGrid  grid;
     ChartPoint corner; ///< chart position of node (0, 0) [m]
 
     /// A square of `size` [m] with `cells` cells a side.
     /// \param cells  even, so that the contact is a node
-    [[nodiscard]] static Window square(double size, int cells);
+    [[nodiscard]] static PatchWindow square(double size, int cells);
 
     [[nodiscard]] bool holds(const ChartPoint& p) const noexcept;
 };
@@ -54,7 +51,7 @@ struct Resampled {
 /// \source  Kumari & Chaudhuri 2016, section 2.4 (nearest)
 /// \differs log-mean: arithmetic means are 5 to 17 % off in compliance at a step of contrast 100, and the nearest point
 ///          makes compliance jitter by 0.5 to 2 % while the grid slides
-[[nodiscard]] Resampled resampleRigidity(const Window& window, std::span<const ChartPoint> positions,
-                                         std::span<const double> rigidities, Sampling sampling, double pointSpacing);
+[[nodiscard]] Resampled resampleRigidity(const PatchWindow& window, std::span<const ChartPoint> positions,
+                                         std::span<const double> rigidities, Resampling sampling, double pointSpacing);
 
 } // namespace palp

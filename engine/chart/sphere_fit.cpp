@@ -195,23 +195,6 @@ glm::dvec3 SphereFit::foot(const glm::dvec3& point) const noexcept
     return point - signedDistance(point) * normal(point);
 }
 
-const char* name(FitOutcome outcome) noexcept
-{
-    switch (outcome) {
-    case FitOutcome::sphere:
-        return "sphere";
-    case FitOutcome::plane:
-        return "plane";
-    case FitOutcome::tooFewPoints:
-        return "too few points";
-    case FitOutcome::ring:
-        return "ring";
-    case FitOutcome::line:
-        return "line";
-    }
-    return "unknown";
-}
-
 SphereFitResult fitSphere(std::span<const glm::dvec3> points)
 {
     expectFinite(points);

@@ -4,6 +4,8 @@
 
 #include <glm/vec3.hpp>
 
+#include "engine/core/enum_names.h"
+
 namespace palp {
 
 /// A sphere or its limit, a plane, as the zero set of
@@ -33,9 +35,12 @@ enum class FitOutcome {
     ring,         ///< the points lie on one circle: infinitely many spheres pass through it
     line          ///< the points lie on one line: not even a plane is determined
 };
-
-/// "sphere", "plane", ... for reports.
-[[nodiscard]] const char* name(FitOutcome outcome) noexcept;
+constexpr auto namesOf(FitOutcome)
+{
+    using enum FitOutcome;
+    return std::to_array<NamedValue<FitOutcome>>(
+        {{sphere, "sphere"}, {plane, "plane"}, {tooFewPoints, "too few points"}, {ring, "ring"}, {line, "line"}});
+}
 
 struct SphereFitResult {
     FitOutcome outcome = FitOutcome::tooFewPoints;

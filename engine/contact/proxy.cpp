@@ -42,9 +42,4 @@ const ProxyState& Proxy::state() const noexcept
     return impl_->state;
 }
 
-const char* name(ProxyForm form) noexcept
-{
-    return form == ProxyForm::hybrid ? "hybrid" : form == ProxyForm::sphere ? "sphere" : "plain-sphere";
-}
-
 } // namespace palp

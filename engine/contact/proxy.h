@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/cloud/neighbour_index.h"
+#include "engine/core/enum_names.h"
 
 namespace palp {
 
@@ -14,8 +15,12 @@ enum class ProxyForm {
     sphere,     ///< the paper's radial overshoot, pushed out to a fixed small overlap
     plainSphere ///< the paper's radial overshoot as published: slower to slide, noisier
 };
-
-[[nodiscard]] const char* name(ProxyForm form) noexcept; ///< "hybrid", "sphere", "plain-sphere"
+constexpr auto namesOf(ProxyForm)
+{
+    using enum ProxyForm;
+    return std::to_array<NamedValue<ProxyForm>>(
+        {{hybrid, "hybrid"}, {sphere, "sphere"}, {plainSphere, "plain-sphere"}});
+}
 
 struct ProxySettings {
     ProxyForm form            = ProxyForm::hybrid;

@@ -26,16 +26,16 @@ glm::dvec3 RecentMotion::velocity() const noexcept
     return oldest == &newest ? glm::dvec3(0) : (newest.position - oldest->position) / (newest.time - oldest->time);
 }
 
-glm::dvec3 aheadOf(HandOverLaw law, const glm::dvec3& contact, const glm::dvec3& velocity, double period) noexcept
+glm::dvec3 aheadOf(ComplianceLaw law, const glm::dvec3& contact, const glm::dvec3& velocity, double period) noexcept
 {
     constexpr double kPeriodsAhead = 1.5; // [1] see the header
-    return law == HandOverLaw::table ? contact + kPeriodsAhead * period * velocity : contact;
+    return law == ComplianceLaw::table ? contact + kPeriodsAhead * period * velocity : contact;
 }
 
-int tableSide(HandOverLaw law, double period, double spacing) noexcept
+int tableSide(ComplianceLaw law, double period, double spacing) noexcept
 {
     constexpr double kSpeed = 0.2, kAcceleration = 3; // of a hand that explores [m/s], [m/s^2]
-    if (law != HandOverLaw::table) return 1;
+    if (law != ComplianceLaw::table) return 1;
     const double needed = kSpeed * period / 2 + kAcceleration * (2 * period) * (2 * period) / 2;
     int          side   = 3;
     while (side < ComplianceTable::kMostSide && side / 2 * spacing < needed) side += 2;

@@ -3,7 +3,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "engine/force/hand_over.h"
+#include "engine/force/compliance_tracker.h"
 
 namespace palp {
 
@@ -37,7 +37,7 @@ private:
 /// Centre of the next window [m]: contact + 1.5 period velocity, the middle of the time during which its table will be
 /// in use (from one period after the contact to two). For the laws that hold one number, the contact itself.
 /// \param period  of the deformation thread, as measured [s]
-[[nodiscard]] glm::dvec3 aheadOf(HandOverLaw law, const glm::dvec3& contact, const glm::dvec3& velocity,
+[[nodiscard]] glm::dvec3 aheadOf(ComplianceLaw law, const glm::dvec3& contact, const glm::dvec3& velocity,
                                  double period) noexcept;
 
 /// Entries along each axis of a table that covers what a hand can do before the next one arrives [1]: 1 for the laws
@@ -47,6 +47,6 @@ private:
 /// \param period   of the deformation thread [s]
 /// \param spacing  of the table, the radius of the footprint [m]
 /// \source our own prototype of hands that slide and stroke at up to 0.2 m/s
-[[nodiscard]] int tableSide(HandOverLaw law, double period, double spacing) noexcept;
+[[nodiscard]] int tableSide(ComplianceLaw law, double period, double spacing) noexcept;
 
 } // namespace palp

@@ -4,18 +4,6 @@
 
 namespace palp {
 
-const char* name(ForceLaw law) noexcept
-{
-    return law == ForceLaw::series ? "series" : "paper";
-}
-
-std::optional<ForceLaw> forceLawNamed(std::string_view text)
-{
-    for (ForceLaw law : {ForceLaw::series, ForceLaw::paper})
-        if (name(law) == text) return law;
-    return {};
-}
-
 double contactStiffness(double modulus, double footprintRadius, double thickness) noexcept
 {
     return modulus * std::numbers::pi * footprintRadius * footprintRadius / thickness;

@@ -2,6 +2,8 @@
 #include <optional>
 #include <string_view>
 
+#include "engine/core/enum_names.h"
+
 namespace palp {
 
 /// How the depth of the hand in the surface becomes a force.
@@ -9,9 +11,11 @@ enum class ForceLaw {
     series, ///< contact and plate are springs in series: F = depth / (1/k_c + c)
     paper   ///< F = k_c depth: the plate bends on the screen, but is not felt
 };
-
-[[nodiscard]] const char*             name(ForceLaw law) noexcept; ///< "series", "paper"
-[[nodiscard]] std::optional<ForceLaw> forceLawNamed(std::string_view name);
+constexpr auto namesOf(ForceLaw)
+{
+    using enum ForceLaw;
+    return std::to_array<NamedValue<ForceLaw>>({{series, "series"}, {paper, "paper"}});
+}
 
 /// Stiffness of the contact itself, k_c = E A / h [N/m], with A the area of the footprint.
 /// Ballpark: skin 0.3 MPa, 4 mm thick, footprint of radius 3.6 mm: 3 kN/m.

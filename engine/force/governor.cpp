@@ -57,31 +57,6 @@ void check(const GovernorSettings& s)
 
 } // namespace
 
-const char* name(GovernorFault fault) noexcept
-{
-    switch (fault) {
-    case GovernorFault::none:
-        return "none";
-    case GovernorFault::forceNotFinite:
-        return "force-not-finite";
-    case GovernorFault::positionNotFinite:
-        return "position-not-finite";
-    case GovernorFault::velocityNotFinite:
-        return "velocity-not-finite";
-    case GovernorFault::clockNotFinite:
-        return "clock-not-finite";
-    case GovernorFault::clockStopped:
-        return "clock-stopped";
-    case GovernorFault::loopStalled:
-        return "loop-stalled";
-    case GovernorFault::deviceLost:
-        return "device-lost";
-    case GovernorFault::tooFast:
-        return "too-fast";
-    }
-    return "unknown";
-}
-
 ForceGovernor::ForceGovernor(const GovernorSettings& settings) : settings_(settings)
 {
     check(settings_);

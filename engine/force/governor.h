@@ -6,6 +6,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "engine/core/enum_names.h"
 #include "engine/core/governed_force.h"
 
 namespace palp {
@@ -62,7 +63,19 @@ enum class GovernorFault : std::uint8_t {
     deviceLost        = 7, ///< more than settings.missedTicks exchanges without an answer
     tooFast           = 8  ///< faster than settings.maximumSpeed
 };
-[[nodiscard]] const char* name(GovernorFault fault) noexcept; ///< "none", "force-not-finite", ...
+constexpr auto namesOf(GovernorFault)
+{
+    using enum GovernorFault;
+    return std::to_array<NamedValue<GovernorFault>>({{none, "none"},
+                                                     {forceNotFinite, "force-not-finite"},
+                                                     {positionNotFinite, "position-not-finite"},
+                                                     {velocityNotFinite, "velocity-not-finite"},
+                                                     {clockNotFinite, "clock-not-finite"},
+                                                     {clockStopped, "clock-stopped"},
+                                                     {loopStalled, "loop-stalled"},
+                                                     {deviceLost, "device-lost"},
+                                                     {tooFast, "too-fast"}});
+}
 
 /// What a tick did to the force; GovernorOutput::actions is a sum of these.
 enum class GovernorAction : std::uint32_t {

@@ -207,7 +207,7 @@ Patch restPatch(const PointCloud& cloud, const NeighbourIndex& index, const Cont
     patch.times.project = watch.lap();
 
     // ... where a grid takes over the rigidity of the points (2.4) ...
-    patch.window              = Window::square(settings.window, settings.cells);
+    patch.window              = PatchWindow::square(settings.window, settings.cells);
     const Resampled resampled = resample(cloud, patch, settings, spacing);
     patch.nodesWithoutPoint   = resampled.nodesWithoutPoint;
     patch.plate               = {patch.window.grid, settings.edges, settings.material.poissonRatio, settings.foundation,
@@ -241,12 +241,12 @@ void bend(Patch& patch, const PatchSettings& settings, PlateSolution solution, d
 Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
              const PatchSettings& settings)
 {
-    PlateDevice reference("reference");
+    PlateSolver reference("reference");
     return deform(cloud, index, contact, settings, reference);
 }
 
 Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
-             const PatchSettings& settings, PlateDevice& device)
+             const PatchSettings& settings, PlateSolver& device)
 {
     Stopwatch watch;
     Patch     patch = restPatch(cloud, index, contact, settings, watch);
@@ -260,12 +260,12 @@ Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact
     return patch;
 }
 
-FootprintLattice footprintLattice(const PointCloud& cloud, const PatchSettings& settings, int side, PlateDevice& device)
+FootprintLattice footprintLattice(const PointCloud& cloud, const PatchSettings& settings, int side, PlateSolver& device)
 {
     double logarithm = 0;
     for (std::size_t point = 0; point < cloud.size(); ++point)
         logarithm += std::log(cloud.rigidity(point, settings.material));
-    const PlateGrid grid = Window::square(settings.window, settings.cells).grid;
+    const PlateGrid grid = PatchWindow::square(settings.window, settings.cells).grid;
     const Plate     homogeneous{grid, settings.edges, settings.material.poissonRatio, settings.foundation,
                             NodeField(grid, std::exp(logarithm / double(cloud.size())))};
     const double    perRigidity =
@@ -274,7 +274,7 @@ FootprintLattice footprintLattice(const PointCloud& cloud, const PatchSettings& 
 }
 
 PatchWithTable deformWithTable(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
-                               const PatchSettings& settings, const FootprintLattice& lattice, PlateDevice& device)
+                               const PatchSettings& settings, const FootprintLattice& lattice, PlateSolver& device)
 {
     Stopwatch      watch;
     PatchWithTable result{restPatch(cloud, index, contact, settings, watch), {}};
@@ -302,7 +302,7 @@ std::vector<glm::dvec3> displaced(const PointCloud& cloud, const Patch& patch, d
     return result;
 }
 
-std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings, PlateDevice& device)
+std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings, PlateSolver& device)
 {
     const PlateGrid& fine = patch.plate.grid;
     if (!patch.deformed() || settings.cells % 4 != 0 || settings.footprintRadius < 2 * fine.spacingX) return {};
@@ -362,23 +362,11 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     return result;
 }
 
-const char* name(Preset preset) noexcept
-{
-    return preset == Preset::palpate ? "palpate" : "paper";
-}
-
-std::optional<Preset> presetNamed(std::string_view text)
-{
-    for (Preset preset : {Preset::palpate, Preset::paper})
-        if (name(preset) == text) return preset;
-    return {};
-}
-
 PatchSettings withPreset(PatchSettings settings, Preset preset)
 {
     const bool paper  = preset == Preset::paper;
     settings.map      = paper ? Map::gallPeters : Map::lambertAzimuthal;
-    settings.sampling = paper ? Sampling::nearest : Sampling::logMean;
+    settings.sampling = paper ? Resampling::nearest : Resampling::logMean;
     settings.forceLaw = paper ? ForceLaw::paper : ForceLaw::series;
     settings.edges    = {};
     if (paper) settings.foundation = 0;
@@ -391,7 +379,7 @@ std::vector<std::string> differencesFromPaper(const PatchSettings& settings)
     if (settings.map != Map::gallPeters)
         lines.push_back(std::string("map ") + name(settings.map) +
                         ", the paper's is gall-peters: it stretches by sqrt 2 at the contact");
-    if (settings.sampling != Sampling::nearest)
+    if (settings.sampling != Resampling::nearest)
         lines.push_back(std::string("rigidity by ") + name(settings.sampling) +
                         ", the paper's by nearest: it jitters while the grid slides");
     if (settings.edges != PlateEdges{}) lines.push_back("edges other than clamped, the paper's are clamped");

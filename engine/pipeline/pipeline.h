@@ -11,16 +11,17 @@
 #include "engine/cloud/neighbour_index.h"
 #include "engine/cloud/point_cloud.h"
 #include "engine/contact/contact.h"
+#include "engine/core/enum_names.h"
 #include "engine/force/force_law.h"
 #include "engine/pipeline/table_solve.h"
 #include "engine/plate/plate.h"
-#include "engine/plate/plate_device.h"
+#include "engine/plate/plate_solver.h"
 
 namespace palp {
 
 /// Scene constants: everything that decides what a touch feels like, apart from the cloud itself.
 ///
-/// Window, footprint and area of contact are lengths, never derived from the points at the contact: on a homogeneous
+/// PatchWindow, footprint and area of contact are lengths, never derived from the points at the contact: on a homogeneous
 /// object compliance is then exactly constant, and whatever the hand feels is in the object.
 struct PatchSettings {
     Material             material{};
@@ -29,11 +30,11 @@ struct PatchSettings {
     int                  cells           = 64;    ///< of the grid along that edge, even [1]
     double               footprintRadius = 4e-3;  ///< of the fingertip [m]
     Map                  map             = Map::lambertAzimuthal;
-    Sampling             sampling        = Sampling::logMean;
+    Resampling           sampling        = Resampling::logMean;
     PlateEdges           edges{}; ///< of the window
     ForceLaw             forceLaw  = ForceLaw::series;
-    double               tolerance = 1e-4; ///< of the plate's solution, relative; see PlateDevice::solve [1]
-    std::optional<Frame> frame{}; ///< chart axes carried from the neighbouring contact
+    double               tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
+    std::optional<Frame> frame{};          ///< chart axes carried from the neighbouring contact
 };
 
 /// The two ways to run the pipeline; engine/method.md says how they differ.
@@ -41,9 +42,11 @@ enum class Preset {
     palpate, ///< what we hold to be right
     paper    ///< as Kumari & Chaudhuri published it
 };
-
-[[nodiscard]] const char*           name(Preset preset) noexcept;
-[[nodiscard]] std::optional<Preset> presetNamed(std::string_view name);
+constexpr auto namesOf(Preset)
+{
+    using enum Preset;
+    return std::to_array<NamedValue<Preset>>({{palpate, "palpate"}, {paper, "paper"}});
+}
 
 /// These settings with the preset's map, sampling, edges, foundation and force law.
 /// `palpate` leaves the foundation as it is, `paper` removes it.
@@ -65,7 +68,7 @@ struct Patch {
     SphereFitResult sphere;
     Chart           chart;
     bool            sideUnsure = false; ///< the finger's side was guessed, and the cloud is open there
-    Window          window;
+    PatchWindow     window;
     Plate           plate;                 ///< rigidity at the nodes, edges, foundation
     double          spacing           = 0; ///< typical distance of neighbouring points of the cloud [m]
     std::size_t     nodesWithoutPoint = 0; ///< see Resampled [1]
@@ -98,7 +101,7 @@ struct Patch {
 /// \source Kumari & Chaudhuri 2016, sections 2.1 to 2.6
 /// \differs as differencesFromPaper() says of the settings; engine/method.md has every difference and why
 [[nodiscard]] Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
-                           const PatchSettings& settings, PlateDevice& device);
+                           const PatchSettings& settings, PlateSolver& device);
 
 /// As above, with the plate solved by the reference solver.
 [[nodiscard]] Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
@@ -109,7 +112,7 @@ struct Patch {
 /// \param side  1, 3, 5 or 7, see tableSide()
 /// \throws Error if the window is too small for the table
 [[nodiscard]] FootprintLattice footprintLattice(const PointCloud& cloud, const PatchSettings& settings, int side,
-                                                PlateDevice& device);
+                                                PlateSolver& device);
 
 struct PatchWithTable {
     Patch                          patch;
@@ -117,7 +120,7 @@ struct PatchWithTable {
 };
 
 /// deform() for a hand that moves: solves for a lattice of footprints in the same window, so that the servo can look
-/// up the compliance of wherever the contact is until the next patch comes; see HandOver.
+/// up the compliance of wherever the contact is until the next patch comes; see ComplianceTracker.
 ///
 /// The table's sequence number and time are the caller's to set.
 /// \param contact  where the hand will be, see aheadOf()
@@ -126,7 +129,7 @@ struct PatchWithTable {
 /// \throws as deform()
 [[nodiscard]] PatchWithTable deformWithTable(const PointCloud& cloud, const NeighbourIndex& index,
                                              const Contact& contact, const PatchSettings& settings,
-                                             const FootprintLattice& lattice, PlateDevice& device);
+                                             const FootprintLattice& lattice, PlateSolver& device);
 
 /// The whole cloud under `force` [N] at the patch's contact: p_i + force * response_i * forceDirection.
 /// \source Kumari & Chaudhuri 2016, eq. 9
@@ -139,7 +142,7 @@ struct PatchWithTable {
 /// How far the compliance is from its limit of fine grids, relative [1]: the change of c from a grid twice as coarse,
 /// divided by 3 (Richardson, second order). Empty if the cells are not a multiple of 4 or the footprint is too small.
 [[nodiscard]] std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings,
-                                                        PlateDevice& device);
+                                                        PlateSolver& device);
 
 /// What a user must know about a result, in sentences: where theory or data end. Empty is good.
 [[nodiscard]] std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force);

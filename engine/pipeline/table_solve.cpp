@@ -49,7 +49,7 @@ double work(const NodeField& load, const NodeField& response)
     return sum;
 }
 
-FootprintLattice footprintLattice(const Plate& homogeneous, const FootprintTable& shape, PlateDevice& device,
+FootprintLattice footprintLattice(const Plate& homogeneous, const FootprintTable& shape, PlateSolver& device,
                                   double tolerance)
 {
     PALP_EXPECT(shape.side >= 1 && shape.side <= ComplianceTable::kMostSide && shape.side % 2 == 1,
@@ -111,7 +111,7 @@ ComplianceTable::Entries FootprintLattice::homogeneous(double meanRigidity) cons
     return entries;
 }
 
-TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateDevice& device, double tolerance)
+TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& device, double tolerance)
 {
     std::vector<PlateSolution> solutions = device.solveAll(plate, lattice.loads, tolerance);
     TableSolution              result;

@@ -4,7 +4,7 @@
 
 #include "engine/force/compliance_table.h"
 #include "engine/plate/plate.h"
-#include "engine/plate/plate_device.h"
+#include "engine/plate/plate_solver.h"
 
 namespace palp {
 
@@ -40,7 +40,7 @@ struct FootprintLattice {
 /// \param tolerance        as for the tables themselves: what iteration leaves is then taken out too
 /// \throws Error if a footprint does not lie wholly on the plate
 [[nodiscard]] FootprintLattice footprintLattice(const Plate& homogeneous, const FootprintTable& shape,
-                                                PlateDevice& device, double tolerance);
+                                                PlateSolver& device, double tolerance);
 
 struct TableSolution {
     ComplianceTable table;      ///< without sequence number, time and chart
@@ -53,8 +53,8 @@ struct TableSolution {
 /// c(q) = p_q . w_q with A w_q = p_q. A is symmetric, so that dc/dq = 2 (dp_q/dq) . w_q: slopes need no further solve.
 /// k_c(q) is that of the rigidity's geometric mean over the footprint, weighted as the load is: at a step of the
 /// object it then changes over the width of a footprint, as c does.
-/// \throws Error as PlateDevice::solveAll()
-[[nodiscard]] TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateDevice& device,
+/// \throws Error as PlateSolver::solveAll()
+[[nodiscard]] TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& device,
                                        double tolerance);
 
 /// Work of a load on a deflection; of a unit load on its own response, the compliance that it feels [m/N].

@@ -70,22 +70,10 @@ std::optional<std::string> whyFoundationIsTooSoft(const Plate& plate, const Node
 
 } // namespace
 
-const char* name(Edge edge) noexcept
-{
-    return edge == Edge::clamped ? "clamped" : edge == Edge::supported ? "supported" : "free";
-}
-
-std::optional<Edge> edgeNamed(std::string_view text)
-{
-    for (Edge edge : {Edge::clamped, Edge::supported, Edge::free})
-        if (name(edge) == text) return edge;
-    return {};
-}
-
 PlateEdges parseEdges(std::string_view text, const std::string& what)
 {
     const auto edgeOf = [&](std::string_view word) {
-        if (const auto edge = edgeNamed(word)) return *edge;
+        if (const auto edge = valueNamed<Edge>(word)) return *edge;
         throw Error(what + ": unknown name \"" + std::string(word) + "\"; known: clamped, supported, free");
     };
     if (text.find('=') == std::string_view::npos) {

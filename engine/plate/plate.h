@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "engine/core/enum_names.h"
 #include "engine/core/grid.h"
 
 namespace palp {
@@ -13,9 +14,11 @@ enum class Edge {
     supported, ///< no deflection, free to turn
     free       ///< nothing holds it
 };
-
-[[nodiscard]] const char*         name(Edge edge) noexcept;         ///< "clamped", "supported", "free"
-[[nodiscard]] std::optional<Edge> edgeNamed(std::string_view name); ///< empty if unknown
+constexpr auto namesOf(Edge)
+{
+    using enum Edge;
+    return std::to_array<NamedValue<Edge>>({{clamped, "clamped"}, {supported, "supported"}, {free, "free"}});
+}
 
 struct PlateEdges {
     Edge x0 = Edge::clamped; ///< side x = 0

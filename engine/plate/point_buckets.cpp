@@ -7,7 +7,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
-#include "engine/core/sampling.h"
+#include "engine/core/resampling.h"
 #include "engine/plate/rigidity_unit.h"
 
 namespace palp {

@@ -52,7 +52,7 @@ PlateGrid refined(const PlateGrid& grid, int cells, const std::string& name)
 Edge readEdge(const JsonObject& edges, std::string_view side)
 {
     if (!edges.has(side)) return Edge::clamped;
-    if (const auto edge = edgeNamed(edges.text(side))) return *edge;
+    if (const auto edge = valueNamed<Edge>(edges.text(side))) return *edge;
     edges.refuse(side, "\"clamped\", \"supported\" or \"free\"");
 }
 

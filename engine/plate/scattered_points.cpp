@@ -5,21 +5,21 @@
 #include <numeric>
 #include <string>
 
+#include "engine/compute/context.h"
 #include "engine/core/contract.h"
-#include "engine/gpu/context.h"
 
 namespace palp {
 namespace {
 
-using gpu::Buffer;
-using gpu::CommandList;
-using gpu::Intent;
+using compute::Buffer;
+using compute::CommandList;
+using compute::Intent;
 
 constexpr std::size_t kFirstCapacity = 4096;  ///< [1] contacts have some thousands of points: few grow it
 constexpr std::size_t kMostGroups    = 65535; ///< [1] of a dispatch, on every device
 
 /// Points for which no buffer is too large and no dispatch too long.
-std::size_t mostPoints(const gpu::Context& context, const gpu::Kernel& lift, std::uint32_t loads)
+std::size_t mostPoints(const compute::Context& context, const compute::Kernel& lift, std::uint32_t loads)
 {
     const std::size_t bytes = context.limits().buffer;
     return std::min(
@@ -28,7 +28,7 @@ std::size_t mostPoints(const gpu::Context& context, const gpu::Kernel& lift, std
 
 } // namespace
 
-ScatteredPoints::Memory::Memory(gpu::Context& context, std::size_t room, std::uint32_t loads)
+ScatteredPoints::Memory::Memory(compute::Context& context, std::size_t room, std::uint32_t loads)
     : capacity(room), starts(context, "starts of buckets", 4 * (room + 1), Intent::device),
       points(context, "points", sizeof(shared::ScatteredPoint) * room, Intent::device),
       hostStarts(context, "starts of buckets from the host", starts.bytes(), Intent::upload),
@@ -37,7 +37,7 @@ ScatteredPoints::Memory::Memory(gpu::Context& context, std::size_t room, std::ui
 {
 }
 
-ScatteredPoints::ScatteredPoints(gpu::Context& context, const PlateKernels::All& kernels, const PlateGrid& grid,
+ScatteredPoints::ScatteredPoints(compute::Context& context, const PlateKernels::All& kernels, const PlateGrid& grid,
                                  std::uint32_t loads)
     : context_(context), k(kernels), grid_(grid), loads_(loads), most_(mostPoints(context, kernels.lift, loads)),
       layout_(context, "layout of points", sizeof(shared::PointLayout), Intent::device),
@@ -63,7 +63,7 @@ bool ScatteredPoints::set(const PlatePoints& points)
     return grows;
 }
 
-void ScatteredPoints::recordSampling(CommandList& list, const gpu::Kernel& kernel, const Buffer& rigidity) const
+void ScatteredPoints::recordSampling(CommandList& list, const compute::Kernel& kernel, const Buffer& rigidity) const
 {
     PALP_EXPECT(rigidity.bytes() >= 4 * grid_.nodes(),
                 "the buffer '" + rigidity.name() + "' is too small for the grid");

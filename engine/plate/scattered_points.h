@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/gpu/buffer.h"
-#include "engine/gpu/command_list.h"
-#include "engine/plate/plate_kernels.h"
+#include "engine/compute/buffer.h"
+#include "engine/compute/command_list.h"
+#include "engine/plate/multigrid/plate_kernels.h"
 #include "engine/plate/point_buckets.h"
 
 namespace palp {
@@ -18,7 +18,7 @@ class ScatteredPoints {
 public:
     /// \param grid   of the plate
     /// \param loads  of the answers to come [1]
-    ScatteredPoints(gpu::Context& context, const PlateKernels::All& kernels, const PlateGrid& grid,
+    ScatteredPoints(compute::Context& context, const PlateKernels::All& kernels, const PlateGrid& grid,
                     std::uint32_t loads);
 
     /// Takes other points; the next run of a list with a sampling sees them.
@@ -28,13 +28,13 @@ public:
     [[nodiscard]] bool set(const PlatePoints& points);
 
     /// Adds what writes the rigidity at the nodes [unit], in floats, from the points that are set when the list runs.
-    void recordNearest(gpu::CommandList& list, const gpu::Buffer& rigidity) const;
-    void recordLogMean(gpu::CommandList& list, const gpu::Buffer& rigidity) const;
+    void recordNearest(compute::CommandList& list, const compute::Buffer& rigidity) const;
+    void recordLogMean(compute::CommandList& list, const compute::Buffer& rigidity) const;
 
     /// Adds what brings the deflection at the points of the last sampling to the host, in order after it.
     /// \param answer  at the nodes, one load after the other, real
     /// \param metres  per unit of the answer, a float per load
-    void recordLift(gpu::CommandList& list, const gpu::Buffer& answer, const gpu::Buffer& metres) const;
+    void recordLift(compute::CommandList& list, const compute::Buffer& answer, const compute::Buffer& metres) const;
 
     // After a list has run that sampled the points that are set:
 
@@ -50,22 +50,23 @@ public:
 private:
     /// What grows with the points. "host" buffers are mapped and copied when a list runs.
     struct Memory {
-        std::size_t capacity; ///< [1]
-        gpu::Buffer starts, points, hostStarts, hostPoints, deflection;
+        std::size_t     capacity; ///< [1]
+        compute::Buffer starts, points, hostStarts, hostPoints, deflection;
 
-        Memory(gpu::Context& context, std::size_t capacity, std::uint32_t loads);
+        Memory(compute::Context& context, std::size_t capacity, std::uint32_t loads);
     };
 
-    void recordSampling(gpu::CommandList& list, const gpu::Kernel& kernel, const gpu::Buffer& rigidity) const;
+    void recordSampling(compute::CommandList& list, const compute::Kernel& kernel,
+                        const compute::Buffer& rigidity) const;
 
-    gpu::Context&            context_;
+    compute::Context&        context_;
     const PlateKernels::All& k;
     PlateGrid                grid_;
     std::uint32_t            loads_;
     std::size_t              most_;
     std::size_t              count_ = 0;
-    gpu::Buffer              layout_, hostLayout_;
-    gpu::Buffer              without_; ///< per node 1 if no point is nearby, else 0
+    compute::Buffer          layout_, hostLayout_;
+    compute::Buffer          without_; ///< per node 1 if no point is nearby, else 0
     Memory                   memory_;
 };
 

@@ -9,10 +9,10 @@ namespace palp {
 namespace {
 
 /// The table that the scene asks for; without a wish, the largest that its rate has a use for and its window room.
-FootprintLattice latticeOf(const Scene& scene, const PointCloud& cloud, PlateDevice& device)
+FootprintLattice latticeOf(const Scene& scene, const PointCloud& cloud, PlateSolver& device)
 {
     const auto of = [&](int side) { return footprintLattice(cloud, scene.patch, side, device); };
-    if (scene.handOver != HandOverLaw::table) return of(1);
+    if (scene.handOver != ComplianceLaw::table) return of(1);
     if (scene.tableSize > 0) return of(scene.tableSize);
     for (int side = tableSide(scene.handOver, 1 / scene.deformationRate, scene.patch.footprintRadius); side > 3;
          side -= 2) {
@@ -43,7 +43,7 @@ DeformationAnswer Deformation::solve(const Touch& touch, double period)
 {
     const glm::dvec3  ahead = aheadOf(law_, touch.point, touch.velocity, period);
     DeformationAnswer there = solveAt(ahead, touch);
-    if (there.news || ahead == touch.point) return there;
+    if (there.update || ahead == touch.point) return there;
     DeformationAnswer here = solveAt(touch.point, touch);
     if (here.why.empty()) here.why = there.why;
     return here;
@@ -56,16 +56,16 @@ DeformationAnswer Deformation::solveAt(const glm::dvec3& place, const Touch& tou
         if (!solved.table) return {{}, {}, "the points around the contact determine no surface"};
         Patch& patch    = solved.patch;
         settings_.frame = patch.chart.frame;
-        PatchNews news{*solved.table};
-        news.table.sequence = touch.sequence;
-        news.table.time     = touch.time;
-        const auto& w       = patch.response.values();
-        const int   middle  = settings_.cells / 2;
-        news.rigidity       = patch.plate.rigidity(middle, middle);
-        news.mostResponse   = *std::max_element(w.begin(), w.end());
-        news.errorEstimate  = patch.report.errorEstimate.value_or(0);
-        news.iterations     = patch.report.iterations.value_or(0);
-        return {news, std::move(patch), {}};
+        PatchUpdate update{*solved.table};
+        update.table.sequence = touch.sequence;
+        update.table.time     = touch.time;
+        const auto& w         = patch.response.values();
+        const int   middle    = settings_.cells / 2;
+        update.rigidity       = patch.plate.rigidity(middle, middle);
+        update.mostResponse   = *std::max_element(w.begin(), w.end());
+        update.errorEstimate  = patch.report.errorEstimate.value_or(0);
+        update.iterations     = patch.report.iterations.value_or(0);
+        return {update, std::move(patch), {}};
     } catch (const Error& error) { // the window is off the object, or the plate has no solution there
         return {{}, {}, error.what()};
     }

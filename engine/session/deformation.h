@@ -9,9 +9,9 @@ namespace palp {
 
 /// What the slow half of a session has found out about a touch.
 struct DeformationAnswer {
-    std::optional<PatchNews> news;  ///< for the servo; empty: nothing could be solved there
-    std::optional<Patch>     patch; ///< for who looks on; together with `news`
-    std::string              why;   ///< of a failure, also of one that a second try mended; may be empty
+    std::optional<PatchUpdate> update; ///< for the servo; empty: nothing could be solved there
+    std::optional<Patch>       patch;  ///< for who looks on; together with `update`
+    std::string                why;    ///< of a failure, also of one that a second try mended; may be empty
 };
 
 /// From a touch, and the measured period of the deformation [s], to an answer. May take its time and throw.
@@ -23,11 +23,11 @@ class Deformation {
 public:
     /// Opens the scene's device and solves the homogeneous window, some tenths of a second.
     /// \param cloud, index  outlive it
-    /// \throws Error as PlateDevice and footprintLattice() do
+    /// \throws Error as PlateSolver and footprintLattice() do
     Deformation(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene);
 
     /// Solves for the touch, 1.5 periods ahead of its motion. Off the object, or where the points determine no surface,
-    /// for the touch itself; if that fails too there is no news, and the answer says why.
+    /// for the touch itself; if that fails too there is no update, and the answer says why.
     /// \param period  of the deformation, as measured [s]
     [[nodiscard]] DeformationAnswer solve(const Touch& touch, double period);
 
@@ -42,16 +42,16 @@ public:
     /// \param cloud  outlives it
     void repaint(const PointCloud& cloud);
 
-    [[nodiscard]] const PlateDevice& device() const noexcept { return device_; }
+    [[nodiscard]] const PlateSolver& device() const noexcept { return device_; }
 
 private:
     [[nodiscard]] DeformationAnswer solveAt(const glm::dvec3& place, const Touch& touch);
 
     const PointCloud*     cloud_; ///< never null
     const NeighbourIndex& index_;
-    HandOverLaw           law_;
+    ComplianceLaw         law_;
     PatchSettings         settings_; ///< with the frame of the last patch
-    PlateDevice           device_;
+    PlateSolver           device_;
     FootprintLattice      lattice_;
 };
 

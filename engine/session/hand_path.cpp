@@ -33,7 +33,7 @@ std::string text(double value)
 class Checked {
 public:
     /// \param sampleName  "line 4", "row 3", for complaints
-    void add(const HandSample& sample, const std::string& where)
+    void add(const HandPose& sample, const std::string& where)
     {
         const std::array<double, 4> numbers = {sample.time, sample.position.x, sample.position.y, sample.position.z};
         for (const double number : numbers)
@@ -53,11 +53,11 @@ public:
                         std::to_string(samples.size()));
     }
 
-    std::vector<HandSample> samples;
-    double                  fastest = 0; ///< [m/s]
+    std::vector<HandPose> samples;
+    double                fastest = 0; ///< [m/s]
 
 private:
-    void step(const HandSample& from, const HandSample& to, const std::string& where)
+    void step(const HandPose& from, const HandPose& to, const std::string& where)
     {
         if (!(to.time > from.time))
             throw Error(where + ": expected a time after " + text(from.time) + " s, found " + text(to.time) +
@@ -137,7 +137,7 @@ std::uint32_t buttonsOf(std::string_view word, const std::string& where)
     return std::uint32_t(*bits);
 }
 
-HandSample sampleOf(const std::array<std::string_view, 4>& words, const std::string& where)
+HandPose sampleOf(const std::array<std::string_view, 4>& words, const std::string& where)
 {
     std::array<double, 4> numbers{};
     for (std::size_t k = 0; k < 4; ++k) {
@@ -165,7 +165,7 @@ HandPath handOf(const NodeField& rows, const std::string& name)
     if (rows.nodesZ() < 4)
         throw Error(name + ": expected an array of four columns, time [s], x, y, z [m], found " +
                     std::to_string(rows.nodesZ()));
-    std::vector<HandSample> samples;
+    std::vector<HandPose> samples;
     for (int i = 0; i < rows.nodesX(); ++i) samples.push_back({rows(i, 0), {rows(i, 1), rows(i, 2), rows(i, 3)}});
     return HandPath(std::move(samples), name);
 }
@@ -222,11 +222,11 @@ private:
 
 } // namespace
 
-HandPath::HandPath(std::vector<HandSample> samples, const std::string& name)
+HandPath::HandPath(std::vector<HandPose> samples, const std::string& name)
 {
     Checked checked;
     checked.samples.reserve(samples.size());
-    for (const HandSample& sample : samples)
+    for (const HandPose& sample : samples)
         checked.add(sample, name + ": row " + std::to_string(checked.samples.size()));
     checked.finish(name);
     samples_ = std::move(checked.samples);
@@ -237,8 +237,8 @@ glm::dvec3 HandPath::position(double time) const noexcept
 {
     if (!(time > samples_.front().time)) return samples_.front().position; // NaN too
     if (time >= samples_.back().time) return samples_.back().position;
-    const auto        next = std::ranges::upper_bound(samples_, time, {}, &HandSample::time);
-    const HandSample &b = *next, &a = *(next - 1);
+    const auto      next = std::ranges::upper_bound(samples_, time, {}, &HandPose::time);
+    const HandPose &b = *next, &a = *(next - 1);
     if (time == a.time) return a.position; // bit for bit: -0 + 0 would be 0
     return a.position + (time - a.time) / (b.time - a.time) * (b.position - a.position);
 }
@@ -246,7 +246,7 @@ glm::dvec3 HandPath::position(double time) const noexcept
 std::uint32_t HandPath::buttons(double time) const noexcept
 {
     if (!(time >= samples_.front().time)) return 0; // NaN too
-    return (std::ranges::upper_bound(samples_, time, {}, &HandSample::time) - 1)->buttons;
+    return (std::ranges::upper_bound(samples_, time, {}, &HandPose::time) - 1)->buttons;
 }
 
 HandPath parseHand(std::istream& in, const std::string& name)
@@ -268,7 +268,7 @@ HandPath parseHand(std::istream& in, const std::string& name)
             continue;
         }
         demandColumns(words, columns, where);
-        HandSample sample = sampleOf(words.first, where);
+        HandPose sample = sampleOf(words.first, where);
         if (buttons > 0) sample.buttons = buttonsOf(wordAt(rest, buttons), where);
         checked.add(sample, where);
     }
@@ -292,28 +292,16 @@ HandPlace handPlace(const Scene& scene, const PointCloud& cloud, const Neighbour
     return {contact.point, contact.outward};
 }
 
-const char* name(HandMotion motion) noexcept
-{
-    return motion == HandMotion::press ? "press" : motion == HandMotion::circle ? "circle" : "scan";
-}
-
-std::optional<HandMotion> motionNamed(std::string_view text)
-{
-    for (const HandMotion motion : {HandMotion::press, HandMotion::circle, HandMotion::scan})
-        if (name(motion) == text) return motion;
-    return {};
-}
-
 HandPath makeHand(const HandScript& script, const HandPlace& place)
 {
     expectPositive({{"speed", script.speed},
                     {"radius", script.radius},
                     {"height + depth", script.height + script.depth},
                     {"duration", script.duration}});
-    const Frame             frame = Frame::about(place.outward);
-    const Script            motion(script);
-    const double            ticks = std::ceil(script.duration / kTick);
-    std::vector<HandSample> samples;
+    const Frame           frame = Frame::about(place.outward);
+    const Script          motion(script);
+    const double          ticks = std::ceil(script.duration / kTick);
+    std::vector<HandPose> samples;
     if (!(ticks < double(kMostSamples)))
         throw Error("hand: duration: expected at most " + text(double(kMostSamples) * kTick) + " s, found " +
                     text(script.duration) + " s");
@@ -330,7 +318,7 @@ HandPath draped(const HandPath& hand, const HandPlace& place, const PointCloud& 
 {
     constexpr double           kReach  = 3; // [1] spacings: some 28 points, so that the height is smooth
     const double               radius  = kReach * index.spacing();
-    std::vector<HandSample>    samples = hand.samples();
+    std::vector<HandPose>      samples = hand.samples();
     std::vector<std::uint32_t> near;
     // Heights are looked for around the last one: where the hand has come from the surface is known. It starts at the
     // place and walks to the first sample in steps of a spacing.
@@ -356,7 +344,7 @@ HandPath draped(const HandPath& hand, const HandPlace& place, const PointCloud& 
     const glm::dvec3 first = inPlaneOf(samples.front().position);
     const double     steps = radius > 0 ? std::ceil(glm::length(first) / index.spacing()) : 0;
     for (int i = 0; i < int(steps); ++i) follow(double(i) / steps * first);
-    for (HandSample& sample : samples) {
+    for (HandPose& sample : samples) {
         if (radius > 0) follow(inPlaneOf(sample.position));
         sample.position += height * place.outward;
     }

@@ -11,12 +11,13 @@
 #include <glm/vec3.hpp>
 
 #include "engine/cloud/neighbour_index.h"
+#include "engine/core/enum_names.h"
 #include "engine/session/scene.h"
 
 namespace palp {
 
 /// Where a scripted hand is at one time.
-struct HandSample {
+struct HandPose {
     double        time = 0;    ///< [s]
     glm::dvec3    position{};  ///< of the HIP [m]
     std::uint32_t buttons = 0; ///< that are down from here on, as HapticState::buttons
@@ -35,7 +36,7 @@ public:
 
     /// \param name  opens complaints
     /// \throws Error naming the first sample that is wrong (counted from 0)
-    explicit HandPath(std::vector<HandSample> samples, const std::string& name = "hand");
+    explicit HandPath(std::vector<HandPose> samples, const std::string& name = "hand");
 
     /// The hand at a time [s]: at rest at the first sample before it begins, at the last after it has ended.
     [[nodiscard]] glm::dvec3 position(double time) const noexcept;
@@ -46,11 +47,11 @@ public:
     [[nodiscard]] double begin() const noexcept { return samples_.front().time; }             ///< [s]
     [[nodiscard]] double duration() const noexcept { return samples_.back().time - begin(); } ///< [s]
     [[nodiscard]] double fastest() const noexcept { return fastest_; }                        ///< [m/s]
-    [[nodiscard]] const std::vector<HandSample>& samples() const noexcept { return samples_; }
+    [[nodiscard]] const std::vector<HandPose>& samples() const noexcept { return samples_; }
 
 private:
-    std::vector<HandSample> samples_;
-    double                  fastest_ = 0; ///< [m/s]
+    std::vector<HandPose> samples_;
+    double                fastest_ = 0; ///< [m/s]
 };
 
 /// Reads a hand from a file of rows time [s], x, y, z [m]; further columns are skipped where a header line has them
@@ -82,9 +83,11 @@ enum class HandMotion {
     circle, ///< down, then round the place
     scan    ///< down beside the place, then to and fro across it
 };
-
-[[nodiscard]] const char*               name(HandMotion motion) noexcept;   ///< "press", "circle", "scan"
-[[nodiscard]] std::optional<HandMotion> motionNamed(std::string_view name); ///< empty if unknown
+constexpr auto namesOf(HandMotion)
+{
+    using enum HandMotion;
+    return std::to_array<NamedValue<HandMotion>>({{press, "press"}, {circle, "circle"}, {scan, "scan"}});
+}
 
 /// What a generated hand does.
 struct HandScript {

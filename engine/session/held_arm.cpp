@@ -19,7 +19,7 @@ SimulatedHand HoldingHand::at(double time) const noexcept
 
 void HoldingHand::demandWithin(double radius) const
 {
-    for (const HandSample& s : path.samples())
+    for (const HandPose& s : path.samples())
         if (const double away = glm::length(s.position - frame.origin); away > radius)
             throw Error("the hand: at " + formatQuantity(s.time, "s") + " it is " + formatQuantity(away, "m") +
                         " from the middle of the arm's workspace, whose radius is " + formatQuantity(radius, "m") +

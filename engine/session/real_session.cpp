@@ -29,7 +29,7 @@ struct TimedHand {
 
 /// What the servo shows to the caller.
 struct Shown {
-    SessionSample sample;
+    TickRecord    sample;
     double        loopPeriod = 0; ///< [s]
     std::uint32_t buttons    = 0;
 };
@@ -42,12 +42,12 @@ struct ShownPatch {
 
 /// What the threads share, and nothing else.
 struct Shared {
-    Latest<TimedHand>  hand; ///< with threads of the paper only, as is the next
-    Latest<Held>       held;
-    Latest<Touch>      touch;
-    Latest<PatchNews>  news;
-    Latest<Shown>      shown;
-    Latest<ShownPatch> patch;
+    Latest<TimedHand>    hand; ///< with threads of the paper only, as is the next
+    Latest<ProxyContact> held;
+    Latest<Touch>        touch;
+    Latest<PatchUpdate>  update;
+    Latest<Shown>        shown;
+    Latest<ShownPatch>   patch;
 
     std::atomic<bool>       over = false; ///< everybody ends
     std::mutex              mutex;        ///< of the next two; the servo takes it after its last tick
@@ -74,20 +74,20 @@ public:
     SessionSummary run(std::string& warning);
 
 private:
-    void                            serve();
-    SessionSample                   tick(const ForceHalf::Beat& beat, const HapticState& state) noexcept;
-    const Held&                     held(double time, const Hand& hand) noexcept;
-    void                            follow();
-    void                            bend();
+    void                            servoThread();
+    TickRecord                      tick(const ForceHalf::TickTime& now, const HapticState& state) noexcept;
+    const ProxyContact&             held(double time, const Hand& hand) noexcept;
+    void                            proxyThread();
+    void                            deformationThread();
     [[nodiscard]] DeformationAnswer solved(const Touch& touch, double period);
-    void                            look();
-    void                            publish(const Held& held) noexcept;
+    void                            watch();
+    void                            publish(const ProxyContact& held) noexcept;
 
     const SessionParts&        parts_;
     const RealSessionSettings& settings_;
     Shared                     shared_;
     ContactHalf                contact_;      ///< of the servo's thread, or of the proxy's
-    Held                       nothing_;      ///< of the servo's thread, before the proxy's first word
+    ProxyContact               nothing_;      ///< of the servo's thread, before the proxy's first word
     ForceHalf                  force_;        ///< of the servo's thread
     SessionSummary             summary_;      ///< of the servo's thread
     SessionSummary             slow_;         ///< of the deformation's
@@ -97,7 +97,7 @@ private:
 };
 
 /// The servo's thread.
-void RealSession::serve()
+void RealSession::servoThread()
 {
     constexpr double kMean = 0.1; // [s] over which the measured period is averaged
     warning_               = askForRealTime();
@@ -114,59 +114,59 @@ void RealSession::serve()
         summary_.period.add(dt);
         const double      began  = threadSeconds();
         const HapticState state  = parts_.device.exchange(force, time);
-        SessionSample     sample = tick({time, dt, period}, state);
+        TickRecord        sample = tick({time, dt, period}, state);
         force                    = parts_.frame.toDevice(force_.governor().force());
         sample.tickTime          = threadSeconds() - began;
         shared_.shown.draft()    = {sample, period, state.buttons};
         shared_.shown.publish();
         summary_.add(sample);
-        if (settings_.onSample) settings_.onSample(sample);
+        if (settings_.onTick) settings_.onTick(sample);
         if (state.fault == DeviceFault::unplugged) break; // it does not come back without close() and open()
     }
 }
 
-SessionSample RealSession::tick(const ForceHalf::Beat& beat, const HapticState& state) noexcept
+TickRecord RealSession::tick(const ForceHalf::TickTime& now, const HapticState& state) noexcept
 {
-    const Hand  hand = parts_.frame.handOf(state);
-    const Held& now  = held(beat.time, hand);
-    shared_.news.take();
-    return force_.tick(beat, hand, now, shared_.news.held());
+    const Hand          hand    = parts_.frame.handOf(state);
+    const ProxyContact& contact = held(now.time, hand);
+    shared_.update.take();
+    return force_.tick(now, hand, contact, shared_.update.held());
 }
 
 /// What the hand holds: computed here, or the last word of the proxy's thread.
-const Held& RealSession::held(double time, const Hand& hand) noexcept
+const ProxyContact& RealSession::held(double time, const Hand& hand) noexcept
 {
     if (settings_.threads == SessionThreads::paper) {
         shared_.hand.draft() = {time, hand};
         shared_.hand.publish();
         shared_.held.take();
-        if (const Held* const newest = shared_.held.held()) return *newest;
+        if (const ProxyContact* const newest = shared_.held.held()) return *newest;
         nothing_.touch.time  = time;
         nothing_.touch.point = hand.position;
         return nothing_;
     }
-    const Held& now = contact_.tick(time, hand.position);
-    publish(now);
-    return now;
+    const ProxyContact& contact = contact_.tick(time, hand.position);
+    publish(contact);
+    return contact;
 }
 
 /// The proxy's thread, with threads of the paper.
-void RealSession::follow()
+void RealSession::proxyThread()
 {
     static_cast<void>(askForRealTime()); // the servo's warning says it all
     Metronome metronome{std::chrono::microseconds(1000)};
     while (!shared_.over) {
         metronome.wait();
         if (!shared_.hand.take()) continue;
-        const TimedHand& newest = *shared_.hand.held();
-        const Held&      held   = contact_.tick(newest.time, newest.hand.position);
+        const TimedHand&    newest = *shared_.hand.held();
+        const ProxyContact& held   = contact_.tick(newest.time, newest.hand.position);
         publish(held);
         shared_.held.draft() = held;
         shared_.held.publish();
     }
 }
 
-void RealSession::publish(const Held& held) noexcept
+void RealSession::publish(const ProxyContact& held) noexcept
 {
     shared_.touch.draft() = held.touch;
     shared_.touch.publish();
@@ -193,7 +193,7 @@ private:
 };
 
 /// The deformation's thread: the newest touch, once a period.
-void RealSession::bend()
+void RealSession::deformationThread()
 {
     const double  nominal = 1 / parts_.scene.deformationRate;
     Metronome     metronome(std::chrono::duration_cast<std::chrono::nanoseconds>(Seconds(nominal)));
@@ -209,11 +209,11 @@ void RealSession::bend()
         DeformationAnswer answer = solved(*touch, period.begins(began));
         const double      took   = Seconds(Clock::now() - began).count();
         slow_.solve.add(took);
-        ++(answer.news ? slow_.patches : slow_.failedPatches);
+        ++(answer.update ? slow_.patches : slow_.failedPatches);
         if (!answer.why.empty()) slow_.why = answer.why;
-        if (!answer.news) continue;
-        shared_.news.draft() = *answer.news;
-        shared_.news.publish();
+        if (!answer.update) continue;
+        shared_.update.draft() = *answer.update;
+        shared_.update.publish();
         shared_.patch.draft() = {std::move(answer.patch), took};
         shared_.patch.publish();
     }
@@ -230,7 +230,7 @@ DeformationAnswer RealSession::solved(const Touch& touch, double period)
 }
 
 /// The caller's thread: looks on until the servo ends.
-void RealSession::look()
+void RealSession::watch()
 {
     const auto       period = std::chrono::duration_cast<Clock::duration>(Seconds(settings_.viewPeriod));
     std::unique_lock lock(shared_.mutex);
@@ -250,12 +250,12 @@ void RealSession::look()
 }
 
 /// Threads that are told to end, and waited for, on every way out.
-class Crew {
+class ThreadGroup {
 public:
-    explicit Crew(std::atomic<bool>& over) : over_(over) {}
-    Crew(const Crew&)            = delete;
-    Crew& operator=(const Crew&) = delete;
-    ~Crew()
+    explicit ThreadGroup(std::atomic<bool>& over) : over_(over) {}
+    ThreadGroup(const ThreadGroup&)            = delete;
+    ThreadGroup& operator=(const ThreadGroup&) = delete;
+    ~ThreadGroup()
     {
         over_ = true;
         for (std::thread& thread : threads_) thread.join();
@@ -275,19 +275,19 @@ private:
 SessionSummary RealSession::run(std::string& warning)
 {
     {
-        Crew crew(shared_.over);
-        crew.add([this] { bend(); });
-        if (settings_.threads == SessionThreads::paper) crew.add([this] { follow(); });
-        crew.add([this] {
+        ThreadGroup threads(shared_.over);
+        threads.add([this] { deformationThread(); });
+        if (settings_.threads == SessionThreads::paper) threads.add([this] { proxyThread(); });
+        threads.add([this] {
             try {
-                serve();
-            } catch (...) { // onSample's, against its promise
+                servoThread();
+            } catch (...) { // onTick's, against its promise
                 failure_ = std::current_exception();
             }
             parts_.device.exchange(GovernedForce(), lastTick_);
             shared_.serveNoMore();
         });
-        look();
+        watch();
     }
     warning = warning_;
     if (failure_) std::rethrow_exception(failure_);

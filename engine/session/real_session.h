@@ -12,7 +12,7 @@ namespace palp {
 
 /// What one may look at while a session runs; valid during the call that shows it.
 struct SessionView {
-    SessionSample    sample;          ///< the newest
+    TickRecord       sample;          ///< the newest
     double           loopPeriod = 0;  ///< of the servo, a mean over 0.1 s [s]
     double           solveTime  = 0;  ///< of the last patch [s]; 0: none yet
     std::uint32_t    buttons    = 0;  ///< of the device
@@ -24,7 +24,7 @@ struct SessionView {
 struct RealSessionSettings {
     double         seconds = 5; ///< [s]
     SessionThreads threads = SessionThreads::servo;
-    OnSample       onSample{}; ///< on the servo's thread, every tick: must neither wait nor allocate; may be empty
+    OnTick         onTick{}; ///< on the servo's thread, every tick: must neither wait nor allocate; may be empty
     std::function<void(const SessionView&)> onView{};         ///< on the calling thread, every viewPeriod; may be empty
     double                                  viewPeriod = 0.1; ///< [s]
     const std::atomic<bool>*                stop       = nullptr; ///< ends the session once it is true; may be null
@@ -32,8 +32,8 @@ struct RealSessionSettings {
 
 /// A whole session in real time: the servo and the deformation on threads of their own, the caller looks on.
 ///
-///     servo 1 ms --Touch--> deformation 1/rate --PatchNews--> servo     each a three-slot hand-off, newest wins
-///       \--SessionSample--> caller <--Patch--/                          read in place, nothing is copied out
+///     servo 1 ms --Touch--> deformation 1/rate --PatchUpdate--> servo     each a three-slot hand-off, newest wins
+///       \--TickRecord--> caller <--Patch--/                          read in place, nothing is copied out
 ///
 ///     paper:  force 1 ms --Hand--> proxy 1 ms --Touch--> deformation; the force takes the proxy's last word, a tick
 ///     old
@@ -43,7 +43,7 @@ struct RealSessionSettings {
 /// \param warning  what the system refused of real-time rights; empty if nothing
 /// A device that is unplugged ends the session.
 /// A solver that throws has failed to solve one patch: SessionSummary::why tells.
-/// \throws what onView threw, once all threads have ended; so for onSample, which should not
+/// \throws what onView threw, once all threads have ended; so for onTick, which should not
 /// \differs the paper has a thread each for proxy and force, which makes the force a tick or two late; here one thread
 ///          does both, and SessionThreads::paper keeps two
 SessionSummary runReal(const SessionParts& parts, const RealSessionSettings& settings, std::string& warning);

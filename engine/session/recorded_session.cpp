@@ -69,7 +69,7 @@ OpenColumn openColumn(const std::filesystem::path& folder, const SessionColumn& 
 }
 
 /// \param expected  samples of a session that was finished: all columns have as many
-std::vector<SessionSample> readColumns(const std::filesystem::path& folder, std::optional<std::uint64_t> expected)
+std::vector<TickRecord> readColumns(const std::filesystem::path& folder, std::optional<std::uint64_t> expected)
 {
     std::vector<OpenColumn> open;
     std::uint64_t           rows = std::numeric_limits<std::uint64_t>::max();
@@ -81,8 +81,8 @@ std::vector<SessionSample> readColumns(const std::filesystem::path& folder, std:
                         " samples that session.json counts, found " + std::to_string(open.back().rows) +
                         "; the recording is damaged");
     }
-    std::vector<SessionSample> samples(rows);
-    std::vector<char>          part;
+    std::vector<TickRecord> samples(rows);
+    std::vector<char>       part;
     for (std::size_t k = 0; k < open.size(); ++k) {
         const SessionColumn&  column = sessionColumns()[k];
         constexpr std::size_t kPart  = 65536; // [1] rows at a time
@@ -99,7 +99,7 @@ std::vector<SessionSample> readColumns(const std::filesystem::path& folder, std:
     return samples;
 }
 
-const char* bytesOf(const SessionSample& sample, const SessionColumn& column)
+const char* bytesOf(const TickRecord& sample, const SessionColumn& column)
 {
     return reinterpret_cast<const char*>(&sample) + column.offset;
 }
@@ -137,8 +137,7 @@ std::string bitsText(const char* bytes)
 }
 
 /// The first component in which one column of two samples differs.
-std::optional<SessionDifference> differenceIn(const SessionColumn& column, const SessionSample& a,
-                                              const SessionSample& b)
+std::optional<SessionDifference> differenceIn(const SessionColumn& column, const TickRecord& a, const TickRecord& b)
 {
     const std::size_t each = column.bytes() / column.components;
     for (std::size_t k = 0; k < column.components; ++k) {
@@ -200,7 +199,7 @@ std::optional<SessionDifference> compareSessions(const RecordedSession& a, const
 {
     const std::size_t both = std::min(a.samples.size(), b.samples.size());
     for (std::size_t i = 0; i < both; ++i) {
-        if (std::memcmp(&a.samples[i], &b.samples[i], sizeof(SessionSample)) == 0) continue;
+        if (std::memcmp(&a.samples[i], &b.samples[i], sizeof(TickRecord)) == 0) continue;
         for (const SessionColumn& column : sessionColumns()) {
             if (column.measured) continue;
             if (auto difference = differenceIn(column, a.samples[i], b.samples[i])) {

@@ -7,21 +7,21 @@
 
 #include "device/haptic_device.h"
 #include "engine/session/scene.h"
-#include "engine/session/session_sample.h"
+#include "engine/session/tick_record.h"
 
 namespace palp {
 
 /// A session as it lies in its folder.
 struct RecordedSession {
-    std::filesystem::path      folder;
-    std::string                clock;            ///< "real", "virtual"
-    std::string                device;           ///< as it was called then
-    std::string                command;          ///< that recorded it
-    std::string                scene;            ///< JSON for parseScene()
-    std::string                cloud;            ///< fingerprint() of what was touched
-    HapticDeviceInfo           hand;             ///< its model and limits
-    bool                       finished = false; ///< false: killed, or still running
-    std::vector<SessionSample> samples;
+    std::filesystem::path   folder;
+    std::string             clock;            ///< "real", "virtual"
+    std::string             device;           ///< as it was called then
+    std::string             command;          ///< that recorded it
+    std::string             scene;            ///< JSON for parseScene()
+    std::string             cloud;            ///< fingerprint() of what was touched
+    HapticDeviceInfo        hand;             ///< its model and limits
+    bool                    finished = false; ///< false: killed, or still running
+    std::vector<TickRecord> samples;
 };
 
 /// Reads what Recording wrote, also of a session that was killed: then the samples that all columns have.

@@ -22,7 +22,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
-#include "engine/session/sample_ring.h"
+#include "engine/session/tick_ring.h"
 
 namespace palp {
 namespace {
@@ -142,7 +142,7 @@ void appendNumber(std::string& text, const SessionColumn& column, const char* by
     }
 }
 
-void appendLine(std::string& text, const SessionSample& sample)
+void appendLine(std::string& text, const TickRecord& sample)
 {
     const char* const bytes = reinterpret_cast<const char*>(&sample);
     for (const SessionColumn& column : sessionColumns())
@@ -167,18 +167,18 @@ public:
     }
 
     /// All of the samples, at most kBatch, or none. \throws Error naming the file and the reason
-    void append(std::span<const SessionSample> samples)
+    void append(std::span<const TickRecord> samples)
     {
         try {
             for (std::size_t k = 0; k < columns_.size(); ++k) {
                 const SessionColumn& column = sessionColumns()[k];
                 buffer_.clear();
-                for (const SessionSample& sample : samples)
+                for (const TickRecord& sample : samples)
                     buffer_.append(reinterpret_cast<const char*>(&sample) + column.offset, column.bytes());
                 columns_[k].append(buffer_);
             }
             buffer_.clear();
-            for (const SessionSample& sample : samples) appendLine(buffer_, sample);
+            for (const TickRecord& sample : samples) appendLine(buffer_, sample);
             csv_.append(buffer_);
             for (std::size_t k = 0; k < columns_.size(); ++k)
                 columns_[k].write(npyHeader(sessionColumns()[k], rows_ + samples.size()), 0);
@@ -283,11 +283,6 @@ std::thread quietThread(Work work)
 
 } // namespace
 
-const char* name(SessionClock clock) noexcept
-{
-    return clock == SessionClock::real ? "real" : "virtual";
-}
-
 struct Recording::Impl {
     Impl(const std::filesystem::path& place, const SessionInfo& info, Complain hear)
         : folder(place), description(describe(info)), complain(std::move(hear)), ring(kRing), files(place)
@@ -311,14 +306,14 @@ struct Recording::Impl {
 
     void drain()
     {
-        for (std::span<const SessionSample> batch = ring.front(); !batch.empty(); batch = ring.front()) {
+        for (std::span<const TickRecord> batch = ring.front(); !batch.empty(); batch = ring.front()) {
             batch = batch.first(std::min(batch.size(), kBatch));
             if (!stopped.load(std::memory_order_relaxed)) write(batch);
             ring.pop(batch.size());
         }
     }
 
-    void write(std::span<const SessionSample> batch)
+    void write(std::span<const TickRecord> batch)
     {
         try {
             files.append(batch);
@@ -360,7 +355,7 @@ struct Recording::Impl {
     std::filesystem::path      folder;
     nlohmann::ordered_json     description;
     Complain                   complain;
-    SampleRing<SessionSample>  ring;
+    TickRing<TickRecord>       ring;
     SampleFiles                files;
     std::uint64_t              pushed = 0; ///< by the producer; read after finish() only
     std::atomic<bool>          finishing{false};
@@ -389,13 +384,13 @@ Recording::~Recording()
     impl_->finish();
 }
 
-void Recording::push(const SessionSample& sample) noexcept
+void Recording::push(const TickRecord& sample) noexcept
 {
     ++impl_->pushed;
     if (!impl_->stopped.load(std::memory_order_relaxed)) static_cast<void>(impl_->ring.push(sample));
 }
 
-void Recording::pushWaiting(const SessionSample& sample) noexcept
+void Recording::pushWaiting(const TickRecord& sample) noexcept
 {
     ++impl_->pushed;
     while (!impl_->stopped.load(std::memory_order_acquire) && !impl_->ring.push(sample)) std::this_thread::yield();

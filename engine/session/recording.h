@@ -8,8 +8,9 @@
 #include <string>
 
 #include "device/haptic_device.h"
+#include "engine/core/enum_names.h"
 #include "engine/session/scene.h"
-#include "engine/session/session_sample.h"
+#include "engine/session/tick_record.h"
 
 namespace palp {
 
@@ -17,8 +18,11 @@ enum class SessionClock {
     real,       ///< a tick a millisecond
     virtualTime ///< "virtual": as fast as it goes, deterministic
 };
-
-[[nodiscard]] const char* name(SessionClock clock) noexcept; ///< "real", "virtual"
+constexpr auto namesOf(SessionClock)
+{
+    using enum SessionClock;
+    return std::to_array<NamedValue<SessionClock>>({{real, "real"}, {virtualTime, "virtual"}});
+}
 
 /// What session.json says of a session.
 struct SessionInfo {
@@ -64,10 +68,10 @@ public:
     Recording& operator=(const Recording&) = delete;
 
     /// Takes one sample; if the ring is full it is counted as lost.
-    void push(const SessionSample& sample) noexcept;
+    void push(const TickRecord& sample) noexcept;
 
     /// Takes one sample and waits for room: for the virtual clock, which outruns any disk.
-    void pushWaiting(const SessionSample& sample) noexcept;
+    void pushWaiting(const TickRecord& sample) noexcept;
 
     /// Writes what is left, says so in session.json, and ends the writer. Later calls return the same.
     RecordingReport finish();

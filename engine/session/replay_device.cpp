@@ -6,7 +6,7 @@
 
 namespace palp {
 
-ReplayDevice::ReplayDevice(const std::vector<SessionSample>& samples, const HapticDeviceInfo& limits)
+ReplayDevice::ReplayDevice(const std::vector<TickRecord>& samples, const HapticDeviceInfo& limits)
     : samples_(samples), info_(limits)
 {
     info_.model           = "recorded hand";
@@ -22,8 +22,8 @@ HapticState ReplayDevice::exchange(const GovernedForce& /*force*/, double now) n
         state.fault = DeviceFault::unplugged;
         return state;
     }
-    const SessionSample& sample = samples_[next_];
-    Hand                 hand;
+    const TickRecord& sample = samples_[next_];
+    Hand              hand;
     hand.setBits(sample.device);
     state.sequence = ++next_;
     state.position = sample.hip;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "device/haptic_device.h"
-#include "engine/session/session_sample.h"
+#include "engine/session/tick_record.h"
 
 namespace palp {
 
@@ -13,7 +13,7 @@ class ReplayDevice : public HapticDevice {
 public:
     /// \param samples  of RecordedSession; outlive it
     /// \param limits   of the device that was held then
-    explicit ReplayDevice(const std::vector<SessionSample>& samples, const HapticDeviceInfo& limits = {});
+    explicit ReplayDevice(const std::vector<TickRecord>& samples, const HapticDeviceInfo& limits = {});
 
     [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }
 
@@ -22,9 +22,9 @@ public:
     HapticState exchange(const GovernedForce& force, double now) noexcept override;
 
 private:
-    const std::vector<SessionSample>& samples_;
-    HapticDeviceInfo                  info_;
-    std::size_t                       next_ = 0;
+    const std::vector<TickRecord>& samples_;
+    HapticDeviceInfo               info_;
+    std::size_t                    next_ = 0;
 };
 
 } // namespace palp

@@ -18,7 +18,7 @@
 #include "engine/core/nearest_name.h"
 #include "engine/core/quantity.h"
 #include "engine/core/spatial_law.h"
-#include "engine/plate/plate_solver_vulkan.h"
+#include "engine/plate/multigrid/multigrid_plate_solver.h"
 
 namespace palp {
 namespace {
@@ -217,7 +217,7 @@ constexpr std::array kKeys = {
     Key{{"sampling", "", "of the rigidity at the grid's nodes", "log-mean or nearest"},
         {},
         [](S& s, const Given& g) {
-            s.patch.sampling = g.oneOf({Sampling::logMean, Sampling::nearest});
+            s.patch.sampling = g.oneOf({Resampling::logMean, Resampling::nearest});
         },
         [](const S& s) { return quoted(name(s.patch.sampling)); }},
     Key{{"edges", "", "of the window: one name for all, or SIDE=EDGE of the sides x0, x1, z0, z1",
@@ -233,12 +233,14 @@ constexpr std::array kKeys = {
         [](const S& s) { return quoted(name(s.patch.forceLaw)); }},
     Key{{"tolerance", "1", "of the plate's solution, relative in the energy norm", "a number from 1e-7 to 0.1"},
         {kNumber},
-        [](S& s, const Given& g) { s.patch.tolerance = g.quantity(D::none, VulkanPlateSolver::kLeastTolerance, 0.1); },
+        [](S& s, const Given& g) {
+            s.patch.tolerance = g.quantity(D::none, MultigridPlateSolver::kLeastTolerance, 0.1);
+        },
         [](const S& s) { return number(s.patch.tolerance); }},
     Key{{"hand_over", "", "between two answers of the plate", "table, hold or blend"},
         {},
         [](S& s, const Given& g) {
-            s.handOver = g.oneOf({HandOverLaw::table, HandOverLaw::hold, HandOverLaw::blend});
+            s.handOver = g.oneOf({ComplianceLaw::table, ComplianceLaw::hold, ComplianceLaw::blend});
         },
         [](const S& s) { return quoted(name(s.handOver)); }},
     Key{{"table_size", "1",
@@ -475,23 +477,6 @@ Scene sceneOf(const JsonObject& file, const std::filesystem::path& folder, const
 }
 
 } // namespace
-
-const char* name(Origin origin) noexcept
-{
-    switch (origin) {
-    case Origin::standard:
-        return "default";
-    case Origin::sample:
-        return "sample";
-    case Origin::scene:
-        return "scene";
-    case Origin::environment:
-        return "environment";
-    case Origin::flag:
-        return "flag";
-    }
-    return "";
-}
 
 std::span<const SceneKey> sceneKeys()
 {

@@ -14,7 +14,8 @@
 
 #include "engine/cloud/point_cloud_io.h"
 #include "engine/contact/proxy.h"
-#include "engine/force/hand_over.h"
+#include "engine/core/enum_names.h"
+#include "engine/force/compliance_tracker.h"
 #include "engine/pipeline/pipeline.h"
 #include "engine/session/hunt.h"
 
@@ -28,7 +29,12 @@ enum class Origin {
     environment, ///< PALPATE_<KEY>
     flag         ///< the command line
 };
-[[nodiscard]] const char* name(Origin origin) noexcept; ///< "default", "sample", ...
+constexpr auto namesOf(Origin)
+{
+    using enum Origin;
+    return std::to_array<NamedValue<Origin>>(
+        {{standard, "default"}, {sample, "sample"}, {scene, "scene"}, {environment, "environment"}, {flag, "flag"}});
+}
 
 struct ValueOrigin {
     Origin      origin = Origin::standard;
@@ -47,9 +53,9 @@ struct Scene {
     std::string   stiffness;  ///< law of the modulus over the cloud, see parseSpatialLaw [Pa]; empty: the cloud's own
     PatchSettings patch;      ///< material, foundation, window, map, force law, ...
 
-    HandOverLaw handOver  = HandOverLaw::table;
-    int         tableSize = 0; ///< footprints a side of the table, odd [1]; reaches (size - 1)/2 radii; 0: tableSide()
-    double      deformationRate = 60; ///< of the plate's thread [Hz]
+    ComplianceLaw handOver = ComplianceLaw::table;
+    int    tableSize       = 0; ///< footprints a side of the table, odd [1]; reaches (size - 1)/2 radii; 0: tableSide()
+    double deformationRate = 60; ///< of the plate's thread [Hz]
 
     ProxyForm proxy           = ProxyForm::hybrid;
     double    staticFriction  = 0.5;  ///< mu_s [1]; skin on skin 0.5 to 1

@@ -55,24 +55,12 @@ EnergyTankSettings tankOf(const Scene& scene, const HapticDeviceInfo& limits)
 
 } // namespace
 
-const char* name(SessionThreads threads) noexcept
-{
-    return threads == SessionThreads::paper ? "paper" : "servo";
-}
-
-std::optional<SessionThreads> sessionThreadsNamed(std::string_view text)
-{
-    for (const SessionThreads threads : {SessionThreads::servo, SessionThreads::paper})
-        if (text == name(threads)) return threads;
-    return {};
-}
-
 ContactHalf::ContactHalf(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene)
     : proxy_(cloud.positions(), index, {scene.proxy, scene.staticFriction, scene.dynamicFriction})
 {
 }
 
-const Held& ContactHalf::tick(double time, const glm::dvec3& hip) noexcept
+const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip) noexcept
 {
     const ProxyState& proxy = proxy_.step(hip);
     if (proxy.touching)
@@ -87,11 +75,11 @@ const Held& ContactHalf::tick(double time, const glm::dvec3& hip) noexcept
 
 ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads)
     : law_(scene.patch.forceLaw), thickness_(scene.patch.material.thickness), patchPeriod_(1 / scene.deformationRate),
-      handOver_(scene.handOver), tank_(tankOf(scene, limits)), governor_(governorOf(scene, limits, threads))
+      compliance_(scene.handOver), tank_(tankOf(scene, limits)), governor_(governorOf(scene, limits, threads))
 {
 }
 
-ForceHalf::Wanted ForceHalf::wanted(double stiffness, double dt, const Hand& hand, const Held& held) noexcept
+ForceHalf::Wanted ForceHalf::wanted(double stiffness, double dt, const Hand& hand, const ProxyContact& held) noexcept
 {
     const glm::dvec3& pull  = held.pull;
     const double      depth = glm::length(pull);
@@ -112,18 +100,19 @@ ForceHalf::Wanted ForceHalf::wanted(double stiffness, double dt, const Hand& han
     return result;
 }
 
-SessionSample ForceHalf::tick(const Beat& beat, const Hand& hand, const Held& held, const PatchNews* newest) noexcept
+TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyContact& held,
+                           const PatchUpdate* newest) noexcept
 {
     const bool press = hand.homed && hand.device == DeviceFault::none && (hand.buttons & kOperatorsButton) != 0;
     pressed_         = press ? pressed_ + 1 : 0;
     if (pressed_ == kPressTicks) governor_.reset();
 
     const Touch& touch = held.touch;
-    if (!touch.touching) handOver_.restart();
+    if (!touch.touching) compliance_.restart();
     const auto handed =
-        handOver_.tick({touch.point, beat.time, beat.dt, newest ? &newest->table : nullptr}); // also beyond the surface
+        compliance_.tick({touch.point, now.time, now.dt, newest ? &newest->table : nullptr}); // also beyond the surface
     const double stiffness = handed ? feltStiffness(law_, handed->contactStiffness, handed->compliance) : 0;
-    const Wanted want      = wanted(stiffness, beat.dt, hand, held);
+    const Wanted want      = wanted(stiffness, now.dt, hand, held);
 
     GovernorInput in;
     in.force                 = want.force;
@@ -131,17 +120,17 @@ SessionSample ForceHalf::tick(const Beat& beat, const Hand& hand, const Held& he
     in.velocity              = hand.velocity;
     in.homed                 = hand.homed && hand.device == DeviceFault::none;
     in.inBox                 = hand.inBox;
-    in.time                  = beat.time;
-    in.dt                    = beat.dt;
-    in.loopPeriod            = beat.loopPeriod;
-    in.forceAge              = std::max(0.0, beat.time - touch.time); // above 0 if the proxy has a thread of its own
+    in.time                  = now.time;
+    in.dt                    = now.dt;
+    in.loopPeriod            = now.loopPeriod;
+    in.forceAge              = std::max(0.0, now.time - touch.time); // above 0 if the proxy has a thread of its own
     in.missedExchanges       = hand.missed;
     in.admittedEnergy        = want.tank.used;
     in.storedEnergy          = want.tank.stored;
     const GovernorOutput out = governor_.step(in);
 
-    SessionSample sample;
-    sample.time        = beat.time;
+    TickRecord sample;
+    sample.time        = now.time;
     sample.hip         = hand.position;
     sample.hipVelocity = hand.velocity;
     sample.device      = hand.bits();

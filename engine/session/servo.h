@@ -7,17 +7,18 @@
 
 #include "device/haptic_device.h"
 #include "engine/contact/proxy.h"
+#include "engine/core/enum_names.h"
 #include "engine/force/ahead.h"
+#include "engine/force/compliance_tracker.h"
 #include "engine/force/energy_tank.h"
 #include "engine/force/governor.h"
-#include "engine/force/hand_over.h"
 #include "engine/session/scene.h"
-#include "engine/session/session_sample.h"
+#include "engine/session/tick_record.h"
 
 namespace palp {
 
 /// What the deformation tells the servo about one patch. Trivially copyable: it goes through a three-slot hand-off.
-struct PatchNews {
+struct PatchUpdate {
     ComplianceTable table;             ///< with sequence number and time
     double          rigidity      = 0; ///< D in the middle [N m]
     double          mostResponse  = 0; ///< largest deflection per force [m/N]
@@ -35,7 +36,7 @@ struct Touch {
     glm::dvec3    velocity{}; ///< of the proxy over its last 10 ms [m/s]
 };
 
-/// Bits of SessionSample::faults. The low eight are the governor's fault as a number, see GovernorFault.
+/// Bits of TickRecord::faults. The low eight are the governor's fault as a number, see GovernorFault.
 enum class SessionFlag : std::uint32_t {
     stalePatch   = 1U << 8,  ///< the plate's answer in use is older than three of its periods
     beyondTable  = 1U << 9,  ///< the contact lies beyond the table's reach
@@ -55,7 +56,7 @@ struct Hand {
     DeviceFault   device  = DeviceFault::none;
     std::uint32_t buttons = 0; ///< of the device, the lower 16
 
-    /// As SessionSample::device has it, and back.
+    /// As TickRecord::device has it, and back.
     [[nodiscard]] std::uint32_t bits() const noexcept
     {
         return static_cast<std::uint32_t>(device) | (homed ? kHomed : 0U) | (inBox ? kInBox : 0U) | buttons << 16U;
@@ -77,11 +78,14 @@ enum class SessionThreads {
     servo, ///< one thread from the hand to the force
     paper  ///< proxy and force on threads of their own, as Kumari & Chaudhuri run them
 };
-[[nodiscard]] const char*                   name(SessionThreads threads) noexcept;      ///< "servo", "paper"
-[[nodiscard]] std::optional<SessionThreads> sessionThreadsNamed(std::string_view name); ///< empty if unknown
+constexpr auto namesOf(SessionThreads)
+{
+    using enum SessionThreads;
+    return std::to_array<NamedValue<SessionThreads>>({{servo, "servo"}, {paper, "paper"}});
+}
 
 /// What the hand touches: the proxy and its pull.
-struct Held {
+struct ProxyContact {
     Touch      touch;
     glm::dvec3 pull{};          ///< [m] from the hand to where the force law acts; see ProxyState
     bool       limited = false; ///< the proxy ran out of iterations
@@ -95,20 +99,20 @@ public:
     ContactHalf(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene);
 
     /// \param time  [s] of the session's clock  \param hip  [m]
-    const Held& tick(double time, const glm::dvec3& hip) noexcept;
+    const ProxyContact& tick(double time, const glm::dvec3& hip) noexcept;
 
     [[nodiscard]] const Touch& touch() const noexcept { return held_.touch; }
 
 private:
     Proxy        proxy_;
     RecentMotion motion_;
-    Held         held_;
+    ProxyContact held_;
 };
 
 /// The second half of a tick: pull -> compliance -> stiffness -> tank -> governor -> force. \thread as ContactHalf
 class ForceHalf {
 public:
-    /// Held down for 20 ms, it resets the governor's fault: whoever holds the device is its operator. The first button,
+    /// ProxyContact down for 20 ms, it resets the governor's fault: whoever holds the device is its operator. The first button,
     /// and not for an instant: packets may be corrupt.
     static constexpr std::uint32_t kOperatorsButton = 1;
     static constexpr int           kPressTicks      = 20;
@@ -118,7 +122,7 @@ public:
                        SessionThreads threads = SessionThreads::servo);
 
     /// When a tick is, on which clock.
-    struct Beat {
+    struct TickTime {
         double time;       ///< [s] of the session's clock
         double dt;         ///< [s] since the last tick
         double loopPeriod; ///< [s] measured, as a mean over some 0.1 s
@@ -126,7 +130,8 @@ public:
 
     /// \param newest  the deformation's last word; null: none yet
     /// \return everything but tickTime
-    SessionSample tick(const Beat& beat, const Hand& hand, const Held& held, const PatchNews* newest) noexcept;
+    TickRecord tick(const TickTime& now, const Hand& hand, const ProxyContact& held,
+                    const PatchUpdate* newest) noexcept;
 
     [[nodiscard]] const ForceGovernor& governor() const noexcept { return governor_; }
 
@@ -136,15 +141,15 @@ private:
         glm::dvec3       force{};
         EnergyTankOutput tank{};
     };
-    [[nodiscard]] Wanted wanted(double stiffness, double dt, const Hand& hand, const Held& held) noexcept;
+    [[nodiscard]] Wanted wanted(double stiffness, double dt, const Hand& hand, const ProxyContact& held) noexcept;
 
-    ForceLaw      law_;
-    double        thickness_;   ///< [m]
-    double        patchPeriod_; ///< of the deformation [s]
-    HandOver      handOver_;
-    EnergyTank    tank_;
-    ForceGovernor governor_;
-    int           pressed_ = 0; ///< [1] ticks that the operator's button has been down
+    ForceLaw          law_;
+    double            thickness_;   ///< [m]
+    double            patchPeriod_; ///< of the deformation [s]
+    ComplianceTracker compliance_;
+    EnergyTank        tank_;
+    ForceGovernor     governor_;
+    int               pressed_ = 0; ///< [1] ticks that the operator's button has been down
 };
 
 /// One tick of touch, both halves.
@@ -158,9 +163,9 @@ public:
     {
     }
 
-    SessionSample tick(const ForceHalf::Beat& beat, const Hand& hand, const PatchNews* newest) noexcept
+    TickRecord tick(const ForceHalf::TickTime& now, const Hand& hand, const PatchUpdate* newest) noexcept
     {
-        return force_.tick(beat, hand, contact_.tick(beat.time, hand.position), newest);
+        return force_.tick(now, hand, contact_.tick(now.time, hand.position), newest);
     }
 
     [[nodiscard]] const Touch&         touch() const noexcept { return contact_.touch(); }

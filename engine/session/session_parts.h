@@ -2,7 +2,7 @@
 #include "device/haptic_device.h"
 #include "engine/session/deformation.h"
 #include "engine/session/scene.h"
-#include "engine/session/session_sample.h"
+#include "engine/session/tick_record.h"
 
 namespace palp {
 

@@ -8,7 +8,7 @@
 
 namespace palp {
 
-void SessionSummary::add(const SessionSample& sample) noexcept
+void SessionSummary::add(const TickRecord& sample) noexcept
 {
     const auto has   = [&](SessionFlag flag) { return (sample.faults & static_cast<std::uint32_t>(flag)) != 0; };
     const auto state = static_cast<DeviceFault>(sample.device & 0xFFU);

@@ -6,7 +6,7 @@
 #include "device/haptic_device.h"
 #include "engine/force/governor.h"
 #include "engine/session/duration_histogram.h"
-#include "engine/session/session_sample.h"
+#include "engine/session/tick_record.h"
 
 namespace palp {
 
@@ -27,10 +27,10 @@ struct SessionSummary {
     DurationHistogram period;                                  ///< from tick to tick [s]; empty on a virtual clock
 
     /// Counts a sample in.
-    void add(const SessionSample& sample) noexcept;
+    void add(const TickRecord& sample) noexcept;
 };
 
 /// Each sample of a session as it is made.
-using OnSample = std::function<void(const SessionSample&)>;
+using OnTick = std::function<void(const TickRecord&)>;
 
 } // namespace palp

@@ -36,14 +36,14 @@ private:
 
 } // namespace
 
-SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSample& onSample,
+SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTick& onTick,
                           const std::atomic<bool>* stop)
 {
-    Servo                    servo(parts.cloud, parts.index, parts.scene, parts.device.info());
-    SessionSummary           summary;
-    GovernedForce            force;
-    std::optional<PatchNews> inUse, underWay;
-    ZeroAtLast               zero(parts.device);
+    Servo                      servo(parts.cloud, parts.index, parts.scene, parts.device.info());
+    SessionSummary             summary;
+    GovernedForce              force;
+    std::optional<PatchUpdate> inUse, underWay;
+    ZeroAtLast                 zero(parts.device);
 
     const auto every = std::max<std::int64_t>(1, std::llround(1 / (parts.scene.deformationRate * kTick))); // ticks
     const auto ticks = std::llround(seconds / kTick);
@@ -58,18 +58,18 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSam
                 const auto        began  = Clock::now();
                 DeformationAnswer answer = parts.solver(servo.touch(), double(every) * kTick);
                 summary.solve.add(secondsSince(began));
-                underWay = std::move(answer.news);
+                underWay = std::move(answer.update);
                 ++(underWay ? summary.patches : summary.failedPatches);
                 if (!answer.why.empty()) summary.why = answer.why;
             }
         }
-        const double  began  = threadSeconds();
-        const Hand    hand   = parts.frame.handOf(parts.device.exchange(force, time));
-        SessionSample sample = servo.tick({time, kTick, kTick}, hand, inUse ? &*inUse : nullptr);
-        force                = parts.frame.toDevice(servo.governor().force());
-        sample.tickTime      = threadSeconds() - began;
+        const double began  = threadSeconds();
+        const Hand   hand   = parts.frame.handOf(parts.device.exchange(force, time));
+        TickRecord   sample = servo.tick({time, kTick, kTick}, hand, inUse ? &*inUse : nullptr);
+        force               = parts.frame.toDevice(servo.governor().force());
+        sample.tickTime     = threadSeconds() - began;
         summary.add(sample);
-        if (onSample) onSample(sample);
+        if (onTick) onTick(sample);
     }
     summary.fault = servo.governor().fault();
     return summary;

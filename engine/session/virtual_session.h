@@ -11,10 +11,10 @@ namespace palp {
 /// give the same samples, bit for bit, but for tickTime.
 ///
 /// \param seconds   how long [s]
-/// \param onSample  sees every sample; may be empty
+/// \param onTick  sees every sample; may be empty
 /// \param stop      ends the session once it is true; may be null
 /// \throws what the solver throws
-SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnSample& onSample,
+SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTick& onTick,
                           const std::atomic<bool>* stop = nullptr);
 
 } // namespace palp

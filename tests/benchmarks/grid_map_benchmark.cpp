@@ -10,9 +10,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "engine/bench/nanoflann_search.h"
-#include "engine/bench/point_scenes.h"
 #include "engine/chart/nearest_map.h"
+#include "engine/tools/bench/nanoflann_search.h"
+#include "engine/tools/bench/point_scenes.h"
 #include "tests/benchmarks/peers.h"
 
 namespace {

@@ -14,9 +14,9 @@
 #include <benchmark/benchmark.h>
 #include <glm/vec3.hpp>
 
-#include "engine/bench/nanoflann_search.h"
-#include "engine/bench/point_scenes.h"
 #include "engine/cloud/neighbour_index.h"
+#include "engine/tools/bench/nanoflann_search.h"
+#include "engine/tools/bench/point_scenes.h"
 #include "tests/benchmarks/peers.h"
 
 namespace {

@@ -7,11 +7,11 @@
 
 #include <benchmark/benchmark.h>
 
-#include "engine/bench/bench_plates.h"
-#include "engine/bench/one_thread.h"
-#include "engine/bench/outside_peers.h"
-#include "engine/gpu/context.h"
-#include "engine/plate/plate_solver_vulkan.h"
+#include "engine/compute/context.h"
+#include "engine/plate/multigrid/multigrid_plate_solver.h"
+#include "engine/tools/bench/bench_plates.h"
+#include "engine/tools/bench/one_thread.h"
+#include "engine/tools/bench/outside_peers.h"
 #include "tests/benchmarks/peers.h"
 
 namespace {
@@ -43,15 +43,15 @@ void addDirect(const std::string& name, const Plate& plate,
 int main(int argc, char** argv)
 {
     bench::becomeOneThread(bench::runningProgram());
-    gpu::Context context;
+    compute::Context context;
     std::fprintf(stderr, "palpate on %s\n", context.device().name.c_str());
     const PlateKernels kernels(context);
     for (const int nodes : {65, 129, 257}) {
         const std::string work  = std::to_string(nodes) + " nodes/";
         const Plate       plate = bench::plateOf(bench::mapNamed("linear"), nodes);
         for (const double tolerance : {1e-2, 1e-5}) {
-            const auto ours = std::make_shared<VulkanPlateSolver>(context, kernels, plate,
-                                                                  VulkanPlateSolver::Settings{.tolerance = tolerance});
+            const auto ours = std::make_shared<MultigridPlateSolver>(
+                context, kernels, plate, MultigridPlateSolver::Settings{.tolerance = tolerance});
             add(work + "palpate " + std::to_string(tolerance), [ours, plate, force = bench::fingertip(plate.grid)] {
                 ours->setRigidity(plate.rigidity);
                 benchmark::DoNotOptimize(ours->solve(force));

@@ -6,8 +6,8 @@
 #include <benchmark/benchmark.h>
 
 #include "engine/cloud/samples.h"
-#include "engine/viewer/surface_renderer.h"
-#include "engine/viewer/touch_view.h"
+#include "engine/tools/render/surface_renderer.h"
+#include "engine/tools/render/touch_view.h"
 
 namespace {
 
@@ -32,7 +32,7 @@ struct Touched {
     static Patch patchOf(const Sample& sample, const PointCloud& cloud, const NeighbourIndex& index,
                          const PatchSettings& settings)
     {
-        PlateDevice host("host");
+        PlateSolver host("host");
         return deform(cloud, index, touchAt(cloud, index, sample.place, sample.from, settings.window / 4), settings,
                       host);
     }

@@ -478,12 +478,12 @@ TEST(Chart, RefusesAnOutwardDirectionOfNoLength)
 
 TEST(Chart, MapsAreFoundByTheirNames)
 {
-    for (const Map map : kAllMaps) EXPECT_EQ(mapNamed(name(map)), map);
+    for (const Map map : kAllMaps) EXPECT_EQ(valueNamed<Map>(name(map)), map);
     EXPECT_STREQ(name(Map::gallPeters), "gall-peters");
     EXPECT_STREQ(name(Map::lambertCylindrical), "lambert-cylindrical");
     EXPECT_STREQ(name(Map::lambertAzimuthal), "lambert-azimuthal");
-    EXPECT_FALSE(mapNamed("mercator").has_value());
-    EXPECT_FALSE(mapNamed("").has_value());
+    EXPECT_FALSE(valueNamed<Map>("mercator").has_value());
+    EXPECT_FALSE(valueNamed<Map>("").has_value());
 }
 
 TEST(Frame, AboutAnyNormalIsOrthonormal)

@@ -29,25 +29,25 @@ Scatter scatter(double size, std::size_t points, unsigned seed, Rigidity rigidit
     return s;
 }
 
-ChartPoint nodeOf(const Window& window, int i, int j)
+ChartPoint nodeOf(const PatchWindow& window, int i, int j)
 {
     return {window.corner.x + i * window.grid.spacingX, window.corner.z + j * window.grid.spacingZ};
 }
 
 TEST(Resample, ContactIsTheMiddleNode)
 {
-    const Window     window = Window::square(0.03, 48);
-    const ChartPoint middle = nodeOf(window, 24, 24);
+    const PatchWindow window = PatchWindow::square(0.03, 48);
+    const ChartPoint  middle = nodeOf(window, 24, 24);
     EXPECT_NEAR(middle.x, 0, 1e-17) << "rounding of 0.03 / 48 * 24";
     EXPECT_NEAR(middle.z, 0, 1e-17);
-    EXPECT_THROW((void)Window::square(0.03, 47), ContractViolation);
+    EXPECT_THROW((void)PatchWindow::square(0.03, 47), ContractViolation);
 }
 
 TEST(Resample, HomogeneousCloudGivesTheSameRigidityEverywhereUnderBothRules)
 {
-    const Window  window = Window::square(0.03, 48);
-    const Scatter s      = scatter(0.03, 900, 1, [](const ChartPoint&) { return 2.7e-3; });
-    for (Sampling rule : {Sampling::logMean, Sampling::nearest}) {
+    const PatchWindow window = PatchWindow::square(0.03, 48);
+    const Scatter     s      = scatter(0.03, 900, 1, [](const ChartPoint&) { return 2.7e-3; });
+    for (Resampling rule : {Resampling::logMean, Resampling::nearest}) {
         const Resampled r = resampleRigidity(window, s.positions, s.rigidities, rule, s.spacing);
         for (double d : r.rigidity.values()) EXPECT_NEAR(d / 2.7e-3, 1, 1e-13) << "exp and log of one number, ln D ~ 6";
     }
@@ -55,9 +55,9 @@ TEST(Resample, HomogeneousCloudGivesTheSameRigidityEverywhereUnderBothRules)
 
 TEST(Resample, NearestTakesTheValueOfTheNearestPoint)
 {
-    const Window    window = Window::square(1, 10);
-    const Scatter   s      = scatter(1, 57, 2, [](const ChartPoint& p) { return 2 + p.x + p.z * p.z; });
-    const Resampled r      = resampleRigidity(window, s.positions, s.rigidities, Sampling::nearest, s.spacing);
+    const PatchWindow window = PatchWindow::square(1, 10);
+    const Scatter     s      = scatter(1, 57, 2, [](const ChartPoint& p) { return 2 + p.x + p.z * p.z; });
+    const Resampled   r      = resampleRigidity(window, s.positions, s.rigidities, Resampling::nearest, s.spacing);
     for (int i = 0; i <= 10; ++i)
         for (int j = 0; j <= 10; ++j) {
             const ChartPoint node = nodeOf(window, i, j);
@@ -73,10 +73,10 @@ TEST(Resample, NearestTakesTheValueOfTheNearestPoint)
 /// The formula of the docstring, summed node by node instead of point by point.
 TEST(Resample, LogMeanIsTheGaussianMeanOfTheLogarithm)
 {
-    const Window    window = Window::square(1, 12);
-    const Scatter   s      = scatter(1, 400, 3, [](const ChartPoint& p) { return p.x > 0.1 ? 50.0 : 0.5; });
-    const Resampled r      = resampleRigidity(window, s.positions, s.rigidities, Sampling::logMean, s.spacing);
-    const double    width  = std::max(s.spacing, 0.5 / 12);
+    const PatchWindow window = PatchWindow::square(1, 12);
+    const Scatter     s      = scatter(1, 400, 3, [](const ChartPoint& p) { return p.x > 0.1 ? 50.0 : 0.5; });
+    const Resampled   r      = resampleRigidity(window, s.positions, s.rigidities, Resampling::logMean, s.spacing);
+    const double      width  = std::max(s.spacing, 0.5 / 12);
     for (int i = 0; i <= 12; ++i)
         for (int j = 0; j <= 12; ++j) {
             const ChartPoint node    = nodeOf(window, i, j);
@@ -96,10 +96,10 @@ TEST(Resample, LogMeanIsTheGaussianMeanOfTheLogarithm)
 TEST(Resample, LogMeanJittersLessThanNearestWhileTheGridSlides)
 {
     const Scatter s      = scatter(1, 2000, 4, [](const ChartPoint& p) { return std::exp(2.3 * std::tanh(8 * p.x)); });
-    const auto    jitter = [&](Sampling rule) {
+    const auto    jitter = [&](Resampling rule) {
         double largest = 0, last = 0;
         for (int step = 0; step <= 40; ++step) {
-            Window window = Window::square(0.8, 24);
+            PatchWindow window = PatchWindow::square(0.8, 24);
             window.corner.z += 1e-3 * step; // along the level lines of D: the object itself stays the same
             const double d = resampleRigidity(window, s.positions, s.rigidities, rule, s.spacing).rigidity(14, 12);
             if (step) largest = std::max(largest, std::abs(std::log(d / last)));
@@ -107,19 +107,19 @@ TEST(Resample, LogMeanJittersLessThanNearestWhileTheGridSlides)
         }
         return largest;
     };
-    EXPECT_LT(jitter(Sampling::logMean), 0.02) << "a kernel of one spacing is smooth: 1 mm of 27 changes little";
-    EXPECT_GT(jitter(Sampling::nearest), 0.05) << "else the fixture has no step to feel";
+    EXPECT_LT(jitter(Resampling::logMean), 0.02) << "a kernel of one spacing is smooth: 1 mm of 27 changes little";
+    EXPECT_GT(jitter(Resampling::nearest), 0.05) << "else the fixture has no step to feel";
 }
 
 TEST(Resample, PointsMatterAsFarAsTheKernelReaches)
 {
-    const Window window = Window::square(1, 20);
-    Scatter      s      = scatter(1, 3000, 5, [](const ChartPoint&) { return 1.0; });
-    const double reach  = kernelReach(s.spacing, window.grid.spacingX);
-    const auto   edge   = [&](double beyond) {
+    const PatchWindow window = PatchWindow::square(1, 20);
+    Scatter           s      = scatter(1, 3000, 5, [](const ChartPoint&) { return 1.0; });
+    const double      reach  = kernelReach(s.spacing, window.grid.spacingX);
+    const auto        edge   = [&](double beyond) {
         s.positions.back()  = {0.5 + beyond, 0};
         s.rigidities.back() = 100;
-        return resampleRigidity(window, s.positions, s.rigidities, Sampling::logMean, s.spacing).rigidity(20, 10);
+        return resampleRigidity(window, s.positions, s.rigidities, Resampling::logMean, s.spacing).rigidity(20, 10);
     };
     EXPECT_GT(edge(0.99 * reach), 1 + 1e-6) << "a weight of 4e-4 among some ten";
     EXPECT_NEAR(edge(1.01 * reach), 1, 1e-12) << "rounding";
@@ -127,11 +127,11 @@ TEST(Resample, PointsMatterAsFarAsTheKernelReaches)
 
 TEST(Resample, HolesAndBordersAreCountedAndFilledFromTheNearestPoint)
 {
-    const Window window = Window::square(1, 20);
-    const auto   law    = [](const ChartPoint& p) { return p.x < 0 ? 1.0 : 2.0; };
-    Scatter      s      = scatter(1, 3000, 5, law);
-    const auto   count  = [&] {
-        return resampleRigidity(window, s.positions, s.rigidities, Sampling::logMean, s.spacing).nodesWithoutPoint;
+    const PatchWindow window = PatchWindow::square(1, 20);
+    const auto        law    = [](const ChartPoint& p) { return p.x < 0 ? 1.0 : 2.0; };
+    Scatter           s      = scatter(1, 3000, 5, law);
+    const auto        count  = [&] {
+        return resampleRigidity(window, s.positions, s.rigidities, Resampling::logMean, s.spacing).nodesWithoutPoint;
     };
     EXPECT_EQ(count(), 0u) << "the cloud covers the window";
 
@@ -150,7 +150,7 @@ TEST(Resample, HolesAndBordersAreCountedAndFilledFromTheNearestPoint)
     EXPECT_LT(hole, 29u) << "29 nodes lie within 0.15 of the hole's middle";
 
     removeWhere([](const ChartPoint& p) { return p.x > 0.2; });
-    const Resampled r = resampleRigidity(window, s.positions, s.rigidities, Sampling::logMean, s.spacing);
+    const Resampled r = resampleRigidity(window, s.positions, s.rigidities, Resampling::logMean, s.spacing);
     EXPECT_GT(r.nodesWithoutPoint, hole + 20 * 4) << "at least four rows of 21 nodes lie beyond the border";
     EXPECT_NEAR(r.rigidity(20, 10), 2, 1e-12) << "filled from the border, where D is 2";
 }
@@ -162,8 +162,8 @@ TEST(Resample, NodesWithoutPointAreThoseThatTheDistancesTell)
     std::size_t bare = 0, covered = 0;
     for (const int cells : {4, 12, 31, 60})
         for (const std::size_t points : {2, 9, 40, 150, 1500}) {
-            const Window  window{{cells, cells + 3, 1.0 / cells, 1.1 / cells}, {-0.5, -0.5}};
-            const Scatter s = scatter(1, points, unsigned(points), [](const ChartPoint&) { return 1.0; });
+            const PatchWindow window{{cells, cells + 3, 1.0 / cells, 1.1 / cells}, {-0.5, -0.5}};
+            const Scatter     s = scatter(1, points, unsigned(points), [](const ChartPoint&) { return 1.0; });
             for (const double spacing : {0.6 * s.spacing, s.spacing}) {
                 const double nearby   = 2.5 * std::max(spacing, window.grid.spacingZ / 2);
                 std::size_t  expected = 0;
@@ -174,7 +174,7 @@ TEST(Resample, NodesWithoutPointAreThoseThatTheDistancesTell)
                             return std::hypot(p.x - node.x, p.z - node.z) <= nearby;
                         });
                     }
-                const Resampled r = resampleRigidity(window, s.positions, s.rigidities, Sampling::logMean, spacing);
+                const Resampled r = resampleRigidity(window, s.positions, s.rigidities, Resampling::logMean, spacing);
                 EXPECT_EQ(r.nodesWithoutPoint, expected) << cells << " cells, " << points << " points";
                 ++(expected > 0 ? bare : covered);
             }

@@ -29,7 +29,7 @@ TEST(ArmDevice, IsTheSimulatedArmTickForTick)
         const double last = now;
         now += kTick;
         const HapticState state  = device.exchange(push, now);
-        const ArmSample   sample = arm.step({1, -2, 0.5}, now - last);
+        const ArmState    sample = arm.step({1, -2, 0.5}, now - last);
         ASSERT_EQ(state.position, sample.position) << "the same bits, tick " << n;
         ASSERT_EQ(state.velocity, sample.velocity);
         ASSERT_EQ(state.inBox, sample.inBox);

@@ -63,7 +63,7 @@ struct Loop {
     void tick() { touch(arm.sample(), law(arm.sample().position), arm.sample().velocity); }
 
     /// One tick with a stiffness and a velocity of the caller's choice.
-    void touch(const ArmSample& sample, double stiffness, const glm::dvec3& velocity)
+    void touch(const ArmState& sample, double stiffness, const glm::dvec3& velocity)
     {
         const double     depth   = std::max(0.0, -sample.position.z);
         const double     wanted  = capped ? std::min(stiffness, governor.stiffnessCap()) : stiffness;
@@ -238,7 +238,7 @@ double shaken(Loop& loop, double frequency, int late, Sideways sideways)
     for (int n = 0; n < 8000; ++n) {
         const double  x = 3e-3 * std::sin(w * n * kDt), v = 3e-3 * w * std::cos(w * n * kDt);
         SimulatedHand hand   = kReaching;
-        ArmSample     sample = loop.arm.sample();
+        ArmState      sample = loop.arm.sample();
         if (sideways == Sideways::forced) {
             sample.position.x = x;
             sample.velocity.x = v;

@@ -93,7 +93,7 @@ TEST(SimulatedArm, TheEncoderRoundsAndTheVelocityIsOverItsWindow)
     SimulatedArmSettings settings;
     settings.damping = 0;
     SimulatedArm moving(settings, {}, {0.1, 0, 0});
-    ArmSample    sample;
+    ArmState     sample;
     for (int n = 0; n < 200; ++n) {
         sample = moving.step({}, 1e-3);
         if (n < 15) continue;

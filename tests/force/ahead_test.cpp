@@ -37,20 +37,20 @@ TEST(RecentMotion, TakesASlowClockAndLeavesOutATimeThatDoesNotAdvance)
 
 TEST(Ahead, IsTheMiddleOfTheTimeInWhichATableIsUsed)
 {
-    const glm::dvec3 ahead = aheadOf(HandOverLaw::table, {1, 2, 3}, {0.2, 0, -0.1}, 0.02);
+    const glm::dvec3 ahead = aheadOf(ComplianceLaw::table, {1, 2, 3}, {0.2, 0, -0.1}, 0.02);
     EXPECT_NEAR(ahead.x, 1 + 1.5 * 0.02 * 0.2, 1e-15);
     EXPECT_NEAR(ahead.z, 3 - 1.5 * 0.02 * 0.1, 1e-15);
-    EXPECT_EQ(aheadOf(HandOverLaw::hold, {1, 2, 3}, {0.2, 0, 0}, 0.02), glm::dvec3(1, 2, 3));
+    EXPECT_EQ(aheadOf(ComplianceLaw::hold, {1, 2, 3}, {0.2, 0, 0}, 0.02), glm::dvec3(1, 2, 3));
 }
 
 TEST(TableSide, CoversWhatAHandDoesInTwoPeriods)
 {
-    EXPECT_EQ(tableSide(HandOverLaw::table, 1.0 / 60, 4e-3), 3) << "3.3 of 4 mm";
-    EXPECT_EQ(tableSide(HandOverLaw::table, 1.0 / 45, 4e-3), 5) << "5.2 of 8 mm";
-    EXPECT_EQ(tableSide(HandOverLaw::table, 1.0 / 30, 4e-3), 7) << "10 of 12 mm";
-    EXPECT_EQ(tableSide(HandOverLaw::table, 1.0 / 10, 4e-3), 7) << "there is no larger one";
-    EXPECT_EQ(tableSide(HandOverLaw::table, 1.0 / 500, 4e-3), 3);
-    EXPECT_EQ(tableSide(HandOverLaw::blend, 1.0 / 30, 4e-3), 1);
+    EXPECT_EQ(tableSide(ComplianceLaw::table, 1.0 / 60, 4e-3), 3) << "3.3 of 4 mm";
+    EXPECT_EQ(tableSide(ComplianceLaw::table, 1.0 / 45, 4e-3), 5) << "5.2 of 8 mm";
+    EXPECT_EQ(tableSide(ComplianceLaw::table, 1.0 / 30, 4e-3), 7) << "10 of 12 mm";
+    EXPECT_EQ(tableSide(ComplianceLaw::table, 1.0 / 10, 4e-3), 7) << "there is no larger one";
+    EXPECT_EQ(tableSide(ComplianceLaw::table, 1.0 / 500, 4e-3), 3);
+    EXPECT_EQ(tableSide(ComplianceLaw::blend, 1.0 / 30, 4e-3), 1);
 }
 
 } // namespace

@@ -27,8 +27,8 @@ TEST(ForceLaw, ThePapersLawDoesNotFeelThePlate)
 
 TEST(ForceLaw, NamesFindTheirLaw)
 {
-    for (ForceLaw law : {ForceLaw::series, ForceLaw::paper}) EXPECT_EQ(forceLawNamed(name(law)), law);
-    EXPECT_FALSE(forceLawNamed("magic").has_value());
+    for (ForceLaw law : {ForceLaw::series, ForceLaw::paper}) EXPECT_EQ(valueNamed<ForceLaw>(name(law)), law);
+    EXPECT_FALSE(valueNamed<ForceLaw>("magic").has_value());
 }
 
 } // namespace

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/force/compliance_tracker.h"
 #include "engine/force/force_law.h"
-#include "engine/force/hand_over.h"
 
 namespace palp {
 namespace {
@@ -71,11 +71,11 @@ TEST(SeriesLaw, UncappedIsStableBelowWhatTheArmBearsAndNotAbove)
 
 /// c as the deformation thread might send it at its worst: wrong by a random factor of 1/4 to 4 in every patch, a patch
 /// every 8 to 67 ms and one patch late. Largest depth [m] in the last half second of two.
-double leftWithWrongCompliance(double contact, double ratio, HandOverLaw law, double cap, std::uint64_t seed)
+double leftWithWrongCompliance(double contact, double ratio, ComplianceLaw law, double cap, std::uint64_t seed)
 {
     std::mt19937_64                  random(seed);
     std::uniform_real_distribution<> factor(-std::log(4.0), std::log(4.0)), period(8e-3, 67e-3);
-    HandOver                         handOver(law);
+    ComplianceTracker                handOver(law);
     ComplianceTable                  coming, newest;
     const auto                       draw = [&](double now) {
         coming.sequence += 1;
@@ -109,7 +109,7 @@ double leftWithWrongCompliance(double contact, double ratio, HandOverLaw law, do
 /// out between jumps.
 TEST(SeriesLaw, AComplianceThatIsLateAndWrongByAFactorOfFourDoesNotFeedAnOscillation)
 {
-    for (const HandOverLaw law : {HandOverLaw::table, HandOverLaw::hold, HandOverLaw::blend})
+    for (const ComplianceLaw law : {ComplianceLaw::table, ComplianceLaw::hold, ComplianceLaw::blend})
         for (double contact : {3e3, 3e4, 1e6})
             for (double ratio : {1.0, 10.0, 100.0, 1000.0})
                 for (std::uint64_t seed = 1; seed <= 10; ++seed)
@@ -117,7 +117,7 @@ TEST(SeriesLaw, AComplianceThatIsLateAndWrongByAFactorOfFourDoesNotFeedAnOscilla
                         << name(law) << ", k_c " << contact << ", k_c c " << ratio << ", seed " << seed;
     // The same hand-over, of a plate that is too stiff for the arm even when c is right: the cap is what held it.
     for (std::uint64_t seed = 1; seed <= 10; ++seed)
-        EXPECT_GT(leftWithWrongCompliance(1e6, 30, HandOverLaw::table, HUGE_VAL, seed), 0.1) << seed;
+        EXPECT_GT(leftWithWrongCompliance(1e6, 30, ComplianceLaw::table, HUGE_VAL, seed), 0.1) << seed;
 }
 
 /// Where the law of one thread waits for the other's answer, the deflection under the last force is what counts:

@@ -17,9 +17,9 @@ constexpr double kContact    = 1.6e6;   // k_c over D [1/m^2]: 6 times as stiff 
 constexpr double kEvery      = 0.25e-3; // between the places of the truth, straight in between [m]: 0.1 % of c
 constexpr double kTick       = 1e-3;    // [s]
 
-PlateDevice& host()
+PlateSolver& host()
 {
-    static PlateDevice device("host");
+    static PlateSolver device("host");
     return device;
 }
 
@@ -43,15 +43,15 @@ Chart Sheet::chartAt(double x)
 
 Plate Sheet::homogeneous()
 {
-    const PlateGrid grid = Window::square(kWindow, kCells).grid;
+    const PlateGrid grid = PatchWindow::square(kWindow, kCells).grid;
     return {grid, {}, 0.45, kFoundation, NodeField(grid, kRigidity)};
 }
 
 Plate Sheet::plateAt(double x) const
 {
-    const Chart  chart  = chartAt(x);
-    const Window window = Window::square(kWindow, kCells);
-    Plate        plate  = homogeneous();
+    const Chart       chart  = chartAt(x);
+    const PatchWindow window = PatchWindow::square(kWindow, kCells);
+    Plate             plate  = homogeneous();
     for (int i = 0; i < plate.grid.nodesX(); ++i)
         for (int j = 0; j < plate.grid.nodesZ(); ++j) {
             const auto place =
@@ -125,13 +125,13 @@ Crossing stroking(double fastest)
             3 * std::numbers::pi / omega}; // after half a cycle to warm up
 }
 
-Crossed crossed(const Sheet& sheet, const Crossing& crossing, HandOverLaw law, double rate)
+Crossed crossed(const Sheet& sheet, const Crossing& crossing, ComplianceLaw law, double rate)
 {
     const double period = 1 / rate;
     const int    side   = tableSide(law, period, Sheet::kRadius);
 
     Crossed               result;
-    HandOver              handOver(law);
+    ComplianceTracker     handOver(law);
     RecentMotion          motion;
     ComplianceTable       coming, published; // what is being solved for, and what the servo sees
     std::uint64_t         sequence   = 0;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/force/ahead.h"
-#include "engine/force/hand_over.h"
+#include "engine/force/compliance_tracker.h"
 #include "engine/pipeline/table_solve.h"
 
 namespace palp {
@@ -56,6 +56,6 @@ struct Crossed {
     std::uint64_t clamped    = 0; ///< ticks beyond the reach [1]
 };
 /// \param rate  of the deformation thread [Hz]
-[[nodiscard]] Crossed crossed(const Sheet& sheet, const Crossing& crossing, HandOverLaw law, double rate);
+[[nodiscard]] Crossed crossed(const Sheet& sheet, const Crossing& crossing, ComplianceLaw law, double rate);
 
 } // namespace palp

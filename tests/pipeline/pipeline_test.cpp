@@ -100,9 +100,9 @@ TEST(Pipeline, ComplianceOfAFlatSheetIsThatOfAClampedPlate)
 
 TEST(Pipeline, TheFootprintCarriesExactlyOneNewtonInTheMiddle)
 {
-    const Window    window = Window::square(24e-3, 32);
-    const NodeField load   = footprintLoad(window.grid, 1, 12e-3, 12e-3, 3e-3);
-    double          sum    = 0;
+    const PatchWindow window = PatchWindow::square(24e-3, 32);
+    const NodeField   load   = footprintLoad(window.grid, 1, 12e-3, 12e-3, 3e-3);
+    double            sum    = 0;
     for (double f : load.values()) sum += f;
     EXPECT_NEAR(sum, 1, 1e-14) << "a sum of some hundred terms";
     EXPECT_GT(load(16, 16), 0);
@@ -239,8 +239,8 @@ TEST(Pipeline, DiscretisationErrorBoundsTheTrueErrorWithinAFactorOfThree)
     settings.cells     = 64;
     const Patch coarse = skin.touch({0, 0, 1.5e-3}, {0, 0, 1}, settings);
 
-    const double truth    = std::abs(coarse.compliance / fine.compliance - 1) * 4 / 3; // Richardson, second order
-    PlateDevice  reference("reference");
+    const double truth = std::abs(coarse.compliance / fine.compliance - 1) * 4 / 3; // Richardson, second order
+    PlateSolver  reference("reference");
     const auto   estimate = discretisationError(coarse, settings, reference);
     ASSERT_TRUE(estimate.has_value());
     EXPECT_GT(*estimate, truth / 3) << "an estimate may be off, but not by more than a factor of three";

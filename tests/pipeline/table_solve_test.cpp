@@ -28,7 +28,7 @@ const PatchSettings kSkin{.foundation = 1e6, .window = 40e-3, .cells = 40, .foot
 /// ln c of one footprint anywhere in a window, over what a homogeneous plate has there: what a table interpolates.
 double lnCompliance(const Plate& plate, const Plate& homogeneous, double x, double z)
 {
-    static PlateDevice device("host");
+    static PlateSolver device("host");
     const double       middle = plate.grid.sizeX() / 2;
     const auto         c      = [&](const Plate& of, double atX, double atZ) {
         const NodeField load = footprintLoad(of.grid, 1, middle + atX, middle + atZ, Sheet::kRadius);
@@ -117,7 +117,7 @@ TEST(TableSolve, SlopesAreThoseOfTheCompliance)
 /// The floor of every measurement of perception, J = (largest - smallest stiffness within 5 mm) / 7 %, the plate part.
 TEST(TableSolve, TablesOfHomogeneousPlatesAreFlatWhateverTheWindow)
 {
-    PlateDevice device("host");
+    PlateSolver device("host");
     for (double foundation : {0.0, 1e6})
         for (const PlateEdges& edges : {PlateEdges{}, PlateEdges{.x1 = Edge::supported, .z0 = Edge::supported}}) {
             const PlateGrid grid{40, 40, kMillimetre, kMillimetre};
@@ -141,7 +141,7 @@ TEST(TableSolve, TablesOfHomogeneousPlatesAreFlatWhateverTheWindow)
 /// Far from a feature an object is homogeneous, but of another rigidity than the cloud's mean.
 TEST(TableSolve, TablesOfSofterAndStifferPlatesThanTheMeanAreFlatToAThousandth)
 {
-    PlateDevice    device("host");
+    PlateSolver    device("host");
     const Plate    plate   = Sheet::homogeneous();
     constexpr auto kShape  = FootprintTable{Sheet::kRadius, 7, 1e6};
     const auto     lattice = footprintLattice(plate, kShape, device, 1e-4);
@@ -157,7 +157,7 @@ TEST(TableSolve, TablesOfSofterAndStifferPlatesThanTheMeanAreFlatToAThousandth)
 
 TEST(TableSolve, ATableThatDoesNotFitItsWindowIsRefused)
 {
-    PlateDevice     device("reference");
+    PlateSolver     device("reference");
     const PlateGrid grid{20, 20, kMillimetre, kMillimetre};
     const Plate     plate{grid, {}, 0.45, 0, NodeField(grid, 2e-3)};
     EXPECT_NO_THROW((void)footprintLattice(plate, {3e-3, 5, 1e6}, device, 1e-4)) << "2 (6 + 3) + 1 mm";
@@ -169,7 +169,7 @@ TEST(TableSolve, ATableThatDoesNotFitItsWindowIsRefused)
 TEST(TableSolve, TheReferenceAgreesWithTheMultigrid)
 {
     const Plate plate = Sheet(step(10)).plateAt(1e-3);
-    PlateDevice reference("reference"), host("host");
+    PlateSolver reference("reference"), host("host");
     Plate       flat = plate;
     flat.rigidity    = NodeField(plate.grid, plate.rigidity(0, 0));
     const FootprintTable shape{Sheet::kRadius, 3, 1e6};
@@ -187,7 +187,7 @@ TEST(DeformWithTable, ThePatchIsThatOfDeformAndTheTablesMiddleIsItsCompliance)
 {
     const PointCloud     cloud = makeSample(sampleNamed("ellipsoid"), 20'000, 1);
     const NeighbourIndex index(cloud.positions());
-    PlateDevice          device("host");
+    PlateSolver          device("host");
     const Contact        contact = touchAt(cloud, index, {0, 0, 35e-3}, glm::dvec3(0, 0, 1), 10e-3);
     const auto           lattice = footprintLattice(cloud, kSkin, 3, device);
     const PatchWithTable both    = deformWithTable(cloud, index, contact, kSkin, lattice, device);
@@ -209,7 +209,7 @@ TEST(DeformWithTable, WhatIsNoSurfaceHasNoTable)
     for (int n = 0; n < 100; ++n) line.push_back({n * 1e-4, 0, 0});
     const PointCloud     wire(line, std::vector<double>(100, 1e6), StiffnessKind::modulus);
     const NeighbourIndex index(wire.positions());
-    PlateDevice          device("host");
+    PlateSolver          device("host");
     const auto           lattice = footprintLattice(wire, kSkin, 1, device);
     EXPECT_FALSE(deformWithTable(wire, index, {{5e-3, 0, 0}, {0, 0, 1}, true}, kSkin, lattice, device).table);
 }
@@ -220,15 +220,15 @@ TEST(DeformWithTable, AHandThatSlidesOverAHomogeneousEllipsoidFeelsNothing)
     constexpr double     kSpeed = 0.2, kPeriod = 1.0 / 60, kTick = 1e-3;
     const PointCloud     cloud = homogeneous("ellipsoid", 3);
     const NeighbourIndex index(cloud.positions());
-    PlateDevice          device("host");
+    PlateSolver          device("host");
     PatchSettings        settings = kSkin;
     const auto           lattice =
-        footprintLattice(cloud, settings, tableSide(HandOverLaw::table, kPeriod, settings.footprintRadius), device);
+        footprintLattice(cloud, settings, tableSide(ComplianceLaw::table, kPeriod, settings.footprintRadius), device);
     const auto onSurface = [](double x) {
         return glm::dvec3(x, 3e-3, 35e-3 * std::sqrt(1 - std::pow(x / 60e-3, 2) - std::pow(3.0 / 45, 2)));
     };
 
-    HandOver                       handOver;
+    ComplianceTracker              handOver;
     RecentMotion                   motion;
     std::optional<ComplianceTable> coming, published;
     std::uint64_t                  sequence = 0;
@@ -273,7 +273,7 @@ TEST(Warnings, AskForTheWindowThatTheFoundationNeeds)
         PatchSettings settings = kSkin;
         settings.foundation    = mean / std::pow(settings.window / lengths, 4);
         const NeighbourIndex index(cloud.positions());
-        PlateDevice          device("host");
+        PlateSolver          device("host");
         const Contact        contact = touchAt(cloud, index, {0, 0, 0}, glm::dvec3(0, 0, 1), 10e-3);
         const Patch          patch   = deform(cloud, index, contact, settings, device);
         const auto           all     = warnings(patch, settings, 0.01);

@@ -1,4 +1,4 @@
-#include "engine/plate/chebyshev.h"
+#include "engine/plate/multigrid/chebyshev.h"
 
 #include <gtest/gtest.h>
 

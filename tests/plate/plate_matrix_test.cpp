@@ -1,4 +1,4 @@
-#include "engine/plate/plate_matrix.h"
+#include "engine/plate/reference/plate_matrix.h"
 
 #include <cmath>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/plate/load.h"
-#include "engine/plate/plate_solver_reference.h"
+#include "engine/plate/reference/reference_plate_solver.h"
 #include "tests/plate/reference_values.h"
 
 // Plates and loads that several tests share.

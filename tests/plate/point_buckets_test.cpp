@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 // How bad points are refused is tested with engine/plate/scattered_points.h, what kernels make of buckets in
-// tests/plate_shaders.
+// tests/plate/kernels.
 
 namespace palp {
 namespace {

@@ -9,7 +9,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/npy.h"
 #include "engine/plate/load.h"
-#include "engine/plate/plate_solver_reference.h"
+#include "engine/plate/reference/reference_plate_solver.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palp {

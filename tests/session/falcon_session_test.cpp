@@ -21,7 +21,7 @@ namespace {
 /// in ten minutes.
 HandPath exploring(double seconds)
 {
-    std::vector<HandSample> way;
+    std::vector<HandPose> way;
     for (double t = 0; t <= seconds; t += 5e-3) {
         const double out = t < 2 ? 6e-3 : -2e-3 + 5e-3 * std::cos(2 * std::numbers::pi * 0.37 * (t - 2));
         way.push_back({t, {15e-3 * std::sin(1.1 * t), 9e-3 * std::sin(0.7 * t), out}});
@@ -49,11 +49,11 @@ struct Session {
         falcon.open();
     }
 
-    SessionSummary run(double seconds, const OnSample& onSample)
+    SessionSummary run(double seconds, const OnTick& onTick)
     {
         Deformation deformation(session.cloud.cloud, session.index, session.scene);
         return runVirtual({session.scene, session.cloud.cloud, session.index, deformation.solver(), falcon, hand.frame},
-                          seconds, onSample);
+                          seconds, onTick);
     }
 };
 
@@ -109,7 +109,7 @@ TEST_P(TenMinutes, NothingEverGoesWrong)
     std::uint32_t    faults = 0, device = 0;
     double           most = 0, step = 0; // [N]
     glm::dvec3       last{};
-    const auto       summary = s.run(kSeconds, [&](const SessionSample& sample) {
+    const auto       summary = s.run(kSeconds, [&](const TickRecord& sample) {
         const double force = glm::length(sample.force);
         finite = finite && std::isfinite(force + glm::length(sample.hip) + glm::length(sample.hipVelocity));
         faults |= sample.faults & 0xFFU;
@@ -166,7 +166,7 @@ TEST(FalconSession, EveryTroubleOfTheWireEndsAtZeroForceWithAReasonOrIsBorne)
         s.falcon.emulator().cause({trouble.kind, from, from + trouble.lasts});
         double        pushed = 0, before = 0, last = from, after = 0; // [s] in the trouble; [N]; [s]; [N]
         std::uint32_t reason = 0;
-        (void)s.run(3.3 + trouble.lasts + 0.5, [&](const SessionSample& sample) {
+        (void)s.run(3.3 + trouble.lasts + 0.5, [&](const TickRecord& sample) {
             const double now = s.falcon.emulator().now();
             after            = glm::length(sample.force);
             if (now < from) before = after;
@@ -193,7 +193,7 @@ TEST(FalconSession, TheForceAtTheGripIsTheGovernors)
     Session    s(kWart, exploring(6), 60);
     double     worst = 0; // [rad]
     glm::dvec3 sent{};    // [N] of the tick before
-    (void)s.run(6, [&](const SessionSample& sample) {
+    (void)s.run(6, [&](const TickRecord& sample) {
         const auto&            motors = s.falcon.emulator().falcon().motors();
         const int              most   = std::max({std::abs(motors[0]), std::abs(motors[1]), std::abs(motors[2])});
         const FalconKinematics kinematics;

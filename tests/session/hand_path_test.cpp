@@ -47,14 +47,14 @@ TEST(HandPath, ReadsNumbersBetweenAnythingUsualWithOrWithoutAHeader)
 
 TEST(HandPath, AtTheTimeOfASampleItIsThatSampleBitForBitAndBeyondTheEndsItRests)
 {
-    std::vector<HandSample> samples;
+    std::vector<HandPose> samples;
     for (int i = 0; i < 1000; ++i) {
         const double t = 0.1 + i * 1e-3;
         samples.push_back({t, {std::sin(t) / 3, std::cos(t) / 7, t / 11}});
     }
     const HandPath hand(samples);
 
-    for (const HandSample& sample : samples) EXPECT_EQ(hand.position(sample.time), sample.position) << sample.time;
+    for (const HandPose& sample : samples) EXPECT_EQ(hand.position(sample.time), sample.position) << sample.time;
     EXPECT_EQ(hand.position(-1), samples.front().position);
     EXPECT_EQ(hand.position(99), samples.back().position);
     EXPECT_EQ(hand.position(std::nan("")), samples.front().position);
@@ -205,8 +205,8 @@ TEST(GeneratedHand, SenselessScriptsAreRefused)
     EXPECT_TRUE(holds(refused({.motion = HandMotion::circle, .radius = -1}), {"radius", "-1"}));
     EXPECT_TRUE(holds(refused({.depth = -1, .height = 0.5}), {"height + depth"}));
     EXPECT_TRUE(holds(refused({.duration = 1e9}), {"duration"}));
-    EXPECT_EQ(motionNamed("scan"), HandMotion::scan);
-    EXPECT_EQ(motionNamed("wave"), std::nullopt);
+    EXPECT_EQ(valueNamed<HandMotion>("scan"), HandMotion::scan);
+    EXPECT_EQ(valueNamed<HandMotion>("wave"), std::nullopt);
 }
 
 TEST(GeneratedHand, DrapedOverASphereKeepsItsDepth)

@@ -33,7 +33,7 @@ Felt released(const SheetSession& session, double grip, double seconds)
     Felt        felt;
     double      low = 1, high = -1; // [m]
     runVirtual({session.scene, session.cloud.cloud, session.index, deformation.solver(), arm, hand.frame}, seconds,
-               [&](const SessionSample& s) {
+               [&](const TickRecord& s) {
                    felt.finite = felt.finite && std::isfinite(glm::length(s.force) + glm::length(s.hip));
                    felt.faults |= (s.faults | s.device) & 0xFFU;
                    if (s.time < seconds - 0.5) return;

@@ -52,9 +52,9 @@ protected:
     }
 
     /// A session that waits for the force ends under it however busy the machine is.
-    OnSample notesForce()
+    OnTick notesForce()
     {
-        return [this](const SessionSample& s) {
+        return [this](const TickRecord& s) {
             if (glm::length(s.force) > kPushes) pushing_ = true;
         };
     }
@@ -82,7 +82,7 @@ TEST_F(LastForce, IsZeroAtTheEndOfAVirtualSession)
 TEST_F(LastForce, IsZeroWhenAVirtualSessionIsStopped)
 {
     runVirtual(
-        parts(), 1000, [this](const SessionSample& s) { stop_ = glm::length(s.force) > kPushes; }, &stop_);
+        parts(), 1000, [this](const TickRecord& s) { stop_ = glm::length(s.force) > kPushes; }, &stop_);
     expectZeroAfterAForce();
 }
 
@@ -105,7 +105,7 @@ TEST_F(LastForce, IsZeroAtTheEndOfARealSession)
 
 TEST_F(LastForce, IsZeroWhenARealSessionIsStopped)
 {
-    RealSessionSettings settings{.seconds = 1000, .onSample = notesForce()};
+    RealSessionSettings settings{.seconds = 1000, .onTick = notesForce()};
     settings.stop   = &stop_;
     settings.onView = [this](const SessionView&) { stop_ = pushing_.load(); };
     real(settings);
@@ -114,7 +114,7 @@ TEST_F(LastForce, IsZeroWhenARealSessionIsStopped)
 
 TEST_F(LastForce, IsZeroWhenWhoLooksOnThrows)
 {
-    RealSessionSettings settings{.seconds = 1000, .onSample = notesForce()};
+    RealSessionSettings settings{.seconds = 1000, .onTick = notesForce()};
     settings.onView = [this](const SessionView&) {
         if (pushing_) throw std::runtime_error("seen enough");
     };
@@ -124,7 +124,7 @@ TEST_F(LastForce, IsZeroWhenWhoLooksOnThrows)
 
 TEST_F(LastForce, IsZeroWhenWhoTakesSamplesThrows)
 {
-    const RealSessionSettings settings{.seconds = 1000, .onSample = [](const SessionSample& s) {
+    const RealSessionSettings settings{.seconds = 1000, .onTick = [](const TickRecord& s) {
                                            if (glm::length(s.force) > kPushes) throw std::runtime_error("no");
                                        }};
     EXPECT_THROW(real(settings), std::runtime_error);

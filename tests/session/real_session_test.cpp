@@ -44,7 +44,7 @@ TEST_P(RealSessions, TheThreadsServeAHandAndEnd)
     settings.threads           = GetParam();
     settings.seconds           = 0.6;
     settings.viewPeriod        = 0.02;
-    settings.onSample          = [&](const SessionSample& s) {
+    settings.onTick            = [&](const TickRecord& s) {
         ++seen;
         finite = finite && std::isfinite(glm::length(s.force));
     };
@@ -75,7 +75,7 @@ TEST_P(RealSessions, StartAndStopAThousandTimes)
     RealSessionSettings settings;
     settings.threads    = GetParam();
     std::uint64_t ticks = 0, seen = 0;
-    settings.onSample = [&](const SessionSample&) { ++seen; };
+    settings.onTick = [&](const TickRecord&) { ++seen; };
     for (int n = 0; n < 1000; ++n) {
         settings.seconds             = n % 2 ? 1e-3 : 3e-3;
         const SessionSummary summary = run(session, deformation.solver(), settings);
@@ -138,9 +138,9 @@ TEST_P(RealSessions, WhoTakesSamplesMustNotThrowAndEndsTheSessionIfItDoes)
     const SheetSession  session(sheetScene(kWart));
     Deformation         deformation(session.cloud.cloud, session.index, session.scene);
     RealSessionSettings settings;
-    settings.threads  = GetParam();
-    settings.seconds  = 3600;
-    settings.onSample = [](const SessionSample&) { throw std::runtime_error("no"); };
+    settings.threads = GetParam();
+    settings.seconds = 3600;
+    settings.onTick  = [](const TickRecord&) { throw std::runtime_error("no"); };
     EXPECT_THROW(run(session, deformation.solver(), settings), std::runtime_error);
 }
 
@@ -161,9 +161,9 @@ TEST_P(RealSessions, AStalledDeformationLeavesAFiniteSmoothForceAndAFlag)
     };
     bool   finite = true, flagged = false;
     double step = 0, most = 0, oldest = 0, last = 0, before = 0; // [N/ms], [N], [s], [N], [s]
-    settings.threads  = GetParam();
-    settings.seconds  = 7.6;
-    settings.onSample = [&](const SessionSample& s) {
+    settings.threads = GetParam();
+    settings.seconds = 7.6;
+    settings.onTick  = [&](const TickRecord& s) {
         const double force = glm::length(s.force);
         finite             = finite && std::isfinite(force);
         flagged            = flagged || (s.faults & static_cast<std::uint32_t>(SessionFlag::stalePatch)) != 0;
@@ -208,9 +208,9 @@ TEST_P(RealSessions, TheServoAllocatesAndLocksNothing)
     Deformation         deformation(session.cloud.cloud, session.index, session.scene);
     RealSessionSettings settings;
     std::size_t         locks = 0, allocations = 0, ticks = 0, firstLocks = 0, firstAllocations = 0;
-    settings.threads  = GetParam();
-    settings.seconds  = 1;
-    settings.onSample = [&](const SessionSample&) {
+    settings.threads = GetParam();
+    settings.seconds = 1;
+    settings.onTick  = [&](const TickRecord&) {
         if (++ticks == 2) { // Embree prepares something per thread in the first query
             firstLocks       = locksOfThisThread();
             firstAllocations = allocationsOfThisThread();

@@ -129,8 +129,8 @@ TEST_F(SessionFolder, ItsSceneAndItsHandComeBack)
     EXPECT_EQ(sceneJson(scene), sceneJson(someInfo().scene));
     EXPECT_EQ(session.command, someInfo().command);
     for (int i = 0; i < 100; ++i) {
-        const SessionSample sample = sampleNumber(i);
-        const HapticState   there  = hand.exchange({}, 0);
+        const TickRecord  sample = sampleNumber(i);
+        const HapticState there  = hand.exchange({}, 0);
         EXPECT_EQ(std::memcmp(&there.position, &sample.hip, sizeof sample.hip), 0) << i;
         EXPECT_EQ(there.velocity, sample.hipVelocity) << i;
         EXPECT_EQ(there.buttons, sample.device >> 16U) << i;

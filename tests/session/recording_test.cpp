@@ -27,8 +27,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/session/recorded_session.h"
-#include "tests/support/allocations.h"
 #include "tests/session/sessions.h"
+#include "tests/support/allocations.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palp {
@@ -37,7 +37,7 @@ namespace {
 using Json  = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-bool sameBytes(const SessionSample& a, const SessionSample& b)
+bool sameBytes(const TickRecord& a, const TickRecord& b)
 {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
@@ -173,7 +173,7 @@ TEST(Recording, PushingAllocatesNothing)
 {
     const TemporaryFolder folder;
     Recording             recording(folder / "run", someInfo());
-    const SessionSample   sample = sampleNumber(3);
+    const TickRecord      sample = sampleNumber(3);
 
     const std::size_t before = allocationsOfThisThread();
     for (int i = 0; i < 10'000; ++i) recording.push(sample);

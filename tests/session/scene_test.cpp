@@ -125,11 +125,11 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
     EXPECT_EQ(scene.patch.foundation, 2e6);
     EXPECT_EQ(scene.patch.cells, 32);
     EXPECT_EQ(scene.patch.map, Map::gallPeters);
-    EXPECT_EQ(scene.patch.sampling, Sampling::nearest);
+    EXPECT_EQ(scene.patch.sampling, Resampling::nearest);
     EXPECT_EQ(scene.patch.edges, (PlateEdges{.x0 = Edge::free}));
     EXPECT_EQ(scene.patch.forceLaw, ForceLaw::paper);
     EXPECT_EQ(scene.patch.tolerance, 1e-6);
-    EXPECT_EQ(scene.handOver, HandOverLaw::blend);
+    EXPECT_EQ(scene.handOver, ComplianceLaw::blend);
     EXPECT_EQ(scene.tableSize, 7);
     EXPECT_EQ(scene.deformationRate, 30);
     EXPECT_EQ(scene.proxy, ProxyForm::sphere);

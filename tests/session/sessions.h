@@ -6,9 +6,9 @@
 namespace palp {
 
 /// A sample whose every number tells its place.
-inline SessionSample sampleNumber(int i)
+inline TickRecord sampleNumber(int i)
 {
-    SessionSample s;
+    TickRecord s;
     s.time          = i * 1e-3;
     s.hip           = {std::sin(i * 0.01) / 3, i * 1e-5, -0.0};
     s.hipVelocity   = {i * 1e-4, 0, -1e-3};

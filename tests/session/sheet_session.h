@@ -37,13 +37,13 @@ struct SheetSession {
     /// The hand keeps its depth over a curved object.
     void drape() { hand = draped(hand, handPlace(scene, cloud.cloud, index), cloud.cloud, index); }
 
-    std::vector<SessionSample> run(double seconds) const
+    std::vector<TickRecord> run(double seconds) const
     {
-        std::vector<SessionSample> samples;
-        Deformation                deformation(cloud.cloud, index, scene);
-        HandDevice                 device(hand);
+        std::vector<TickRecord> samples;
+        Deformation             deformation(cloud.cloud, index, scene);
+        HandDevice              device(hand);
         runVirtual({scene, cloud.cloud, index, deformation.solver(), device, {}}, seconds,
-                   [&](const SessionSample& s) { samples.push_back(s); });
+                   [&](const TickRecord& s) { samples.push_back(s); });
         return samples;
     }
 };

@@ -11,18 +11,18 @@
 #include "engine/session/deformation.h"
 #include "engine/session/hand_device.h"
 #include "engine/session/recorded_session.h"
-#include "tests/support/allocations.h"
 #include "tests/session/sheet_session.h"
+#include "tests/support/allocations.h"
 
 namespace palp {
 namespace {
 
-bool has(const SessionSample& sample, SessionFlag flag)
+bool has(const TickRecord& sample, SessionFlag flag)
 {
     return (sample.faults & static_cast<std::uint32_t>(flag)) != 0;
 }
 
-RecordedSession asRecorded(std::vector<SessionSample> samples)
+RecordedSession asRecorded(std::vector<TickRecord> samples)
 {
     RecordedSession session;
     session.samples = std::move(samples);
@@ -31,11 +31,11 @@ RecordedSession asRecorded(std::vector<SessionSample> samples)
 
 TEST(VirtualSession, TheWartIsFeltWhereItIs)
 {
-    const SheetSession         session(sheetScene(kWart));
-    std::vector<SessionSample> samples = session.run(1.5);
-    double                     on = 0, off = std::numeric_limits<double>::infinity();
-    glm::dvec3                 last{};
-    for (const SessionSample& s : samples) {
+    const SheetSession      session(sheetScene(kWart));
+    std::vector<TickRecord> samples = session.run(1.5);
+    double                  on = 0, off = std::numeric_limits<double>::infinity();
+    glm::dvec3              last{};
+    for (const TickRecord& s : samples) {
         ASSERT_TRUE(std::isfinite(s.force.x + s.force.y + s.force.z));
         EXPECT_LE(glm::length(s.force - last), 1 + 1e-9) << "the governor's slew: 1 N a tick; at " << s.time;
         EXPECT_LE(glm::length(s.force), session.scene.maxForce + 1e-9);
@@ -70,7 +70,7 @@ TEST(VirtualSession, AHomogeneousSheetFeelsTheSameEverywhere)
 {
     const SheetSession session(sheetScene(R"({"law": "constant", "value": 0.5e6})"));
     double             least = std::numeric_limits<double>::infinity(), most = 0;
-    for (const SessionSample& s : session.run(1.5)) {
+    for (const TickRecord& s : session.run(1.5)) {
         if (s.compliance <= 0) continue;
         least = std::min(least, s.compliance);
         most  = std::max(most, s.compliance);
@@ -92,7 +92,7 @@ TEST(VirtualSession, AHomogeneousCurvedObjectFeelsTheSameAlongThePath)
                                         "a test", "."));
         session.drape();
         double softest = std::numeric_limits<double>::infinity(), stiffest = 0, least = softest, most = 0;
-        for (const SessionSample& s : session.run(3)) {
+        for (const TickRecord& s : session.run(3)) {
             if (s.compliance <= 0 || s.time < 1.7) continue; // [s] 1.5 to engage, after the way down
             const double felt = glm::length(s.force) / glm::length(s.proxy - s.hip);
             softest           = std::min(softest, felt);
@@ -116,7 +116,7 @@ TEST(VirtualSession, NoStiffnessBeyondTheCapIsRendered)
         scene.stiffnessCap = cap;
         const SheetSession session(scene, HandMotion::press, 4);
         double             most = 0;
-        for (const SessionSample& s : session.run(4)) {
+        for (const TickRecord& s : session.run(4)) {
             const double depth = glm::length(s.proxy - s.hip);
             if (s.time > 1.7 && depth > 0.5e-3) most = std::max(most, glm::length(s.force) / depth);
         }
@@ -129,15 +129,15 @@ TEST(VirtualSession, NoStiffnessBeyondTheCapIsRendered)
 /// pulls, and nothing is felt out of contact.
 TEST(VirtualSession, TheSurfaceNeverPulls)
 {
-    SheetSession            session(sheetScene(kWart));
-    std::vector<HandSample> pokes;
+    SheetSession          session(sheetScene(kWart));
+    std::vector<HandPose> pokes;
     for (int n = 0; n <= 4000; ++n) {
         const double s = std::sin(std::numbers::pi * n * 1e-3);
         pokes.push_back({n * 1e-3, {5e-3, 0, 3e-3 - 7e-3 * s * s}});
     }
     session.hand = HandPath(pokes);
     double least = 0, out = 0; // [N]
-    for (const SessionSample& s : session.run(4)) {
+    for (const TickRecord& s : session.run(4)) {
         least = std::min(least, glm::dot(s.force, s.normal));
         if (s.normal == glm::dvec3(0)) out = std::max(out, glm::length(s.force));
     }
@@ -156,7 +156,7 @@ TEST(VirtualSession, TheTableReachesAsFarAsAFastHandGoes)
             {.motion = HandMotion::scan, .speed = 0.2, .depth = 1.5e-3, .radius = 14e-3, .height = 2e-3, .duration = 3},
             handPlace(scene, session.cloud.cloud, session.index));
         std::size_t beyond = 0, touching = 0;
-        for (const SessionSample& s : session.run(3)) {
+        for (const TickRecord& s : session.run(3)) {
             beyond += has(s, SessionFlag::beyondTable);
             touching += s.compliance > 0;
         }
@@ -204,7 +204,7 @@ TEST(VirtualSession, TheDevicesLimitsBoundTheForce)
     Deformation        deformation(session.cloud.cloud, session.index, session.scene);
     double             most = 0, stiffest = 0; // [N], [N/m]
     runVirtual({session.scene, session.cloud.cloud, session.index, deformation.solver(), device, {}}, 3,
-               [&](const SessionSample& s) {
+               [&](const TickRecord& s) {
                    const double depth = glm::length(s.proxy - s.hip), force = glm::length(s.force);
                    most = std::max(most, force);
                    if (s.time > 1.7 && depth > 0.3e-3) stiffest = std::max(stiffest, force / depth);
@@ -216,18 +216,18 @@ TEST(VirtualSession, TheDevicesLimitsBoundTheForce)
 
 TEST(Servo, ATickAllocatesNothing)
 {
-    const SheetSession       session(sheetScene(kWart));
-    Servo                    servo(session.cloud.cloud, session.index, session.scene);
-    Deformation              deformation(session.cloud.cloud, session.index, session.scene);
-    std::optional<PatchNews> news;
-    std::size_t              allocated = 0;
+    const SheetSession         session(sheetScene(kWart));
+    Servo                      servo(session.cloud.cloud, session.index, session.scene);
+    Deformation                deformation(session.cloud.cloud, session.index, session.scene);
+    std::optional<PatchUpdate> news;
+    std::size_t                allocated = 0;
     for (int n = 0; n < 900; ++n) {
         const double     time   = 1e-3 * n;
         const glm::dvec3 hip    = session.hand.position(time);
         const auto       before = allocationsOfThisThread();
         (void)servo.tick({time, 1e-3, 1e-3}, {hip, {}}, news ? &*news : nullptr);
         if (n > 0) allocated += allocationsOfThisThread() - before;
-        if (n % 100 == 99 && servo.touch().touching) news = deformation.solve(servo.touch(), 0.1).news;
+        if (n % 100 == 99 && servo.touch().touching) news = deformation.solve(servo.touch(), 0.1).update;
     }
     EXPECT_TRUE(news.has_value()) << "the hand came to touch";
     EXPECT_EQ(allocated, 0U);
@@ -235,19 +235,19 @@ TEST(Servo, ATickAllocatesNothing)
 
 TEST(Servo, AStalledDeformationIsFlaggedAndTheForceStaysSmooth)
 {
-    const SheetSession       session(sheetScene(kWart), HandMotion::press, 2);
-    Servo                    servo(session.cloud.cloud, session.index, session.scene);
-    Deformation              deformation(session.cloud.cloud, session.index, session.scene);
-    std::optional<PatchNews> news;
-    glm::dvec3               last{};
-    bool                     flagged = false;
-    double                   most    = 0;
+    const SheetSession         session(sheetScene(kWart), HandMotion::press, 2);
+    Servo                      servo(session.cloud.cloud, session.index, session.scene);
+    Deformation                deformation(session.cloud.cloud, session.index, session.scene);
+    std::optional<PatchUpdate> news;
+    glm::dvec3                 last{};
+    bool                       flagged = false;
+    double                     most    = 0;
     // pressing, the hand is deepest after pi (h + d) / (2 speed) = 0.055 s, and stays there
     for (int n = 0; n < 6000; ++n) { // one patch at the first touch, then none for more than five seconds
         const double     time   = 1e-3 * n;
         const glm::dvec3 hip    = session.hand.position(std::min(time, 0.055));
         const auto       sample = servo.tick({time, 1e-3, 1e-3}, {hip, {}}, news ? &*news : nullptr);
-        if (!news && servo.touch().touching) news = deformation.solve(servo.touch(), 1.0 / 60).news;
+        if (!news && servo.touch().touching) news = deformation.solve(servo.touch(), 1.0 / 60).update;
         ASSERT_TRUE(std::isfinite(glm::length(sample.force)));
         EXPECT_LE(glm::length(sample.force - last), 1 + 1e-9);
         last    = sample.force;
@@ -263,7 +263,7 @@ TEST(Servo, AHandThatIsNotANumberEndsAtZeroForceWithAReason)
     const SheetSession session(sheetScene(kWart));
     Servo              servo(session.cloud.cloud, session.index, session.scene);
     (void)servo.tick({0, 1e-3, 1e-3}, {session.hand.position(0), {}}, nullptr);
-    SessionSample sample;
+    TickRecord sample;
     for (int n = 1; n <= 20; ++n) sample = servo.tick({1e-3 * n, 1e-3, 1e-3}, {glm::dvec3(std::nan("")), {}}, nullptr);
     EXPECT_EQ(sample.force, glm::dvec3(0));
     EXPECT_EQ(sample.faults & 0xFFU, static_cast<std::uint32_t>(GovernorFault::positionNotFinite));

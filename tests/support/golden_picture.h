@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/viewer/surface_renderer.h"
+#include "engine/tools/render/surface_renderer.h"
 
 namespace palp {
 

@@ -24,13 +24,13 @@ std::string environment(const char* name)
     return value ? value : "";
 }
 
-gpu::Validation wantedValidation()
+compute::Validation wantedValidation()
 {
     const std::string word = environment("PALPATE_VALIDATION");
-    if (word.empty() || word == "off") return gpu::Validation::off;
-    if (word == "core") return gpu::Validation::core;
-    if (word == "synchronization") return gpu::Validation::synchronization;
-    if (word == "gpu") return gpu::Validation::gpuAssisted;
+    if (word.empty() || word == "off") return compute::Validation::off;
+    if (word == "core") return compute::Validation::core;
+    if (word == "synchronization") return compute::Validation::synchronization;
+    if (word == "gpu") return compute::Validation::gpuAssisted;
     throw Error("PALPATE_VALIDATION is '" + word + "'; expected off, core, synchronization or gpu");
 }
 
@@ -43,19 +43,19 @@ public:
         for (const std::string& message : context_->takeMessages()) ADD_FAILURE() << "validation, after: " << message;
         context_.reset();
     }
-    gpu::Context& context()
+    compute::Context& context()
     {
         if (!context_) {
-            gpu::ContextSettings settings;
+            compute::ContextSettings settings;
             settings.device     = deviceOfTests();
             settings.validation = wantedValidation();
-            context_            = std::make_unique<gpu::Context>(settings);
+            context_            = std::make_unique<compute::Context>(settings);
         }
         return *context_;
     }
 
 private:
-    std::unique_ptr<gpu::Context> context_;
+    std::unique_ptr<compute::Context> context_;
 };
 
 auto* const theDevice = static_cast<DeviceEnvironment*>(::testing::AddGlobalTestEnvironment(new DeviceEnvironment));
@@ -63,19 +63,20 @@ auto* const theDevice = static_cast<DeviceEnvironment*>(::testing::AddGlobalTest
 /// One array on the device, between its guard bands.
 class GuardedArray {
 public:
-    GuardedArray(gpu::Context& context, const ShaderArray& array, std::size_t number)
+    GuardedArray(compute::Context& context, const ShaderArray& array, std::size_t number)
         : array_(array), name_("array " + std::to_string(number)), all_(kFrontBytes + array.bytes + kBackBytes),
-          up_(context, name_ + " up", all_, gpu::Intent::upload), on_(context, name_, all_, gpu::Intent::device),
-          down_(context, name_ + " down", all_, gpu::Intent::readback)
+          up_(context, name_ + " up", all_, compute::Intent::upload),
+          on_(context, name_, all_, compute::Intent::device),
+          down_(context, name_ + " down", all_, compute::Intent::readback)
     {
         std::ranges::fill(up_.as<std::uint32_t>(), kGuardWord);
         if (array.role != ShaderArray::Role::out)
             std::memcpy(static_cast<std::byte*>(up_.mapped()) + kFrontBytes, array.data, array.bytes);
     }
 
-    void         recordUpload(gpu::CommandList& list) const { list.copy(up_, on_); }
-    void         recordDownload(gpu::CommandList& list) const { list.copy(on_, down_); }
-    gpu::Binding binding() const { return {on_, kFrontBytes}; }
+    void             recordUpload(compute::CommandList& list) const { list.copy(up_, on_); }
+    void             recordDownload(compute::CommandList& list) const { list.copy(on_, down_); }
+    compute::Binding binding() const { return {on_, kFrontBytes}; }
 
     /// Brings the array back and says what is wrong with it.
     void collect(std::vector<std::string>& faults) const
@@ -102,10 +103,10 @@ public:
     }
 
 private:
-    ShaderArray array_;
-    std::string name_;
-    std::size_t all_; // [byte]
-    gpu::Buffer up_, on_, down_;
+    ShaderArray     array_;
+    std::string     name_;
+    std::size_t     all_; // [byte]
+    compute::Buffer up_, on_, down_;
 };
 
 /// Place of a number on the line of all floating-point numbers, one step per representable number.
@@ -149,20 +150,20 @@ template <class T>
 std::string deviceOfTests()
 {
     const std::string wanted = environment("PALPATE_DEVICE");
-    return wanted.empty() ? std::string(gpu::kLavapipeDevice) : wanted;
+    return wanted.empty() ? std::string(compute::kLavapipeProcessor) : wanted;
 }
 
-std::vector<std::string> dispatchGuarded(gpu::Context& context, const gpu::Kernel& kernel,
-                                         const std::vector<ShaderArray>& arrays, const gpu::Push& push,
-                                         gpu::Groups groups)
+std::vector<std::string> dispatchGuarded(compute::Context& context, const compute::Kernel& kernel,
+                                         const std::vector<ShaderArray>& arrays, const compute::Push& push,
+                                         compute::Groups groups)
 {
-    std::vector<GuardedArray> guarded;
-    std::vector<gpu::Binding> bindings;
+    std::vector<GuardedArray>     guarded;
+    std::vector<compute::Binding> bindings;
     guarded.reserve(arrays.size()); // bindings point into it
     for (const ShaderArray& array : arrays)
         bindings.push_back(guarded.emplace_back(context, array, guarded.size()).binding());
 
-    gpu::CommandList list(context);
+    compute::CommandList list(context);
     for (const GuardedArray& array : guarded) array.recordUpload(list);
     list.dispatch(kernel, bindings, push, groups);
     for (const GuardedArray& array : guarded) array.recordDownload(list);
@@ -174,19 +175,19 @@ std::vector<std::string> dispatchGuarded(gpu::Context& context, const gpu::Kerne
     return faults;
 }
 
-gpu::Context& ShaderTest::context()
+compute::Context& ShaderTest::context()
 {
     return theDevice->context();
 }
 
-gpu::Validation ShaderTest::validation()
+compute::Validation ShaderTest::validation()
 {
     return wantedValidation();
 }
 
 std::vector<std::uint32_t> ShaderTest::sides()
 {
-    if (validation() == gpu::Validation::gpuAssisted) return {7, 13};
+    if (validation() == compute::Validation::gpuAssisted) return {7, 13};
     return {7, 13, 33, 65};
 }
 
@@ -200,8 +201,8 @@ void ShaderTest::TearDown()
     for (const std::string& message : context().takeMessages()) ADD_FAILURE() << "validation: " << message;
 }
 
-void ShaderTest::dispatchOnce(const gpu::Kernel& kernel, std::initializer_list<ShaderArray> arrays,
-                              const gpu::Push& push, gpu::Groups groups)
+void ShaderTest::dispatchOnce(const compute::Kernel& kernel, std::initializer_list<ShaderArray> arrays,
+                              const compute::Push& push, compute::Groups groups)
 {
     for (const std::string& fault : dispatchGuarded(context(), kernel, arrays, push, groups))
         ADD_FAILURE() << kernel.code().name << ": " << fault;

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/gpu/command_list.h"
+#include "engine/compute/command_list.h"
 
 namespace palp {
 
@@ -47,9 +47,9 @@ template <class T>
 /// What lies behind an array is bound with it: drivers would drop a write beyond the binding without a word. Hence
 /// length() in the shader tells too much, and an index below 0 is found by GPU-assisted validation only.
 /// \return one sentence per fault: a guard band was written, an input changed, an output was left unwritten
-[[nodiscard]] std::vector<std::string> dispatchGuarded(gpu::Context& context, const gpu::Kernel& kernel,
-                                                       const std::vector<ShaderArray>& arrays, const gpu::Push& push,
-                                                       gpu::Groups groups);
+[[nodiscard]] std::vector<std::string> dispatchGuarded(compute::Context& context, const compute::Kernel& kernel,
+                                                       const std::vector<ShaderArray>& arrays,
+                                                       const compute::Push& push, compute::Groups groups);
 
 /// How far results may be from C++ on devices that fuse or re-associate.
 struct UlpTolerance {
@@ -63,18 +63,18 @@ struct UlpTolerance {
 
 /// A test of one shader. The device is opened once per process; any message of the validation layer fails the test.
 ///
-/// Environment: PALPATE_DEVICE, see deviceOfTests() and gpu::chooseDevice(); PALPATE_VALIDATION off, core,
+/// Environment: PALPATE_DEVICE, see deviceOfTests() and compute::chooseProcessor(); PALPATE_VALIDATION off, core,
 /// synchronization or gpu.
 class ShaderTest : public ::testing::Test {
 protected:
     /// Of the process; it is closed after the last test.
-    static gpu::Context& context();
+    static compute::Context& context();
 
     /// Whether the device is the host, which has functions for the plate's kernels only.
-    static bool onHost() { return context().device().kind == gpu::kHostDevice; }
+    static bool onHost() { return context().device().kind == compute::kHostProcessor; }
 
     /// What PALPATE_VALIDATION asks for.
-    static gpu::Validation validation();
+    static compute::Validation validation();
 
     /// Sides of grids, none a multiple of a workgroup; only small ones where every access is checked.
     static std::vector<std::uint32_t> sides();
@@ -83,8 +83,8 @@ protected:
     void TearDown() override;
 
     /// dispatchGuarded(), where each fault fails the test.
-    static void dispatchOnce(const gpu::Kernel& kernel, std::initializer_list<ShaderArray> arrays,
-                             const gpu::Push& push, gpu::Groups groups);
+    static void dispatchOnce(const compute::Kernel& kernel, std::initializer_list<ShaderArray> arrays,
+                             const compute::Push& push, compute::Groups groups);
 
     /// Whether a kernel computed what C++ does: to the bit where the device is bitExact(), else within the tolerance.
     static ::testing::AssertionResult agree(const std::vector<float>& measured, const std::vector<float>& expected,

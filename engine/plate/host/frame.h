@@ -9,7 +9,7 @@
 #include "compute_shaders/shared/plate_push.h"
 #include "compute_shaders/shared/tile_layout.h"
 #include "compute_shaders/shared/transfer_layout.h"
-#include "engine/gpu/kernel.h"
+#include "engine/compute/kernel.h"
 
 // What the kernels of the host have in common. Their files are compiled once per instruction set, each time in another
 // namespace: whatever they define must be in it, or a linker might give a processor code that it does not have.
@@ -25,7 +25,7 @@
 namespace palp::PALPATE_ISA {
 
 using namespace shared;
-using gpu::HostDispatch;
+using compute::HostDispatch;
 
 inline float min(float a, float b)
 {

@@ -1,5 +1,5 @@
 #pragma once
-#include "engine/gpu/kernel.h"
+#include "engine/compute/kernel.h"
 #include "engine/plate/host/kernel_names.h"
 
 #ifndef PALPATE_ISA
@@ -10,7 +10,7 @@
 /// \thread any; each keeps what it needs per thread
 namespace palp::PALPATE_ISA {
 
-using gpu::HostDispatch;
+using compute::HostDispatch;
 
 #define PALPATE_DECLARE(name) void name(const HostDispatch& d);
 PALPATE_HOST_KERNELS(PALPATE_DECLARE)

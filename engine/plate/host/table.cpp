@@ -1,5 +1,5 @@
+#include "engine/plate/host/host_kernels.h"
 #include "engine/plate/host/kernels.h"
-#include "engine/plate/host_kernels.h"
 
 namespace palp::PALPATE_ISA {
 

@@ -1,0 +1,28 @@
+#pragma once
+#include <algorithm>
+
+#include "engine/core/enum_names.h"
+
+namespace palp {
+
+/// How the rigidity of a node follows from the points around it; engine/chart/resample.h has the definitions.
+enum class Resampling {
+    logMean, ///< exp of the mean of ln D, Gaussian weights: hardly any jitter while the grid slides over the points
+    nearest  ///< D of the nearest projected point: the paper's; a step wherever the nearest point changes
+};
+constexpr auto namesOf(Resampling)
+{
+    using enum Resampling;
+    return std::to_array<NamedValue<Resampling>>({{logMean, "log-mean"}, {nearest, "nearest"}});
+}
+
+inline constexpr double kSamplingReach  = 4.0; ///< of the Gaussian; the weight there is 3e-4 [standard deviations]
+inline constexpr double kSamplingNearby = 2.5; ///< beyond it a node counts as without a point [standard deviations]
+
+/// Standard deviation of the Gaussian [m], from the mean distance of the points and the grid's larger spacing [m].
+[[nodiscard]] inline double samplingWidth(double pointSpacing, double nodeSpacing) noexcept
+{
+    return std::max(pointSpacing, nodeSpacing / 2);
+}
+
+} // namespace palp

@@ -1,0 +1,92 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "engine/core/enum_names.h"
+#include "engine/force/compliance_table.h"
+
+namespace palp {
+
+/// What the servo makes of the tables that the deformation thread publishes.
+enum class ComplianceLaw {
+    table, ///< by the contact's position in the newest table; the jump between tables dies away
+    hold,  ///< the middle of the newest table, until the next: a step with every patch
+    blend  ///< from what is in use to the middle of the newest table, evenly over one period: no steps, but later still
+};
+constexpr auto namesOf(ComplianceLaw)
+{
+    using enum ComplianceLaw;
+    return std::to_array<NamedValue<ComplianceLaw>>({{table, "table"}, {hold, "hold"}, {blend, "blend"}});
+}
+
+/// What one tick of the servo knows.
+struct ComplianceTick {
+    glm::dvec3             contact{};        ///< [m] of the proxy, world
+    double                 time   = 0;       ///< [s] of the servo's clock
+    double                 dt     = 0;       ///< [s] since the last tick
+    const ComplianceTable* newest = nullptr; ///< of the deformation thread; null: none yet
+};
+
+struct LocalCompliance {
+    double compliance       = 0;     ///< c [m/N]
+    double contactStiffness = 0;     ///< k_c [N/m]
+    bool   clamped          = false; ///< the contact lies beyond the table's reach
+    double age              = 0;     ///< [s] of the contact that the table was solved for
+};
+
+/// Compliance at 1 kHz from tables at 30 to 60 Hz.
+///
+/// The contact is projected into the table's own chart, radially onto its sphere: the same map that brought the
+/// rigidity of the points there, so that a contact finds the points around it wherever it is, and off the sphere too.
+/// What is left is how the rest of the surface is bent differently from the sphere, which the plate does not know
+/// either. (Onto the tangent plane, 12 mm on a radius of 35 mm would be 0.2 mm short, and a contact off the sphere
+/// would be shifted by that distance times the slope.)
+///
+/// Where a new table disagrees with the old one at the contact, the difference is carried as an offset of ln c, and of
+/// ln k_c, which dies at 1 % per millisecond, or within one period if that is faster.
+/// \thread the servo's; no allocation, lock or throw
+/// \source our own prototype, with slopes in place of twice as many footprints; README.md here has what was measured
+class ComplianceTracker {
+public:
+    explicit ComplianceTracker(ComplianceLaw law = ComplianceLaw::table) noexcept : law_(law) {}
+
+    /// Empty until the first usable table. A table counts once, by its sequence number; one that is not usable() is
+    /// not taken.
+    [[nodiscard]] std::optional<LocalCompliance> tick(const ComplianceTick& now) noexcept;
+
+    /// The finger left the surface: what comes next starts without an offset.
+    void restart() noexcept;
+
+    [[nodiscard]] ComplianceLaw law() const noexcept { return law_; }
+    [[nodiscard]] std::uint64_t clampedTicks() const noexcept { return clampedTicks_; }   ///< since construction [1]
+    [[nodiscard]] std::uint64_t refusedTables() const noexcept { return refusedTables_; } ///< not usable() [1]
+    [[nodiscard]] double        period() const noexcept { return period_; }            ///< of the tables, smoothed [s]
+    [[nodiscard]] double        offset() const noexcept { return compliance_.offset; } ///< still carried, of ln c [1]
+
+private:
+    /// One of the two logarithms on its way to the hand.
+    struct Carried {
+        double handed = 0; // in the last tick [1]
+        double offset = 0; // to what the table says [1]
+        double rate   = 0; // at which the offset dies [1/s]
+        double from   = 0; // where a blend began [1]
+    };
+
+    [[nodiscard]] ComplianceTable::Look look(const glm::dvec3& contact) const noexcept;
+    void                                adopt(const ComplianceTick& now) noexcept;
+    void                                carry(Carried& carried, double before, double after) const noexcept;
+    [[nodiscard]] double                hand(Carried& carried, double wanted, double time) const noexcept;
+
+    ComplianceLaw   law_;
+    ComplianceTable table_{};
+    bool            hasTable_  = false;
+    bool            inContact_ = false;    // since a tick after restart()
+    double          adopted_   = 0;        // when the table came [s]
+    double          period_    = 1.0 / 30; // [s] the slowest deformation thread that is planned for
+    Carried         compliance_, contact_;
+    std::uint64_t   refused_      = 0; // sequence number of the last table that was not usable
+    std::uint64_t   clampedTicks_ = 0, refusedTables_ = 0;
+};
+
+} // namespace palp

@@ -1,0 +1,33 @@
+#pragma once
+#include "engine/tools/bench/direct_solver.h"
+
+namespace palp::bench {
+
+/// Largest difference over the largest deflection of the truth [1]. NaN and infinity in `found` make it infinite.
+[[nodiscard]] double errorOf(const NodeField& found, const NodeField& truth);
+
+/// 2-norm of the nodal forces that are left on nodes that can move, over that of the load [1]; in doubles, moment form.
+[[nodiscard]] double residualOf(const Plate& plate, const NodeField& force, const NodeField& w);
+
+/// What algebraic errors on a grid are measured against.
+struct Truth {
+    NodeField w;          ///< [m]
+    double    correction; ///< the last step of refinement, over w [1]: errors near it are not to be trusted
+};
+
+/// The answer of the grid's equations, by a direct solver and iterative refinement until it stagnates. Its residuals
+/// are in moment form, of the energy and not of the assembled matrix, so that it does not matter whose factors they
+/// are. Factorises anew.
+[[nodiscard]] Truth refinedTruth(Direct& direct, const Plate& plate, const NodeField& force);
+
+/// The grid's own error, by Richardson: the method is of second order for smooth rigidities and loads, so
+///
+///     w_2h - w_h = 3 C h^2 + ..., hence  w_h - w = (w_2h - w_h) / 3
+///
+/// and this is the largest |w_2h - w_h| / 3 on the nodes that the two grids share, over the largest |w_h| [1]. A solve
+/// has "discretisation accuracy" if errorOf() is at most that: more work would bring it closer to the grid's answer but
+/// hardly to the plate's.
+/// \param coarse  on every second node of `fine`
+[[nodiscard]] double discretisationError(const NodeField& fine, const NodeField& coarse);
+
+} // namespace palp::bench

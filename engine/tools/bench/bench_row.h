@@ -1,0 +1,45 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/tools/bench/cpu_time.h"
+
+namespace palp::bench {
+
+/// One comparison: Palpate and a peer do the same work. What is not known is empty, and null in JSON.
+struct BenchRow {
+    std::string           kind;     ///< new_map, new_load, contrast, jacobi, update, gather, grid_map, memory
+    std::string           map;      ///< of the rigidity; empty where there is none
+    std::optional<int>    nodes;    ///< a side [1]
+    std::string           accuracy; ///< discretisation, 1e-6, exact
+    std::optional<double> target;   ///< the error that this accuracy allows [1]
+    std::string           peer;
+
+    std::optional<Quartiles> peerMs, palpateMs; ///< [ms]
+    std::optional<double>    hidden;            ///< share of palpateMs that other threads than the caller's spent [1]
+    std::vector<double>      peerPartsMs;       ///< medians: values, factors, solve [ms]
+    std::vector<double>      palpatePartsMs;    ///< medians [ms], see partNames
+    std::vector<std::string> partNames;         ///< of palpatePartsMs
+    std::optional<double>    peerBytes, palpateBytes; ///< [byte]
+    std::optional<double>    error, peerError; ///< see accuracy.h; of point queries the share of wrong answers [1]
+    std::optional<double>    residual, peerResidual; ///< [1]
+    std::optional<double>    tolerance;              ///< that Palpate was given [1]
+    std::optional<int>       iterations;             ///< [1]
+    std::optional<double>    workUnits;              ///< [1]
+    std::optional<double>    peerSweeps;             ///< of Jacobi [1]
+    std::optional<bool>      extrapolated;           ///< Jacobi: the time is sweeps that were not all made
+    std::optional<double>    points, neighbours;     ///< [1]
+    std::string              note;
+
+    /// Peer over Palpate, of times or bytes; empty without the error of what was measured here.
+    [[nodiscard]] std::optional<double> ratio() const
+    {
+        if (!error || (target && *error > *target)) return {};
+        if (peerMs && palpateMs) return peerMs->median / palpateMs->median;
+        if (peerBytes && palpateBytes) return *peerBytes / *palpateBytes;
+        return {};
+    }
+};
+
+} // namespace palp::bench

@@ -1,0 +1,48 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "engine/plate/reference/plate_matrix.h"
+
+namespace palp::bench {
+
+/// A sparse direct solver as its users would use it in a loop: the symbolic analysis is made once, for a grid, by
+/// whoever makes the object; then there are numbers to factorise and loads to solve for. \thread one
+class DirectSolver {
+public:
+    virtual ~DirectSolver() = default;
+
+    [[nodiscard]] virtual std::string name() const = 0;
+
+    /// Numerical factorisation of a matrix of the same pattern. \throws Error if it is not positive definite
+    virtual void factorise(const PlateMatrix& matrix) = 0;
+
+    /// With the last factors: right side [N] to deflection [m], by unknown.
+    virtual void solve(std::span<const double> right, std::span<double> answer) = 0;
+
+    /// Most that it has held at once [byte]; empty if it does not say.
+    [[nodiscard]] virtual std::optional<std::size_t> peakBytes() const = 0;
+};
+
+/// Eigen::SimplicialLDLT, minimum degree order.
+[[nodiscard]] std::unique_ptr<DirectSolver> eigenSolver(const PlateMatrix& matrix);
+
+[[nodiscard]] std::string eigenVersion(); ///< "Eigen 3.4.0"
+
+/// A matrix and the best direct solver that there is.
+struct Direct {
+    PlateMatrix                   matrix;
+    std::unique_ptr<DirectSolver> solver;
+
+    /// Values, factors.
+    void factorise(const Plate& plate)
+    {
+        matrix.assemble(plate);
+        solver->factorise(matrix);
+    }
+    [[nodiscard]] NodeField solve(const NodeField& force);
+};
+
+} // namespace palp::bench

@@ -1,0 +1,40 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/tools/bench/bench_row.h"
+
+namespace palp::compute {
+class Context;
+}
+namespace palp {
+class PlateKernels;
+}
+
+namespace palp::bench {
+
+struct PlateBenchOptions {
+    std::vector<std::string> cases; ///< of those that plateCases() lists
+    std::vector<int>         nodes; ///< a side, odd [1]
+    std::vector<std::string> maps;  ///< by name, see bench_plates.h; empty: all
+    int                      runs          = 11;
+    int                      mostEigen     = 257;   ///< nodes a side beyond which Eigen takes seconds [1]
+    bool                     quick         = false; ///< one load, and beyond 129 nodes fewer maps
+    double                   patience      = 1e9;   ///< no new comparison begins after this time [s]
+    double                   jacobiSeconds = 150;   ///< per grid; then what is left is extrapolated [s]
+    int                      mostMemory    = 1025;  ///< nodes a side of the largest grid of the case memory [1]
+};
+
+/// new_map, new_load, contrast, jacobi, memory
+[[nodiscard]] const std::vector<std::string>& plateCases();
+
+/// A row has been measured, or (done, total) steps are.
+using OnStep = std::function<void(std::size_t done, std::size_t total)>;
+
+/// The cases that need nothing but plates, small grids first. What the patience leaves no time for has a row that says
+/// so. \thread one; see takeTurns
+[[nodiscard]] std::vector<BenchRow> measurePlates(compute::Context& context, const PlateKernels& kernels,
+                                                  const PlateBenchOptions& options, const OnStep& onStep);
+
+} // namespace palp::bench

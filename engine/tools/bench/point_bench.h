@@ -1,0 +1,19 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/tools/bench/bench_row.h"
+#include "engine/tools/bench/plate_bench.h"
+
+namespace palp::bench {
+
+/// gather, grid_map, update
+[[nodiscard]] const std::vector<std::string>& pointCases();
+
+/// The cases that begin with points: what a radius search gathers, the nearest point of every node, and a whole update.
+/// \param device  of update, as PlateSolver has it
+/// \param nodes   a side of the grids, odd [1]
+[[nodiscard]] std::vector<BenchRow> measurePoints(const std::vector<std::string>& cases, const std::string& device,
+                                                  const std::vector<int>& nodes, int runs, const OnStep& onStep);
+
+} // namespace palp::bench

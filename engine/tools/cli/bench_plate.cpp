@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "engine/compute/context.h"
+#include "engine/core/contract.h"
+#include "engine/core/file.h"
+#include "engine/core/processor.h"
+#include "engine/core/progress.h"
+#include "engine/plate/multigrid/multigrid_plate_solver.h"
+#include "engine/tools/bench/bench_plates.h"
+#include "engine/tools/bench/bench_report.h"
+#include "engine/tools/bench/one_thread.h"
+#include "engine/tools/bench/outside_peers.h"
+#include "engine/tools/bench/plate_bench.h"
+#include "engine/tools/bench/point_bench.h"
+#include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/solver_choice.h"
+
+namespace palp {
+namespace {
+
+using namespace bench;
+
+struct BenchPlateOptions {
+    bool                     quick = false, json = false;
+    std::string              device = "auto", out;
+    std::vector<std::string> cases, maps;
+    std::vector<int>         nodes;
+    int                      runs = 11;
+};
+
+constexpr int kFewestNodes = 33, kMostNodes = 1025; // [1] a side
+constexpr int kFewestRuns = 11;                     // quartiles of fewer say little [1]
+
+std::vector<std::string> allCases()
+{
+    std::vector<std::string> names = plateCases();
+    names.insert(names.end(), pointCases().begin(), pointCases().end());
+    return names;
+}
+
+std::vector<std::string> allMaps()
+{
+    std::vector<std::string> names;
+    for (const Map& map : maps()) names.emplace_back(map.name);
+    return names;
+}
+
+void checkNames(const char* option, const std::vector<std::string>& names, const std::vector<std::string>& known)
+{
+    std::string list;
+    for (const auto& name : known) list += (list.empty() ? "" : ", ") + name;
+    for (const auto& name : names)
+        if (std::ranges::find(known, name) == known.end())
+            throw Error(std::string(option) + ": unknown name \"" + name + "\"; known: " + list);
+}
+
+void check(const BenchPlateOptions& o)
+{
+    checkNames("--cases", o.cases, allCases());
+    checkNames("--maps", o.maps, allMaps());
+    for (const int nodes : o.nodes)
+        if (nodes < kFewestNodes || nodes > kMostNodes || nodes % 4 != 1)
+            throw Error("--nodes: expected " + std::to_string(kFewestNodes) + " to " + std::to_string(kMostNodes) +
+                        " nodes a side and a multiple of 4 and 1 (the error of the grid is found from one twice as "
+                        "coarse), found " +
+                        std::to_string(nodes));
+    constexpr int kMostQuick = 257;
+    for (const int nodes : o.nodes)
+        if (o.quick && nodes > kMostQuick)
+            throw Error("--nodes: with --quick at most " + std::to_string(kMostQuick) + ", found " +
+                        std::to_string(nodes));
+    if (o.runs < kFewestRuns || o.runs > 1000)
+        throw Error("--runs: expected " + std::to_string(kFewestRuns) + " to 1000, found " + std::to_string(o.runs));
+    if (compute::isProcessorWord(o.device, PlateSolver::kReference))
+        throw Error(
+            "--device: the reference is a direct solver like its peers; expected auto, host, lavapipe, an index "
+            "or part of a name");
+}
+
+/// Starts again as the program that has the peers, if it stands beside this one, with one thread for each library.
+void becomeBenchmark()
+{
+    const std::filesystem::path self  = runningProgram();
+    const std::filesystem::path peers = self.parent_path() / "palpate_peers";
+    std::error_code             error;
+    becomeOneThread(!self.empty() && std::filesystem::exists(peers, error) ? peers : self);
+}
+
+// --- the command
+
+BenchReport measure(const BenchPlateOptions& o)
+{
+    BenchReport report;
+    report.runs        = o.runs;
+    report.quick       = o.quick;
+    report.processor   = processorName();
+    report.cholmod     = outsidePeers().cholmodNote;
+    report.eigen       = eigenVersion();
+    report.nanoflann   = outsidePeers().nanoflannNote;
+    report.environment = oneThreadEnvironment();
+
+    std::vector<std::string> cases = o.cases;
+    if (cases.empty()) cases = o.quick ? plateCases() : allCases();
+    const auto wants = [&](const std::vector<std::string>& some) {
+        return std::ranges::any_of(some,
+                                   [&](const auto& name) { return std::ranges::find(cases, name) != cases.end(); });
+    };
+
+    Progress          progress("measuring");
+    const OnStep      onStep = [&](std::size_t done, std::size_t total) { progress.at(done, total); };
+    PlateBenchOptions plates{.cases = cases, .nodes = o.nodes, .maps = o.maps, .runs = o.runs};
+    if (plates.nodes.empty())
+        plates.nodes = o.quick ? std::vector<int>{33, 65, 129, 257} : std::vector<int>{33, 65, 129, 257, 513, 1025};
+    if (o.quick) {
+        plates.quick         = true;
+        plates.patience      = 40; // what has begun then is done before 50 s are over
+        plates.mostEigen     = 129;
+        plates.jacobiSeconds = 3;
+        plates.mostMemory    = 257;
+    }
+    {
+        compute::Context context(compute::ContextSettings{.device = o.device});
+        sayPassedOver(context.device().name, context.note());
+        report.device = context.device().name;
+        if (wants(plateCases())) {
+            const PlateKernels kernels(context);
+            report.rows = measurePlates(context, kernels, plates, onStep);
+        }
+    }
+    if (wants(pointCases())) {
+        const std::vector<int> nodes = o.nodes.empty() ? std::vector<int>{65, 129, 257} : o.nodes;
+        for (BenchRow& row : measurePoints(cases, o.device, nodes, o.runs, onStep))
+            report.rows.push_back(std::move(row));
+    }
+    return report;
+}
+
+void benchPlate(const BenchPlateOptions& o)
+{
+    check(o);
+    becomeBenchmark();
+    const BenchReport report = measure(o);
+    if (report.rows.empty())
+        throw Error(
+            "--nodes: nothing to measure: new_map, new_load and contrast begin at 65 nodes, update is for 65 to 129");
+    if (!o.out.empty()) {
+        makeFolder(o.out);
+        const std::filesystem::path folder = o.out;
+        const auto                  write  = [&](const char* name, const std::string& text) {
+            writeFileWhole(folder / name, [&](std::ostream& file) { file << text; });
+        };
+        write("plate.json", jsonOf(report));
+        writeFileWhole(folder / "plate.txt", [&](std::ostream& file) { printText(file, report); });
+        for (const auto& [kind, map] :
+             {std::pair("new_map", "linear"), {"new_load", "linear"}, {"contrast", "disc_100"}})
+            if (std::ranges::any_of(report.rows,
+                                    [&](const BenchRow& row) { return row.kind == kind && row.map == map; }))
+                write((std::string(kind) + ".svg").c_str(), plotOf(report, kind, map));
+    }
+    if (o.json)
+        std::cout << jsonOf(report);
+    else
+        printText(std::cout, report);
+}
+
+} // namespace
+
+void addBenchPlateCommand(CLI::App& bench)
+{
+    CLI::App*  plate = bench.add_subcommand("plate", "the plate's solver against what people would use instead");
+    const auto o     = std::make_shared<BenchPlateOptions>();
+    plate->add_flag("--quick", o->quick, "only plates of up to 257 nodes, in less than a minute");
+    plate->add_option("--device", o->device, "where Palpate computes, as for the command solve")->capture_default_str();
+    plate
+        ->add_option("--cases", o->cases,
+                     "what to measure: new_map, new_load, contrast, jacobi, memory, update, gather, grid_map; several "
+                     "by commas; all if absent")
+        ->delimiter(',');
+    plate
+        ->add_option("--nodes", o->nodes, "nodes a side of the square grids, 33 to 1025, one more than a multiple of 4")
+        ->delimiter(',');
+    plate
+        ->add_option("--maps", o->maps,
+                     "rigidities of new_map, new_load and contrast: linear, hyperbolic, wart, disc_100, disc_0.1, "
+                     "discs; several by commas; all if absent")
+        ->delimiter(',');
+    plate->add_option("--runs", o->runs, "timed turns of each, at least 11")->capture_default_str();
+    plate->add_option("--out", o->out, "folder for plate.json, plate.txt and pictures of the curves");
+    plate->add_flag("--json", o->json, "machine-readable");
+    plate->footer(
+        "Times are processor time of one thread, medians and quartiles of turns: peer, Palpate, peer, Palpate, ...\n"
+        "\"error\" is the largest error over the largest deflection, against a refined solution on the same grid;\n"
+        "\"discretisation\" asks for an error below the grid's own. Peers are found when they are there:\n"
+        "CHOLMOD (libsuitesparse-dev) and nanoflann (libnanoflann-dev), by the program palpate_peers, which is built\n"
+        "beside this one with -DPALPATE_BENCH_PEERS=ON. What it all means: engine/performance.md.\n"
+        "Examples:\n"
+        "  palpate bench plate --quick\n"
+        "  palpate bench plate --out bench\n"
+        "  palpate bench plate --cases new_map,new_load --nodes 129,257 --json");
+    plate->callback([plate, o] {
+        refuseEmptyValues(*plate);
+        benchPlate(*o);
+    });
+}
+
+} // namespace palp

@@ -1,0 +1,280 @@
+// palpate calibrate: a Falcon weighs a known mass, and so finds out what its motors make of a torque.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <memory>
+
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "device/falcon/falcon_calibration.h"
+#include "device/falcon/falcon_device.h"
+#include "device/falcon/ft232_emulator.h"
+#include "device/simulated_arm.h"
+#include "engine/core/contract.h"
+#include "engine/core/quantity.h"
+#include "engine/core/real_time.h"
+#include "engine/force/governor.h"
+#include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/hand_source.h"
+#include "engine/tools/cli/interrupt.h"
+
+namespace palp {
+namespace {
+
+using Stage = FalconCalibrationStage;
+
+struct CalibrateOptions {
+    std::string   mass = "200 g";
+    FalconOptions falcon;
+    bool          emulator = false, json = false;
+
+    /// That it runs with [1/(N m)].
+    [[nodiscard]] double countsPerTorque() const { return falcon.settings().loop.countsPerTorque; }
+};
+
+/// "200 g" or "0.2".
+double kilograms(std::string text)
+{
+    const std::string given = text;
+    double            unit  = 1; // [kg]
+    if (text.ends_with("g")) {
+        const bool kilo = text.ends_with("kg");
+        text.resize(text.size() - (kilo ? 2 : 1));
+        unit = kilo ? 1 : 1e-3;
+    }
+    const double mass = parseQuantity(text, Dimension::none, "--mass", unit);
+    if (mass >= 0.05 && mass <= 0.5) return mass;
+    throw Error("--mass: expected 50 g to 500 g, found \"" + given + "\"");
+}
+
+/// A Falcon, a clock, and somebody with a mass.
+struct Bench {
+    HapticDevice&                           device;
+    std::function<double()>                 wait; ///< until the next tick \return [s] when that is
+    std::function<void(double gain, Stage)> act;  ///< what the user does, each tick; may be empty
+};
+
+/// Whether a mass has come onto the grip and hangs still.
+class HangsStill {
+public:
+    bool operator()(double upwards, double speed, double dt) noexcept
+    {
+        constexpr double kLeast = 0.2, kStill = 5e-3, kLong = 3; // [N], [m/s], [s] beyond the integral's second
+        time_ += dt;
+        if (time_ < 1) without_ = upwards; // it has just stopped moving
+        still_ = upwards > without_ + kLeast && speed < kStill ? still_ + dt : 0;
+        return still_ >= kLong;
+    }
+
+private:
+    double time_ = 0, still_ = 0; ///< [s]
+    double without_ = 0;          ///< [N] that hold the arm alone
+};
+
+void tell(const CalibrateOptions& o, Stage stage)
+{
+    if (stage == Stage::bare)
+        std::cerr << "palpate: lift the grip to the middle of its workspace and hold it there loosely; let go as force "
+                     "comes on, within 2 s; the arm is weighed, going up and down for 16 s\n";
+    if (stage == Stage::hang)
+        std::cerr << "palpate: hang " << o.mass << " on the grip and let go; it goes on once the mass hangs still\n";
+    if (stage == Stage::loaded) std::cerr << "palpate: hands off: arm and mass are weighed for 16 s\n";
+}
+
+[[noreturn]] void giveUp(const std::string& why)
+{
+    std::cerr << "palpate: not calibrated: " << why << "\n";
+    throw CheckFailed(why);
+}
+
+/// \param ill  [s] that the device has been at fault
+void demandWell(const HapticState& state, double ill, GovernorFault fault)
+{
+    constexpr double kPatience = 1; // [s]
+    if (ill > kPatience)
+        giveUp(std::string("the Falcon is not well: ") + name(state.fault) + "; palpate doctor may tell why");
+    if (fault != GovernorFault::none)
+        giveUp(std::string("the governor stopped the force: ") + name(fault) + "; start again, move the grip slowly");
+}
+
+/// Through all stages. On whatever way out, the device's last force is none: it closes.
+void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibration)
+{
+    constexpr double         kPatience = 300; // [s] for all of it
+    const std::atomic<bool>& stop      = catchInterrupts();
+    ForceGovernor            governor;
+    HangsStill               hangsStill;
+    GovernedForce            force;
+    Stage                    told  = Stage::done;
+    const double             begin = bench.wait();
+    for (double last = begin, gain = 0, ill = 0, period = 1e-3; calibration.stage() < Stage::done;) {
+        if (stop) throw Error("calibration was given up; no force flows");
+        if (calibration.stage() != told) tell(o, told = calibration.stage());
+        const double now = bench.wait(), dt = now - last;
+        last = now;
+        period += (dt - period) * std::min(1.0, dt / 0.1);
+        if (bench.act) bench.act(gain, told);
+        const HapticState state = bench.device.exchange(force, now);
+        GovernorInput     in;
+        in.force           = calibration.step(state, force, gain, dt);
+        in.position        = state.position;
+        in.velocity        = state.velocity;
+        in.homed           = state.homed && state.fault == DeviceFault::none;
+        in.inBox           = state.inBox;
+        in.time            = now;
+        in.dt              = dt;
+        in.loopPeriod      = period;
+        in.missedExchanges = state.missed;
+        const auto out     = governor.step(in);
+        ill                = state.fault == DeviceFault::none ? 0 : ill + dt;
+        demandWell(state, ill, out.fault);
+        gain  = out.gain;
+        force = governor.force();
+        if (told == Stage::hang && hangsStill(force.newtons().y, glm::length(state.velocity), dt)) calibration.hung();
+        if (told == Stage::hang && !state.inBox)
+            giveUp("the grip was pulled out of its workspace: take a lighter mass, and let it down gently");
+        if (now > begin + kPatience) giveUp("it took more than 5 minutes; nothing was weighed");
+    }
+    if (calibration.stage() == Stage::failed) giveUp(calibration.failure());
+}
+
+void weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
+{
+    const auto falcon = falconFor(o.falcon);
+    falcon->open();
+    waitForHoming(*falcon, catchInterrupts());
+    if (const std::string refused = askForRealTime(); !refused.empty())
+        std::cerr << "palpate: warning: " << refused << "\n";
+    Metronome  metronome{std::chrono::milliseconds(1)};
+    const auto start = metronome.wait();
+    Bench      bench{*falcon, [&] { return std::chrono::duration<double>(metronome.wait() - start).count(); }, {}};
+    weigh(o, bench, calibration);
+}
+
+/// What the emulated Falcon is in truth, and its driver does not know.
+constexpr double kEmulatedCounts = 5000; ///< [counts/(N m)]
+constexpr double kEmulatedArm    = 0.21; ///< [kg] of it weighs on the grip
+
+/// A Falcon of whose force friction takes 0.05 N, in virtual time, and a user with a mass in reach.
+struct EmulatedBench {
+    SimulatedArm  arm;
+    double        hanging = 0; ///< [kg]
+    double        asked   = 0; ///< [s] since the user is to hang the mass
+    double        now     = 0; ///< [s]
+    Ft232Emulator emulator;
+    FalconDevice  falcon;
+
+    static constexpr glm::dvec3 kHeld{0, 0.004, -0.006}; ///< [m] where the user holds the grip at first
+
+    explicit EmulatedBench(double countsPerTorque)
+        : arm({.friction = 0.05, .encoderStep = 0, .delaySamples = 0}, kHeld),
+          emulator(motors(), [this](const glm::dvec3& force, double dt) { return moved(force, dt); }),
+          falcon([this] { return emulator.connect(); }, stepped(countsPerTorque))
+    {
+        falcon.open();
+        now = emulator.now();
+    }
+
+    static Ft232EmulatorSettings motors()
+    {
+        Ft232EmulatorSettings settings;
+        settings.falcon.running = settings.falcon.homed = true;
+        settings.falcon.countsPerTorque                 = kEmulatedCounts;
+        return settings;
+    }
+
+    static FalconDeviceSettings stepped(double countsPerTorque)
+    {
+        FalconDeviceSettings settings;
+        settings.pace                 = FalconPace::stepped;
+        settings.loop.countsPerTorque = countsPerTorque;
+        return settings;
+    }
+
+    /// The mass's inertia is left out: means do not see it.
+    glm::dvec3 moved(const glm::dvec3& force, double dt)
+    {
+        arm.step(force - glm::dvec3(0, (kEmulatedArm + hanging) * 9.81, 0), dt);
+        return arm.position();
+    }
+
+    /// Holds the grip until force comes on, and hangs `mass` [kg] on it two seconds after being asked to.
+    void act(double gain, Stage stage, double mass)
+    {
+        arm.hold(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = kHeld} : SimulatedHand{});
+        if (stage == Stage::hang) asked += 1e-3;
+        if (asked > 2) hanging = mass;
+    }
+};
+
+void weighEmulated(const CalibrateOptions& o, double mass, FalconCalibration& calibration)
+{
+    std::cerr << "palpate: this Falcon is emulated, and so is the hand that does what follows, faster than real time\n";
+    EmulatedBench emulated(o.countsPerTorque());
+    Bench bench{emulated.falcon, [&] { return emulated.now = std::max(emulated.now + 1e-3, emulated.emulator.now()); },
+                [&](double gain, Stage stage) { emulated.act(gain, stage, mass); }};
+    weigh(o, bench, calibration);
+}
+
+void print(const CalibrateOptions& o, double mass, const FalconCalibration& calibration)
+{
+    const double counts = calibration.countsPerTorque().value(), arm = calibration.armMass().value();
+    if (o.json) {
+        nlohmann::ordered_json report{{"counts_per_torque", counts},
+                                      {"counts_per_torque_before", o.countsPerTorque()},
+                                      {"arm_kg", arm},
+                                      {"mass_kg", mass},
+                                      {"emulated", nullptr}};
+        if (o.emulator) report["emulated"] = {{"counts_per_torque", kEmulatedCounts}, {"arm_kg", kEmulatedArm}};
+        std::cout << jsonText(report);
+        return;
+    }
+    std::printf("counts per N m   %.0f   (%.0f until now: its forces were %.2f times what was asked for)\n", counts,
+                o.countsPerTorque(), o.countsPerTorque() / counts);
+    std::printf("the arm          %.0f g weigh on the grip\n", 1000 * arm);
+    if (o.emulator)
+        std::printf(
+            "in truth         %.0f and %.0f g: this Falcon is emulated, its numbers are good for nothing else\n",
+            kEmulatedCounts, 1000 * kEmulatedArm);
+    std::printf("use it           palpate run SCENE --hand falcon --falcon-counts %.0f\n", counts);
+}
+
+void calibrate(const CalibrateOptions& o)
+{
+    const double      mass = kilograms(o.mass);
+    FalconCalibration calibration({.mass = mass, .countsPerTorque = o.countsPerTorque()});
+    if (o.emulator)
+        weighEmulated(o, mass, calibration);
+    else
+        weighReal(o, calibration);
+    print(o, mass, calibration);
+}
+
+} // namespace
+
+void addCalibrateCommand(CLI::App& app)
+{
+    auto* command = app.add_subcommand("calibrate", "a Falcon weighs a known mass, so that its newtons are true");
+    auto  o       = std::make_shared<CalibrateOptions>();
+    command->add_option("--mass", o->mass, "what you will hang on the grip, 50 g to 500 g")->capture_default_str();
+    addFalconOptions(*command, o->falcon);
+    command->add_flag("--emulator", o->emulator, "an emulated Falcon and hand, in virtual time: to see how it goes");
+    command->add_flag("--json", o->json, "machine-readable; what to do is said on standard error all the same");
+    command->footer(
+        "The grip goes up and down by 8 mm while the mean of the force is taken, without the mass and with it;\n"
+        "a minute in all. Nothing may touch it meanwhile. Exit code 1: it could not be weighed.\n"
+        "Examples:\n"
+        "  palpate calibrate --mass '200 g'\n"
+        "  palpate calibrate --mass 0.1 --falcon-firmware falcon.bin\n"
+        "  palpate calibrate --emulator --json");
+    command->callback([command, o] {
+        refuseEmptyValues(*command);
+        calibrate(*o);
+    });
+}
+
+} // namespace palp

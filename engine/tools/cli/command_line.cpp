@@ -1,0 +1,39 @@
+#include "engine/tools/cli/commands.h"
+
+#include <filesystem>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+
+void demandSvg(const std::string& option, const std::string& file)
+{
+    if (!file.empty() && std::filesystem::path(file).extension() != ".svg")
+        throw Error(option + ": expected a file that ends in .svg, found \"" + file + "\"");
+}
+
+std::string commandOf(const CLI::App& command)
+{
+    const auto quoted = [](const std::string& text) {
+        if (text.find_first_of(" '\"\\$*?&;|<>()#~") == std::string::npos) return text;
+        std::string result = "'";
+        for (const char c : text) {
+            if (c == '\'')
+                result.append("'\\''");
+            else
+                result.push_back(c);
+        }
+        result.push_back('\'');
+        return result;
+    };
+    std::string line = "palpate " + command.get_name();
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->count() == 0) continue;
+        if (!option->get_positional()) line.append(" --").append(option->get_lnames().front());
+        if (option->get_items_expected_max() == 0) continue; // a flag
+        for (const std::string& value : option->results()) line.append(" ").append(quoted(value));
+    }
+    return line;
+}
+
+} // namespace palp

@@ -1,0 +1,122 @@
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "engine/core/contract.h"
+#include "engine/core/file.h"
+#include "engine/session/recorded_session.h"
+#include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/hunt_report.h"
+#include "engine/tools/cli/scene_source.h"
+#include "engine/tools/cli/session_run.h"
+#include "engine/tools/study/hunt_picture.h"
+
+// palpate hunt: a hand looks for hidden nodules, and how it went is scored.
+
+namespace palp {
+namespace {
+
+constexpr const char* kDefaultScene = "samples/scenes/nodule_hunt.json";
+
+struct HuntOptions {
+    SceneSource    scene{kDefaultScene, {}};
+    SessionOptions session;
+    std::string    score, out;
+    bool           json = false;
+};
+
+void draw(const HuntOptions& o, const Scene& scene, const PointCloud& cloud, const study::HuntScore& score)
+{
+    if (o.out.empty()) return;
+    const NeighbourIndex index(cloud.positions());
+    const HandPlace      place = handPlace(scene, cloud, index);
+    const std::string    svg   = study::huntSvg(score, cloud, place.point, place.outward, scene.hunt->ground);
+    writeFileWhole(o.out, [&](std::ostream& file) { file << svg; });
+}
+
+void tell(const HuntOptions& o, const Scene& scene, const PointCloud& cloud, const study::HuntScore& score,
+          const std::optional<SessionRun>& run)
+{
+    draw(o, scene, cloud, score);
+    if (o.json) {
+        nlohmann::json all = jsonOf(score);
+        if (run) all["session"] = jsonOf(*run);
+        std::cout << jsonText(all);
+        return;
+    }
+    if (run) printText(*run);
+    printText(score, *scene.hunt);
+}
+
+/// The scene of who named none is there in a checkout alone.
+void demandScene(const HuntOptions& o)
+{
+    if (o.scene.name == kDefaultScene && !std::filesystem::exists(kDefaultScene))
+        throw Error(std::string("SCENE: ") + kDefaultScene +
+                    " was not found here; name a scene file with a \"hunt\", or go to the folder of palpate's samples");
+}
+
+/// A session that was recorded.
+void scoreRecorded(const HuntOptions& o)
+{
+    const RecordedSession session = readSession(o.score);
+    const Scene           scene   = sceneOf(session);
+    const LoadedCloud     cloud   = loadCloud(scene);
+    study::HuntScorer     scorer(scene, cloud.cloud);
+    if (!session.cloud.empty() && session.cloud != fingerprint(cloud.cloud))
+        throw Error(o.score + ": expected the cloud that was recorded, found another one: " + scene.cloud +
+                    " has changed");
+    for (const TickRecord& sample : session.samples) scorer.add(sample);
+    tell(o, scene, cloud.cloud, scorer.score(), {});
+}
+
+void hunt(const HuntOptions& o)
+{
+    demandSvg("--out", o.out);
+    if (!o.score.empty()) return scoreRecorded(o);
+    demandGood(o.session);
+    demandScene(o);
+    const Scene          scene = o.scene.load();
+    const LoadedCloud    cloud = loadCloud(scene);
+    const NeighbourIndex index(cloud.cloud.positions());
+    study::HuntScorer    scorer(scene, cloud.cloud);
+    const SessionRun     run =
+        runSession(scene, cloud, index, o.session, [&](const TickRecord& sample) { scorer.add(sample); });
+    tell(o, scene, cloud.cloud, scorer.score(), run);
+    demandWhole(run);
+}
+
+} // namespace
+
+void addHuntCommand(CLI::App& app)
+{
+    CLI::App*   command = app.add_subcommand("hunt", "a hand looks for hidden nodules, and is scored");
+    const auto  o       = std::make_shared<HuntOptions>();
+    auto* const scene =
+        command->add_option("SCENE", o->scene.name, "scene file with a \"hunt\"")->capture_default_str();
+    command->add_option("--score", o->score, "folder of a session that was recorded: nothing is felt, only scored")
+        ->excludes(scene);
+    addSessionOptions(*command, o->session);
+    command->add_option("--record", o->session.record, "a new folder for the session");
+    command->add_option("--out", o->out, "a picture from above: what was hidden, found, missed and declared (.svg)");
+    command->add_flag("--json", o->json, "machine-readable, SI units");
+    o->scene.addFlagsTo(*command, SceneSource::Seed::ofTheHunt);
+    command->footer(
+        "A button of the device, held for 20 ms, declares the place that is touched. A hand from a file "
+        "presses with a column\n\"buttons\". Nobody holding a device: palpate view SCENE, where M "
+        "declares.\n"
+        "Examples:\n"
+        "  palpate hunt samples/scenes/nodule_hunt.json --hand falcon --seconds 60 --seed 7 --out hunt.svg\n"
+        "  palpate hunt samples/scenes/nodule_hunt.json --hand samples/scenes/nodule_hunt_hand.csv --clock "
+        "virtual\n"
+        "  palpate hunt --score session --json");
+    command->callback([command, o] {
+        refuseEmptyValues(*command);
+        o->session.command = commandOf(*command);
+        o->session.json    = o->json;
+        hunt(*o);
+    });
+}
+
+} // namespace palp

@@ -1,0 +1,14 @@
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "engine/tools/study/hunt_score.h"
+
+namespace palp {
+
+/// How a hunt went, as the programs tell it: SI units, names with their unit.
+[[nodiscard]] nlohmann::json jsonOf(const study::HuntScore& score);
+
+/// The same as a table on standard output.
+void printText(const study::HuntScore& score, const Hunt& hunt);
+
+} // namespace palp

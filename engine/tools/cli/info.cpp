@@ -1,0 +1,104 @@
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/cloud/neighbour_index.h"
+#include "engine/core/quantity.h"
+#include "engine/tools/cli/cloud_source.h"
+#include "engine/tools/cli/commands.h"
+
+namespace palp {
+namespace {
+
+struct InfoOptions {
+    CloudSource source;
+    bool        json = false;
+};
+
+std::string span3(const nlohmann::json& low, const nlohmann::json& high)
+{
+    std::string text;
+    for (int k = 0; k < 3; ++k)
+        text += std::string(k ? ", " : "") + "xyz"[k] + " " + formatQuantity(low[std::size_t(k)], "m") + " to " +
+                formatQuantity(high[std::size_t(k)], "m");
+    return text;
+}
+
+/// "1200 triangles of 700 faces (2 left out: ...)"
+std::string facesText(const LoadedCloud& loaded)
+{
+    const CloudFileReport& report = loaded.report;
+    std::string text = std::to_string(loaded.faces.size()) + " triangles of " + std::to_string(report.faces) + " faces";
+    if (report.degenerateFaces > 0)
+        text += ", " + std::to_string(report.degenerateFaces) + " left out: fewer than three corners, or one twice";
+    if (report.droppedFaces > 0) text += ", " + std::to_string(report.droppedFaces) + " left out: lost a point";
+    return text;
+}
+
+void printInfo(const InfoOptions& options)
+{
+    const LoadedCloud    loaded = options.source.load();
+    const NeighbourIndex index(loaded.cloud.positions());
+    nlohmann::json       report = cloudJson(options.source, loaded);
+    report["point_spacing"]     = index.spacing();
+
+    const std::vector<std::string> warnings = options.source.warnings(loaded);
+    report["warnings"]                      = warnings;
+    if (options.json) {
+        std::cout << jsonText(report);
+        return;
+    }
+    const std::string spacing = index.spacing() > 0 ? formatQuantity(index.spacing(), "m") + " between points"
+                                                    : "unknown (fewer than seven different places)";
+    const std::string unit    = report["stiffness_unit"] == "Pa" ? "Pa" : "N m";
+    std::string       properties;
+    for (const std::string& property : loaded.report.properties)
+        properties += (properties.empty() ? "" : ", ") + property;
+    std::cout << options.source.name << ": " << loaded.report.format << ", " << loaded.cloud.size() << " points";
+    if (loaded.report.droppedPoints) std::cout << " (" << loaded.report.droppedPoints << " dropped: NaN or infinity)";
+    std::cout << "\n  extent      " << span3(report["low"], report["high"]) << "\n  length unit "
+              << loaded.report.lengthUnitSource << "\n  spacing     " << spacing << ", "
+              << loaded.report.duplicatePositions << " exact duplicates\n  stiffness   "
+              << formatQuantity(report["stiffness_min"], unit) << " to "
+              << formatQuantity(report["stiffness_max"], unit) << ": " << loaded.report.stiffnessSource << "\n";
+    if (loaded.report.faces > 0) std::cout << "  faces       " << facesText(loaded) << "\n";
+    if (!properties.empty()) std::cout << "  properties  " << properties << "\n";
+    for (const std::string& line : warnings) std::cout << "  warning     " << line << "\n";
+}
+
+void printSamples(bool json)
+{
+    nlohmann::json list = nlohmann::json::array();
+    for (const Sample& sample : samples()) {
+        list.push_back({{"name", sample.name}, {"description", sample.description}, {"points", sample.points}});
+        if (!json) std::printf("sample:%-11s %s\n", sample.name.data(), sample.description.data());
+    }
+    if (json) std::cout << jsonText(list);
+}
+
+} // namespace
+
+void addInfoCommand(CLI::App& app)
+{
+    CLI::App*  command = app.add_subcommand("info", "what a cloud holds and how it is understood");
+    const auto options = std::make_shared<InfoOptions>();
+    options->source.addTo(*command);
+    command->get_option("CLOUD")->required(false);
+    const auto list = std::make_shared<bool>(false);
+    command->add_flag("--samples", *list, "lists the procedural samples");
+    command->add_flag("--json", options->json, "machine-readable");
+    command->footer("Examples:\n"
+                    "  palpate info scan.ply --unit mm\n"
+                    "  palpate info painted.ply --stiffness-property quality --range 20kPa,2MPa\n"
+                    "  palpate info --samples");
+    command->callback([command, options, list] {
+        refuseEmptyValues(*command);
+        if (*list) return printSamples(options->json);
+        if (options->source.name.empty()) throw CLI::RequiredError("CLOUD");
+        printInfo(*options);
+    });
+}
+
+} // namespace palp

@@ -1,0 +1,149 @@
+// palpate: the command line. Exit codes: 0 good, 1 a check that failed or a fault of ours, 2 bad usage or input, 4 a
+// GPU that is asked for cannot be used.
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <vector>
+
+#include "engine/compute/processor_error.h"
+#include "engine/core/contract.h"
+#include "engine/tools/cli/commands.h"
+
+namespace palp {
+
+void refuseEmptyValues(const CLI::App& command)
+{
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& value : option->results())
+            if (value.empty()) throw Error(option->get_name() + ": expected a value, found \"\"");
+}
+
+} // namespace palp
+
+namespace {
+
+constexpr int kBadInput    = 2;
+constexpr int kOurFault    = 1;
+constexpr int kCheckFailed = 1;
+constexpr int kNoGpu       = 4; // 3 is a missing package, see engine/prepare.sh
+
+constexpr const char* kUnprinted = "standard output cannot be written";
+
+/// What was printed has arrived, by whichever of the two libraries.
+bool printed()
+{
+    std::cout.flush();
+    return std::cout && std::fflush(stdout) == 0 && !std::ferror(stdout);
+}
+
+int complain(const std::string& sentence, int code)
+{
+    std::cout.flush();
+    std::cerr << "palpate: " << sentence << "\n";
+    return code;
+}
+
+/// The library would only say that some command is required.
+void refuseUnknownCommand(const CLI::App& app, const std::string& name)
+{
+    std::string known;
+    for (const CLI::App* command : app.get_subcommands({})) {
+        if (name.starts_with('-') || command->get_name() == name) return;
+        known += (known.empty() ? "" : ", ") + command->get_name();
+    }
+    throw palp::Error("unknown command \"" + name + "\"; known: " + known + "; see --help");
+}
+
+/// "help solve" means "solve --help".
+std::vector<const char*> wordsOf(int argumentCount, char** arguments)
+{
+    std::vector<const char*> words(arguments, arguments + argumentCount);
+    if (words.size() < 2 || std::string(words[1]) != "help") return words;
+    words.erase(words.begin() + 1);
+    words.push_back("--help");
+    return words;
+}
+
+/// The allocation that failed may have unwound through a driver, which then waits for its own locks in its exit
+/// handlers: there is no way out through them.
+[[noreturn]] void leaveWithoutMemory()
+{
+    std::_Exit(complain("out of memory; try fewer cells or points", kBadInput)); // std::cerr has no buffer
+}
+
+int printHelp(const CLI::App& app, const CLI::ParseError& request)
+{
+    app.exit(request);
+    return printed() ? 0 : complain(kUnprinted, kBadInput);
+}
+
+} // namespace
+
+int main(int argumentCount, char** arguments)
+{
+    CLI::App app("Palpate: feel a thin, soft object whose stiffness varies from place to place.");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "palpate " PALPATE_VERSION);
+    app.footer("Examples:\n"
+               "  palpate touch sample:skin --out touch          a poke into a wart, with pictures\n"
+               "  palpate info scan.ply --unit mm                what a file holds and how it is understood\n"
+               "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
+               "  palpate paint scan.ply --stroke 'at=0,0,30mm radius=5mm value=2MPa' --out wart.ply\n"
+               "                                                 a stiff spot on it; the rest of the file stays\n"
+               "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
+               "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
+               "  palpate hunt samples/scenes/nodule_hunt.json   a hand looks for hidden nodules, and is scored\n"
+               "  palpate study samples/studies/paper.json --participant P01 --out study   blinded trials, a table of "
+               "answers\n"
+               "  palpate render sample:palm --out palm.png      a picture of a touch, without a display\n"
+               "  palpate perceive sample:skin                   what a person would notice of it, predicted\n"
+               "  palpate paper --out report                     the paper's experiments, computed again\n"
+               "  palpate devices                                what this machine can compute on, and feel with\n"
+               "  palpate doctor                                 what it lacks, and what helps\n"
+               "  palpate calibrate --mass '200 g'               a Falcon weighs a mass, so that its newtons are true\n"
+               "  palpate bench solve                            how fast its solvers are\n"
+               "  palpate bench plate --quick                    and how fast those of others\n"
+               "Each command explains itself with --help.");
+    palp::addTouchCommand(app);
+    palp::addSolveCommand(app);
+    palp::addInfoCommand(app);
+    palp::addConvertCommand(app);
+    palp::addPaintCommand(app);
+    palp::addDevicesCommand(app);
+    palp::addDoctorCommand(app);
+    palp::addRunCommand(app);
+    palp::addHuntCommand(app);
+    palp::addStudyCommand(app);
+    palp::addRenderCommand(app);
+    palp::addViewCommand(app);
+    palp::addPerceiveCommand(app);
+    palp::addPaperCommand(app);
+    palp::addCalibrateCommand(app);
+    palp::addBenchCommand(app);
+    std::signal(SIGXFSZ, SIG_IGN); // a file beyond the limit on sizes is then a write that fails, with a sentence
+    try {
+        const std::vector<const char*> words = wordsOf(argumentCount, arguments);
+        if (words.size() > 1) refuseUnknownCommand(app, words[1]);
+        app.parse(int(words.size()), words.data());
+        if (!printed()) return complain(kUnprinted, kBadInput);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return printHelp(app, error); // or --version
+        return complain(std::string(error.what()) + "; see --help", kBadInput);
+    } catch (const palp::CheckFailed&) {
+        return kCheckFailed;
+    } catch (const palp::compute::ProcessorError& error) {
+        return complain(error.what(), kNoGpu);
+    } catch (const palp::compute::ProcessorLost& error) {
+        return complain(error.what(), kNoGpu);
+    } catch (const palp::Error& error) {
+        return complain(error.what(), kBadInput);
+    } catch (const std::bad_alloc&) {
+        leaveWithoutMemory();
+    } catch (const std::exception& error) {
+        return complain(std::string("internal error, please report it: ") + error.what(), kOurFault);
+    }
+    return 0;
+}

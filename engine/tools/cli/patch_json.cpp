@@ -1,0 +1,115 @@
+#include "engine/tools/cli/patch_json.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/plate/load.h"
+
+namespace palp {
+namespace {
+
+using Json = nlohmann::json;
+
+Json vectorJson(const glm::dvec3& v)
+{
+    return {v.x, v.y, v.z};
+}
+
+template <class T>
+Json orNull(const std::optional<T>& value)
+{
+    return value ? Json(*value) : Json(nullptr);
+}
+
+Json sphereJson(const SphereFitResult& sphere)
+{
+    const bool round = sphere.outcome == FitOutcome::sphere;
+    return {{"outcome", name(sphere.outcome)},
+            {"radius", round ? Json(sphere.fit.radius()) : Json(nullptr)},
+            {"centre", round ? vectorJson(sphere.fit.centre()) : Json(nullptr)},
+            {"curvature", sphere.fit.curvature},
+            {"misfit", sphere.fit.misfit}};
+}
+
+Json chartJson(const Chart& chart)
+{
+    return {{"map", name(chart.map)},
+            {"origin", vectorJson(chart.origin)},
+            {"normal", vectorJson(chart.frame.normal)},
+            {"east", vectorJson(chart.frame.east)},
+            {"north", vectorJson(chart.frame.north)},
+            {"signed_curvature", chart.curvature}};
+}
+
+Json windowJson(const Patch& patch)
+{
+    const PlateGrid& grid = patch.window.grid;
+    const auto [least, most] =
+        std::minmax_element(patch.plate.rigidity.values().begin(), patch.plate.rigidity.values().end());
+    return {{"size", {grid.sizeX(), grid.sizeZ()}},
+            {"cells", {grid.cellsX, grid.cellsZ}},
+            {"spacing", grid.spacingX},
+            {"points_gathered", patch.gathered.size()},
+            {"points_near_side", patch.points.size()},
+            {"nodes_without_point", patch.nodesWithoutPoint},
+            {"rigidity_min", *least},
+            {"rigidity_max", *most}};
+}
+
+Json timesJson(const StageTimes& t)
+{
+    return {{"gather", t.gather},   {"fit", t.fit},     {"project", t.project}, {"resample", t.resample},
+            {"prepare", t.prepare}, {"solve", t.solve}, {"lift", t.lift},       {"total", t.total()}};
+}
+
+} // namespace
+
+Json settingsJson(const PatchSettings& s)
+{
+    return {{"thickness", s.material.thickness},
+            {"poisson", s.material.poissonRatio},
+            {"foundation", s.foundation},
+            {"window", s.window},
+            {"cells", s.cells},
+            {"footprint_radius", s.footprintRadius},
+            {"map", name(s.map)},
+            {"sampling", name(s.sampling)},
+            {"force_law", name(s.forceLaw)},
+            {"edges",
+             {{"x0", name(s.edges.x0)}, {"x1", name(s.edges.x1)}, {"z0", name(s.edges.z0)}, {"z1", name(s.edges.z1)}}}};
+}
+
+Json patchJson(const Patch& patch, const PatchSettings& settings, double force, PlateSolver& device)
+{
+    Json report{
+        {"contact", {{"point", vectorJson(patch.contact.point)}, {"outward", vectorJson(patch.contact.outward)}}},
+        {"force", force},
+        {"settings", settingsJson(settings)},
+        {"differences_from_paper", differencesFromPaper(settings)},
+        {"sphere", sphereJson(patch.sphere)}};
+    if (!patch.deformed()) return report;
+    const int middle                = settings.cells / 2;
+    report["chart"]                 = chartJson(patch.chart);
+    report["window"]                = windowJson(patch);
+    report["rigidity_at_contact"]   = patch.plate.rigidity(middle, middle);
+    report["compliance"]            = patch.compliance;
+    report["contact_stiffness"]     = patch.contactStiffness;
+    report["felt_stiffness"]        = patch.feltStiffness;
+    report["deflection_at_contact"] = force * patch.response(middle, middle);
+    report["max_deflection"] =
+        force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
+    report["error"]        = {{"discretisation", orNull(discretisationError(patch, settings, device))},
+                              {"solver", orNull(patch.report.errorEstimate)}};
+    report["solver"]       = {{"device", patch.report.device},
+                              {"note", device.note().empty() ? Json(nullptr) : Json(device.note())},
+                              {"converged", patch.report.converged},
+                              {"iterations", orNull(patch.report.iterations)},
+                              {"work_units", orNull(patch.report.workUnits)},
+                              {"tolerance", settings.tolerance}};
+    report["milliseconds"] = timesJson(patch.times);
+    report["warnings"]     = warnings(patch, settings, force);
+    return report;
+}
+
+} // namespace palp

@@ -1,0 +1,19 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "engine/pipeline/pipeline.h"
+
+namespace palp {
+
+/// Everything a touch says, in SI units, for --json and touch.json.
+/// \param force  that presses [N]; the patch itself holds responses to 1 N
+[[nodiscard]] nlohmann::json patchJson(const Patch& patch, const PatchSettings& settings, double force,
+                                       PlateSolver& device);
+
+/// The scene constants of a touch.
+[[nodiscard]] nlohmann::json settingsJson(const PatchSettings& settings);
+
+} // namespace palp

@@ -1,0 +1,307 @@
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/file.h"
+#include "engine/core/progress.h"
+#include "engine/core/quantity.h"
+#include "engine/session/virtual_session.h"
+#include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/hand_source.h"
+#include "engine/tools/cli/scene_source.h"
+#include "engine/tools/cli/solver_choice.h"
+#include "engine/tools/render/annotation.h"
+#include "engine/tools/render/surface_renderer.h"
+#include "engine/tools/render/touch_view.h"
+
+// palpate render: pictures of a touched object, without a display.
+
+namespace palp {
+namespace {
+
+struct RenderOptions {
+    SceneSource        scene;
+    std::string        force, size = "1600x1200", out;
+    std::string        colour = "deflection", map = "viridis", exaggerate = "1";
+    std::string        drawOn = "auto", view = "patch", hand = "scan", seconds = "2 s";
+    std::optional<int> frames;
+    int                finer = 2;
+    bool               dark = false, json = false, ghost = false, sphere = false, projected = false;
+};
+
+/// The value of an option with a fixed set of names, or a sentence that lists them.
+template <class T>
+T named(const std::optional<T>& value, const std::string& option, const std::string& text, const char* known)
+{
+    if (value) return *value;
+    throw Error(option + ": unknown name \"" + text + "\"; known: " + known);
+}
+
+/// "1600x1200"
+PictureSize sizeOf(const std::string& text, int finer)
+{
+    constexpr int kLeast = 16, kMost = 4096; // [px]
+    int           width = 0, height = 0, end = 0;
+    const bool    read =
+        std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &end) == 2 && std::size_t(end) == text.size();
+    if (!read || width < kLeast || height < kLeast || width > kMost || height > kMost)
+        throw Error("--size: expected WIDTHxHEIGHT of 16 to 4096 px each, such as 1600x1200, found \"" + text + "\"");
+    return {width, height, finer};
+}
+
+TouchLook lookOf(const RenderOptions& o)
+{
+    TouchLook look;
+    look.paint           = named(valueNamed<ViewPaint>(o.colour), "--colour", o.colour, "deflection, stiffness, plain");
+    look.map             = named(valueNamed<ColourMap>(o.map), "--colour-map", o.map, "viridis, cividis, grey");
+    look.ground          = o.dark ? Ground::dark : Ground::light;
+    look.overlays.ghost  = o.ghost;
+    look.overlays.sphere = o.sphere;
+    look.overlays.projected = o.projected;
+    look.exaggeration       = parseQuantity(o.exaggerate, Dimension::none, "--exaggerate");
+    if (!(look.exaggeration >= 0 && look.exaggeration <= 1000))
+        throw Error("--exaggerate: expected a factor from 0 to 1000, found \"" + o.exaggerate + "\"");
+    return look;
+}
+
+/// Everything that is touched and drawn, made once.
+struct Stage {
+    explicit Stage(const RenderOptions& o)
+        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.device = o.drawOn}),
+          loaded(loadCloud(scene)), index(loaded.cloud.positions()),
+          device(orTheReference([this] { return PlateSolver(scene.device); })),
+          view(loaded.cloud, index, scene.patch, loaded.faces)
+    {
+        sayPassedOver(device.name(), device.note());
+        sayPassedOver(renderer.device().name, renderer.note());
+    }
+    PictureSize     size;
+    TouchLook       look;
+    Scene           scene;
+    SurfaceRenderer renderer; // before the cloud: what is missing is said at once
+    LoadedCloud     loaded;
+    NeighbourIndex  index;
+    PlateSolver     device;
+    TouchView       view;
+};
+
+Patch patchAt(Stage& stage, const Contact& contact)
+{
+    Patch patch = deform(stage.loaded.cloud, stage.index, contact, stage.scene.patch, stage.device);
+    if (!patch.deformed())
+        throw Error("render: the " + std::to_string(patch.gathered.size()) +
+                    " points around the place do not determine a surface (" + name(patch.sphere.outcome) +
+                    "); try a larger --window");
+    return patch;
+}
+
+Camera cameraFor(const RenderOptions& o, const Stage& stage, const Patch& patch)
+{
+    const double aspect = double(stage.size.width) / stage.size.height;
+    const Camera camera = cameraAt(patch, aspect);
+    if (o.view == "patch") return camera;
+    if (o.view != "whole") throw Error("--view: unknown name \"" + o.view + "\"; known: patch, whole");
+    const Bounds& bounds = stage.loaded.cloud.bounds();
+    return framed(camera, bounds.centre(), 0.5 * bounds.diagonal(), aspect);
+}
+
+double deepestOf(const Patch& patch, double force)
+{
+    return force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
+}
+
+std::string noteOf(const Stage& stage, const Patch& patch, double force)
+{
+    std::string note = formatQuantity(force, "N") + ", " + formatQuantity(deepestOf(patch, force), "m") + " deep in " +
+                       formatQuantity(stage.scene.patch.material.thickness, "m");
+    if (stage.look.exaggeration != 1) {
+        char factor[32];
+        std::snprintf(factor, sizeof factor, "%g", stage.look.exaggeration);
+        note.append(", displacement \u00d7 ").append(factor);
+    }
+    return note;
+}
+
+struct Written {
+    std::string file;
+    double      force = 0, deepest = 0, milliseconds = 0; ///< [N], [m], of drawing [ms]
+};
+
+/// Draws what the view shows and writes it.
+Written write(Stage& stage, const Camera& camera, const std::filesystem::path& file)
+{
+    const auto start = std::chrono::steady_clock::now();
+    Image      image = stage.renderer.draw(stage.view.scene(), camera, stage.size);
+    const auto end   = std::chrono::steady_clock::now();
+    annotate(image, stage.view.scene(), camera);
+    const std::string bytes = encodePng(image);
+    writeFileWhole(file, [&](std::ostream& stream) { stream << bytes; });
+    return {file.string(), 0, 0, std::chrono::duration<double, std::milli>(end - start).count()};
+}
+
+/// A touch at the scene's place.
+Written still(const RenderOptions& o, Stage& stage)
+{
+    const HandPlace  place = handPlace(stage.scene, stage.loaded.cloud, stage.index);
+    const Patch      patch = patchAt(stage, {place.point, place.outward, stage.scene.from.has_value()});
+    constexpr double kMost = 1e6; // [N]
+    const double     force = o.force.empty() ? forceThatShows(patch, stage.scene.patch.material.thickness)
+                                             : parseQuantity(o.force, Dimension::force, "--force");
+    if (!(force >= 0 && force <= kMost)) throw Error("--force: expected 0 to 1e6 N, found \"" + o.force + "\"");
+    stage.view.show(&patch, force, stage.look);
+    stage.view.scene().title = o.scene.title();
+    stage.view.scene().note  = noteOf(stage, patch, force);
+    Written written          = write(stage, cameraFor(o, stage, patch), o.out);
+    written.force            = force;
+    written.deepest          = deepestOf(patch, force);
+    for (const std::string& sentence : warnings(patch, stage.scene.patch, force))
+        std::cerr << "palpate: warning: " << sentence << "\n";
+    return written;
+}
+
+/// The session's samples at evenly spread times, from the first to the last tick.
+std::vector<TickRecord> samplesOf(const RenderOptions& o, Stage& stage, int frames)
+{
+    HandOptions hand;
+    hand.hand         = o.hand;
+    hand.seconds      = o.seconds;
+    HandSource source = handFor(hand, stage.scene, stage.loaded.cloud, stage.index);
+    if (source.isHeld()) throw Error("--hand " + o.hand + ": somebody holds it; pictures are made of scripted hands");
+    Deformation             deformation(stage.loaded.cloud, stage.index, stage.scene);
+    const SessionParts      parts{stage.scene,          stage.loaded.cloud, stage.index,
+                             deformation.solver(), *source.device,     source.frame};
+    std::vector<TickRecord> all;
+    static_cast<void>(runVirtual(parts, source.seconds, [&](const TickRecord& s) { all.push_back(s); }));
+    if (all.empty()) throw Error("--seconds: expected a hand of at least a millisecond");
+    std::vector<TickRecord> samples;
+    for (int n = 0; n < frames; ++n)
+        samples.push_back(all[std::size_t(std::llround(double(all.size() - 1) * (n + 1) / frames))]);
+    return samples;
+}
+
+/// "film.png", 3: "film_0003.png"
+std::filesystem::path frameFile(const std::filesystem::path& out, int number)
+{
+    char text[16];
+    std::snprintf(text, sizeof text, "_%04d", number);
+    return out.parent_path() / (out.stem().string() + text + out.extension().string());
+}
+
+/// The session of a scripted hand in virtual time, one camera and one scale of colours for all pictures.
+std::vector<Written> film(const RenderOptions& o, Stage& stage)
+{
+    const HandPlace    place   = handPlace(stage.scene, stage.loaded.cloud, stage.index);
+    const Patch        middle  = patchAt(stage, {place.point, place.outward, stage.scene.from.has_value()});
+    const Camera       camera  = cameraFor(o, stage, middle);
+    const auto         samples = samplesOf(o, stage, *o.frames);
+    std::vector<Patch> patches;
+    TouchLook          look = stage.look;
+    for (const TickRecord& s : samples) {
+        const double force = glm::length(s.force);
+        if (force > 0) patches.push_back(patchAt(stage, {s.proxy, s.normal}));
+        look.strongest = std::max(look.strongest, force);
+        if (force > 0) look.deepest = std::max(look.deepest, deepestOf(patches.back(), force));
+    }
+    Progress             progress("drawing");
+    std::vector<Written> written;
+    auto                 patch = patches.begin();
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+        const TickRecord& s     = samples[n];
+        const double      force = glm::length(s.force);
+        const Patch*      bent  = force > 0 ? &*patch++ : nullptr;
+        stage.view.show(bent, force, look, TouchHand{s.hip, s.force});
+        stage.view.scene().title = o.scene.title();
+        stage.view.scene().note  = formatQuantity(s.time, "s") + ", " + formatQuantity(force, "N");
+        written.push_back(write(stage, camera, frameFile(o.out, int(n) + 1)));
+        written.back().force   = force;
+        written.back().deepest = bent ? deepestOf(*bent, force) : 0;
+        progress.at(n + 1, samples.size());
+    }
+    return written;
+}
+
+void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>& written)
+{
+    if (o.json) {
+        nlohmann::ordered_json all;
+        all["scene"]     = o.scene.name;
+        all["points"]    = stage.loaded.cloud.size();
+        all["size"]      = {stage.size.width, stage.size.height};
+        all["drawn_on"]  = stage.renderer.device().name;
+        all["solved_on"] = stage.device.name();
+        for (const Written& w : written)
+            all["pictures"].push_back({{"file", w.file},
+                                       {"force", w.force},
+                                       {"max_deflection", w.deepest},
+                                       {"milliseconds", w.milliseconds}});
+        std::cout << jsonText(all);
+        return;
+    }
+    for (const Written& w : written)
+        std::printf("%s: %s, %s deep, drawn in %.0f ms on %s\n", w.file.c_str(), formatQuantity(w.force, "N").c_str(),
+                    formatQuantity(w.deepest, "m").c_str(), w.milliseconds, stage.renderer.device().name.c_str());
+}
+
+void render(const RenderOptions& o)
+{
+    if (std::filesystem::path(o.out).extension() != ".png")
+        throw Error("--out: expected a file that ends in .png, found \"" + o.out + "\"");
+    constexpr int kMostFrames = 9999;
+    if (o.frames && (*o.frames < 1 || *o.frames > kMostFrames))
+        throw Error("--frames: expected 1 to 9999, found " + std::to_string(*o.frames));
+    if (o.frames && !o.force.empty())
+        throw Error("--force: with --frames the hand decides how hard it presses; leave one of the two out");
+    Stage stage(o);
+    for (const std::string& sentence : assumptions(stage.scene, stage.loaded.report))
+        std::cerr << "palpate: warning: " << sentence << "\n";
+    tell(o, stage, o.frames ? film(o, stage) : std::vector{still(o, stage)});
+}
+
+} // namespace
+
+void addRenderCommand(CLI::App& app)
+{
+    CLI::App*  command = app.add_subcommand("render", "pictures of a touched object, without a display");
+    const auto o       = std::make_shared<RenderOptions>();
+    command->add_option("--out", o->out, "PNG file; with --frames a number is added before .png")->required();
+    command->add_option("--size", o->size, "of the picture [px]")->capture_default_str();
+    command->add_option("--finer", o->finer, "drawn so many times larger, then averaged: smooth edges")
+        ->check(CLI::Range(1, 4))
+        ->capture_default_str();
+    command->add_option("--force", o->force, "that presses, such as '1 N' [what dents by a third of the thickness]");
+    command->add_option("--colour,--color", o->colour, "deflection, stiffness or plain")->capture_default_str();
+    command->add_option("--colour-map,--color-map", o->map, "of colours: viridis, cividis or grey")
+        ->capture_default_str();
+    command->add_option("--exaggerate", o->exaggerate, "factor on every displacement")->capture_default_str();
+    command->add_option("--view", o->view, "patch: what bends; whole: the object")->capture_default_str();
+    command->add_flag("--dark", o->dark, "a dark ground");
+    command->add_flag("--ghost", o->ghost, "dots where the dent is at rest");
+    command->add_flag("--sphere", o->sphere, "the near half of the fitted sphere");
+    command->add_flag("--projected", o->projected, "dots where the points lie on that sphere");
+    command->add_option("--frames", o->frames, "so many pictures along the path of --hand, in virtual time");
+    command->add_option("--hand", o->hand, "of --frames: press, circle, scan or a file")->capture_default_str();
+    command->add_option("--seconds", o->seconds, "of --frames: how long the hand goes")->capture_default_str();
+    command->add_option("--draw-on", o->drawOn, "Vulkan device that draws, as \"palpate devices\" names it")
+        ->capture_default_str();
+    command->add_flag("--json", o->json, "machine-readable, SI units");
+    o->scene.addTo(*command);
+    command->footer("Examples:\n"
+                    "  palpate render sample:ear-lobe --out lobe.png\n"
+                    "  palpate render samples/scenes/skin_wart.json --force '1 N' --colour stiffness --out wart.png\n"
+                    "  palpate render scan.ply --at 12mm,0,30mm --length-unit mm --size 800x600 --dark --out scan.png\n"
+                    "  palpate render samples/scenes/palm.json --frames 50 --out film.png");
+    command->callback([command, o] {
+        refuseEmptyValues(*command);
+        render(*o);
+    });
+}
+
+} // namespace palp

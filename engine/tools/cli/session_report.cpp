@@ -1,0 +1,85 @@
+#include "engine/tools/cli/session_report.h"
+
+#include <iostream>
+
+#include "engine/core/quantity.h"
+
+namespace palp {
+namespace {
+
+nlohmann::json durations(const DurationHistogram& of)
+{
+    return {{"count", of.count()},
+            {"p50_s", of.quantile(0.5)},
+            {"p99_s", of.quantile(0.99)},
+            {"p99.9_s", of.quantile(0.999)},
+            {"max_s", of.most()}};
+}
+
+} // namespace
+
+nlohmann::json jsonOf(const SessionSummary& s)
+{
+    return {{"ticks", s.ticks},
+            {"contact_ticks", s.contactTicks},
+            {"patches", s.patches},
+            {"failed_patches", s.failedPatches},
+            {"stale_ticks", s.staleTicks},
+            {"ticks_beyond_table", s.beyondTable},
+            {"ticks_beyond_theory", s.beyondTheory},
+            {"ticks_without_patch", s.patchless},
+            {"max_force_N", s.mostForce},
+            {"max_depth_m", s.mostDepth},
+            {"compliance_min_m_per_N", s.leastCompliance},
+            {"compliance_max_m_per_N", s.mostCompliance},
+            {"fault", name(s.fault)},
+            {"device_fault", name(s.deviceFault)},
+            {"tick", durations(s.tick)},
+            {"period", durations(s.period)},
+            {"solve", durations(s.solve)}};
+}
+
+void printText(const SessionSummary& s, const std::string& device, const std::string& hand)
+{
+    const auto seconds = [](double t) { return formatQuantity(t, "s"); };
+    std::cout << s.ticks << " ticks, " << s.contactTicks << " in contact; " << s.patches << " patches on " << device
+              << "; in the hand: " << hand << "\n";
+    if (s.contactTicks > 0)
+        std::cout << "  force at most " << formatQuantity(s.mostForce, "N") << ", depth at most "
+                  << formatQuantity(s.mostDepth, "m") << ", compliance " << formatQuantity(s.leastCompliance, "m/N")
+                  << " to " << formatQuantity(s.mostCompliance, "m/N") << "\n";
+    std::cout << "  a tick computes " << seconds(s.tick.quantile(0.5)) << " (p99 " << seconds(s.tick.quantile(0.99))
+              << ", p99.9 " << seconds(s.tick.quantile(0.999)) << ", most " << seconds(s.tick.most()) << "), a patch "
+              << seconds(s.solve.quantile(0.5)) << " (most " << seconds(s.solve.most()) << ")\n";
+    if (s.period.count() > 0)
+        std::cout << "  a tick comes every " << seconds(s.period.quantile(0.5)) << " (p99 "
+                  << seconds(s.period.quantile(0.99)) << ", p99.9 " << seconds(s.period.quantile(0.999)) << ", most "
+                  << seconds(s.period.most()) << ")\n";
+}
+
+std::vector<std::string> warningsOf(const SessionSummary& s)
+{
+    std::vector<std::string> said;
+    const auto               say = [&](std::string sentence) { said.push_back(std::move(sentence)); };
+    if (s.contactTicks == 0)
+        say("the hand never touched: it must start outside of the object, and come from the side that it presses");
+    if (s.contactTicks > 0 && s.mostForce == 0 && s.fault == GovernorFault::none)
+        say("the hand touched and no force came on: that takes 1.5 s of a hand slower than 1.2 m/s, and a device that "
+            "is "
+            "homed and in its workspace");
+    if (s.fault != GovernorFault::none) say(std::string("the governor stopped the force: ") + name(s.fault));
+    if (s.deviceFault != DeviceFault::none) say(std::string("the device was not well: ") + name(s.deviceFault));
+    if (s.beyondTheory > 0)
+        say("the deflection exceeded half the thickness in " + std::to_string(s.beyondTheory) +
+            " ticks: Kirchhoff plate theory does not hold there");
+    if (s.beyondTable > 0)
+        say("the contact left the table's reach in " + std::to_string(s.beyondTable) +
+            " ticks: a larger table_size or deformation_rate follows faster hands");
+    if (10 * s.staleTicks > s.contactTicks) // the first of every touch are old by nature
+        say(std::to_string(s.staleTicks) + " ticks had a patch older than three of its periods: a smaller grid, "
+                                           "deformation_rate or table_size is solved in time");
+    if (s.failedPatches > 0) say(std::to_string(s.failedPatches) + " patches could not be solved: " + s.why);
+    return said;
+}
+
+} // namespace palp

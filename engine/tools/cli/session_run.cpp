@@ -1,0 +1,255 @@
+#include "engine/tools/cli/session_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include <glm/geometric.hpp>
+#include <unistd.h>
+
+#include "engine/core/contract.h"
+#include "engine/core/nearest_name.h"
+#include "engine/core/progress.h"
+#include "engine/core/quantity.h"
+#include "engine/session/real_session.h"
+#include "engine/session/tick_ring.h"
+#include "engine/session/virtual_session.h"
+#include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/interrupt.h"
+#include "engine/tools/cli/scene_source.h"
+#include "engine/tools/cli/session_report.h"
+
+namespace palp {
+namespace {
+
+/// Variables of the environment that were likely meant for a key.
+std::vector<std::string> strangeVariables()
+{
+    std::vector<std::string> variables, said;
+    for (const SceneKey& key : sceneKeys()) variables.push_back(variableOf(key.name));
+    const std::vector<std::string_view> known(variables.begin(), variables.end());
+    for (char** entry = environ; *entry; ++entry) {
+        const std::string_view name = std::string_view(*entry).substr(0, std::string_view(*entry).find('='));
+        if (!name.starts_with("PALPATE_") || std::ranges::find(known, name) != known.end()) continue;
+        if (const auto meant = nearestName(name, known))
+            said.push_back("the environment's " + std::string(name) + " says nothing; did you mean " +
+                           std::string(*meant) + "?");
+    }
+    return said;
+}
+
+/// What one must know before touching: the plate at the scene's place, on the host, which needs no device.
+std::vector<std::string> warningsOf(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
+{
+    try {
+        const HandPlace place = handPlace(scene, cloud, index);
+        PlateSolver     host("host");
+        const Patch     patch = deform(cloud, index, {place.point, place.outward}, scene.patch, host);
+        return warnings(patch, scene.patch, 0);
+    } catch (const Error& error) { // a hand from a file may work elsewhere
+        return {std::string("at the scene's place nothing can be felt: ") + error.what()};
+    }
+}
+
+/// One line that is written over and over: what the hand feels, and how fast.
+void showLine(const SessionView& view)
+{
+    const TickRecord& s     = view.sample;
+    const auto        fault = static_cast<GovernorFault>(s.faults & 0xFFU);
+    const bool        stale = (s.faults & static_cast<std::uint32_t>(SessionFlag::stalePatch)) != 0;
+    std::fprintf(stderr, "\r%6.1f s  %8s  %8s deep  a tick every %8s  a patch in %8s%s%s%s\033[K", s.time,
+                 formatQuantity(glm::length(s.force), "N").c_str(),
+                 formatQuantity(glm::length(s.proxy - s.hip), "m").c_str(),
+                 formatQuantity(view.loopPeriod, "s").c_str(), formatQuantity(view.solveTime, "s").c_str(),
+                 stale ? "  stale" : "", fault == GovernorFault::none ? "" : "  no force, button 0 resets: ",
+                 fault == GovernorFault::none ? "" : name(fault));
+}
+
+/// On a terminal, while the participant is told nothing else: how much of the time is over.
+void showTime(Progress& progress, double time, double seconds)
+{
+    progress.at(std::size_t(std::llround(1000 * time)), std::size_t(std::llround(1000 * seconds)));
+}
+
+/// In real time; the line shows what the hand feels.
+SessionSummary playLive(const SessionOptions& o, double seconds, const SessionParts& parts, Recording* recording,
+                        const OnTick& also)
+{
+    const bool           line = isatty(STDERR_FILENO) != 0 && !o.json && !o.blind;
+    Progress             progress("touching");
+    TickRing<TickRecord> ring(also ? 4096 : 1); // four seconds; from the servo to this thread
+    const auto           drain = [&] {
+        for (auto samples = ring.front(); !samples.empty(); samples = ring.front()) {
+            for (const TickRecord& sample : samples) also(sample);
+            ring.pop(samples.size());
+        }
+    };
+    RealSessionSettings settings;
+    settings.seconds = seconds;
+    settings.threads = *valueNamed<SessionThreads>(o.threads);
+    settings.stop    = &catchInterrupts();
+    settings.onTick  = [&, heard = bool(also)](const TickRecord& sample) {
+        if (recording) recording->push(sample);
+        if (heard) static_cast<void>(ring.push(sample)); // whoever looks away for four seconds has a gap
+    };
+    settings.onView = [&, heard = bool(also)](const SessionView& view) {
+        if (heard) drain();
+        if (line) showLine(view);
+        if (o.blind) showTime(progress, view.sample.time, seconds);
+    };
+    std::string          warning;
+    const SessionSummary summary = runReal(parts, settings, warning);
+    if (also) drain();
+    if (line) std::fprintf(stderr, "\r\033[K");
+    if (!warning.empty() && !o.blind) warn({warning});
+    return summary;
+}
+
+SessionClock clockNamed(const std::string& text)
+{
+    for (const SessionClock clock : {SessionClock::real, SessionClock::virtualTime})
+        if (text == name(clock)) return clock;
+    throw Error("--clock: expected real or virtual, found \"" + text + "\"");
+}
+
+std::unique_ptr<Recording> recordingOf(const SessionOptions& o, const SessionParts& parts, SessionClock clock,
+                                       const std::string& device)
+{
+    if (o.record.empty()) return nullptr;
+    SessionInfo info;
+    info.scene    = parts.scene;
+    info.versions = {{"palpate", PALPATE_VERSION}, {"compiler", __VERSION__}, {"libraries", PALPATE_LIBRARIES}};
+    info.device   = device;
+    info.clock    = clock;
+    info.command  = o.command;
+    info.cloud    = fingerprint(parts.cloud);
+    info.hand     = parts.device.info();
+    return std::make_unique<Recording>(o.record, info);
+}
+
+} // namespace
+
+void warn(const std::vector<std::string>& sentences)
+{
+    for (const std::string& sentence : sentences) std::cerr << "palpate: warning: " << sentence << "\n";
+}
+
+SessionSummary playVirtual(const SessionParts& parts, double seconds, const OnTick& also, const std::atomic<bool>* stop)
+{
+    Progress    progress("touching");
+    const auto  total = std::size_t(std::llround(1000 * seconds));
+    std::size_t done  = 0;
+    return runVirtual(
+        parts, seconds,
+        [&](const TickRecord& sample) {
+            if (also) also(sample);
+            progress.at(++done, total);
+        },
+        stop);
+}
+
+nlohmann::json jsonOf(const SessionRun& run)
+{
+    nlohmann::json all = jsonOf(run.summary);
+    all["hand"]        = run.hand;
+    all["device"]      = run.device;
+    all["warnings"]    = run.warnings;
+    if (run.recorded)
+        all["recorded"] = {{"folder", run.folder}, {"samples", run.recorded->samples}, {"lost", run.recorded->lost}};
+    return all;
+}
+
+void printText(const SessionRun& run)
+{
+    printText(run.summary, run.device, run.hand);
+    if (run.recorded) std::cout << "  " << run.recorded->samples << " samples in " << run.folder << "\n";
+}
+
+void demandWhole(const SessionRun& run)
+{
+    if (run.summary.fault != GovernorFault::none || run.summary.deviceFault == DeviceFault::unplugged)
+        throw CheckFailed("the force was stopped");
+    if (run.recorded && run.recorded->lost > 0)
+        throw CheckFailed(run.folder + ": " + std::to_string(run.recorded->lost) + " samples were lost");
+}
+
+SessionRun runSession(const Scene& scene, const LoadedCloud& cloud, const NeighbourIndex& index,
+                      const SessionOptions& o, const OnTick& onTick)
+{
+    demandGood(o);
+    const SessionClock clock = clockNamed(o.clock);
+    Deformation        deformation(cloud.cloud, index, scene); // what can fail fails before a folder is made
+    HandSource         hand = handFor(o.hand, scene, cloud.cloud, index);
+    if (hand.isHeld() && clock != SessionClock::real)
+        throw Error("--hand " + o.hand.hand + ": somebody holds it, in real time; leave out --clock virtual");
+
+    SessionRun run;
+    run.device   = deformation.device().name();
+    run.folder   = o.record;
+    run.warnings = assumptions(scene, cloud.report);
+    for (const auto& more : {strangeVariables(), warningsOf(scene, cloud.cloud, index), hand.warnings})
+        run.warnings.insert(run.warnings.end(), more.begin(), more.end());
+    const std::atomic<bool>& stop = catchInterrupts();
+    waitForHoming(*hand.device, stop);
+
+    const SessionParts parts{scene, cloud.cloud, index, deformation.solver(), *hand.device, hand.frame};
+    const auto         recording = recordingOf(o, parts, clock, run.device);
+    if (!o.blind) warn(run.warnings);
+    const OnTick each = [&](const TickRecord& sample) {
+        if (recording) recording->pushWaiting(sample);
+        if (onTick) onTick(sample);
+    };
+    run.summary = clock == SessionClock::real ? playLive(o, hand.seconds, parts, recording.get(), onTick)
+                                              : playVirtual(parts, hand.seconds, each, &stop);
+    if (recording) run.recorded = recording->finish();
+    run.hand         = hand.device->info().model;
+    run.interrupted  = stop;
+    const auto after = warningsOf(run.summary);
+    if (!o.blind) warn(after);
+    run.warnings.insert(run.warnings.end(), after.begin(), after.end());
+    return run;
+}
+
+void demandGood(const SessionOptions& options)
+{
+    const SessionClock clock   = clockNamed(options.clock);
+    const auto         threads = valueNamed<SessionThreads>(options.threads);
+    if (!threads) throw Error("--threads: expected servo or paper, found \"" + options.threads + "\"");
+    if (*threads == SessionThreads::paper && clock != SessionClock::real)
+        throw Error("--threads paper: a virtual clock has no threads; leave one of the two out");
+}
+
+void addSessionOptions(CLI::App& command, SessionOptions& options)
+{
+    command
+        .add_option("--hand", options.hand.hand,
+                    "press, circle or scan about the scene's place; a file of time [s], x, y, z [m], perhaps buttons; "
+                    "or a device: "
+                    "falcon, bridge, spacemouse, arm, falcon-emulator (palpate devices tells which are there; of "
+                    "several, falcon@PATH)")
+        ->capture_default_str();
+    command.add_option("--seconds", options.hand.seconds, "how long [5 s; a file's own length]");
+    command.add_option("--speed", options.hand.speed, "of press, circle and scan, at most")->capture_default_str();
+    command.add_option("--press-depth", options.hand.depth,
+                       "of the hand below the surface [40 % of the thickness, within plate theory]");
+    command.add_option("--reach", options.hand.reach, "radius of the circle, half the length of the scan")
+        ->capture_default_str();
+    command.add_option(
+        "--arm", options.hand.grip,
+        "the hand holds a simulated arm with a grip of this stiffness (relaxed '150 N/m', firm '500 N/m'), "
+        "so that forces move it");
+    addFalconOptions(command, options.hand.falcon);
+    command
+        .add_option("--clock", options.clock,
+                    "real: a tick a millisecond; virtual: as fast as it goes, the same every time")
+        ->capture_default_str();
+    command
+        .add_option("--threads", options.threads,
+                    "servo: one thread from the hand to the force; paper: proxy and force on threads of their own")
+        ->capture_default_str();
+}
+
+} // namespace palp

@@ -1,0 +1,63 @@
+#pragma once
+#include <atomic>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "engine/session/recording.h"
+#include "engine/session/session_summary.h"
+#include "engine/tools/cli/hand_source.h"
+
+namespace palp {
+
+/// How a session is run, apart from the scene: what run, hunt and study share.
+struct SessionOptions {
+    HandOptions hand;
+    std::string clock = "real", threads = "servo";
+    std::string record;        ///< a new folder; empty: nothing is recorded
+    std::string command;       ///< as a shell would take it again
+    bool        json  = false; ///< no live line beside it
+    bool        blind = false; ///< says nothing of what is touched: neither warnings nor numbers
+};
+
+/// Adds --hand and all that belongs to it, --clock and --threads.
+void addSessionOptions(CLI::App& command, SessionOptions& options);
+
+/// \throws Error naming --clock or --threads
+void demandGood(const SessionOptions& options);
+
+/// What a session was.
+struct SessionRun {
+    SessionSummary                 summary;
+    std::string                    device; ///< that solved the plate
+    std::string                    hand;
+    std::vector<std::string>       warnings;
+    std::optional<RecordingReport> recorded;
+    std::string                    folder;              ///< of the recording
+    bool                           interrupted = false; ///< by the user
+};
+
+/// Runs a session from the first tick to the last, which leaves the device at zero force.
+/// \param index     of the cloud
+/// \param onTick  sees every sample, on the calling thread; may be empty
+/// \throws Error as handFor(), Deformation and Recording do
+[[nodiscard]] SessionRun runSession(const Scene& scene, const LoadedCloud& cloud, const NeighbourIndex& index,
+                                    const SessionOptions& options, const OnTick& onTick = {});
+
+/// A session in virtual time, with a line on a terminal. \param stop  ends it once it is true; may be null
+SessionSummary playVirtual(const SessionParts& parts, double seconds, const OnTick& also,
+                           const std::atomic<bool>* stop = nullptr);
+
+/// Sentences on standard error.
+void warn(const std::vector<std::string>& sentences);
+
+[[nodiscard]] nlohmann::json jsonOf(const SessionRun& run);
+void                         printText(const SessionRun& run);
+
+/// \throws CheckFailed if the force was stopped, or samples are missing in the recording
+void demandWhole(const SessionRun& run);
+
+} // namespace palp

@@ -1,0 +1,44 @@
+#pragma once
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/compute/processor_error.h"
+#include "engine/plate/plate_solver.h"
+
+namespace palp {
+
+/// The options --device and --tolerance of commands that solve plates.
+struct SolverChoice {
+    std::string device    = "auto";
+    double      tolerance = 1e-4; ///< of the error, relative [1]
+
+    void addTo(CLI::App& command);
+
+    /// Says on standard error what "auto" found broken.
+    /// \throws Error for a tolerance out of range, compute::UnknownProcessor for a name that no device has, compute::ProcessorError
+    ///         for a device that cannot be used
+    [[nodiscard]] PlateSolver open() const;
+};
+
+/// \throws Error that names --tolerance and its bounds
+void checkTolerance(double tolerance);
+
+/// Says on standard error which device "auto" took in place of a broken one, if there is a note of that.
+void sayPassedOver(const std::string& name, const std::string& note);
+
+/// Returns open(); where the device is refused, the sentence adds that --device takes the reference solver too.
+template <class Open>
+[[nodiscard]] auto orTheReference(const Open& open)
+{
+    constexpr const char* kToo = "\n  reference  (sparse Cholesky in double precision): usable";
+    try {
+        return open();
+    } catch (const compute::UnknownProcessor& error) {
+        throw compute::UnknownProcessor(std::string(error.what()) + kToo);
+    } catch (const compute::ProcessorError& error) {
+        throw compute::ProcessorError(std::string(error.what()) + kToo);
+    }
+}
+
+} // namespace palp

@@ -1,0 +1,85 @@
+#include <iostream>
+#include <memory>
+
+#include "engine/core/contract.h"
+#include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/study_report.h"
+#include "engine/tools/cli/study_run.h"
+
+// palpate study: blinded trials in a balanced order, answers from the keyboard, a table; and what the tables say.
+
+namespace palp {
+namespace {
+
+struct StudyOptions {
+    StudyRun                 run;
+    std::string              out, plot;
+    std::vector<std::string> analyse;
+    bool                     order = false;
+};
+
+void study_(const StudyOptions& o, bool handGiven)
+{
+    demandSvg("--plot", o.plot);
+    const bool runs = !o.run.plan.empty() || !o.run.participant.empty() || !o.out.empty() || o.order;
+    if (!o.analyse.empty() && runs)
+        throw Error("--analyse reads what was answered: PLAN, --participant, --out and --order are of a run; leave one "
+                    "of the two out");
+    if (!o.analyse.empty()) return analyseStudies(o.analyse, o.plot, o.run.json);
+    if (!o.plot.empty()) throw Error("--plot is of --analyse; leave one of the two out");
+    if (o.run.plan.empty()) throw Error("PLAN: expected the file of a study's plan, found none; see samples/studies");
+    if (o.run.participant.empty())
+        throw Error("--participant: expected a name that ends in a number, such as P01, found none");
+    if (!o.run.session.hand.seconds.empty())
+        throw Error("--seconds: the plan says how long a touch lasts; change its \"seconds\"");
+    const study::StudyPlan plan = study::readPlan(o.run.plan);
+    if (o.order) return printOrder(plan, o.run.participant, o.run.json);
+    if (o.out.empty()) throw Error("--out: expected a folder for the study, found none");
+    StudyRun run             = o.run;
+    run.out                  = o.out;
+    run.session.hand.seconds = std::to_string(plan.seconds);
+    if (!handGiven) run.session.hand.hand = plan.hand;
+    demandGood(run.session);
+    demandGood(run.session.hand);
+    const StudyProgress went = runStudy(run, plan);
+    if (run.json)
+        std::cout << jsonText(nlohmann::json{{"participant", run.participant},
+                                             {"trials", went.trials},
+                                             {"done", went.done},
+                                             {"paused", went.paused},
+                                             {"table", went.table.string()}});
+    else
+        std::cout << went.done << " of " << went.trials << " trials in " << went.table.string() << "\n";
+}
+
+} // namespace
+
+void addStudyCommand(CLI::App& app)
+{
+    CLI::App*  command = app.add_subcommand("study", "blinded trials with participants, and what they answered");
+    const auto o       = std::make_shared<StudyOptions>();
+    command->add_option("PLAN", o->run.plan, "the study's plan, see samples/studies");
+    command->add_option("--participant", o->run.participant, "a name that ends in a number from 1 on, such as P01");
+    command->add_option("--out", o->out, "folder of the study; each participant has one in it");
+    command->add_flag("--order", o->order, "prints the participant's whole order, unblinded, and runs nothing");
+    command->add_option("--analyse,--analyze", o->analyse,
+                        "folders of studies or participants: means, shares and intervals of what was answered");
+    command->add_option("--plot", o->plot, "with --analyse: the shares as a picture (.svg)");
+    command->add_flag("--json", o->run.json, "machine-readable, SI units; participants read on standard error");
+    auto* const hand = (addSessionOptions(*command, o->run.session), command->get_option("--hand"));
+    command->footer("A participant sees \"Trial 3 of 20\" and the question. q pauses; the same command goes on. The "
+                    "answers are\nOUT/PARTICIPANT/trials.csv, a row a trial, each on the disk before the next "
+                    "begins.\n"
+                    "Examples:\n"
+                    "  palpate study samples/studies/paper.json --participant P01 --order\n"
+                    "  palpate study samples/studies/paper.json --participant P01 --out study --hand falcon\n"
+                    "  palpate study samples/studies/wart_2afc.json --participant P01 --out warts\n"
+                    "  palpate study --analyse study --plot shares.svg");
+    command->callback([command, hand, o] {
+        refuseEmptyValues(*command);
+        o->run.session.command = commandOf(*command);
+        study_(*o, hand->count() > 0);
+    });
+}
+
+} // namespace palp

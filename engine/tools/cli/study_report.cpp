@@ -1,0 +1,180 @@
+#include "engine/tools/cli/study_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <set>
+
+#include "engine/core/contract.h"
+#include "engine/core/file.h"
+#include "engine/core/quantity.h"
+#include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/counted.h"
+#include "engine/tools/cli/study_run.h"
+#include "engine/tools/study/study_analysis.h"
+
+namespace palp {
+namespace {
+
+using study::AnswerSummary;
+using study::Interval;
+using study::Share;
+using Json = nlohmann::json;
+
+/// Everything that was answered in one study.
+struct Answers {
+    std::vector<study::TrialRow> rows;
+    study::Stiffnesses           stiffnesses;
+    std::size_t                  participants = 0; ///< [1]
+};
+
+std::vector<std::filesystem::path> participantsIn(const std::filesystem::path& folder)
+{
+    std::error_code                    failure;
+    std::vector<std::filesystem::path> found;
+    if (std::filesystem::exists(folder / "trials.csv", failure)) return {folder};
+    for (const auto& entry : std::filesystem::directory_iterator(folder, failure))
+        if (std::filesystem::exists(entry.path() / "trials.csv")) found.push_back(entry.path());
+    if (failure) throw Error(folder.string() + ": cannot be read: " + failure.message());
+    if (found.empty())
+        throw Error(folder.string() +
+                    ": expected the folder of a study or a participant, with a trials.csv, found none");
+    std::ranges::sort(found);
+    return found;
+}
+
+Answers answersIn(const std::vector<std::string>& folders)
+{
+    Answers                         all;
+    std::set<std::filesystem::path> seen;
+    std::string                     plan;
+    for (const std::string& folder : folders)
+        for (const auto& participant : participantsIn(folder)) {
+            if (!seen.insert(std::filesystem::weakly_canonical(participant)).second)
+                throw Error(participant.string() + ": expected each participant once, found this one twice");
+            const Json file = readStudyFile(participant);
+            if (!plan.empty() && file["plan"] != plan)
+                throw Error(participant.string() + ": expected participants of one study, found another plan than that "
+                                                   "of the first");
+            plan            = file["plan"];
+            const auto rows = study::readTrials(participant / "trials.csv");
+            all.rows.insert(all.rows.end(), rows.begin(), rows.end());
+            all.participants += !rows.empty();
+            const Json felt = file.value("felt_stiffness_N_per_m", Json::object());
+            for (const auto& [name, stiffness] : felt.items())
+                if (stiffness.is_number()) all.stiffnesses[name] = stiffness;
+        }
+    return all;
+}
+
+Json listOf(const Interval& interval)
+{
+    return {interval.low, interval.high};
+}
+
+template <class Value>
+Json orNull(const std::optional<Value>& value)
+{
+    return value ? Json(*value) : Json();
+}
+
+Json jsonOf(const Share& share)
+{
+    return {{"count", share.k}, {"trials", share.n}, {"share", share.value()}, {"wilson_95", listOf(share.interval())}};
+}
+
+Json jsonOf(const AnswerSummary& s)
+{
+    Json all{{"task", s.task},
+             {"kind", s.kind},
+             {"question", s.question},
+             {"conditions", s.what},
+             {"participants", s.participants},
+             {"answers", jsonOf(s.share)},
+             {"right", s.right ? jsonOf(*s.right) : Json()}};
+    if (s.mean)
+        all["rating"] = {{"mean", *s.mean},
+                         {"median", *s.median},
+                         {"mean_bootstrap_95", s.meanInterval ? listOf(*s.meanInterval) : Json()}};
+    all["prediction"] = {{"noticeable_steps", orNull(s.steps)}, {"right", orNull(s.predicted)}, {"weber", 0.07}};
+    return all;
+}
+
+std::string percent(const Share& share)
+{
+    const Interval between = share.interval();
+    char           text[96];
+    std::snprintf(text, sizeof text, "%zu of %zu, %.0f %% (%.0f to %.0f %%)", share.k, share.n, 100 * share.value(),
+                  100 * between.low, 100 * between.high);
+    return text;
+}
+
+std::string decimals(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f", value);
+    return text;
+}
+
+void printText(const AnswerSummary& s)
+{
+    std::cout << s.task << ", " << s.what << " (" << counted(s.participants, "participant") << ")\n";
+    if (s.mean) {
+        std::cout << "  rating " << decimals(*s.mean) << " on average";
+        if (s.meanInterval)
+            std::cout << " (" << decimals(s.meanInterval->low) << " to " << decimals(s.meanInterval->high) << ")";
+        std::cout << ", median " << *s.median << "; rated 4 or 5: " << percent(s.share) << "\n";
+    } else if (s.kind == "yes-no") {
+        std::cout << "  yes: " << percent(s.share) << "\n";
+    } else if (!s.right) {
+        std::cout << "  the first: " << percent(s.share) << "\n";
+    }
+    if (s.right) std::cout << "  right: " << percent(*s.right) << "\n";
+    if (s.predicted)
+        std::cout << "  predicted, not measured: " << std::lround(100 * *s.predicted)
+                  << " % right, J = " << decimals(*s.steps) << " steps of 7 %\n";
+}
+
+} // namespace
+
+void printOrder(const study::StudyPlan& plan, const std::string& participant, bool json)
+{
+    const auto trials = trialsOf(plan, study::participantNumber(participant));
+    Json       list   = Json::array();
+    for (const study::Trial& trial : trials) {
+        const std::string first  = plan.conditions[trial.first].name;
+        const std::string second = trial.second ? plan.conditions[*trial.second].name : "";
+        list.push_back({{"trial", list.size() + 1},
+                        {"block", trial.block},
+                        {"task", plan.tasks[trial.task].name},
+                        {"condition", first},
+                        {"condition_second", second.empty() ? Json() : Json(second)},
+                        {"right", orNull(trial.right)}});
+        if (!json)
+            std::cout << "trial " << list.size() << ", block " << trial.block << ", " << plan.tasks[trial.task].name
+                      << ": " << first << (second.empty() ? "" : ", then " + second)
+                      << (trial.right ? "; right: " + *trial.right : "") << "\n";
+    }
+    if (json) std::cout << jsonText(Json{{"participant", participant}, {"trials", list}});
+}
+
+void analyseStudies(const std::vector<std::string>& folders, const std::filesystem::path& plot, bool json)
+{
+    const Answers all = answersIn(folders);
+    if (all.rows.empty()) throw Error(folders.front() + ": expected trials that were answered, found none yet");
+    const auto summaries = study::analyse(all.rows, all.stiffnesses);
+    if (!plot.empty()) writeFileWhole(plot, [&](std::ostream& file) { file << study::analysisSvg(summaries); });
+    if (json) {
+        Json list = Json::array();
+        for (const AnswerSummary& s : summaries) list.push_back(jsonOf(s));
+        std::cout << jsonText(Json{{"participants", all.participants}, {"trials", all.rows.size()}, {"answers", list}});
+        return;
+    }
+    std::cout << counted(all.rows.size(), "trial") << " of " << counted(all.participants, "participant")
+              << "; intervals of 95 %: shares by Wilson's score, which takes trials for independent, means "
+                 "by a bootstrap over participants\n";
+    for (const AnswerSummary& s : summaries) printText(s);
+}
+
+} // namespace palp

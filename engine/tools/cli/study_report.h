@@ -1,0 +1,19 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/tools/study/study_order.h"
+
+namespace palp {
+
+/// Prints the whole order of a participant, conditions and right answers included: for the experimenter.
+void printOrder(const study::StudyPlan& plan, const std::string& participant, bool json);
+
+/// Sums up what participants answered, with predictions beside it.
+/// \param folders  of studies or of participants
+/// \param plot     an SVG file; empty: none
+/// \throws Error naming a folder without trials, or of another study than the first
+void analyseStudies(const std::vector<std::string>& folders, const std::filesystem::path& plot, bool json);
+
+} // namespace palp

@@ -1,0 +1,342 @@
+#include "engine/tools/cli/study_run.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <map>
+
+#include <glm/geometric.hpp>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "engine/core/contract.h"
+#include "engine/core/file.h"
+#include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/commit.h"
+#include "engine/tools/cli/interrupt.h"
+#include "engine/tools/study/trial_table.h"
+
+namespace palp {
+namespace {
+
+using study::Condition;
+using study::StudyPlan;
+using study::Task;
+using study::TaskKind;
+using study::Trial;
+using study::TrialRow;
+using Json = nlohmann::json;
+
+constexpr const char* kStudyFile   = "study.json";
+constexpr std::size_t kLongestLine = 1000;                  ///< [bytes] that is kept of an answer
+constexpr int         kMostStrange = 20;                    ///< [1] answers in a row, where nobody can be asked again
+constexpr std::size_t kLargestFile = std::size_t(16) << 20; ///< [bytes] of it
+
+/// A condition, ready to be touched.
+struct Felt {
+    LoadedCloud    cloud;
+    NeighbourIndex index;
+
+    explicit Felt(const Scene& scene) : cloud(loadCloud(scene)), index(cloud.cloud.positions()) {}
+
+    /// At the scene's place, as the device renders it [N/m]; null where nothing can be felt.
+    [[nodiscard]] Json stiffness(const Scene& scene) const
+    {
+        try {
+            const HandPlace place = handPlace(scene, cloud.cloud, index);
+            PlateSolver     host("host");
+            const Patch     patch = deform(cloud.cloud, index, {place.point, place.outward}, scene.patch, host);
+            return std::min(patch.feltStiffness, scene.stiffnessCap);
+        } catch (const Error&) { // a hand from a file may work elsewhere
+            return nullptr;
+        }
+    }
+};
+
+using Answers = std::map<std::string, std::string>; ///< what is typed, what the table says
+
+/// The participant wants to go on later.
+struct Paused {};
+
+/// Keys that were hit while an object was touched answer nothing.
+void forgetKeys()
+{
+    if (isatty(STDIN_FILENO) != 0) ::tcflush(STDIN_FILENO, TCIFLUSH);
+}
+
+/// A line from the keyboard or the file that stands for it. \throws Paused at its end or at Ctrl-C
+std::string keyedLine()
+{
+    constexpr int            kLook = 100; // [ms] so often Ctrl-C is asked for, should it come between two waits
+    const std::atomic<bool>& stop  = catchInterrupts();
+    std::string              text;
+    for (char c = 0;;) {
+        pollfd    keys{STDIN_FILENO, POLLIN, 0};
+        const int ready = ::poll(&keys, 1, kLook);
+        if (stop) throw Paused();
+        if (ready <= 0) continue;
+        const ssize_t got = ::read(STDIN_FILENO, &c, 1);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0 && text.empty()) throw Paused();
+        if (got <= 0 || c == '\n') return text;
+        if (text.size() < kLongestLine) text += c; // no answer is as long
+    }
+}
+
+/// Force over the time in contact.
+struct ForceTally {
+    double        sum = 0, peak = 0; ///< [N]
+    std::uint64_t ticks = 0;         ///< [1]
+
+    void add(const TickRecord& sample)
+    {
+        if (sample.normal == glm::dvec3(0)) return;
+        const double force = glm::length(sample.force);
+        sum += force, ++ticks;
+        peak = std::max(peak, force);
+    }
+    [[nodiscard]] double mean() const { return ticks > 0 ? sum / double(ticks) : 0; }
+};
+
+/// Everything of one participant's run.
+class Sitting {
+public:
+    Sitting(const StudyRun& run, const StudyPlan& plan)
+        : run_(run), plan_(plan), trials_(trialsOf(plan, study::participantNumber(run.participant))),
+          folder_(run.out / run.participant)
+    {
+        for (const Condition& condition : plan.conditions) felt_.emplace_back(condition.scene);
+        agree();
+        table_.emplace(folder_ / "trials.csv");
+        demandOurs();
+    }
+
+    StudyProgress go()
+    {
+        bool paused = false;
+        try {
+            while (table_->rows().size() < trials_.size()) table_->append(trial(table_->rows().size()));
+            say("That was the last trial. Thank you.\n");
+        } catch (const Paused&) {
+            paused = true;
+            say("\nPaused after " + std::to_string(table_->rows().size()) + " of " + std::to_string(trials_.size()) +
+                " trials; the same command goes on.\n");
+        }
+        tellUnfelt();
+        return {table_->rows().size(), trials_.size(), paused, folder_ / "trials.csv"};
+    }
+
+private:
+    void                      agree();
+    void                      demandOurs() const;
+    void                      tellUnfelt() const;
+    TrialRow                  trial(std::size_t number);
+    std::string               touch(std::size_t condition, const std::string& name, ForceTally& force);
+    [[nodiscard]] std::string ask(const Task& task) const;
+    [[nodiscard]] std::string line() const;
+    [[nodiscard]] std::string answerAmong(const Answers& known, const std::string& wanted) const;
+    void                      begin(const std::string& what) const;
+    void say(const std::string& text) const { (run_.json ? std::cerr : std::cout) << text << std::flush; }
+
+    const StudyRun&                  run_;
+    const StudyPlan&                 plan_;
+    std::vector<Trial>               trials_;
+    std::filesystem::path            folder_;
+    std::vector<Felt>                felt_;
+    std::optional<study::TrialTable> table_;
+};
+
+/// Without the place where a device is plugged in, which may be another tomorrow.
+std::string wordOf(const Json& value)
+{
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    return text.substr(0, text.find('@'));
+}
+
+/// The study's file is written once; later it must say the same.
+void Sitting::agree()
+{
+    Json now{{"format", 1},
+             {"participant", run_.participant},
+             {"title", plan_.title},
+             {"plan", plan_.canonical},
+             {"hand", run_.session.hand.hand},
+             {"clock", run_.session.clock}};
+    for (std::size_t k = 0; k < felt_.size(); ++k) now["clouds"].push_back(fingerprint(felt_[k].cloud.cloud));
+    std::error_code ignored;
+    if (std::filesystem::exists(folder_ / kStudyFile, ignored)) {
+        const Json before = readStudyFile(folder_);
+        for (const char* key : {"participant", "plan", "clouds"})
+            if (before[key] != now[key])
+                throw Error((folder_ / kStudyFile).string() + ": expected the plan that this participant began with, " +
+                            "found that " + run_.plan + " or a scene of it has changed since; take another --out");
+        for (const char* key : {"hand", "clock"})
+            if (before.contains(key) && wordOf(before[key]) != wordOf(now[key])) // earlier versions did not keep them
+                throw Error((folder_ / kStudyFile).string() + ": expected the --" + key +
+                            " that this participant began with, " + before[key].dump() + ", found " + now[key].dump() +
+                            "; trials could not be compared; take another --out");
+        return;
+    }
+    makeFolder(folder_);
+    for (std::size_t k = 0; k < felt_.size(); ++k)
+        now["felt_stiffness_N_per_m"][plan_.conditions[k].name] = felt_[k].stiffness(plan_.conditions[k].scene);
+    now["version"] = PALPATE_VERSION " " PALPATE_COMMIT;
+    writeFileWhole(folder_ / kStudyFile, [&](std::ostream& file) { file << jsonText(now); });
+}
+
+/// Every row is the trial that the order has there.
+void Sitting::demandOurs() const
+{
+    const auto& rows = table_->rows();
+    bool        ours = rows.size() <= trials_.size();
+    for (std::size_t k = 0; ours && k < rows.size(); ++k) {
+        const Trial& trial = trials_[k];
+        ours               = rows[k].participant == run_.participant && rows[k].trial == k + 1 &&
+               rows[k].task == plan_.tasks[trial.task].name && rows[k].first == plan_.conditions[trial.first].name &&
+               rows[k].second == (trial.second ? plan_.conditions[*trial.second].name : "");
+    }
+    if (!ours)
+        throw Error((folder_ / "trials.csv").string() +
+                    ": expected the trials of this participant in their order, found others; was the table changed?");
+}
+
+/// For the experimenter: answers that say nothing of what was to be touched.
+void Sitting::tellUnfelt() const
+{
+    for (const TrialRow& row : table_->rows())
+        if (row.peakForce <= 0)
+            std::cerr << "palpate: trial " << row.trial << ": nothing was felt: the hand never touched, or it had no "
+                      << "force; its answer says nothing\n";
+}
+
+std::string Sitting::line() const
+{
+    std::string text = keyedLine();
+    const auto  good = text.find_first_not_of(" \t\r");
+    if (good == std::string::npos) return "";
+    text = text.substr(good, text.find_last_not_of(" \t\r") - good + 1);
+    std::ranges::transform(text, text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+    if (text == "q") throw Paused();
+    return text;
+}
+
+/// Asks again until the answer is a known one.
+/// \throws Error after many others in a row that no terminal sent: a file's end may be far
+std::string Sitting::answerAmong(const Answers& known, const std::string& wanted) const
+{
+    for (int strange = 1;; ++strange) {
+        const std::string text   = line();
+        const auto        answer = known.find(text);
+        if (answer != known.end()) return answer->second;
+        if (strange >= kMostStrange && isatty(STDIN_FILENO) == 0) {
+            say("\n");
+            throw Error("standard input: expected one that would " + wanted + ", found " +
+                        std::to_string(kMostStrange) +
+                        " other lines in a row; this trial is not recorded, the same command goes on with it");
+        }
+        say("  please " + wanted + ", or q: ");
+    }
+}
+
+void Sitting::begin(const std::string& what) const
+{
+    forgetKeys();
+    say(what + " Enter begins, q pauses: ");
+    static_cast<void>(answerAmong({{"", ""}}, "press Enter alone"));
+}
+
+std::string Sitting::ask(const Task& task) const
+{
+    const bool           rating = task.kind == TaskKind::rating, pair = task.kind == TaskKind::twoAlternative;
+    static const Answers kRatings{{"1", "1"}, {"2", "2"}, {"3", "3"}, {"4", "4"}, {"5", "5"}};
+    static const Answers kYesNo{{"y", "yes"}, {"yes", "yes"}, {"n", "no"}, {"no", "no"}};
+    static const Answers kPair{{"1", "first"}, {"first", "first"}, {"2", "second"}, {"second", "second"}};
+    const auto&          known  = rating ? kRatings : pair ? kPair : kYesNo;
+    const std::string    choice = rating ? "1 to 5" : pair ? "1 or 2" : "y or n";
+    const auto           end = [](const std::string& meaning) { return meaning.empty() ? "" : " (" + meaning + ")"; };
+    forgetKeys();
+    say(task.question + "\n" + (rating ? "  1" + end(task.least) + " to 5" + end(task.most) : "  " + choice) +
+        "; q pauses: ");
+    return answerAmong(known, "answer " + choice);
+}
+
+/// One touch. \return the session's folder, from the study's
+std::string Sitting::touch(std::size_t condition, const std::string& name, ForceTally& force)
+{
+    std::error_code ignored;
+    std::string     fresh = name;
+    for (int again = 2; std::filesystem::exists(folder_ / fresh, ignored); ++again) // a trial that did not count
+        fresh = name + "_again" + std::to_string(again);
+    SessionOptions options = run_.session;
+    options.record         = (folder_ / fresh).string();
+    options.blind          = true;
+    const SessionRun session =
+        runSession(plan_.conditions[condition].scene, felt_[condition].cloud, felt_[condition].index, options,
+                   [&](const TickRecord& sample) { force.add(sample); });
+    if (session.interrupted) throw Paused();
+    try {
+        demandWhole(session);
+    } catch (const CheckFailed& failed) {
+        std::cerr << "palpate: " << failed.what() << ": this trial does not count; the same command goes on with it\n";
+        throw;
+    }
+    return run_.participant + "/" + fresh;
+}
+
+TrialRow Sitting::trial(std::size_t number)
+{
+    const Trial&      trial = trials_[number];
+    const Task&       task  = plan_.tasks[trial.task];
+    const std::string which = "Trial " + std::to_string(number + 1) + " of " + std::to_string(trials_.size());
+    char              stem[32];
+    std::snprintf(stem, sizeof stem, "trial_%03zu", number + 1);
+    TrialRow   row;
+    ForceTally force;
+    begin("\n" + which + (trial.second ? ", the first of two." : "."));
+    row.firstSession = touch(trial.first, stem, force);
+    if (trial.second) {
+        begin(which + ", the second.");
+        row.secondSession = touch(*trial.second, std::string(stem) + "_second", force);
+        row.second        = plan_.conditions[*trial.second].name;
+    }
+    const auto asked = std::chrono::steady_clock::now();
+    row.answer       = ask(task);
+    row.reactionTime = std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
+    row.participant  = run_.participant;
+    row.trial        = number + 1;
+    row.block        = trial.block;
+    row.task         = task.name;
+    row.kind         = name(task.kind);
+    row.first        = plan_.conditions[trial.first].name;
+    row.question     = task.question;
+    if (trial.right) row.correct = row.answer == *trial.right;
+    row.seed      = plan_.seed;
+    row.meanForce = force.mean();
+    row.peakForce = force.peak;
+    row.version   = PALPATE_VERSION " " PALPATE_COMMIT;
+    return row;
+}
+
+} // namespace
+
+Json readStudyFile(const std::filesystem::path& participantFolder)
+{
+    const std::filesystem::path path = participantFolder / kStudyFile;
+    const Json file = Json::parse(readWhole(path, kLargestFile, "what a study says of itself"), nullptr, false);
+    const bool good = file.is_object() && file.value("format", Json()) == 1 && file.contains("plan") &&
+                      file["plan"].is_string() && file.contains("participant") && file.contains("clouds");
+    if (!good) throw Error(path.string() + ": expected what palpate study writes, found something else");
+    return file;
+}
+
+StudyProgress runStudy(const StudyRun& run, const StudyPlan& plan)
+{
+    return Sitting(run, plan).go();
+}
+
+} // namespace palp

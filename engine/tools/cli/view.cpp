@@ -1,0 +1,240 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "device/hid/hidapi_system.h"
+#include "engine/core/contract.h"
+#include "engine/core/quantity.h"
+#include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/hand_source.h"
+#include "engine/tools/cli/hunt_report.h"
+#include "engine/tools/cli/interrupt.h"
+#include "engine/tools/cli/scene_source.h"
+#include "engine/tools/gui/glfw_window.h"
+#include "engine/tools/gui/panel_frame.h"
+#include "engine/tools/gui/window_memory.h"
+#include "engine/tools/gui/workbench.h"
+
+// palpate view: an object in a window, touched with the pointer or with any other hand.
+
+namespace palp {
+namespace {
+
+struct ViewOptions {
+    HandOptions hand;
+    std::string drawOn = "auto", colour = "stiffness", map = "viridis", size;
+    SceneSource scene{"sample:palm", {}};
+    std::string command;
+    bool        dark = false, json = false, noPanels = false, validate = false;
+};
+
+#ifdef PALPATE_WINDOW
+
+/// "1280x720", or what was last.
+glm::ivec2 sizeOf(const std::string& text)
+{
+    if (text.empty()) return rememberedSize();
+    constexpr int kLeast = 320, kMost = 8192; // [px]
+    int           width = 0, height = 0, end = 0;
+    const bool    read =
+        std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &end) == 2 && std::size_t(end) == text.size();
+    if (!read || width < kLeast || height < kLeast || width > kMost || height > kMost)
+        throw Error("--size: expected WIDTHxHEIGHT of 320 to 8192 px each, such as 1280x720, found \"" + text + "\"");
+    return {width, height};
+}
+
+double quantileOf(std::vector<double> values, double share)
+{
+    if (values.empty()) return 0;
+    const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
+    std::ranges::nth_element(values, at);
+    return *at;
+}
+
+void tell(const ViewOptions& o, const WorkbenchReport& report, const SurfaceRenderer& renderer,
+          const std::optional<study::HuntScore>& score)
+{
+    const double median = quantileOf(report.frameTimes, 0.5), slow = quantileOf(report.frameTimes, 0.99);
+    if (o.json) {
+        nlohmann::json all{{"frames", report.frames},
+                           {"touching_frames", report.frameTimes.size()},
+                           {"frame_p50_s", median},
+                           {"frame_p99_s", slow},
+                           {"draw_p50_s", quantileOf(report.drawTimes, 0.5)},
+                           {"real_time", report.realTime},
+                           {"drawn_on", renderer.device().name}};
+        if (score) all["hunt"] = jsonOf(*score);
+        std::cout << jsonText(all);
+        return;
+    }
+    std::cout << report.frames << " pictures on " << renderer.device().name;
+    if (median > 0)
+        std::cout << "; while touching one every " << formatQuantity(median, "s") << " (99 % within "
+                  << formatQuantity(slow, "s") << ")";
+    std::cout << "\n";
+}
+
+SessionInfo infoOf(const ViewOptions& o, const Stage& stage, const HapticDevice& device)
+{
+    SessionInfo info;
+    info.scene    = stage.scene();
+    info.versions = {{"palpate", PALPATE_VERSION}, {"compiler", __VERSION__}, {"libraries", PALPATE_LIBRARIES}};
+    info.device   = stage.solvedOn();
+    info.clock    = SessionClock::real;
+    info.command  = o.command;
+    info.cloud    = fingerprint(stage.loaded().cloud);
+    info.hand     = device.info();
+    return info;
+}
+
+/// A SpaceMouse that is not the hand moves the camera.
+std::unique_ptr<SpaceMouse> capFor(const ViewOptions& o, HidSystem& system)
+{
+    if (o.hand.hand.starts_with("spacemouse")) return nullptr;
+    try {
+        for (const HidListing& listing : system.list())
+            if (spaceMouseModel(listing)) {
+                auto cap = std::make_unique<SpaceMouse>(system, listing);
+                cap->open();
+                return cap;
+            }
+    } catch (const Error&) { // it is a comfort, not a need
+    }
+    return nullptr;
+}
+
+/// The scorer of a scene in which something is hidden; empty for any other, and for recorded sessions.
+std::optional<study::HuntScorer> scorerFor(const SceneSource& source)
+{
+    if (std::filesystem::is_directory(source.name)) return {};
+    const Scene scene = source.load(PlaceNeeded::no);
+    if (!scene.hunt) return {};
+    return std::make_optional<study::HuntScorer>(scene, loadCloud(scene).cloud);
+}
+
+void view(const ViewOptions& o)
+{
+    WorkbenchSettings settings;
+    auto              scorer = scorerFor(o.scene);
+    if (scorer) settings.onTick = [&scorer](const TickRecord& sample) { scorer->add(sample); };
+    settings.what   = o.scene.name;
+    settings.values = o.scene.flags;
+    settings.open   = [](const std::string& what, const SceneValues& values) {
+        return SceneSource{what, values}.load(PlaceNeeded::no);
+    };
+    settings.recorded = [&o](const Stage& stage, const HapticDevice& device) { return infoOf(o, stage, device); };
+    HandSource source;
+    if (o.hand.hand != "mouse")
+        settings.hand = [&](const Stage& stage, const HandWait& wait) -> WorkbenchHand {
+            source = {}; // a device is opened once at a time
+            source = handFor(o.hand, stage.scene(), stage.loaded().cloud, stage.index());
+            waitForHoming(*source.device, wait.givenUp, wait.tell);
+            return {source.device.get(), source.frame, source.isHeld() ? 1e9 : source.seconds};
+        };
+    settings.assumed    = assumptions;
+    settings.complained = [](const std::string& sentence) { std::cerr << "palpate: " << sentence << "\n"; };
+    if (!o.hand.seconds.empty()) settings.seconds = secondsOf(o.hand.seconds);
+    const auto paint = valueNamed<ViewPaint>(o.colour);
+    const auto map   = valueNamed<ColourMap>(o.map);
+    if (!paint) throw Error("--colour: unknown name \"" + o.colour + "\"; known: deflection, stiffness, plain");
+    if (!map) throw Error("--colour-map: unknown name \"" + o.map + "\"; known: viridis, cividis, grey");
+    settings.state.look.paint  = *paint;
+    settings.state.look.map    = *map;
+    settings.state.look.ground = o.dark ? Ground::dark : Ground::light;
+    settings.stop              = &catchInterrupts();
+
+    HidapiSystem hid;
+    const auto   cap = capFor(o, hid);
+    settings.camera  = cap.get();
+
+#ifdef PALPATE_PANELS
+    std::optional<PanelFrame> panels; // outlives what draws it and what feeds it
+#endif
+    GlfwWindow               window("Palpate", sizeOf(o.size));
+    compute::ContextSettings gpu{.device = o.drawOn};
+    if (o.validate) gpu.validation = compute::Validation::synchronization;
+    SurfaceRenderer renderer(gpu, window.link());
+    PanelFrame*     shown = nullptr;
+#ifdef PALPATE_PANELS
+    if (!o.noPanels) {
+        panels.emplace(window.scale());
+        shown = &*panels;
+    }
+#endif
+    glm::ivec2 last{};
+    settings.titled = [&window](const std::string& name) { window.setTitle(name + " - Palpate"); };
+    WindowScreen screen(renderer);
+    Workbench    bench(settings, screen);
+    const auto   report = bench.run(
+        [&](double patience) {
+            WindowInput input = window.poll(patience);
+            if (input.size.x > 0) last = input.size;
+            return input;
+        },
+        shown);
+    if (o.size.empty()) rememberSize(last);
+    if (!report.said.empty()) std::cerr << "palpate: " << report.said << "\n";
+    const auto score = scorer ? std::optional(scorer->score()) : std::nullopt;
+    tell(o, report, renderer, score);
+    if (score && !o.json) printText(*score, *o.scene.load(PlaceNeeded::no).hunt);
+    const auto messages = renderer.takeMessages();
+    for (const std::string& message : messages) std::cerr << "palpate: validation: " << message << "\n";
+    if (!messages.empty()) throw CheckFailed("the validation layer has complained");
+}
+
+#else
+
+void view(const ViewOptions&)
+{
+    throw Error("this build opens no windows: it was made without GLFW (package libglfw3-dev); palpate render makes "
+                "pictures without a display");
+}
+
+#endif
+
+} // namespace
+
+void addViewCommand(CLI::App& app)
+{
+    CLI::App*  command = app.add_subcommand("view", "an object in a window, touched with the mouse");
+    const auto o       = std::make_shared<ViewOptions>();
+    o->hand.hand       = "mouse";
+    command
+        ->add_option("SCENE", o->scene.name, "scene file, cloud file, sample:NAME or the folder of a recorded session")
+        ->capture_default_str();
+    command
+        ->add_option("--hand", o->hand.hand,
+                     "mouse; or any hand of palpate run: press, circle, scan, a file, falcon, ...")
+        ->capture_default_str();
+    command->add_option("--seconds", o->hand.seconds, "closes by itself after so long [until it is closed]");
+    command->add_option("--colour,--color", o->colour, "deflection, stiffness or plain")->capture_default_str();
+    command->add_option("--colour-map,--color-map", o->map, "of colours: viridis, cividis or grey")
+        ->capture_default_str();
+    command->add_flag("--dark", o->dark, "a dark ground");
+    command->add_option("--size", o->size, "of the window [px] [as it was last]");
+    command->add_flag("--no-panels", o->noPanels, "keys and mouse alone");
+    command->add_option("--draw-on", o->drawOn, "Vulkan device that draws, as \"palpate devices\" names it")
+        ->capture_default_str();
+    command->add_flag("--validate", o->validate, "under Vulkan's validation layer; any message is exit code 1");
+    command->add_flag("--json", o->json, "machine-readable, SI units");
+    addFalconOptions(*command, o->hand.falcon);
+    o->scene.addFlagsTo(*command);
+    command->footer("Hold Space over the object and move: that touches it, the wheel is depth. F1 shows all keys.\n"
+                    "Examples:\n"
+                    "  palpate view\n"
+                    "  palpate view samples/scenes/skin_wart.json --colour stiffness\n"
+                    "  palpate view samples/scenes/nodule_hunt.json --hunt-seed 7     hidden nodules: M declares one\n"
+                    "  palpate view scan.ply --length-unit mm --at 12mm,0,30mm\n"
+                    "  palpate view sample:ellipsoid --hand circle --seconds 10 --json");
+    command->callback([command, o] {
+        refuseEmptyValues(*command);
+        o->command = commandOf(*command);
+        view(*o);
+    });
+}
+
+} // namespace palp

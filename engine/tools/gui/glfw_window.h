@@ -1,0 +1,35 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "engine/tools/gui/input.h"
+#include "engine/tools/render/surface_renderer.h"
+
+namespace palp {
+
+/// A window on the desktop. \thread the program's first
+class GlfwWindow {
+public:
+    /// \param size  [px]
+    /// \throws Error, one sentence, if there is no display: and that palpate render needs none
+    GlfwWindow(const std::string& title, const glm::ivec2& size);
+    ~GlfwWindow();
+    GlfwWindow(const GlfwWindow&)            = delete;
+    GlfwWindow& operator=(const GlfwWindow&) = delete;
+
+    /// For the renderer that shows pictures here; the window outlives it.
+    [[nodiscard]] WindowLink link();
+
+    /// What happened since the last call. \param patience  waits so long for something to happen [s]
+    [[nodiscard]] WindowInput poll(double patience = 0);
+
+    void setTitle(const std::string& title);
+
+    [[nodiscard]] double scale() const; ///< see WindowInput::scale
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace palp

@@ -1,0 +1,207 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <imgui.h>
+
+#include "engine/core/quantity.h"
+#include "engine/tools/gui/chart_samples.h"
+#include "engine/tools/gui/panel_parts.h"
+#include "engine/tools/plot/cloud_shading.h"
+
+namespace palp {
+namespace {
+
+constexpr double kWide = 10; ///< a larger ratio of rigidities is shown on a logarithmic scale [1]
+
+/// One of the two maps.
+struct ChartMap {
+    std::string  title; ///< with the unit
+    ChartSamples samples;
+    Axis         axis;
+};
+
+Tone toneOf(Edge edge)
+{
+    return edge == Edge::clamped ? Tone::plain : edge == Edge::supported ? Tone::accent : Tone::second;
+}
+
+/// Clamped sides are thick, supported ones thin, free ones dashed: told apart without their colours too.
+void drawSide(const PanelDesk& desk, ImVec2 from, ImVec2 to, Edge edge)
+{
+    ImDrawList* const   draw = ImGui::GetWindowDrawList();
+    const std::uint32_t ink  = packed(colourOf(toneOf(edge), desk.dark()));
+    const float         s    = desk.scale;
+    if (edge != Edge::free) {
+        draw->AddLine(from, to, ink, edge == Edge::clamped ? 4 * s : 1.5F * s);
+        return;
+    }
+    const float dash = 6 * s, length = std::hypot(to.x - from.x, to.y - from.y);
+    const int   dashes = std::max(2, int(length / dash));
+    for (int n = 0; n < dashes; ++n) {
+        const auto at = [&](float share) {
+            return ImVec2(from.x + (to.x - from.x) * share, from.y + (to.y - from.y) * share);
+        };
+        draw->AddLine(at(float(n) / float(dashes)), at((float(n) + 0.6F) / float(dashes)), ink, 2 * s);
+    }
+}
+
+/// The field as a mesh whose corners have the colours of their values; z is up.
+void drawField(const PanelDesk& desk, const ChartMap& map, ImVec2 corner, float side)
+{
+    ImDrawList* const   draw = ImGui::GetWindowDrawList();
+    const int           nx = map.samples.nodesX, nz = map.samples.nodesZ;
+    const ImVec2        white = ImGui::GetFontTexUvWhitePixel();
+    const std::uint32_t none  = packed(kUndefinedColour);
+    draw->PrimReserve(6 * (nx - 1) * (nz - 1), nx * nz);
+    const unsigned first = draw->_VtxCurrentIdx;
+    for (int i = 0; i < nx; ++i)
+        for (int j = 0; j < nz; ++j) {
+            const double value = map.samples.at(i, j);
+            draw->PrimWriteVtx(
+                ImVec2(corner.x + side * float(i) / float(nx - 1), corner.y + side * (1 - float(j) / float(nz - 1))),
+                white,
+                drawable(value, map.axis.scale()) ? packed(surfaceColour(map.axis.position(value), desk.state.look.map))
+                                                  : none);
+        }
+    for (int i = 0; i + 1 < nx; ++i)
+        for (int j = 0; j + 1 < nz; ++j) {
+            const unsigned a = first + unsigned(i * nz + j), b = a + unsigned(nz);
+            for (const unsigned index : {a, b, b + 1, a, b + 1, a + 1}) draw->PrimWriteIdx(ImDrawIdx(index));
+        }
+}
+
+/// Contact, fingertip and sides over a field.
+void drawMarks(const PanelDesk& desk, const Patch& patch, ImVec2 corner, float side)
+{
+    ImDrawList* const draw = ImGui::GetWindowDrawList();
+    const float       s    = desk.scale;
+    const ImVec2      end(corner.x + side, corner.y + side);
+    const PlateGrid&  grid = patch.window.grid;
+    const ImVec2      contact(corner.x - side * float(patch.window.corner.x / grid.sizeX()),
+                              end.y + side * float(patch.window.corner.z / grid.sizeZ()));
+    // White on black: seen on every colour.
+    for (const auto& [ink, thick] : {std::pair{IM_COL32(0, 0, 0, 200), 3 * s}, {IM_COL32(255, 255, 255, 255), s}}) {
+        draw->AddLine(ImVec2(contact.x - 5 * s, contact.y), ImVec2(contact.x + 5 * s, contact.y), ink, thick);
+        draw->AddLine(ImVec2(contact.x, contact.y - 5 * s), ImVec2(contact.x, contact.y + 5 * s), ink, thick);
+    }
+    const float fingertip = side * float(desk.content.scene.patch.footprintRadius / grid.sizeX());
+    draw->AddCircle(contact, fingertip, IM_COL32(255, 255, 255, 150), 0, s);
+    const PlateEdges& edges = patch.plate.edges;
+    drawSide(desk, {corner.x, corner.y}, {corner.x, end.y}, edges.x0);
+    drawSide(desk, {end.x, corner.y}, {end.x, end.y}, edges.x1);
+    drawSide(desk, {corner.x, end.y}, {end.x, end.y}, edges.z0);
+    drawSide(desk, {corner.x, corner.y}, {end.x, corner.y}, edges.z1);
+}
+
+void drawBar(const PanelDesk& desk, const ChartMap& map, ImVec2 corner, float side)
+{
+    ImDrawList* const   draw = ImGui::GetWindowDrawList();
+    const float         s = desk.scale, high = 8 * s;
+    const std::uint32_t text   = packed(colourOf(Tone::faint, desk.dark()));
+    constexpr int       kSteps = 32;
+    for (int n = 0; n < kSteps; ++n)
+        draw->AddRectFilled(ImVec2(corner.x + side * float(n) / kSteps, corner.y),
+                            ImVec2(corner.x + side * float(n + 1) / kSteps, corner.y + high),
+                            packed(surfaceColour((n + 0.5) / kSteps, desk.state.look.map)));
+    // From the right, as far as there is room.
+    float free = corner.x + side + 1;
+    for (auto tick = map.axis.ticks().rbegin(); tick != map.axis.ticks().rend(); ++tick) {
+        const float at   = corner.x + side * float(map.axis.position(tick->value));
+        const float wide = ImGui::CalcTextSize(tick->label.c_str()).x;
+        const float left = std::clamp(at - wide / 2, corner.x, corner.x + side - wide);
+        draw->AddLine(ImVec2(at, corner.y + high), ImVec2(at, corner.y + high + 3 * s), text);
+        if (left + wide > free) continue;
+        draw->AddText(ImVec2(left, corner.y + high + 3 * s), text, tick->label.c_str());
+        free = left - 0.4F * ImGui::GetFontSize();
+    }
+}
+
+/// \return where the pointer is over the map, in shares of its sides from the lower left corner
+std::optional<ImVec2> drawMap(const PanelDesk& desk, const Patch& patch, const ChartMap& map, float side)
+{
+    ImGui::BeginGroup();
+    ImGui::TextUnformatted(map.title.c_str());
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImGui::InvisibleButton(map.title.c_str(), ImVec2(side, side));
+    std::optional<ImVec2> pointed;
+    if (const ImVec2 mouse = ImGui::GetMousePos(); ImGui::IsItemHovered())
+        pointed = ImVec2((mouse.x - corner.x) / side, 1 - (mouse.y - corner.y) / side);
+    drawField(desk, map, corner, side);
+    drawMarks(desk, patch, corner, side);
+    const ImVec2 bar(corner.x, corner.y + side + 5 * desk.scale);
+    drawBar(desk, map, bar, side);
+    ImGui::Dummy(ImVec2(side, 13 * desk.scale + ImGui::GetFontSize()));
+    ImGui::EndGroup();
+    return pointed;
+}
+
+/// What lies under the pointer, or else at the contact: the lines are always there, so that nothing jumps.
+void drawReadOut(const PanelDesk& desk, const Patch& patch, const std::optional<ImVec2>& pointed)
+{
+    const PlateGrid& grid = patch.window.grid;
+    const auto node = [](float share, int cells) { return std::clamp(int(share * float(cells) + 0.5F), 0, cells); };
+    const int  i    = pointed ? node(pointed->x, grid.cellsX) : grid.cellsX / 2;
+    const int  j    = pointed ? node(pointed->y, grid.cellsZ) : grid.cellsZ / 2;
+    toned(desk, Tone::faint, pointed ? "under the pointer" : "at the contact, or point at a map");
+    reading(desk, Half::left, "x, right", formatted("%.1f mm", 1e3 * (patch.window.corner.x + i * grid.spacingX)));
+    reading(desk, Half::right, "z, up", formatted("%.1f mm", 1e3 * (patch.window.corner.z + j * grid.spacingZ)));
+    reading(desk, Half::left, "D", formatQuantity(patch.plate.rigidity(i, j), "N m"));
+    reading(desk, Half::right, "w", formatted("%.4f mm", 1e3 * desk.content.force * patch.response(i, j)));
+}
+
+/// How each kind of side is drawn.
+void drawKeyOfSides(const PanelDesk& desk)
+{
+    const float sample = 16 * desk.scale, gap = 4 * desk.scale;
+    for (const Edge edge : {Edge::clamped, Edge::supported, Edge::free}) {
+        if (edge != Edge::clamped) ImGui::SameLine(0, 3 * gap);
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float  y  = at.y + 0.55F * ImGui::GetFontSize();
+        drawSide(desk, {at.x, y}, {at.x + sample, y}, edge);
+        ImGui::Dummy(ImVec2(sample, ImGui::GetFontSize()));
+        ImGui::SameLine(0, gap);
+        toned(desk, Tone::faint, name(edge));
+    }
+}
+
+ChartMap rigidityMap(const Patch& patch)
+{
+    ChartSamples samples = chartSamples(patch.plate.rigidity, 1);
+    const auto   range   = rangeOf(samples.values, Scale::logarithmic).value_or(ValueRange{1, 1});
+    const Scale  scale   = range.high > kWide * range.low ? Scale::logarithmic : Scale::linear;
+    const Axis   axis(range, scale, "N m", 3);
+    return {axis.title("D"), std::move(samples), axis};
+}
+
+ChartMap dentMap(const Patch& patch, double force)
+{
+    constexpr double kFlat   = 0.01;                                      // [mm] dents of less have the colours of none
+    ChartSamples     samples = chartSamples(patch.response, 1e3 * force); // [mm]
+    const auto       range   = rangeOf(samples.values, Scale::linear).value_or(ValueRange{0, 1});
+    const Axis       axis({std::min(0.0, range.low), std::max(range.high, kFlat)}, Scale::linear, "", 3);
+    return {axis.unit().empty() ? "w [mm]" : "w [" + axis.unit() + " mm]", std::move(samples), axis};
+}
+
+} // namespace
+
+void drawChartSection(PanelDesk& desk)
+{
+    const Patch* const patch = desk.content.patch;
+    if (!patch || !patch->deformed()) {
+        tonedWrapped(desk, Tone::faint, "Nothing is bent yet: touch the surface. Hold Space and point at the object.");
+        return;
+    }
+    const float    gap  = 12 * desk.scale;
+    const float    side = std::floor((ImGui::GetContentRegionAvail().x - gap) / 2);
+    const ChartMap d = rigidityMap(*patch), w = dentMap(*patch, desk.content.force);
+    auto           pointed = drawMap(desk, *patch, d, side);
+    ImGui::SameLine(0, gap);
+    if (const auto there = drawMap(desk, *patch, w, side)) pointed = there;
+    drawKeyOfSides(desk);
+    drawReadOut(desk, *patch, pointed);
+}
+
+} // namespace palp

@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include <imgui.h>
+
+#include "engine/tools/gui/panel_parts.h"
+#include "engine/tools/gui/scene_controls.h"
+
+namespace palp {
+namespace {
+
+constexpr float kLabels   = 118; ///< width of this section's labels, at scale 1 [px]
+constexpr float kOwnWidth = 44;  ///< of the button beside a law, at scale 1 [px]
+
+const SceneKey& keyNamed(std::string_view name)
+{
+    return *std::ranges::find(sceneKeys(), name, &SceneKey::name);
+}
+
+/// What a key means, what it takes, and where its value came from.
+void explain(const PanelDesk& desk, std::string_view name)
+{
+    if (!ImGui::IsItemHovered()) return;
+    const SceneKey& key = keyNamed(name);
+    std::string text = std::string(name) + ": " + std::string(key.means) + "\nexpected: " + std::string(key.expected);
+    if (const auto from = desk.content.scene.origins.find(name); from != desk.content.scene.origins.end())
+        text += std::string("\nnow from: ") + palp::name(from->second.origin) +
+                (from->second.where.empty() ? "" : ", " + from->second.where);
+    tip(text.c_str());
+}
+
+void labelOf(const PanelDesk& desk, const char* label, std::string_view key)
+{
+    ImGui::AlignTextToFramePadding();
+    toned(desk, Tone::faint, label);
+    explain(desk, key);
+    ImGui::SameLine(kLabels * desk.scale + ImGui::GetStyle().WindowPadding.x, 0);
+    ImGui::SetNextItemWidth(-1);
+}
+
+/// A slider whose value is the scene's but while it is dragged, and a wish when it is let go.
+void drawNumber(PanelDesk& desk, const SceneNumber& number)
+{
+    ImGui::PushID(number.key.data(), number.key.data() + number.key.size());
+    labelOf(desk, number.label, number.key);
+    ImGuiStorage* const kept  = ImGui::GetStateStorage();
+    const ImGuiID       value = ImGui::GetID("dragged"), isDragged = ImGui::GetID("is dragged");
+    const double        now    = number.of(desk.content.scene) / number.perUnit;
+    double              shown  = kept->GetBool(isDragged) ? double(kept->GetFloat(value)) : now;
+    const std::string   format = formatted("%%.%df%s%s", number.decimals, *number.unit ? " " : "", number.unit);
+    ImGui::SliderScalar("##slider", ImGuiDataType_Double, &shown, &number.least, &number.most, format.c_str(),
+                        number.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
+    explain(desk, number.key);
+    if (ImGui::IsItemDeactivatedAfterEdit() && wishText(number, shown) != wishText(number, now))
+        desk.wishes.values[std::string(number.key)] = wishText(number, shown);
+    kept->SetFloat(value, float(shown));
+    kept->SetBool(isDragged, ImGui::IsItemActive());
+    ImGui::PopID();
+}
+
+void drawChoice(PanelDesk& desk, const SceneChoice& choice)
+{
+    ImGui::PushID(choice.key.data(), choice.key.data() + choice.key.size());
+    labelOf(desk, choice.label, choice.key);
+    const std::string now  = choice.of(desk.content.scene);
+    const bool        open = ImGui::BeginCombo("##combo", now.c_str());
+    if (!open) explain(desk, choice.key);
+    if (open) {
+        for (const char* option : choice.options)
+            if (ImGui::Selectable(option, now == option) && now != option)
+                desk.wishes.values[std::string(choice.key)] = option;
+        ImGui::EndCombo();
+    }
+    ImGui::PopID();
+}
+
+void drawLaw(PanelDesk& desk)
+{
+    constexpr std::size_t kRoom = 1024;  // [bytes] for what is typed
+    constexpr const char* kOwn  = "own"; // as the scene's key says: no law
+    const std::string&    now   = desk.content.scene.stiffness;
+    std::vector<char>     text(now.size() + kRoom);
+    std::memcpy(text.data(), now.c_str(), now.size() + 1);
+    ImGui::AlignTextToFramePadding();
+    toned(desk, Tone::faint, "stiffness");
+    explain(desk, "stiffness");
+    ImGui::SameLine(kLabels * desk.scale + ImGui::GetStyle().WindowPadding.x, 0);
+    ImGui::SetNextItemWidth(now.empty() ? -1 : -kOwnWidth * desk.scale);
+    if (ImGui::InputTextWithHint("##law", "the cloud's own", text.data(), text.size(),
+                                 ImGuiInputTextFlags_EnterReturnsTrue) &&
+        now != text.data())
+        desk.wishes.values["stiffness"] = *text.data() ? text.data() : kOwn;
+    explain(desk, "stiffness");
+    if (!now.empty()) { // its way back
+        ImGui::SameLine();
+        if (ImGui::SmallButton(kOwn)) desk.wishes.values["stiffness"] = kOwn;
+        tip("Takes the cloud's own stiffness again");
+    }
+    bool first = true;
+    for (const char* law : {"constant", "linear", "hyperbolic", "gaussian"}) {
+        if (!first) ImGui::SameLine();
+        first = false;
+        if (ImGui::SmallButton(law))
+            desk.wishes.values["stiffness"] = lawPreset(law, desk.content.scene, desk.content.cloud);
+        tip("Takes this law, from the least to the largest stiffness of the cloud");
+    }
+}
+
+/// Two opposite sides of the window in one line.
+void drawSides(PanelDesk& desk, const char* label, Edge PlateEdges::*low, Edge PlateEdges::*high)
+{
+    labelOf(desk, label, "edges");
+    const PlateEdges now   = desk.content.scene.patch.edges;
+    const float      width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemInnerSpacing.x) / 2;
+    for (Edge PlateEdges::*const side : {low, high}) {
+        ImGui::PushID(label);
+        ImGui::PushID(side == low ? 0 : 1);
+        if (side == high) ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+        ImGui::SetNextItemWidth(width);
+        const bool open = ImGui::BeginCombo("##side", name(now.*side), ImGuiComboFlags_NoArrowButton);
+        if (!open) explain(desk, "edges");
+        for (const Edge edge : {Edge::clamped, Edge::supported, Edge::free}) {
+            if (!open || !ImGui::Selectable(name(edge), edge == now.*side) || edge == now.*side) continue;
+            PlateEdges changed          = now;
+            changed.*side               = edge;
+            desk.wishes.values["edges"] = edgesText(changed);
+        }
+        if (open) ImGui::EndCombo();
+        ImGui::PopID();
+        ImGui::PopID();
+    }
+}
+
+} // namespace
+
+void drawSceneSection(PanelDesk& desk)
+{
+    drawLaw(desk);
+    for (const SceneControls& group : sceneControls()) {
+        ImGui::Separator();
+        for (const SceneNumber& number : group.numbers) drawNumber(desk, number);
+        for (const SceneChoice& choice : group.choices) drawChoice(desk, choice);
+        if (!group.edges) continue;
+        drawSides(desk, "edges x0, x1", &PlateEdges::x0, &PlateEdges::x1);
+        drawSides(desk, "edges z0, z1", &PlateEdges::z0, &PlateEdges::z1);
+    }
+}
+
+} // namespace palp

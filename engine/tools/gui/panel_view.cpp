@@ -1,0 +1,90 @@
+#include <imgui.h>
+
+#include "engine/tools/gui/panel_parts.h"
+
+namespace palp {
+namespace {
+
+constexpr double kDeepest = 3; ///< of the hand below the surface, and its highest above it, per thickness [1]
+
+void drawColours(PanelDesk& desk)
+{
+    TouchLook& look = desk.state.look;
+    labelled(desk, "colours", "What the colours of the surface show (V)");
+    if (const auto paint = segments(desk, "paint", int(look.paint), {"deflection", "stiffness", "plain"}))
+        look.paint = ViewPaint(*paint);
+    labelled(desk, "colour map", "viridis and cividis keep their order for every kind of colour vision (C)");
+    if (const auto map = segments(desk, "map", int(look.map), {"viridis", "cividis", "grey"}))
+        look.map = ColourMap(*map);
+}
+
+void drawToggles(PanelDesk& desk)
+{
+    TouchLook&  look   = desk.state.look;
+    Overlays&   over   = look.overlays;
+    const float middle = ImGui::GetCursorPosX() + 0.46F * ImGui::GetContentRegionAvail().x;
+    const auto  second = [middle] { ImGui::SameLine(middle); };
+    ImGui::Checkbox("patch outline", &over.outline);
+    second();
+    ImGui::Checkbox("surface at rest", &over.ghost);
+    tip("Dots where the dent's points are at rest (G)");
+    ImGui::Checkbox("arrows", &over.arrows);
+    tip("Force on the hand, and normal");
+    second();
+    ImGui::Checkbox("fitted sphere", &over.sphere);
+    tip("The near half of the sphere fitted to the patch (S)");
+    ImGui::Checkbox("markers", &over.markers);
+    tip("Proxy, a ball, and HIP, an octahedron");
+    second();
+    ImGui::Checkbox("projected points", &over.projected);
+    tip("Dots where the patch's points lie on the sphere (J)");
+    bool dark = desk.dark(), flat = desk.state.camera.projection == Projection::orthographic;
+    if (ImGui::Checkbox("dark", &dark)) look.ground = dark ? Ground::dark : Ground::light;
+    tip("L");
+    second();
+    if (ImGui::Checkbox("orthographic", &flat)) desk.state.camera = otherProjection(desk.state.camera);
+    tip("O");
+}
+
+void drawButtons(PanelDesk& desk)
+{
+    desk.wishes.frame |= buttonIf(true, "frame", "The whole object in the picture (F)");
+    ImGui::SameLine();
+    desk.wishes.reset |= buttonIf(true, "reset", "The view as it was in the beginning (R)");
+    ImGui::SameLine();
+    desk.wishes.screenshot |=
+        buttonIf(true, "screenshot", "Writes the picture as a file, without panels (P; Shift+P with them)");
+    ImGui::SameLine();
+    const bool recording = !desk.content.recording.empty();
+    desk.wishes.record |= buttonIf(true, recording ? "stop##record" : "record##record",
+                                   recording ? "Ends the recording (F5)" : "Records what is felt (F5)");
+}
+
+void drawTool(PanelDesk& desk)
+{
+    labelled(desk, "tool", "The pointer carries a hand that touches, or a brush of stiffness (B)");
+    if (const auto tool = segments(desk, "tool", int(desk.state.tool), {"touch", "paint"}))
+        desk.state.tool = Tool(*tool);
+    labelled(desk, "press depth", "How far below the surface the pointer carries the hand: the wheel, while touching");
+    const double most = 1e3 * kDeepest * desk.content.scene.patch.material.thickness, least = -most; // [mm]
+    double       depth = 1e3 * desk.state.pressDepth;                                                // [mm]
+    if (ImGui::SliderScalar("##depth", ImGuiDataType_Double, &depth, &least, &most, "%.2f mm",
+                            ImGuiSliderFlags_AlwaysClamp))
+        desk.state.pressDepth = depth * 1e-3;
+}
+
+} // namespace
+
+void drawViewSection(PanelDesk& desk)
+{
+    drawColours(desk);
+    labelled(desk, "exaggerate", "Factor on every displacement in the picture; forces stay what they are (X)");
+    const double least = 1, most = 20;
+    ImGui::SliderScalar("##exaggeration", ImGuiDataType_Double, &desk.state.look.exaggeration, &least, &most,
+                        "\u00d7 %.1f", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    drawToggles(desk);
+    drawButtons(desk);
+    drawTool(desk);
+}
+
+} // namespace palp

@@ -1,0 +1,62 @@
+#include "engine/tools/gui/touch_faults.h"
+
+#include "engine/session/servo.h"
+
+namespace palp {
+
+FaultAdvice adviceOn(GovernorFault fault) noexcept
+{
+    switch (fault) {
+    case GovernorFault::none:
+        break;
+    case GovernorFault::forceNotFinite:
+        return {"The computed force was not a finite number.",
+                "Start anew; if it comes back, take a thicker or softer sheet, and report the scene."};
+    case GovernorFault::positionNotFinite:
+        return {"The device told a place that is not a finite number.", "Reconnect the device, then start anew."};
+    case GovernorFault::velocityNotFinite:
+        return {"The device told a speed that is not a finite number.", "Reconnect the device, then start anew."};
+    case GovernorFault::clockNotFinite:
+        return {"The clock of the servo told no finite time.", "Start anew; if it comes back, reboot."};
+    case GovernorFault::clockStopped:
+        return {"The clock of the servo stood still.", "Start anew; if it comes back, reboot."};
+    case GovernorFault::loopStalled:
+        return {"The servo stood still for more than 0.1 s.",
+                "Close what keeps the processor busy, then start anew; palpate doctor tells how to get real time."};
+    case GovernorFault::deviceLost:
+        return {"The device did not answer for 20 exchanges.", "Look at its cable and its power, then start anew."};
+    case GovernorFault::tooFast:
+        return {"The hand moved faster than 1.2 m/s.", "Hold it still, then start anew."};
+    }
+    return {"", ""};
+}
+
+GovernorFault governorFault(const TickRecord& sample) noexcept
+{
+    return static_cast<GovernorFault>(sample.faults & 0xFFU);
+}
+
+std::vector<std::string> notesOn(const TickRecord& sample)
+{
+    struct Note {
+        SessionFlag flag;
+        const char* text;
+    };
+    static constexpr Note kNotes[] = {
+        {SessionFlag::noPatch, "No answer of the plate yet, so no force: wait, or take fewer cells."},
+        {SessionFlag::beyondTheory, "Deeper than half the thickness, where plate theory ends: press less."},
+        {SessionFlag::beyondTable, "Beyond the table of compliances: move more slowly, or raise the rate."},
+        {SessionFlag::proxyLimited, "The proxy ran out of iterations: move more slowly."},
+    };
+    std::vector<std::string> notes;
+    for (const Note& note : kNotes)
+        if (sample.faults & static_cast<std::uint32_t>(note.flag)) notes.emplace_back(note.text);
+    return notes;
+}
+
+bool needsAttention(const PanelContent& content) noexcept
+{
+    return !content.faults.empty() || governorFault(content.history.newest()) != GovernorFault::none;
+}
+
+} // namespace palp

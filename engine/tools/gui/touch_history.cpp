@@ -1,0 +1,33 @@
+#include "engine/tools/gui/touch_history.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace palp {
+
+void TouchHistory::add(const TickRecord& sample) noexcept
+{
+    if (ticks_ > 0 && sample.time < newest_.time) clear();
+    const auto step = std::int64_t(std::floor(sample.time / kStep));
+    if (step != step_ && step_ >= 0) {
+        std::shift_left(forces_.begin(), forces_.end(), 1);
+        std::shift_left(depths_.begin(), depths_.end(), 1);
+        forces_.back() = force_;
+        depths_.back() = depth_;
+        force_ = depth_ = 0;
+        count_          = std::min(kSteps, count_ + 1);
+    }
+    step_  = step;
+    force_ = std::max(force_, float(glm::length(sample.force)));
+    depth_ = std::max(depth_, float(std::max(0.0, glm::dot(sample.proxy - sample.hip, sample.normal))));
+    if (ticks_ > 0) {
+        const double share = std::log((sample.time - newest_.time) / kShortest) / std::log(kLongest / kShortest);
+        periods_[std::size_t(std::clamp(share * double(kBins), 0.0, double(kBins) - 1))] += 1;
+    }
+    ++ticks_;
+    newest_ = sample;
+}
+
+} // namespace palp

@@ -1,0 +1,193 @@
+// An ear of the Stanford bunny, from the user's own copy: the thin lobe of the paper on a real scan.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include "engine/cloud/point_cloud_io.h"
+#include "engine/contact/contact.h"
+#include "engine/core/contract.h"
+#include "engine/core/quantity.h"
+#include "engine/pipeline/pipeline.h"
+#include "engine/tools/paper/parts.h"
+#include "engine/tools/plot/patch_pictures.h"
+
+namespace palp::report {
+namespace {
+
+constexpr double     kDiagonal = 0.2502; ///< of the original's bounds [m]
+constexpr double     kSameSize = 0.02;   ///< off from it, relative, is still the original: copies have fewer points [1]
+constexpr double     kEar      = 40e-3;  ///< length of an ear [m]
+constexpr double     kWindow   = 18e-3;  ///< lies on the flat side of an ear [m]
+constexpr double     kForce    = 0.03;   ///< [N]
+constexpr PlateEdges kFromItsRoot{Edge::free, Edge::free, Edge::free, Edge::clamped};
+
+/// The cloud in the original's size, and the factor that took.
+struct Bunny {
+    PointCloud cloud;
+    double     factor = 1;
+};
+
+Bunny readBunny(const std::filesystem::path& file)
+{
+    constexpr std::size_t kFewest = 5000; // the ear of fewer points is a handful of them [1]
+    const PointCloud      read    = readCloud(file).cloud;
+    if (read.size() < kFewest)
+        throw Error(file.string() + ": expected a bunny of at least " + std::to_string(kFewest) + " points, found " +
+                    std::to_string(read.size()) + "; try bun_zipper.ply of the Stanford repository");
+    const double factor = kDiagonal / read.bounds().diagonal();
+    if (std::abs(factor - 1) < kSameSize) return {read, 1};
+    std::vector<glm::dvec3> positions;
+    for (const glm::dvec3& p : read.positions()) positions.push_back(factor * p);
+    return {PointCloud(positions, {read.stiffness().begin(), read.stiffness().end()}, read.kind()), factor};
+}
+
+/// Where the ear is pressed, and which way it hangs.
+struct Ear {
+    glm::dvec3 place{};  ///< [m]
+    Frame      frame;    ///< normal out of its flat side, north towards its root
+    glm::dvec3 middle{}; ///< of the ear's thickness, below the place [m]
+};
+
+/// Spread of points about their middle: the sum of the outer products [m^2].
+glm::dmat3 spreadOf(const std::vector<glm::dvec3>& points, const glm::dvec3& middle)
+{
+    glm::dmat3 spread(0);
+    for (const glm::dvec3& p : points) spread += glm::outerProduct(p - middle, p - middle);
+    return spread;
+}
+
+/// Eigenvector of the largest eigenvalue, by the power method [1].
+glm::dvec3 longest(const glm::dmat3& spread)
+{
+    glm::dvec3 d = glm::normalize(glm::dvec3(0.36, 0.48, 0.80)); // any that is perpendicular to no ear
+    for (int n = 0; n < 1000; ++n) d = glm::normalize(spread * d);
+    return d;
+}
+
+/// That of the least: the longest of what is left of the trace.
+glm::dvec3 shortest(const glm::dmat3& spread)
+{
+    return longest(glm::dmat3(spread[0][0] + spread[1][1] + spread[2][2]) - spread);
+}
+
+glm::dvec3 middleOf(const std::vector<glm::dvec3>& points)
+{
+    glm::dvec3 sum(0);
+    for (const glm::dvec3& p : points) sum += p / double(points.size());
+    return sum;
+}
+
+/// The ear that reaches highest; y is up, as in the original.
+Ear earOf(const PointCloud& cloud, const NeighbourIndex& index)
+{
+    const auto       positions = cloud.positions();
+    const glm::dvec3 top =
+        *std::max_element(positions.begin(), positions.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
+    std::vector<glm::dvec3> ear, slice;
+    for (const std::uint32_t n : index.gather(top, kEar)) ear.push_back(positions[n]);
+    const glm::dvec3 middle = middleOf(ear);
+    glm::dvec3       along  = longest(spreadOf(ear, middle)); // from the root to the tip
+    if (glm::dot(top - middle, along) < 0) along = -along;
+    double tip = 0; // beyond the middle [m]
+    for (const glm::dvec3& p : ear) tip = std::max(tip, glm::dot(p - middle, along));
+
+    // Nearly half a window from the tip (the surface bends, so that it is half along it), in the middle of the width,
+    // on the side that lies farther out there.
+    for (const glm::dvec3& p : ear)
+        if (std::abs(glm::dot(p - middle, along) - (tip - 0.36 * kWindow)) < kWindow / 10) slice.push_back(p);
+    const glm::dvec3 here = middleOf(slice);
+    // The slice is thin along the ear too, which does not count: there it is made long.
+    const glm::dvec3 flat  = shortest(spreadOf(slice, here) + spreadOf(ear, middle) * glm::outerProduct(along, along));
+    glm::dvec3       place = here;
+    double           most  = -1;
+    for (const glm::dvec3& p : slice) {
+        const double height = glm::dot(p - here, flat);
+        if (glm::length(p - here - height * flat) < kWindow / 10 && std::abs(height) > most) {
+            most  = std::abs(height);
+            place = p;
+        }
+    }
+    const glm::dvec3 out   = glm::dot(place - here, flat) > 0 ? flat : -flat;
+    const glm::dvec3 north = glm::normalize(glm::dot(along, out) * out - along);
+    return {place, {out, glm::cross(north, out), north}, here};
+}
+
+/// The ear's skin on the side of the finger. The other one is 5 mm behind: a sphere through both would have the ear's
+/// thickness and not its shape.
+PointCloud skinOf(const PointCloud& cloud, const NeighbourIndex& index, const Ear& ear)
+{
+    std::vector<glm::dvec3> positions;
+    std::vector<double>     stiffness;
+    for (const std::uint32_t n : index.gather(ear.place, kEar / 2)) {
+        const glm::dvec3& p = cloud.positions()[n];
+        if (glm::dot(p - ear.middle, ear.frame.normal) < 0) continue;
+        positions.push_back(p);
+        stiffness.push_back(cloud.stiffness()[n]);
+    }
+    return {positions, stiffness, cloud.kind()};
+}
+
+} // namespace
+
+const std::string& bunnyTerms()
+{
+    static const std::string kTerms =
+        "The Stanford bunny is a scan by the Stanford Computer Graphics Laboratory (graphics.stanford.edu/data/"
+        "3Dscanrep). It is free for research and may be passed on with credit; not for commercial use without "
+        "permission. Palpate does not come with it.";
+    return kTerms;
+}
+
+void addBunny(Section& lobe, const std::filesystem::path& file, const ReportRun& run)
+{
+    const Bunny          bunny = readBunny(file);
+    const NeighbourIndex all(bunny.cloud.positions());
+    const Ear            ear  = earOf(bunny.cloud, all);
+    const PointCloud     skin = skinOf(bunny.cloud, all, ear);
+    const NeighbourIndex index(skin.positions());
+    PatchSettings        settings{.material        = {4e-3, 0.45},
+                                  .window          = kWindow,
+                                  .cells           = run.quick ? 32 : 64,
+                                  .footprintRadius = 2e-3,
+                                  .frame           = ear.frame};
+    Table                table{"The outer skin of an ear of the bunny under " + formatQuantity(kForce, "N") +
+                    ", 300 kPa throughout, window 18 mm.",
+                {"edges", "under the finger", "at the ear's tip", "felt stiffness"},
+                {}};
+    for (const auto& [name, edges] :
+         {std::pair("clamped all around", PlateEdges{}), std::pair("free but for its root", kFromItsRoot)}) {
+        settings.edges    = edges;
+        const Patch patch = deform(skin, index, {ear.place, ear.frame.normal}, settings, run.device);
+        if (!patch.deformed())
+            throw Error(file.string() + ": the points of its highest ear determine no surface; is y up, as in the "
+                                        "original?");
+        const int    middle = settings.cells / 2;
+        const double here = kForce * patch.response(middle, middle), tip = kForce * patch.response(middle, 0);
+        table.rows.push_back(
+            {name, formatQuantity(here, "m"), formatQuantity(tip, "m"), formatQuantity(patch.feltStiffness, "N/m")});
+        const std::string stem = std::string("bunny/") + (edges == PlateEdges{} ? "clamped/" : "free/");
+        lobe.numbers.push_back({stem + "compliance", "m/N", {patch.compliance}});
+        lobe.numbers.push_back({stem + "sphere_misfit", "m", {patch.sphere.fit.misfit}});
+        lobe.numbers.push_back({stem + "deflection", "m", {here}});
+        lobe.numbers.push_back({stem + "deflection_of_tip", "m", {tip}});
+        const PressedPatch pressed{&patch, kForce, ""};
+        lobe.figures.push_back(
+            {std::string("The outer skin of an ear, its root above: ") + name + ", displacements twice as large.",
+             surfaceSvg(skin, {&pressed, 1}, {std::string("The bunny's ear, ") + name, 2, {0, 0, 0}, true})});
+    }
+    lobe.numbers.push_back({"bunny/place", "m", {ear.place.x, ear.place.y, ear.place.z}});
+    lobe.numbers.push_back({"bunny/normal", "1", {ear.frame.normal.x, ear.frame.normal.y, ear.frame.normal.z}});
+    lobe.numbers.push_back({"bunny/factor", "1", {bunny.factor}});
+    lobe.numbers.push_back({"bunny/points", "1", {double(bunny.cloud.size())}});
+    lobe.text.push_back(bunnyTerms() +
+                        (bunny.factor == 1
+                             ? " It has the size of the original."
+                             : " The copy was scaled by " + formatNumber(bunny.factor) + ", to the original's " +
+                                   formatQuantity(kDiagonal, "m") + " from corner to corner."));
+    lobe.tables.push_back(std::move(table));
+}
+
+} // namespace palp::report

@@ -1,0 +1,155 @@
+#include "engine/tools/paper/felt_path.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/session/deformation.h"
+#include "engine/session/hand_device.h"
+#include "engine/session/virtual_session.h"
+#include "engine/tools/paper/perception.h"
+
+namespace palp::report {
+namespace {
+
+/// Points of the surface along the line, from end to end.
+std::vector<glm::dvec3> surfaceAlong(const FeltLine& line, const PointCloud& cloud, const NeighbourIndex& index,
+                                     int places)
+{
+    constexpr double      kPace = 10e-3; // [m/s] any that is no fault of a hand
+    std::vector<HandPose> flat;
+    for (int n = 0; n < places; ++n) {
+        const double along = line.reach * (2.0 * n / (places - 1) - 1);
+        flat.push_back({(along + line.reach) / kPace, line.middle.point + along * line.direction});
+    }
+    const HandPath          path = draped(HandPath(std::move(flat), "line"), line.middle, cloud, index);
+    std::vector<glm::dvec3> points;
+    for (const HandPose& sample : path.samples()) points.push_back(sample.position);
+    return points;
+}
+
+double alongOf(const FeltLine& line, const glm::dvec3& place)
+{
+    return glm::dot(place - line.middle.point, line.direction);
+}
+
+/// To and fro along the line, over whatever height the surface has.
+HandPath strokingHand(const FeltLine& line, const HandScript& script, const PointCloud& cloud,
+                      const NeighbourIndex& index)
+{
+    const Frame           from  = Frame::about(line.middle.outward);
+    const glm::dvec3      north = glm::cross(from.normal, line.direction);
+    std::vector<HandPose> samples;
+    const HandPath        flat = makeHand(script, line.middle);
+    for (const HandPose& sample : flat.samples()) {
+        const glm::dvec3 d = sample.position - line.middle.point;
+        samples.push_back({sample.time, line.middle.point + glm::dot(d, from.east) * line.direction +
+                                            glm::dot(d, from.north) * north + glm::dot(d, from.normal) * from.normal});
+    }
+    return draped(HandPath(std::move(samples), "stroke"), line.middle, cloud, index);
+}
+
+FeltRange rangeOf(const std::vector<double>& along, const std::vector<double>& logarithms)
+{
+    return {largestRange(along, logarithms, std::numeric_limits<double>::infinity()),
+            largestRange(along, logarithms, kPassing)};
+}
+
+} // namespace
+
+FeltLine feltLine(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
+                  const std::optional<glm::dvec3>& direction, double reach)
+{
+    constexpr double kSteep = 0.1; // of a unit vector that remains in the surface [1]: 84 degrees from it
+    const HandPlace  middle = handPlace(scene, cloud, index);
+    if (!direction) return {middle, Frame::about(middle.outward).east, reach};
+    const double length = glm::length(*direction);
+    if (!(length > 0 && std::isfinite(length))) throw Error("the path's direction: expected a vector, found zero");
+    const glm::dvec3 wanted = *direction / length;
+    const glm::dvec3 inside = wanted - glm::dot(wanted, middle.outward) * middle.outward;
+    if (glm::length(inside) < kSteep)
+        throw Error("the path's direction: expected one along the surface, found one that leaves it; try x, y or z "
+                    "across the side that the hand comes from");
+    return {middle, glm::normalize(inside), reach};
+}
+
+std::vector<FeltPlace> windowsAlong(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings,
+                                    const FeltLine& line, int places, PlateSolver& device)
+{
+    PALP_EXPECT(places >= 2, std::to_string(places) + " places of a line");
+    PatchSettings          carried = settings;
+    std::vector<FeltPlace> result;
+    for (const glm::dvec3& place : surfaceAlong(line, cloud, index, places)) {
+        const Patch patch = deform(cloud, index, {place, line.middle.outward}, carried, device);
+        if (!patch.deformed())
+            throw Error("the points around a place of the path determine no surface; try a smaller reach");
+        carried.frame = patch.chart.frame;
+        result.push_back({alongOf(line, place), place, patch.contactStiffness, patch.compliance});
+    }
+    return result;
+}
+
+std::vector<FeltTick> strokeAlong(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene,
+                                  const FeltLine& line)
+{
+    constexpr double kSpeed   = 50e-3; // [m/s] a hand that explores
+    constexpr double kHeight  = 5e-3;  // [m] where it starts
+    constexpr double kDepth   = 0.4;   // of the thickness: a little more deflection is still within theory [1]
+    constexpr double kEngaged = 1.7;   // [s] after the first contact the force is fully on; the governor takes 1.5
+    const double     down     = std::numbers::pi * (kHeight + kDepth * scene.patch.material.thickness) / (2 * kSpeed);
+    const double     cycle    = 2 * std::numbers::pi * line.reach / kSpeed;
+    const HandScript script{.motion   = HandMotion::scan,
+                            .speed    = kSpeed,
+                            .depth    = kDepth * scene.patch.material.thickness,
+                            .radius   = line.reach,
+                            .height   = kHeight,
+                            .duration = down + kEngaged + cycle};
+
+    const HandPath        hand = strokingHand(line, script, cloud, index);
+    Deformation           deformation(cloud, index, scene);
+    HandDevice            device(hand);
+    std::vector<FeltTick> ticks;
+    double                met = std::numeric_limits<double>::infinity(); // [s]
+    runVirtual({scene, cloud, index, deformation.solver(), device, {}}, script.duration, [&](const TickRecord& s) {
+        if (s.compliance > 0) met = std::min(met, s.time);
+        const double depth = glm::length(s.proxy - s.hip), force = glm::length(s.force);
+        if (s.compliance > 0 && s.time >= met + kEngaged && depth > 0 && force > 0)
+            ticks.push_back({alongOf(line, s.proxy), force / depth});
+    });
+    if (ticks.empty()) throw Error("the stroking hand met nothing along the path; try another place or reach");
+    return ticks;
+}
+
+PointCloud homogeneous(const PointCloud& cloud)
+{
+    double sum = 0;
+    for (const double stiffness : cloud.stiffness()) sum += std::log(stiffness);
+    return {{cloud.positions().begin(), cloud.positions().end()},
+            std::vector<double>(cloud.size(), std::exp(sum / double(cloud.size()))),
+            cloud.kind()};
+}
+
+FeltRange rangeOf(const std::vector<FeltPlace>& places, ForceLaw law)
+{
+    std::vector<double> along, logarithms;
+    for (const FeltPlace& place : places) {
+        along.push_back(place.along);
+        logarithms.push_back(std::log(place.felt(law)));
+    }
+    return rangeOf(along, logarithms);
+}
+
+FeltRange rangeOf(const std::vector<FeltTick>& ticks)
+{
+    std::vector<double> along, logarithms;
+    for (const FeltTick& tick : ticks) {
+        along.push_back(tick.along);
+        logarithms.push_back(std::log(tick.stiffness));
+    }
+    return rangeOf(along, logarithms);
+}
+
+} // namespace palp::report

@@ -1,0 +1,67 @@
+#pragma once
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/pipeline/pipeline.h"
+#include "engine/session/hand_path.h"
+#include "engine/session/scene.h"
+
+namespace palp::report {
+
+/// A line over an object, along which a finger feels.
+struct FeltLine {
+    HandPlace  middle;
+    glm::dvec3 direction{1, 0, 0}; ///< [1] unit vector, perpendicular to the middle's outward direction
+    double     reach = 10e-3;      ///< to either side, measured in the plane through the middle [m]
+};
+
+/// The line through the scene's place.
+/// \param direction  roughly; empty: the chart's east there
+/// \throws Error if the direction is zero, not finite, or runs along the outward one
+[[nodiscard]] FeltLine feltLine(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
+                                const std::optional<glm::dvec3>& direction, double reach);
+
+/// What a finger at rest on a place of the line has under it.
+struct FeltPlace {
+    double     along = 0;            ///< from the middle [m]
+    glm::dvec3 place{};              ///< on the surface [m]
+    double     contactStiffness = 0; ///< k_c [N/m]
+    double     compliance       = 0; ///< c [m/N]
+
+    [[nodiscard]] double felt(ForceLaw law) const noexcept { return feltStiffness(law, contactStiffness, compliance); }
+};
+
+/// deform() about places of the line, evenly spread, with axes carried from one to the next.
+/// \param places  at least 2
+/// \throws as deform(), and Error where the points determine no surface
+[[nodiscard]] std::vector<FeltPlace> windowsAlong(const PointCloud& cloud, const NeighbourIndex& index,
+                                                  const PatchSettings& settings, const FeltLine& line, int places,
+                                                  PlateSolver& device);
+
+/// What a sliding finger is given at one tick.
+struct FeltTick {
+    double along     = 0; ///< of the proxy, from the middle [m]
+    double stiffness = 0; ///< force on the hand over its depth [N/m]
+};
+
+/// A hand that strokes once to and fro along the line, at constant depth, through all that a session has: proxy, tables
+/// at the scene's rate, hand-over, tank and governor, in virtual time. Ticks count from when the force is fully on.
+/// \throws as runVirtual(), and Error if the hand met nothing
+[[nodiscard]] std::vector<FeltTick> strokeAlong(const PointCloud& cloud, const NeighbourIndex& index,
+                                                const Scene& scene, const FeltLine& line);
+
+/// The same points with one stiffness for all: the geometric mean. What is felt on it is an artefact.
+[[nodiscard]] PointCloud homogeneous(const PointCloud& cloud);
+
+/// How far apart the stiffest and the softest place are, as a logarithm of their ratio [1].
+struct FeltRange {
+    double whole   = 0; ///< along all of the path
+    double passing = 0; ///< within kPassing: what one can compare without remembering
+};
+inline constexpr double kPassing = 5e-3; ///< about a fingertip's width [m]
+
+[[nodiscard]] FeltRange rangeOf(const std::vector<FeltPlace>& places, ForceLaw law);
+[[nodiscard]] FeltRange rangeOf(const std::vector<FeltTick>& ticks);
+
+} // namespace palp::report

@@ -1,0 +1,57 @@
+#include "engine/tools/paper/perception_figures.h"
+
+#include <array>
+
+#include <glm/geometric.hpp>
+
+#include "engine/chart/chart.h"
+#include "engine/tools/plot/cloud_view.h"
+#include "engine/tools/plot/line_plot.h"
+
+namespace palp::report {
+namespace {
+
+PlotSeries seriesOf(const std::vector<FeltTick>& ticks, const std::string& name, SeriesStyle style)
+{
+    PlotSeries series{name, {}, {}, style};
+    for (const FeltTick& tick : ticks) {
+        series.x.push_back(tick.along);
+        series.y.push_back(tick.stiffness);
+    }
+    return series;
+}
+
+} // namespace
+
+std::string pathSvg(const ScenePerception& perception, ForceLaw law, const std::string& title)
+{
+    PlotSeries rest{"finger at rest", {}, {}, SeriesStyle::markers};
+    for (const FeltPlace& place : perception.places) {
+        rest.x.push_back(place.along);
+        rest.y.push_back(place.felt(law));
+    }
+    const std::array<PlotSeries, 3> series{
+        rest, seriesOf(perception.stroke, "sliding to and fro", SeriesStyle::line),
+        seriesOf(perception.floor, "sliding, one stiffness everywhere", SeriesStyle::reference)};
+    LinePlotSettings settings;
+    settings.title = title;
+    settings.x     = {"along the path", "m", Scale::linear, {}};
+    settings.y     = {"felt stiffness", "N/m", Scale::linear, {}};
+    return linePlotSvg(series, settings);
+}
+
+std::string mapSvg(const PointCloud& cloud, const FeltMap& map, double weber, const glm::dvec3& outward,
+                   const std::string& title)
+{
+    const Frame       frame = Frame::about(outward);
+    CloudViewSettings settings;
+    settings.title     = title;
+    settings.quantity  = "right answers against the typical place";
+    settings.unit      = "";
+    settings.range     = ValueRange{0.5, 1};
+    settings.direction = -glm::normalize(0.85 * frame.normal + 0.10 * frame.east - 0.52 * frame.north);
+    settings.up        = frame.north;
+    return cloudViewSvg(cloud.positions(), detectability(map, weber), settings);
+}
+
+} // namespace palp::report

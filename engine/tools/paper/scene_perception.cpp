@@ -1,0 +1,42 @@
+#include "engine/tools/paper/scene_perception.h"
+
+namespace palp::report {
+namespace {
+
+std::array<NoticedSteps, 3> stepsOf(const FeltRange& felt, const FeltRange& artefact)
+{
+    std::array<NoticedSteps, 3> all;
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        const double weber = kWeberFractions[n];
+        all[n]             = {weber, noticeableSteps(felt.whole, weber), noticeableSteps(felt.passing, weber),
+                              noticeableSteps(artefact.whole, weber), rightAnswers(noticeableSteps(felt.whole, weber))};
+    }
+    return all;
+}
+
+} // namespace
+
+ScenePerception perceive(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index, const FeltLine& line,
+                         int places, PlateSolver& device, const std::function<void(std::size_t, std::size_t)>& onStep)
+{
+    constexpr std::size_t kStages = 4;
+    const auto            step    = [&](std::size_t done) {
+        if (onStep) onStep(done, kStages);
+    };
+    const PointCloud plain = homogeneous(cloud);
+    const ForceLaw   law   = scene.patch.forceLaw;
+    ScenePerception  result;
+    result.line   = line;
+    result.places = windowsAlong(cloud, index, scene.patch, line, places, device);
+    step(1);
+    const auto rest = windowsAlong(plain, index, scene.patch, line, places, device);
+    step(2);
+    result.stroke = strokeAlong(cloud, index, scene, line);
+    step(3);
+    result.floor   = strokeAlong(plain, index, scene, line);
+    result.atRest  = stepsOf(rangeOf(result.places, law), rangeOf(rest, law));
+    result.sliding = stepsOf(rangeOf(result.stroke), rangeOf(result.floor));
+    return result;
+}
+
+} // namespace palp::report

@@ -1,0 +1,45 @@
+#pragma once
+#include <array>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "engine/tools/paper/felt_path.h"
+#include "engine/tools/paper/perception.h"
+
+namespace palp::report {
+
+/// What one group of people would notice along a path.
+struct NoticedSteps {
+    double weber   = 0; ///< W [1]
+    double whole   = 0; ///< J between the stiffest and the softest place of the path
+    double passing = 0; ///< J within kPassing
+    double floor   = 0; ///< J of the whole path on the homogeneous object: an artefact
+    double right   = 0; ///< rightAnswers() for `whole`: stiffest and softest place side by side [1]
+};
+
+/// How much floor is allowed: half a step for the keenest finger, which it tells right in 63 of 100 trials.
+inline constexpr double kMostFloor = 0.5;
+
+/// What would be noticed along a path over a scene's object: the model's part at places at rest, and what a sliding
+/// finger is given by all of a session, beside what it is given on the same points with one stiffness.
+struct ScenePerception {
+    FeltLine                    line;
+    std::vector<FeltPlace>      places; ///< at rest
+    std::vector<FeltTick>       stroke; ///< sliding
+    std::vector<FeltTick>       floor;  ///< sliding over the homogeneous object
+    std::array<NoticedSteps, 3> atRest; ///< by kWeberFractions; `floor` is that of places at rest
+    std::array<NoticedSteps, 3> sliding;
+
+    [[nodiscard]] bool floorIsLow() const noexcept { return sliding.front().floor < kMostFloor; }
+};
+
+/// Feels the scene's object and its homogeneous twin.
+/// \param places  at rest along the path, at least 2
+/// \param onStep  (done, total) of some seconds each; may be empty
+/// \throws as windowsAlong() and strokeAlong()
+[[nodiscard]] ScenePerception perceive(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
+                                       const FeltLine& line, int places, PlateSolver& device,
+                                       const std::function<void(std::size_t, std::size_t)>& onStep = {});
+
+} // namespace palp::report

@@ -1,0 +1,82 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/enum_names.h"
+#include "engine/plate/plate_solver.h"
+
+namespace palp::report {
+
+/// What a part of the report is made of: values only, so that pages and files are written elsewhere.
+
+/// A number, or a row of them along a curve.
+struct Quantity {
+    std::string         name; ///< "linear/paper/deflection"
+    std::string         unit; ///< SI; "1" for none
+    std::vector<double> values;
+};
+
+struct Table {
+    std::string                           caption;
+    std::vector<std::string>              headings;
+    std::vector<std::vector<std::string>> rows; ///< as many cells as headings
+};
+
+struct Figure {
+    std::string caption;
+    std::string svg; ///< self-contained
+};
+
+enum class Verdict { holds, inPart, fails };
+constexpr auto namesOf(Verdict)
+{
+    using enum Verdict;
+    return std::to_array<NamedValue<Verdict>>({{holds, "holds"}, {inPart, "holds in part"}, {fails, "does not hold"}});
+}
+
+/// One claim of the paper beside our figure.
+struct Claim {
+    std::string paper; ///< what it says
+    std::string ours;  ///< our number
+    std::string how;   ///< how that is made
+    Verdict     verdict = Verdict::holds;
+    std::string words;         ///< the verdict in plain words
+    bool        timed = false; ///< our number was measured by a clock: it differs from run to run
+};
+
+struct Section {
+    char                     letter = 'a';
+    std::string              title;
+    std::vector<std::string> text; ///< paragraphs
+    std::vector<Claim>       claims;
+    std::vector<Table>       tables;
+    std::vector<Figure>      figures;
+    std::vector<Quantity>    numbers; ///< the same bits from run to run on one device
+    std::vector<Quantity>    timings; ///< measured by a clock
+
+    /// \throws Error naming it if there is none
+    [[nodiscard]] const std::vector<double>& number(std::string_view name) const;
+};
+
+/// What every part is given.
+struct ReportRun {
+    PlateSolver&                                  device;
+    bool                                          quick = false; ///< small enough for a test: less to see, more error
+    std::vector<std::string>                      timed{};  ///< devices whose time is taken, as PlateSolver wants them
+    std::function<void(std::size_t, std::size_t)> onStep{}; ///< (done, total); may be empty
+
+    void step(std::size_t done, std::size_t total) const
+    {
+        if (onStep) onStep(done, total);
+    }
+};
+
+/// "3.2 %" of a share [1]: two digits.
+[[nodiscard]] std::string percent(double share);
+/// "3.20": so many decimals.
+[[nodiscard]] std::string fixed(double value, int decimals);
+
+} // namespace palp::report

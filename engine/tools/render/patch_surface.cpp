@@ -1,0 +1,165 @@
+#include "engine/tools/render/patch_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "engine/plate/load.h"
+
+namespace palp {
+namespace {
+
+/// A point of the patch near the window's edge.
+struct Near {
+    ChartPoint at;       ///< [m]
+    glm::dvec3 residual; ///< from the fitted sphere to the surface [m]
+    double     height;   ///< of the residual along the normal [m]
+};
+
+constexpr double kFar = 4; ///< spacings beyond which there is no surface [1]
+
+std::vector<Near> alongEdge(const Patch& patch, std::span<const glm::dvec3> positions)
+{
+    const double      far = kFar * patch.spacing, width = patch.window.grid.sizeX(), height = patch.window.grid.sizeZ();
+    std::vector<Near> near;
+    const glm::dvec3& normal = patch.chart.frame.normal;
+    const ChartPoint& corner = patch.window.corner;
+    for (std::size_t n = 0; n < patch.positions.size(); ++n) {
+        const ChartPoint& p = patch.positions[n];
+        const double      x = std::min(p.x - corner.x, corner.x + width - p.x);
+        const double      z = std::min(p.z - corner.z, corner.z + height - p.z);
+        if (std::min(x, z) < -far || std::min(std::abs(x), std::abs(z)) > far) continue;
+        if (const auto on = patch.chart.lift(p)) {
+            const glm::dvec3 residual = positions[patch.points[n]] - *on;
+            near.push_back({p, residual, glm::dot(residual, normal)});
+        }
+    }
+    return near;
+}
+
+/// How far the surface lies from the fitted sphere at a place of the chart: the mean over the nearest points of the
+/// sheet on top. Empty where there is no surface.
+std::optional<glm::dvec3> residualAt(const std::vector<Near>& points, const ChartPoint& at, double spacing)
+{
+    constexpr std::size_t kMost  = 16; // points looked at [1]
+    constexpr double      kSheet = 1;  // spacings below the highest that are still the same sheet [1]
+    std::array<std::pair<double, const Near*>, kMost> near;
+    near.fill({std::numeric_limits<double>::infinity(), nullptr});
+    for (const Near& point : points) {
+        const double x = point.at.x - at.x, z = point.at.z - at.z, square = x * x + z * z;
+        if (square >= near.back().first) continue;
+        std::size_t place = kMost - 1;
+        for (; place > 0 && near[place - 1].first > square; --place) near[place] = near[place - 1];
+        near[place] = {square, &point};
+    }
+    if (!(near.back().first < kFar * kFar * spacing * spacing)) return std::nullopt;
+    double highest = -std::numeric_limits<double>::infinity(); // [m]
+    for (const auto& [square, point] : near) highest = std::max(highest, point->height);
+    glm::dvec3 sum(0);
+    double     count = 0;
+    for (const auto& [square, point] : near)
+        if (point->height >= highest - kSheet * spacing) {
+            sum += point->residual;
+            ++count;
+        }
+    return sum / count;
+}
+
+/// Once around the window's edge; parts where there is no surface are left out.
+std::vector<PatchSurface::EdgePlace> edgeOf(const Patch& patch, std::span<const glm::dvec3> positions)
+{
+    constexpr int                        kSteps = 48; // a side [1]
+    const PlateGrid&                     grid   = patch.window.grid;
+    const double                         width = grid.sizeX(), height = grid.sizeZ();
+    const ChartPoint                     corner = patch.window.corner;
+    const auto                           points = alongEdge(patch, positions);
+    std::vector<PatchSurface::EdgePlace> places;
+    bool                                 starts = true;
+    for (int n = 0; n <= 4 * kSteps; ++n) {
+        const int        side = n / kSteps % 4;
+        const double     t    = double(n % kSteps) / kSteps;
+        const double     x    = width * (side == 0 ? t : side == 1 ? 1 : side == 2 ? 1 - t : 0);
+        const double     z    = height * (side == 0 ? 0 : side == 1 ? t : side == 2 ? 1 : 1 - t);
+        const ChartPoint at{corner.x + x, corner.z + z};
+        const auto       on = patch.chart.lift(at), off = residualAt(points, at, patch.spacing);
+        if (on && off) places.push_back({*on + *off, interpolate(grid, patch.response, x, z), starts});
+        starts = !(on && off);
+    }
+    return places;
+}
+
+/// Mean rise of the surroundings over a dent's place, as view_light.frag has it for what one sees.
+class Hollows {
+public:
+    explicit Hollows(const Patch& patch, double radius) : grid_(patch.window.grid), response_(patch.response)
+    {
+        constexpr int    kTaps = 8, kMostNodes = 25; // of a spiral; along a side: the cue is smooth [1]
+        constexpr double kWider = 3.5;               // a second look finds dents that are wide and shallow [1]
+        const double     turn   = std::numbers::pi * (3 - std::sqrt(5.0));
+        for (const double reach : {radius, kWider * radius})
+            for (int n = 0; n < kTaps; ++n) {
+                const double distance = reach * std::sqrt((n + 0.5) / kTaps);
+                taps_.push_back({distance * std::cos(n * turn), distance * std::sin(n * turn),
+                                 1 / (kTaps * (distance + 0.1 * reach))});
+            }
+        const int cells = std::min(grid_.cellsX, kMostNodes - 1);
+        coarse_         = {cells, cells, grid_.sizeX() / cells, grid_.sizeZ() / cells};
+        field_          = NodeField(coarse_);
+        for (int i = 0; i < coarse_.nodesX(); ++i)
+            for (int j = 0; j < coarse_.nodesZ(); ++j) field_(i, j) = at(i * coarse_.spacingX, j * coarse_.spacingZ);
+    }
+    /// \param x, z  from the window's corner, in the window [m]  \return [1/N]
+    [[nodiscard]] double of(double x, double z) const { return interpolate(coarse_, field_, x, z); }
+
+private:
+    struct Tap {
+        double x, z, weight; // [m], [m], [1/m]
+    };
+    [[nodiscard]] double at(double x, double z) const
+    {
+        const double own = interpolate(grid_, response_, x, z);
+        double       sum = 0;
+        for (const Tap& tap : taps_)
+            sum += tap.weight * (own - interpolate(grid_, response_, std::clamp(x + tap.x, 0.0, grid_.sizeX()),
+                                                   std::clamp(z + tap.z, 0.0, grid_.sizeZ())));
+        return sum;
+    }
+
+    const PlateGrid& grid_;
+    const NodeField& response_;
+    std::vector<Tap> taps_;
+    PlateGrid        coarse_;
+    NodeField        field_;
+};
+
+} // namespace
+
+PatchSurface::PatchSurface(const Patch& patch, std::span<const glm::dvec3> positions, double cueRadius)
+    : edge(edgeOf(patch, positions)), mostResponse(*std::ranges::max_element(patch.response.values())),
+      inward(patch.forceDirection())
+{
+    // Of the largest response: below the first nothing shows, below the second no slope.
+    constexpr double kNotable = 1e-3, kSlopes = 1e-2; // [1]
+    const Hollows    hollowness(patch, cueRadius);
+    const auto       add = [&](double least, double most) {
+        for (std::size_t n = 0; n < patch.points.size(); ++n) {
+            const double size = std::abs(patch.pointResponse[n]);
+            if (!(size > least * mostResponse && size <= most * mostResponse)) continue;
+            moving.push_back(patch.points[n]);
+            responses.push_back(patch.pointResponse[n]);
+            hollows.push_back(hollowness.of(patch.positions[n].x - patch.window.corner.x,
+                                                  patch.positions[n].z - patch.window.corner.z));
+        }
+    };
+    add(kSlopes, std::numeric_limits<double>::infinity());
+    sloping = moving.size();
+    add(kNotable, kSlopes);
+}
+
+} // namespace palp

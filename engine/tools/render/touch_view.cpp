@@ -1,0 +1,224 @@
+#include "engine/tools/render/touch_view.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "engine/tools/render/rest_relief.h"
+
+namespace palp {
+namespace {
+
+/// Shares of the window: large enough to be seen, small enough to leave the dent free [1].
+constexpr double kArrow = 0.006, kOutline = 0.0016, kCue = 0.07;
+
+constexpr double kDot = 0.22; ///< radius of a dot, of the point's core [1]
+
+/// Circles and spokes of the near half of the fitted sphere, as far as a window's edge reaches.
+std::vector<ViewSegment> linesOf(const Chart& chart, double window)
+{
+    constexpr int    kCircles = 6, kSpokes = 12, kAround = 48, kAlong = 12; // [1]
+    constexpr double kQuarter = std::numbers::pi / 2, kTurn = 2 * std::numbers::pi;
+    const double     k = chart.curvature;                                                     // [1/m] signed
+    const double most  = std::min(window, std::abs(k) > 0 ? kQuarter / std::abs(k) : window); // along the surface [m]
+    const auto   at    = [&](double s, double angle) {
+        const double     t      = s * k; // as seen from the centre [rad]
+        const double     aside  = std::abs(t) > 1e-4 ? std::sin(t) / k : s;
+        const double     sinks  = std::abs(t) > 1e-4 ? (1 - std::cos(t)) / k : s * t / 2;
+        const glm::dvec3 radial = std::cos(angle) * chart.frame.east + std::sin(angle) * chart.frame.north;
+        return chart.origin + aside * radial - sinks * chart.frame.normal;
+    };
+    std::vector<ViewSegment> lines;
+    for (int c = 1; c <= kCircles; ++c)
+        for (int n = 0; n < kAround; ++n)
+            lines.push_back(
+                {at(most * c / kCircles, kTurn * n / kAround), at(most * c / kCircles, kTurn * (n + 1) / kAround)});
+    for (int s = 0; s < kSpokes; ++s)
+        for (int n = 0; n < kAlong; ++n)
+            lines.push_back(
+                {at(most * n / kAlong, kTurn * s / kSpokes), at(most * (n + 1) / kAlong, kTurn * s / kSpokes)});
+    return lines;
+}
+
+} // namespace
+
+TouchView::TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings,
+                     std::span<const Triangle> faces)
+    : cloud_(cloud), settings_(settings), spacing_(index.spacing()), faces_(faces), skin_(cloud.positions(), index),
+      restNormals_(skin_.normals(cloud.positions())), oneSided_(skin_.turnOutwards(cloud.positions(), restNormals_)),
+      normals_(restNormals_), positions_(cloud.positions().begin(), cloud.positions().end()),
+      deflections_(cloud.size()), stiffness_(cloud.stiffness())
+{
+    findRelief();
+}
+
+void TouchView::findRelief()
+{
+    // Each point sees it in the noise of its own normal.
+    relief_  = skin_.smoothed(restRelief(cloud_.positions(), restNormals_, spacing_, kCue * settings_.window));
+    hollows_ = relief_;
+}
+
+void TouchView::use(const PatchSettings& settings)
+{
+    const bool sameReach = settings.window == settings_.window;
+    settings_            = settings;
+    if (!sameReach) findRelief();
+}
+
+void TouchView::take(const Patch* patch)
+{
+    const auto same = [this](const Patch& now) {
+        return now.contact.point == shown_.contact && now.compliance == shown_.compliance &&
+               now.points.size() == shown_.points;
+    };
+    if (patch ? same(*patch) : shown_.points == 0) return;
+    surface_ = patch ? PatchSurface(*patch, cloud_.positions(), kCue * settings_.window) : PatchSurface();
+    shown_   = patch ? Shown{patch->contact.point, patch->compliance, patch->points.size()} : Shown{};
+}
+
+void TouchView::bend(double force, double exaggeration)
+{
+    for (const std::uint32_t n : moved_) {
+        positions_[n]   = cloud_.positions()[n];
+        normals_[n]     = restNormals_[n];
+        deflections_[n] = 0;
+        hollows_[n]     = relief_[n];
+    }
+    moved_ = surface_.moving;
+    for (std::size_t i = 0; i < moved_.size(); ++i) {
+        const std::uint32_t n = moved_[i];
+        deflections_[n]       = force * surface_.responses[i];
+        positions_[n] += exaggeration * deflections_[n] * surface_.inward;
+        const double side = glm::dot(restNormals_[n], surface_.inward) < 0 ? 1 : -1; // normals have either side
+        hollows_[n]       = relief_[n] + side * exaggeration * force * surface_.hollows[i];
+    }
+    skin_.refit(positions_, std::span(moved_).first(surface_.sloping), normals_);
+}
+
+void TouchView::paint(double force, const TouchLook& look)
+{
+    scene_.positions = positions_;
+    scene_.normals   = normals_;
+    scene_.radii     = skin_.radii();
+    scene_.cores     = skin_.cores();
+    scene_.hollows   = hollows_;
+    scene_.oneSided  = oneSided_;
+    scene_.ground    = look.ground;
+    if (look.paint == ViewPaint::deflection) {
+        const double most = look.deepest > 0 ? look.deepest : std::abs(force) * surface_.mostResponse;
+        scene_.values     = deflections_;
+        scene_.colours    = {look.map, Scale::linear, {0, most > 0 ? most : 1e-3}, "deflection", "m"};
+    } else if (look.paint == ViewPaint::stiffness) {
+        constexpr double kWide = 5; // from such a ratio on a linear scale hides the soft end [1]
+        const auto       range = rangeOf(stiffness_, Scale::logarithmic).value_or(ValueRange{});
+        const Scale      scale = range.high > kWide * range.low ? Scale::logarithmic : Scale::linear;
+        scene_.values          = stiffness_;
+        if (cloud_.kind() == StiffnessKind::modulus)
+            scene_.colours = {look.map, scale, widened(range, scale), "Young's modulus", "Pa"};
+        else
+            scene_.colours = {look.map, scale, widened(range, scale), "rigidity", "N m"};
+    }
+}
+
+void TouchView::addHand(const Patch& patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand)
+{
+    constexpr double kLongest = 0.22, kNormal = 1.35; // of the window; of the force's arrow [1]
+    const glm::dvec3 inward = patch.forceDirection();
+    const PlateGrid& grid   = patch.window.grid;
+    const double     dent   = force * patch.response(grid.cellsX / 2, grid.cellsZ / 2);
+    const glm::dvec3 point  = hand && hand->proxy ? *hand->proxy : patch.contact.point;
+    const double     felt   = patch.feltStiffness;
+    const glm::dvec3 proxy  = point + look.exaggeration * dent * inward;
+    if (look.overlays.markers) {
+        scene_.proxy = proxy;
+        // What is drawn deeper than it is takes the hand along.
+        const glm::dvec3 deeper = (look.exaggeration - 1) * dent * inward;
+        scene_.hip = hand ? hand->hip + deeper : point + look.exaggeration * (felt > 0 ? force / felt : dent) * inward;
+    }
+    if (!look.overlays.arrows) return;
+    const double     strongest = look.strongest > 0 ? look.strongest : std::abs(force);
+    const double     longest   = kLongest * settings_.window;
+    const double     length    = strongest > 0 ? longest * std::min(1.0, std::abs(force) / strongest) : 0;
+    const glm::dvec3 against   = hand && glm::length(hand->force) > 0 ? glm::normalize(hand->force) : -inward;
+    scene_.force               = ViewSegment{proxy, proxy + length * against};
+    scene_.normal              = ViewSegment{proxy, proxy - kNormal * longest * inward};
+}
+
+void TouchView::addOutline(double force, double exaggeration)
+{
+    const auto placeOf = [&](const PatchSurface::EdgePlace& e) {
+        return e.rest + exaggeration * force * e.response * surface_.inward;
+    };
+    for (std::size_t n = 1; n < surface_.edge.size(); ++n)
+        if (!surface_.edge[n].starts)
+            scene_.outline.push_back({placeOf(surface_.edge[n - 1]), placeOf(surface_.edge[n])});
+}
+
+/// What a fit and a chart made of the points.
+void TouchView::addFit(const Patch& patch, const Overlays& overlays)
+{
+    if (overlays.sphere) scene_.sphere = linesOf(patch.chart, settings_.window);
+    if (overlays.projected)
+        for (std::size_t n = 0; n < patch.points.size(); ++n)
+            if (const auto on =
+                    patch.window.holds(patch.positions[n]) ? patch.chart.lift(patch.positions[n]) : std::nullopt)
+                scene_.dots.push_back({*on, kDot * skin_.cores()[patch.points[n]], kProjectedColour});
+}
+
+void TouchView::addGhost(Ground ground)
+{
+    constexpr double kNotable = 0.05; // of the deepest: below it a dot lies in the surface [1]
+    for (std::size_t i = 0; i < surface_.moving.size(); ++i) {
+        const std::uint32_t n = surface_.moving[i];
+        if (std::abs(surface_.responses[i]) > kNotable * surface_.mostResponse)
+            scene_.dots.push_back({cloud_.positions()[n], kDot * skin_.cores()[n], inkOn(ground)});
+    }
+}
+
+void TouchView::show(const Patch* patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand)
+{
+    constexpr double kMarker = 0.45; // of the fingertip [1]
+    take(patch);
+    bend(force, look.exaggeration);
+    scene_               = {};
+    scene_.markerRadius  = std::min(kMarker * settings_.footprintRadius, 0.025 * settings_.window);
+    scene_.arrowRadius   = kArrow * settings_.window;
+    scene_.outlineRadius = kOutline * settings_.window;
+    scene_.cueRadius     = kCue * settings_.window;
+    scene_.faces         = faces_;
+    paint(force, look);
+    if (patch) {
+        addHand(*patch, force, look, hand);
+        if (look.overlays.outline) addOutline(force, look.exaggeration);
+        addFit(*patch, look.overlays);
+        if (look.overlays.ghost) addGhost(look.ground);
+    } else if (hand && look.overlays.markers) {
+        scene_.hip   = hand->hip;
+        scene_.proxy = hand->proxy;
+    }
+}
+
+Camera cameraAt(const Patch& patch, double aspect)
+{
+    constexpr double kAround = 0.62; // radius of what must be seen, of the window's edge [1]
+    const Frame&     frame   = patch.chart.frame;
+    Camera           camera;
+    camera.up    = frame.normal;
+    camera.toEye = glm::normalize(0.62 * frame.normal + 0.30 * frame.east - 0.72 * frame.north);
+    return framed(camera, patch.contact.point, kAround * patch.window.grid.sizeX(), aspect);
+}
+
+double forceThatShows(const Patch& patch, double thickness)
+{
+    const double most   = *std::ranges::max_element(patch.response.values()); // [m/N]
+    const double force  = thickness / (3 * most);
+    const double decade = std::pow(10.0, std::floor(std::log10(force)) - 1);
+    return std::round(force / decade) * decade;
+}
+
+} // namespace palp

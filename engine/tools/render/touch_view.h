@@ -1,0 +1,124 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "engine/core/enum_names.h"
+#include "engine/pipeline/pipeline.h"
+#include "engine/tools/render/camera.h"
+#include "engine/tools/render/cloud_skin.h"
+#include "engine/tools/render/patch_surface.h"
+#include "engine/tools/render/view_scene.h"
+
+namespace palp {
+
+enum class ViewPaint {
+    deflection, ///< into the surface [m]
+    stiffness,  ///< the cloud's own, modulus or rigidity
+    plain       ///< one colour
+};
+constexpr auto namesOf(ViewPaint)
+{
+    using enum ViewPaint;
+    return std::to_array<NamedValue<ViewPaint>>(
+        {{deflection, "deflection"}, {stiffness, "stiffness"}, {plain, "plain"}});
+}
+
+/// What else may be shown of a touch.
+struct Overlays {
+    bool outline   = true;  ///< of the patch
+    bool arrows    = true;  ///< force and normal
+    bool markers   = true;  ///< proxy and HIP
+    bool ghost     = false; ///< dots where the dent's points are at rest
+    bool sphere    = false; ///< the near half of the fitted sphere
+    bool projected = false; ///< dots where the patch's points lie on that sphere
+};
+
+/// How a touch is shown.
+struct TouchLook {
+    ViewPaint paint        = ViewPaint::deflection;
+    ColourMap map          = ColourMap::viridis;
+    Ground    ground       = Ground::light;
+    double    exaggeration = 1; ///< factor on every displacement [1]
+    double    deepest      = 0; ///< end of the colours of deflections [m]; 0: this touch's own
+    double    strongest    = 0; ///< force whose arrow has the full length [N]; 0: this touch's own
+    Overlays  overlays{};
+};
+
+/// Where hand and proxy are, in place of where a hand at rest would have them.
+struct TouchHand {
+    glm::dvec3                hip{};   ///< [m]
+    glm::dvec3                force{}; ///< on the hand [N]
+    std::optional<glm::dvec3> proxy{}; ///< on the surface at rest [m]; empty: where the patch's contact is
+};
+
+/// A cloud and a touch of it as a scene to draw.
+class TouchView {
+public:
+    /// \param cloud     outlives the view  \param index  of the cloud
+    /// \param settings  of the touches: shapes measure a share of their window and fingertip
+    /// \throws as CloudSkin
+    /// \param faces     of the cloud, outlive the view; empty: it has none
+    TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings,
+              std::span<const Triangle> faces = {});
+
+    /// Other stiffnesses of the same points from now on. \param stiffness  outlives their use [Pa] or [N m]
+    void repaint(std::span<const double> stiffness) { stiffness_ = stiffness; }
+
+    /// The cloud under a force, or at rest without a patch.
+    /// \param patch  of the cloud, deformed; may be null
+    /// \param force  that presses [N]
+    /// \param hand   empty: at rest, where the force is that of the hand's depth
+    void show(const Patch* patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand = {});
+
+    /// Other settings of the same cloud from now on.
+    void use(const PatchSettings& settings);
+
+    /// Those of closed objects point outwards [1].
+    [[nodiscard]] std::span<const glm::dvec3> restNormals() const noexcept { return restNormals_; }
+    [[nodiscard]] std::span<const double>     radii() const noexcept { return skin_.cores(); } ///< of closed discs [m]
+
+    /// Valid until the next show(); title and note are the caller's to set.
+    [[nodiscard]] ViewScene& scene() noexcept { return scene_; }
+
+private:
+    /// What tells the patch that was shown last from others.
+    struct Shown {
+        glm::dvec3  contact{};      ///< [m]
+        double      compliance = 0; ///< [m/N]
+        std::size_t points     = 0; ///< [1]; 0: none was
+    };
+    void findRelief();
+    void take(const Patch* patch);
+    void bend(double force, double exaggeration);
+    void paint(double force, const TouchLook& look);
+    void addHand(const Patch& patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand);
+    void addOutline(double force, double exaggeration);
+    void addFit(const Patch& patch, const Overlays& overlays);
+    void addGhost(Ground ground);
+
+    const PointCloud&         cloud_;
+    PatchSettings             settings_;
+    double                    spacing_; // of the cloud [m]
+    std::span<const Triangle> faces_;
+    CloudSkin                 skin_;
+    std::vector<glm::dvec3>   restNormals_; // [1]
+    std::vector<std::uint8_t> oneSided_;
+    std::vector<glm::dvec3>   normals_, positions_;   // [1], [m]
+    std::vector<double>       relief_;                // at rest [1]
+    std::vector<double>       deflections_, hollows_; // [m], [1]
+    std::span<const double>   stiffness_;             // [Pa] or [N m]
+
+    Shown                      shown_;
+    PatchSurface               surface_; // of that patch
+    std::vector<std::uint32_t> moved_;   // points that are not at rest in positions_
+    ViewScene                  scene_;
+};
+
+/// Looks obliquely at the contact from outside so that the dent shows its depth; the patch fills the picture.
+[[nodiscard]] Camera cameraAt(const Patch& patch, double aspect);
+
+/// A round force under which the patch dents by about a third of a thickness: deep enough to be seen, within theory.
+/// [N]
+[[nodiscard]] double forceThatShows(const Patch& patch, double thickness);
+
+} // namespace palp

@@ -1,0 +1,38 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "engine/compute/vulkan_handles.h"
+
+// Internal to engine/tools/render; in builds with Dear ImGui.
+
+namespace palp {
+
+/// Draws the panels of the current ImGui context over a picture: the only file that knows ImGui's Vulkan back end.
+/// \thread one
+class VulkanPanels {
+public:
+    /// \param pass  that panels are drawn in
+    VulkanPanels(compute::VulkanContext& context, VkRenderPass pass);
+    ~VulkanPanels();
+    VulkanPanels(const VulkanPanels&)            = delete;
+    VulkanPanels& operator=(const VulkanPanels&) = delete;
+
+    /// What ImGui::Render() has left, into the pass that is being recorded.
+    void record(VkCommandBuffer commands) const;
+
+    /// Squares of shared::kTile of a picture that it covers, as Overlay::tiles has them.
+    [[nodiscard]] static std::vector<std::uint32_t> tiles();
+    [[nodiscard]] static VkExtent2D                 size(); ///< of that picture [px]
+
+    /// The font's pictures have been made anew since one of these has taken them.
+    [[nodiscard]] static bool fontHasChanged();
+
+private:
+    void uploadFont();
+
+    compute::VulkanContext&                                   context_;
+    compute::Owned<VkDescriptorPool, vkDestroyDescriptorPool> sets_;
+};
+
+} // namespace palp

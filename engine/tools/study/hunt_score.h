@@ -1,0 +1,103 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/chart/chart.h"
+#include "engine/cloud/neighbour_index.h"
+#include "engine/session/scene.h"
+#include "engine/session/tick_record.h"
+
+namespace palp::study {
+
+/// A place that the hand said hides something, by a button.
+struct Declaration {
+    static constexpr int kNone = -1;
+
+    double     time = 0;         ///< [s] since the hunt's start
+    glm::dvec3 place{};          ///< [m] of the contact
+    int        nodule   = kNone; ///< that it has found, from 0; kNone: a false alarm
+    double     distance = 0;     ///< [m] from the middle of the nearest nodule
+    bool       again    = false; ///< it was found before
+};
+
+/// How one nodule fared.
+struct NoduleScore {
+    Nodule nodule;
+    bool   found    = false;
+    double time     = 0; ///< of its find [s]
+    double distance = 0; ///< of that declaration from its middle [m]
+    double edge     = 0; ///< share of its circumference that was traced [1]
+};
+
+/// How a hunt went.
+struct HuntScore {
+    std::vector<NoduleScore>             nodules;
+    std::vector<Declaration>             declarations;
+    std::size_t                          found = 0, falseAlarms = 0, inAir = 0, unkept = 0; ///< [1]
+    double                               duration = 0, contact = 0; ///< [s] of the session, in contact
+    double                               meanForce = 0;             ///< over the time in contact [N]
+    double                               peakForce = 0;             ///< [N]
+    double                               impulse   = 0; ///< of the force's magnitude over all of the time [N s]
+    double                               tooHard   = 0; ///< share of the time in contact above the hunt's limit [1]
+    double                               coverage  = 0; ///< share of the ground that came under the fingertip [1]
+    double                               mark      = 0; ///< 2 found / (nodules + finds + false alarms) [1]
+    std::vector<std::vector<glm::dvec3>> path;          ///< [m] of the contact, thinned; a piece per touch
+
+    /// The formula of `mark`, to stand beside it. \source Dice 1945, Sorensen 1948: here of finds and nodules
+    static constexpr const char* kMarkFormula = "2 found / (nodules + found + false alarms)";
+};
+
+/// Scores a hunt while it goes on.
+///
+/// A button, whichever, that is held for ForceHalf::kPressTicks declares the place where the contact was when it went
+/// down; not while the governor has stopped the force, where a button is its operator's. It finds the nearest nodule if
+/// the fingertip touches that: a distance of at most its radius and a footprint's. An edge is traced in sectors of 10
+/// degrees, where the contact goes within max(r/4, footprint/2) of the radius r at the hunt's press force or more. The
+/// ground counts as covered within a footprint's radius of a contact that presses as much.
+/// \thread one; add() may allocate
+class HuntScorer {
+public:
+    static constexpr int kSectors = 36; ///< of a nodule's circumference [1]
+
+    /// \param cloud  as loadCloud() gives it \throws Error if nothing is hidden in the scene
+    HuntScorer(const Scene& scene, const PointCloud& cloud);
+
+    /// The next tick; a time that goes back begins another session of the same hunt.
+    void add(const TickRecord& sample);
+
+    [[nodiscard]] HuntScore score() const;
+
+private:
+    struct Edge {
+        Frame         frame;      ///< in the surface, at the middle
+        std::uint64_t traced = 0; ///< bit k: sector k
+        bool          known  = false;
+    };
+
+    void press(const TickRecord& sample, double now);
+    void declare(double time, const glm::dvec3& place);
+    void trace(const TickRecord& sample);
+    void cover(const glm::dvec3& place);
+    void draw(const TickRecord& sample);
+
+    Hunt                       hunt_;
+    double                     footprint_; ///< radius [m]
+    std::vector<Edge>          edges_;
+    std::vector<glm::dvec3>    ground_; ///< [m]
+    NeighbourIndex             index_;  ///< of the ground
+    std::vector<bool>          covered_;
+    std::vector<std::uint32_t> near_;
+    HuntScore                  score_;
+    double                     begun_ = 0, last_ = -1, tooHard_ = 0; ///< [s] of earlier sessions, of the last sample
+    int                        held_            = 0;                 ///< ticks of a button [1]
+    double                     pressedAt_       = 0;                 ///< [s]
+    bool                       pressedTouching_ = false, touching_ = false;
+    glm::dvec3                 pressedOn_{}, coveredAt_{}; ///< [m]
+    bool                       coveredAny_ = false;
+    std::size_t                drawn_      = 0; ///< places of the path [1]
+};
+
+} // namespace palp::study

@@ -1,0 +1,184 @@
+#include "engine/tools/study/study_analysis.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "engine/core/contract.h"
+#include "engine/core/uniform.h"
+#include "engine/tools/paper/perception.h"
+#include "engine/tools/plot/colour_map.h"
+#include "engine/tools/plot/legend.h"
+#include "engine/tools/plot/svg.h"
+
+namespace palp::study {
+namespace {
+
+constexpr double kZ = 1.959963984540054; ///< the normal's 97.5 % [1]
+
+/// Ratings of one participant.
+struct Rated {
+    double      sum = 0;
+    std::size_t n   = 0;
+};
+
+/// Everything about one condition in one task.
+struct Group {
+    AnswerSummary                summary;
+    std::vector<double>          ratings;
+    std::map<std::string, Rated> byParticipant;
+    std::set<std::string>        participants;
+    std::string                  first, second; ///< conditions
+};
+
+std::string whatOf(const TrialRow& row)
+{
+    return row.second.empty() ? row.first : std::min(row.first, row.second) + " / " + std::max(row.first, row.second);
+}
+
+void count(Share& share, bool yes)
+{
+    share.k += yes;
+    ++share.n;
+}
+
+void add(Group& group, const TrialRow& row)
+{
+    AnswerSummary& s = group.summary;
+    group.participants.insert(row.participant);
+    if (row.correct) {
+        if (!s.right) s.right.emplace();
+        count(*s.right, *row.correct);
+    }
+    if (row.kind == "rating") {
+        const double rating = row.answer.size() == 1 ? row.answer[0] - '0' : 0;
+        if (!(rating >= 1 && rating <= 5))
+            throw Error("trial " + std::to_string(row.trial) + " of " + row.participant +
+                        ": expected a rating from 1 to 5, found \"" + row.answer + "\"");
+        group.ratings.push_back(rating);
+        Rated& own = group.byParticipant[row.participant];
+        own.sum += rating, ++own.n;
+        count(s.share, rating >= 4);
+    } else if (row.kind == "yes-no") {
+        count(s.share, row.answer == "yes");
+    } else {
+        count(s.share, row.correct ? *row.correct : row.answer == "first");
+    }
+}
+
+Interval bootstrap(const std::map<std::string, Rated>& byParticipant)
+{
+    constexpr int      kSamples = 2000;
+    std::vector<Rated> all;
+    for (const auto& [name, rated] : byParticipant) all.push_back(rated);
+    Uniform             random(1);
+    std::vector<double> means;
+    for (int k = 0; k < kSamples; ++k) {
+        Rated sample;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const Rated& one = all[std::min(std::size_t(random() * double(all.size())), all.size() - 1)];
+            sample.sum += one.sum, sample.n += one.n;
+        }
+        means.push_back(sample.sum / double(sample.n));
+    }
+    std::ranges::sort(means);
+    return {means[kSamples / 40], means[kSamples - 1 - kSamples / 40]};
+}
+
+double medianOf(std::vector<double> values)
+{
+    std::ranges::sort(values);
+    return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
+AnswerSummary finished(const Group& group, const Stiffnesses& stiffnesses)
+{
+    AnswerSummary s = group.summary;
+    s.participants  = group.participants.size();
+    if (!group.ratings.empty()) {
+        double sum = 0;
+        for (const double rating : group.ratings) sum += rating;
+        s.mean   = sum / double(group.ratings.size());
+        s.median = medianOf(group.ratings);
+        if (s.participants > 1) s.meanInterval = bootstrap(group.byParticipant);
+    }
+    const auto a = stiffnesses.find(group.first), b = stiffnesses.find(group.second);
+    if (!group.second.empty() && s.right && a != stiffnesses.end() && b != stiffnesses.end()) {
+        s.steps     = report::noticeableSteps(a->second, b->second, report::kWeberFractions.front());
+        s.predicted = report::rightAnswers(*s.steps);
+    }
+    return s;
+}
+
+const char* shareOf(const AnswerSummary& s)
+{
+    if (s.kind == "rating") return "rated 4 or 5";
+    if (s.kind == "yes-no") return "yes";
+    return s.right ? "right" : "the first";
+}
+
+} // namespace
+
+Interval wilsonInterval(std::size_t k, std::size_t n)
+{
+    PALP_EXPECT(n >= 1 && k <= n, "found " + std::to_string(k) + " of " + std::to_string(n));
+    const double p = double(k) / double(n), z2 = kZ * kZ / double(n), middle = (p + z2 / 2) / (1 + z2);
+    const double half = kZ / (1 + z2) * std::sqrt(p * (1 - p) / double(n) + z2 / (4 * double(n)));
+    return {k == 0 ? 0 : middle - half, k == n ? 1 : middle + half};
+}
+
+std::vector<AnswerSummary> analyse(const std::vector<TrialRow>& rows, const Stiffnesses& stiffnesses)
+{
+    std::vector<Group> groups;
+    for (const TrialRow& row : rows) {
+        const std::string what  = whatOf(row);
+        auto              group = std::ranges::find_if(
+                         groups, [&](const Group& g) { return g.summary.task == row.task && g.summary.what == what; });
+        if (group == groups.end()) {
+            group                   = groups.emplace(groups.end());
+            group->summary.task     = row.task;
+            group->summary.kind     = row.kind;
+            group->summary.question = row.question;
+            group->summary.what     = what;
+            group->first            = row.first;
+            group->second           = row.second;
+        }
+        add(*group, row);
+    }
+    std::vector<AnswerSummary> summaries;
+    for (const Group& group : groups) summaries.push_back(finished(group, stiffnesses));
+    return summaries;
+}
+
+std::string analysisSvg(const std::vector<AnswerSummary>& summaries)
+{
+    constexpr double  kLeft = 330, kWidth = 400, kRow = 26, kTop = 66, kSymbol = 5; // [px]
+    const std::string ink = hexColour(kNamedColours[0]), other = hexColour(kNamedColours[1]);
+    const auto        x   = [&](double share) { return kLeft + kWidth * share; };
+    const double      end = kTop + kRow * double(summaries.size());
+    SvgDrawing        svg;
+    svg.text({14, 25}, "Share of answers, with 95 % intervals (Wilson)", {.size = 15, .bold = true});
+    const auto dot = [&](Symbol symbol, const std::string& colour) {
+        return [=](SvgDrawing& drawing, glm::dvec2 at) { drawSymbol(drawing, symbol, at, kSymbol, colour); };
+    };
+    drawLegend(svg,
+               {{"answered", dot(Symbol::circle, ink)}, {"predicted for pairs, W = 0.07", dot(Symbol::diamond, other)}},
+               {14, 36}, 600);
+    for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+        svg.line({x(share), kTop}, {x(share), end}, {"#e4e4e4", 1});
+        svg.text({x(share), end + 18}, std::to_string(int(100 * share)), {.anchor = Anchor::middle});
+    }
+    double y = kTop + kRow / 2;
+    for (const AnswerSummary& s : summaries) {
+        const Interval between = s.share.interval();
+        svg.text({kLeft - 12, y + 4}, s.task + ", " + s.what + ": " + shareOf(s), {.anchor = Anchor::end});
+        svg.line({x(between.low), y}, {x(between.high), y}, {ink, 2});
+        if (s.predicted) drawSymbol(svg, Symbol::diamond, {x(*s.predicted), y}, kSymbol, other);
+        drawSymbol(svg, Symbol::circle, {x(s.share.value()), y}, kSymbol, ink);
+        y += kRow;
+    }
+    svg.text({x(0.5), end + 38}, "share of trials [%]", {.size = 13, .anchor = Anchor::middle});
+    return svg.finish({kLeft + kWidth + 24, end + 52}, "Share of answers");
+}
+
+} // namespace palp::study

@@ -1,0 +1,206 @@
+#include "engine/tools/study/trial_table.h"
+
+#include <cerrno>
+#include <cstring>
+#include <functional>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "engine/cloud/tokens.h"
+#include "engine/core/contract.h"
+#include "engine/core/file.h"
+
+namespace palp::study {
+namespace {
+
+constexpr std::size_t kLargestFile = std::size_t(64) << 20; ///< [bytes] of a table: 100 000 trials
+
+struct Column {
+    const char* name;
+    std::string (*write)(const TrialRow&);
+    /// False: it is no such value.
+    bool (*read)(TrialRow&, const std::string&);
+};
+
+template <std::string TrialRow::*member>
+constexpr Column textColumn(const char* name)
+{
+    return {name, [](const TrialRow& r) { return r.*member; },
+            [](TrialRow& r, const std::string& text) {
+                r.*member = text;
+                return true;
+            }};
+}
+template <std::uint64_t TrialRow::*member>
+constexpr Column countColumn(const char* name)
+{
+    return {name, [](const TrialRow& r) { return std::to_string(r.*member); },
+            [](TrialRow& r, const std::string& text) {
+                const auto value = parseCount(text);
+                r.*member        = value.value_or(0);
+                return value.has_value();
+            }};
+}
+template <double TrialRow::*member>
+constexpr Column numberColumn(const char* name)
+{
+    return {name, [](const TrialRow& r) { return shown(r.*member); },
+            [](TrialRow& r, const std::string& text) {
+                const auto value = parseNumber(text);
+                r.*member        = value.value_or(0);
+                return value.has_value();
+            }};
+}
+
+std::string correctText(const TrialRow& row)
+{
+    return !row.correct ? "" : *row.correct ? "1" : "0";
+}
+bool readCorrect(TrialRow& row, const std::string& text)
+{
+    if (text == "0" || text == "1") row.correct = text == "1";
+    return text.empty() || row.correct;
+}
+
+/// The only list of columns: header, rows and the reader walk it.
+constexpr Column kColumns[] = {
+    textColumn<&TrialRow::participant>("participant"),
+    countColumn<&TrialRow::trial>("trial"),
+    countColumn<&TrialRow::block>("block"),
+    textColumn<&TrialRow::task>("task"),
+    textColumn<&TrialRow::kind>("kind"),
+    textColumn<&TrialRow::first>("condition"),
+    textColumn<&TrialRow::second>("condition_second"),
+    textColumn<&TrialRow::question>("question"),
+    textColumn<&TrialRow::answer>("answer"),
+    {"correct", correctText, readCorrect},
+    numberColumn<&TrialRow::reactionTime>("reaction_time_s"),
+    countColumn<&TrialRow::seed>("seed"),
+    textColumn<&TrialRow::firstSession>("session"),
+    textColumn<&TrialRow::secondSession>("session_second"),
+    numberColumn<&TrialRow::meanForce>("force_mean_N"),
+    numberColumn<&TrialRow::peakForce>("force_peak_N"),
+    textColumn<&TrialRow::version>("version"),
+};
+
+std::string quoted(const std::string& text)
+{
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string result = "\"";
+    for (const char c : text) result.append(c == '"' ? 2 : 1, c);
+    return result + "\"";
+}
+
+std::string line(const std::function<std::string(const Column&)>& cell)
+{
+    std::string text;
+    for (const Column& column : kColumns) {
+        if (!text.empty() || &column != kColumns) text += ',';
+        text += quoted(cell(column));
+    }
+    return text + "\n";
+}
+
+std::string header()
+{
+    return line([](const Column& column) { return std::string(column.name); });
+}
+
+/// The cells of a line; no cell holds the end of one.
+std::vector<std::string> cellsOf(std::string_view text)
+{
+    std::vector<std::string> cells(1);
+    bool                     within = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == '"' && within && i + 1 < text.size() && text[i + 1] == '"')
+            cells.back() += text[++i];
+        else if (c == '"')
+            within = !within;
+        else if (c == ',' && !within)
+            cells.emplace_back();
+        else
+            cells.back() += c;
+    }
+    return cells;
+}
+
+TrialRow rowOf(std::string_view text, const std::string& where)
+{
+    const auto cells = cellsOf(text);
+    if (cells.size() != std::size(kColumns))
+        throw Error(where + ": expected " + std::to_string(std::size(kColumns)) + " columns, found " +
+                    std::to_string(cells.size()) + "; was the table changed by another program?");
+    TrialRow row;
+    for (std::size_t k = 0; k < cells.size(); ++k)
+        if (!kColumns[k].read(row, cells[k]))
+            throw Error(where + ": column " + kColumns[k].name + ": expected a number, found \"" + cells[k] + "\"");
+    return row;
+}
+
+/// All whole lines of a table.
+std::string wholeLines(const std::filesystem::path& file)
+{
+    std::string text = readWhole(file, kLargestFile, "a table of trials of at most 64 MiB");
+    text.resize(text.rfind('\n') + 1); // npos + 1 is 0
+    return text;
+}
+
+std::vector<TrialRow> rowsOf(const std::string& text, const std::filesystem::path& file)
+{
+    const std::string head = header();
+    if (!text.starts_with(head))
+        throw Error(file.string() + ": line 1: expected the columns " + head.substr(0, head.size() - 1) +
+                    ", found others");
+    std::vector<TrialRow> rows;
+    std::size_t           number = 2;
+    for (std::size_t begin = head.size(); begin < text.size(); ++number) {
+        const std::size_t end = text.find('\n', begin);
+        rows.push_back(rowOf(std::string_view(text).substr(begin, end - begin),
+                             file.string() + ": line " + std::to_string(number)));
+        begin = end + 1;
+    }
+    return rows;
+}
+
+/// Appends bytes and waits until the disk has them. \throws Error; then the file is as long as before
+void appendNow(const std::filesystem::path& file, const std::string& bytes)
+{
+    const int handle = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+    if (handle < 0) throw Error(file.string() + ": cannot be written: " + std::strerror(errno));
+    const off_t   before  = ::lseek(handle, 0, SEEK_END);
+    const ssize_t written = ::write(handle, bytes.data(), bytes.size());
+    const bool    good    = written == ssize_t(bytes.size()) && ::fsync(handle) == 0;
+    const int     why     = errno;
+    if (!good && ::ftruncate(handle, before) != 0) errno = why; // then a line is cut, which the next run removes
+    ::close(handle);
+    if (!good)
+        throw Error(file.string() + ": cannot be written: " +
+                    (written >= 0 && written < ssize_t(bytes.size()) ? "the disk is full" : std::strerror(why)));
+}
+
+} // namespace
+
+std::vector<TrialRow> readTrials(const std::filesystem::path& file)
+{
+    return rowsOf(wholeLines(file), file);
+}
+
+TrialTable::TrialTable(std::filesystem::path file) : file_(std::move(file))
+{
+    std::error_code ignored;
+    std::string     text = std::filesystem::exists(file_, ignored) ? wholeLines(file_) : "";
+    if (text.empty()) text = header();
+    rows_ = rowsOf(text, file_);
+    if (!std::filesystem::exists(file_, ignored) || sizeOfFile(file_) != text.size())
+        writeFileWhole(file_, [&](std::ostream& out) { out << text; });
+}
+
+void TrialTable::append(const TrialRow& row)
+{
+    appendNow(file_, line([&](const Column& column) { return column.write(row); }));
+    rows_.push_back(row);
+}
+
+} // namespace palp::study

@@ -1,0 +1,136 @@
+#include <gtest/gtest.h>
+
+#include "engine/compute/processor_list.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palp::compute {
+namespace {
+
+using Devices = std::vector<Processor>;
+
+constexpr std::optional<std::size_t> kHost{};
+
+Processor device(int index, std::string name, std::string kind, std::vector<std::string> refusals = {})
+{
+    Processor description;
+    description.index    = index;
+    description.name     = std::move(name);
+    description.kind     = std::move(kind);
+    description.refusals = std::move(refusals);
+    return description;
+}
+
+Devices desk()
+{
+    return {device(0, "llvmpipe (LLVM 15)", "software"), device(1, "Intel UHD 770", "integrated"),
+            device(2, "Intel Arc A770", "discrete", {"it speaks Vulkan 1.1.0, and 1.2 is needed"}),
+            device(3, "GeForce RTX 4090", "discrete"), device(4, "Virtio", "virtual")};
+}
+
+std::string refusal(const Devices& devices, std::string_view wanted)
+{
+    return refusalOf([&] { (void)chooseProcessor(devices, wanted); });
+}
+
+TEST(DeviceChoice, AutoTakesTheFirstUsableGpuOfTheBestKind)
+{
+    Devices devices = desk();
+    EXPECT_EQ(chooseProcessor(devices, "auto"), 3u);
+    devices.erase(devices.begin() + 3);
+    EXPECT_EQ(chooseProcessor(devices, "auto"), 1u);
+    devices.erase(devices.begin() + 1);
+    EXPECT_EQ(chooseProcessor(devices, "auto"), 2u) << "virtual is left";
+    devices.pop_back();
+    EXPECT_EQ(chooseProcessor(devices, "auto"), kHost) << "what is left is in software, or cannot be used";
+}
+
+TEST(DeviceChoice, AutoTakesTheHostWhereThereIsNoGpu)
+{
+    const Processor software = device(0, "llvmpipe", "software");
+    EXPECT_EQ(chooseProcessor({}, "auto"), kHost);
+    EXPECT_EQ(chooseProcessor({software}, "auto"), kHost);
+    EXPECT_EQ(chooseProcessor({device(0, "Venus", "other")}, "auto"), kHost) << "only when asked for";
+    EXPECT_EQ(chooseProcessor({software, device(1, "Old", "discrete", {"it is too old"})}, "auto"), kHost);
+    EXPECT_EQ(chooseProcessor({software, device(1, "Intel UHD 770", "integrated")}, "auto"), 1u);
+}
+
+TEST(DeviceChoice, TheHostAndSoftwareAreThereWhenAskedFor)
+{
+    EXPECT_EQ(chooseProcessor(desk(), "host"), kHost);
+    EXPECT_EQ(chooseProcessor({}, "host"), kHost);
+    for (const char* wanted : {"lavapipe", "0", "llvmpipe"}) EXPECT_EQ(chooseProcessor(desk(), wanted), 0u) << wanted;
+}
+
+TEST(DeviceChoice, LavapipeIsTheDeviceInSoftware)
+{
+    EXPECT_EQ(chooseProcessor(desk(), "lavapipe"), 0u);
+    EXPECT_TRUE(holds(refusal({device(0, "GeForce", "discrete")}, "lavapipe"), {"mesa-vulkan-drivers", "GeForce"}));
+}
+
+TEST(DeviceChoice, WordsAreKnownInAnyCase)
+{
+    EXPECT_EQ(chooseProcessor(desk(), "Lavapipe"), 0u);
+    EXPECT_EQ(chooseProcessor(desk(), "AUTO"), 3u);
+    EXPECT_EQ(chooseProcessor(desk(), "Host"), kHost);
+}
+
+TEST(DeviceChoice, AWrongWordIsBadUsageUnlessNoOtherWouldDo)
+{
+    const Devices useless{device(0, "Old", "discrete", {"it speaks Vulkan 1.1.0, and 1.2 is needed"})};
+
+    for (const char* wrong : {"voodoo", "99", "", "e"}) { // the last one is part of several names
+        EXPECT_THROW((void)chooseProcessor(desk(), wrong), UnknownProcessor) << wrong;
+        EXPECT_THROW((void)chooseProcessor({}, wrong), ProcessorError) << wrong;
+    }
+    EXPECT_THROW((void)chooseProcessor(useless, "voodoo"), ProcessorError);
+    EXPECT_THROW((void)chooseProcessor(desk(), "Arc"), ProcessorError) << "it is there and cannot be used";
+    EXPECT_THROW((void)chooseProcessor(desk(), "2"), ProcessorError) << "it is there and cannot be used";
+}
+
+TEST(DeviceChoice, AnIndexIsThatOfTheListNotThePlaceInIt)
+{
+    Devices devices = desk();
+    EXPECT_EQ(chooseProcessor(devices, "1"), 1u);
+    devices.erase(devices.begin());
+    EXPECT_EQ(chooseProcessor(devices, "1"), 0u);
+}
+
+TEST(DeviceChoice, PartOfANameFitsWhateverItsCase)
+{
+    EXPECT_EQ(chooseProcessor(desk(), "geforce"), 3u);
+    EXPECT_EQ(chooseProcessor(desk(), "LLVM"), 0u);
+    EXPECT_EQ(chooseProcessor(desk(), "4090"), 3u) << "no index of the list, so a name";
+    EXPECT_EQ(chooseProcessor(desk(), "intel"), 1u) << "the other one cannot be used anyway";
+}
+
+TEST(DeviceChoice, SeveralFittingNamesAreRefused)
+{
+    const Devices two{device(0, "RTX 4090", "discrete"), device(1, "RTX 4090", "discrete")};
+    EXPECT_TRUE(holds(refusal(two, "rtx"), {"several", "'rtx'", "index", "\n  0  RTX", "\n  1  RTX"}));
+}
+
+TEST(DeviceChoice, ARefusedDeviceIsRefusedWithItsReason)
+{
+    EXPECT_TRUE(holds(refusal(desk(), "2"), {"GPU 2", "Vulkan 1.1.0"}));
+    EXPECT_TRUE(holds(refusal(desk(), "Arc"), {"'Arc'", "Vulkan 1.1.0"}));
+}
+
+TEST(DeviceChoice, AnUnknownNameNamesEveryDevice)
+{
+    const std::string sentence = refusal(desk(), "voodoo");
+    EXPECT_TRUE(holds(sentence, {"'voodoo'", "auto, host, lavapipe", "an index or part of a name", "\n  host  "}))
+        << sentence;
+    for (const Processor& one : desk()) EXPECT_TRUE(holds(sentence, {one.name, one.kind})) << sentence;
+    EXPECT_NE(refusal(desk(), ""), "");
+    EXPECT_NE(refusal(desk(), "99"), "");
+    EXPECT_NE(refusal(desk(), "-1"), "");
+}
+
+TEST(DeviceChoice, WithoutAnyGpuThePackageIsNamed)
+{
+    for (const char* wanted : {"lavapipe", "0", "geforce"})
+        EXPECT_TRUE(holds(refusal({}, wanted), {"mesa-vulkan-drivers", "\n  host  "})) << wanted;
+}
+
+} // namespace
+} // namespace palp::compute

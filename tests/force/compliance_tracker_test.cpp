@@ -1,0 +1,229 @@
+#include "engine/force/compliance_tracker.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/allocations.h"
+
+namespace palp {
+namespace {
+
+constexpr double kTick = 1e-3; // [s]
+
+/// ln c = value + slope x on 3 x 3 footprints 4 mm apart, k_c = 1000 N/m.
+ComplianceTable tableOf(std::uint64_t sequence, double value, double slope = 0, double time = 0)
+{
+    ComplianceTable table;
+    table.sequence = sequence;
+    table.time     = time;
+    table.side     = 3;
+    table.spacing  = 4e-3;
+    for (std::size_t n = 0; n < 9; ++n) {
+        table.compliance[n]       = {value + slope * 4e-3 * (double(n / 3) - 1), slope, 0};
+        table.contactStiffness[n] = {std::log(1000.0), 0, 0};
+    }
+    return table;
+}
+
+/// Ticks with a contact that rests; ln c of each.
+struct Servo {
+    ComplianceTracker handOver;
+    double            time = 0;
+    glm::dvec3        contact{};
+
+    explicit Servo(ComplianceLaw law = ComplianceLaw::table) : handOver(law) {}
+
+    double tick(const ComplianceTable& table, double dt = kTick)
+    {
+        time += dt;
+        const auto handed = handOver.tick({contact, time, dt, &table});
+        return handed ? std::log(handed->compliance) : std::numeric_limits<double>::quiet_NaN();
+    }
+};
+
+TEST(ComplianceTracker, GivesNothingBeforeTheFirstTable)
+{
+    ComplianceTracker handOver;
+    EXPECT_FALSE(handOver.tick({{}, 0, kTick, nullptr}).has_value());
+    const ComplianceTable none;
+    EXPECT_FALSE(handOver.tick({{}, 0, kTick, &none}).has_value()) << "sequence 0 is no table";
+    const auto first  = tableOf(1, -6, 0, 0.010);
+    const auto handed = handOver.tick({{}, 0.030, kTick, &first});
+    ASSERT_TRUE(handed.has_value());
+    EXPECT_NEAR(std::log(handed->compliance), -6, 1e-12) << "at once, without an offset";
+    EXPECT_NEAR(handed->contactStiffness, 1000, 1e-9);
+    EXPECT_NEAR(handed->age, 0.020, 1e-12);
+}
+
+TEST(ComplianceTracker, LooksUpThePlaceOfTheContactInTheTablesOwnAxes)
+{
+    ComplianceTracker handOver;
+    auto              table = tableOf(1, -6, 50);
+    table.chart.origin      = {0.1, 0.2, 0.3};
+    table.chart.frame       = Frame{}.turned(std::acos(0.0)); // east is the world's y
+    const auto handed       = handOver.tick({{0.1, 0.203, 0.3}, 0, kTick, &table});
+    EXPECT_NEAR(std::log(handed->compliance), -6 + 50 * 3e-3, 1e-12);
+    EXPECT_FALSE(handed->clamped);
+    EXPECT_TRUE(handOver.tick({{0.1, 0.205, 0.3}, 0, kTick, &table})->clamped);
+    EXPECT_EQ(handOver.clampedTicks(), 1u);
+}
+
+/// Along a great circle the azimuthal map's radius is the chord: 2 r sin(angle/2).
+TEST(ComplianceTracker, FindsPlacesOnACurvedSurfaceAndOffItAlike)
+{
+    ComplianceTracker handOver;
+    auto              table  = tableOf(1, -6, 50);
+    const double      radius = 20e-3, angle = 0.15;
+    table.chart.curvature = 1 / radius;
+    const glm::dvec3 centre{0, 0, -radius}, direction{std::sin(angle), 0, std::cos(angle)};
+    for (double lift : {0.0, 1e-3, -1e-3}) {
+        const auto handed = handOver.tick({centre + (radius + lift) * direction, 0, kTick, &table});
+        EXPECT_NEAR(std::log(handed->compliance), -6 + 50 * 2 * radius * std::sin(angle / 2), 1e-12) << lift;
+    }
+}
+
+TEST(ComplianceTracker, AJumpBetweenTablesDiesAtOnePerCentPerMillisecond)
+{
+    Servo servo;
+    (void)servo.tick(tableOf(1, -6));
+    const auto second = tableOf(2, -6.1); // a tenth: three periods' worth at 1 % per ms
+    EXPECT_NEAR(servo.tick(second), -6, 1e-12) << "continuous where the table changes";
+    for (int n = 1; n <= 10; ++n) EXPECT_NEAR(servo.tick(second), -6 - 0.01 * n, 1e-9) << n;
+    EXPECT_NEAR(servo.tick(second), -6.1, 1e-12) << "and then none is left";
+    EXPECT_EQ(servo.handOver.offset(), 0);
+}
+
+TEST(ComplianceTracker, TheOffsetDiesInTimeAndNotInTicks)
+{
+    Servo fine, coarse;
+    (void)fine.tick(tableOf(1, -6));
+    (void)coarse.tick(tableOf(1, -6));
+    const auto second = tableOf(2, -5.9);
+    (void)fine.tick(second);
+    (void)coarse.tick(second);
+    for (int n = 0; n < 12; ++n) (void)fine.tick(second, kTick / 4);
+    EXPECT_NEAR(fine.tick(second, 0), coarse.tick(second, 3 * kTick), 1e-12);
+    EXPECT_NEAR(fine.handOver.offset(), -0.07, 1e-12);
+}
+
+TEST(ComplianceTracker, ALargeJumpIsGoneWithinOnePeriodOfTheTables)
+{
+    constexpr int kPeriod = 20; // ticks
+    Servo         servo;
+    for (std::uint64_t n = 1; n <= 40; ++n) {
+        const auto table = tableOf(n, -6);
+        for (int tick = 0; tick < kPeriod; ++tick) (void)servo.tick(table);
+    }
+    EXPECT_NEAR(servo.handOver.period(), kPeriod * kTick, 1e-5) << "smoothed over some tables";
+    const auto far  = tableOf(41, -8);
+    double     last = servo.tick(far);
+    for (int tick = 0; tick < kPeriod; ++tick) {
+        const double now = servo.tick(far);
+        EXPECT_NEAR(last - now, 2.0 / kPeriod, 1e-4) << "evenly";
+        last = now;
+    }
+    EXPECT_NEAR(last, -8, 1e-3);
+}
+
+TEST(ComplianceTracker, OffsetsAddUpWhenTablesDisagreeInARow)
+{
+    Servo servo;
+    (void)servo.tick(tableOf(1, -6));
+    (void)servo.tick(tableOf(2, -5.95));
+    EXPECT_NEAR(servo.tick(tableOf(3, -5.9)), -5.99, 1e-9) << "0.01 died, the rest is carried on";
+    EXPECT_NEAR(servo.handOver.offset(), -0.09, 1e-9);
+}
+
+TEST(ComplianceTracker, HoldStepsAndBlendTakesAPeriod)
+{
+    Servo hold(ComplianceLaw::hold), blend(ComplianceLaw::blend);
+    for (Servo* servo : {&hold, &blend}) {
+        servo->contact = {3e-3, 0, 0}; // neither law looks where the contact is
+        EXPECT_NEAR(servo->tick(tableOf(1, -6, 50)), -6, 1e-12);
+    }
+    const auto second = tableOf(2, -7, 50);
+    EXPECT_NEAR(hold.tick(second), -7, 1e-12);
+    EXPECT_NEAR(blend.tick(second), -6, 1e-12);
+    const double period = blend.handOver.period();
+    EXPECT_NEAR(blend.tick(second, period / 4), -6.25, 1e-12);
+    EXPECT_NEAR(blend.tick(second, period), -7, 1e-12);
+    EXPECT_EQ(blend.handOver.clampedTicks(), 0u);
+}
+
+TEST(ComplianceTracker, ATouchAfterALiftStartsWithoutAnOffset)
+{
+    for (ComplianceLaw law : {ComplianceLaw::table, ComplianceLaw::blend}) {
+        Servo servo(law);
+        (void)servo.tick(tableOf(1, -6));
+        servo.handOver.restart();
+        EXPECT_NEAR(servo.tick(tableOf(2, -5)), -5, 1e-12) << name(law);
+    }
+}
+
+TEST(ComplianceTracker, WhatIsNotUsableIsNotTakenAndCountedOnce)
+{
+    Servo servo;
+    (void)servo.tick(tableOf(1, -6));
+    auto bad                = tableOf(2, -7);
+    bad.compliance[4].value = std::numeric_limits<double>::quiet_NaN();
+    for (int n = 0; n < 5; ++n) EXPECT_NEAR(servo.tick(bad), -6, 1e-12);
+    EXPECT_EQ(servo.handOver.refusedTables(), 1u);
+    EXPECT_NEAR(servo.tick(tableOf(3, -6)), -6, 1e-12);
+}
+
+TEST(ComplianceTracker, AContactThatIsNotANumberOrRoundTheBackKeepsWhatWasFelt)
+{
+    Servo servo;
+    auto  table           = tableOf(1, -6, 50);
+    table.chart.curvature = 50;
+    servo.contact         = {2e-3, 0, 0};
+    const double felt     = servo.tick(table);
+    servo.contact.x       = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(servo.tick(table), felt);
+    servo.contact = {0, 0, -39e-3}; // beyond the centre, 20 mm below
+    EXPECT_EQ(servo.tick(table), felt);
+    EXPECT_EQ(servo.handOver.clampedTicks(), 2u);
+}
+
+TEST(ComplianceTracker, AStalledDeformationThreadLeavesAFiniteForceAndAnAge)
+{
+    Servo      servo;
+    const auto table = tableOf(1, -6, 50);
+    double     last  = servo.tick(table);
+    for (int n = 0; n < 5000; ++n) { // 5 s, half a metre
+        servo.contact.x += 1e-4;
+        const double now = servo.tick(table);
+        EXPECT_LT(std::abs(now - last), 50 * 1.1e-4);
+        last = now;
+    }
+    EXPECT_NEAR(last, -6 + 50 * 4e-3, 1e-12) << "at the reach";
+    EXPECT_NEAR(servo.handOver.tick({servo.contact, servo.time, 0, &table})->age, 5.001, 1e-9);
+    const auto next = tableOf(2, -6);
+    EXPECT_NEAR(servo.tick(next), last, 1e-9);
+    EXPECT_LT(servo.handOver.period(), 0.06) << "a stall is no period";
+}
+
+TEST(ComplianceTracker, AllocatesNothing)
+{
+    for (ComplianceLaw law : {ComplianceLaw::table, ComplianceLaw::hold, ComplianceLaw::blend}) {
+        Servo      servo(law);
+        const auto one = tableOf(1, -6, 50), two = tableOf(2, -7, 50);
+        const auto before = allocationsOfThisThread();
+        for (int n = 0; n < 10; ++n) (void)servo.tick(one);
+        for (int n = 0; n < 10; ++n) (void)servo.tick(two);
+        EXPECT_EQ(allocationsOfThisThread(), before) << name(law);
+    }
+    static_assert(noexcept(std::declval<ComplianceTracker>().tick({})));
+}
+
+TEST(ComplianceTracker, NamesFindTheirLaw)
+{
+    for (ComplianceLaw law : {ComplianceLaw::table, ComplianceLaw::hold, ComplianceLaw::blend})
+        EXPECT_EQ(valueNamed<ComplianceLaw>(name(law)), law);
+    EXPECT_FALSE(valueNamed<ComplianceLaw>("extrapolate").has_value());
+}
+
+} // namespace
+} // namespace palp

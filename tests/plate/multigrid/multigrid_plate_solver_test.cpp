@@ -1,0 +1,617 @@
+#include "engine/plate/multigrid/multigrid_plate_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <random>
+#include <string_view>
+#include <utility>
+
+#include "engine/chart/resample.h"
+#include "engine/core/contract.h"
+#include "engine/plate/load.h"
+#include "engine/plate/reference/reference_plate_solver.h"
+#include "tests/support/shader_fixture.h"
+
+namespace palp {
+namespace {
+
+using Start    = MultigridPlateSolver::Start;
+using Settings = MultigridPlateSolver::Settings;
+
+/// Rigidity over the unit square, with what may be asked of the solver there.
+struct Law {
+    const char*                           name;
+    std::function<double(double, double)> rigidity; ///< [N m]
+    bool                                  smooth;
+};
+
+double disc(double x, double z, double contrast)
+{
+    return std::hypot(x - 0.45, z - 0.55) < 0.2 ? contrast : 1;
+}
+
+/// A different number at every place, uniform in (0, 1).
+double noise(double x, double z)
+{
+    std::mt19937 bits(unsigned(std::lround(4096 * x)) * 8191u + unsigned(std::lround(4096 * z)));
+    bits.discard(5);
+    return double(bits()) / 4294967296.0;
+}
+
+const Law kLaws[] = {
+    {"constant", [](double, double) { return 1.0; }, true},
+    {"linear", [](double x, double) { return 1 + 9 * x; }, true},
+    {"hyperbolic", [](double x, double) { return 1 / (1 - 0.9 * x); }, true},
+    {"wart 100",
+     [](double x, double z) { return 1 + 99 * std::exp(-50 * (std::pow(x - 0.5, 2) + std::pow(z - 0.5, 2))); }, true},
+    {"random 1..100", [](double x, double z) { return 1 + 99 * noise(x, z); }, false},
+    {"disc 10", [](double x, double z) { return disc(x, z, 10); }, false},
+    {"disc 100", [](double x, double z) { return disc(x, z, 100); }, false},
+    {"disc 1000", [](double x, double z) { return disc(x, z, 1000); }, false},
+};
+
+Plate plateOf(int cellsX, int cellsZ, const PlateEdges& edges, const Law& law)
+{
+    Plate plate;
+    plate.grid     = {cellsX, cellsZ, 1.0 / cellsX, 1.0 / cellsX};
+    plate.edges    = edges;
+    plate.rigidity = NodeField(plate.grid);
+    for (int i = 0; i <= cellsX; ++i)
+        for (int j = 0; j <= cellsZ; ++j) plate.rigidity(i, j) = law.rigidity(double(i) / cellsX, double(j) / cellsZ);
+    return plate;
+}
+
+/// A gentle hill off the middle on a uniform pressure.
+NodeField loadOn(const PlateGrid& grid)
+{
+    NodeField pressure(grid);
+    for (int i = 0; i < grid.nodesX(); ++i)
+        for (int j = 0; j < grid.nodesZ(); ++j) {
+            const double x = double(i) / grid.cellsX - 0.4, z = double(j) / grid.cellsZ - 0.6;
+            pressure(i, j) = 0.2 + std::exp(-(x * x + z * z) / 0.04);
+        }
+    return gridLoad(grid, pressure);
+}
+
+double largest(const NodeField& w)
+{
+    double most = 0;
+    for (double value : w.values()) most = std::max(most, std::abs(value));
+    return most;
+}
+
+/// Largest difference over the largest deflection [1].
+double errorOf(const NodeField& w, const NodeField& truth)
+{
+    double most = 0;
+    for (std::size_t n = 0; n < w.values().size(); ++n)
+        most = std::max(most, std::abs(w.values()[n] - truth.values()[n]));
+    return most / largest(truth);
+}
+
+class VulkanPlate : public ShaderTest {
+protected:
+    static const PlateKernels& kernels()
+    {
+        if (!kernels_) kernels_.emplace(context());
+        return *kernels_;
+    }
+
+    static void TearDownTestSuite() { kernels_.reset(); } // the device closes after the last test
+
+    static MultigridPlateSolver solverFor(const Plate& plate, const Settings& settings = {})
+    {
+        return MultigridPlateSolver(context(), kernels(), plate, settings);
+    }
+
+    static double tightest()
+    {
+        return context().device().float64 ? MultigridPlateSolver::kLeastTolerance
+                                          : MultigridPlateSolver::kLeastFloatTolerance;
+    }
+
+    /// GPU-assisted validation is 20 times slower: small grids tell as much.
+    static std::vector<int> sizes()
+    {
+        return validation() == compute::Validation::off ? std::vector{32, 64, 128} : std::vector{20};
+    }
+
+private:
+    static inline std::optional<PlateKernels> kernels_;
+};
+
+/// 32-bit rigidities and coefficients are off by 6e-8, and the answer is rounded to floats; the bars are those of the
+/// issue that asked for the solver.
+TEST_F(VulkanPlate, AgreesWithTheReferenceSolverForEveryLaw)
+{
+    for (const Law& law : kLaws)
+        for (int cells : sizes()) {
+            const Plate         plate = plateOf(cells, cells, {}, law);
+            const NodeField     load  = loadOn(plate.grid);
+            const PlateSolution truth = ReferencePlateSolver(plate).solve(load);
+            const PlateSolution found = solverFor(plate, {.tolerance = tightest()}).solve(load);
+            EXPECT_LT(errorOf(found.deflection, truth.deflection), law.smooth ? 1e-6 : 2e-6)
+                << law.name << ", " << cells << " cells, " << *found.report.iterations << " iterations";
+        }
+}
+
+/// Sweeps and transfers are the same to the bit; only the coarsest level is solved in another way, by its inverse.
+TEST_F(VulkanPlate, FusedPassesTakeTheSameStepsToTheSameAnswer)
+{
+    if (onHost()) GTEST_SKIP() << "the host does not fuse passes";
+    if (validation() == compute::Validation::gpuAssisted)
+        GTEST_SKIP() << "the fused kernels take minutes to compile then";
+    using enum Edge;
+    const PlateKernels onePassEach(context(), Schedule::passByPass), fused(context(), Schedule::fused);
+    const auto         compare = [&](const Plate& plate, const std::string& what) {
+        const std::vector<NodeField> loads{loadOn(plate.grid),
+                                           pointLoad(plate.grid, 1, plate.grid.sizeX() / 2, plate.grid.sizeZ() / 2)};
+        const Settings               settings{.tolerance = 1e-6, .loads = 2};
+        MultigridPlateSolver slow(context(), onePassEach, plate, settings), fast(context(), fused, plate, settings);
+        const auto           expected = slow.solve(loads), found = fast.solve(loads);
+        for (std::size_t n = 0; n < loads.size(); ++n)
+            EXPECT_LT(errorOf(found[n].deflection, expected[n].deflection), 2e-6)
+                << what; // within the tolerance of each
+        EXPECT_NEAR(*found[0].report.iterations, *expected[0].report.iterations, 1) << what;
+        const double step = *expected[0].report.workUnits / *expected[0].report.iterations;
+        EXPECT_NEAR(*found[0].report.workUnits, *expected[0].report.workUnits, 1.5 * step) << what;
+        return std::pair(slow.dispatchesPerCycle(), fast.dispatchesPerCycle());
+    };
+    for (const Law& law : kLaws) {
+        if (!law.smooth) continue; // where the rigidity jumps, passes are not fused
+        const auto [slow, fast] = compare(plateOf(128, 128, {}, law), law.name);
+        EXPECT_EQ(slow, 34) << law.name; // 3 levels of 11, and the coarsest one
+        EXPECT_EQ(fast, 4) << law.name;  // 3 for 128 cells, and the tail
+    }
+    (void)compare(plateOf(100, 57, {free, clamped, supported, free}, kLaws[1]), "rectangle");
+    (void)compare(plateOf(24, 24, {supported, clamped, clamped, free}, kLaws[3]), "tail only");
+    (void)compare(plateOf(12, 9, {clamped, clamped, clamped, free}, kLaws[1]), "one level");
+}
+
+/// Points on a jittered lattice over the plate and beyond it, with a hole, and their rigidities.
+struct Points {
+    std::vector<ChartPoint> positions;
+    std::vector<double>     rigidities;
+    double                  spacing; ///< [m]
+
+    Points(const PlateGrid& grid, const Law& law, double latticeSpacing) : spacing(latticeSpacing)
+    {
+        std::mt19937 bits(7);
+        const auto   jitter = [&] { return spacing * (double(bits()) / 4294967296.0 - 0.5); };
+        for (double x = -0.1; x < grid.sizeX() + 0.1; x += spacing)
+            for (double z = -0.1; z < grid.sizeZ() + 0.1; z += spacing) {
+                const ChartPoint p{x + jitter(), z + jitter()};
+                if (std::hypot(p.x - 0.7, p.z - 0.3) < 0.12) continue; // the hole
+                positions.push_back(p);
+                rigidities.push_back(law.rigidity(std::clamp(p.x, 0.0, 1.0), std::clamp(p.z, 0.0, 1.0)));
+            }
+    }
+
+    [[nodiscard]] PlatePoints view() const { return {positions, rigidities, {0, 0}, spacing}; }
+};
+
+TEST_F(VulkanPlate, PointsGiveTheRigidityAndTakeTheDeflection)
+{
+    const int         cells = sizes().front();
+    const PatchWindow window{{cells, cells, 1.0 / cells, 1.0 / cells}, {0, 0}};
+    Plate             plate  = plateOf(cells, cells, {}, kLaws[0]);
+    const auto        loads  = std::vector{loadOn(plate.grid), pointLoad(plate.grid, 1, 0.5, 0.5)};
+    auto              solver = solverFor(plate, {.tolerance = 1e-5, .loads = 2});
+    for (const Law& law : {kLaws[1], kLaws[6]})
+        for (const double spacing : {0.05, 0.011}) // the second ones need more memory than the first
+            for (const Resampling sampling : {Resampling::logMean, Resampling::nearest}) {
+                const std::string what = std::string(law.name) + ", " + name(sampling);
+                const Points      points(plate.grid, law, spacing);
+                const Resampled   sampled =
+                    resampleRigidity(window, points.positions, points.rigidities, sampling, spacing);
+                plate.rigidity = sampled.rigidity;
+                const ReferencePlateSolver reference(plate);
+                solver.setRigidity(points.view(), sampling);
+                const auto found = solver.solve(loads);
+                EXPECT_EQ(solver.nodesWithoutPoint(), sampled.nodesWithoutPoint) << what;
+                EXPECT_EQ(sampled.nodesWithoutPoint > 0, spacing < 0.02) << what; // in the hole
+                for (std::size_t load = 0; load < loads.size(); ++load) {
+                    // Rigidities agree to 1e-4, and a deflection varies with them at most as much.
+                    const NodeField& w = found[load].deflection;
+                    EXPECT_LT(errorOf(w, reference.solve(loads[load]).deflection), 2e-4) << what;
+                    const auto lifted = solver.pointDeflections(int(load));
+                    ASSERT_EQ(lifted.size(), points.positions.size());
+                    for (std::size_t n = 0; n < lifted.size(); ++n) {
+                        const ChartPoint& p        = points.positions[n];
+                        const double      expected = window.holds(p) ? interpolate(plate.grid, w, p.x, p.z) : 0;
+                        ASSERT_NEAR(double(lifted[n]), expected, 1e-6 * largest(w)) << what << ", point " << n;
+                    }
+                }
+                const NodeField D = solver.sampledRigidity();
+                for (std::size_t n = 0; n < D.values().size(); ++n)
+                    ASSERT_NEAR(D.values()[n] / sampled.rigidity.values()[n], 1, 2e-4) << what << ", node " << n;
+            }
+    solver.setRigidity(plateOf(cells, cells, {}, kLaws[3]).rigidity); // the host's again
+    const auto wart = ReferencePlateSolver(plateOf(cells, cells, {}, kLaws[3])).solve(loads[0]);
+    EXPECT_LT(errorOf(solver.solve(loads)[0].deflection, wart.deflection), 2e-5);
+}
+
+TEST_F(VulkanPlate, PointsThatMakeNoSenseAreRefusedAndTheSolverGoesOn)
+{
+    const Plate plate  = plateOf(20, 20, {}, kLaws[0]);
+    auto        solver = solverFor(plate);
+    Points      points(plate.grid, kLaws[1], 0.05);
+    points.rigidities[3] = -1;
+    EXPECT_THROW(solver.setRigidity(points.view(), Resampling::nearest), Error);
+    points.rigidities[3]  = 1;
+    points.positions[5].z = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(solver.setRigidity(points.view(), Resampling::nearest), Error);
+    EXPECT_THROW(solver.setRigidity(PlatePoints{}, Resampling::logMean), Error);
+    const NodeField load = loadOn(plate.grid);
+    EXPECT_LT(errorOf(solver.solve(load).deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-4);
+}
+
+TEST_F(VulkanPlate, ResultsStayMappedWhileTwoFurtherSolvesRun)
+{
+    const Plate              plate  = plateOf(20, 20, {}, kLaws[1]);
+    auto                     solver = solverFor(plate);
+    const NodeField          load = loadOn(plate.grid), other = pointLoad(plate.grid, 1, 0.5, 0.5);
+    const NodeField          w      = solver.solve(load).deflection;
+    const auto               mapped = solver.mappedDeflections();
+    const std::vector<float> before(mapped.begin(), mapped.end());
+    ASSERT_EQ(before.size(), plate.grid.nodes());
+    for (std::size_t n = 0; n < before.size(); ++n) EXPECT_EQ(double(before[n]), w.values()[n]);
+    for (int further = 0; further < 2; ++further) {
+        (void)solver.solve(other);
+        EXPECT_NE(solver.mappedDeflections().data(), mapped.data());
+        EXPECT_TRUE(std::equal(before.begin(), before.end(), mapped.begin()));
+    }
+    (void)solver.solve(other); // the memory's turn has come
+    EXPECT_EQ(solver.mappedDeflections().data(), mapped.data());
+    EXPECT_FALSE(std::equal(before.begin(), before.end(), mapped.begin()));
+}
+
+/// Under a load in proportion to its foundation a free plate sinks without bending, whatever its rigidity: w = q / k.
+/// The softer the foundation, the more the plate moves as a rigid body, of which floats see nothing beside its bending.
+TEST_F(VulkanPlate, AFreePlateOnAFoundationSinksAsAWhole)
+{
+    if (!context().device().float64) GTEST_SKIP() << "in floats such a plate is refused or said not to be solved";
+    constexpr PlateEdges kFree{Edge::free, Edge::free, Edge::free, Edge::free};
+    for (const int cells : sizes())
+        for (const double contrast : {1.0, 30.0, 1e4})
+            for (const double foundation : {0.1, 1.0, 1e3}) {
+                const Law law{"linear", [=](double x, double) { return 1 + (contrast - 1) * x; }, true};
+                Plate     plate                = plateOf(cells, cells, kFree, law);
+                plate.foundation               = foundation;
+                const NodeField     pressure   = NodeField(plate.grid, foundation);
+                const PlateSolution found      = solverFor(plate).solve(gridLoad(plate.grid, pressure));
+                double              difference = 0;
+                for (const double w : found.deflection.values()) difference = std::max(difference, std::abs(w - 1));
+                EXPECT_LT(difference, 1e-4)
+                    << cells << " cells, contrast " << contrast << ", " << foundation << " Pa/m";
+                EXPECT_TRUE(found.report.converged);
+            }
+}
+
+/// A stiff disc of a million in a plate that few sides hold moves nearly as a rigid body.
+TEST_F(VulkanPlate, AHugeContrastIsSolvedOrSaidNotToBeWhateverTheSides)
+{
+    using enum Edge;
+    const int cells = sizes().front();
+    const Law law{"disc 1e6", [](double x, double z) { return disc(x, z, 1e6); }, false};
+    for (const PlateEdges edges : {PlateEdges{clamped, free, free, free}, PlateEdges{clamped, clamped, free, free},
+                                   PlateEdges{supported, supported, free, free}, PlateEdges{}}) {
+        const Plate         plate = plateOf(cells, cells, edges, law);
+        const NodeField     load  = loadOn(plate.grid);
+        const PlateSolution found = solverFor(plate).solve(load);
+        const double        error = errorOf(found.deflection, ReferencePlateSolver(plate).solve(load).deflection);
+        EXPECT_LT(error, 3 * *found.report.errorEstimate) << *found.report.iterations << " steps";
+        EXPECT_TRUE(error < 3e-4 || !found.report.converged) << error;
+    }
+}
+
+TEST_F(VulkanPlate, FloatsAloneReachWhatIsAskedOfThem)
+{
+    using enum Edge;
+    const PlateKernels floats(context(), Schedule::automatic, Precision::floats);
+    constexpr double   kTolerance = MultigridPlateSolver::kLeastFloatTolerance;
+    for (const Law& law : kLaws)
+        for (const PlateEdges edges :
+             {PlateEdges{}, PlateEdges{supported, clamped, free, clamped}, PlateEdges{free, clamped, free, free}}) {
+            const Plate          plate = plateOf(sizes().front(), sizes().front(), edges, law);
+            const NodeField      load  = loadOn(plate.grid);
+            MultigridPlateSolver solver(context(), floats, plate, {.tolerance = kTolerance});
+            const PlateSolution  found = solver.solve(load);
+            const double         error = errorOf(found.deflection, ReferencePlateSolver(plate).solve(load).deflection);
+            EXPECT_LT(error, 3 * *found.report.errorEstimate) << law.name;
+            EXPECT_LT(error, 3 * kTolerance) << law.name;
+        }
+    EXPECT_THROW(MultigridPlateSolver(context(), floats, plateOf(20, 20, {}, kLaws[0]), {.tolerance = 1e-6}), Error);
+}
+
+TEST_F(VulkanPlate, AWarmStartKeepsTheLastAnswerWhenTheLargestForceChanges)
+{
+    const Plate     plate  = plateOf(sizes().front(), sizes().front(), {}, kLaws[1]);
+    auto            solver = solverFor(plate);
+    const NodeField load   = loadOn(plate.grid);
+    NodeField       half   = load;
+    (void)solver.solve(load);
+    for (double& f : half.values()) f *= 0.5;
+    half(plate.grid.cellsX / 2, plate.grid.cellsZ / 2) += 1e-3 * largest(load); // nearly half the answer
+    const PlateSolution cold = solverFor(plate).solve(half);
+    NodeField           same = load;
+    same(plate.grid.cellsX / 2, plate.grid.cellsZ / 2) += 4 * largest(load); // another largest force
+    const PlateSolution warm = solver.solve(same, Start::warm), coldSame = solverFor(plate).solve(same);
+    EXPECT_LT(errorOf(warm.deflection, coldSame.deflection), 2e-4);
+    EXPECT_LE(*warm.report.iterations, *coldSame.report.iterations);
+    // A thousand times the force is another story: the solve is cold, and as good.
+    for (double& f : half.values()) f *= 1e5;
+    const PlateSolution far = solver.solve(half, Start::warm);
+    for (std::size_t n = 0; n < far.deflection.values().size(); ++n)
+        ASSERT_NEAR(far.deflection.values()[n], 1e5 * cold.deflection.values()[n],
+                    1e-3 * 1e5 * largest(cold.deflection));
+}
+
+/// Whole solves, not only kernels: stops, steps and sweeps where the rigidity jumps included.
+TEST_F(VulkanPlate, HostAndLavapipeGiveTheSameBits)
+{
+    if (onHost() || !context().bitExact() || validation() == compute::Validation::gpuAssisted)
+        GTEST_SKIP() << "lavapipe and the host are compared once";
+    using enum Edge;
+    compute::Context                         host({.device = std::string(compute::kHostProcessor)});
+    constexpr std::pair<Precision, Smoother> kVariants[] = {{Precision::best, Smoother::redBlack},
+                                                            {Precision::best, Smoother::chebyshev},
+                                                            {Precision::floats, Smoother::chebyshev}};
+    for (const auto& [precision, smoother] : kVariants) {
+        const PlateKernels here(context(), Schedule::passByPass, precision, smoother),
+            there(host, Schedule::passByPass, precision, smoother);
+        for (const Law& law : kLaws)
+            for (const PlateEdges edges : {PlateEdges{}, PlateEdges{supported, free, clamped, free}}) {
+                const Plate          plate = plateOf(70, 45, edges, law);
+                const auto           loads = std::vector{loadOn(plate.grid), pointLoad(plate.grid, 1, 0.5, 0.3)};
+                const Settings       settings{.tolerance = 1e-4, .loads = 2};
+                MultigridPlateSolver a(context(), here, plate, settings), b(host, there, plate, settings);
+                for (const Start start : {Start::cold, Start::warm}) {
+                    const auto onDevice = a.solve(loads, start), onHost = b.solve(loads, start);
+                    for (std::size_t n = 0; n < loads.size(); ++n)
+                        EXPECT_EQ(onDevice[n].deflection.values(), onHost[n].deflection.values()) << law.name;
+                    EXPECT_EQ(onDevice[0].report.errorEstimate, onHost[0].report.errorEstimate) << law.name;
+                    EXPECT_EQ(onDevice[0].report.iterations, onHost[0].report.iterations) << law.name;
+                    EXPECT_EQ(onDevice[0].report.workUnits, onHost[0].report.workUnits) << law.name;
+                }
+            }
+    }
+}
+
+TEST_F(VulkanPlate, EveryCombinationOfEdgesAgreesWithTheReferenceSolver)
+{
+    constexpr Edge kEdges[] = {Edge::clamped, Edge::supported, Edge::free};
+    for (int code = 0; code < 81; code += validation() == compute::Validation::off ? 1 : 20) {
+        const PlateEdges edges{kEdges[code % 3], kEdges[code / 3 % 3], kEdges[code / 9 % 3], kEdges[code / 27]};
+        Plate            plate    = plateOf(26, 19, edges, kLaws[3]); // an odd number of cells, two levels
+        plate.foundation          = 40;                               // so that a plate free on all sides has an answer
+        const NodeField     load  = loadOn(plate.grid);
+        const PlateSolution truth = ReferencePlateSolver(plate).solve(load);
+        const PlateSolution found = solverFor(plate, {.tolerance = tightest()}).solve(load);
+        EXPECT_LT(errorOf(found.deflection, truth.deflection), 1e-6)
+            << name(edges.x0) << " " << name(edges.x1) << " " << name(edges.z0) << " " << name(edges.z1);
+        EXPECT_LE(*found.report.iterations, 20);
+    }
+}
+
+TEST_F(VulkanPlate, GridsOfAnyShapeAgreeWithTheReferenceSolver)
+{
+    struct Shape {
+        int    x, z;
+        double uneven; ///< spacing along z over that along x [1]
+    };
+    for (const Shape& shape : {Shape{8, 8, 1},
+                               {9, 12, 1},
+                               {100, 75, 1},
+                               {129, 33, 1},
+                               {16, 128, 1},
+                               {256, 16, 1},
+                               {17, 8, 1},
+                               {64, 64, 2.5},
+                               {48, 96, 0.5},
+                               {31, 31, 4}}) {
+        if (validation() != compute::Validation::off && shape.x * shape.z > 400) continue;
+        Plate plate = plateOf(shape.x, shape.z, {Edge::clamped, Edge::free, Edge::supported, Edge::clamped}, kLaws[1]);
+        plate.grid.spacingZ       = shape.uneven * plate.grid.spacingX;
+        const NodeField     load  = loadOn(plate.grid);
+        const PlateSolution truth = ReferencePlateSolver(plate).solve(load);
+        const PlateSolution found = solverFor(plate, {.tolerance = tightest()}).solve(load);
+        EXPECT_LT(errorOf(found.deflection, truth.deflection), 1e-6) << shape.x << " x " << shape.z;
+        EXPECT_LE(*found.report.iterations, 40) << shape.x << " x " << shape.z;
+    }
+}
+
+TEST_F(VulkanPlate, TheEstimateIsNeverBelowTheErrorByMoreThanAFactorOfThree)
+{
+    for (const Law& law : kLaws)
+        for (int cells : sizes()) {
+            const Plate         plate = plateOf(cells, cells, {}, law);
+            const NodeField     load  = loadOn(plate.grid);
+            const PlateSolution truth = ReferencePlateSolver(plate).solve(load);
+            for (double tolerance : {0.3, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5}) {
+                const PlateSolution found = solverFor(plate, {.tolerance = tolerance}).solve(load);
+                const double        error = errorOf(found.deflection, truth.deflection);
+                EXPECT_LT(error, 3 * *found.report.errorEstimate)
+                    << law.name << ", " << cells << " cells, " << tolerance;
+                EXPECT_LE(*found.report.errorEstimate, tolerance);
+            }
+        }
+}
+
+/// To a true error, not to an estimate: each tolerance stops after one more step, until the error is small enough.
+/// The bars are those of the issue that asked for the solver; measured 3 and 5, 5 and 9, 9 and 13 up to 129 nodes. The
+/// host's steps smooth less, so that very sharp discs take it more of them: 15 and 22.
+TEST_F(VulkanPlate, StepsToATrueErrorAreFewWhateverTheSize)
+{
+    const auto allowed = [](const Law& law) -> std::pair<int, int> { // to 1e-4 and to 1e-6
+        if (law.smooth) return {5, 8};
+        if (std::string_view(law.name) == "disc 1000") return onHost() ? std::pair(17, 25) : std::pair(12, 18);
+        return {8, 12};
+    };
+    for (const Law& law : kLaws)
+        for (int cells : sizes()) {
+            if (cells > 64 && !law.smooth && std::string_view(law.name) != "disc 1000") continue; // time
+            const Plate         plate  = plateOf(cells, cells, {}, law);
+            const NodeField     load   = loadOn(plate.grid);
+            const PlateSolution truth  = ReferencePlateSolver(plate).solve(load);
+            int                 coarse = 0, fine = 0, last = 0;
+            for (double tolerance = 0.5; tolerance > 1e-8 && fine == 0; tolerance /= 2.5) {
+                const PlateSolution found = solverFor(plate, {.tolerance = tolerance}).solve(load);
+                if (*found.report.iterations == last) continue;
+                last               = *found.report.iterations;
+                const double error = errorOf(found.deflection, truth.deflection);
+                if (error < 1e-4 && coarse == 0) coarse = last;
+                if (error < 1e-6) fine = last;
+            }
+            EXPECT_TRUE(coarse >= 1 && coarse <= allowed(law).first)
+                << law.name << ", " << cells << " cells: " << coarse;
+            EXPECT_TRUE(fine >= 1 && fine <= allowed(law).second) << law.name << ", " << cells << " cells: " << fine;
+        }
+}
+
+/// Extra sweeps where the rigidity jumps must grow with the contrast: with those for a contrast of 1000 this one does
+/// not end within 200 steps on the host.
+TEST_F(VulkanPlate, ADiscOfAMillionConverges)
+{
+    if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
+    const Law           million{"disc 1e6", [](double x, double z) { return disc(x, z, 1e6); }, false};
+    const Plate         plate = plateOf(64, 64, {}, million);
+    const NodeField     load  = loadOn(plate.grid);
+    const PlateSolution truth = ReferencePlateSolver(plate).solve(load), found = solverFor(plate).solve(load);
+    EXPECT_TRUE(found.report.converged);
+    EXPECT_LE(*found.report.iterations, 120);
+    EXPECT_LT(errorOf(found.deflection, truth.deflection), 1e-3)
+        << "ten times the tolerance, which is in the energy norm";
+}
+
+TEST_F(VulkanPlate, NestedIterationReachesTheAccuracyOfTheGridInFifteenWorkUnits)
+{
+    if (validation() != compute::Validation::off) GTEST_SKIP() << "needs a grid that is fine enough to have an order";
+    for (const Law& law : kLaws) {
+        if (!law.smooth) continue;
+        const Plate     fine = plateOf(128, 128, {}, law), coarse = plateOf(64, 64, {}, law);
+        const NodeField truth = ReferencePlateSolver(fine).solve(loadOn(fine.grid)).deflection;
+        const NodeField rough = ReferencePlateSolver(coarse).solve(loadOn(coarse.grid)).deflection;
+        double          step  = 0; // between the grids; a third of it is the finer one's own error
+        for (int i = 0; i <= 64; ++i)
+            for (int j = 0; j <= 64; ++j) step = std::max(step, std::abs(rough(i, j) - truth(2 * i, 2 * j)));
+        const PlateSolution found = solverFor(fine, {.tolerance = 0.5}).solve(loadOn(fine.grid)); // one step
+        EXPECT_LT(errorOf(found.deflection, truth), step / 3 / largest(truth)) << law.name;
+        EXPECT_LE(*found.report.workUnits, 15) << law.name;
+    }
+}
+
+TEST_F(VulkanPlate, AWarmStartFromTheAnswerStopsAtOnceAndFromANeighbourSooner)
+{
+    const Plate          plate  = plateOf(sizes().back(), sizes().back(), {}, kLaws[3]);
+    MultigridPlateSolver solver = solverFor(plate);
+    const NodeField      here   = gaussianLoad(plate.grid, 1, 0.5, 0.5, 0.1),
+                    beside      = gaussianLoad(plate.grid, 1, 0.51, 0.5, 0.1);
+
+    const PlateSolution cold  = solver.solve(here);
+    const PlateSolution again = solver.solve(here, Start::warm);
+    EXPECT_LT(*again.report.workUnits, 0.5 * *cold.report.workUnits);
+    EXPECT_LT(errorOf(again.deflection, cold.deflection), 3e-4) << "two answers of tolerance 1e-4";
+
+    const PlateSolution moved = solver.solve(beside, Start::warm);
+    EXPECT_LE(*moved.report.iterations, *solver.solve(beside).report.iterations);
+    EXPECT_LT(errorOf(moved.deflection, ReferencePlateSolver(plate).solve(beside).deflection), 3e-4);
+}
+
+TEST_F(VulkanPlate, LoadsOfABatchDoNotTouchEachOther)
+{
+    const Plate          plate = plateOf(40, 33, {Edge::clamped, Edge::free, Edge::supported, Edge::clamped}, kLaws[6]);
+    ReferencePlateSolver reference(plate);
+    std::vector<NodeField> loads;
+    for (int n = 0; n < 9; ++n)
+        loads.push_back(gaussianLoad(plate.grid, n == 4 ? 0 : std::pow(10, n - 4), 0.2 + 0.07 * n, 0.4, 0.05));
+    const auto found = solverFor(plate, {.tolerance = tightest(), .loads = 9}).solve(loads);
+    ASSERT_EQ(found.size(), 9u);
+    for (std::size_t n = 0; n < 9; ++n) {
+        if (n == 4) {
+            EXPECT_EQ(largest(found[n].deflection), 0) << "no force, no deflection";
+            continue;
+        }
+        EXPECT_LT(errorOf(found[n].deflection, reference.solve(loads[n]).deflection), 2e-6) << "load " << n;
+    }
+}
+
+TEST_F(VulkanPlate, RepeatsAreEqualToTheBitAndSoIsANewSolver)
+{
+    const Plate          plate  = plateOf(50, 41, {}, kLaws[6]);
+    const NodeField      load   = loadOn(plate.grid);
+    MultigridPlateSolver solver = solverFor(plate);
+    const NodeField      first  = solver.solve(load).deflection;
+    for (int n = 0; n < 4; ++n) EXPECT_EQ(solver.solve(load).deflection.values(), first.values()) << "slot " << n % 3;
+    EXPECT_EQ(solverFor(plate).solve(load).deflection.values(), first.values());
+}
+
+TEST_F(VulkanPlate, AnotherRigidityIsAsIfTheSolverWereNew)
+{
+    const Plate          soft = plateOf(33, 33, {}, kLaws[1]), stiff = plateOf(33, 33, {}, kLaws[3]);
+    const NodeField      load   = loadOn(soft.grid);
+    MultigridPlateSolver solver = solverFor(soft, {.tolerance = tightest()});
+    (void)solver.solve(load);
+    solver.setRigidity(stiff.rigidity);
+    EXPECT_LT(errorOf(solver.solve(load).deflection, ReferencePlateSolver(stiff).solve(load).deflection), 1e-6);
+}
+
+/// Each rigidity has other tiles with a jump, so that everything is recorded anew; first a small disc, at last one that
+/// leaves the plate's corners soft.
+TEST_F(VulkanPlate, ManyRigiditiesWithJumpsElsewhereAreSolvedOneAfterTheOther)
+{
+    const int            count  = validation() == compute::Validation::off ? 30 : 5;
+    Plate                plate  = plateOf(40, 40, {}, kLaws[6]);
+    const NodeField      load   = loadOn(plate.grid);
+    MultigridPlateSolver solver = solverFor(plate, {.tolerance = 1e-6});
+    for (int n = 0; n < count; ++n) {
+        const double radius = 0.02 + 0.4 * n / count;
+        for (int i = 0; i <= 40; ++i)
+            for (int j = 0; j <= 40; ++j)
+                plate.rigidity(i, j) = std::hypot(i / 40.0 - 0.4, j / 40.0 - 0.6) < radius ? 50 : 1;
+        solver.setRigidity(plate.rigidity);
+        const PlateSolution found = solver.solve(load);
+        if (n % 10 == 9 || n == 0) {
+            EXPECT_LT(errorOf(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 3e-6) << n;
+        }
+    }
+}
+
+/// Contrast beyond what the cycle is good at: slow, but never dishonest.
+TEST_F(VulkanPlate, AnExtremeContrastConvergesOrSaysThatItDidNot)
+{
+    const Law   extreme{"disc 1e6", [](double x, double z) { return disc(x, z, 1e6); }, false};
+    const Plate plate = plateOf(validation() == compute::Validation::off ? 64 : 20,
+                                validation() == compute::Validation::off ? 64 : 20, {}, extreme);
+    const NodeField     load  = loadOn(plate.grid);
+    const PlateSolution truth = ReferencePlateSolver(plate).solve(load);
+    const PlateSolution found = solverFor(plate).solve(load);
+    EXPECT_LT(errorOf(found.deflection, truth.deflection), 3 * *found.report.errorEstimate)
+        << *found.report.iterations << " iterations";
+}
+
+TEST_F(VulkanPlate, WhatCannotBeSolvedIsRefusedInOneSentence)
+{
+    Plate                plate  = plateOf(16, 16, {}, kLaws[0]);
+    MultigridPlateSolver solver = solverFor(plate);
+    NodeField            load   = loadOn(plate.grid);
+    load(3, 4)                  = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW((void)solver.solve(load), Error);
+
+    EXPECT_THROW((void)solverFor(plate, {.tolerance = 1e-12}), Error) << "more than 32 bits can give";
+    EXPECT_THROW((void)solverFor(plate, {.tolerance = std::numeric_limits<double>::quiet_NaN()}), Error);
+
+    NodeField rigidity = plate.rigidity;
+    for (double bad : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+        rigidity(5, 5) = bad;
+        EXPECT_THROW(solver.setRigidity(rigidity), Error) << bad;
+    }
+    plate.edges = {Edge::free, Edge::free, Edge::free, Edge::free};
+    EXPECT_THROW((void)solverFor(plate), Error) << "nothing holds it";
+}
+
+} // namespace
+} // namespace palp

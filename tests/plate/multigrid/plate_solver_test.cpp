@@ -1,0 +1,117 @@
+#include "engine/plate/plate_solver.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "engine/compute/processor_list.h"
+#include "engine/core/contract.h"
+#include "engine/plate/load.h"
+#include "engine/plate/reference/reference_plate_solver.h"
+#include "tests/support/shader_fixture.h"
+
+namespace palp {
+namespace {
+
+Plate plateOf(int cells, double contrast)
+{
+    Plate plate;
+    plate.grid     = {cells, cells, 1.0 / cells, 1.0 / cells};
+    plate.rigidity = NodeField(plate.grid, 1);
+    for (int i = 0; i <= cells; ++i)
+        for (int j = 0; j <= cells; ++j)
+            if (std::hypot(double(i) / cells - 0.45, double(j) / cells - 0.55) < 0.2) plate.rigidity(i, j) = contrast;
+    return plate;
+}
+
+double difference(const NodeField& a, const NodeField& b)
+{
+    double most = 0, largest = 0;
+    for (std::size_t n = 0; n < a.values().size(); ++n) {
+        most    = std::max(most, std::abs(a.values()[n] - b.values()[n]));
+        largest = std::max(largest, std::abs(b.values()[n]));
+    }
+    return most / largest;
+}
+
+TEST(PlateSolver, SolvesOnTheDeviceOneGridAfterTheOther)
+{
+    PlateSolver device(deviceOfTests());
+    EXPECT_EQ(device.note(), "");
+    for (const int cells : {20, 30, 20}) {
+        const Plate         plate = plateOf(cells, 10);
+        const NodeField     load  = pointLoad(plate.grid, 1, 0.5, 0.5);
+        const PlateSolution found = device.solve(plate, load);
+        EXPECT_EQ(found.report.device, device.name());
+        EXPECT_NE(found.report.device, "reference");
+        EXPECT_LT(difference(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-4);
+    }
+}
+
+TEST(PlateSolver, ADeviceThatIsLostIsReplacedByTheReference)
+{
+    if (deviceOfTests() == compute::kHostProcessor) GTEST_SKIP() << "the host is not lost";
+    PlateSolver         device(deviceOfTests(), 1e-9); // [s] of patience: every submission counts as a hang
+    const Plate         plate = plateOf(64, 10);
+    const NodeField     load  = pointLoad(plate.grid, 1, 0.5, 0.5);
+    const PlateSolution found = device.solve(plate, load);
+    EXPECT_EQ(found.report.device, "reference");
+    EXPECT_EQ(device.name(), "reference");
+    EXPECT_NE(device.note(), "");
+    EXPECT_LT(difference(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-12);
+    EXPECT_EQ(device.solve(plate, load).report.device, "reference"); // from now on
+}
+
+TEST(PlateSolver, WhatTheDeviceCannotConvergeTheReferenceSolves)
+{
+    PlateSolver         device(deviceOfTests());
+    const Plate         plate = plateOf(64, 1e9);
+    const NodeField     load  = pointLoad(plate.grid, 1, 0.5, 0.5);
+    const PlateSolution found = device.solve(plate, load);
+    EXPECT_EQ(found.report.device, "reference");
+    EXPECT_TRUE(found.report.converged);
+    EXPECT_NE(device.note().find("stopped at an error of about"), std::string::npos) << device.note();
+    EXPECT_NE(device.solve(plateOf(64, 10), load).report.device, "reference") << "for that plate only";
+}
+
+/// As many as the table of a moving contact has, on every device and by the reference alone.
+TEST(PlateSolver, SeveralLoadsOfOnePlateAreThoseOfEachAlone)
+{
+    for (const std::string& name : {deviceOfTests(), std::string(PlateSolver::kReference)}) {
+        PlateSolver            device(name);
+        const Plate            plate = plateOf(20, 10);
+        std::vector<NodeField> loads;
+        for (double x : {0.3, 0.5, 0.7})
+            for (double z : {0.3, 0.5, 0.7}) loads.push_back(footprintLoad(plate.grid, 1, x, z, 0.1));
+        const ReferencePlateSolver reference(plate);
+
+        const auto together = device.solveAll(plate, loads);
+        ASSERT_EQ(together.size(), loads.size());
+        for (std::size_t n = 0; n < loads.size(); ++n)
+            EXPECT_LT(difference(together[n].deflection, reference.solve(loads[n]).deflection), 1e-4) << n;
+        EXPECT_LT(difference(device.solve(plate, loads[2]).deflection, together[2].deflection), 2e-4) << "one after";
+    }
+}
+
+TEST(PlateSolver, OneThatIsNotThereIsRefusedByName)
+{
+    EXPECT_THROW(PlateSolver("no such device"), Error);
+}
+
+TEST(PlateSolver, WordsAreKnownInAnyCase)
+{
+    EXPECT_EQ(PlateSolver("Reference").name(), "reference");
+    EXPECT_EQ(PlateSolver("HOST").name(), "host");
+}
+
+TEST(PlateSolver, AutoNeverTakesSoftware)
+{
+    const std::vector<compute::Processor> list  = compute::listProcessors();
+    const auto                            place = compute::chooseProcessor(list, "auto");
+    const PlateSolver                     device("auto");
+    EXPECT_EQ(device.name(), place ? list[*place].name : "host");
+    EXPECT_EQ(device.note(), "");
+}
+
+} // namespace
+} // namespace palp

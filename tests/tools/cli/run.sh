@@ -1,0 +1,660 @@
+#!/bin/sh
+# The command line as a user meets it: good runs, bad input (exit code 2, one sentence, no half-written file).
+# Arguments: the program, and the manifest of a Vulkan driver that fails (tests/compute/broken_driver.cpp).
+set -u
+palpate=$1 broken=$2
+place=$(mktemp -d "${TMPDIR:-/tmp}/palpate program XXXXXX") || exit 1
+trap 'chmod -R u+w "$place"; rm -rf "$place"' EXIT
+cd "$place" || exit 1
+
+failed=0 passed=0
+complain() { echo "FAILED: $*"; failed=$((failed + 1)); }
+
+good() { # good DESCRIPTION ARGUMENTS...: exit code 0
+    what=$1; shift
+    if "$palpate" "$@" >out.txt 2>err.txt; then passed=$((passed + 1)); else complain "$what: exit $? $(cat err.txt)"; fi
+}
+holds() { grep -qF -- "$1" out.txt && passed=$((passed + 1)) || complain "output lacks '$1': $(head -c 600 out.txt)"; }
+bad() { # bad DESCRIPTION WORD ARGUMENTS...: exit code 2, one line on stderr that holds WORD, nothing on stdout
+    what=$1 word=$2; shift 2
+    "$palpate" "$@" >out.txt 2>err.txt
+    code=$?
+    [ $code -eq 2 ] || { complain "$what: exit $code, expected 2: $(cat err.txt)"; return; }
+    grep -qF -- "$word" err.txt || { complain "$what: '$word' is not in: $(cat err.txt)"; return; }
+    [ "$(wc -l <err.txt)" -eq 1 ] || { complain "$what: more than one line: $(cat err.txt)"; return; }
+    [ ! -s out.txt ] || { complain "$what: printed something to standard output"; return; }
+    passed=$((passed + 1))
+}
+
+# --- good runs
+good 'version' --version
+holds 'palpate 0.'
+good 'help' --help
+holds 'Examples:'
+for command in touch solve info convert paint render view hunt study perceive paper devices doctor calibrate 'bench solve'; do
+    # shellcheck disable=SC2086  # a command, or one within another
+    good "help of $command" $command --help; holds 'Examples:'
+    mv out.txt help.txt
+    # shellcheck disable=SC2086
+    good "help in other words, $command" help $command
+    cmp -s out.txt help.txt && passed=$((passed + 1)) || complain "'help $command' is not '$command --help'"
+done
+good 'help of bench' bench --help
+holds 'bench solve --out bench'
+grep -qF 'palpate touch' out.txt && complain 'the help of bench has the examples of touch' || passed=$((passed + 1))
+good 'list of samples' info --samples
+for sample in ellipsoid sheet pad hemisphere saddle skin palm ear-lobe; do holds "sample:$sample"; done
+good 'a sample as a file' convert sample:skin skin.ply --points 5000
+good 'info' info skin.ply --json
+holds '"points": 5000'
+good 'ascii, millimetres, a named property' convert skin.ply skin.csv
+good 'touch a sample' touch sample:ellipsoid --points 8000 --cells 32 --out 'a folder' --json
+holds '"felt_stiffness"'
+for file in deformed.ply touch.json rigidity.npy deflection.npy rigidity.svg deflection.svg profile.svg surface.svg close_up.svg; do
+    [ -s "a folder/$file" ] && passed=$((passed + 1)) || complain "touch --out did not write $file"
+done
+good 'the deformed cloud is a cloud' info 'a folder/deformed.ply'
+holds 'deflection'
+good 'touch a file' touch skin.ply --at 0,0,0.0015 --window 40mm --cells 32
+holds 'felt stiffness'
+good 'touch as the paper' touch skin.ply --at 0,0,0.0015 --preset paper --window 40mm --cells 32 --json
+holds '"differences_from_paper": []'
+# agree KEY FILE FILE SHARE: the number of that key differs by no more than a share, here the tolerance that solves have;
+# devices smooth each in its own way, so only the tests of the solver, which choose the way, compare bits
+agree() {
+    value=$(sed -n "s/.*\"$1\": \([-+.0-9e]*\).*/\1/p" "$2") other=$(sed -n "s/.*\"$1\": \([-+.0-9e]*\).*/\1/p" "$3")
+    awk -v a="$value" -v b="$other" -v share="$4" 'BEGIN { d = a - b; if (d < 0) d = -d; m = a < 0 ? -a : a; exit !(m > 0 && d <= share * m) }' &&
+        passed=$((passed + 1)) || complain "$1: $2 has $value, $3 $other"
+}
+cat >plate.json <<'JSON'
+{"size":[1,1.5], "cells":[16,24], "poisson":0.3, "edges":{"x0":"clamped","x1":"free","z0":"supported","z1":"clamped"}, "foundation":0,
+ "rigidity":{"law":"constant","value":1}, "load":{"law":"point","force":1,"at":[0.5,0.75]}, "probes":[[0.25,0.25]]}
+JSON
+good 'solve' solve plate.json --json
+for key in '"probes"' '"deflection"' '"max_deflection"' '"report"' '"device"' '"iterations"' '"error_estimate"' '"work_units"' '"milliseconds"' '"square_cells": true' '"poisson": 0.3' '"x1": "free"' '"foundation": 0' \
+    '"rigidity_min": 1' '"rigidity_max": 1' '"total_force": 1' '"max_deflection_at"' '"note": null' '"warnings": []'; do holds "$key"; done
+tr -d ' \n' <out.txt >flat.txt
+grep -qF '"size":[1.0,1.5],"cells":[16,24],"spacing":[0.0625,0.0625]' flat.txt && passed=$((passed + 1)) || complain "the plate of solve --json: $(cat flat.txt)"
+sed 's/\[16,24\]/[16,16]/; s/\[0.5,0.75\]/[0,0.75]/' plate.json >odd.json
+good 'cells that are not square, and a load on a clamped edge' solve odd.json --json
+holds '"square_cells": false'
+holds 'bends nothing'
+grep -qF 'palpate: warning: odd.json: load: ' err.txt && passed=$((passed + 1)) || complain "no warning: $(cat err.txt)"
+good 'solve, finer' solve plate.json --cells 32 --out w.npy
+[ -s w.npy ] || complain 'solve --out wrote nothing'
+
+good 'solve by the reference' solve plate.json --device Reference --json
+holds '"device": "reference"'
+good 'solve on the host' solve plate.json --device Host --json --out host.npy
+holds '"device": "host"'
+cp out.txt host.json
+good 'solve on lavapipe' solve plate.json --device lavapipe --json
+agree max_deflection host.json out.txt 1e-4
+without() { env VK_DRIVER_FILES="$place/none.json" VK_ICD_FILENAMES="$place/none.json" "$@" >out.txt 2>err.txt; } # any Vulkan driver
+failing() { where=$1; shift; env PALPATE_BROKEN="$where" VK_DRIVER_FILES="$broken" VK_ICD_FILENAMES="$broken" "$@" >out.txt 2>err.txt; }
+without "$palpate" solve plate.json --device host && [ ! -s err.txt ] && passed=$((passed + 1)) || complain "the host needs a driver: $(cat out.txt err.txt)"
+good 'solve where there is only software' solve plate.json --json --out auto.npy
+holds '"device": "host"'
+holds '"note": null'
+[ ! -s err.txt ] && cmp -s auto.npy host.npy && passed=$((passed + 1)) || complain "auto is not the host: $(cat err.txt)"
+PALPATE_HOST_ISA=sse9
+export PALPATE_HOST_ISA
+for command in 'solve plate.json' devices; do
+    # shellcheck disable=SC2086  # a command and its arguments
+    bad 'an instruction set that is none' 'PALPATE_HOST_ISA: expected portable, avx2 or avx512, found "sse9"' $command
+done
+PALPATE_HOST_ISA=portable
+good 'another instruction set' solve plate.json --out portable.npy
+cmp -s portable.npy host.npy && passed=$((passed + 1)) || complain 'instruction sets differ'
+good 'its name' devices --json
+holds '"instruction_set": "portable"'
+unset PALPATE_HOST_ISA
+good 'solve tightly' solve plate.json --device Lavapipe --tolerance 1e-7 --json
+holds '"work_units"'
+good 'touch by the reference' touch sample:skin --points 5000 --cells 32 --device reference
+holds '(reference)'
+good 'benchmark' bench solve --device lavapipe,REFERENCE --schedule Pass-by-pass --nodes 17,33 --loads 1,4 --repeats 2 --out bench --json
+for key in '"cold_p50_ms"' '"cold_p99_ms"' '"warm_p50_ms"' '"iterations"' '"work_units"' '"error"' '"copy_gb_per_s"' '"dispatches_per_cycle"'; do holds "$key"; done
+[ -s bench/solve.json ] && [ -s bench/solve.svg ] && passed=$((passed + 1)) || complain 'bench --out wrote nothing'
+
+good 'peers' bench plate --device lavapipe --nodes 33,65 --maps linear,disc_0.1 --cases new_map,contrast,memory --out peers --json
+for key in '"case": "new_map"' '"case": "contrast"' '"case": "memory"' '"peer": "CHOLMOD"' '"peer": "Eigen SimplicialLDLT"' '"accuracy": "discretisation"' '"accuracy": "1e-6"' \
+    '"peer_ms"' '"palpate_ms"' '"ratio"' '"error"' '"peer_error"' '"work_units"' '"iterations"' 'OPENBLAS_NUM_THREADS=1'; do holds "$key"; done
+for file in plate.json plate.txt new_map.svg; do
+    [ -s "peers/$file" ] && passed=$((passed + 1)) || complain "bench plate --out did not write $file"
+done
+[ ! -e peers/new_load.svg ] && passed=$((passed + 1)) || complain 'bench plate --out wrote a picture of nothing'
+bad 'nothing to measure' 'begin at 65 nodes' bench plate --device host --nodes 33 --cases new_map
+bad 'quick and large' 'with --quick at most 257' bench plate --quick --nodes 513
+"$palpate" solve plate.json --device 77 >out.txt 2>err.txt
+[ $? -eq 2 ] && grep -qF 'there is no GPU 77' err.txt && passed=$((passed + 1)) || complain "no such index: $(cat err.txt)"
+good 'the paper'\''s iteration' bench plate --device lavapipe --nodes 33 --cases jacobi
+holds 'Jacobi 0.6, same error'
+mkdir alone && cp "$palpate" alone/palpate
+alone/palpate bench plate --device lavapipe --nodes 33 --cases memory >out.txt 2>err.txt || complain "bench plate without peers: exit $? $(cat err.txt)"
+holds 'install libsuitesparse-dev'
+
+good 'list of devices' devices
+holds 'host  '
+holds 'usable   yes; auto takes it'
+holds 'arm  a simulated arm'
+holds 'looked for with '
+holds 'hidapi'
+holds 'libusb'
+# Where there is a window depends on the environment, and so does what needs one.
+env -u DISPLAY -u WAYLAND_DISPLAY "$palpate" devices --haptic >out.txt 2>err.txt || complain "devices --haptic: exit $?"
+holds 'usable   no: there is no display'
+holds 'help     run it on a desktop'
+grep -q Vulkan out.txt && complain "a hand computes nothing: $(cat out.txt)" || passed=$((passed + 1))
+DISPLAY=:0 "$palpate" devices --haptic --json >out.txt 2>err.txt || complain "devices --haptic --json: exit $?"
+for key in '"name": "mouse"' '"name": "arm"' '"model"' '"path": null' '"usable": true' '"why": null' '"help": null'; do holds "$key"; done
+[ "$(head -c 1 out.txt)" = '[' ] && passed=$((passed + 1)) || complain "devices --haptic --json is no list: $(cat out.txt)"
+bad 'two sorts alone at once' 'excludes' devices --gpu --haptic
+
+# doctor [VARIABLE=VALUE...] -- WORDS of one line of its output, runs of blanks as one
+doctor() {
+    variables=
+    while [ "$1" != -- ]; do variables="$variables $1"; shift; done
+    shift
+    # shellcheck disable=SC2086  # a list of words on purpose
+    env -u DISPLAY -u WAYLAND_DISPLAY -u FALCON_FIRMWARE $variables "$palpate" doctor >out.txt 2>err.txt && [ ! -s err.txt ] || complain "doctor: exit $? $(cat err.txt)"
+    tr -s ' ' <out.txt | grep -qF -- "$*" && passed=$((passed + 1)) || complain "doctor$variables lacks '$*': $(cat out.txt)"
+}
+for part in vulkan host display 'real time' usb 'udev rule' falcon 'falcon firmware' hid; do doctor -- " $part "; done
+doctor -- 'Embree '
+doctor -- 'missing display neither DISPLAY nor WAYLAND_DISPLAY'
+doctor DISPLAY=:0 -- 'ok display X11'
+doctor DISPLAY=:0 WAYLAND_DISPLAY=wayland-0 -- 'ok display Wayland'
+doctor -- 'warning falcon firmware FALCON_FIRMWARE is not set'
+doctor FALCON_FIRMWARE=nothing.bin -- 'missing falcon firmware FALCON_FIRMWARE names a file that cannot be read'
+doctor FALCON_FIRMWARE=plate.json -- 'which is no image'
+head -c 8000 skin.ply >image.bin
+doctor FALCON_FIRMWARE=image.bin -- 'ok falcon firmware 8000 byte'
+grep -qF 'image.bin' out.txt && complain 'a report names a file of the user' || passed=$((passed + 1))
+doctor PALPATE_HOST_ISA=portable -- 'code for portable'
+doctor PALPATE_HOST_ISA=sse9 -- '-> unset PALPATE_HOST_ISA'
+doctor VK_DRIVER_FILES=none.json VK_ICD_FILENAMES=none.json -- 'warning vulkan no device'
+doctor -- 'warning vulkan only in software: '
+good 'doctor, for scripts' doctor --json
+for key in '"palpate": "0.' '"compiler"' '"libraries"' '"system"' '"part": "real time"' '"verdict": "' '"found"' '"help"' '"name": "arm"'; do holds "$key"; done
+good 'list of GPUs' devices --gpu
+holds 'usable   yes'
+grep -q host out.txt && complain "the host is no GPU: $(cat out.txt)" || passed=$((passed + 1))
+good 'list of devices, for scripts' devices --json
+for key in '"index": 0' '"index": null' '"name": "host"' '"kind": "software"' '"kind": "host"' '"driver"' '"api"' '"memory"' '"float64"' '"usable": true' '"refusals": []' '"processor": "' \
+    '"instruction_set": "' '"auto": false'; do holds "$key"; done
+tr -d ' \n' <out.txt | grep -q '^{"compute":.*"auto":true}\],"haptic":\[' && passed=$((passed + 1)) || complain "auto is not the host, the last of: $(cat out.txt)"
+without "$palpate" devices --gpu --json
+code=$?
+[ $code -eq 4 ] && grep -qF 'mesa-vulkan-drivers' err.txt && [ "$(cat out.txt)" = '[]' ] && passed=$((passed + 1)) ||
+    complain "a machine without a GPU: exit $code, expected 4: $(cat out.txt err.txt)"
+without "$palpate" devices && grep -qF 'auto takes it' out.txt && [ ! -s err.txt ] && passed=$((passed + 1)) ||
+    complain "a machine without a GPU has its host: $(cat out.txt err.txt)"
+without "$palpate" solve plate.json --json && grep -qF '"device": "host"' out.txt && grep -qF '"note": null' out.txt && [ ! -s err.txt ] && passed=$((passed + 1)) ||
+    complain "solving without a GPU, on the host: $(cat out.txt err.txt)"
+without "$palpate" solve plate.json --device lavapipe
+code=$?
+[ $code -eq 4 ] && [ ! -s out.txt ] && passed=$((passed + 1)) ||
+    complain "a GPU that is asked for and is not there: exit $code, expected 4: $(cat out.txt err.txt)"
+for where in start list open; do
+    for command in 'solve plate.json' 'touch sample:sheet --points 5000 --cells 16' 'bench solve --device auto --nodes 17 --repeats 1' 'bench plate --nodes 33 --cases memory'; do
+        # shellcheck disable=SC2086  # a command and its arguments
+        failing $where "$palpate" $command --json && grep -qF '"device": "host"' out.txt && [ "$(wc -l <err.txt)" -eq 1 ] &&
+            grep -qF 'palpate: auto takes host: ' err.txt && passed=$((passed + 1)) || complain "$command, Vulkan broken at $where: $(cat out.txt err.txt)"
+        case $command in bench*) continue ;; esac
+        grep -qE '"note": "(Vulkan|the GPU) ' out.txt && passed=$((passed + 1)) || complain "$command does not report it: $(cat out.txt)"
+    done
+    failing $where "$palpate" devices && grep -qF 'host  ' out.txt && passed=$((passed + 1)) || complain "devices, Vulkan broken at $where: $(cat out.txt err.txt)"
+    failing $where "$palpate" solve plate.json --device lavapipe
+    code=$?
+    [ $code -eq 4 ] && [ ! -s out.txt ] && passed=$((passed + 1)) || complain "asked for, Vulkan broken at $where: exit $code: $(cat err.txt)"
+done
+
+# --- a hand feels a scene
+cat >scene.json <<'JSON'
+{"cloud": "sample:sheet", "points": 4000, "thickness": "4 mm", "foundation": "1.74 MPa/m", "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm",
+ "stiffness": {"law": "gaussian", "from": 0.3e6, "to": 3e6, "centre": [0, 0, 0], "sigma": 3e-3}}
+JSON
+good 'run' run scene.json --clock virtual --seconds 0.5 --record session --json
+for key in '"ticks": 500' '"fault": "none"' '"samples": 500' '"p99.9_s"'; do holds "$key"; done
+good 'replay' replay session --compare
+holds 'equal to the bit'
+good 'replay on lavapipe' replay session --compare --device lavapipe
+good 'the configuration' run scene.json --print-config --max-force '4 N'
+holds '4 '
+bad 'a session is not overwritten' session run scene.json --clock virtual --seconds 0.1 --record session
+printf '{"cloud": "sample:sheet", "thicknes": 0.004}' >wrong.json
+"$palpate" run scene.json --device gpu9000 --record unmade >out.txt 2>err.txt
+[ $? -eq 2 ] && [ ! -e unmade ] && passed=$((passed + 1)) || complain "a missing device left a session behind: $(cat err.txt)"
+bad 'an unknown key of a scene' 'did you mean' run wrong.json
+printf '{"cloud": "sample:sheet", "thickness": -0.004}' >wrong.json
+bad 'a negative thickness' thickness run wrong.json
+printf '0,0,0,0\n0.1,nan,0,0\n' >hand.csv
+bad 'a hand that is not a number' hand.csv run scene.json --hand hand.csv
+printf 't;x;y;z\n0;0;0;0,01\n1;0;0;0,002\n' >decimal.csv
+bad 'decimal commas' 'expected 4 columns, found 5' run scene.json --hand decimal.csv
+bad 'a grip in a wrong unit' '"N/mm"' run scene.json --arm '150 N/mm'
+bad 'a speed that no hand has' 'up to 100 m/s' run scene.json --speed 1e300
+bad 'a time without end' 'up to 86400 s' run scene.json --seconds 1e9
+bad 'threads without a clock' 'virtual clock has no threads' run scene.json --threads paper --clock virtual
+bad 'counts of no motor' 'expected 2000 to 10000' run scene.json --hand falcon-emulator --falcon-counts 50000
+bad 'counts that are no number' 'nan' run scene.json --hand falcon-emulator --falcon-counts nan
+bad 'counts without a Falcon' 'of --hand falcon' run scene.json --falcon-counts 4300
+bad 'a slip' 'did you mean falcon?' run scene.json --hand falcom
+bad 'a mouse without a window' 'needs a window' run scene.json --hand mouse
+bad 'a table that is too large' '0, 1, 3, 5 or 7' run scene.json --table-size 9
+good 'units of keys' run scene.json --print-config --stiffness-cap '800 N/m' --deformation-rate 30Hz --from 1e300,0,1e300
+for hand in arm falcon-emulator; do
+    good "a hand that forces move: $hand" run scene.json --hand $hand --clock virtual --seconds 0.5 --record "held-$hand" --json
+    good "it replays: $hand" replay "held-$hand" --compare
+    holds 'equal to the bit'
+done
+good 'threads of the paper' run scene.json --threads paper --seconds 0.3
+good 'a fast hand' run scene.json --speed 2 --clock virtual --seconds 1 --json
+holds 'no force came on'
+sed 's/"samples": [0-9]*/"samples": 7/' held-arm/session.json >cut.json && mv cut.json held-arm/session.json
+bad 'a damaged recording' 'the recording is damaged' replay held-arm --compare
+"$palpate" run scene.json --clock virtual --seconds 3000 --record stopped >out.txt 2>err.txt &
+session=$!
+n=0
+until [ -s stopped/samples.csv ] || [ $n -gt 300 ]; do sleep 0.1; n=$((n + 1)); done
+kill -TERM $session
+wait $session && grep -q '"finished": true' stopped/session.json && passed=$((passed + 1)) || complain "a session that is stopped: exit $? $(cat err.txt)"
+bad 'an unknown clock' 'expected real or virtual' run scene.json --clock wall
+python3 -c "
+import sys
+data = bytearray(open('session/force.npy', 'rb').read()); data[-1] ^= 1; open('session/force.npy', 'wb').write(data)" 2>/dev/null && {
+    "$palpate" replay session --compare >out.txt 2>err.txt
+    [ $? -eq 1 ] && grep -qF 'sample 499' out.txt && passed=$((passed + 1)) || complain "one changed bit is not found: $(cat out.txt err.txt)"
+}
+
+# --- a Falcon weighs a mass: an emulated one, of 5000 counts per N m and an arm of 210 g
+good 'calibrate' calibrate --emulator --json
+holds '"counts_per_torque_before": 4200.0'
+# near KEY EXPECTED SHARE, of tests/device/falcon_calibration_test.cpp
+near() {
+    value=$(sed -n "s/^  \"$1\": \([-+.0-9e]*\).*/\1/p" out.txt)
+    awk -v a="$value" -v b="$2" -v share="$3" 'BEGIN { d = a - b; if (d < 0) d = -d; exit !(a > 0 && d <= share * b) }' &&
+        passed=$((passed + 1)) || complain "calibrate: $1 is $value, expected $2"
+}
+near counts_per_torque 5000 0.005
+near arm_kg 0.21 0.01
+for step in 'emulated' 'lift the grip' 'hang 200 g on the grip' 'hands off'; do
+    grep -qF "$step" err.txt && passed=$((passed + 1)) || complain "calibrate does not say '$step': $(cat err.txt)"
+done
+good 'calibrate, a lighter mass' calibrate --emulator --mass 0.1
+holds '--hand falcon --falcon-counts 499'
+holds 'this Falcon is emulated'
+bad 'a mass that no grip holds' '--mass: expected 50 g to 500 g, found "2 kg"' calibrate --emulator --mass '2 kg'
+bad 'a mass that is none' '--mass' calibrate --emulator --mass '200 N'
+"$palpate" calibrate --emulator --mass '500 g' >out.txt 2>err.txt
+[ $? -eq 1 ] && [ ! -s out.txt ] && grep -qF 'take a lighter mass' err.txt && passed=$((passed + 1)) || complain "a mass beyond the governor: $(cat out.txt err.txt)"
+
+# --- the same numbers every time
+for run in one two; do "$palpate" touch sample:palm --points 8000 --cells 32 --out $run --json >touch.json; done
+"$palpate" touch sample:palm --points 8000 --cells 32 --device lavapipe --out three --json >lavapipe.json
+grep -qF '"device": "llvmpipe' lavapipe.json && passed=$((passed + 1)) || complain "that was not lavapipe: $(cat lavapipe.json)"
+agree compliance touch.json lavapipe.json 1e-4
+cmp -s one/rigidity.npy three/rigidity.npy && passed=$((passed + 1)) || complain 'the host and lavapipe sample differently'
+for file in deformed.ply rigidity.npy deflection.npy rigidity.svg surface.svg; do
+    cmp -s one/$file two/$file && passed=$((passed + 1)) || complain "$file differs between two equal runs"
+done
+
+# --- bad usage
+bad 'unknown option' 'frobnicate' touch sample:skin --frobnicate
+bad 'unknown sample' 'palm' touch sample:elbow
+bad 'unknown unit' 'parsec' info skin.ply --unit parsec
+bad 'unknown preset' 'paper' touch sample:skin --preset rabbit
+bad 'unknown map' 'gall-peters' touch sample:skin --map mercator
+bad 'odd cells' 'even' touch sample:skin --cells 33
+bad 'force that is no number' '--force' touch sample:skin --force nan
+bad 'negative window' '--window' touch sample:skin --window -40mm
+bad 'all edges free, nothing below' 'rigid' touch sample:sheet --points 5000 --cells 16 --edges free
+bad 'footprint wider than the window' 'footprint' touch sample:sheet --points 5000 --cells 16 --footprint 50mm
+bad 'contact far from the cloud' 'contact' touch sample:skin --points 5000 --at 1m,0,0
+bad 'no place for a file' '--at' touch skin.ply
+bad 'tolerance that 32 bits cannot give' '--tolerance' solve plate.json --tolerance 1e-12
+bad 'tolerance that is no number' '--tolerance' touch sample:skin --tolerance nan
+bad 'benchmark of a giant' '--nodes' bench solve --nodes 4097
+bad 'benchmark of an unknown law' 'hyperbolic' bench solve --law cubic
+bad 'peers on an even grid' 'multiple of 4' bench plate --nodes 64
+bad 'peers on a giant' '--nodes' bench plate --nodes 2049
+bad 'peers in an unknown case' 'new_map' bench plate --cases speed
+bad 'peers on an unknown map' 'disc_100' bench plate --maps cubic
+bad 'too few runs for quartiles' '--runs' bench plate --runs 5
+bad 'the reference as its own peer' 'reference' bench plate --device reference
+bad 'peers with an empty device' '--device' bench plate --device ''
+bad 'devices take no argument' 'voodoo' devices voodoo
+bad 'nor does the doctor' 'voodoo' doctor voodoo
+for command in 'solve plate.json' 'bench solve'; do
+    # shellcheck disable=SC2086  # a command and its arguments
+    "$palpate" $command --device gpu9000 >out.txt 2>err.txt
+    code=$?
+    [ $code -eq 2 ] && grep -qF "'gpu9000'; expected auto, host, lavapipe, an index or part of a name" err.txt && grep -qF usable err.txt && grep -qF '  host  ' err.txt && grep -qF '  reference  ' err.txt && [ ! -s out.txt ] && passed=$((passed + 1)) ||
+        complain "unknown device: exit $code, expected 2 and the list of devices: $(cat err.txt)"
+done
+for tolerance in 0 1e-12 nan 1; do
+    bad "benchmark with a tolerance of $tolerance" '--tolerance: expected at least 1e-07' bench solve --tolerance $tolerance
+    grep -qF "below 1, found $tolerance" err.txt && passed=$((passed + 1)) || complain "the tolerance's bounds: $(cat err.txt)"
+done
+for schedule in nosuch 0; do
+    bad 'unknown schedule' "--schedule: expected automatic, pass-by-pass or fused, found \"$schedule\"" bench solve --schedule $schedule
+done
+
+# --- bad files
+bad 'missing file' 'No such file' info nowhere.ply
+mkdir folder.ply
+bad 'a folder' 'folder' info folder.ply
+bad 'unknown extension' '.ply' info plate.json
+printf 'ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\nabc' >huge.ply
+bad 'a header that lies' 'huge.ply' info huge.ply
+head -c 900 skin.ply >short.ply
+bad 'a short file' 'short.ply' info short.ply
+printf 'x,y,z\n0,0,0\n1,nan,0\n' >nan.csv
+bad 'NaN' 'nan.csv' info nan.csv
+printf 'x,y,z,stiffness\n0,0,0,1\n1,0,0,0\n0,1,0,2\n' >zero.csv
+bad 'zero stiffness' 'zero.csv' info zero.csv
+printf 'x,y,z\n1,2,3\n1,2,3\n1,2,3\n' >same.csv
+bad 'all points equal' 'same.csv' info same.csv
+: >empty.ply
+bad 'empty file' 'empty.ply' info empty.ply
+bad 'missing property' 'quality' info skin.ply --stiffness-property quality
+printf '{"size":[1,1],' >broken.json
+bad 'broken JSON' 'broken.json' solve broken.json
+sed 's/"value":1/"value":-1/' plate.json >negative.json
+bad 'negative rigidity' 'negative.json' solve negative.json
+sed 's/\[\[0.25,0.25\]\]/[[5,5]]/' plate.json >outside.json
+bad 'probe off the plate' 'probes' solve outside.json
+
+# --- unwritable targets, and nothing half-written
+bad 'target in a folder that is not there' 'cannot be written' convert skin.ply nowhere/skin.ply
+bad 'unknown target format' '.ply' convert skin.ply skin.stl
+printf 'precious' >kept.ply
+bad 'bad input keeps the old target' 'short.ply' convert short.ply kept.ply
+[ "$(cat kept.ply)" = precious ] && passed=$((passed + 1)) || complain 'an old file was lost'
+(
+    ulimit -f 100 && "$palpate" solve plate.json --cells 128 --device reference --out big.npy >out.txt 2>err.txt
+    code=$?
+    [ $code -eq 2 ] && grep -qF 'big.npy: cannot be written: File too large' err.txt
+) && [ ! -e big.npy ] && passed=$((passed + 1)) || complain "a limit on the size of files: $(cat err.txt)"
+# Without memory: the sentence, and no exit handler, where a driver may wait for its own lock. No sanitizer runs so.
+(
+    ulimit -v 400000 && LD_DEBUG=files "$palpate" solve plate.json --cells 512 --device reference >out.txt 2>err.txt
+    code=$?
+    grep -qF Sanitizer err.txt && exit 0
+    [ $code -eq 2 ] && grep -qF 'out of memory' err.txt && ! grep -qF 'calling fini' err.txt
+) && passed=$((passed + 1)) || complain "no memory: $(grep -F -e palpate: -e 'calling fini' err.txt)"
+mkdir full && : >full/out
+bad 'a folder that is a file' 'full/out' touch sample:skin --points 5000 --cells 48 --out full/out
+# --- options that cannot apply
+for option in '--stiffness-property quality' '--range 1kPa,2kPa' --log-range '--uniform 3kPa' '--stiffness-unit N_m' '--columns x,y,z' --drop-invalid; do
+    # shellcheck disable=SC2086  # an option and its value
+    bad "a sample with $option" "${option%% *}: expected a file" info sample:skin $option
+done
+bad 'an unknown unit on a sample' 'parsec' info sample:skin --unit parsec
+for option in --points --seed; do bad "a file with $option" "$option: expected a sample" info skin.ply $option 100; done
+bad 'points below zero' 'found -3' info sample:skin --points -3
+bad 'no points' '--points: expected at least 16, found 0' info sample:skin --points 0
+bad 'no cells' 'found 0' touch sample:skin --cells 0
+bad 'a scale without a range' '--range' info skin.ply --log-range
+bad 'uniform where there is a stiffness' '--uniform: expected a file without' info skin.ply --uniform 300kPa
+bad 'uniform beside a law' '--uniform: --stiffness replaces' info skin.ply --uniform 300kPa --stiffness constant:value=1
+bad 'a folder without a name' '--out: expected a value' touch sample:skin --out ''
+bad 'a law with a unit' 'SI units' info skin.ply --stiffness constant:value=300kPa
+bad 'the comment says otherwise' 'stiffness_unit Pa' info skin.ply --stiffness-unit N_m
+bad 'an unknown command' 'frob' frob
+bad 'help on an unknown command' 'frob' help frob
+bad 'an answer that is no array' '.npy' solve plate.json --out plate.json
+cp plate.json plate.npy
+bad 'an answer over its problem' 'problem file itself' solve plate.npy --out ./plate.npy
+sed 's/"constant","value"/"odd","value"/' plate.json >odd.json
+bad 'an unknown rigidity law' 'checker, grid' solve odd.json
+
+# --- values beyond all sense
+bad 'a window beyond the world' '--window: expected a value from 1e-09 to 10000 m' touch sample:sheet --window 1e300m --footprint 1e299m
+for option in --thickness --footprint --window; do bad "nothing of $option" "$option" touch sample:sheet $option 1e-12m; done
+bad 'a force beyond the world' '--force' touch sample:sheet --force 1e308 --thickness 0.001mm
+bad 'a foundation beyond the world' '--foundation' touch sample:sheet --foundation 1e300
+bad 'a place beyond the world' '--at' touch sample:sheet --at 1e300,0,0
+bad 'a stiffness beyond the world' 'that 32 bits cannot hold' touch sample:sheet --points 5000 --cells 16 --stiffness constant:value=1e307 --thickness 1e-9m
+
+# --- what is assumed is said
+printf 'x,y,z\n' >bare.csv
+awk 'BEGIN { for (i = -20; i <= 20; ++i) for (j = -20; j <= 20; ++j) print i "," j "," 0.01 * (i * i + j * j) }' >>bare.csv
+good 'a bare file' convert bare.csv bare.ply
+holds 'assumed metres'
+holds '300 kPa assumed'
+good 'a bare file, touched in millimetres' touch bare.csv --unit mm --at 0,0,0 --window 20 --thickness 3 --footprint 2mm --cells 32
+holds '300 kPa assumed'
+holds 'mm, from the setting'
+holds 'thickness 3.00 mm'
+bad 'a suggested place on the cloud' '--at 0.00,0.00,' touch bare.csv --unit mm
+bad 'no place near the cloud' '--unit' touch bare.csv --at 5,5,1000 --window 20 --footprint 2 --cells 16
+good 'a law beside the cloud' info bare.csv --unit mm --stiffness disc:from=1,to=2,centre=5\;5\;5,radius=1
+holds 'same stiffness'
+printf '0 0 0 1\n1 0 0 1\n0 1 0 1\n' >three.xyz
+good 'three points' info three.xyz
+holds 'spacing     unknown'
+printf 'x [mm],y [mm],z [mm]\n0,0,0\n1,0,0\n0,1,0\n' >units.csv
+bad 'a header with units' '--columns' info units.csv
+good 'such a header with names' info units.csv --columns x,y,z
+name=$(printf 'caf\351.csv')
+cp bare.csv "$name"
+good 'a name that is not UTF-8' info "$name" --json
+good 'nor in convert' convert bare.csv "$name" --json
+good 'nor in touch' touch "$name" --unit mm --at 0,0,0 --window 20 --footprint 2 --cells 16 --json --out "folder $name"
+
+# --- standard output that cannot be written
+full() { # full DESCRIPTION ARGUMENTS...: exit 2 and a sentence, on a full device and on a closed output
+    what=$1; shift
+    [ -c /dev/full ] || return
+    for where in full closed; do
+        if [ $where = full ]; then "$palpate" "$@" >/dev/full 2>err.txt; else "$palpate" "$@" >&- 2>err.txt; fi
+        code=$?
+        if [ $code -eq 2 ] && grep -q 'standard output cannot be written' err.txt; then passed=$((passed + 1)); else complain "$what ($where): exit $code: $(cat err.txt)"; fi
+    done
+}
+full 'help' --help
+full 'version' --version
+full 'help of a command' touch --help
+full 'solve' solve plate.json
+full 'solve for scripts' solve plate.json --json
+full 'touch' touch sample:sheet --points 5000 --cells 16
+full 'info' info skin.ply
+full 'samples' info --samples
+full 'convert' convert skin.ply other.ply
+
+# --- pictures without a display
+small='--points 4000 --cells 32 --size 240x180'
+png() { # png FILE WIDTH HEIGHT: it is a PNG of that size
+    [ "$(od -An -tx1 -N8 "$1" | tr -d ' \n')" = 89504e470d0a1a0a ] && [ "$(od -An -tu1 -j16 -N8 "$1" | awk '{ print $3 * 256 + $4, $7 * 256 + $8 }')" = "$2 $3" ] &&
+        passed=$((passed + 1)) || complain "$1 is no PNG of $2 x $3"
+}
+cat >soft.json <<'JSON'
+{"cloud": "sample:skin", "points": 4000, "cells": 32}
+JSON
+# shellcheck disable=SC2086  # options
+{
+    good 'a picture of a sample' render sample:skin $small --out skin.png
+    holds 'skin.png'
+    png skin.png 240 180
+    good 'the same once more' render sample:skin $small --out again.png
+    cmp -s skin.png again.png && passed=$((passed + 1)) || complain 'the same picture has other bytes'
+    good 'a picture of a scene' render soft.json --size 200x150 --force '0.5 N' --colour stiffness --colour-map cividis --dark --exaggerate 3 --view whole --out soft.png --json
+    for key in '"force": 0.5' '"max_deflection"' '"drawn_on"' '"points": 4000'; do holds "$key"; done
+    good 'a picture of a file' render skin.ply --at 0,0,0.0015 --window 40mm --cells 32 --size 64x48 --out file.png
+    png file.png 64 48
+    good 'a picture of a bare file' render bare.csv --at 0,0,0 --window 20m --cells 32 --size 64x48 --footprint-radius 2m --thickness 0.5 --out bare.png
+    grep -q 'assumed metres' err.txt && grep -q '300 kPa assumed' err.txt && passed=$((passed + 1)) || complain "render does not say what it assumed: $(cat err.txt)"
+    good 'pictures along a hand' render soft.json --size 64x48 --frames 3 --hand press --seconds 0.3 --out film.png --json
+    for n in 1 2 3; do png film_000$n.png 64 48; done
+    [ ! -e film.png ] && passed=$((passed + 1)) || complain 'render --frames wrote a picture without a number'
+    env -u DISPLAY -u WAYLAND_DISPLAY "$palpate" render sample:sheet $small --out dark.png >out.txt 2>err.txt && passed=$((passed + 1)) || complain "render needs a display: $(cat err.txt)"
+    bad 'a size without a height' '--size: expected WIDTHxHEIGHT' render sample:skin --out no.png --size 320
+    bad 'a size that is none' '--size' render sample:skin --out no.png --size 0x100
+    bad 'a size beyond devices' '--size' render sample:skin --out no.png --size 5000x100
+    bad 'a size with more behind' '--size' render sample:skin --out no.png --size 320x240px
+    bad 'another kind of file' '.png' render sample:skin --out no.jpg
+    bad 'an unknown colour' 'deflection, stiffness, plain' render sample:skin --out no.png --colour red
+    bad 'an unknown map' 'viridis, cividis, grey' render sample:skin --out no.png --colour-map jet
+    bad 'an unknown view' 'patch, whole' render sample:skin $small --out no.png --view side
+    bad 'a negative exaggeration' '--exaggerate' render sample:skin --out no.png --exaggerate -1
+    bad 'an unknown sample' 'known' render sample:nose --out no.png
+    bad 'a scene that is not there' 'nowhere.json' render nowhere.json --out no.png
+    bad 'a cloud that is not there' 'nowhere.ply' render nowhere.ply --out no.png
+    bad 'a cloud without a place' '--at' render skin.ply --out no.png
+    bad 'a place off the cloud' '1' render sample:skin $small --at 1,1,1 --out no.png
+    bad 'a force of the hand' '--force' render soft.json --frames 2 --force 1N --out no.png
+    bad 'no frames' '--frames' render soft.json --frames 0 --out no.png
+    bad 'a folder that is not there' 'nowhere/no.png' render sample:skin $small --out nowhere/no.png
+    [ ! -e no.png ] && passed=$((passed + 1)) || complain 'a refused picture was written'
+    without "$palpate" render sample:skin $small --out no.png
+    code=$?
+    [ $code -eq 4 ] && grep -qF 'no Vulkan device can draw' err.txt && grep -qF 'mesa-vulkan-drivers' err.txt && [ ! -s out.txt ] && [ ! -e no.png ] && passed=$((passed + 1)) ||
+        complain "render without Vulkan: exit $code, expected 4: $(cat err.txt)"
+    "$palpate" render sample:skin $small --draw-on host --out no.png >out.txt 2>err.txt
+    code=$?
+    [ $code -eq 4 ] && grep -qF 'cannot draw' err.txt && passed=$((passed + 1)) || complain "render on the host: exit $code: $(cat err.txt)"
+}
+
+# --- faces, and stiffness that is painted
+cat >mesh.ply <<'PLY'
+ply
+format ascii 1.0
+comment VCGLIB generated
+comment length_unit mm
+element vertex 9
+property float x
+property float y
+property float z
+property uchar red
+property float quality
+element face 5
+property list uchar int vertex_indices
+end_header
+0 0 0 255 1000
+1 0 0 255 1000
+2 0 0.10 255 1000
+0 1 0 128 1000.0
+1 1 0 128 1000.0
+2 1 0 128 1000.0
+0 2 0 0 1000
+1 2 0 0 1000
+2 2 0 0 1000
+4 0 1 4 3
+4 1 2 5 4
+3 3 4 7
+3 4 4 5
+2 0 1
+PLY
+good 'a mesh' info mesh.ply
+holds '5 triangles of 5 faces, 2 left out: fewer than three corners, or one twice'
+good 'a mesh, for scripts' info mesh.ply --json
+holds '"faces": 5'
+holds '"degenerate_faces": 2'
+good 'a mesh as another' convert mesh.ply mesh2.ply
+holds '5 triangles'
+good 'which has its faces' info mesh2.ply
+holds '5 triangles of 5 faces'
+good 'a mesh as text' convert mesh.ply mesh.csv --json
+holds 'only PLY holds faces'
+sed 's/^3 3 4 7/3 3 4 9/' mesh.ply >hole.ply
+bad 'a face of a point that is not there' 'hole.ply: line 25: face 2: expected the number of a point from 0 to below 9, found 9' info hole.ply
+
+good 'paint one point of a mesh' paint mesh.ply --stiffness-property quality --unit mm --stroke 'at=1,1,0 radius=0.5mm value=2kPa' --out painted.ply
+holds '9 points, 1 with another stiffness'
+holds 'property quality, all else as in mesh.ply'
+holds '--stiffness-property quality'
+sed 's/^1 1 0 128 1000.0/1 1 0 128 2000/' mesh.ply | cmp -s - painted.ply && passed=$((passed + 1)) || complain "painting changed more than a number: $(diff mesh.ply painted.ply)"
+good 'paint where there is no stiffness' paint mesh.ply --stroke 'at=1mm,1mm,0 radius=0.5mm value=2kPa' --out appended.ply --json --uniform 1kPa
+for key in '"appended": true' '"property": "stiffness"' '"changed_points": 1' '"original_kept": true' '"stiffness_max": 2000'; do holds "$key"; done
+grep -q '^1 1 0 128 1000.0 2000$' appended.ply && grep -q '^comment stiffness_unit Pa$' appended.ply && passed=$((passed + 1)) || complain "nothing appended: $(cat appended.ply)"
+good 'paint a sample' paint sample:skin --points 5000 --stroke 'at=0,0,1.5mm radius=6mm value=2MPa strength=0.5' --stroke 'at=0,0,1.5mm;5mm,0,1.5mm radius=4mm smooth' --out wart.ply --json
+for key in '"dabs": 1' '"smooth": true' '"strength": 0.5' '"original_kept": false' '"written": "wart.ply"'; do holds "$key"; done
+good 'the painted cloud is felt' touch wart.ply --at 0,0,1.5mm --window 40mm --cells 32
+good 'paint the cloud of a scene' paint soft.json --stroke 'at=0,0,1.5mm radius=6mm value=2MPa' --out soft.csv
+holds '4000 points, '
+good 'paint over a law of a scene' paint scene.json --stroke 'at=0,0,0 radius=6mm smooth' --out law.ply
+holds 'take the key "stiffness" out'
+good 'painting beside everything' paint sample:skin --points 5000 --stroke 'at=0,0,1.5mm radius=6mm value=1MPa' --stiffness constant:value=1e6 --out same.ply
+holds 'no stroke changed anything'
+mesh='paint mesh.ply --uniform 1kPa --out no.ply --stroke'
+# shellcheck disable=SC2086  # a command and its options
+{
+    bad 'a stroke without a place' '--stroke 1: expected at=' $mesh 'radius=1mm value=1kPa'
+    bad 'a stroke without a radius' '--stroke 1: expected radius=' $mesh 'at=1,1,0 value=1kPa'
+    bad 'a stroke towards nothing' 'either value= or smooth' $mesh 'at=1,1,0 radius=1mm'
+    bad 'a stroke towards both' 'found both' $mesh 'at=1,1,0 radius=1mm smooth value=1kPa'
+    bad 'a slip in a stroke' 'did you mean radius?' $mesh 'at=1,1,0 radios=1mm smooth'
+    bad 'a word twice' 'radius is given twice' $mesh 'at=1,1,0 radius=1mm radius=2mm smooth'
+    bad 'the second stroke' '--stroke 2: ' $mesh 'at=1,1,0 radius=1mm smooth' --stroke 'at=1,1,0 radius=-1mm smooth'
+    bad 'a radius that is none' 'finite number' $mesh 'at=1,1,0 radius=nan smooth'
+    bad 'a place of two numbers' 'three numbers x,y,z' $mesh 'at=1,1 radius=1mm smooth'
+    bad 'a path that ends in nothing' 'x,y,z' $mesh 'at=1,1,0; radius=1mm smooth'
+    bad 'a force as a stiffness' 'unknown unit "N"' $mesh 'at=1,1,0 radius=1mm value=1N'
+    bad 'no stiffness' 'above zero' $mesh 'at=1,1,0 radius=1mm value=0'
+    bad 'too strong' 'up to 1' $mesh 'at=1,1,0 radius=1mm smooth strength=2'
+    bad 'beside the cloud' 'from its nearest point' $mesh 'at=1,1,1m radius=1mm smooth'
+    bad 'no stroke' '--stroke' paint mesh.ply --out no.ply
+    cp mesh.ply itself.ply
+    bad 'the cloud itself' '--out: ./itself.ply is the cloud that is read' paint itself.ply --uniform 1kPa --stroke 'at=1mm,1mm,0 radius=1mm value=2kPa' --out ./itself.ply
+    bad 'the cloud itself, converted' 'TARGET: itself.ply is the cloud that is read' convert itself.ply itself.ply --unit mm
+    cmp -s mesh.ply itself.ply && passed=$((passed + 1)) || complain 'a cloud was written over'
+    bad 'another kind of file' '.ply' paint mesh.ply --stroke 'at=1,1,0 radius=1mm smooth' --out no.stl
+    bad 'an option of clouds for a scene' '--range: expected a cloud' paint scene.json --range 1kPa,2kPa --out no.ply --stroke 'at=0,0,0 radius=6mm smooth'
+    bad 'a folder that is not there' 'nowhere/no.ply' paint mesh.ply --uniform 1kPa --stroke 'at=1mm,1mm,0 radius=1mm smooth' --out nowhere/no.ply
+}
+[ ! -e no.ply ] && passed=$((passed + 1)) || complain 'a refused painting was written'
+sed 's/^1 2 0 0 1000/nan 2 0 0 1000/' mesh.ply >lost.ply
+bad 'a file that lost points' '1 points were dropped' paint lost.ply --drop-invalid --stroke 'at=1mm,1mm,0 radius=1mm value=1kPa' --out no.ply
+
+experiment=$(dirname "$palpate")/paper_experiment
+if [ -x "$experiment" ]; then
+    keep=$palpate palpate=$experiment
+    good 'help of the experiment' --help
+    holds 'usage:'
+    full 'help of the experiment' --help
+    palpate=$keep
+fi
+# --- what would be noticed
+good 'perceive' perceive soft.json --places 5 --reach 8mm --out path.svg --picture object.svg --picture-places 20
+holds 'a prediction, not a study'
+for file in path.svg object.svg; do [ -s $file ] && passed=$((passed + 1)) || complain "perceive did not write $file"; done
+good 'perceive as JSON' perceive soft.json --places 5 --reach 8mm --along 0,1,0 --json
+for key in '"prediction": true' '"weber_fraction": 0.07' '"floor_is_low": true' '"right_answers"' '"steps_in_passing"' '"felt_stiffness"' '"direction"'; do holds "$key"; done
+bad 'a path that leaves the surface' 'along the surface' perceive soft.json --along 0,0,1
+bad 'a path without a direction' 'expected a vector' perceive soft.json --along 0,0,0
+bad 'a reach of nothing' '--reach' perceive soft.json --reach 0
+bad 'a reach of infinity' '--reach' perceive soft.json --reach inf
+bad 'a picture of another kind' '.svg' perceive soft.json --out path.png
+bad 'an object of another kind' '.svg' perceive soft.json --picture object.png
+bad 'a scene that is not there' 'nowhere.json' perceive nowhere.json
+
+# --- the paper, computed again: all of it at once, and again what has clocks in it
+good 'the paper' paper --quick --device host --out paper
+for part in a b c d e f g h; do holds "$part  "; done
+for file in index.html numbers.json timings.json; do [ -s paper/$file ] && passed=$((passed + 1)) || complain "paper did not write $file"; done
+for word in 'does not hold' 'A quick run' '<svg' 'commit'; do grep -qF "$word" paper/index.html && passed=$((passed + 1)) || complain "the page lacks '$word'"; done
+good 'parts of the paper' paper --quick --device host --only a,c,d --out one
+good 'the same parts again' paper --quick --device host --only a,c,d --out two --json
+holds '"timings"'
+cmp -s one/numbers.json two/numbers.json && passed=$((passed + 1)) || complain 'the same numbers have other bytes'
+cmp -s one/timings.json two/timings.json && complain 'two clocks agree to the last digit' || passed=$((passed + 1))
+bad 'a part that is not there' '--only' paper --out no --only a,z
+bad 'parts without a comma' '--only' paper --out no --only ab
+bad 'a bunny without its part' '--bunny' paper --out no --only a --bunny skin.ply
+bad 'a bunny that is not there' 'nowhere.ply' paper --out no --bunny nowhere.ply
+bad 'an empty folder name' '--out' paper --out ''
+[ ! -e no ] && passed=$((passed + 1)) || complain 'a refused report left a folder'
+: >taken
+bad 'a folder that is a file' 'taken' paper --quick --device host --only g --out taken
+
+# --- a folder without touch.json holds no whole set
+mkdir -p broken/profile.svg && : >broken/touch.json
+bad 'a set that cannot be finished' 'profile.svg' touch sample:sheet --points 5000 --cells 48 --out broken
+[ ! -e broken/touch.json ] && passed=$((passed + 1)) || complain 'an unfinished folder kept its touch.json'
+left=$(find . -name '*.part')
+[ -z "$left" ] && passed=$((passed + 1)) || complain "left behind: $left"
+
+echo "$passed passed, $failed failed"
+[ $failed -eq 0 ]

@@ -1,0 +1,38 @@
+#include "engine/tools/gui/touch_faults.h"
+
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "engine/session/servo.h"
+
+namespace palp {
+namespace {
+
+TEST(TouchFaults, EveryFaultOfTheGovernorHasAReasonAndARemedy)
+{
+    for (int n = 1; std::strcmp(name(GovernorFault(n)), "unknown") != 0; ++n) {
+        const FaultAdvice advice = adviceOn(GovernorFault(n));
+        EXPECT_GT(std::strlen(advice.reason), 0U) << name(GovernorFault(n));
+        EXPECT_GT(std::strlen(advice.remedy), 0U) << name(GovernorFault(n));
+        for (int other = 1; other < n; ++other)
+            EXPECT_STRNE(advice.reason, adviceOn(GovernorFault(other)).reason) << name(GovernorFault(n));
+    }
+    EXPECT_STREQ(adviceOn(GovernorFault::none).reason, "");
+}
+
+TEST(TouchFaults, NotesAreOfTheBitsThatAreSet)
+{
+    TickRecord sample;
+    EXPECT_TRUE(notesOn(sample).empty());
+    sample.faults = static_cast<std::uint32_t>(SessionFlag::beyondTheory) |
+                    static_cast<std::uint32_t>(SessionFlag::governed) | // shown as the force, not as a fault
+                    static_cast<std::uint32_t>(GovernorFault::tooFast);
+
+    ASSERT_EQ(notesOn(sample).size(), 1U);
+    EXPECT_NE(notesOn(sample).front().find("half the thickness"), std::string::npos);
+    EXPECT_EQ(governorFault(sample), GovernorFault::tooFast);
+}
+
+} // namespace
+} // namespace palp

@@ -1,0 +1,89 @@
+#include "engine/tools/paper/felt_path.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "engine/tools/paper/scene_perception.h"
+#include "tests/session/sheet_session.h"
+
+namespace palp::report {
+namespace {
+
+struct Felt {
+    explicit Felt(const Scene& of) : scene(of), loaded(loadCloud(of)), index(loaded.cloud.positions()) {}
+
+    [[nodiscard]] FeltLine line(double reach, const std::optional<glm::dvec3>& direction = {}) const
+    {
+        return feltLine(scene, loaded.cloud, index, direction, reach);
+    }
+
+    Scene          scene;
+    LoadedCloud    loaded;
+    NeighbourIndex index;
+    PlateSolver    device{"host"};
+};
+
+TEST(FeltPath, AWartIsNoticedAtRestAndSlidingAndTheFloorIsNot)
+{
+    Felt                  felt(sheetScene(kWart));
+    const ScenePerception p = perceive(felt.scene, felt.loaded.cloud, felt.index, felt.line(15e-3), 21, felt.device);
+
+    EXPECT_GT(p.sliding[0].whole, 5) << "ten times as stiff, 3 mm wide: about 9 steps on a fine grid";
+    for (std::size_t n = 0; n < 3; ++n) {
+        EXPECT_NEAR(p.sliding[n].whole / p.atRest[n].whole, 1, 0.1) << "tables and windows agree to some per cent";
+        EXPECT_LE(p.sliding[n].passing, p.sliding[n].whole);
+        EXPECT_GT(p.sliding[n].passing, 0.3 * p.sliding[n].whole) << "its flank is 5 mm wide";
+        EXPECT_EQ(p.sliding[n].right, rightAnswers(p.sliding[n].whole));
+    }
+    EXPECT_TRUE(p.floorIsLow());
+    EXPECT_LT(p.sliding[0].floor, 0.02) << "measured 0.003, the governor's damping; 0.5 is asked";
+    EXPECT_LT(p.atRest[0].floor, 1e-6) << "exact by construction but for rounding";
+    for (std::size_t n = 1; n < 3; ++n) EXPECT_LT(p.sliding[n].whole, p.sliding[n - 1].whole) << "coarser fingers";
+}
+
+TEST(FeltPath, TheFloorOfCurvedObjectsIsBelowHalfAStep)
+{
+    for (const char* const object : {R"("sample:ellipsoid", "place": [0.03, 0, 0.0303])",
+                                     R"("sample:palm", "place": [0, 0, 0], "from": [0, 0, 1])"}) {
+        Felt felt(parseScene(R"({"thickness": "4 mm", "poisson": 0.45, "foundation": "1.74 MPa/m", "points": 8000,
+            "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "device": "host", "cloud": )" +
+                                 std::string(object) + "}",
+                             "a test", "."));
+        const auto floor =
+            rangeOf(strokeAlong(homogeneous(felt.loaded.cloud), felt.index, felt.scene, felt.line(12e-3)));
+        EXPECT_LT(noticeableSteps(floor.whole, kWeberFractions[0]), kMostFloor) << object;
+    }
+}
+
+TEST(FeltPath, FollowsItsDirectionAndTheSurface)
+{
+    Felt             felt(parseScene(R"({"cloud": "sample:ellipsoid", "points": 8000, "cells": 16})", "a test", "."));
+    const FeltLine   line   = felt.line(12e-3, glm::dvec3(0, 3, 0));
+    const auto       places = windowsAlong(felt.loaded.cloud, felt.index, felt.scene.patch, line, 5, felt.device);
+    const glm::dvec3 first = places.front().place, last = places.back().place;
+
+    EXPECT_NEAR(last.y - first.y, 24e-3, 1e-3) << "the place is the nearest point, a spacing of 1.3 mm off";
+    EXPECT_NEAR(last.x, first.x, 1e-5) << "heights are along the normal of a point 0.2 mm beside the top";
+    for (const FeltPlace& p : places) {
+        const glm::dvec3 unit = p.place / glm::dvec3(60e-3, 45e-3, 35e-3);
+        EXPECT_NEAR(glm::length(unit), 1, 0.01) << "heights are means over three spacings";
+    }
+    EXPECT_THROW((void)felt.line(12e-3, glm::dvec3(0, 0, 1)), Error) << "away from the surface";
+    EXPECT_THROW((void)felt.line(12e-3, glm::dvec3(0)), Error);
+    EXPECT_THROW((void)felt.line(12e-3, glm::dvec3(0, std::nan(""), 0)), Error);
+}
+
+TEST(FeltPath, TheHomogeneousTwinHasTheGeometricMeanEverywhere)
+{
+    const PointCloud cloud({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {1, 10, 100}, StiffnessKind::rigidity);
+    const PointCloud twin = homogeneous(cloud);
+    for (const double stiffness : twin.stiffness()) EXPECT_NEAR(stiffness, 10, 1e-13) << "rounding";
+    EXPECT_EQ(twin.kind(), StiffnessKind::rigidity);
+    EXPECT_EQ(twin.positions()[1], cloud.positions()[1]);
+}
+
+} // namespace
+} // namespace palp::report

@@ -1,0 +1,118 @@
+#include "engine/tools/render/annotation.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "engine/tools/plot/cloud_shading.h"
+
+namespace palp {
+namespace {
+
+constexpr Rgb8 kGround{255, 255, 255};
+
+std::size_t count(const Image& image, Rgb8 colour)
+{
+    return std::size_t(std::count(image.pixels.begin(), image.pixels.end(), colour));
+}
+
+TEST(Annotation, TheColourBarHasTheColoursOfTheSurface)
+{
+    const double value = 1;
+    ViewScene    scene;
+    scene.values  = {&value, 1};
+    scene.colours = {ColourMap::cividis, Scale::linear, {0, 1e-3}, "deflection", "m"};
+    Image image(640, 480, kGround);
+
+    annotate(image, scene, {});
+
+    int found = 0; // of a hundred shades of the map
+    for (int n = 0; n < 100; ++n) found += count(image, surfaceColour((n + 0.5) / 100, ColourMap::cividis)) > 0;
+    EXPECT_GT(found, 60);
+    EXPECT_EQ(count(image, surfaceColour(0.5, ColourMap::viridis)), 0u);
+}
+
+TEST(Annotation, TwiceTheScaleIsTwiceTheSizeInTwiceThePicture)
+{
+    for (const int height : {150, 480, 720, 4000})
+        EXPECT_DOUBLE_EQ(annotationSize(2 * height, 2), 2 * annotationSize(height)) << height;
+    EXPECT_EQ(annotationSize(480, 2), 20) << "the least that can be read, at scale 2";
+    ViewScene scene;
+    scene.title = "a title";
+    Image once(640, 480, kGround), twice(640, 480, kGround);
+    annotate(once, scene, {});
+    annotate(twice, scene, {}, 2);
+    EXPECT_GT(double(count(twice, inkOn(scene.ground))), 2 * double(count(once, inkOn(scene.ground)))) << "darker";
+}
+
+TEST(Annotation, LaidOverAPictureItIsWhatItIsInThePicture)
+{
+    const double value = 1;
+    ViewScene    scene;
+    scene.values  = {&value, 1};
+    scene.colours = {ColourMap::viridis, Scale::linear, {0, 1e-3}, "deflection", "m"};
+    scene.proxy   = glm::dvec3(0);
+    scene.title   = "a title";
+    Image       image(330, 250, {200, 120, 40});
+    const Image below = image;
+    annotate(image, scene, {});
+    const Overlay overlay = annotations(scene, {}, 330, 250);
+
+    int                               most = 0, outside = 0; // difference, of 255; pixels in no tile
+    const std::vector<std::uint32_t>& tiles = overlay.tiles;
+    for (int y = 0; y < 250; ++y)
+        for (int x = 0; x < 330; ++x) {
+            const std::uint32_t pixel = overlay.pixels[std::size_t(y * 330 + x)];
+            const auto          laid  = [&](int shift, int under) {
+                return int(pixel >> shift & 255U) + (under * (255 - int(pixel >> 24)) + 127) / 255;
+            };
+            const Rgb8 under = below.at(x, y), is = image.at(x, y);
+            most = std::max({most, std::abs(laid(0, under.red) - is.red), std::abs(laid(8, under.green) - is.green),
+                             std::abs(laid(16, under.blue) - is.blue)});
+            const auto tile = std::uint32_t(x / 32) | std::uint32_t(y / 32) << 16;
+            outside += pixel != 0 && std::ranges::find(tiles, tile) == tiles.end();
+        }
+    EXPECT_LE(most, 3) << "three layers at most, each rounded once here and once there";
+    EXPECT_EQ(outside, 0);
+    EXPECT_LT(tiles.size(), 11U * 8U) << "the middle is left out";
+}
+
+TEST(Annotation, TheKeyNamesOnlyWhatIsThere)
+{
+    ViewScene scene;
+    scene.proxy = glm::dvec3(0);
+    Image image(640, 480, kGround);
+
+    annotate(image, scene, {});
+
+    EXPECT_GT(count(image, kProxyColour), 50u);
+    EXPECT_EQ(count(image, kHipColour), 0u);
+    EXPECT_EQ(count(image, kForceColour), 0u);
+}
+
+TEST(Annotation, OnlyWhatHasPointsHasALength)
+{
+    const glm::dvec3 point(0);
+    ViewScene        scene;
+    Image            nothing(320, 240, kGround), something(320, 240, kGround);
+    annotate(nothing, scene, {});
+    scene.positions = {&point, 1};
+    annotate(something, scene, {});
+
+    EXPECT_EQ(count(nothing, kGround), nothing.pixels.size());
+    EXPECT_GT(count(something, inkOn(scene.ground)), 0U);
+}
+
+TEST(Annotation, APictureTooSmallForTextsHasNone)
+{
+    ViewScene scene;
+    scene.title = "title";
+    Image image(100, 80, kGround);
+
+    annotate(image, scene, {});
+
+    EXPECT_EQ(count(image, kGround), image.pixels.size());
+}
+
+} // namespace
+} // namespace palp

@@ -1,0 +1,260 @@
+#include "engine/tools/render/surface_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "engine/cloud/neighbour_index.h"
+#include "engine/tools/render/annotation.h"
+#include "engine/tools/render/cloud_skin.h"
+#include "tests/support/shader_fixture.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palp {
+namespace {
+
+/// A square sheet seen from above, 100 mm wide.
+struct Sheet {
+    explicit Sheet(int side = 60, double dent = 0)
+    {
+        for (int i = 0; i < side; ++i)
+            for (int j = 0; j < side; ++j) {
+                const double x = 0.1 * (i + 0.5) / side - 0.05, y = 0.1 * (j + 0.5) / side - 0.05; // [m]
+                positions.emplace_back(x, y, -dent * std::exp(-(x * x + y * y) / (2 * 0.01 * 0.01)));
+            }
+        const NeighbourIndex index(positions);
+        const CloudSkin      skin(positions, index);
+        normals = skin.normals(positions);
+        radii.assign(skin.radii().begin(), skin.radii().end());
+        cores.assign(skin.cores().begin(), skin.cores().end());
+    }
+    [[nodiscard]] ViewScene scene() const
+    {
+        ViewScene scene;
+        scene.positions = positions;
+        scene.normals   = normals;
+        scene.radii     = radii;
+        scene.cores     = cores;
+        scene.cueRadius = 0.007;
+        return scene;
+    }
+    std::vector<glm::dvec3> positions, normals; // [m], [1]
+    std::vector<double>     radii, cores;       // [m]
+};
+
+/// From above, the sheet fills the height of the picture.
+Camera above()
+{
+    Camera camera;
+    camera.distance = 0.05 / std::tan(kFieldOfView / 2) * 1.2;
+    return camera;
+}
+
+int brightness(Rgb8 colour)
+{
+    return int(colour.red) + int(colour.green) + int(colour.blue);
+}
+
+/// What holds for fine pictures and for fast ones.
+class SurfaceRendererTest : public ShaderTest, public ::testing::WithParamInterface<Detail> {
+protected:
+    void SetUp() override
+    {
+        if (onHost()) GTEST_SKIP() << "the host does not draw";
+        ShaderTest::SetUp();
+        renderer.emplace(compute::ContextSettings{.device = deviceOfTests(), .validation = validation()});
+    }
+    void TearDown() override
+    {
+        if (renderer)
+            for (const std::string& message : renderer->takeMessages()) ADD_FAILURE() << "validation: " << message;
+        renderer.reset();
+        ShaderTest::TearDown();
+    }
+    const PictureSize              small{96, 72, 1, GetParam()};
+    std::optional<SurfaceRenderer> renderer;
+};
+
+INSTANTIATE_TEST_SUITE_P(Details, SurfaceRendererTest, ::testing::Values(Detail::fine, Detail::fast),
+                         [](const auto& param) { return param.param == Detail::fine ? "fine" : "fast"; });
+
+TEST_P(SurfaceRendererTest, NothingIsTheGround)
+{
+    ViewScene   scene;
+    const Image light = renderer->draw(scene, {}, small);
+    scene.ground      = Ground::dark;
+    const Image dark  = renderer->draw(scene, {}, small);
+
+    EXPECT_GT(brightness(light.at(48, 36)), 3 * 220);
+    EXPECT_LT(brightness(dark.at(48, 36)), 3 * 60);
+}
+
+TEST_P(SurfaceRendererTest, ASheetHasNoHolesAndEndsWhereItsPointsEnd)
+{
+    const Sheet sheet;
+    const Image image = renderer->draw(sheet.scene(), above(), small);
+    const Image empty = renderer->draw({}, above(), small);
+
+    int inside = 0, outside = 0; // pixels that differ from what belongs there
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const double halfHeight = above().halfHeight() / (image.height / 2.0); // [m/px]
+            const double away       = std::max(std::abs(x + 0.5 - 48), std::abs(y + 0.5 - 36)) * halfHeight;
+            const bool   drawn      = image.at(x, y) != empty.at(x, y);
+            inside += away < 0.049 && !drawn;
+            outside += away > 0.056 && drawn;
+        }
+    EXPECT_EQ(inside, 0) << "holes";
+    EXPECT_EQ(outside, 0) << "beyond the border by more than a few spacings";
+}
+
+TEST_P(SurfaceRendererTest, TheSamePictureTwiceIsTheSameToTheBit)
+{
+    const Sheet sheet(60, 2e-3);
+    const Image first = renderer->draw(sheet.scene(), above(), small);
+    (void)renderer->draw({}, above(), {40, 50, 2, GetParam()}); // other sizes and buffers in between
+    EXPECT_EQ(renderer->draw(sheet.scene(), above(), small).pixels, first.pixels);
+}
+
+/// Pictures of a touch that goes on, each drawn over the one before, are those of a renderer that begins anew.
+TEST_P(SurfaceRendererTest, APictureDrawnOverTheOneBeforeIsTheOneDrawnAnew)
+{
+    SurfaceRenderer   anew({.device = deviceOfTests(), .validation = validation()});
+    const PictureSize size{160, 120, 1, GetParam()};
+    const Triangle    faces[] = {{0, 59, 3540}, {59, 3540, 3599}, {100, 1900, 2000}};
+    for (int step = 0; step < 24; ++step) {
+        const Sheet  sheet(60, 1e-3 * (step / 4)); // four are alike but for the hand
+        ViewScene    scene = sheet.scene();
+        const double x     = 0.003 * step - 0.03; // [m]
+        scene.hip = scene.proxy = glm::dvec3(x, 0.01, 0.002);
+        scene.markerRadius      = 0.003;
+        scene.arrowRadius       = 0.0005;
+        if (step % 3) scene.force = ViewSegment{{x, 0.01, 0}, {x, 0.01, 0.03}};
+        if (step % 4 == 1) scene.dots = {{{-x, 0.03, 0.001}, 0.001, kHipColour}, {{x, -0.03, 0.001}, 1e-5, kHipColour}};
+        if (step % 7 == 6) scene.ground = Ground::dark;
+        if (step > 18) scene.faces = faces;
+        Camera camera = above();
+        if (step > 12) camera = orbited(camera, {0.4, 1.2}); // a point's square is wider than its disc, seen aslant
+        if (step == 16) camera.projection = Projection::orthographic;
+        if (step % 6 != 5) scene.title = step % 2 ? "one" : "another one";
+        const Overlay texts = annotations(scene, camera, size.width, size.height);
+
+        const Image over = renderer->draw(scene, camera, size, step % 11 == 10 ? nullptr : &texts);
+        (void)anew.draw({}, {}, {8, 8});
+        EXPECT_EQ(over.pixels, anew.draw(scene, camera, size, step % 11 == 10 ? nullptr : &texts).pixels) << step;
+    }
+    for (const std::string& message : anew.takeMessages()) ADD_FAILURE() << "validation: " << message;
+}
+
+TEST_P(SurfaceRendererTest, ADentOfAHundredthOfTheObjectIsPlainlyVisible)
+{
+    const Image flat = renderer->draw(Sheet(60).scene(), above(), small);
+    const Image bent = renderer->draw(Sheet(60, 1e-3).scene(), above(), small);
+
+    int most = 0; // difference of a pixel, of 3 * 255
+    for (std::size_t n = 0; n < flat.pixels.size(); ++n)
+        most = std::max(most, std::abs(brightness(flat.pixels[n]) - brightness(bent.pixels[n])));
+    EXPECT_GT(most, 3 * 20) << "as much as between neighbouring steps of a scale of twelve greys";
+}
+
+TEST_P(SurfaceRendererTest, AHollowWithoutASlopeIsDarkerAndAHumpLighter)
+{
+    const Sheet sheet;
+    const auto  brightnessWith = [&](double hollow) {
+        ViewScene                 scene = sheet.scene();
+        const std::vector<double> hollows(sheet.positions.size(), hollow);
+        scene.hollows = hollows;
+        return brightness(renderer->draw(scene, above(), small).at(48, 36));
+    };
+    if (GetParam() == Detail::fine) {
+        EXPECT_EQ(brightnessWith(0.05), brightnessWith(0)) << "seen in the depths, where there is none";
+    } else {
+        EXPECT_LT(brightnessWith(0.05), brightnessWith(0) - 3 * 5);
+        EXPECT_GT(brightnessWith(-0.05), brightnessWith(0) + 3 * 5);
+    }
+}
+
+TEST_P(SurfaceRendererTest, WhatIsNearerHidesWhatIsBehind)
+{
+    Sheet               sheet;
+    std::vector<double> values(sheet.positions.size(), 0);
+    const std::size_t   count = sheet.positions.size();
+    for (std::size_t n = 0; n < count; ++n) { // a second sheet, 10 mm above, comes later
+        sheet.positions.push_back(sheet.positions[n] + glm::dvec3(0, 0, 0.01));
+        sheet.normals.push_back(sheet.normals[n]);
+        sheet.radii.push_back(sheet.radii[n]);
+        sheet.cores.push_back(sheet.cores[n]);
+        values.push_back(1);
+    }
+    ViewScene scene  = sheet.scene();
+    scene.values     = values;
+    const Rgb8 over  = renderer->draw(scene, above(), small).at(48, 36);
+    Camera     below = above();
+    below.toEye      = {0, 0, -1};
+    const Rgb8 under = renderer->draw(scene, below, small).at(48, 36);
+
+    EXPECT_GT(over.red, over.blue) << "yellow, the upper sheet";
+    EXPECT_GT(under.blue, under.green) << "violet, the lower one";
+}
+
+TEST_P(SurfaceRendererTest, AHiddenHipShinesThroughAndTheOneInFrontIsOpaque)
+{
+    const Sheet sheet;
+    ViewScene   scene  = sheet.scene();
+    const Rgb8  bare   = renderer->draw(scene, above(), small).at(48, 36);
+    scene.markerRadius = 0.005;
+    scene.hip          = glm::dvec3(0, 0, -0.02);
+    const Rgb8 behind  = renderer->draw(scene, above(), small).at(48, 36);
+    scene.hip          = glm::dvec3(0, 0, 0.02);
+    const Rgb8 before  = renderer->draw(scene, above(), small).at(48, 36);
+
+    EXPECT_NE(behind, bare);
+    EXPECT_NE(behind, before);
+    const auto hue = [](Rgb8 c) { return int(c.red) - int(c.green); }; // of reddish purple
+    EXPECT_GT(hue(before), hue(behind));
+    EXPECT_GT(hue(behind), hue(bare));
+}
+
+TEST_P(SurfaceRendererTest, AValueWithoutAColourIsGrey)
+{
+    const Sheet               sheet;
+    const std::vector<double> values(sheet.positions.size(), std::nan(""));
+    ViewScene                 scene = sheet.scene();
+    scene.values                    = values;
+    const Rgb8 colour               = renderer->draw(scene, above(), small).at(48, 36);
+
+    EXPECT_NEAR(colour.red, colour.green, 3);
+    EXPECT_NEAR(colour.blue, colour.green, 3);
+}
+
+TEST_P(SurfaceRendererTest, AnOrthographicEyeSeesTheSameSizeAtTheTarget)
+{
+    const Sheet sheet;
+    const Image near = renderer->draw(sheet.scene(), above(), small);
+    const Image far  = renderer->draw(sheet.scene(), otherProjection(above()), small);
+    const Image none = renderer->draw({}, above(), small);
+    const auto  area = [&](const Image& image) {
+        int pixels = 0;
+        for (std::size_t n = 0; n < image.pixels.size(); ++n) pixels += image.pixels[n] != none.pixels[n];
+        return pixels;
+    };
+    EXPECT_NEAR(area(near), area(far), 0.03 * area(near));
+}
+
+TEST_P(SurfaceRendererTest, APictureLargerThanTheDeviceDrawsIsRefusedWithItsBound)
+{
+    const std::string sentence = refusalOf([&] { (void)renderer->draw({}, {}, {1 << 20, 8, 1}); });
+    EXPECT_TRUE(holds(sentence, {"1048576 x 8", "larger than"})) << sentence;
+    EXPECT_EQ(renderer->draw({}, {}, small).width, small.width) << "and it still draws";
+}
+
+TEST_P(SurfaceRendererTest, TheHostIsRefused)
+{
+    EXPECT_TRUE(holds(refusalOf([] { SurfaceRenderer({.device = "host"}); }), {"cannot draw", "lavapipe"}));
+}
+
+} // namespace
+} // namespace palp

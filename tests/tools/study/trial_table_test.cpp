@@ -1,0 +1,103 @@
+#include "engine/tools/study/trial_table.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace palp::study {
+namespace {
+
+TrialRow rowNumber(std::uint64_t n)
+{
+    TrialRow row;
+    row.participant  = "P01";
+    row.trial        = n;
+    row.block        = 1;
+    row.task         = "stiffer";
+    row.kind         = "two-alternative";
+    row.first        = "homogeneous, \"soft\"";
+    row.second       = "wart";
+    row.question     = "Which, the first or the second?";
+    row.answer       = "first";
+    row.correct      = n % 3 == 0 ? std::optional<bool>() : n % 3 == 1;
+    row.reactionTime = 0.1 * double(n);
+    row.seed         = 2005;
+    row.firstSession = "P01/trial_001";
+    row.meanForce    = 1.0 / 3;
+    row.peakForce    = 1.25;
+    row.version      = "0.1.0 abc";
+    return row;
+}
+
+void demandSame(const TrialRow& a, const TrialRow& b)
+{
+    EXPECT_EQ(a.trial, b.trial);
+    EXPECT_EQ(a.first, b.first);
+    EXPECT_EQ(a.question, b.question);
+    EXPECT_EQ(a.correct, b.correct);
+    EXPECT_EQ(a.reactionTime, b.reactionTime);
+    EXPECT_EQ(a.meanForce, b.meanForce);
+    EXPECT_EQ(a.version, b.version);
+}
+
+TEST(TrialTable, GivesBackWhatWasAppendedAlsoCommasQuotesAndEmptyCells)
+{
+    const TemporaryFolder folder;
+    {
+        TrialTable table(folder / "trials.csv");
+        for (std::uint64_t n = 1; n <= 3; ++n) {
+            table.append(rowNumber(n));
+            EXPECT_EQ(readTrials(folder / "trials.csv").size(), n) << "a row is on the disk at once";
+        }
+    }
+
+    const TrialTable again(folder / "trials.csv");
+    ASSERT_EQ(again.rows().size(), 3u);
+    for (std::uint64_t n = 1; n <= 3; ++n) demandSame(again.rows()[n - 1], rowNumber(n));
+}
+
+/// Cut anywhere within the last row, as by a crash: the rows before it stay, and the next one follows them.
+TEST(TrialTable, ATornLastRowIsRemovedWhereverItWasTorn)
+{
+    const TemporaryFolder folder;
+    const auto            file = folder / "trials.csv";
+    {
+        TrialTable table(file);
+        table.append(rowNumber(1));
+        table.append(rowNumber(2));
+    }
+    const std::string whole = contentsOf(file);
+    const std::size_t end   = whole.rfind('\n', whole.size() - 2) + 1; // of row 1
+    for (std::size_t bytes = end; bytes < whole.size(); ++bytes) {
+        static_cast<void>(folder.write("trials.csv", whole.substr(0, bytes)));
+        TrialTable table(file);
+        ASSERT_EQ(table.rows().size(), 1u) << bytes;
+        table.append(rowNumber(2));
+        ASSERT_EQ(contentsOf(file), whole) << bytes;
+    }
+}
+
+TEST(TrialTable, ATornHeaderIsWrittenAnewAndOthersTablesAreRefused)
+{
+    const TemporaryFolder folder;
+    static_cast<void>(folder.write("trials.csv", "participant,tri"));
+    EXPECT_TRUE(TrialTable(folder / "trials.csv").rows().empty());
+
+    const auto refused = [&](const std::string& text, const std::string& word) {
+        static_cast<void>(folder.write("trials.csv", text));
+        EXPECT_NE(refusalOf([&] { TrialTable(folder / "trials.csv"); }).find(word), std::string::npos) << text;
+        EXPECT_EQ(contentsOf(folder / "trials.csv"), text) << "it is not ours to change";
+    };
+    const std::string header = [&] {
+        const TemporaryFolder other;
+        TrialTable(other / "t.csv");
+        return contentsOf(other / "t.csv");
+    }();
+    refused("a,b\n1,2\n", "line 1");
+    refused(header + "P01,1\n", "line 2: expected 17 columns, found 2");
+    refused(header + "P01,one,1,,,,,,,,1,1,,,1,1,\n", "column trial");
+    refused(header + "P01,1,1,,,,,,,maybe,1,1,,,1,1,\n", "column correct");
+}
+
+} // namespace
+} // namespace palp::study
