@@ -26,7 +26,7 @@ struct PlateBenchOptions {
     int                      mostMemory    = 1025;  ///< nodes a side of the largest grid of the case memory [1]
 };
 
-/// new_map, new_load, contrast, jacobi, memory
+/// new_map, new_load, contrast, jacobi, memory, batch
 [[nodiscard]] const std::vector<std::string>& plateCases();
 
 /// A row has been measured, or (done, total) steps are.
