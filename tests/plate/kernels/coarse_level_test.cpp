@@ -209,7 +209,7 @@ TEST_F(CoarseLevelTest, AFactorIsFiniteWhateverRoundingLeavesOfThePivots)
 
 TEST_F(CoarseLevelTest, DoublesKeepThePivotsThatFloatsLose)
 {
-    if (!context().device().float64) GTEST_SKIP() << "no doubles";
+    if (!context().processor().float64) GTEST_SKIP() << "no doubles";
     const compute::Kernel factor(context(), kernels::factor<double>(), {64, 1, 1});
     for (const Edge edge : {Edge::supported, Edge::free}) {
         const RoughLevel level(loosePlate(edge));

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/compute/context.h"
+#include "engine/plate/multigrid/kernel_codes.h"
 #include "tests/plate/kernels/host_passes.h"
-#include "tests/plate/kernels/kernels.h"
 #include "tests/support/shader_fixture.h"
 
 namespace palp {
@@ -122,7 +122,7 @@ protected:
             SCOPED_TRACE("in floats");
             check(0.0F);
         }
-        if (!context().device().float64) return;
+        if (!context().processor().float64) return;
         SCOPED_TRACE("in doubles");
         check(0.0);
     }
