@@ -31,8 +31,9 @@ struct PictureDifference {
 [[nodiscard]] ::testing::AssertionResult looksLike(const Image& measured, const Image& expected);
 
 /// Expects that a picture looks like the stored one in the folder, and that the validation layer was silent while it was
-/// drawn. Stored pictures hold for the driver that the folder's driver.txt names. Another one, or the same on a processor
-/// without AVX ("128 bits"), rounds places too and covers other pixels at edges; the test is skipped there. PALPATE_GOLDEN_WRITE=1 stores the pictures anew: look at them before committing.
+/// drawn. Stored pictures hold for the driver that the folder's driver.txt names. Another driver, or the same one on a
+/// processor without AVX ("128 bits"), rounds places too and covers other pixels at edges: the test is skipped there.
+/// PALPATE_GOLDEN_WRITE=1 stores the pictures anew; look at them before committing.
 void expectGolden(const std::filesystem::path& folder, const std::string& name, const Image& image,
                   SurfaceRenderer& renderer);
 
