@@ -16,7 +16,7 @@
 namespace palp {
 namespace {
 
-constexpr int kMostCells = 4096; // [1] a side: one field of nodes is then 134 MB
+constexpr int kMostCells = 4096; // a side: one field of nodes is then 134 MB
 
 /// The largest problem file that is read [bytes]: some 400 000 probes.
 constexpr std::size_t kLargestFile = std::size_t(16) << 20;

@@ -17,7 +17,7 @@ namespace palp {
 namespace {
 
 /// Beyond this a factor takes minutes and gigabytes: measured 1025 x 1025 nodes, 127 s and 2.4 GB.
-constexpr std::size_t kMostNodes = 1025 * 1025; // [1]
+constexpr std::size_t kMostNodes = 1025 * 1025;
 
 using Matrix  = Eigen::SparseMatrix<double>;
 using Factors = Eigen::SimplicialLLT<Matrix, Eigen::Lower, Eigen::AMDOrdering<int>>;

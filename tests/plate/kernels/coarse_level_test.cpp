@@ -8,7 +8,7 @@
 namespace palp {
 namespace {
 
-/// Bands and answers where a device may fuse: the tests against Eigen say whether they are right.
+/// Bands and answers where a processor may fuse: the tests against Eigen say whether they are right.
 constexpr Rounding kFactorRounding{1e4,
                                    "rounding grows in up to 289 steps of elimination by the condition of the matrix"};
 

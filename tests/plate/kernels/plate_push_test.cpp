@@ -19,7 +19,7 @@ namespace {
 
 using namespace shared;
 
-constexpr std::size_t kMostPushBytes = 128; ///< that every device allows
+constexpr std::size_t kMostPushBytes = 128; ///< that every processor allows
 static_assert(sizeof(PlateLevel) == 44);
 static_assert(sizeof(LevelPush) == 44 && sizeof(LevelPush) <= kMostPushBytes);
 static_assert(sizeof(RelaxPush) == 48 && sizeof(RelaxPush) <= kMostPushBytes);
