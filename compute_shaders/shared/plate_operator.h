@@ -10,7 +10,7 @@
 // node stands for half a cell.
 //
 // A second difference is written as a change of changes: changes between neighbours of a smooth field are exact in
-// floating point, so that the rounding of a curvature is relative to the slope and not to the deflection. Whoever goes
+// floating point, so that the rounding of a curvature is relative to the slope and not to the deflection. Code that goes
 // along rows can keep changes for the next row.
 //
 // All loads come first and nothing branches round them: a compiler can then share them, and Vulkan in software, which

@@ -7,7 +7,7 @@
 #include "compute_shaders/shared/tile_layout.h"
 #include "engine/compute/context.h"
 #include "engine/core/contract.h"
-#include "engine/plate/multigrid/kernel_codes.h"
+#include "engine/plate/host/kernel_codes.h"
 
 namespace palp {
 namespace {

@@ -46,7 +46,7 @@ struct Solved {
     }
 };
 
-/// The reference solver draws a line of its own.
+/// Solves with a line of progress; the reference solver draws its own.
 PlateSolution solvedWithProgress(PlateSolver& solver, const PlateProblem& problem, double tolerance)
 {
     Progress progress("solving " + std::to_string(problem.plate.grid.nodes()) + " nodes on " + solver.name());
@@ -68,7 +68,7 @@ Solved solved(const SolveOptions& options)
                                      formatNumber(*report.errorEstimate) +
                                      " or more, relative; try fewer cells, less contrast or --device reference");
     for (const std::string& warning : s.problem.warnings) std::cerr << "palpate: warning: " << warning << "\n";
-    // One plate, one load: whoever asks for the time of the answer waits for the preparation too.
+    // With one plate and one load, the time of the answer includes the preparation.
     s.solution.report.milliseconds += s.solution.report.setUpMilliseconds;
 
     for (const Probe& probe : s.problem.probes)
@@ -91,7 +91,7 @@ bool hasSquareCells(const PlateGrid& grid)
     return std::abs(grid.spacingX - grid.spacingZ) <= kRounding * grid.spacingX;
 }
 
-/// [N] in all.
+/// The sum of all forces [N].
 double totalForce(const PlateProblem& problem)
 {
     return std::accumulate(problem.nodalForce.values().begin(), problem.nodalForce.values().end(), 0.0);
@@ -172,7 +172,7 @@ void printText(const Solved& s, const std::string& name)
         std::printf("  %12.6g %12.6g %16.8e\n", s.problem.probes[k].x, s.problem.probes[k].z, s.probeDeflections[k]);
 }
 
-/// The user's problem must not be replaced by its answer.
+/// Refuses an answer that would replace its own problem.
 void checkTarget(const SolveOptions& options)
 {
     if (options.out.empty()) return;
@@ -217,7 +217,7 @@ void addSolveCommand(CLI::App& app)
         "   \"rigidity\": {\"law\": \"linear\", \"from\": 1, \"to\": 10, \"axis\": \"z\"},\n"
         "   \"load\": {\"law\": \"point\", \"force\": 1, \"at\": [0.5, 0.75]},\n"
         "   \"probes\": [[0.25, 0.25]]}\n"
-        "Edges that are not named are clamped; no foundation [Pa/m] is 0; no probes are none.\n"
+        "Edges that are not named are clamped; foundation [Pa/m] and probes may be omitted.\n"
         "Rigidity laws and their keys (points are [x, z]):\n"
         "  constant                         value\n"
         "  linear, hyperbolic, exponential  from, to, and axis (x or z; x if absent) or start, end\n"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/compute/context.h"
-#include "engine/plate/multigrid/kernel_codes.h"
+#include "engine/plate/host/kernel_codes.h"
 #include "tests/plate/kernels/host_passes.h"
 #include "tests/support/shader_fixture.h"
 
