@@ -19,7 +19,7 @@ namespace {
 constexpr double kTight = 1e-6; // the second accuracy, of the largest deflection [1]
 
 /// Grids beyond this need CHOLMOD for the truth: Eigen would take minutes and gigabytes.
-constexpr int kMostNodesWithoutCholmod = 513; // [1] a side
+constexpr int kMostNodesWithoutCholmod = 513; // a side
 
 /// Palpate at the loosest tolerance that gives an accuracy.
 ///
@@ -97,7 +97,7 @@ private:
 
     [[nodiscard]] bool isFor(const Map& map, int nodes) const
     {
-        constexpr int kMostNodesForAll = 129; // of --quick [1] a side
+        constexpr int kMostNodesForAll = 129; // a side, of --quick
         if (!o_.maps.empty()) return std::ranges::find(o_.maps, map.name) != o_.maps.end();
         if (!o_.quick) return true;
         if (nodes <= kMostNodesForAll) return map.name != "discs";

@@ -21,7 +21,7 @@
 namespace palp::bench {
 namespace {
 
-/// nanoflann's fastest leaf depends on the work: the best of these is its time [1].
+/// nanoflann's fastest leaf depends on the work: the best of these is its time.
 constexpr std::array<std::size_t, 3> kLeaves{10, 20, 50};
 
 Quartiles scaled(const Quartiles& q, double by)
