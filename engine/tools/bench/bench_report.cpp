@@ -125,10 +125,10 @@ void printText(std::ostream& out, const BenchReport& report)
         out << lineOf(row) << "\n";
         if (!row.note.empty()) out << "          " << row.note << "\n";
         if (row.loads)
-            out << "          " << *row.loads << " loads, " << cell(row.palpateMs->median / *row.loads, "%.3g")
-                << " ms each; " << *row.dispatchesPerCycle << " dispatches per cycle; "
-                << cell(row.movedGigabytes, "%.1f") << " GB/s where a copy has " << cell(row.copyGigabytes, "%.1f")
-                << "\n";
+            out << "          " << *row.loads << (*row.loads == 1 ? " load, " : " loads, ")
+                << cell(row.palpateMs->median / *row.loads, "%.3g") << " ms each; " << *row.dispatchesPerCycle
+                << " dispatches per cycle; " << cell(row.movedGigabytes, "%.1f") << " GB/s where a copy has "
+                << cell(row.copyGigabytes, "%.1f") << "\n";
     }
     out.flush();
 }
