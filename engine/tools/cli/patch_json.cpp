@@ -102,7 +102,7 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
         force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
     report["error"]        = {{"discretisation", orNull(discretisationError(patch, settings, device))},
                               {"solver", orNull(patch.report.errorEstimate)}};
-    report["solver"]       = {{"device", patch.report.device},
+    report["solver"]       = {{"device", patch.report.solver},
                               {"note", device.note().empty() ? Json(nullptr) : Json(device.note())},
                               {"converged", patch.report.converged},
                               {"iterations", orNull(patch.report.iterations)},

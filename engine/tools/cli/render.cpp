@@ -75,7 +75,7 @@ TouchLook lookOf(const RenderOptions& o)
 /// Everything that is touched and drawn, made once.
 struct Stage {
     explicit Stage(const RenderOptions& o)
-        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.device = o.drawOn}),
+        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.processor = o.drawOn}),
           loaded(loadObject(scene)), device(orTheReference([this] { return PlateSolver(scene.device); })),
           view(loaded.object, scene.patch)
     {

@@ -155,7 +155,7 @@ void view(const ViewOptions& o)
     std::optional<PanelFrame> panels; // outlives what draws it and what feeds it
 #endif
     GlfwWindow               window("Palpate", sizeOf(o.size));
-    compute::ContextSettings gpu{.device = o.drawOn};
+    compute::ContextSettings gpu{.processor = o.drawOn};
     if (o.validate) gpu.validation = compute::Validation::synchronization;
     SurfaceRenderer renderer(gpu, window.link());
     PanelFrame*     shown = nullptr;

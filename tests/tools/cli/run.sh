@@ -31,7 +31,7 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert paint render view hunt study perceive paper devices doctor calibrate 'bench solve'; do
+for command in touch solve info convert paint render view hunt study perceive paper devices doctor calibrate bench; do
     # shellcheck disable=SC2086  # a command, or one within another
     good "help of $command" $command --help; holds 'Examples:'
     mv out.txt help.txt
@@ -40,7 +40,7 @@ for command in touch solve info convert paint render view hunt study perceive pa
     cmp -s out.txt help.txt && passed=$((passed + 1)) || complain "'help $command' is not '$command --help'"
 done
 good 'help of bench' bench --help
-holds 'bench solve --out bench'
+holds 'palpate bench --out bench'
 grep -qF 'palpate touch' out.txt && complain 'the help of bench has the examples of touch' || passed=$((passed + 1))
 good 'list of samples' info --samples
 for sample in ellipsoid sheet pad hemisphere saddle skin palm ear-lobe; do holds "sample:$sample"; done
@@ -113,25 +113,24 @@ good 'solve tightly' solve plate.json --device Lavapipe --tolerance 1e-7 --json
 holds '"work_units"'
 good 'touch by the reference' touch sample:skin --points 5000 --cells 32 --device reference
 holds '(reference)'
-good 'benchmark' bench solve --device lavapipe,REFERENCE --schedule Pass-by-pass --nodes 17,33 --loads 1,4 --repeats 2 --out bench --json
-for key in '"cold_p50_ms"' '"cold_p99_ms"' '"warm_p50_ms"' '"iterations"' '"work_units"' '"error"' '"copy_gb_per_s"' '"dispatches_per_cycle"'; do holds "$key"; done
-[ -s bench/solve.json ] && [ -s bench/solve.svg ] && passed=$((passed + 1)) || complain 'bench --out wrote nothing'
+good 'batches of loads' bench --device lavapipe --schedule pass-by-pass --nodes 33 --cases batch --json
+for key in '"case": "batch"' '"loads": 49' '"palpate_parts_ms"' '"iterations"' '"work_units"' '"moved_gb_per_s"' '"copy_gb_per_s"' '"dispatches_per_cycle": 12'; do holds "$key"; done
 
-good 'peers' bench plate --device lavapipe --nodes 33,65 --maps linear,disc_0.1 --cases new_map,contrast,memory --out peers --json
+good 'peers' bench --device lavapipe --nodes 33,65 --maps linear,disc_0.1 --cases new_map,contrast,memory --out peers --json
 for key in '"case": "new_map"' '"case": "contrast"' '"case": "memory"' '"peer": "CHOLMOD"' '"peer": "Eigen SimplicialLDLT"' '"accuracy": "discretisation"' '"accuracy": "1e-6"' \
     '"peer_ms"' '"palpate_ms"' '"ratio"' '"error"' '"peer_error"' '"work_units"' '"iterations"' 'OPENBLAS_NUM_THREADS=1'; do holds "$key"; done
 for file in plate.json plate.txt new_map.svg; do
-    [ -s "peers/$file" ] && passed=$((passed + 1)) || complain "bench plate --out did not write $file"
+    [ -s "peers/$file" ] && passed=$((passed + 1)) || complain "bench --out did not write $file"
 done
-[ ! -e peers/new_load.svg ] && passed=$((passed + 1)) || complain 'bench plate --out wrote a picture of nothing'
-bad 'nothing to measure' 'begin at 65 nodes' bench plate --device host --nodes 33 --cases new_map
-bad 'quick and large' 'with --quick at most 257' bench plate --quick --nodes 513
+[ ! -e peers/new_load.svg ] && passed=$((passed + 1)) || complain 'bench --out wrote a picture of nothing'
+bad 'nothing to measure' 'begin at 65 nodes' bench --device host --nodes 33 --cases new_map
+bad 'quick and large' 'with --quick at most 257' bench --quick --nodes 513
 "$palpate" solve plate.json --device 77 >out.txt 2>err.txt
 [ $? -eq 2 ] && grep -qF 'there is no GPU 77' err.txt && passed=$((passed + 1)) || complain "no such index: $(cat err.txt)"
-good 'the paper'\''s iteration' bench plate --device lavapipe --nodes 33 --cases jacobi
+good 'the paper'\''s iteration' bench --device lavapipe --nodes 33 --cases jacobi
 holds 'Jacobi 0.6, same error'
 mkdir alone && cp "$palpate" alone/palpate
-alone/palpate bench plate --device lavapipe --nodes 33 --cases memory >out.txt 2>err.txt || complain "bench plate without peers: exit $? $(cat err.txt)"
+alone/palpate bench --device lavapipe --nodes 33 --cases memory >out.txt 2>err.txt || complain "bench without peers: exit $? $(cat err.txt)"
 holds 'install libsuitesparse-dev'
 
 good 'list of devices' devices
@@ -197,7 +196,7 @@ code=$?
 [ $code -eq 4 ] && [ ! -s out.txt ] && passed=$((passed + 1)) ||
     complain "a GPU that is asked for and is not there: exit $code, expected 4: $(cat out.txt err.txt)"
 for where in start list open; do
-    for command in 'solve plate.json' 'touch sample:sheet --points 5000 --cells 16' 'bench solve --device auto --nodes 17 --repeats 1' 'bench plate --nodes 33 --cases memory'; do
+    for command in 'solve plate.json' 'touch sample:sheet --points 5000 --cells 16' 'bench --nodes 33 --cases memory'; do
         # shellcheck disable=SC2086  # a command and its arguments
         failing $where "$palpate" $command --json && grep -qF '"device": "host"' out.txt && [ "$(wc -l <err.txt)" -eq 1 ] &&
             grep -qF 'palpate: auto takes host: ' err.txt && passed=$((passed + 1)) || complain "$command, Vulkan broken at $where: $(cat out.txt err.txt)"
@@ -315,18 +314,16 @@ bad 'contact far from the cloud' 'contact' touch sample:skin --points 5000 --at 
 bad 'no place for a file' '--at' touch skin.ply
 bad 'tolerance that 32 bits cannot give' '--tolerance' solve plate.json --tolerance 1e-12
 bad 'tolerance that is no number' '--tolerance' touch sample:skin --tolerance nan
-bad 'benchmark of a giant' '--nodes' bench solve --nodes 4097
-bad 'benchmark of an unknown law' 'hyperbolic' bench solve --law cubic
-bad 'peers on an even grid' 'multiple of 4' bench plate --nodes 64
-bad 'peers on a giant' '--nodes' bench plate --nodes 2049
-bad 'peers in an unknown case' 'new_map' bench plate --cases speed
-bad 'peers on an unknown map' 'disc_100' bench plate --maps cubic
-bad 'too few runs for quartiles' '--runs' bench plate --runs 5
-bad 'the reference as its own peer' 'reference' bench plate --device reference
-bad 'peers with an empty device' '--device' bench plate --device ''
+bad 'peers on an even grid' 'multiple of 4' bench --nodes 64
+bad 'peers on a giant' '--nodes' bench --nodes 2049
+bad 'peers in an unknown case' 'new_map' bench --cases speed
+bad 'peers on an unknown map' 'disc_100' bench --maps cubic
+bad 'too few runs for quartiles' '--runs' bench --runs 5
+bad 'the reference as its own peer' 'reference' bench --device reference
+bad 'peers with an empty device' '--device' bench --device ''
 bad 'devices take no argument' 'voodoo' devices voodoo
 bad 'nor does the doctor' 'voodoo' doctor voodoo
-for command in 'solve plate.json' 'bench solve'; do
+for command in 'solve plate.json'; do
     # shellcheck disable=SC2086  # a command and its arguments
     "$palpate" $command --device gpu9000 >out.txt 2>err.txt
     code=$?
@@ -334,11 +331,11 @@ for command in 'solve plate.json' 'bench solve'; do
         complain "unknown device: exit $code, expected 2 and the list of devices: $(cat err.txt)"
 done
 for tolerance in 0 1e-12 nan 1; do
-    bad "benchmark with a tolerance of $tolerance" '--tolerance: expected at least 1e-07' bench solve --tolerance $tolerance
+    bad "a tolerance of $tolerance" '--tolerance: expected at least 1e-07' solve plate.json --tolerance $tolerance
     grep -qF "below 1, found $tolerance" err.txt && passed=$((passed + 1)) || complain "the tolerance's bounds: $(cat err.txt)"
 done
 for schedule in nosuch 0; do
-    bad 'unknown schedule' "--schedule: expected automatic, pass-by-pass or fused, found \"$schedule\"" bench solve --schedule $schedule
+    bad 'unknown schedule' "--schedule: expected automatic, pass-by-pass or fused, found \"$schedule\"" bench --schedule $schedule
 done
 
 # --- bad files
