@@ -22,7 +22,7 @@ void PaintTool::stroke(Stage& stage, const BrushChoice& brush, const glm::dvec3&
     if (lastDab_) path.insert(path.begin(), *lastDab_);
     stage.paint([&](StiffnessPainting& painting) {
         if (!lastDab_) painting.beginStroke();
-        for (const glm::dvec3& at : dabsAlong(path, brush.radius, stage.painted(), stage.index())) {
+        for (const glm::dvec3& at : dabsAlong(path, brush.radius, stage.painted())) {
             const Brush dab{at, brush.radius, brush.strength};
             if (brush.smooths)
                 painting.smooth(dab);
@@ -67,9 +67,9 @@ void PaintTool::save(const Stage& stage)
         if (isPly) {
             CloudReadSettings settings;
             settings.lengthUnit = stage.scene().lengthUnit;
-            property            = repaintPly(source, settings, stage.painted(), target).property;
+            property            = repaintPly(source, settings, stage.painted().cloud(), target).property;
         } else {
-            writeCloud(target, stage.painted(), {}, {});
+            writeCloud(target, stage.painted().cloud(), {}, {});
         }
         kept_ = Kept::saved;
         notices_.say("saved " + target.string() + ", property " + property);

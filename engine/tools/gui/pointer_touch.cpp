@@ -9,7 +9,7 @@ namespace palp {
 
 PointerTouch::PointerTouch(const Stage& stage, Notices& notices)
     : stage_(stage), notices_(notices),
-      hand_(Hit{stage.place().point, stage.place().outward}, stage.scene().startHeight, stage.painted().bounds())
+      hand_(Hit{stage.place().point, stage.place().outward}, stage.scene().startHeight, stage.painted().cloud().bounds())
 {
 }
 
@@ -24,7 +24,7 @@ PointerTouch::Outcome PointerTouch::follow(const WindowInput& input, const std::
         return Outcome::touched;
     }
     if (input.panelsTakePointer) return Outcome::touched;             // over a panel the hand stays where it is
-    const double thickness = stage_.scene().patch.material.thickness; // [m]
+    const double thickness = stage_.scene().material.thickness; // [m]
     depth                  = std::clamp(depth - kStep * thickness * input.wheel, -kMost * thickness, kMost * thickness);
     if (input.wheel != 0) notices_.say("depth " + formatQuantity(depth, "m"));
     if (!hit || hand_.press(*hit, depth) || beginAt_) return Outcome::touched;

@@ -45,7 +45,7 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
     hand_  = hand;
     state_ = State::ready;
     recorder_.begin([this] { return settings_.recorded(*stage_, *hand_.device); });
-    const SessionParts  parts{stage_->scene(), stage_->loaded().cloud, stage_->index(),
+    const SessionParts  parts{stage_->scene(), stage_->object(),
                              solver(),        *hand.device,           hand.frame};
     RealSessionSettings real;
     real.seconds    = hand.seconds;

@@ -154,7 +154,7 @@ void Workbench::adopt(OpenedObject opened)
     if (!object_.recorded()) return tellAssumptions();
     const RecordedSession& recorded = *object_.recorded();
     session_.startReplay(recorded);
-    if (!recorded.cloud.empty() && recorded.cloud != fingerprint(object_.stage().loaded().cloud))
+    if (!recorded.cloud.empty() && recorded.cloud != fingerprint(object_.stage().object().cloud()))
         notices_.complain("the cloud is not the one that was recorded: " + object_.stage().scene().cloud +
                           " has changed");
 }
@@ -164,7 +164,7 @@ void Workbench::tellAssumptions()
 {
     if (!settings_.assumed) return;
     std::string all;
-    for (const std::string& sentence : settings_.assumed(object_.stage().scene(), object_.stage().loaded().report)) {
+    for (const std::string& sentence : settings_.assumed(object_.stage().scene(), object_.stage().report())) {
         all += (all.empty() ? "" : "; ") + sentence;
         if (settings_.complained) settings_.complained(sentence);
     }
@@ -179,10 +179,10 @@ void Workbench::useObject()
     const Scene& scene = stage.scene();
     session_.setStage(stage);
     paint_.startAnew();
-    state_.pressDepth     = 0.4 * scene.patch.material.thickness;
+    state_.pressDepth     = 0.4 * scene.material.thickness;
     state_.brush.radius   = scene.patch.footprintRadius;
-    state_.brush.value    = *std::ranges::max_element(stage.painted().stiffness());
-    state_.look.deepest   = 0.5 * scene.patch.material.thickness; // as far as theory goes
+    state_.brush.value    = *std::ranges::max_element(stage.painted().cloud().stiffness());
+    state_.look.deepest   = 0.5 * scene.material.thickness; // as far as theory goes
     state_.look.strongest = 0.5 * scene.maxForce;
     state_.blind          = scene.hunt.has_value();
     if (!state_.blind) return;
@@ -255,7 +255,7 @@ void Workbench::settleCamera()
 {
     const PictureArea area =
         panels_.exist() ? freeArea(state_, input_.size, input_.scale) : PictureArea{{0, 0}, glm::dvec2(input_.size)};
-    if (camera_.settle(object_.stage().painted().bounds(), area, input_.size, pictures_.sinceBegin(),
+    if (camera_.settle(object_.stage().painted().cloud().bounds(), area, input_.size, pictures_.sinceBegin(),
                        pictures_.resized(input_.size)))
         pictures_.changed();
 }
@@ -311,7 +311,7 @@ std::string Workbench::note(const SessionView* view) const
 PanelContent Workbench::content(const SessionView* view) const
 {
     const Stage& stage = object_.stage();
-    PanelContent now{stage.scene(), stage.painted(), session_.history()};
+    PanelContent now{stage.scene(), stage.painted().cloud(), session_.history()};
     now.faults = notices_.faults();
     if (view) {
         now.patch      = view->patch;
