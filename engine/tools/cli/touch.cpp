@@ -16,6 +16,7 @@
 #include "engine/tools/cli/patch_json.h"
 #include "engine/tools/cli/solver_choice.h"
 #include "engine/tools/plot/patch_pictures.h"
+#include "engine/tools/render/cloud_figure.h"
 
 namespace palp {
 namespace {

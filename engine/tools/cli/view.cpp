@@ -151,20 +151,12 @@ void view(const ViewOptions& o)
     const auto   cap = capFor(o, hid);
     settings.camera  = cap.get();
 
-#ifdef PALPATE_PANELS
     std::optional<PanelFrame> panels; // outlives what draws it and what feeds it
-#endif
     GlfwWindow               window("Palpate", sizeOf(o.size));
     compute::ContextSettings gpu{.processor = o.drawOn};
     if (o.validate) gpu.validation = compute::Validation::synchronization;
     SurfaceRenderer renderer(gpu, window.link());
-    PanelFrame*     shown = nullptr;
-#ifdef PALPATE_PANELS
-    if (!o.noPanels) {
-        panels.emplace(window.scale());
-        shown = &*panels;
-    }
-#endif
+    if (!o.noPanels && PanelFrame::available()) panels.emplace(window.scale());
     glm::ivec2 last{};
     settings.titled = [&window](const std::string& name) { window.setTitle(name + " - Palpate"); };
     WindowScreen screen(renderer);
@@ -175,7 +167,7 @@ void view(const ViewOptions& o)
             if (input.size.x > 0) last = input.size;
             return input;
         },
-        shown);
+        panels ? &*panels : nullptr);
     if (o.size.empty()) rememberSize(last);
     if (!report.said.empty()) std::cerr << "palpate: " << report.said << "\n";
     const auto score = scorer ? std::optional(scorer->score()) : std::nullopt;

@@ -47,6 +47,12 @@ void Stage::change(const Scene& scene)
     view_.use(scene.patch);
 }
 
+std::optional<Hit> Stage::hitAt(const Camera& camera, const glm::dvec2& at, const glm::dvec2& size) const
+{
+    const double blur = std::max(0.5 * scene_.patch.footprintRadius, 1e-9); // [m]
+    return pick(rayThrough(camera, at, size), painted_->positions(), view_.restNormals(), view_.radii(), blur);
+}
+
 void Stage::takePaint()
 {
     const auto now = painting_.stiffness();
