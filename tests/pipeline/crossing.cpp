@@ -19,8 +19,8 @@ constexpr double kTick       = 1e-3;    // [s]
 
 PlateSolver& host()
 {
-    static PlateSolver device("host");
-    return device;
+    static PlateSolver solver("host");
+    return solver;
 }
 
 double relative(double logarithm)
@@ -66,7 +66,7 @@ const FootprintLattice& Sheet::latticeOf(int side)
     static std::array<std::optional<FootprintLattice>, ComplianceTable::kMostSide + 1> known;
     auto& lattice = known[std::size_t(side)];
     if (!lattice) {
-        lattice = footprintLattice(homogeneous(), {kRadius, side, kContact}, host(), kTolerance);
+        lattice = solveLattice(homogeneous(), {kRadius, side, kContact}, host(), kTolerance);
     }
     return *lattice;
 }

@@ -5,7 +5,7 @@
 
 #include "engine/force/ahead.h"
 #include "engine/force/compliance_tracker.h"
-#include "engine/pipeline/table_solve.h"
+#include "engine/pipeline/compliance_table_solve.h"
 
 namespace palp {
 

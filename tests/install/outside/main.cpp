@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "engine/cloud/samples.h"
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/deform.h"
 
 int main()
 {
