@@ -4,6 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/patch_warnings.h"
+#include "engine/pipeline/presets.h"
 #include "engine/plate/load.h"
 
 namespace palp {

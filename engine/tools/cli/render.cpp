@@ -13,6 +13,8 @@
 #include "engine/core/file.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/patch_warnings.h"
 #include "engine/session/virtual_session.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/hand_source.h"

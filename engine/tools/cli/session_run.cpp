@@ -14,6 +14,7 @@
 #include "engine/core/nearest_name.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/patch_warnings.h"
 #include "engine/session/real_session.h"
 #include "engine/session/tick_ring.h"
 #include "engine/session/virtual_session.h"
@@ -186,7 +187,7 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
         throw Error("--hand " + o.hand.hand + ": somebody holds it, in real time; leave out --clock virtual");
 
     SessionRun run;
-    run.device   = deformation.device().name();
+    run.device   = deformation.plateSolver().name();
     run.folder   = o.record;
     run.warnings = assumptions(scene, loaded.report);
     for (const auto& more : {strangeVariables(), warningsOf(scene, loaded.object), hand.warnings})

@@ -11,6 +11,8 @@
 #include "engine/core/file.h"
 #include "engine/core/npy.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/presets.h"
 #include "engine/tools/cli/cloud_source.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/patch_json.h"

@@ -10,6 +10,7 @@
 #include "engine/core/json_object.h"
 #include "engine/core/nearest_name.h"
 #include "engine/force/governor.h"
+#include "engine/pipeline/presets.h"
 
 namespace palp::study {
 namespace {

@@ -1,9 +1,8 @@
 #pragma once
-#include <array>
 #include <vector>
 
 #include "engine/force/compliance_table.h"
-#include "engine/plate/plate.h"
+#include "engine/pipeline/patch.h"
 #include "engine/plate/plate_solver.h"
 
 namespace palp {
@@ -11,7 +10,7 @@ namespace palp {
 /// What a table's footprints are: a constant of the scene.
 struct FootprintTable {
     double radius             = 4e-3; ///< of a footprint, and their spacing [m]
-    int    side               = 3;    ///< footprints along each axis: 1, 3, 5 or 7, see tableSide() [1]
+    int    side               = 3;    ///< footprints along each axis: 1, 3, 5 or 7, see tableSide()
     double contactPerRigidity = 0;    ///< k_c over D: 12 (1 - nu^2) pi R^2 / h^4 [1/m^2]
 };
 
@@ -35,12 +34,19 @@ struct FootprintLattice {
     [[nodiscard]] ComplianceTable::Entries homogeneous(double meanRigidity) const;
 };
 
-/// \param homogeneous      the window: grid, edges, foundation, and one rigidity throughout, in the middle of what is
-///                         to come
-/// \param tolerance        as for the tables themselves: what iteration leaves is then taken out too
+/// The lattice of the settings' window on a homogeneous object whose rigidity is the geometric mean of this one's.
+/// \param side  1, 3, 5 or 7, see tableSide()
+/// \throws Error if the window is too small for the table
+[[nodiscard]] FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings& settings, int side,
+                                                PlateSolver& solver);
+
+/// Solves the lattice of one window.
+/// \param homogeneous  the window: grid, edges, foundation, and one rigidity throughout, in the middle of what is to
+///                     come
+/// \param tolerance    as for the tables themselves: what iteration leaves is then taken out too
 /// \throws Error if a footprint does not lie wholly on the plate
-[[nodiscard]] FootprintLattice footprintLattice(const Plate& homogeneous, const FootprintTable& shape,
-                                                PlateSolver& device, double tolerance);
+[[nodiscard]] FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& shape, PlateSolver& solver,
+                                            double tolerance);
 
 struct TableSolution {
     ComplianceTable table;      ///< without sequence number, time and chart
@@ -54,10 +60,7 @@ struct TableSolution {
 /// k_c(q) is that of the rigidity's geometric mean over the footprint, weighted as the load is: at a step of the
 /// object it then changes over the width of a footprint, as c does.
 /// \throws Error as PlateSolver::solveAll()
-[[nodiscard]] TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& device,
+[[nodiscard]] TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver,
                                        double tolerance);
-
-/// Work of a load on a deflection; of a unit load on its own response, the compliance that it feels [m/N].
-[[nodiscard]] double work(const NodeField& load, const NodeField& response);
 
 } // namespace palp

@@ -1,4 +1,4 @@
-#include "engine/pipeline/table_solve.h"
+#include "engine/pipeline/compliance_table_solve.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,29 +28,35 @@ NodeField slopeOf(const NodeField& ahead, const NodeField& behind, double distan
 /// ln c of a footprint, with its slopes.
 ComplianceTable::Entry complianceOf(const FootprintLattice& lattice, std::size_t n, const NodeField& response)
 {
-    const double compliance = work(lattice.loads[n], response);
-    return {std::log(compliance), 2 * work(lattice.slopesX[n], response) / compliance,
-            2 * work(lattice.slopesZ[n], response) / compliance};
+    const double compliance = dot(lattice.loads[n], response);
+    return {std::log(compliance), 2 * dot(lattice.slopesX[n], response) / compliance,
+            2 * dot(lattice.slopesZ[n], response) / compliance};
 }
 
 /// ln k_c of a footprint, with its slopes.  \param over  ln D over that of some node
 ComplianceTable::Entry contactOf(const FootprintLattice& lattice, std::size_t n, const NodeField& over, double node)
 {
-    return {std::log(lattice.shape.contactPerRigidity * node) + work(lattice.loads[n], over),
-            work(lattice.slopesX[n], over), work(lattice.slopesZ[n], over)};
+    return {std::log(lattice.shape.contactPerRigidity * node) + dot(lattice.loads[n], over),
+            dot(lattice.slopesX[n], over), dot(lattice.slopesZ[n], over)};
 }
 
 } // namespace
 
-double work(const NodeField& load, const NodeField& response)
+FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings& settings, int side,
+                                  PlateSolver& solver)
 {
-    double sum = 0;
-    for (std::size_t n = 0; n < load.values().size(); ++n) sum += load.values()[n] * response.values()[n];
-    return sum;
+    double logarithm = 0;
+    for (std::size_t point = 0; point < object.size(); ++point) logarithm += std::log(object.rigidity(point));
+    const PlateGrid grid = PatchWindow::square(settings.window, settings.cells).grid;
+    const Plate     homogeneous{grid, settings.edges, object.material().poissonRatio, settings.foundation,
+                            NodeField(grid, std::exp(logarithm / double(object.size())))};
+    const double    perRigidity =
+        contactStiffness(object.material().modulus(1), settings.footprintRadius, object.material().thickness);
+    return solveLattice(homogeneous, {settings.footprintRadius, side, perRigidity}, solver, settings.tolerance);
 }
 
-FootprintLattice footprintLattice(const Plate& homogeneous, const FootprintTable& shape, PlateSolver& device,
-                                  double tolerance)
+FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& shape, PlateSolver& solver,
+                              double tolerance)
 {
     PALP_EXPECT(shape.side >= 1 && shape.side <= ComplianceTable::kMostSide && shape.side % 2 == 1,
                 "a table of " + std::to_string(shape.side) + " entries a side");
@@ -77,7 +83,7 @@ FootprintLattice footprintLattice(const Plate& homogeneous, const FootprintTable
             lattice.slopesX.push_back(slopeOf(loadAt(x + dx, z), loadAt(x - dx, z), 2 * dx));
             lattice.slopesZ.push_back(slopeOf(loadAt(x, z + dz), loadAt(x, z - dz), 2 * dz));
         }
-    // The middle rung comes first: a device counts rigidities in units of the first, and it must be exactly one.
+    // The middle rung comes first: a solver counts rigidities in units of the first, and it must be exactly one.
     const int reach  = homogeneous.foundation > 0 ? kRungs : 0;
     lattice.rigidity = homogeneous.rigidity(0, 0);
     std::vector<ComplianceTable::Entries> rungs(std::size_t(2 * reach + 1));
@@ -85,7 +91,7 @@ FootprintLattice footprintLattice(const Plate& homogeneous, const FootprintTable
         const int rung              = (n + 1) / 2 * (n % 2 == 0 ? 1 : -1); // 0, -1, 1, -2, ...
         Plate     plate             = homogeneous;
         plate.rigidity              = NodeField(grid, lattice.rigidity * std::pow(10, double(rung) / kRungsPerDecade));
-        const TableSolution own     = solveTable(plate, lattice, device, tolerance);
+        const TableSolution own     = solveTable(plate, lattice, solver, tolerance);
         const double        middle  = own.table.middle().lnCompliance;
         auto&               entries = rungs[std::size_t(rung + reach)] = own.table.compliance;
         for (ComplianceTable::Entry& entry : entries) entry.value -= middle;
@@ -111,9 +117,9 @@ ComplianceTable::Entries FootprintLattice::homogeneous(double meanRigidity) cons
     return entries;
 }
 
-TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& device, double tolerance)
+TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver, double tolerance)
 {
-    std::vector<PlateSolution> solutions = device.solveAll(plate, lattice.loads, tolerance);
+    std::vector<PlateSolution> solutions = solver.solveAll(plate, lattice.loads, tolerance);
     TableSolution              result;
     result.table.side    = lattice.shape.side;
     result.table.spacing = lattice.shape.radius;
@@ -131,7 +137,7 @@ TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, Pl
         result.table.contactStiffness[n] = contactOf(lattice, n, over, node);
     }
     result.middle     = std::move(solutions[solutions.size() / 2]);
-    result.compliance = work(lattice.loads[solutions.size() / 2], result.middle.deflection);
+    result.compliance = dot(lattice.loads[solutions.size() / 2], result.middle.deflection);
     return result;
 }
 

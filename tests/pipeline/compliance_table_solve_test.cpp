@@ -1,4 +1,4 @@
-#include "engine/pipeline/table_solve.h"
+#include "engine/pipeline/compliance_table_solve.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,8 @@
 
 #include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/patch_warnings.h"
 #include "engine/plate/load.h"
 #include "tests/pipeline/crossing.h"
 
@@ -29,11 +30,11 @@ const PatchSettings kSkin{.foundation = 1e6, .window = 40e-3, .cells = 40, .foot
 /// ln c of one footprint anywhere in a window, over what a homogeneous plate has there: what a table interpolates.
 double lnCompliance(const Plate& plate, const Plate& homogeneous, double x, double z)
 {
-    static PlateSolver device("host");
+    static PlateSolver solver("host");
     const double       middle = plate.grid.sizeX() / 2;
     const auto         c      = [&](const Plate& of, double atX, double atZ) {
         const NodeField load = footprintLoad(of.grid, 1, middle + atX, middle + atZ, Sheet::kRadius);
-        return std::log(work(load, device.solve(of, load, 1e-5).deflection));
+        return std::log(dot(load, solver.solve(of, load, 1e-5).deflection));
     };
     return c(plate, x, z) - c(homogeneous, x, z) + c(homogeneous, 0, 0);
 }
@@ -118,13 +119,13 @@ TEST(TableSolve, SlopesAreThoseOfTheCompliance)
 /// The floor of every measurement of perception, J = (largest - smallest stiffness within 5 mm) / 7 %, the plate part.
 TEST(TableSolve, TablesOfHomogeneousPlatesAreFlatWhateverTheWindow)
 {
-    PlateSolver device("host");
+    PlateSolver solver("host");
     for (double foundation : {0.0, 1e6})
         for (const PlateEdges& edges : {PlateEdges{}, PlateEdges{.x1 = Edge::supported, .z0 = Edge::supported}}) {
             const PlateGrid grid{40, 40, kMillimetre, kMillimetre};
             const Plate     plate{grid, edges, 0.45, foundation, NodeField(grid, 2e-3)};
-            const auto      lattice = footprintLattice(plate, {3e-3, 7, 1e6}, device, 1e-4);
-            const auto      table   = solveTable(plate, lattice, device, 1e-4).table;
+            const auto      lattice = solveLattice(plate, {3e-3, 7, 1e6}, solver, 1e-4);
+            const auto      table   = solveTable(plate, lattice, solver, 1e-4).table;
             double          least = 1e9, most = -1e9;
             for (double x = -9e-3; x <= 9e-3; x += 0.7e-3)
                 for (double z = -9e-3; z <= 9e-3; z += 0.7e-3) {
@@ -142,14 +143,14 @@ TEST(TableSolve, TablesOfHomogeneousPlatesAreFlatWhateverTheWindow)
 /// Far from a feature an object is homogeneous, but of another rigidity than the cloud's mean.
 TEST(TableSolve, TablesOfSofterAndStifferPlatesThanTheMeanAreFlatToAThousandth)
 {
-    PlateSolver    device("host");
+    PlateSolver    solver("host");
     const Plate    plate   = Sheet::homogeneous();
     constexpr auto kShape  = FootprintTable{Sheet::kRadius, 7, 1e6};
-    const auto     lattice = footprintLattice(plate, kShape, device, 1e-4);
+    const auto     lattice = solveLattice(plate, kShape, solver, 1e-4);
     for (double factor : {0.05, 0.4, 1.7, 10.0}) {
         Plate other      = plate;
         other.rigidity   = NodeField(plate.grid, factor * plate.rigidity(0, 0));
-        const auto table = solveTable(other, lattice, device, 1e-4).table;
+        const auto table = solveTable(other, lattice, solver, 1e-4).table;
         for (std::size_t n = 0; n < 49; ++n)
             EXPECT_NEAR(table.compliance[n].value, table.middle().lnCompliance, 2e-3)
                 << "between two rungs; with one for all it is 0.16 at 10: factor " << factor;
@@ -158,13 +159,13 @@ TEST(TableSolve, TablesOfSofterAndStifferPlatesThanTheMeanAreFlatToAThousandth)
 
 TEST(TableSolve, ATableThatDoesNotFitItsWindowIsRefused)
 {
-    PlateSolver     device("reference");
+    PlateSolver     solver("reference");
     const PlateGrid grid{20, 20, kMillimetre, kMillimetre};
     const Plate     plate{grid, {}, 0.45, 0, NodeField(grid, 2e-3)};
-    EXPECT_NO_THROW((void)footprintLattice(plate, {3e-3, 5, 1e6}, device, 1e-4)) << "2 (6 + 3) + 1 mm";
-    EXPECT_THROW((void)footprintLattice(plate, {3e-3, 7, 1e6}, device, 1e-4), Error);
-    EXPECT_THROW((void)footprintLattice(plate, {3e-3, 4, 1e6}, device, 1e-4), ContractViolation);
-    EXPECT_THROW((void)footprintLattice(plate, {3e-3, 9, 1e6}, device, 1e-4), ContractViolation);
+    EXPECT_NO_THROW((void)solveLattice(plate, {3e-3, 5, 1e6}, solver, 1e-4)) << "2 (6 + 3) + 1 mm";
+    EXPECT_THROW((void)solveLattice(plate, {3e-3, 7, 1e6}, solver, 1e-4), Error);
+    EXPECT_THROW((void)solveLattice(plate, {3e-3, 4, 1e6}, solver, 1e-4), ContractViolation);
+    EXPECT_THROW((void)solveLattice(plate, {3e-3, 9, 1e6}, solver, 1e-4), ContractViolation);
 }
 
 TEST(TableSolve, TheReferenceAgreesWithTheMultigrid)
@@ -174,8 +175,8 @@ TEST(TableSolve, TheReferenceAgreesWithTheMultigrid)
     Plate       flat = plate;
     flat.rigidity    = NodeField(plate.grid, plate.rigidity(0, 0));
     const FootprintTable shape{Sheet::kRadius, 3, 1e6};
-    const auto           slow = solveTable(plate, footprintLattice(flat, shape, reference, 1e-4), reference, 1e-4);
-    const auto           fast = solveTable(plate, footprintLattice(flat, shape, host, 1e-4), host, 1e-4);
+    const auto           slow = solveTable(plate, solveLattice(flat, shape, reference, 1e-4), reference, 1e-4);
+    const auto           fast = solveTable(plate, solveLattice(flat, shape, host, 1e-4), host, 1e-4);
     EXPECT_EQ(slow.middle.report.solver, "reference");
     EXPECT_EQ(fast.middle.report.solver, "host");
     for (std::size_t n = 0; n < 9; ++n) {
@@ -187,11 +188,11 @@ TEST(TableSolve, TheReferenceAgreesWithTheMultigrid)
 TEST(DeformWithTable, ThePatchIsThatOfDeformAndTheTablesMiddleIsItsCompliance)
 {
     const SoftObject     object(makeSample(sampleNamed("ellipsoid"), 20'000, 1));
-    PlateSolver          device("host");
+    PlateSolver          solver("host");
     const Contact        contact = touchAt(object, {0, 0, 35e-3}, glm::dvec3(0, 0, 1), 10e-3);
-    const auto           lattice = footprintLattice(object, kSkin, 3, device);
-    const PatchWithTable both    = deformWithTable(object, contact, kSkin, lattice, device);
-    const Patch          alone   = deform(object, contact, kSkin, device);
+    const auto           lattice = footprintLattice(object, kSkin, 3, solver);
+    const PatchWithTable both    = deformWithTable(object, contact, kSkin, lattice, solver);
+    const Patch          alone   = deform(object, contact, kSkin, solver);
 
     ASSERT_TRUE(both.table.has_value());
     EXPECT_NEAR(both.patch.compliance / alone.compliance, 1, 1e-6);
@@ -208,9 +209,9 @@ TEST(DeformWithTable, WhatIsNoSurfaceHasNoTable)
     std::vector<glm::dvec3> line;
     for (int n = 0; n < 100; ++n) line.push_back({n * 1e-4, 0, 0});
     const SoftObject wire(PointCloud(line, std::vector<double>(100, 1e6), StiffnessKind::modulus));
-    PlateSolver      device("host");
-    const auto       lattice = footprintLattice(wire, kSkin, 1, device);
-    EXPECT_FALSE(deformWithTable(wire, {{5e-3, 0, 0}, {0, 0, 1}, true}, kSkin, lattice, device).table);
+    PlateSolver      solver("host");
+    const auto       lattice = footprintLattice(wire, kSkin, 1, solver);
+    EXPECT_FALSE(deformWithTable(wire, {{5e-3, 0, 0}, {0, 0, 1}, true}, kSkin, lattice, solver).table);
 }
 
 /// All of it: random points, sphere fits, charts carried along a path, tables ahead of the hand, the servo's hand-over.
@@ -218,11 +219,11 @@ TEST(DeformWithTable, AHandThatSlidesOverAHomogeneousEllipsoidFeelsNothing)
 {
     constexpr double     kSpeed = 0.2, kPeriod = 1.0 / 60, kTick = 1e-3;
     const SoftObject     object = homogeneous("ellipsoid", 3);
-    PlateSolver          device("host");
+    PlateSolver          solver("host");
     const PatchSettings  settings = kSkin;
     std::optional<Frame> carried;
     const auto           lattice =
-        footprintLattice(object, settings, tableSide(ComplianceLaw::table, kPeriod, settings.footprintRadius), device);
+        footprintLattice(object, settings, tableSide(ComplianceLaw::table, kPeriod, settings.footprintRadius), solver);
     const auto onSurface = [](double x) {
         return glm::dvec3(x, 3e-3, 35e-3 * std::sqrt(1 - std::pow(x / 60e-3, 2) - std::pow(3.0 / 45, 2)));
     };
@@ -240,7 +241,7 @@ TEST(DeformWithTable, AHandThatSlidesOverAHomogeneousEllipsoidFeelsNothing)
         if (time >= double(sequence) * kPeriod) {
             published          = coming;
             const Contact next = {aheadOf(handOver.law(), hand, motion.velocity(), kPeriod), {0, 0, 1}, true};
-            const auto    both = deformWithTable(object, next, settings, lattice, device, carried);
+            const auto    both = deformWithTable(object, next, settings, lattice, solver, carried);
             ASSERT_TRUE(both.table.has_value());
             carried          = both.patch.chart.frame;
             coming           = both.table;
@@ -271,9 +272,9 @@ TEST(Warnings, AskForTheWindowThatTheFoundationNeeds)
     const auto warnedAt = [](const SoftObject& object, double lengths, double mean) {
         PatchSettings settings = kSkin;
         settings.foundation    = mean / std::pow(settings.window / lengths, 4);
-        PlateSolver   device("host");
+        PlateSolver   solver("host");
         const Contact contact = touchAt(object, {0, 0, 0}, glm::dvec3(0, 0, 1), 10e-3);
-        const Patch   patch   = deform(object, contact, settings, device);
+        const Patch   patch   = deform(object, contact, settings, solver);
         const auto    all     = warnings(patch, settings, 0.01);
         return std::any_of(all.begin(), all.end(),
                            [](const std::string& s) { return s.find("its edges are felt") != std::string::npos; });
