@@ -171,10 +171,11 @@ Written still(const RenderOptions& o, Stage& stage)
 std::vector<TickRecord> samplesOf(const RenderOptions& o, Stage& stage, int frames)
 {
     HandOptions hand;
-    hand.hand         = o.hand;
-    hand.seconds      = o.seconds;
-    HandSource source = handFor(hand, stage.scene, stage.loaded.cloud, stage.index);
-    if (source.isHeld()) throw Error("--hand " + o.hand + ": somebody holds it; pictures are made of scripted hands");
+    hand.hand          = o.hand;
+    hand.seconds       = o.seconds;
+    SessionHand source = handFor(hand, stage.scene, stage.loaded.cloud, stage.index);
+    if (source.isHeldByPerson())
+        throw Error("--hand " + o.hand + ": a person holds it; pictures are made of scripted hands");
     Deformation             deformation(stage.loaded.cloud, stage.index, stage.scene);
     const SessionParts      parts{stage.scene,          stage.loaded.cloud, stage.index,
                              deformation.solver(), *source.device,     source.frame};

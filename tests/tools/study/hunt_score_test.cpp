@@ -192,7 +192,7 @@ TEST(Hunt, AScriptedHandIsScoredEndToEnd)
     const LoadedCloud           cloud  = loadCloud(scene);
     const NeighbourIndex        index(cloud.cloud.positions());
     const HandPath              path = readHand(folder / "nodule_hunt_hand.csv");
-    HandDevice                  hand(path);
+    ScriptedHand                hand(path);
     Deformation                 deformation(cloud.cloud, index, scene);
     HuntScorer                  scorer(scene, cloud.cloud);
 
