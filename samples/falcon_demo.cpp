@@ -77,8 +77,7 @@ void report(const SessionSummary& s)
     std::printf("felt    %.1f s, in contact %.0f %% of it; force at most %s, depth at most %s\n",
                 double(s.ticks) * 1e-3, 100 * double(s.contactTicks) / std::max(1.0, double(s.ticks)),
                 text(s.mostForce, "N").c_str(), text(s.mostDepth, "m").c_str());
-    std::printf("engine  a tick computes %s and comes every %s; a patch takes %s\n",
-                text(s.tick.quantile(0.5), "s").c_str(), text(s.period.quantile(0.5), "s").c_str(),
+    std::printf("engine  a tick comes every %s, a patch takes %s\n", text(s.period.quantile(0.5), "s").c_str(),
                 text(s.solve.quantile(0.5), "s").c_str());
     std::printf("faults  governor: %s; Falcon: %s\n", name(s.fault), name(s.deviceFault));
     if (s.beyondTheory > 0) std::puts("theory  it bent by more than half its thickness; press more gently");
@@ -88,11 +87,10 @@ void run(Options& o)
 {
     if (o.list) return static_cast<void>(sceneFile(o));
     demandOptionsOf(kFalconRecord.name, o.hand.options);
-    const auto           file  = sceneFile(o);
-    const Scene          scene = readScene(file, {{}, processEnvironment()});
-    const LoadedCloud    cloud = loadCloud(scene);
-    const NeighbourIndex index(cloud.cloud.positions());
-    Deformation          deformation(cloud.cloud, index, scene);
+    const auto         file   = sceneFile(o);
+    const Scene        scene  = readScene(file, {{}, processEnvironment()});
+    const LoadedObject loaded = loadObject(scene);
+    Deformation        deformation(loaded.object, scene);
     std::printf("scene   %s\n", file.stem().c_str());
     o.hand.hand     = kFalconRecord.name;
     o.hand.onUpload = [](std::size_t done, std::size_t total) {
@@ -104,14 +102,14 @@ void run(Options& o)
         o.hand.hand                                   = kFalconEmulatorRecord.name;
         o.hand.options[std::string(kFalconCold.flag)] = "true";
     }
-    SessionHand hand     = openHand(o.hand, scene, cloud.cloud, index);
+    SessionHand hand     = openHand(o.hand, scene, loaded.object);
     auto*       emulated = dynamic_cast<GrippedFalcon*>(hand.device.get());
     home(*hand.device, emulated);
     std::puts("feel    now; Ctrl-C ends it, at zero force");
     RealSessionSettings settings{.seconds = hand.seconds, .stop = &interrupted};
     if (isatty(STDERR_FILENO) != 0) settings.onView = showLine;
     std::string warning;
-    report(runReal({scene, cloud.cloud, index, deformation.solver(), *hand.device, hand.frame}, settings, warning));
+    report(runReal({scene, loaded.object, deformation.solver(), *hand.device, hand.frame}, settings, warning));
     hand.device->close();
     if (!warning.empty()) std::fprintf(stderr, "falcon_demo: warning: %s\n", warning.c_str());
     if (!emulated) return;
@@ -141,8 +139,7 @@ int main(int argumentCount, char** arguments)
         return 0;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // --help
-        std::fprintf(stderr, "falcon_demo: %s; see --help\n", error.what());
-        return 2;
+        return std::fprintf(stderr, "falcon_demo: %s; see --help\n", error.what()), 2;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "falcon_demo: %s\n", error.what());
         if (interrupted) return 0; // before the scene: no force flowed

@@ -36,47 +36,46 @@ double widthOf(const HandPath& path)
 }
 
 HandPath generated(HandMotion motion, const HandChoice& choice, double seconds, const Scene& scene,
-                   const PointCloud& cloud, const NeighbourIndex& index)
+                   const SoftObject& object)
 {
-    const HandPlace place = handPlace(scene, cloud, index);
+    const HandPlace place = handPlace(scene, object);
     HandScript      script;
     script.motion   = motion;
     script.speed    = choice.speed;
-    script.depth    = choice.depth.value_or(kDepth * scene.patch.material.thickness);
+    script.depth    = choice.depth.value_or(kDepth * scene.material.thickness);
     script.radius   = choice.radius;
     script.height   = scene.startHeight;
     script.duration = seconds;
-    return draped(makeHand(script, place), place, cloud, index);
+    return draped(makeHand(script, place), place, object);
 }
 
 /// A file is as long as it is, unless the user says how long.
-void readPath(SessionHand& hand, const HandChoice& choice, const PointCloud& cloud)
+void readPath(SessionHand& hand, const HandChoice& choice, const SoftObject& object)
 {
     hand.path = std::make_unique<const HandPath>(readHand(choice.hand));
     if (!choice.seconds) hand.seconds = hand.path->duration();
-    if (const double wide = widthOf(*hand.path), size = cloud.bounds().diagonal(); wide > kWide * size)
+    if (const double wide = widthOf(*hand.path), size = object.cloud().bounds().diagonal(); wide > kWide * size)
         hand.warnings.push_back("the hand goes over " + formatQuantity(wide, "m") + " and the object measures " +
                                 formatQuantity(size, "m") + ": are its positions metres?");
 }
 
 /// What a scripted hand grips begins where the hand does; any other device has its middle before the scene's place.
-DeviceFrame frameOf(const SessionHand& hand, const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
+DeviceFrame frameOf(const SessionHand& hand, const Scene& scene, const SoftObject& object)
 {
     const glm::dvec3 start = hand.path ? hand.path->position(hand.path->begin()) : glm::dvec3(0);
     if (hand.path && hand.record->keepsSceneAxes) return {start};
-    const HandPlace place = handPlace(scene, cloud, index);
+    const HandPlace place = handPlace(scene, object);
     return deviceFrame(hand.path ? start : place.point + scene.startHeight * place.outward, place.outward);
 }
 
-void makeDevice(SessionHand& hand, const HandChoice& choice, const Scene& scene, const PointCloud& cloud,
-                const NeighbourIndex& index)
+void makeDevice(SessionHand& hand, const HandChoice& choice, const Scene& scene, const SoftObject& object)
 {
     const DeviceRecord& record = *hand.record;
     if (record.support && !record.support().isBuilt)
         throw Error("--hand " + choice.hand + ": this build of Palpate is " + record.support().library + "; " +
                     record.support().help);
     hand.hid   = std::make_unique<HidapiSystem>();
-    hand.frame = frameOf(hand, scene, cloud, index);
+    hand.frame = frameOf(hand, scene, object);
     DeviceRequest request{
         .hid = *hand.hid, .options = choice.options, .path = devicePath(choice.hand), .onUpload = choice.onUpload};
     if (!hand.path) {
@@ -113,7 +112,7 @@ void demandGood(const HandChoice& choice)
         throw Error("--arm: no scripted hand grips the " + choice.hand + "; omit one of the two");
 }
 
-SessionHand openHand(const HandChoice& choice, const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
+SessionHand openHand(const HandChoice& choice, const Scene& scene, const SoftObject& object)
 {
     demandGood(choice);
     SessionHand hand;
@@ -122,13 +121,13 @@ SessionHand openHand(const HandChoice& choice, const Scene& scene, const PointCl
     if (!hand.record || hand.record->holder == DeviceHolder::scriptedHand) {
         const auto motion = hand.record ? HandMotion::scan : valueNamed<HandMotion>(choice.hand);
         if (motion)
-            hand.path = std::make_unique<const HandPath>(generated(*motion, choice, hand.seconds, scene, cloud, index));
+            hand.path = std::make_unique<const HandPath>(generated(*motion, choice, hand.seconds, scene, object));
         else
-            readPath(hand, choice, cloud);
+            readPath(hand, choice, object);
     }
     if (!hand.record && choice.grip) hand.record = &kArmRecord;
     if (hand.record)
-        makeDevice(hand, choice, scene, cloud, index);
+        makeDevice(hand, choice, scene, object);
     else
         hand.device = std::make_unique<ScriptedHand>(*hand.path);
     hand.device->open();

@@ -48,7 +48,6 @@ void demandGood(const HandChoice& choice);
 
 /// Makes the hand and opens its device.
 /// \throws Error naming the option, the file, or why the device cannot be used
-[[nodiscard]] SessionHand openHand(const HandChoice& choice, const Scene& scene, const PointCloud& cloud,
-                                   const NeighbourIndex& index);
+[[nodiscard]] SessionHand openHand(const HandChoice& choice, const Scene& scene, const SoftObject& object);
 
 } // namespace palp

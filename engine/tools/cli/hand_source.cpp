@@ -117,10 +117,9 @@ void demandGood(const HandOptions& options)
     if (!deviceNamed(options.hand) && !valueNamed<HandMotion>(options.hand)) static_cast<void>(readHand(options.hand));
 }
 
-SessionHand handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud,
-                    const NeighbourIndex& index)
+SessionHand handFor(const HandOptions& options, const Scene& scene, const SoftObject& object)
 {
-    return openHand(choiceOf(options), scene, cloud, index);
+    return openHand(choiceOf(options), scene, object);
 }
 
 void waitForHoming(HapticDevice& device, const std::atomic<bool>& stop)

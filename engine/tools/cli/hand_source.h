@@ -32,8 +32,7 @@ void addDeviceOptions(CLI::App& command, DeviceOptionValues& values, std::span<c
 
 /// The hand that the options ask for, with its device open.
 /// \throws Error naming the option, the file, or why the device cannot be used
-[[nodiscard]] SessionHand handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud,
-                                  const NeighbourIndex& index);
+[[nodiscard]] SessionHand handFor(const HandOptions& options, const Scene& scene, const SoftObject& object);
 
 /// Checks what can be said of the options before a hand is there: its name, its numbers, a file that can be read.
 /// \throws Error naming the option
