@@ -173,8 +173,8 @@ std::vector<TickRecord> samplesOf(const RenderOptions& o, Stage& stage, int fram
     HandOptions hand;
     hand.hand         = o.hand;
     hand.seconds      = o.seconds;
-    HandSource source = handFor(hand, stage.scene, stage.loaded.object);
-    if (source.isHeld()) throw Error("--hand " + o.hand + ": somebody holds it; pictures are made of scripted hands");
+    SessionHand source = handFor(hand, stage.scene, stage.loaded.object);
+    if (source.isHeldByPerson()) throw Error("--hand " + o.hand + ": somebody holds it; pictures are made of scripted hands");
     Deformation             deformation(stage.loaded.object, stage.scene);
     const SessionParts      parts{stage.scene, stage.loaded.object, deformation.solver(), *source.device, source.frame};
     std::vector<TickRecord> all;

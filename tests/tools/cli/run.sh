@@ -148,7 +148,12 @@ grep -q Vulkan out.txt && complain "a hand computes nothing: $(cat out.txt)" || 
 DISPLAY=:0 "$palpate" devices --haptic --json >out.txt 2>err.txt || complain "devices --haptic --json: exit $?"
 for key in '"name": "mouse"' '"name": "arm"' '"model"' '"path": null' '"usable": true' '"why": null' '"help": null'; do holds "$key"; done
 [ "$(head -c 1 out.txt)" = '[' ] && passed=$((passed + 1)) || complain "devices --haptic --json is no list: $(cat out.txt)"
-bad 'two sorts alone at once' 'excludes' devices --gpu --haptic
+bad 'two sorts alone at once' 'excludes' devices --gpus --haptic
+bad 'two other sorts alone at once' 'excludes' devices --processors --haptic
+good 'list of processors' devices --processors
+holds 'host  '
+holds 'usable   yes; auto takes it'
+grep -q 'a simulated arm' out.txt && complain "an arm solves nothing: $(cat out.txt)" || passed=$((passed + 1))
 
 # doctor [VARIABLE=VALUE...] -- WORDS of one line of its output, runs of blanks as one
 doctor() {
@@ -159,7 +164,7 @@ doctor() {
     env -u DISPLAY -u WAYLAND_DISPLAY -u FALCON_FIRMWARE $variables "$palpate" doctor >out.txt 2>err.txt && [ ! -s err.txt ] || complain "doctor: exit $? $(cat err.txt)"
     tr -s ' ' <out.txt | grep -qF -- "$*" && passed=$((passed + 1)) || complain "doctor$variables lacks '$*': $(cat out.txt)"
 }
-for part in vulkan host display 'real time' usb 'udev rule' falcon 'falcon firmware' hid; do doctor -- " $part "; done
+for part in vulkan host display 'real time' usb 'udev rule' falcon 'falcon firmware' bridge spacemouse; do doctor -- " $part "; done
 doctor -- 'Embree '
 doctor -- 'missing display neither DISPLAY nor WAYLAND_DISPLAY'
 doctor DISPLAY=:0 -- 'ok display X11'
@@ -176,14 +181,14 @@ doctor VK_DRIVER_FILES=none.json VK_ICD_FILENAMES=none.json -- 'warning vulkan n
 doctor -- 'warning vulkan only in software: '
 good 'doctor, for scripts' doctor --json
 for key in '"palpate": "0.' '"compiler"' '"libraries"' '"system"' '"part": "real time"' '"verdict": "' '"found"' '"help"' '"name": "arm"'; do holds "$key"; done
-good 'list of GPUs' devices --gpu
+good 'list of GPUs' devices --gpus
 holds 'usable   yes'
 grep -q host out.txt && complain "the host is no GPU: $(cat out.txt)" || passed=$((passed + 1))
 good 'list of devices, for scripts' devices --json
 for key in '"index": 0' '"index": null' '"name": "host"' '"kind": "software"' '"kind": "host"' '"driver"' '"api"' '"memory"' '"float64"' '"usable": true' '"refusals": []' '"processor": "' \
     '"instruction_set": "' '"auto": false'; do holds "$key"; done
-tr -d ' \n' <out.txt | grep -q '^{"compute":.*"auto":true}\],"haptic":\[' && passed=$((passed + 1)) || complain "auto is not the host, the last of: $(cat out.txt)"
-without "$palpate" devices --gpu --json
+tr -d ' \n' <out.txt | grep -q '^{"haptic":\[.*\],"processors":\[.*"auto":true}\]}$' && passed=$((passed + 1)) || complain "auto is not the host, the last of: $(cat out.txt)"
+without "$palpate" devices --gpus --json
 code=$?
 [ $code -eq 4 ] && grep -qF 'mesa-vulkan-drivers' err.txt && [ "$(cat out.txt)" = '[]' ] && passed=$((passed + 1)) ||
     complain "a machine without a GPU: exit $code, expected 4: $(cat out.txt err.txt)"
@@ -236,7 +241,11 @@ bad 'a grip in a wrong unit' '"N/mm"' run scene.json --arm '150 N/mm'
 bad 'a speed that no hand has' 'up to 100 m/s' run scene.json --speed 1e300
 bad 'a time without end' 'up to 86400 s' run scene.json --seconds 1e9
 bad 'threads without a clock' 'virtual clock has no threads' run scene.json --threads paper --clock virtual
-bad 'counts of no motor' 'expected 2000 to 10000' run scene.json --hand falcon-emulator --falcon-counts 50000
+for counts in 1 1999 50000; do
+    bad 'counts of no motor' 'expected 2000 to 10000' run scene.json --hand falcon-emulator --falcon-counts $counts
+    bad 'counts of no motor' 'expected 2000 to 10000' calibrate --emulator --falcon-counts $counts
+done
+bad 'a firmware that is not needed' 'with --falcon-cold only' run scene.json --hand falcon-emulator --falcon-firmware scene.json
 bad 'counts that are no number' 'nan' run scene.json --hand falcon-emulator --falcon-counts nan
 bad 'counts without a Falcon' 'of --hand falcon' run scene.json --falcon-counts 4300
 bad 'a slip' 'did you mean falcon?' run scene.json --hand falcom
