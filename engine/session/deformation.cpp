@@ -12,9 +12,9 @@ namespace {
 FootprintLattice latticeOf(const Scene& scene, const PointCloud& cloud, PlateSolver& device)
 {
     const auto of = [&](int side) { return footprintLattice(cloud, scene.patch, side, device); };
-    if (scene.handOver != ComplianceLaw::table) return of(1);
+    if (scene.complianceLaw != ComplianceLaw::table) return of(1);
     if (scene.tableSize > 0) return of(scene.tableSize);
-    for (int side = tableSide(scene.handOver, 1 / scene.deformationRate, scene.patch.footprintRadius); side > 3;
+    for (int side = tableSide(scene.complianceLaw, 1 / scene.deformationRate, scene.patch.footprintRadius); side > 3;
          side -= 2) {
         try {
             return of(side);
@@ -28,8 +28,8 @@ FootprintLattice latticeOf(const Scene& scene, const PointCloud& cloud, PlateSol
 } // namespace
 
 Deformation::Deformation(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene)
-    : cloud_(&cloud), index_(index), law_(scene.handOver), settings_(scene.patch),
-      device_(scene.device, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, cloud, device_))
+    : cloud_(&cloud), index_(index), law_(scene.complianceLaw), settings_(scene.patch),
+      device_(scene.solver, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, cloud, device_))
 {
 }
 

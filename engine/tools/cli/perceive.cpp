@@ -11,6 +11,7 @@
 #include "engine/core/file.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
+#include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/solver_choice.h"
@@ -35,15 +36,16 @@ struct PerceiveOptions {
 /// The scene's object, made once.
 struct Felt {
     explicit Felt(const PerceiveOptions& o)
-        : scene(o.scene.load()), loaded(loadCloud(scene)), index(loaded.cloud.positions()),
-          device(orTheReference([this] { return PlateSolver(scene.device); }))
+        : scene(o.scene.load()), loaded(o.scene.loadCloud(scene)), index(loaded.cloud.positions()),
+          solver(openSolver(scene.solver))
     {
-        sayPassedOver(device.name(), device.note());
+        for (const std::string& sentence : cloudWarnings(scene, loaded))
+            std::cerr << "palpate: warning: " << sentence << "\n";
     }
     Scene          scene;
     LoadedCloud    loaded;
     NeighbourIndex index;
-    PlateSolver    device;
+    PlateSolver    solver;
 };
 
 /// To either side of the middle [m].
@@ -81,7 +83,7 @@ nlohmann::ordered_json jsonOf(const PerceiveOptions& o, const Felt& felt, const 
     all["scene"]      = o.scene.name;
     all["prediction"] = true;
     all["force_law"]  = name(felt.scene.patch.forceLaw);
-    all["solved_on"]  = felt.device.name();
+    all["solved_on"]  = felt.solver.name();
     all["path"]       = {{"middle", {p.line.middle.point.x, p.line.middle.point.y, p.line.middle.point.z}},
                          {"direction", {p.line.direction.x, p.line.direction.y, p.line.direction.z}},
                          {"reach", p.line.reach},
@@ -147,10 +149,10 @@ void perceive(const PerceiveOptions& o)
     Progress              progress("feeling");
     const auto            onStep = [&](std::size_t done, std::size_t total) { progress.at(done, total); };
     const ScenePerception found =
-        perceive(felt.scene, felt.loaded.cloud, felt.index, line, o.places, felt.device, onStep);
+        perceive(felt.scene, felt.loaded.cloud, felt.index, line, o.places, felt.solver, onStep);
     std::optional<FeltMap> map;
     if (!o.picture.empty())
-        map = feltMap(felt.loaded.cloud, felt.index, felt.scene.patch, std::size_t(o.mapPlaces), felt.device, onStep);
+        map = feltMap(felt.loaded.cloud, felt.index, felt.scene.patch, std::size_t(o.mapPlaces), felt.solver, onStep);
     if (!o.out.empty())
         write(o.out, pathSvg(found, felt.scene.patch.forceLaw, "Felt stiffness along the path: " + o.scene.title()));
     constexpr double kTypicalWeber = kWeberFractions[1];
@@ -175,7 +177,7 @@ void addPerceiveCommand(CLI::App& app)
 {
     CLI::App*  command = app.add_subcommand("perceive", "what a person would notice of an object, predicted");
     const auto o       = std::make_shared<PerceiveOptions>();
-    o->scene.addTo(*command);
+    o->scene.addTo(*command, SceneKey::Group::session);
     command->add_option("--along", o->along, "direction of the path through the place, X,Y,Z [the chart's east]");
     command->add_option("--reach", o->reach, "of the path to either side, such as 10mm [a third of the window]");
     command->add_option("--places", o->places, "at rest along the path")

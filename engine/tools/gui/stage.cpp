@@ -19,12 +19,6 @@ HandPlace startPlace(const Scene& scene, const PointCloud& cloud, const Neighbou
     }
 }
 
-bool sameObject(const Scene& a, const Scene& b)
-{
-    return a.cloud == b.cloud && a.points == b.points && a.seed == b.seed && a.lengthUnit == b.lengthUnit &&
-           a.stiffness == b.stiffness;
-}
-
 Stage::Stage(const Scene& scene)
     : scene_(scene), loaded_(loadCloud(scene)), index_(loaded_.cloud.positions()),
       view_(loaded_.cloud, index_, scene.patch, loaded_.faces), painting_(loaded_.cloud, index_),

@@ -98,9 +98,7 @@ void Workbench::savePaint()
         const auto                  target   = freeName(stem + "-painted", ".ply");
         std::string                 property = "stiffness";
         if (isPly) {
-            CloudReadSettings settings;
-            settings.lengthUnit = stage_->scene().lengthUnit;
-            property            = repaintPly(source, settings, stage_->painted(), target).property;
+            property = repaintPly(source, stage_->scene().reading, stage_->painted(), target).property;
         } else {
             writeCloud(target, stage_->painted(), {}, {});
         }

@@ -99,12 +99,12 @@ std::function<Workbench::Opened()> Workbench::opener(const std::string& what, co
         };
     std::optional<Scene> now; // whose object may do
     if (stage_ && !stage_->painting().changed()) now = stage_->scene();
-    return [what, now, device = stage_ ? stage_->scene().device : "auto"] {
+    return [what, now, toolKeys = settings_.toolKeys, solver = stage_ ? stage_->scene().solver : "auto"] {
         RecordedSession session = readSession(what);
         if (session.samples.empty()) throw Error(what + ": there are no samples in it, so there is nothing to replay");
-        Scene scene  = palp::sceneOf(session);
-        scene.device = device;
-        auto stage   = now && sameObject(scene, *now) ? nullptr : std::make_unique<Stage>(scene);
+        Scene scene  = palp::sceneOf(session, toolKeys);
+        scene.solver = solver;
+        auto stage   = now && haveSameCloud(scene, *now) ? nullptr : std::make_unique<Stage>(scene);
         return Opened{std::move(scene), std::move(stage), std::move(session)};
     };
 }
@@ -153,7 +153,7 @@ void Workbench::useObject()
     strongest_          = 0.5 * scene.maxForce;
     failed_             = false;
     paintSaved_         = true;
-    state_.blind        = scene.hunt.has_value();
+    state_.blind        = scene.overlay != nullptr;
     if (state_.blind) { // what is hidden stays hidden
         state_.look.paint              = ViewPaint::plain;
         state_.look.overlays.projected = false;
@@ -194,7 +194,7 @@ void Workbench::takeValues(const SceneValues& wanted)
     for (const auto& [key, value] : wanted) values[key] = value;
     try {
         const Scene scene = sceneWith(values);
-        if (sameObject(scene, stage_->scene())) {
+        if (haveSameCloud(scene, stage_->scene())) {
             stage_->change(scene);
         } else if (mayDiscard()) {
             stage_ = meanwhile("reading " + nameOf(scene.cloud) + " once more ...",
@@ -216,8 +216,9 @@ void Workbench::takeValues(const SceneValues& wanted)
 Scene Workbench::sceneWith(const SceneValues& values) const
 {
     if (!replayed_) return settings_.open(what_, values);
-    Scene scene = parseScene(replayed_->scene, what_, std::filesystem::current_path(), {values, {}});
-    if (!values.contains("device")) scene.device = stage_->scene().device;
+    Scene scene = parseScene(replayed_->scene, what_, std::filesystem::current_path(),
+                             {.flags = values, .toolKeys = settings_.toolKeys});
+    if (!values.contains("solver")) scene.solver = stage_->scene().solver;
     return scene;
 }
 

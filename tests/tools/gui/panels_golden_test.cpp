@@ -19,7 +19,7 @@ namespace {
 
 /// A hand that has pressed a palm for a while, on the virtual clock.
 struct Pressed {
-    Scene          scene  = parseScene(R"({"cloud": "sample:palm", "points": 6000, "device": "host"})", "a test", ".");
+    Scene          scene  = parseScene(R"({"cloud": "sample:palm", "points": 6000, "solver": "host"})", "a test", ".");
     LoadedCloud    loaded = loadCloud(scene);
     NeighbourIndex index{loaded.cloud.positions()};
     Deformation    deformation{loaded.cloud, index, scene};
