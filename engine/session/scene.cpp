@@ -170,7 +170,7 @@ void takeSample(Scene& scene)
 {
     const Sample& sample        = sampleNamed(sampleName(scene));
     scene.points                = sample.points;
-    scene.patch.material        = sample.material;
+    scene.material              = sample.material;
     scene.patch.foundation      = sample.foundation;
     scene.patch.window          = sample.window;
     scene.patch.footprintRadius = sample.footprintRadius;

@@ -13,6 +13,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/cloud/point_cloud_io.h"
+#include "engine/cloud/soft_object.h"
 #include "engine/contact/proxy.h"
 #include "engine/core/enum_names.h"
 #include "engine/force/compliance_tracker.h"
@@ -68,7 +69,8 @@ struct Scene {
     std::optional<glm::dvec3> from{};  ///< the hand's side there, of any length; empty: away from the cloud's middle
 
     Preset        preset = Preset::palpate; ///< the last one that was asked for; its values stand in `patch`
-    PatchSettings patch;                    ///< material, foundation, window, map, force law, ...
+    Material      material{};               ///< of the sheet
+    PatchSettings patch;                    ///< foundation, window, map, force law, ...
     std::string   solver = "auto";          ///< of the plate, as PlateSolver takes it
 
     ComplianceLaw complianceLaw = ComplianceLaw::table;
@@ -144,6 +146,15 @@ inline constexpr std::string_view kSamplePrefix = "sample:";
 /// The cloud as the scene says that it is read, with the scene's law and overlay, if it has them.
 /// \throws Error as readCloud() and CloudOverlay::over() do, and if the file's stiffness contradicts the scene
 [[nodiscard]] LoadedCloud loadCloud(const Scene& scene);
+
+/// What is touched in a scene, and how its file was understood.
+struct LoadedObject {
+    SoftObject      object;
+    CloudFileReport report;
+};
+
+/// loadCloud() with its index, of the scene's material.
+[[nodiscard]] LoadedObject loadObject(const Scene& scene);
 
 /// The cloud without the overlay.
 [[nodiscard]] LoadedCloud loadBareCloud(const Scene& scene);

@@ -82,6 +82,12 @@ LoadedCloud loadCloud(const Scene& scene)
     return loaded;
 }
 
+LoadedObject loadObject(const Scene& scene)
+{
+    LoadedCloud loaded = loadCloud(scene);
+    return {SoftObject(std::move(loaded.cloud), scene.material, std::move(loaded.faces)), std::move(loaded.report)};
+}
+
 bool haveSameCloud(const Scene& a, const Scene& b)
 {
     if (a.toolKeys != b.toolKeys) return false;

@@ -121,7 +121,7 @@ void readPoisson(S& scene, const V& given)
     const double nu = parseQuantity(given.text, D::none, given.what);
     if (nu >= given.key.bounds->most)
         given.refuse("; no material is incompressible: take 0.49 for rubber, which is 1.3 % softer");
-    scene.patch.material.poissonRatio = given.number();
+    scene.material.poissonRatio = given.number();
 }
 
 std::vector<SceneKey> fileKeys()
@@ -269,7 +269,7 @@ std::vector<SceneKey> materialKeys()
              .dimension = D::length,
              .bounds    = KeyBounds{1e-6, 1},
              .control   = thickness},
-            [](auto& s) -> auto& { return s.patch.material.thickness; }),
+            [](auto& s) -> auto& { return s.material.thickness; }),
         numberKey(
             {.name    = "poisson",
              .help    = "Poisson's ratio; skin 0.45, rubber 0.49",
@@ -277,7 +277,7 @@ std::vector<SceneKey> materialKeys()
              .unit    = "1",
              .bounds  = KeyBounds{-1, 0.5, true},
              .control = poisson},
-            [](auto& s) -> auto& { return s.patch.material.poissonRatio; }),
+            [](auto& s) -> auto& { return s.material.poissonRatio; }),
         numberKey(
             {.name      = "foundation",
              .help      = "pressure per deflection of what lies below the sheet; 0 for nothing",

@@ -80,7 +80,7 @@ EXPECT_EQ(session.samples.size(), 5u);
 EXPECT_EQ(scene.solver, "lavapipe");
 EXPECT_EQ(scene.complianceLaw, ComplianceLaw::blend);
 EXPECT_EQ(scene.patch.sampling, Resampling::nearest);
-EXPECT_EQ(scene.patch.material.thickness, 0.004);
+EXPECT_EQ(scene.material.thickness, 0.004);
 
 description("2");
 EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(readSession(folder / "old")); }), {"\"solver\""}))

@@ -58,7 +58,7 @@ TEST(Scene, ASampleBringsItsConstantsAndTheFileWinsOverThem)
 {
     const Scene scene = parsed(R"({"cloud": "sample:skin", "thickness": "3 mm"})");
 
-    EXPECT_EQ(scene.patch.material.thickness, 3e-3);
+    EXPECT_EQ(scene.material.thickness, 3e-3);
     EXPECT_EQ(scene.patch.foundation, sampleNamed("skin").foundation);
     EXPECT_EQ(scene.place, sampleNamed("skin").place);
     EXPECT_EQ(scene.points, 40'000u);
@@ -86,7 +86,7 @@ TEST(Scene, AnotherCloudFromAFlagBringsItsOwnConstants)
 {
     const Scene scene = parsed(R"({"cloud": "sample:skin"})", overrides({{"cloud", "sample:ear-lobe"}}));
 
-    EXPECT_EQ(scene.patch.material.thickness, 3e-3);
+    EXPECT_EQ(scene.material.thickness, 3e-3);
     EXPECT_EQ(scene.origins.at("thickness").where, "sample:ear-lobe");
     EXPECT_FALSE(scene.from) << "closed";
 }
@@ -103,9 +103,8 @@ TEST(Scene, TheEnvironmentOfTheProcessCountsOnlyWhereItIsAskedFor)
 
 TEST(Scene, AnEmptyVariableSaysNothing)
 {
-    EXPECT_EQ(
-        parsed(R"({"cloud": "sample:skin"})", overrides({}, {{"PALPATE_THICKNESS", ""}})).patch.material.thickness,
-        4e-3);
+    EXPECT_EQ(parsed(R"({"cloud": "sample:skin"})", overrides({}, {{"PALPATE_THICKNESS", ""}})).material.thickness,
+              4e-3);
 }
 
 TEST(Scene, EveryKeyOfEverySpellingIsRead)
@@ -121,8 +120,8 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
     EXPECT_EQ(scene.points, 1000u);
     EXPECT_EQ(scene.seed, 7u);
     EXPECT_EQ(scene.stiffness, "linear:from=1e5,to=1e6,axis=y");
-    EXPECT_EQ(scene.patch.material.thickness, 5e-3);
-    EXPECT_EQ(scene.patch.material.poissonRatio, -0.2);
+    EXPECT_EQ(scene.material.thickness, 5e-3);
+    EXPECT_EQ(scene.material.poissonRatio, -0.2);
     EXPECT_EQ(scene.patch.foundation, 2e6);
     EXPECT_EQ(scene.patch.cells, 32);
     EXPECT_EQ(scene.patch.map, Map::gallPeters);
@@ -151,7 +150,7 @@ TEST(Scene, WhatIsPrintedReadsBackToTheSameValues)
     const Scene again = parsed(sceneJson(first));
 
     EXPECT_EQ(sceneJson(again), sceneJson(first));
-    EXPECT_EQ(again.patch.material.thickness, first.patch.material.thickness);
+    EXPECT_EQ(again.material.thickness, first.material.thickness);
     EXPECT_EQ(again.place, first.place);
     EXPECT_EQ(again.patch.edges, first.patch.edges);
 }
@@ -414,7 +413,7 @@ TEST(Scene, PlainLengthsOfACommandLineAreInItsLengthUnitAndThoseOfFilesInMetres)
     EXPECT_NEAR(scene.place->x, 1e-3, 1e-18);
     EXPECT_EQ(scene.place->y, 0.002);
     EXPECT_NEAR(scene.patch.window, 20e-3, 1e-15);
-    EXPECT_NEAR(scene.patch.material.thickness, 0.5e-3, 1e-15);
+    EXPECT_NEAR(scene.material.thickness, 0.5e-3, 1e-15);
     EXPECT_EQ(scene.from, glm::dvec3(0, 0, 7)) << "a direction has no unit";
     EXPECT_EQ(scene.startHeight, 0.004) << "the environment is in metres";
 
@@ -427,7 +426,7 @@ TEST(Scene, PlainLengthsOfACommandLineAreInItsLengthUnitAndThoseOfFilesInMetres)
 
     SceneOverrides sample    = overrides({{"length_unit", "mm"}, {"thickness", "3"}});
     sample.flagsInLengthUnit = true;
-    EXPECT_NEAR(parsed(R"({"cloud": "sample:skin"})", sample).patch.material.thickness, 3e-3, 1e-15);
+    EXPECT_NEAR(parsed(R"({"cloud": "sample:skin"})", sample).material.thickness, 3e-3, 1e-15);
     EXPECT_EQ(parsed(R"({"cloud": "sample:skin"})", sample).reading.lengthUnit, "");
     sample.flags["length_unit"] = "parsec";
     EXPECT_TRUE(says(refusalOf([&] { static_cast<void>(parsed(R"({"cloud": "sample:skin"})", sample)); }),
@@ -444,10 +443,8 @@ TEST(Scene, WithoutAPlaceAFilesCloudIsTouchedWhereItComesNearestToTheViewer)
                   std::to_string(9 - 0.02 * (x * x + (y - 3) * (y - 3))) + "\n";
     }
     static_cast<void>(folder.write("dome.xyz", points));
-    const Scene scene = parsed("{}", overrides({{"cloud", (folder / "dome.xyz").string()}, {"length_unit", "mm"}}));
-    const LoadedCloud    loaded = loadCloud(scene);
-    const NeighbourIndex index(loaded.cloud.positions());
-    const HandPlace      place = handPlace(scene, loaded.cloud, index);
+    const Scene     scene = parsed("{}", overrides({{"cloud", (folder / "dome.xyz").string()}, {"length_unit", "mm"}}));
+    const HandPlace place = handPlace(scene, loadObject(scene).object);
 
     EXPECT_NEAR(place.point.x, 0, 1e-12);
     EXPECT_NEAR(place.point.y, 3e-3, 1e-12);

@@ -63,16 +63,16 @@ std::vector<std::string> huntNote(const Scene& scene, const PointCloud& cloud)
             " in this stiffness; palpate hunt and palpate view score who looks for them"};
 }
 
-std::vector<std::string> cloudWarnings(const Scene& scene, const LoadedCloud& loaded)
+std::vector<std::string> cloudWarnings(const Scene& scene, const PointCloud& cloud, const CloudFileReport& report)
 {
-    std::vector<std::string> said = assumptions(scene, loaded.report);
-    for (std::string& line : huntNote(scene, loaded.cloud)) said.push_back(std::move(line));
+    std::vector<std::string> said = assumptions(scene, report);
+    for (std::string& line : huntNote(scene, cloud)) said.push_back(std::move(line));
     if (scene.stiffness.empty()) return said;
 
     constexpr double kSame  = 1e-6; // relative: no hand feels a smaller difference [1]
-    const Bounds&    bounds = loaded.cloud.bounds();
+    const Bounds&    bounds = cloud.bounds();
     const SpatialLaw law    = parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume);
-    const Extremes   found  = extremesOf(loaded.cloud.stiffness());
+    const Extremes   found  = extremesOf(cloud.stiffness());
     if (law.from != law.to && found.most - found.least <= kSame * found.most)
         said.push_back("the law \"" + scene.stiffness +
                        "\" gives every point the same stiffness: its coordinates are metres, and the cloud's middle is "

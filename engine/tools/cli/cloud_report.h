@@ -20,7 +20,8 @@ namespace palp {
 [[nodiscard]] std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& report);
 
 /// The assumptions, a law that changes nothing, and what a hunt has hidden in the stiffness.
-[[nodiscard]] std::vector<std::string> cloudWarnings(const Scene& scene, const LoadedCloud& loaded);
+[[nodiscard]] std::vector<std::string> cloudWarnings(const Scene& scene, const PointCloud& cloud,
+                                                     const CloudFileReport& report);
 
 /// What a hunt has hidden in the scene, for commands that do not score it; empty if there is none.
 [[nodiscard]] std::vector<std::string> huntNote(const Scene& scene, const PointCloud& cloud);

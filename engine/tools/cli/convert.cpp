@@ -33,7 +33,7 @@ void convert(const ConvertOptions& options)
     const LoadedCloud loaded = options.source.loadCloud(scene);
     const bool        faces  = holdsFaces(options.target);
     writeCloud(options.target, loaded.cloud, {}, {encoding, loaded.faces});
-    std::vector<std::string> warnings = cloudWarnings(scene, loaded);
+    std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
     if (!faces && !loaded.faces.empty())
         warnings.push_back("the " + std::to_string(loaded.faces.size()) +
                            " triangles are not in it: only PLY holds faces; name a .ply file to keep them");

@@ -48,7 +48,7 @@ void printInfo(const InfoOptions& options)
     nlohmann::json       report = cloudJson(options.source.name, loaded);
     report["point_spacing"]     = index.spacing();
 
-    const std::vector<std::string> warnings = cloudWarnings(scene, loaded);
+    const std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
     report["warnings"]                      = warnings;
     if (options.json) {
         std::cout << jsonText(report);

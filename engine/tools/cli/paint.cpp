@@ -29,7 +29,7 @@ struct PaintOptions {
 struct Canvas {
     explicit Canvas(const SceneSource& source)
         : scene(source.load()), loaded(source.loadCloud(scene)), file(isSample(scene) ? "" : scene.cloud),
-          warnings(cloudWarnings(scene, loaded))
+          warnings(cloudWarnings(scene, loaded.cloud, loaded.report))
     {
         if (!scene.stiffness.empty() && source.name.ends_with(".json"))
             warnings.emplace_back("the scene's law is painted over here, but in a session it would replace what is "
@@ -73,7 +73,8 @@ void paint(const PaintOptions& o)
     static_cast<void>(holdsFaces(o.out)); // a name of no format is the first thing to say
     Canvas canvas(o.source);
     refuseSourceAsTarget("--out", canvas.file.empty() ? o.source.name : canvas.file, o.out);
-    const PointCloud&        cloud  = canvas.loaded.cloud;
+    const SoftObject         object(canvas.loaded.cloud);
+    const PointCloud&        cloud  = object.cloud();
     const std::string        unit   = cloud.kind() == StiffnessKind::modulus ? "Pa" : "N m";
     const double             metres = metresPerPlainNumber(o.source, canvas.scene);
     std::vector<StrokeOrder> orders;
@@ -81,12 +82,11 @@ void paint(const PaintOptions& o)
     for (std::size_t k = 0; k < o.strokes.size(); ++k)
         orders.push_back(parseStroke(o.strokes[k], what(k), metres, cloud.kind()));
 
-    const NeighbourIndex index(cloud.positions());
-    StiffnessPainting    painting(cloud, index);
-    nlohmann::json       strokes = nlohmann::json::array();
-    std::string          lines;
+    StiffnessPainting painting(object);
+    nlohmann::json    strokes = nlohmann::json::array();
+    std::string       lines;
     for (std::size_t k = 0; k < orders.size(); ++k) {
-        const StrokeReport report = paintStroke(orders[k], what(k), cloud, index, painting);
+        const StrokeReport report = paintStroke(orders[k], what(k), object, painting);
         strokes.push_back(jsonOf(orders[k], report));
         lines += "  stroke " + std::to_string(k + 1) + "    " + std::to_string(report.dabs) + " dabs over " +
                  std::to_string(report.points) + " points, " +

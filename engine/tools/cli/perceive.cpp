@@ -36,16 +36,16 @@ struct PerceiveOptions {
 /// The scene's object, made once.
 struct Felt {
     explicit Felt(const PerceiveOptions& o)
-        : scene(o.scene.load()), loaded(o.scene.loadCloud(scene)), index(loaded.cloud.positions()),
+        : scene(o.scene.load()), loaded(o.scene.loadObject(scene)), object(loaded.object),
           solver(openSolver(scene.solver))
     {
-        for (const std::string& sentence : cloudWarnings(scene, loaded))
+        for (const std::string& sentence : cloudWarnings(scene, object.cloud(), loaded.report))
             std::cerr << "palpate: warning: " << sentence << "\n";
     }
-    Scene          scene;
-    LoadedCloud    loaded;
-    NeighbourIndex index;
-    PlateSolver    solver;
+    Scene             scene;
+    LoadedObject      loaded;
+    const SoftObject& object;
+    PlateSolver       solver;
 };
 
 /// To either side of the middle [m].
@@ -53,7 +53,7 @@ double reachOf(const PerceiveOptions& o, const Scene& scene)
 {
     constexpr double kShare = 1.0 / 3, kMost = 1; // of the window: what is felt in the middle is not felt there; [m]
     if (o.reach.empty()) return kShare * scene.patch.window;
-    const double reach = parseQuantity(o.reach, Dimension::length, "--reach");
+    const double reach = parseQuantity(o.reach, Dimension::length, "--reach", metresPerPlainNumber(o.scene, scene));
     if (!(reach > 0 && reach <= kMost))
         throw Error("--reach: expected more than 0 and at most 1 m, found \"" + o.reach + "\"");
     return reach;
@@ -142,22 +142,20 @@ void perceive(const PerceiveOptions& o)
 {
     demandSvg("--out", o.out);
     demandSvg("--picture", o.picture);
-    Felt                  felt(o);
-    const FeltLine        line = feltLine(felt.scene, felt.loaded.cloud, felt.index,
+    Felt                   felt(o);
+    const FeltLine         line = feltLine(felt.scene, felt.object,
                                    o.along.empty() ? std::optional<glm::dvec3>() : parsePoint(o.along, "--along"),
-                                          reachOf(o, felt.scene));
-    Progress              progress("feeling");
-    const auto            onStep = [&](std::size_t done, std::size_t total) { progress.at(done, total); };
-    const ScenePerception found =
-        perceive(felt.scene, felt.loaded.cloud, felt.index, line, o.places, felt.solver, onStep);
+                                           reachOf(o, felt.scene));
+    Progress               progress("feeling");
+    const auto             onStep = [&](std::size_t done, std::size_t total) { progress.at(done, total); };
+    const ScenePerception  found  = perceive(felt.scene, felt.object, line, o.places, felt.solver, onStep);
     std::optional<FeltMap> map;
-    if (!o.picture.empty())
-        map = feltMap(felt.loaded.cloud, felt.index, felt.scene.patch, std::size_t(o.mapPlaces), felt.solver, onStep);
+    if (!o.picture.empty()) map = feltMap(felt.object, felt.scene.patch, std::size_t(o.mapPlaces), felt.solver, onStep);
     if (!o.out.empty())
         write(o.out, pathSvg(found, felt.scene.patch.forceLaw, "Felt stiffness along the path: " + o.scene.title()));
     constexpr double kTypicalWeber = kWeberFractions[1];
     if (map)
-        write(o.picture, mapSvg(felt.loaded.cloud, *map, kTypicalWeber, line.middle.outward,
+        write(o.picture, mapSvg(felt.object.cloud(), *map, kTypicalWeber, line.middle.outward,
                                 "What is noticed if 15 % is the smallest change: " + o.scene.title()));
     if (o.json)
         std::cout << jsonText(jsonOf(o, felt, found, map));

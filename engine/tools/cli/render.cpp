@@ -77,8 +77,7 @@ TouchLook lookOf(const RenderOptions& o)
 struct Stage {
     explicit Stage(const RenderOptions& o)
         : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.device = o.drawOn}),
-          loaded(o.scene.loadCloud(scene)), index(loaded.cloud.positions()), solver(openSolver(scene.solver)),
-          view(loaded.cloud, index, scene.patch, loaded.faces)
+          loaded(o.scene.loadObject(scene)), solver(openSolver(scene.solver)), view(loaded.object, scene.patch)
     {
         sayPassedOver(renderer.device().name, renderer.note());
     }
@@ -86,15 +85,14 @@ struct Stage {
     TouchLook       look;
     Scene           scene;
     SurfaceRenderer renderer; // before the cloud: what is missing is said at once
-    LoadedCloud     loaded;
-    NeighbourIndex  index;
+    LoadedObject    loaded;
     PlateSolver     solver;
     TouchView       view;
 };
 
 Patch patchAt(Stage& stage, const Contact& contact)
 {
-    Patch patch = deform(stage.loaded.cloud, stage.index, contact, stage.scene.patch, stage.solver);
+    Patch patch = deform(stage.loaded.object, contact, stage.scene.patch, stage.solver);
     if (!patch.deformed())
         throw Error("render: the " + std::to_string(patch.gathered.size()) +
                     " points around the place do not determine a surface (" + name(patch.sphere.outcome) +
@@ -108,7 +106,7 @@ Camera cameraFor(const RenderOptions& o, const Stage& stage, const Patch& patch)
     const Camera camera = cameraAt(patch, aspect);
     if (o.view == "patch") return camera;
     if (o.view != "whole") throw Error("--view: unknown name \"" + o.view + "\"; known: patch, whole");
-    const Bounds& bounds = stage.loaded.cloud.bounds();
+    const Bounds& bounds = stage.loaded.object.cloud().bounds();
     return framed(camera, bounds.centre(), 0.5 * bounds.diagonal(), aspect);
 }
 
@@ -120,7 +118,7 @@ double deepestOf(const Patch& patch, double force)
 std::string noteOf(const Stage& stage, const Patch& patch, double force)
 {
     std::string note = formatQuantity(force, "N") + ", " + formatQuantity(deepestOf(patch, force), "m") + " deep in " +
-                       formatQuantity(stage.scene.patch.material.thickness, "m");
+                       formatQuantity(stage.scene.material.thickness, "m");
     if (stage.look.exaggeration != 1) {
         char factor[32];
         std::snprintf(factor, sizeof factor, "%g", stage.look.exaggeration);
@@ -149,9 +147,9 @@ Written write(Stage& stage, const Camera& camera, const std::filesystem::path& f
 /// A touch at the scene's place.
 Written still(const RenderOptions& o, Stage& stage)
 {
-    const Patch      patch = patchAt(stage, contactOf(stage.scene, stage.loaded.cloud, stage.index));
+    const Patch      patch = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
     constexpr double kMost = 1e6; // [N]
-    const double     force = o.force.empty() ? forceThatShows(patch, stage.scene.patch.material.thickness)
+    const double     force = o.force.empty() ? forceThatShows(patch, stage.scene.material.thickness)
                                              : parseQuantity(o.force, Dimension::force, "--force");
     if (!(force >= 0 && force <= kMost)) throw Error("--force: expected 0 to 1e6 N, found \"" + o.force + "\"");
     stage.view.show(&patch, force, stage.look);
@@ -171,11 +169,10 @@ std::vector<TickRecord> samplesOf(const RenderOptions& o, Stage& stage, int fram
     HandOptions hand;
     hand.hand         = o.hand;
     hand.seconds      = o.seconds;
-    HandSource source = handFor(hand, stage.scene, stage.loaded.cloud, stage.index);
+    HandSource source = handFor(hand, stage.scene, stage.loaded.object);
     if (source.isHeld()) throw Error("--hand " + o.hand + ": somebody holds it; pictures are made of scripted hands");
-    Deformation             deformation(stage.loaded.cloud, stage.index, stage.scene);
-    const SessionParts      parts{stage.scene,          stage.loaded.cloud, stage.index,
-                             deformation.solver(), *source.device,     source.frame};
+    Deformation             deformation(stage.loaded.object, stage.scene);
+    const SessionParts      parts{stage.scene, stage.loaded.object, deformation.solver(), *source.device, source.frame};
     std::vector<TickRecord> all;
     static_cast<void>(runVirtual(parts, source.seconds, [&](const TickRecord& s) { all.push_back(s); }));
     if (all.empty()) throw Error("--seconds: expected a hand of at least a millisecond");
@@ -196,7 +193,7 @@ std::filesystem::path frameFile(const std::filesystem::path& out, int number)
 /// The session of a scripted hand in virtual time, one camera and one scale of colours for all pictures.
 std::vector<Written> film(const RenderOptions& o, Stage& stage)
 {
-    const Patch        middle  = patchAt(stage, contactOf(stage.scene, stage.loaded.cloud, stage.index));
+    const Patch        middle  = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
     const Camera       camera  = cameraFor(o, stage, middle);
     const auto         samples = samplesOf(o, stage, *o.frames);
     std::vector<Patch> patches;
@@ -230,7 +227,7 @@ void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>
     if (o.json) {
         nlohmann::ordered_json all;
         all["scene"]     = o.scene.name;
-        all["points"]    = stage.loaded.cloud.size();
+        all["points"]    = stage.loaded.object.cloud().size();
         all["size"]      = {stage.size.width, stage.size.height};
         all["drawn_on"]  = stage.renderer.device().name;
         all["solved_on"] = stage.solver.name();
@@ -257,7 +254,7 @@ void render(const RenderOptions& o)
     if (o.frames && !o.force.empty())
         throw Error("--force: with --frames the hand decides how hard it presses; leave one of the two out");
     Stage stage(o);
-    for (const std::string& sentence : cloudWarnings(stage.scene, stage.loaded))
+    for (const std::string& sentence : cloudWarnings(stage.scene, stage.loaded.object.cloud(), stage.loaded.report))
         std::cerr << "palpate: warning: " << sentence << "\n";
     tell(o, stage, o.frames ? film(o, stage) : std::vector{still(o, stage)});
 }

@@ -99,6 +99,12 @@ Scene SceneSource::load() const
     return sceneFrom(name, flags);
 }
 
+LoadedObject SceneSource::loadObject(const Scene& scene) const
+{
+    LoadedCloud loaded = loadCloud(scene);
+    return {SoftObject(std::move(loaded.cloud), scene.material, std::move(loaded.faces)), std::move(loaded.report)};
+}
+
 LoadedCloud SceneSource::loadCloud(const Scene& scene) const
 {
     LoadedCloud        loaded = palp::loadCloud(scene);

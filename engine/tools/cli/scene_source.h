@@ -26,7 +26,8 @@ struct SceneSource {
 
     /// The scene's cloud, as palp::loadCloud() gives it.
     /// \throws Error as loadCloud() does, and for a length that was taken as metres where the file states another unit
-    [[nodiscard]] LoadedCloud loadCloud(const Scene& scene) const;
+    [[nodiscard]] LoadedCloud  loadCloud(const Scene& scene) const;
+    [[nodiscard]] LoadedObject loadObject(const Scene& scene) const; ///< the same with its index and material
 
     /// "sample:skin", or the file's name without its ending.
     [[nodiscard]] std::string title() const;

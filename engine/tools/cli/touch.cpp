@@ -63,7 +63,7 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
     std::printf("  length unit        %s\n", r["cloud"]["length_unit_source"].get<std::string>().c_str());
     std::printf("  stiffness          %s\n", r["cloud"]["stiffness_source"].get<std::string>().c_str());
     std::printf("  scene              thickness %s, poisson %.3g, foundation %s, footprint radius %s\n",
-                formatQuantity(settings.material.thickness, "m").c_str(), settings.material.poissonRatio,
+                formatQuantity(material.thickness, "m").c_str(), material.poissonRatio,
                 formatQuantity(settings.foundation, "Pa/m").c_str(),
                 formatQuantity(settings.footprintRadius, "m").c_str());
     std::printf("  sphere             %s, radius %s, misfit %s\n", r["sphere"]["outcome"].get<std::string>().c_str(),
@@ -166,21 +166,22 @@ void touch(const TouchOptions& options)
     const PatchSettings& settings = scene.patch;
     const double         force    = forceOf(options);
     const LoadedCloud    loaded   = options.source.loadCloud(scene);
-    const NeighbourIndex index(loaded.cloud.positions());
-    const Contact        contact = contactOf(scene, loaded.cloud, index);
+    const SoftObject     object(loaded.cloud, scene.material);
+    const Contact        contact = contactOf(scene, object);
     PlateSolver          solver  = openSolver(scene.solver);
     const auto           told    = solver.note();
-    const Patch          patch   = deform(loaded.cloud, index, contact, settings, solver);
+    const Patch          patch   = deform(object, contact, settings, solver);
     if (solver.note() != told) std::cerr << "palpate: the reference solver took over: " << solver.note() << "\n";
     if (!patch.deformed())
         throw Error("touch: the " + std::to_string(patch.gathered.size()) +
                     " points around the contact do not determine a surface (" + name(patch.sphere.outcome) +
                     "); try a larger --window, or check --length-unit");
 
-    nlohmann::json report = patchJson(patch, settings, force, solver);
+    nlohmann::json report = patchJson(patch, scene.material, settings, force, solver);
     refuseOverflow(report);
     report["cloud"] = cloudJson(options.source.name, loaded);
-    for (std::string& line : cloudWarnings(scene, loaded)) report["warnings"].push_back(std::move(line));
+    for (std::string& line : cloudWarnings(scene, loaded.cloud, loaded.report))
+        report["warnings"].push_back(std::move(line));
     report["preset"] = name(scene.preset);
     if (!options.out.empty()) {
         std::vector<std::string> files = writeFiles(options, loaded.cloud, patch, settings, force);

@@ -59,7 +59,7 @@ std::string wishText(const SceneKey& key, double shown)
 std::string lawPreset(std::string_view law, const Scene& scene, const PointCloud& cloud)
 {
     const Extremes  found    = extremesOf(cloud.stiffness());
-    const Material& material = scene.patch.material;
+    const Material& material = scene.material;
     const bool      isD      = cloud.kind() == StiffnessKind::rigidity;
     const double    low      = isD ? material.modulus(found.least) : found.least, // [Pa]
         high                 = isD ? material.modulus(found.most) : found.most;   // [Pa]

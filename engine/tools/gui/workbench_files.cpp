@@ -98,9 +98,9 @@ void Workbench::savePaint()
         const auto                  target   = freeName(stem + "-painted", ".ply");
         std::string                 property = "stiffness";
         if (isPly) {
-            property = repaintPly(source, stage_->scene().reading, stage_->painted(), target).property;
+            property = repaintPly(source, stage_->scene().reading, stage_->painted().cloud(), target).property;
         } else {
-            writeCloud(target, stage_->painted(), {}, {});
+            writeCloud(target, stage_->painted().cloud(), {}, {});
         }
         paintSaved_ = true;
         say("saved " + target.string() + ", property " + property);

@@ -60,7 +60,7 @@ std::vector<Nodule> HiddenNodules::nodules(const PointCloud& cloud, const Scene&
 
 PointCloud HiddenNodules::over(const PointCloud& cloud, const Scene& scene) const
 {
-    return withNodules(cloud, nodules(cloud, scene), scene.patch.material);
+    return withNodules(cloud, nodules(cloud, scene), scene.material);
 }
 
 const HiddenNodules* hiddenIn(const Scene& scene)
