@@ -18,7 +18,7 @@ namespace {
 
 /// A hand that has pressed a palm for a while, on the virtual clock.
 struct Pressed {
-    Scene        scene  = parseScene(R"({"cloud": "sample:palm", "points": 6000, "device": "host"})", "a test", ".");
+    Scene        scene  = parseScene(R"({"cloud": "sample:palm", "points": 6000, "solver": "host"})", "a test", ".");
     SoftObject   object = loadObject(scene).object;
     Deformation  deformation{object, scene};
     HandPlace    place = handPlace(scene, object);
