@@ -12,7 +12,7 @@
 #include "tests/support/golden_picture.h"
 #include "tests/support/shader_fixture.h"
 
-// Whole windows without a window, panels included, to the byte; see tests/support/golden_picture.h.
+// Whole windows without a window, panels included, compared as tests/support/golden_picture.h says.
 
 namespace palp {
 namespace {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/tools/plot/png.h"
+#include "tests/support/png_reader.h"
 
 namespace palp::test {
 
@@ -27,8 +28,5 @@ std::vector<SvgElement> elementsOf(std::string_view svg, const std::string& name
 
 /// The picture inside the `number`th <image>.
 Image embeddedImage(std::string_view svg, std::size_t number = 0);
-
-/// \throws std::runtime_error if the bytes are no PNG
-Image decodePng(std::string_view bytes);
 
 } // namespace palp::test

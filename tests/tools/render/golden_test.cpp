@@ -8,7 +8,7 @@
 #include "tests/support/golden_picture.h"
 #include "tests/support/shader_fixture.h"
 
-// Whole pictures, texts included, to the byte; see tests/support/golden_picture.h.
+// Whole pictures, texts included, compared as tests/support/golden_picture.h says.
 
 namespace palp {
 namespace {

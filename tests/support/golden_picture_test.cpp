@@ -1,0 +1,88 @@
+#include "tests/support/golden_picture.h"
+
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "engine/tools/render/text.h"
+
+// What the comparison of pictures must find, and what it must let pass.
+
+namespace palp {
+namespace {
+
+/// A picture of 320 x 240, as the smallest of the stored ones, with a ramp, a bar of one colour and a text.
+Image picture(const std::string& text = "1.25 N at 60 Hz", int shift = 0)
+{
+    Image image(320, 240);
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const auto level = std::uint8_t(40 + (x + y) / 4);
+            image.at(x, y)   = {level, std::uint8_t(level / 2), 90};
+        }
+    for (int y = 100; y < 140; ++y)
+        for (int x = 200; x < 240; ++x) image.at(x + shift, y) = {200, 120, 40};
+    drawText(image, {20, 40}, text, {.size = 12, .colour = {235, 235, 235}});
+    return image;
+}
+
+constexpr std::size_t kAllowed = 320 * 240 / 1000;
+
+TEST(GoldenPicture, AFewPixelsOfLastBitsPass)
+{
+    Image rounded = picture();
+    for (std::size_t n = 0; n < kAllowed; ++n) rounded.pixels[n * 997].red += 3;
+    EXPECT_TRUE(looksLike(rounded, picture()));
+    EXPECT_EQ(differenceOf(rounded, picture()).pixels, kAllowed);
+    EXPECT_EQ(differenceOf(rounded, picture()).levels, 3);
+}
+
+TEST(GoldenPicture, OnePixelMoreFails)
+{
+    Image rounded = picture();
+    for (std::size_t n = 0; n <= kAllowed; ++n) rounded.pixels[n * 997].blue += 1;
+    EXPECT_FALSE(looksLike(rounded, picture()));
+}
+
+TEST(GoldenPicture, OneLevelMoreInOnePixelFails)
+{
+    Image rounded = picture();
+    rounded.at(17, 203).green -= 4;
+    EXPECT_FALSE(looksLike(rounded, picture()));
+}
+
+TEST(GoldenPicture, AShapeThatMovedByOnePixelFails)
+{
+    EXPECT_FALSE(looksLike(picture("1.25 N at 60 Hz", 1), picture()));
+}
+
+TEST(GoldenPicture, AColourEightLevelsOffFails)
+{
+    Image other = picture();
+    for (int x = 200; x < 203; ++x) other.at(x, 110).green += 8; // three pixels are enough
+    EXPECT_FALSE(looksLike(other, picture()));
+}
+
+TEST(GoldenPicture, EverythingOneLevelBrighterFails)
+{
+    Image other = picture();
+    for (Rgb8& pixel : other.pixels) ++pixel.red;
+    EXPECT_FALSE(looksLike(other, picture()));
+}
+
+TEST(GoldenPicture, AMissingCharacterFails)
+{
+    EXPECT_FALSE(looksLike(picture("1.25 N at 60 H"), picture()));
+    EXPECT_FALSE(looksLike(picture("125 N at 60 Hz"), picture())); // a full stop
+    EXPECT_FALSE(looksLike(picture("1.26 N at 60 Hz"), picture()));
+}
+
+TEST(GoldenPicture, AnotherSizeFails)
+{
+    EXPECT_FALSE(looksLike(Image(319, 240), Image(320, 240)));
+    EXPECT_FALSE(looksLike(Image(240, 320), Image(320, 240)));
+}
+
+} // namespace
+} // namespace palp
