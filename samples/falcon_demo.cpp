@@ -128,15 +128,14 @@ void onInterrupt(int signal)
 
 /// What is felt, by which hand, where.
 struct Touching {
-    Scene          scene;
-    LoadedCloud    cloud;
-    NeighbourIndex index;
-    Deformation    deformation;
-    HandPlace      place;
+    Scene       scene;
+    SoftObject  object;
+    Deformation deformation;
+    HandPlace   place;
 
     explicit Touching(const fs::path& file)
-        : scene(readScene(file, {{}, processEnvironment()})), cloud(loadCloud(scene)), index(cloud.cloud.positions()),
-          deformation(cloud.cloud, index, scene), place(handPlace(scene, cloud.cloud, index))
+        : scene(readScene(file, {{}, processEnvironment()})), object(loadObject(scene).object),
+          deformation(object, scene), place(handPlace(scene, object))
     {
     }
 
@@ -145,10 +144,10 @@ struct Touching {
     {
         HandScript script;
         script.motion   = HandMotion::scan;
-        script.depth    = 0.4 * scene.patch.material.thickness;
+        script.depth    = 0.4 * scene.material.thickness;
         script.height   = scene.startHeight;
         script.duration = seconds;
-        return draped(makeHand(script, place), place, cloud.cloud, index);
+        return draped(makeHand(script, place), place, object);
     }
 };
 
@@ -336,9 +335,9 @@ void feel(const Options& o, Touching& touching, Falcon& falcon)
     std::string warning;
     std::puts("feel    now; Ctrl-C ends it, at zero force");
     std::fflush(stdout);
-    const SessionSummary summary = runReal({touching.scene, touching.cloud.cloud, touching.index,
-                                            touching.deformation.solver(), *falcon.device, falcon.frame},
-                                           settings, warning);
+    const SessionSummary summary =
+        runReal({touching.scene, touching.object, touching.deformation.solver(), *falcon.device, falcon.frame},
+                settings, warning);
     if (settings.onView) std::fprintf(stderr, "\r\033[K");
     falcon.device->close();
     if (!warning.empty()) std::fprintf(stderr, "falcon_demo: warning: %s\n", warning.c_str());

@@ -1,5 +1,4 @@
 #pragma once
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "engine/cloud/point_cloud.h"
+#include "engine/cloud/triangle.h"
 
 namespace palp {
 
@@ -71,9 +71,6 @@ struct CloudFileReport {
     bool                         stiffnessAssumed  = false; ///< neither the file nor a setting: kDefaultModulus
     std::optional<StiffnessKind> statedKind;                ///< of the property, by the file's comment
 };
-
-/// Three points by their index, in the order of the file; which side is the outer one is the file's affair.
-using Triangle = std::array<std::uint32_t, 3>;
 
 struct LoadedCloud {
     PointCloud            cloud;

@@ -52,9 +52,9 @@ std::size_t StiffnessPainting::Stroke::bytes() const noexcept
     return sizeof(Stroke) + points.capacity() * sizeof points[0] + values.capacity() * sizeof values[0];
 }
 
-StiffnessPainting::StiffnessPainting(const PointCloud& cloud, const NeighbourIndex& index, std::size_t historyBytes)
-    : original_(cloud), flood_(cloud.positions(), index), mostHistory_(historyBytes),
-      stiffness_(cloud.stiffness().begin(), cloud.stiffness().end()), slot_(cloud.size(), kNoSlot)
+StiffnessPainting::StiffnessPainting(const SoftObject& object, std::size_t historyBytes)
+    : original_(object.cloud()), flood_(object.positions(), object.index()), mostHistory_(historyBytes),
+      stiffness_(original_.stiffness().begin(), original_.stiffness().end()), slot_(object.size(), kNoSlot)
 {
 }
 
@@ -212,8 +212,7 @@ PointCloud StiffnessPainting::cloud() const
     return {original_, stiffness_};
 }
 
-std::vector<glm::dvec3> dabsAlong(std::span<const glm::dvec3> path, double radius, const PointCloud& cloud,
-                                  const NeighbourIndex& index)
+std::vector<glm::dvec3> dabsAlong(std::span<const glm::dvec3> path, double radius, const SoftObject& object)
 {
     PALP_EXPECT(!path.empty(), "a path needs a corner");
     PALP_EXPECT(radius > 0, "a radius of " + shown(radius) + " m");
@@ -228,7 +227,7 @@ std::vector<glm::dvec3> dabsAlong(std::span<const glm::dvec3> path, double radiu
         const int        parts = std::max(1, int(std::ceil(glm::length(step) / (kDabShare * radius))));
         for (int part = 1; part < parts; ++part) {
             const glm::dvec3  between = path[k - 1] + step * (double(part) / parts);
-            const glm::dvec3& place   = cloud.positions()[index.nearest(between, 1).front().point];
+            const glm::dvec3& place   = object.positions()[object.index().nearest(between, 1).front().point];
             if (place != places.back()) places.push_back(place);
         }
         places.push_back(path[k]);

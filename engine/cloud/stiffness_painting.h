@@ -7,9 +7,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "engine/cloud/neighbour_index.h"
-#include "engine/cloud/point_cloud.h"
 #include "engine/cloud/point_grid.h"
+#include "engine/cloud/soft_object.h"
 #include "engine/cloud/surface_flood.h"
 
 namespace palp {
@@ -40,9 +39,9 @@ public:
     /// than that, it is what is held. Beside that a painting holds 20 bytes for each point of the cloud.
     static constexpr std::size_t kHistoryBytes = std::size_t(64) << 20;
 
-    /// \param cloud, index  over the same points; both must outlive this
+    /// \param object  outlives this
     /// \throws Error if the cloud has fewer than seven points or most of them coincide
-    StiffnessPainting(const PointCloud& cloud, const NeighbourIndex& index, std::size_t historyBytes = kHistoryBytes);
+    explicit StiffnessPainting(const SoftObject& object, std::size_t historyBytes = kHistoryBytes);
 
     void beginStroke(); ///< Ends the one before, if there is one.
     void endStroke();   ///< Makes what was changed one step of undo().
@@ -116,6 +115,6 @@ private:
 /// \param path  corners [m], at least one
 /// \throws Error if there were more than 100 000
 [[nodiscard]] std::vector<glm::dvec3> dabsAlong(std::span<const glm::dvec3> path, double radius,
-                                                const PointCloud& cloud, const NeighbourIndex& index);
+                                                const SoftObject& object);
 
 } // namespace palp

@@ -32,18 +32,18 @@ glm::dvec3 awayFromMiddle(const Bounds& bounds, const glm::dvec3& point)
 
 } // namespace
 
-Contact touchAt(const PointCloud& cloud, const NeighbourIndex& index, const glm::dvec3& place,
-                const std::optional<glm::dvec3>& from, double reach)
+Contact touchAt(const SoftObject& object, const glm::dvec3& place, const std::optional<glm::dvec3>& from, double reach)
 {
-    const Neighbour  nearest = index.nearest(place, 1).front();
-    const glm::dvec3 point   = cloud.positions()[nearest.point];
+    const Neighbour  nearest = object.index().nearest(place, 1).front();
+    const glm::dvec3 point   = object.positions()[nearest.point];
+    const Bounds&    bounds  = object.cloud().bounds();
     if (!(nearest.distance <= reach))
         throw Error("contact: the place " + inMetres(place) + " is " + formatQuantity(nearest.distance, "m") +
                     " from the cloud, expected at most " + formatQuantity(reach, "m") +
                     "; is --unit right? The nearest point is " + inMetres(point) + "; the cloud spans " +
-                    inMetres(cloud.bounds().low) + " to " + inMetres(cloud.bounds().high));
+                    inMetres(bounds.low) + " to " + inMetres(bounds.high));
     if (from && !(glm::length(*from) > 0)) throw Error("contact: expected a direction, found the zero vector");
-    return {point, from ? glm::normalize(*from) : awayFromMiddle(cloud.bounds(), point), from.has_value()};
+    return {point, from ? glm::normalize(*from) : awayFromMiddle(bounds, point), from.has_value()};
 }
 
 } // namespace palp

@@ -3,8 +3,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "engine/cloud/neighbour_index.h"
-#include "engine/cloud/point_cloud.h"
+#include "engine/cloud/soft_object.h"
 
 namespace palp {
 
@@ -24,7 +23,7 @@ struct Contact {
 ///               right for closed objects and for flat ones
 /// \param reach  [m]
 /// \throws Error naming the place, the distance and the nearest point, if it is farther than `reach`
-[[nodiscard]] Contact touchAt(const PointCloud& cloud, const NeighbourIndex& index, const glm::dvec3& place,
-                              const std::optional<glm::dvec3>& from, double reach);
+[[nodiscard]] Contact touchAt(const SoftObject& object, const glm::dvec3& place, const std::optional<glm::dvec3>& from,
+                              double reach);
 
 } // namespace palp

@@ -47,8 +47,8 @@ glm::dvec3 capped(const glm::dvec3& step, double longest) noexcept
 
 class HybridProxy final : public Proxy::Impl {
 public:
-    HybridProxy(std::span<const glm::dvec3> positions, const NeighbourIndex& index, const ProxySettings& settings)
-        : points_(positions, index), tracker_(points_),
+    HybridProxy(const SoftObject& object, const ProxySettings& settings)
+        : points_(object), tracker_(points_),
           travel_(points_, tracker_), friction_{settings.staticFriction, settings.dynamicFriction, false}
     {
     }
@@ -237,10 +237,9 @@ void HybridProxy::pull(const glm::dvec3& hip) noexcept
 
 } // namespace
 
-std::unique_ptr<Proxy::Impl> hybridProxy(std::span<const glm::dvec3> positions, const NeighbourIndex& index,
-                                         const ProxySettings& settings)
+std::unique_ptr<Proxy::Impl> hybridProxy(const SoftObject& object, const ProxySettings& settings)
 {
-    return std::make_unique<HybridProxy>(positions, index, settings);
+    return std::make_unique<HybridProxy>(object, settings);
 }
 
 } // namespace palp

@@ -18,8 +18,8 @@ constexpr double kTooLarge = 3;
 
 } // namespace
 
-NearPoints::NearPoints(std::span<const glm::dvec3> positions, const NeighbourIndex& index)
-    : index_(index), tree_(positions, localSpacings(positions, index))
+NearPoints::NearPoints(const SoftObject& object)
+    : spacing_(object.spacing()), tree_(object.positions(), localSpacings(object.positions(), object.index()))
 {
     for (Ball& ball : balls_) ball.points.reserve(kMost);
 }

@@ -6,7 +6,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "engine/cloud/neighbour_index.h"
+#include "engine/cloud/soft_object.h"
 #include "engine/contact/point_tree.h"
 
 namespace palp {
@@ -18,8 +18,8 @@ namespace palp {
 /// \thread one; allocates nothing after construction
 class NearPoints {
 public:
-    /// \param positions  [m] those of the index, which must outlive this
-    NearPoints(std::span<const glm::dvec3> positions, const NeighbourIndex& index);
+    /// \param object  outlives this
+    explicit NearPoints(const SoftObject& object);
 
     /// Calls visit(const NearPoint&, squared distance [m^2]) for the points within `radius` [m] of `centre` [m], as
     /// they are seen with a spacing of `scale` [m]: where they are many times closer, some stand for the others and
@@ -49,7 +49,7 @@ public:
 
     [[nodiscard]] bool   mixed() const noexcept { return tree_.mixed(); } ///< the density varies by more than chance
     [[nodiscard]] double largestSpacing() const noexcept { return tree_.largestSpacing(); } ///< [m]
-    [[nodiscard]] double usualSpacing() const noexcept { return index_.spacing(); }         ///< [m]
+    [[nodiscard]] double usualSpacing() const noexcept { return spacing_; }                 ///< [m]
 
     /// As many points are held at most, of a coarser level if need be. A ball usually holds 100, and 500 about a hole.
     static constexpr std::size_t kMost = 4096;
@@ -65,9 +65,9 @@ private:
 
     [[nodiscard]] std::span<const NearPoint> cover(const glm::dvec3& centre, double radius, int level);
 
-    const NeighbourIndex& index_;
-    PointTree             tree_;
-    std::array<Ball, 4>   balls_; ///< by the level, modulo their number: beside a step in density several are asked for
+    double              spacing_; ///< [m]
+    PointTree           tree_;
+    std::array<Ball, 4> balls_; ///< by the level, modulo their number: beside a step in density several are asked for
 };
 
 } // namespace palp

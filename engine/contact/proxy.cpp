@@ -8,15 +8,14 @@
 
 namespace palp {
 
-Proxy::Proxy(std::span<const glm::dvec3> positions, const NeighbourIndex& index, const ProxySettings& settings)
+Proxy::Proxy(const SoftObject& object, const ProxySettings& settings)
 {
     for (const double friction : {settings.staticFriction, settings.dynamicFriction})
         PALP_EXPECT(std::isfinite(friction) && friction >= 0, "friction is " + std::to_string(friction));
     PALP_EXPECT(settings.dynamicFriction <= settings.staticFriction,
                 "dynamic friction " + std::to_string(settings.dynamicFriction) + " exceeds static friction " +
                     std::to_string(settings.staticFriction));
-    impl_ = settings.form == ProxyForm::hybrid ? hybridProxy(positions, index, settings)
-                                               : sphereProxy(positions, index, settings);
+    impl_ = settings.form == ProxyForm::hybrid ? hybridProxy(object, settings) : sphereProxy(object, settings);
 }
 
 Proxy::~Proxy()                           = default;

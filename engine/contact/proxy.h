@@ -1,10 +1,9 @@
 #pragma once
 #include <memory>
-#include <span>
 
 #include <glm/vec3.hpp>
 
-#include "engine/cloud/neighbour_index.h"
+#include "engine/cloud/soft_object.h"
 #include "engine/core/enum_names.h"
 
 namespace palp {
@@ -58,9 +57,9 @@ struct ProxyState {
 ///          out to a tenth of its radius, as here, is a guess
 class Proxy {
 public:
-    /// \param positions  [m] those that the index was built from; both outlive the proxy
+    /// \param object  outlives the proxy
     /// \throws Error if most of the points coincide; ContractViolation if friction is negative or not finite
-    Proxy(std::span<const glm::dvec3> positions, const NeighbourIndex& index, const ProxySettings& settings);
+    Proxy(const SoftObject& object, const ProxySettings& settings);
     ~Proxy();
     Proxy(Proxy&&) noexcept;
     Proxy& operator=(Proxy&&) noexcept;

@@ -1,10 +1,8 @@
 #pragma once
 #include <memory>
-#include <span>
 
 #include <glm/vec3.hpp>
 
-#include "engine/cloud/neighbour_index.h"
 #include "engine/contact/proxy.h"
 
 namespace palp {
@@ -20,9 +18,7 @@ struct Proxy::Impl {
     bool       placed = false; ///< the first HIP is known
 };
 
-[[nodiscard]] std::unique_ptr<Proxy::Impl> hybridProxy(std::span<const glm::dvec3> positions,
-                                                       const NeighbourIndex& index, const ProxySettings& settings);
-[[nodiscard]] std::unique_ptr<Proxy::Impl> sphereProxy(std::span<const glm::dvec3> positions,
-                                                       const NeighbourIndex& index, const ProxySettings& settings);
+[[nodiscard]] std::unique_ptr<Proxy::Impl> hybridProxy(const SoftObject& object, const ProxySettings& settings);
+[[nodiscard]] std::unique_ptr<Proxy::Impl> sphereProxy(const SoftObject& object, const ProxySettings& settings);
 
 } // namespace palp

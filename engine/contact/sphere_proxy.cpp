@@ -29,8 +29,8 @@ glm::dvec3 capped(const glm::dvec3& step, double longest) noexcept
 
 class SphereProxy final : public Proxy::Impl {
 public:
-    SphereProxy(std::span<const glm::dvec3> positions, const NeighbourIndex& index, const ProxySettings& settings)
-        : points_(positions, index), friction_{settings.staticFriction, settings.dynamicFriction, false},
+    SphereProxy(const SoftObject& object, const ProxySettings& settings)
+        : points_(object), friction_{settings.staticFriction, settings.dynamicFriction, false},
           regulated_(settings.form == ProxyForm::sphere)
     {
     }
@@ -130,10 +130,9 @@ void SphereProxy::step(const glm::dvec3& hip) noexcept
 
 } // namespace
 
-std::unique_ptr<Proxy::Impl> sphereProxy(std::span<const glm::dvec3> positions, const NeighbourIndex& index,
-                                         const ProxySettings& settings)
+std::unique_ptr<Proxy::Impl> sphereProxy(const SoftObject& object, const ProxySettings& settings)
 {
-    return std::make_unique<SphereProxy>(positions, index, settings);
+    return std::make_unique<SphereProxy>(object, settings);
 }
 
 } // namespace palp

@@ -77,12 +77,13 @@ bool isClosedBehind(const PointCloud& cloud, const glm::dvec3& contact, const gl
 /// A known direction decides unless it runs along the surface. A guessed one decides only where it is within 60 degrees
 /// of the normal; elsewhere the surface is an open sheet, which has no outside: there it is touched from the positive
 /// side of the world axis nearest to its normal, so that all of a sheet is touched from one side.
-Chart chartAt(const PointCloud& cloud, Patch& patch, const PatchSettings& settings, double spacing)
+Chart chartAt(const SoftObject& object, Patch& patch, const PatchSettings& settings,
+              const std::optional<Frame>& carried)
 {
     constexpr double kSteep = 0.17, kClear = 0.5; // cosines of 80 and 60 degrees [1]
     const Contact    contact = patch.contact;
     const auto       around  = [&](const glm::dvec3& side) {
-        return Chart::around(patch.sphere.fit, contact.point, side, settings.map, settings.frame);
+        return Chart::around(patch.sphere.fit, contact.point, side, settings.map, carried);
     };
     const Chart  chart  = around(contact.outward);
     const auto&  normal = chart.frame.normal;
@@ -92,7 +93,7 @@ Chart chartAt(const PointCloud& cloud, Patch& patch, const PatchSettings& settin
                     " from the surface's normal (" + formatDirection(normal) +
                     "), expected at most 80, or the side is not clear; try that normal or its opposite");
     if (contact.outwardKnown) return chart;
-    patch.sideUnsure = !isClosedBehind(cloud, contact.point, normal, spacing);
+    patch.sideUnsure = !isClosedBehind(object.cloud(), contact.point, normal, object.spacing());
     if (!patch.sideUnsure || cosine >= kClear) return chart;
     int axis = 0;
     for (int k = 1; k < 3; ++k)
@@ -111,12 +112,12 @@ void project(const PointCloud& cloud, Patch& patch)
         }
 }
 
-Resampled resample(const PointCloud& cloud, const Patch& patch, const PatchSettings& settings, double spacing)
+Resampled resample(const SoftObject& object, const Patch& patch, const PatchSettings& settings)
 {
     std::vector<double> rigidities;
     rigidities.reserve(patch.points.size());
-    for (std::uint32_t point : patch.points) rigidities.push_back(cloud.rigidity(point, settings.material));
-    return resampleRigidity(patch.window, patch.positions, rigidities, settings.sampling, spacing);
+    for (std::uint32_t point : patch.points) rigidities.push_back(object.rigidity(point));
+    return resampleRigidity(patch.window, patch.positions, rigidities, settings.sampling, object.spacing());
 }
 
 /// A window that holds next to nothing of the cloud would still give an answer, and a wrong unit is the usual reason.
@@ -185,34 +186,34 @@ std::vector<double> lift(const Patch& patch)
 }
 
 /// All that precedes the plate's bending.
-Patch restPatch(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
-                const PatchSettings& settings, Stopwatch& watch)
+Patch restPatch(const SoftObject& object, const Contact& contact, const PatchSettings& settings,
+                const std::optional<Frame>& carried, Stopwatch& watch)
 {
-    Patch        patch;
-    const double spacing = index.spacing();
+    Patch patch;
 
     // The neighbourhood (the paper's section 2.1) ...
     patch.contact = contact;
-    index.gather(contact.point, gatherRadius(settings, spacing), patch.gathered);
+    object.index().gather(contact.point, gatherRadius(settings, object.spacing()), patch.gathered);
     patch.times.gather = watch.lap();
 
     // ... is close to a sphere (2.2, equations 1 to 3), ...
-    patch.sphere    = fitTo(cloud, patch.gathered);
+    patch.sphere    = fitTo(object.cloud(), patch.gathered);
     patch.times.fit = watch.lap();
     if (!patch.sphere.usable()) return patch;
 
     // ... which an equal-area map lays flat about the contact (2.3, equation 4), ...
-    patch.chart = chartAt(cloud, patch, settings, spacing);
-    project(cloud, patch);
+    patch.chart = chartAt(object, patch, settings, carried);
+    project(object.cloud(), patch);
     patch.times.project = watch.lap();
 
     // ... where a grid takes over the rigidity of the points (2.4) ...
     patch.window              = PatchWindow::square(settings.window, settings.cells);
-    const Resampled resampled = resample(cloud, patch, settings, spacing);
+    const Resampled resampled = resample(object, patch, settings);
     patch.nodesWithoutPoint   = resampled.nodesWithoutPoint;
-    patch.plate               = {patch.window.grid, settings.edges, settings.material.poissonRatio, settings.foundation,
+    patch.plate               = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
                                  resampled.rigidity};
-    patch.spacing             = spacing;
+    patch.spacing             = object.spacing();
+    patch.thickness           = object.material().thickness;
     refuseIfEmpty(patch, settings);
     patch.times.resample = watch.lap();
     return patch;
@@ -220,7 +221,8 @@ Patch restPatch(const PointCloud& cloud, const NeighbourIndex& index, const Cont
 
 /// What follows from the bent plate: it moves the points (2.6, equation 9), and with the contact is what the hand
 /// feels.
-void bend(Patch& patch, const PatchSettings& settings, PlateSolution solution, double compliance, Stopwatch& watch)
+void bend(Patch& patch, const SoftObject& object, const PatchSettings& settings, PlateSolution solution,
+          double compliance, Stopwatch& watch)
 {
     patch.response      = std::move(solution.deflection);
     patch.report        = std::move(solution.report);
@@ -230,60 +232,60 @@ void bend(Patch& patch, const PatchSettings& settings, PlateSolution solution, d
 
     patch.pointResponse    = lift(patch);
     const int    middle    = settings.cells / 2;
-    const double modulus   = settings.material.modulus(patch.plate.rigidity(middle, middle));
-    patch.contactStiffness = contactStiffness(modulus, settings.footprintRadius, settings.material.thickness);
+    const double modulus   = object.material().modulus(patch.plate.rigidity(middle, middle));
+    patch.contactStiffness = contactStiffness(modulus, settings.footprintRadius, object.material().thickness);
     patch.feltStiffness    = feltStiffness(settings.forceLaw, patch.contactStiffness, patch.compliance);
     patch.times.lift       = watch.lap();
 }
 
 } // namespace
 
-Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
-             const PatchSettings& settings)
+Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings)
 {
     PlateSolver reference("reference");
-    return deform(cloud, index, contact, settings, reference);
+    return deform(object, contact, settings, reference);
 }
 
-Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
-             const PatchSettings& settings, PlateSolver& device)
+Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings, PlateSolver& device,
+             const std::optional<Frame>& carried)
 {
     Stopwatch watch;
-    Patch     patch = restPatch(cloud, index, contact, settings, watch);
+    Patch     patch = restPatch(object, contact, settings, carried, watch);
     if (!patch.deformed()) return patch;
 
     // ... and bends as a plate under a unit force (2.5, equations 6 to 8).
     const NodeField load     = unitLoad(patch.plate.grid, settings);
     PlateSolution   solution = device.solve(patch.plate, load, settings.tolerance);
     const double    softness = work(load, solution.deflection);
-    bend(patch, settings, std::move(solution), softness, watch);
+    bend(patch, object, settings, std::move(solution), softness, watch);
     return patch;
 }
 
-FootprintLattice footprintLattice(const PointCloud& cloud, const PatchSettings& settings, int side, PlateSolver& device)
+FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings& settings, int side,
+                                  PlateSolver& device)
 {
     double logarithm = 0;
-    for (std::size_t point = 0; point < cloud.size(); ++point)
-        logarithm += std::log(cloud.rigidity(point, settings.material));
+    for (std::size_t point = 0; point < object.size(); ++point) logarithm += std::log(object.rigidity(point));
     const PlateGrid grid = PatchWindow::square(settings.window, settings.cells).grid;
-    const Plate     homogeneous{grid, settings.edges, settings.material.poissonRatio, settings.foundation,
-                            NodeField(grid, std::exp(logarithm / double(cloud.size())))};
+    const Plate     homogeneous{grid, settings.edges, object.material().poissonRatio, settings.foundation,
+                            NodeField(grid, std::exp(logarithm / double(object.size())))};
     const double    perRigidity =
-        contactStiffness(settings.material.modulus(1), settings.footprintRadius, settings.material.thickness);
+        contactStiffness(object.material().modulus(1), settings.footprintRadius, object.material().thickness);
     return footprintLattice(homogeneous, {settings.footprintRadius, side, perRigidity}, device, settings.tolerance);
 }
 
-PatchWithTable deformWithTable(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
-                               const PatchSettings& settings, const FootprintLattice& lattice, PlateSolver& device)
+PatchWithTable deformWithTable(const SoftObject& object, const Contact& contact, const PatchSettings& settings,
+                               const FootprintLattice& lattice, PlateSolver& device,
+                               const std::optional<Frame>& carried)
 {
     Stopwatch      watch;
-    PatchWithTable result{restPatch(cloud, index, contact, settings, watch), {}};
+    PatchWithTable result{restPatch(object, contact, settings, carried, watch), {}};
     Patch&         patch = result.patch;
     if (!patch.deformed()) return result;
     TableSolution solved = solveTable(patch.plate, lattice, device, settings.tolerance);
     result.table         = solved.table;
     result.table->chart  = patch.chart;
-    bend(patch, settings, std::move(solved.middle), solved.compliance, watch);
+    bend(patch, object, settings, std::move(solved.middle), solved.compliance, watch);
     return result;
 }
 
@@ -326,7 +328,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
                          formatNumber(patch.report.errorEstimate.value_or(1)) +
                          " or more, relative; try fewer cells or less contrast");
     const double deepest = std::abs(force) * largest(patch.response);
-    const double half    = settings.material.thickness / 2;
+    const double half    = patch.thickness / 2;
     if (deepest > half)
         result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
                          formatQuantity(half, "m") +

@@ -8,8 +8,7 @@
 #include "engine/chart/chart.h"
 #include "engine/chart/resample.h"
 #include "engine/chart/sphere_fit.h"
-#include "engine/cloud/neighbour_index.h"
-#include "engine/cloud/point_cloud.h"
+#include "engine/cloud/soft_object.h"
 #include "engine/contact/contact.h"
 #include "engine/core/enum_names.h"
 #include "engine/force/force_law.h"
@@ -19,22 +18,20 @@
 
 namespace palp {
 
-/// Scene constants: everything that decides what a touch feels like, apart from the cloud itself.
+/// Scene constants: everything that decides what a touch feels like, apart from the object itself.
 ///
 /// PatchWindow, footprint and area of contact are lengths, never derived from the points at the contact: on a homogeneous
 /// object compliance is then exactly constant, and whatever the hand feels is in the object.
 struct PatchSettings {
-    Material             material{};
-    double               foundation      = 0;     ///< k [Pa/m] of what lies below; 0: nothing (the paper)
-    double               window          = 40e-3; ///< edge of the square of chart that bends [m]
-    int                  cells           = 64;    ///< of the grid along that edge, even [1]
-    double               footprintRadius = 4e-3;  ///< of the fingertip [m]
-    Map                  map             = Map::lambertAzimuthal;
-    Resampling           sampling        = Resampling::logMean;
-    PlateEdges           edges{}; ///< of the window
-    ForceLaw             forceLaw  = ForceLaw::series;
-    double               tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
-    std::optional<Frame> frame{};          ///< chart axes carried from the neighbouring contact
+    double     foundation      = 0;     ///< k [Pa/m] of what lies below; 0: nothing (the paper)
+    double     window          = 40e-3; ///< edge of the square of chart that bends [m]
+    int        cells           = 64;    ///< of the grid along that edge, even [1]
+    double     footprintRadius = 4e-3;  ///< of the fingertip [m]
+    Map        map             = Map::lambertAzimuthal;
+    Resampling sampling        = Resampling::logMean;
+    PlateEdges edges{}; ///< of the window
+    ForceLaw   forceLaw  = ForceLaw::series;
+    double     tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
 };
 
 /// The two ways to run the pipeline; engine/method.md says how they differ.
@@ -71,6 +68,7 @@ struct Patch {
     PatchWindow     window;
     Plate           plate;                 ///< rigidity at the nodes, edges, foundation
     double          spacing           = 0; ///< typical distance of neighbouring points of the cloud [m]
+    double          thickness         = 0; ///< of the object at the contact [m]
     std::size_t     nodesWithoutPoint = 0; ///< see Resampled [1]
     NodeField       response;              ///< deflection per force at the nodes [m/N]
     double          compliance       = 0;  ///< c: response averaged over the footprint, work-conjugate [m/N]
@@ -95,23 +93,23 @@ struct Patch {
 /// Section 2 of the paper on one clock: contact, neighbourhood, sphere, chart, rigidity, plate, points.
 ///
 /// Solves for a force of 1 N on a smooth footprint about the contact; the plate is linear, so any force follows.
+/// \param carried  chart axes of a neighbouring contact; empty: the chart's own
 /// \throws Error if the plate cannot be solved (for example free on all sides), if the window holds next to nothing of
 ///         the cloud, or if the hand's direction runs along the surface
 /// \thread as the device; announces factorisations of many seconds on a terminal
 /// \source Kumari & Chaudhuri 2016, sections 2.1 to 2.6
 /// \differs as differencesFromPaper() says of the settings; engine/method.md has every difference and why
-[[nodiscard]] Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
-                           const PatchSettings& settings, PlateSolver& device);
+[[nodiscard]] Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings,
+                           PlateSolver& device, const std::optional<Frame>& carried = {});
 
 /// As above, with the plate solved by the reference solver.
-[[nodiscard]] Patch deform(const PointCloud& cloud, const NeighbourIndex& index, const Contact& contact,
-                           const PatchSettings& settings);
+[[nodiscard]] Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings);
 
 /// The footprints of a table in the settings' window, with what the window does to them on a homogeneous object whose
 /// rigidity is the geometric mean of the cloud's: a constant of the scene, to be made once.
 /// \param side  1, 3, 5 or 7, see tableSide()
 /// \throws Error if the window is too small for the table
-[[nodiscard]] FootprintLattice footprintLattice(const PointCloud& cloud, const PatchSettings& settings, int side,
+[[nodiscard]] FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings& settings, int side,
                                                 PlateSolver& device);
 
 struct PatchWithTable {
@@ -124,12 +122,12 @@ struct PatchWithTable {
 ///
 /// The table's sequence number and time are the caller's to set.
 /// \param contact  where the hand will be, see aheadOf()
-/// \param settings with `frame` of the patch before: tables then turn only as the surface does
 /// \param lattice  of these settings
+/// \param carried  chart axes of the patch before: tables then turn only as the surface does
 /// \throws as deform()
-[[nodiscard]] PatchWithTable deformWithTable(const PointCloud& cloud, const NeighbourIndex& index,
-                                             const Contact& contact, const PatchSettings& settings,
-                                             const FootprintLattice& lattice, PlateSolver& device);
+[[nodiscard]] PatchWithTable deformWithTable(const SoftObject& object, const Contact& contact,
+                                             const PatchSettings& settings, const FootprintLattice& lattice,
+                                             PlateSolver& device, const std::optional<Frame>& carried = {});
 
 /// The whole cloud under `force` [N] at the patch's contact: p_i + force * response_i * forceDirection.
 /// \source Kumari & Chaudhuri 2016, eq. 9

@@ -9,9 +9,9 @@ namespace palp {
 namespace {
 
 /// The table that the scene asks for; without a wish, the largest that its rate has a use for and its window room.
-FootprintLattice latticeOf(const Scene& scene, const PointCloud& cloud, PlateSolver& device)
+FootprintLattice latticeOf(const Scene& scene, const SoftObject& object, PlateSolver& device)
 {
-    const auto of = [&](int side) { return footprintLattice(cloud, scene.patch, side, device); };
+    const auto of = [&](int side) { return footprintLattice(object, scene.patch, side, device); };
     if (scene.handOver != ComplianceLaw::table) return of(1);
     if (scene.tableSize > 0) return of(scene.tableSize);
     for (int side = tableSide(scene.handOver, 1 / scene.deformationRate, scene.patch.footprintRadius); side > 3;
@@ -27,16 +27,16 @@ FootprintLattice latticeOf(const Scene& scene, const PointCloud& cloud, PlateSol
 
 } // namespace
 
-Deformation::Deformation(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene)
-    : cloud_(&cloud), index_(index), law_(scene.handOver), settings_(scene.patch),
-      device_(scene.device, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, cloud, device_))
+Deformation::Deformation(const SoftObject& object, const Scene& scene)
+    : object_(&object), law_(scene.handOver), settings_(scene.patch), device_(scene.device, 0, SoftwareBits::ofTheHost),
+      lattice_(latticeOf(scene, object, device_))
 {
 }
 
-void Deformation::repaint(const PointCloud& cloud)
+void Deformation::repaint(const SoftObject& object)
 {
-    PALP_EXPECT(cloud.size() == cloud_->size(), "a painted cloud has the points that it had before");
-    cloud_ = &cloud;
+    PALP_EXPECT(object.size() == object_->size(), "a painted cloud has the points that it had before");
+    object_ = &object;
 }
 
 DeformationAnswer Deformation::solve(const Touch& touch, double period)
@@ -52,10 +52,10 @@ DeformationAnswer Deformation::solve(const Touch& touch, double period)
 DeformationAnswer Deformation::solveAt(const glm::dvec3& place, const Touch& touch)
 {
     try {
-        PatchWithTable solved = deformWithTable(*cloud_, index_, {place, touch.outward}, settings_, lattice_, device_);
+        PatchWithTable solved = deformWithTable(*object_, {place, touch.outward}, settings_, lattice_, device_, frame_);
         if (!solved.table) return {{}, {}, "the points around the contact determine no surface"};
-        Patch& patch    = solved.patch;
-        settings_.frame = patch.chart.frame;
+        Patch& patch = solved.patch;
+        frame_       = patch.chart.frame;
         PatchUpdate update{*solved.table};
         update.table.sequence = touch.sequence;
         update.table.time     = touch.time;

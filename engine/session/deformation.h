@@ -22,9 +22,9 @@ using PatchSolver = std::function<DeformationAnswer(const Touch&, double period)
 class Deformation {
 public:
     /// Opens the scene's device and solves the homogeneous window, some tenths of a second.
-    /// \param cloud, index  outlive it
+    /// \param object  outlives it
     /// \throws Error as PlateSolver and footprintLattice() do
-    Deformation(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene);
+    Deformation(const SoftObject& object, const Scene& scene);
 
     /// Solves for the touch, 1.5 periods ahead of its motion. Off the object, or where the points determine no surface,
     /// for the touch itself; if that fails too there is no update, and the answer says why.
@@ -39,20 +39,20 @@ public:
 
     /// The same points with other stiffnesses from now on. The table's lattice stays that of the first cloud: it depends
     /// on the mean of the rigidity alone, and through that on how far a foundation lets a dent spread.
-    /// \param cloud  outlives it
-    void repaint(const PointCloud& cloud);
+    /// \param object  repainted() or as it was; outlives this
+    void repaint(const SoftObject& object);
 
     [[nodiscard]] const PlateSolver& device() const noexcept { return device_; }
 
 private:
     [[nodiscard]] DeformationAnswer solveAt(const glm::dvec3& place, const Touch& touch);
 
-    const PointCloud*     cloud_; ///< never null
-    const NeighbourIndex& index_;
-    ComplianceLaw         law_;
-    PatchSettings         settings_; ///< with the frame of the last patch
-    PlateSolver           device_;
-    FootprintLattice      lattice_;
+    const SoftObject*    object_; ///< never null
+    ComplianceLaw        law_;
+    PatchSettings        settings_;
+    PlateSolver          device_;
+    FootprintLattice     lattice_;
+    std::optional<Frame> frame_; ///< of the last patch, carried to the next
 };
 
 } // namespace palp

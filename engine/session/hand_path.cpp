@@ -286,9 +286,9 @@ HandPath readHand(const std::filesystem::path& path)
     return parseHand(in, path.string());
 }
 
-HandPlace handPlace(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
+HandPlace handPlace(const Scene& scene, const SoftObject& object)
 {
-    const Contact contact = touchAt(cloud, index, scene.place, scene.from, scene.patch.window / 4);
+    const Contact contact = touchAt(object, scene.place, scene.from, scene.patch.window / 4);
     return {contact.point, contact.outward};
 }
 
@@ -314,20 +314,21 @@ HandPath makeHand(const HandScript& script, const HandPlace& place)
     return HandPath(std::move(samples), std::string("hand ") + name(script.motion));
 }
 
-HandPath draped(const HandPath& hand, const HandPlace& place, const PointCloud& cloud, const NeighbourIndex& index)
+HandPath draped(const HandPath& hand, const HandPlace& place, const SoftObject& object)
 {
     constexpr double           kReach  = 3; // [1] spacings: some 28 points, so that the height is smooth
-    const double               radius  = kReach * index.spacing();
+    const double               spacing = object.spacing();
+    const double               radius  = kReach * spacing;
     std::vector<HandPose>      samples = hand.samples();
     std::vector<std::uint32_t> near;
     // Heights are looked for around the last one: where the hand has come from the surface is known. It starts at the
     // place and walks to the first sample in steps of a spacing.
     double     height = 0; // [m] above the plane through the place
     const auto follow = [&](const glm::dvec3& inPlane) {
-        index.gather(place.point + inPlane + height * place.outward, radius, near);
+        object.index().gather(place.point + inPlane + height * place.outward, radius, near);
         double sum = 0, weights = 0;
         for (const std::uint32_t point : near) {
-            const glm::dvec3 d      = cloud.positions()[point] - place.point;
+            const glm::dvec3 d      = object.positions()[point] - place.point;
             const double     h      = glm::dot(d, place.outward);
             const glm::dvec3 beside = d - h * place.outward - inPlane;
             const double     share  = 1 - glm::dot(beside, beside) / (radius * radius);
@@ -342,7 +343,7 @@ HandPath draped(const HandPath& hand, const HandPlace& place, const PointCloud& 
         return d - glm::dot(d, place.outward) * place.outward;
     };
     const glm::dvec3 first = inPlaneOf(samples.front().position);
-    const double     steps = radius > 0 ? std::ceil(glm::length(first) / index.spacing()) : 0;
+    const double     steps = radius > 0 ? std::ceil(glm::length(first) / spacing) : 0;
     for (int i = 0; i < int(steps); ++i) follow(double(i) / steps * first);
     for (HandPose& sample : samples) {
         if (radius > 0) follow(inPlaneOf(sample.position));

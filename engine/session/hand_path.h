@@ -76,7 +76,7 @@ struct HandPlace {
 
 /// Where the scene's hand works: the cloud's point nearest to Scene::place, and the direction Scene::from.
 /// \throws Error if the place is farther than a quarter of the window from the cloud
-[[nodiscard]] HandPlace handPlace(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index);
+[[nodiscard]] HandPlace handPlace(const Scene& scene, const SoftObject& object);
 
 enum class HandMotion {
     press,  ///< down and up again at one place
@@ -115,7 +115,6 @@ struct HandScript {
 /// The height is the weighted mean of the near points' heights, weights (1 - r^2/R^2)^2 by their distance r in the
 /// plane, R three spacings of the cloud: smooth where the hand is, whatever the points. Where the cloud ends the last
 /// height stays. The result may be faster than makeHand's by the slope of the surface.
-[[nodiscard]] HandPath draped(const HandPath& hand, const HandPlace& place, const PointCloud& cloud,
-                              const NeighbourIndex& index);
+[[nodiscard]] HandPath draped(const HandPath& hand, const HandPlace& place, const SoftObject& object);
 
 } // namespace palp

@@ -66,7 +66,7 @@ struct Shared {
 class RealSession {
 public:
     RealSession(const SessionParts& parts, const RealSessionSettings& settings)
-        : parts_(parts), settings_(settings), contact_(parts.cloud, parts.index, parts.scene),
+        : parts_(parts), settings_(settings), contact_(parts.object, parts.scene),
           force_(parts.scene, parts.device.info(), settings.threads)
     {
     }

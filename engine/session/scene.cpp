@@ -138,7 +138,7 @@ void readPoisson(Scene& scene, const Given& given)
     const double nu = parseQuantity(given.text, Dimension::none, given.what);
     if (!(nu > -1 && nu < 0.5))
         given.refuse(nu >= 0.5 ? "; no material is incompressible: take 0.49 for rubber, which is 1.3 % softer" : "");
-    scene.patch.material.poissonRatio = nu;
+    scene.material.poissonRatio = nu;
 }
 
 struct Key {
@@ -181,12 +181,12 @@ constexpr std::array kKeys = {
         [](const S& s) { return s.stiffness.starts_with('{') ? s.stiffness : orNothing(s.stiffness); }},
     Key{{"thickness", "m", "h of the soft sheet; skin 1.5 mm, palm 4 mm", "a thickness from 1e-6 to 1 m, such as 4 mm"},
         {kNumber},
-        [](S& s, const Given& g) { s.patch.material.thickness = g.quantity(D::length, 1e-6, 1); },
-        [](const S& s) { return number(s.patch.material.thickness); }},
+        [](S& s, const Given& g) { s.material.thickness = g.quantity(D::length, 1e-6, 1); },
+        [](const S& s) { return number(s.material.thickness); }},
     Key{{"poisson", "1", "Poisson's ratio; skin 0.45, rubber 0.49", "a ratio above -1 and below 0.5"},
         {kNumber},
         readPoisson,
-        [](const S& s) { return number(s.patch.material.poissonRatio); }},
+        [](const S& s) { return number(s.material.poissonRatio); }},
     Key{{"foundation", "Pa/m", "pressure per deflection of what lies below the sheet; 0: nothing",
          "a number from 0 to 1e15 Pa/m, such as 1.74 MPa/m"},
         {kNumber},
@@ -398,7 +398,7 @@ void takeSample(Scene& scene)
 {
     const Sample& sample        = sampleNamed(sampleName(scene));
     scene.points                = sample.points;
-    scene.patch.material        = sample.material;
+    scene.material              = sample.material;
     scene.patch.foundation      = sample.foundation;
     scene.patch.window          = sample.window;
     scene.patch.footprintRadius = sample.footprintRadius;

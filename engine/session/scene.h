@@ -13,6 +13,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/cloud/point_cloud_io.h"
+#include "engine/cloud/soft_object.h"
 #include "engine/contact/proxy.h"
 #include "engine/core/enum_names.h"
 #include "engine/force/compliance_tracker.h"
@@ -51,7 +52,8 @@ struct Scene {
     std::uint64_t seed   = 1; ///< of a sample [1]
     std::string   lengthUnit; ///< of a file's coordinates; empty: its comment, else m
     std::string   stiffness;  ///< law of the modulus over the cloud, see parseSpatialLaw [Pa]; empty: the cloud's own
-    PatchSettings patch;      ///< material, foundation, window, map, force law, ...
+    Material      material;   ///< of the object
+    PatchSettings patch;      ///< foundation, window, map, force law, ...
 
     ComplianceLaw handOver = ComplianceLaw::table;
     int    tableSize       = 0; ///< footprints a side of the table, odd [1]; reaches (size - 1)/2 radii; 0: tableSide()
@@ -137,6 +139,15 @@ inline constexpr std::string_view kSamplePrefix = "sample:";
 /// The cloud with the scene's law, if it has one, and the nodules of its hunt.
 /// \throws Error as readCloud() and hiddenNodules() do
 [[nodiscard]] LoadedCloud loadCloud(const Scene& scene);
+
+/// What is touched in a scene, and how its file was understood.
+struct LoadedObject {
+    SoftObject      object;
+    CloudFileReport report;
+};
+
+/// loadCloud() with its index, of the scene's material.
+[[nodiscard]] LoadedObject loadObject(const Scene& scene);
 
 /// The nodules that loadCloud() has hidden in this cloud; none without a hunt.
 [[nodiscard]] std::vector<Nodule> nodulesOf(const Scene& scene, const PointCloud& cloud);

@@ -51,8 +51,14 @@ std::vector<Nodule> nodulesOf(const Scene& scene, const PointCloud& cloud)
 LoadedCloud loadCloud(const Scene& scene)
 {
     LoadedCloud loaded = loadBare(scene);
-    if (scene.hunt) loaded.cloud = withNodules(loaded.cloud, nodulesOf(scene, loaded.cloud), scene.patch.material);
+    if (scene.hunt) loaded.cloud = withNodules(loaded.cloud, nodulesOf(scene, loaded.cloud), scene.material);
     return loaded;
+}
+
+LoadedObject loadObject(const Scene& scene)
+{
+    LoadedCloud loaded = loadCloud(scene);
+    return {SoftObject(std::move(loaded.cloud), scene.material, std::move(loaded.faces)), std::move(loaded.report)};
 }
 
 std::string fingerprint(const PointCloud& cloud)

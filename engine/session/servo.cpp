@@ -55,8 +55,8 @@ EnergyTankSettings tankOf(const Scene& scene, const HapticDeviceInfo& limits)
 
 } // namespace
 
-ContactHalf::ContactHalf(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene)
-    : proxy_(cloud.positions(), index, {scene.proxy, scene.staticFriction, scene.dynamicFriction})
+ContactHalf::ContactHalf(const SoftObject& object, const Scene& scene)
+    : proxy_(object, {scene.proxy, scene.staticFriction, scene.dynamicFriction})
 {
 }
 
@@ -74,7 +74,7 @@ const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip) noexce
 }
 
 ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads)
-    : law_(scene.patch.forceLaw), thickness_(scene.patch.material.thickness), patchPeriod_(1 / scene.deformationRate),
+    : law_(scene.patch.forceLaw), thickness_(scene.material.thickness), patchPeriod_(1 / scene.deformationRate),
       compliance_(scene.handOver), tank_(tankOf(scene, limits)), governor_(governorOf(scene, limits, threads))
 {
 }

@@ -95,8 +95,8 @@ struct ProxyContact {
 /// \thread one; tick() allocates, locks, throws and prints nothing, and the same input gives the same bits
 class ContactHalf {
 public:
-    /// \param cloud, index  outlive it
-    ContactHalf(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene);
+    /// \param object  outlives it
+    ContactHalf(const SoftObject& object, const Scene& scene);
 
     /// \param time  [s] of the session's clock  \param hip  [m]
     const ProxyContact& tick(double time, const glm::dvec3& hip) noexcept;
@@ -158,8 +158,8 @@ private:
 /// \thread as its halves
 class Servo {
 public:
-    Servo(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene, const HapticDeviceInfo& limits = {})
-        : contact_(cloud, index, scene), force_(scene, limits)
+    Servo(const SoftObject& object, const Scene& scene, const HapticDeviceInfo& limits = {})
+        : contact_(object, scene), force_(scene, limits)
     {
     }
 

@@ -42,12 +42,11 @@ struct DeviceFrame {
 
 /// What every session is made of, on whichever clock. All of it outlives the session.
 struct SessionParts {
-    const Scene&          scene;
-    const PointCloud&     cloud;
-    const NeighbourIndex& index;  ///< of the cloud
-    PatchSolver           solver; ///< Deformation::solver() of the same scene and cloud
-    HapticDevice&         device; ///< open
-    DeviceFrame           frame{};
+    const Scene&      scene;
+    const SoftObject& object; ///< of the scene
+    PatchSolver       solver; ///< Deformation::solver() of the same scene and object
+    HapticDevice&     device; ///< open
+    DeviceFrame       frame{};
 };
 
 } // namespace palp

@@ -39,7 +39,7 @@ private:
 SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTick& onTick,
                           const std::atomic<bool>* stop)
 {
-    Servo                      servo(parts.cloud, parts.index, parts.scene, parts.device.info());
+    Servo                      servo(parts.object, parts.scene, parts.device.info());
     SessionSummary             summary;
     GovernedForce              force;
     std::optional<PatchUpdate> inUse, underWay;

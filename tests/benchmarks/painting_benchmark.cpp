@@ -33,8 +33,8 @@ const palp::PointCloud& plate()
 }
 
 struct Stage {
-    palp::NeighbourIndex    index{plate().positions()};
-    palp::StiffnessPainting painting{plate(), index};
+    palp::SoftObject        object{plate()};
+    palp::StiffnessPainting painting{object};
 };
 
 Stage& stage()
@@ -98,7 +98,7 @@ void smooth(benchmark::State& state)
 
 void flood(benchmark::State& state)
 {
-    palp::SurfaceFlood flood(plate().positions(), stage().index);
+    palp::SurfaceFlood flood(plate().positions(), stage().object.index());
     const double       radius = radiusFor(double(state.range(0)));
     Places             places(radius, state.range(1) == 1);
     for (auto _ : state) benchmark::DoNotOptimize(flood.reach(places.next(), radius));

@@ -31,9 +31,9 @@ double computeTime()
 }
 
 struct Scene {
-    std::vector<glm::dvec3>               points; ///< [m]
-    std::unique_ptr<palp::NeighbourIndex> index;
-    double                                half; ///< [spacings] of the side
+    std::vector<glm::dvec3>           points; ///< [m]
+    std::unique_ptr<palp::SoftObject> object;
+    double                            half; ///< [spacings] of the side
 
     Scene(std::size_t count, int ratio) : half(0.5 * std::sqrt((ratio > 1 ? 0.9 : 1) * double(count)))
     {
@@ -51,7 +51,8 @@ struct Scene {
         const std::size_t sparse = ratio > 1 ? count / 10 : 0;
         add(count - sparse, 1, 0, half);
         if (sparse > 0) add(sparse, ratio, half, std::sqrt(half * half + 0.25 * double(sparse) * ratio * ratio));
-        index = std::make_unique<palp::NeighbourIndex>(points);
+        object = std::make_unique<palp::SoftObject>(
+            palp::PointCloud(points, std::vector<double>(points.size(), 1e6), palp::StiffnessKind::modulus));
     }
 };
 
@@ -81,7 +82,7 @@ void slide(benchmark::State& state, const Case& what)
 {
     const Scene& scene  = sceneOf(what.count, what.ratio);
     const double loaded = computeTime();
-    palp::Proxy  proxy(scene.points, *scene.index, {what.form});
+    palp::Proxy  proxy(*scene.object, {what.form});
     state.counters["load_s"] = computeTime() - loaded;
 
     // A mixed cloud's circle lies about a place of the border.

@@ -14,32 +14,28 @@ namespace {
 using namespace palp;
 
 struct Touched {
-    PointCloud     cloud;
-    NeighbourIndex index;
-    PatchSettings  settings;
-    Patch          patch;
-    TouchView      view;
+    SoftObject    object;
+    PatchSettings settings;
+    Patch         patch;
+    TouchView     view;
 
     static PatchSettings settingsOf(const Sample& sample)
     {
         PatchSettings settings;
-        settings.material        = sample.material;
         settings.foundation      = sample.foundation;
         settings.window          = sample.window;
         settings.footprintRadius = sample.footprintRadius;
         return settings;
     }
-    static Patch patchOf(const Sample& sample, const PointCloud& cloud, const NeighbourIndex& index,
-                         const PatchSettings& settings)
+    static Patch patchOf(const Sample& sample, const SoftObject& object, const PatchSettings& settings)
     {
         PlateSolver host("host");
-        return deform(cloud, index, touchAt(cloud, index, sample.place, sample.from, settings.window / 4), settings,
-                      host);
+        return deform(object, touchAt(object, sample.place, sample.from, settings.window / 4), settings, host);
     }
 
     explicit Touched(std::size_t points, const Sample& sample = sampleNamed("ellipsoid"))
-        : cloud(makeSample(sample, points, 1)), index(cloud.positions()), settings(settingsOf(sample)),
-          patch(patchOf(sample, cloud, index, settings)), view(cloud, index, settings)
+        : object(makeSample(sample, points, 1), sample.material), settings(settingsOf(sample)),
+          patch(patchOf(sample, object, settings)), view(object, settings)
     {
     }
 };
@@ -63,7 +59,7 @@ const PictureSize kFine{1280, 720, 1, Detail::fine}, kFast{1280, 720, 1, Detail:
 Camera cameraOf(const Touched& t)
 {
     return framed(Camera{{}, glm::normalize(glm::dvec3(1, -2, 2)), {0, 0, 1}}, {0, 0, 0},
-                  0.5 * t.cloud.bounds().diagonal(), 16.0 / 9);
+                  0.5 * t.object.cloud().bounds().diagonal(), 16.0 / 9);
 }
 
 /// The eye moves, and so all of the picture does.

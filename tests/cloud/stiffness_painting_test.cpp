@@ -29,15 +29,14 @@ std::vector<glm::dvec3> sheet(double side, double spacing, double height, unsign
     return places;
 }
 
-/// A cloud, its index and its painting.
+/// An object and its painting.
 struct Painted {
-    PointCloud        cloud;
-    NeighbourIndex    index{cloud.positions()};
+    SoftObject        object;
     StiffnessPainting painting;
 
     Painted(std::vector<glm::dvec3> places, std::vector<double> stiffness, StiffnessKind kind = StiffnessKind::modulus,
             std::size_t history = StiffnessPainting::kHistoryBytes)
-        : cloud(std::move(places), std::move(stiffness), kind), painting(cloud, index, history)
+        : object(PointCloud(std::move(places), std::move(stiffness), kind)), painting(object, history)
     {
     }
     explicit Painted(std::vector<glm::dvec3> places, double stiffness = 1e5,
@@ -67,8 +66,8 @@ TEST(StiffnessPainting, ADabGoesTowardsTheValueInLogarithmsByItsProfile)
 
         p.painting.paint(brush, 1e7);
 
-        for (std::size_t i = 0; i < p.cloud.size(); ++i) {
-            const double t        = glm::length(p.cloud.positions()[i] - brush.centre) / brush.radius;
+        for (std::size_t i = 0; i < p.object.size(); ++i) {
+            const double t        = glm::length(p.object.positions()[i] - brush.centre) / brush.radius;
             const double coverage = t < 1 ? 0.6 * std::pow(1 - t * t, 2) : 0;
             EXPECT_NEAR(std::log10(p.painting.stiffness()[i]), 5 + 2 * coverage, 1e-12) << "some roundings of a double";
         }
@@ -82,7 +81,7 @@ TEST(StiffnessPainting, FullStrengthGivesTheVeryValueInTheMiddle)
 {
     Painted p(sheet(20e-3, 0.5e-3, 0), roughStiffness(1600));
     for (const double value : {0.1, 1.0 / 3, 2e6, 5e-324, 1e308}) {
-        p.painting.paint({p.cloud.positions()[77], 3e-3, 1}, value);
+        p.painting.paint({p.object.positions()[77], 3e-3, 1}, value);
 
         EXPECT_EQ(p.painting.stiffness()[77], value);
     }
@@ -145,7 +144,7 @@ TEST(StiffnessPainting, TheOtherSideOfAThinSheetIsNotPainted)
 
             std::size_t inBall = 0, changedAbove = 0, changedBelow = 0;
             for (std::size_t i = 0; i < places.size(); ++i) {
-                const bool changed = p.painting.stiffness()[i] != p.cloud.stiffness()[i];
+                const bool changed = p.painting.stiffness()[i] != p.object.cloud().stiffness()[i];
                 inBall += glm::length(places[i] - centre) < brush.radius ? i < upper : 0;
                 (i < upper ? changedAbove : changedBelow) += changed;
             }
@@ -222,7 +221,7 @@ TEST(StiffnessPainting, SmoothingIsTheStatedMean)
     const auto   places = sheet(16e-3, 0.5e-3, 0);
     Painted      p(places, roughStiffness(places.size()));
     const Brush  brush{places[10], 40e-3, 1}; // all points; an eighth is more than four spacings, which hold therefore
-    SurfaceFlood flood(p.cloud.positions(), p.index);
+    SurfaceFlood flood(p.object.positions(), p.object.index());
     const double radius = 4 * flood.spacing(10);
 
     p.painting.smooth(brush);
@@ -230,7 +229,7 @@ TEST(StiffnessPainting, SmoothingIsTheStatedMean)
     double sum = 0, weights = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
         const double d = glm::length(places[i] - places[10]), w = std::max(0.0, 1 - d * d / (radius * radius));
-        sum += w * std::log(p.cloud.stiffness()[i]);
+        sum += w * std::log(p.object.cloud().stiffness()[i]);
         weights += w;
     }
     EXPECT_NEAR(std::log(p.painting.stiffness()[10]), sum / weights, 1e-12) << "the order of fifty sums";
@@ -398,7 +397,7 @@ TEST(StiffnessPainting, ABrushOrAValueThatIsNoneIsRefusedByName)
 TEST(StiffnessPainting, ChangedComparesWithTheFirstCloud)
 {
     Painted     p(sheet(10e-3, 0.5e-3, 0));
-    const Brush dot{p.cloud.positions()[3], 0.01e-3, 1}; // one point
+    const Brush dot{p.object.positions()[3], 0.01e-3, 1}; // one point
     p.painting.paint(dot, 2e5);
     EXPECT_TRUE(p.painting.changed());
     p.painting.paint(dot, 1e5);
@@ -407,14 +406,14 @@ TEST(StiffnessPainting, ChangedComparesWithTheFirstCloud)
 
 TEST(DabsAlong, AreCloseEnoughAndLieOnTheObject)
 {
-    const PointCloud     ball = makeSample(sampleNamed("hemisphere"), 40'000, 1);
-    const NeighbourIndex index(ball.positions());
-    const glm::dvec3     a = ball.positions()[0],
-                     b     = ball.positions()[index.nearest(a + glm::dvec3(0.02, 0.01, 0), 1)[0].point];
+    const SoftObject      ball(makeSample(sampleNamed("hemisphere"), 40'000, 1));
+    const NeighbourIndex& index = ball.index();
+    const glm::dvec3      a     = ball.positions()[0],
+                     b          = ball.positions()[index.nearest(a + glm::dvec3(0.02, 0.01, 0), 1)[0].point];
     const std::vector path{a, b};
     constexpr double  kRadius = 4e-3; // [m]
 
-    const auto dabs = dabsAlong(path, kRadius, ball, index);
+    const auto dabs = dabsAlong(path, kRadius, ball);
 
     ASSERT_GT(dabs.size(), 15u);
     EXPECT_EQ(dabs.front(), a);
@@ -425,8 +424,8 @@ TEST(DabsAlong, AreCloseEnoughAndLieOnTheObject)
             EXPECT_LT(glm::length(dabs[k] - dabs[k - 1]), kRadius / 8 + 2 * index.spacing());
         }
     }
-    EXPECT_EQ(dabsAlong(std::vector{a}, kRadius, ball, index), std::vector{a});
-    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(dabsAlong(path, 1e-7, ball, index)); }),
+    EXPECT_EQ(dabsAlong(std::vector{a}, kRadius, ball), std::vector{a});
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(dabsAlong(path, 1e-7, ball)); }),
                       {"at most 1e+05 dabs", "larger radius"}));
 }
 

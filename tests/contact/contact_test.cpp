@@ -13,30 +13,27 @@
 namespace palp {
 namespace {
 
-struct Object {
-    explicit Object(const char* sample) : cloud(makeSample(sampleNamed(sample), 5000, 1)), index(cloud.positions()) {}
+struct Object : SoftObject {
+    explicit Object(const char* sample) : SoftObject(makeSample(sampleNamed(sample), 5000, 1)) {}
 
     [[nodiscard]] Contact touch(const glm::dvec3& place, const std::optional<glm::dvec3>& from = {}) const
     {
-        return touchAt(cloud, index, place, from, 5e-3);
+        return touchAt(*this, place, from, 5e-3);
     }
-
-    PointCloud     cloud;
-    NeighbourIndex index;
 };
 
 TEST(Contact, IsThePointOfTheCloudNearestToThePlace)
 {
     const Object  ellipsoid("ellipsoid");
     const Contact contact = ellipsoid.touch({0, 0, 36e-3});
-    for (const glm::dvec3& p : ellipsoid.cloud.positions())
+    for (const glm::dvec3& p : ellipsoid.positions())
         EXPECT_GE(glm::length(p - glm::dvec3(0, 0, 36e-3)), glm::length(contact.point - glm::dvec3(0, 0, 36e-3)));
 }
 
 TEST(Contact, OutwardIsAwayFromAClosedObjectOnEverySide)
 {
     const Object ellipsoid("ellipsoid");
-    for (const glm::dvec3& p : ellipsoid.cloud.positions()) {
+    for (const glm::dvec3& p : ellipsoid.positions()) {
         const glm::dvec3 normal =
             glm::normalize(p / (glm::dvec3(60e-3, 45e-3, 35e-3) * glm::dvec3(60e-3, 45e-3, 35e-3)));
         EXPECT_GT(glm::dot(ellipsoid.touch(p).outward, normal), 0.99) << "the bounds of 5000 points are 1 % short";

@@ -13,7 +13,7 @@
 #include <glm/vec3.hpp>
 #include <gtest/gtest.h>
 
-#include "engine/cloud/neighbour_index.h"
+#include "engine/cloud/soft_object.h"
 #include "engine/contact/proxy.h"
 
 /// Clouds and motions of the proxy's tests. All lengths here are in mean spacings; the clouds have one of 1 mm.
@@ -96,15 +96,17 @@ inline Points ball(Layout layout, double radius, double cap, std::uint64_t seed)
     return points;
 }
 
-/// A cloud, its index and a proxy, spoken to in spacings.
+/// An object and a proxy, spoken to in spacings.
 class Touch {
 public:
     explicit Touch(const Points& points, const ProxySettings& settings = {}, const glm::dvec3& shift = glm::dvec3(0))
-        : positions_(points), shift_(shift)
+        : shift_(shift)
     {
-        for (glm::dvec3& p : positions_) p = kSpacing * (p + shift);
-        index_ = std::make_unique<NeighbourIndex>(positions_);
-        proxy_ = std::make_unique<Proxy>(positions_, *index_, settings);
+        Points positions = points; // [m]
+        for (glm::dvec3& p : positions) p = kSpacing * (p + shift);
+        const std::vector<double> stiffness(positions.size(), 1e6);
+        object_ = std::make_unique<SoftObject>(PointCloud(std::move(positions), stiffness, StiffnessKind::modulus));
+        proxy_  = std::make_unique<Proxy>(*object_, settings);
     }
 
     void step(const glm::dvec3& hip)
@@ -147,13 +149,12 @@ public:
     [[nodiscard]] double            pullStep() const { return pullStep_; }   ///< [spacings] of depth, in the last tick
 
 private:
-    Points                          positions_; ///< [m]
-    glm::dvec3                      shift_;
-    std::unique_ptr<NeighbourIndex> index_;
-    std::unique_ptr<Proxy>          proxy_;
-    glm::dvec3                      hip_{};
-    double                          forceStep_ = 0;
-    double                          pullStep_  = 0;
+    glm::dvec3                  shift_;
+    std::unique_ptr<SoftObject> object_;
+    std::unique_ptr<Proxy>      proxy_;
+    glm::dvec3                  hip_{};
+    double                      forceStep_ = 0;
+    double                      pullStep_  = 0;
 };
 
 /// What a slide showed.

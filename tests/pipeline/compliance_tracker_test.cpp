@@ -92,11 +92,10 @@ TEST(ComplianceTracker, OnARoundObjectOfRandomPointsTheForceFollowsTheObject)
 {
     constexpr double     kSpeed = 0.2, kTick = 1e-3, kRadius = 50e-3;
     const Sample&        sample = sampleNamed("hemisphere");
-    const PointCloud     cloud  = makeSample(sample, 40'000, 1);
-    const NeighbourIndex index(cloud.positions());
+    const SoftObject     object(makeSample(sample, 40'000, 1), sample.material);
     PlateSolver          device("host");
-    PatchSettings        settings{.material        = sample.material,
-                                  .foundation      = 1.5e7, // the window is 10 l
+    std::optional<Frame> carried;
+    const PatchSettings  settings{.foundation      = 1.5e7, // the window is 10 l
                                   .window          = sample.window,
                                   .cells           = 64,
                                   .footprintRadius = sample.footprintRadius};
@@ -104,13 +103,13 @@ TEST(ComplianceTracker, OnARoundObjectOfRandomPointsTheForceFollowsTheObject)
         return kRadius * glm::dvec3(std::sin(arc / kRadius), 0, std::cos(arc / kRadius));
     };
     const auto patchAt = [&](const glm::dvec3& place, const FootprintLattice& lattice) {
-        return deformWithTable(cloud, index, {place, glm::normalize(place), true}, settings, lattice, device);
+        return deformWithTable(object, {place, glm::normalize(place), true}, settings, lattice, device, carried);
     };
     const auto felt = [](double c, double contact) { return feltStiffness(ForceLaw::series, contact, c); };
 
     // What the object itself gives: a patch about every half millimetre of the path.
     constexpr double    kReach = 24e-3, kEvery = 0.5e-3; // [m]
-    const auto          single = footprintLattice(cloud, settings, 1, device);
+    const auto          single = footprintLattice(object, settings, 1, device);
     std::vector<double> truth; // ln K
     for (double arc = -kReach; arc < kReach + 2 * kEvery; arc += kEvery) {
         const auto middle = patchAt(onSurface(arc), single).table->middle();
@@ -121,7 +120,7 @@ TEST(ComplianceTracker, OnARoundObjectOfRandomPointsTheForceFollowsTheObject)
 
     for (double rate : {30.0, 60.0}) {
         const auto lattice = footprintLattice(
-            cloud, settings, tableSide(ComplianceLaw::table, 1 / rate, settings.footprintRadius), device);
+            object, settings, tableSide(ComplianceLaw::table, 1 / rate, settings.footprintRadius), device);
         ComplianceTracker              handOver;
         RecentMotion                   motion;
         std::optional<ComplianceTable> coming, published;
@@ -137,7 +136,7 @@ TEST(ComplianceTracker, OnARoundObjectOfRandomPointsTheForceFollowsTheObject)
             if (time >= double(sequence) / rate) {
                 published        = coming;
                 const auto both  = patchAt(aheadOf(handOver.law(), hand, motion.velocity(), 1 / rate), lattice);
-                settings.frame   = both.patch.chart.frame;
+                carried          = both.patch.chart.frame;
                 coming           = both.table;
                 coming->sequence = ++sequence;
                 coming->time     = time;

@@ -18,9 +18,10 @@ namespace {
 
 constexpr double kMillimetre = 1e-3; // [m]
 
-PointCloud homogeneous(const char* name, unsigned seed)
+SoftObject homogeneous(const char* name, unsigned seed)
 {
-    return makeSample(sampleNamed(name), 20'000, seed, SpatialLaw{.kind = SpatialLaw::Kind::constant, .from = 1e6});
+    const SpatialLaw law{.kind = SpatialLaw::Kind::constant, .from = 1e6};
+    return SoftObject(makeSample(sampleNamed(name), 20'000, seed, law));
 }
 
 const PatchSettings kSkin{.foundation = 1e6, .window = 40e-3, .cells = 40, .footprintRadius = 3e-3};
@@ -185,13 +186,12 @@ TEST(TableSolve, TheReferenceAgreesWithTheMultigrid)
 
 TEST(DeformWithTable, ThePatchIsThatOfDeformAndTheTablesMiddleIsItsCompliance)
 {
-    const PointCloud     cloud = makeSample(sampleNamed("ellipsoid"), 20'000, 1);
-    const NeighbourIndex index(cloud.positions());
+    const SoftObject     object(makeSample(sampleNamed("ellipsoid"), 20'000, 1));
     PlateSolver          device("host");
-    const Contact        contact = touchAt(cloud, index, {0, 0, 35e-3}, glm::dvec3(0, 0, 1), 10e-3);
-    const auto           lattice = footprintLattice(cloud, kSkin, 3, device);
-    const PatchWithTable both    = deformWithTable(cloud, index, contact, kSkin, lattice, device);
-    const Patch          alone   = deform(cloud, index, contact, kSkin, device);
+    const Contact        contact = touchAt(object, {0, 0, 35e-3}, glm::dvec3(0, 0, 1), 10e-3);
+    const auto           lattice = footprintLattice(object, kSkin, 3, device);
+    const PatchWithTable both    = deformWithTable(object, contact, kSkin, lattice, device);
+    const Patch          alone   = deform(object, contact, kSkin, device);
 
     ASSERT_TRUE(both.table.has_value());
     EXPECT_NEAR(both.patch.compliance / alone.compliance, 1, 1e-6);
@@ -207,23 +207,22 @@ TEST(DeformWithTable, WhatIsNoSurfaceHasNoTable)
 {
     std::vector<glm::dvec3> line;
     for (int n = 0; n < 100; ++n) line.push_back({n * 1e-4, 0, 0});
-    const PointCloud     wire(line, std::vector<double>(100, 1e6), StiffnessKind::modulus);
-    const NeighbourIndex index(wire.positions());
-    PlateSolver          device("host");
-    const auto           lattice = footprintLattice(wire, kSkin, 1, device);
-    EXPECT_FALSE(deformWithTable(wire, index, {{5e-3, 0, 0}, {0, 0, 1}, true}, kSkin, lattice, device).table);
+    const SoftObject wire(PointCloud(line, std::vector<double>(100, 1e6), StiffnessKind::modulus));
+    PlateSolver      device("host");
+    const auto       lattice = footprintLattice(wire, kSkin, 1, device);
+    EXPECT_FALSE(deformWithTable(wire, {{5e-3, 0, 0}, {0, 0, 1}, true}, kSkin, lattice, device).table);
 }
 
 /// All of it: random points, sphere fits, charts carried along a path, tables ahead of the hand, the servo's hand-over.
 TEST(DeformWithTable, AHandThatSlidesOverAHomogeneousEllipsoidFeelsNothing)
 {
     constexpr double     kSpeed = 0.2, kPeriod = 1.0 / 60, kTick = 1e-3;
-    const PointCloud     cloud = homogeneous("ellipsoid", 3);
-    const NeighbourIndex index(cloud.positions());
+    const SoftObject     object = homogeneous("ellipsoid", 3);
     PlateSolver          device("host");
-    PatchSettings        settings = kSkin;
+    const PatchSettings  settings = kSkin;
+    std::optional<Frame> carried;
     const auto           lattice =
-        footprintLattice(cloud, settings, tableSide(ComplianceLaw::table, kPeriod, settings.footprintRadius), device);
+        footprintLattice(object, settings, tableSide(ComplianceLaw::table, kPeriod, settings.footprintRadius), device);
     const auto onSurface = [](double x) {
         return glm::dvec3(x, 3e-3, 35e-3 * std::sqrt(1 - std::pow(x / 60e-3, 2) - std::pow(3.0 / 45, 2)));
     };
@@ -241,9 +240,9 @@ TEST(DeformWithTable, AHandThatSlidesOverAHomogeneousEllipsoidFeelsNothing)
         if (time >= double(sequence) * kPeriod) {
             published          = coming;
             const Contact next = {aheadOf(handOver.law(), hand, motion.velocity(), kPeriod), {0, 0, 1}, true};
-            const auto    both = deformWithTable(cloud, index, next, settings, lattice, device);
+            const auto    both = deformWithTable(object, next, settings, lattice, device, carried);
             ASSERT_TRUE(both.table.has_value());
-            settings.frame   = both.patch.chart.frame;
+            carried          = both.patch.chart.frame;
             coming           = both.table;
             coming->sequence = ++sequence;
             coming->time     = time;
@@ -269,19 +268,18 @@ TEST(DeformWithTable, AHandThatSlidesOverAHomogeneousEllipsoidFeelsNothing)
 /// 10 l, or 12 l where rigidity varies by more than 10.
 TEST(Warnings, AskForTheWindowThatTheFoundationNeeds)
 {
-    const auto warnedAt = [](const PointCloud& cloud, double lengths, double mean) {
+    const auto warnedAt = [](const SoftObject& object, double lengths, double mean) {
         PatchSettings settings = kSkin;
         settings.foundation    = mean / std::pow(settings.window / lengths, 4);
-        const NeighbourIndex index(cloud.positions());
-        PlateSolver          device("host");
-        const Contact        contact = touchAt(cloud, index, {0, 0, 0}, glm::dvec3(0, 0, 1), 10e-3);
-        const Patch          patch   = deform(cloud, index, contact, settings, device);
-        const auto           all     = warnings(patch, settings, 0.01);
+        PlateSolver   device("host");
+        const Contact contact = touchAt(object, {0, 0, 0}, glm::dvec3(0, 0, 1), 10e-3);
+        const Patch   patch   = deform(object, contact, settings, device);
+        const auto    all     = warnings(patch, settings, 0.01);
         return std::any_of(all.begin(), all.end(),
                            [](const std::string& s) { return s.find("its edges are felt") != std::string::npos; });
     };
-    const double     mean = kSkin.material.rigidity(1e6);
-    const PointCloud even = homogeneous("sheet", 4);
+    const SoftObject even = homogeneous("sheet", 4);
+    const double     mean = even.material().rigidity(1e6);
     EXPECT_TRUE(warnedAt(even, 9.9, mean));
     EXPECT_FALSE(warnedAt(even, 10.1, mean));
 
@@ -289,7 +287,7 @@ TEST(Warnings, AskForTheWindowThatTheFoundationNeeds)
     std::vector<double> moduli;
     for (const glm::dvec3& p : even.positions())
         moduli.push_back(1e6 * std::pow(10, std::clamp(p.x / 20e-3, -1.0, 1.0)));
-    const PointCloud varied({even.positions().begin(), even.positions().end()}, moduli, StiffnessKind::modulus);
+    const SoftObject varied = even.repainted(moduli);
     EXPECT_TRUE(warnedAt(varied, 11.5, mean));
     EXPECT_FALSE(warnedAt(varied, 12.5, mean));
 }

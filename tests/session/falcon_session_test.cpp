@@ -51,9 +51,8 @@ struct Session {
 
     SessionSummary run(double seconds, const OnTick& onTick)
     {
-        Deformation deformation(session.cloud.cloud, session.index, session.scene);
-        return runVirtual({session.scene, session.cloud.cloud, session.index, deformation.solver(), falcon, hand.frame},
-                          seconds, onTick);
+        Deformation deformation(session.object, session.scene);
+        return runVirtual({session.scene, session.object, deformation.solver(), falcon, hand.frame}, seconds, onTick);
     }
 };
 

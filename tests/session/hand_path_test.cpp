@@ -211,13 +211,12 @@ TEST(GeneratedHand, SenselessScriptsAreRefused)
 
 TEST(GeneratedHand, DrapedOverASphereKeepsItsDepth)
 {
-    const SpatialLaw     constant{.kind = SpatialLaw::Kind::constant, .from = 1e6};
-    const PointCloud     cloud = makeSample(sampleNamed("hemisphere"), 40'000, 3, constant);
-    const NeighbourIndex index(cloud.positions());
-    const HandPlace      top{{0, 0, 50e-3}, {0, 0, 1}};
-    HandScript           s = script(HandMotion::scan);
-    s.radius               = 20e-3;
-    const HandPath flat = makeHand(s, top), hand = draped(flat, top, cloud, index);
+    const SpatialLaw constant{.kind = SpatialLaw::Kind::constant, .from = 1e6};
+    const SoftObject object(makeSample(sampleNamed("hemisphere"), 40'000, 3, constant));
+    const HandPlace  top{{0, 0, 50e-3}, {0, 0, 1}};
+    HandScript       s  = script(HandMotion::scan);
+    s.radius            = 20e-3;
+    const HandPath flat = makeHand(s, top), hand = draped(flat, top, object);
 
     for (double t = 0.5; t < 3; t += 0.01) {
         const glm::dvec3 p       = hand.position(t);
@@ -230,21 +229,18 @@ TEST(GeneratedHand, DrapedOverASphereKeepsItsDepth)
 
 TEST(GeneratedHand, DrapedBeyondABorderItKeepsTheLastHeight)
 {
-    const PointCloud     cloud = makeSample(sampleNamed("sheet"), 20'000, 3);
-    const NeighbourIndex index(cloud.positions());
-    const HandPlace      edge{{70e-3, 0, 0}, {0, 0, 1}};
-    const HandPath       hand = draped(makeHand(script(HandMotion::scan), edge), edge, cloud, index);
+    const SoftObject object(makeSample(sampleNamed("sheet"), 20'000, 3));
+    const HandPlace  edge{{70e-3, 0, 0}, {0, 0, 1}};
+    const HandPath   hand = draped(makeHand(script(HandMotion::scan), edge), edge, object);
 
     for (double t = 0.5; t < 3; t += 0.01) EXPECT_NEAR(hand.position(t).z, -2e-3, 1e-6);
 }
 
 TEST(GeneratedHand, ThePlaceOfASceneIsOnItsCloudOnTheHandsSide)
 {
-    const Scene          scene  = parseScene(R"({"cloud": "sample:ellipsoid", "points": 5000})", "s.json", ".");
-    const LoadedCloud    loaded = loadCloud(scene);
-    const NeighbourIndex index(loaded.cloud.positions());
+    const Scene scene = parseScene(R"({"cloud": "sample:ellipsoid", "points": 5000})", "s.json", ".");
 
-    const HandPlace place = handPlace(scene, loaded.cloud, index);
+    const HandPlace place = handPlace(scene, loadObject(scene).object);
 
     EXPECT_LT(glm::length(place.point - scene.place), 3e-3);
     EXPECT_GT(place.outward.z, 0.9);

@@ -29,10 +29,10 @@ Felt released(const SheetSession& session, double grip, double seconds)
     const HoldingHand hand{down, {.stiffness = grip, .damping = 2}, {{0, 0, 5e-3}}};
     HeldArm           arm(hand);
     arm.open();
-    Deformation deformation(session.cloud.cloud, session.index, session.scene);
+    Deformation deformation(session.object, session.scene);
     Felt        felt;
     double      low = 1, high = -1; // [m]
-    runVirtual({session.scene, session.cloud.cloud, session.index, deformation.solver(), arm, hand.frame}, seconds,
+    runVirtual({session.scene, session.object, deformation.solver(), arm, hand.frame}, seconds,
                [&](const TickRecord& s) {
                    felt.finite = felt.finite && std::isfinite(glm::length(s.force) + glm::length(s.hip));
                    felt.faults |= (s.faults | s.device) & 0xFFU;

@@ -37,12 +37,11 @@ protected:
     /// Presses at once and stays: a session that ends here ends under force.
     LastForce()
         : session_(sheetScene(kWart)), rests_({{0, {0, 0, 2e-3}}, {0.05, {0, 0, -1.5e-3}}, {20, {0, 0, -1.5e-3}}}),
-          deformation_(session_.cloud.cloud, session_.index, session_.scene), device_(rests_),
-          solver_(deformation_.solver())
+          deformation_(session_.object, session_.scene), device_(rests_), solver_(deformation_.solver())
     {
     }
 
-    SessionParts parts() { return {session_.scene, session_.cloud.cloud, session_.index, solver_, device_, {}}; }
+    SessionParts parts() { return {session_.scene, session_.object, solver_, device_, {}}; }
 
     void real(RealSessionSettings settings)
     {

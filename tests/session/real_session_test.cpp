@@ -26,7 +26,7 @@ protected:
     SessionSummary run(const SheetSession& session, const PatchSolver& solver, const RealSessionSettings& settings)
     {
         HandDevice device(session.hand);
-        return runReal({session.scene, session.cloud.cloud, session.index, solver, device, {}}, settings, warning_);
+        return runReal({session.scene, session.object, solver, device, {}}, settings, warning_);
     }
     std::string warning_; ///< of run()
 };
@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(Both, RealSessions, ::testing::Values(SessionThreads::s
 TEST_P(RealSessions, TheThreadsServeAHandAndEnd)
 {
     const SheetSession  session(sheetScene(kWart));
-    Deformation         deformation(session.cloud.cloud, session.index, session.scene);
+    Deformation         deformation(session.object, session.scene);
     std::uint64_t       seen = 0, patches = 0;
     RealSessionSettings settings;
     bool                finite = true;
@@ -71,7 +71,7 @@ TEST_P(RealSessions, TheThreadsServeAHandAndEnd)
 TEST_P(RealSessions, StartAndStopAThousandTimes)
 {
     const SheetSession  session(sheetScene(kWart));
-    Deformation         deformation(session.cloud.cloud, session.index, session.scene);
+    Deformation         deformation(session.object, session.scene);
     RealSessionSettings settings;
     settings.threads    = GetParam();
     std::uint64_t ticks = 0, seen = 0;
@@ -90,7 +90,7 @@ TEST_P(RealSessions, StartAndStopAThousandTimes)
 TEST_P(RealSessions, AnInterruptEndsIt)
 {
     const SheetSession  session(sheetScene(kWart));
-    Deformation         deformation(session.cloud.cloud, session.index, session.scene);
+    Deformation         deformation(session.object, session.scene);
     std::atomic<bool>   stop = false;
     RealSessionSettings settings;
     settings.threads    = GetParam();
@@ -104,7 +104,7 @@ TEST_P(RealSessions, AnInterruptEndsIt)
 TEST_P(RealSessions, WhoLooksOnMayThrow)
 {
     const SheetSession  session(sheetScene(kWart));
-    Deformation         deformation(session.cloud.cloud, session.index, session.scene);
+    Deformation         deformation(session.object, session.scene);
     RealSessionSettings settings;
     settings.threads    = GetParam();
     settings.seconds    = 3600;
@@ -116,7 +116,7 @@ TEST_P(RealSessions, WhoLooksOnMayThrow)
 TEST_P(RealSessions, ADeformationThatThrowsFailsAPatchAndTheTouchGoesOn)
 {
     const SheetSession  session(sheetScene(kWart), HandMotion::press);
-    Deformation         deformation(session.cloud.cloud, session.index, session.scene);
+    Deformation         deformation(session.object, session.scene);
     RealSessionSettings settings;
     settings.threads   = GetParam();
     settings.seconds   = 0.6;
@@ -136,7 +136,7 @@ TEST_P(RealSessions, ADeformationThatThrowsFailsAPatchAndTheTouchGoesOn)
 TEST_P(RealSessions, WhoTakesSamplesMustNotThrowAndEndsTheSessionIfItDoes)
 {
     const SheetSession  session(sheetScene(kWart));
-    Deformation         deformation(session.cloud.cloud, session.index, session.scene);
+    Deformation         deformation(session.object, session.scene);
     RealSessionSettings settings;
     settings.threads = GetParam();
     settings.seconds = 3600;
@@ -150,7 +150,7 @@ TEST_P(RealSessions, AStalledDeformationLeavesAFiniteSmoothForceAndAFlag)
     const SheetSession  session(sheetScene(kWart));
     const HandPath      rests({{0, {0, 0, 2e-3}}, {0.1, {0, 0, -1.5e-3}}, {20, {0, 0, -1.5e-3}}}); // and stays there
     HandDevice          device(rests);
-    Deformation         deformation(session.cloud.cloud, session.index, session.scene);
+    Deformation         deformation(session.object, session.scene);
     RealSessionSettings settings;
     bool                stalled = false;
     const auto          start   = std::chrono::steady_clock::now();
@@ -175,8 +175,7 @@ TEST_P(RealSessions, AStalledDeformationLeavesAFiniteSmoothForceAndAFlag)
         last   = force;
     };
     std::string          warning;
-    const SessionSummary summary =
-        runReal({session.scene, session.cloud.cloud, session.index, stalls, device, {}}, settings, warning);
+    const SessionSummary summary = runReal({session.scene, session.object, stalls, device, {}}, settings, warning);
     EXPECT_TRUE(finite);
     EXPECT_TRUE(flagged);
     EXPECT_GT(oldest, 4.0) << "the stall was felt by the servo";
@@ -205,7 +204,7 @@ TEST(Servo, TheCountersCount)
 TEST_P(RealSessions, TheServoAllocatesAndLocksNothing)
 {
     const SheetSession  session(sheetScene(kWart));
-    Deformation         deformation(session.cloud.cloud, session.index, session.scene);
+    Deformation         deformation(session.object, session.scene);
     RealSessionSettings settings;
     std::size_t         locks = 0, allocations = 0, ticks = 0, firstLocks = 0, firstAllocations = 0;
     settings.threads = GetParam();

@@ -75,18 +75,17 @@ TEST(SampleScenes, TheFingerFeelsWhatTheReadmeSays)
     constexpr double kRounding = 0.005; // relative: the README gives two or three digits, and seeds are fixed
     for (const Row& row : readme()) {
         SCOPED_TRACE(row.name);
-        const Scene          scene  = readScene(kScenes / (row.name + ".json"));
-        const LoadedCloud    loaded = loadCloud(scene);
-        const NeighbourIndex index(loaded.cloud.positions());
-        const auto           touch = [&](const glm::dvec3& place) {
-            return deform(loaded.cloud, index, touchAt(loaded.cloud, index, place, scene.from, 10e-3), scene.patch);
+        const Scene      scene  = readScene(kScenes / (row.name + ".json"));
+        const SoftObject object = loadObject(scene).object;
+        const auto       touch  = [&](const glm::dvec3& place) {
+            return deform(object, touchAt(object, place, scene.from, 10e-3), scene.patch);
         };
 
         const Patch soft = touch(row.soft), stiff = touch(row.stiff);
 
         EXPECT_NEAR(soft.feltStiffness, row.softStiffness, kRounding * row.softStiffness);
         EXPECT_NEAR(stiff.feltStiffness, row.stiffStiffness, kRounding * row.stiffStiffness);
-        EXPECT_NEAR(scene.patch.material.thickness / 2 / soft.compliance, row.forceAtHalf,
+        EXPECT_NEAR(scene.material.thickness / 2 / soft.compliance, row.forceAtHalf,
                     kRounding * row.forceAtHalf + 0.005);
         EXPECT_NEAR(std::log(stiff.feltStiffness / soft.feltStiffness) / std::log(1.07), row.steps, 0.05);
         EXPECT_LT(stiff.feltStiffness, scene.stiffnessCap) << "a contrast that the cap clips is not felt";
@@ -96,11 +95,10 @@ TEST(SampleScenes, TheFingerFeelsWhatTheReadmeSays)
 TEST(SampleScenes, ThePlaceOfEachSceneIsOnItsCloud)
 {
     for (const auto& file : sceneFiles()) {
-        const Scene          scene  = readScene(file);
-        const LoadedCloud    loaded = loadCloud(scene);
-        const NeighbourIndex index(loaded.cloud.positions());
+        const Scene      scene  = readScene(file);
+        const SoftObject object = loadObject(scene).object;
 
-        EXPECT_LT(index.nearest(scene.place, 1).front().distance, 2 * index.spacing()) << file;
+        EXPECT_LT(object.index().nearest(scene.place, 1).front().distance, 2 * object.spacing()) << file;
     }
 }
 

@@ -57,7 +57,7 @@ TEST(Scene, ASampleBringsItsConstantsAndTheFileWinsOverThem)
 {
     const Scene scene = parsed(R"({"cloud": "sample:skin", "thickness": "3 mm"})");
 
-    EXPECT_EQ(scene.patch.material.thickness, 3e-3);
+    EXPECT_EQ(scene.material.thickness, 3e-3);
     EXPECT_EQ(scene.patch.foundation, sampleNamed("skin").foundation);
     EXPECT_EQ(scene.place, sampleNamed("skin").place);
     EXPECT_EQ(scene.points, 40'000u);
@@ -85,7 +85,7 @@ TEST(Scene, AnotherCloudFromAFlagBringsItsOwnConstants)
 {
     const Scene scene = parsed(R"({"cloud": "sample:skin"})", overrides({{"cloud", "sample:ear-lobe"}}));
 
-    EXPECT_EQ(scene.patch.material.thickness, 3e-3);
+    EXPECT_EQ(scene.material.thickness, 3e-3);
     EXPECT_EQ(scene.origins.at("thickness").where, "sample:ear-lobe");
     EXPECT_FALSE(scene.from) << "closed";
 }
@@ -102,9 +102,8 @@ TEST(Scene, TheEnvironmentOfTheProcessCountsOnlyWhereItIsAskedFor)
 
 TEST(Scene, AnEmptyVariableSaysNothing)
 {
-    EXPECT_EQ(
-        parsed(R"({"cloud": "sample:skin"})", overrides({}, {{"PALPATE_THICKNESS", ""}})).patch.material.thickness,
-        4e-3);
+    EXPECT_EQ(parsed(R"({"cloud": "sample:skin"})", overrides({}, {{"PALPATE_THICKNESS", ""}})).material.thickness,
+              4e-3);
 }
 
 TEST(Scene, EveryKeyOfEverySpellingIsRead)
@@ -120,8 +119,8 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
     EXPECT_EQ(scene.points, 1000u);
     EXPECT_EQ(scene.seed, 7u);
     EXPECT_EQ(scene.stiffness, "linear:from=1e5,to=1e6,axis=y");
-    EXPECT_EQ(scene.patch.material.thickness, 5e-3);
-    EXPECT_EQ(scene.patch.material.poissonRatio, -0.2);
+    EXPECT_EQ(scene.material.thickness, 5e-3);
+    EXPECT_EQ(scene.material.poissonRatio, -0.2);
     EXPECT_EQ(scene.patch.foundation, 2e6);
     EXPECT_EQ(scene.patch.cells, 32);
     EXPECT_EQ(scene.patch.map, Map::gallPeters);
@@ -150,7 +149,7 @@ TEST(Scene, WhatIsPrintedReadsBackToTheSameValues)
     const Scene again = parsed(sceneJson(first));
 
     EXPECT_EQ(sceneJson(again), sceneJson(first));
-    EXPECT_EQ(again.patch.material.thickness, first.patch.material.thickness);
+    EXPECT_EQ(again.material.thickness, first.material.thickness);
     EXPECT_EQ(again.place, first.place);
     EXPECT_EQ(again.patch.edges, first.patch.edges);
 }

@@ -21,28 +21,27 @@ inline Scene sheetScene(const std::string& stiffness, const std::string& device 
 inline const char* const kWart = R"({"law": "gaussian", "from": 0.3e6, "to": 3e6, "centre": [0, 0, 0], "sigma": 3e-3})";
 
 struct SheetSession {
-    Scene          scene;
-    LoadedCloud    cloud;
-    NeighbourIndex index;
-    HandPath       hand;
+    Scene      scene;
+    SoftObject object;
+    HandPath   hand;
 
     explicit SheetSession(const Scene& of, HandMotion motion = HandMotion::scan, double seconds = 1.5)
-        : scene(of), cloud(loadCloud(of)), index(cloud.cloud.positions()),
+        : scene(of), object(loadObject(of).object),
           hand(makeHand(
               {.motion = motion, .speed = 0.1, .depth = 1.5e-3, .radius = 10e-3, .height = 2e-3, .duration = seconds},
-              handPlace(of, cloud.cloud, index)))
+              handPlace(of, object)))
     {
     }
 
     /// The hand keeps its depth over a curved object.
-    void drape() { hand = draped(hand, handPlace(scene, cloud.cloud, index), cloud.cloud, index); }
+    void drape() { hand = draped(hand, handPlace(scene, object), object); }
 
     std::vector<TickRecord> run(double seconds) const
     {
         std::vector<TickRecord> samples;
-        Deformation             deformation(cloud.cloud, index, scene);
+        Deformation             deformation(object, scene);
         HandDevice              device(hand);
-        runVirtual({scene, cloud.cloud, index, deformation.solver(), device, {}}, seconds,
+        runVirtual({scene, object, deformation.solver(), device, {}}, seconds,
                    [&](const TickRecord& s) { samples.push_back(s); });
         return samples;
     }

@@ -154,7 +154,7 @@ TEST(VirtualSession, TheTableReachesAsFarAsAFastHandGoes)
         SheetSession session(scene);
         session.hand = makeHand(
             {.motion = HandMotion::scan, .speed = 0.2, .depth = 1.5e-3, .radius = 14e-3, .height = 2e-3, .duration = 3},
-            handPlace(scene, session.cloud.cloud, session.index));
+            handPlace(scene, session.object));
         std::size_t beyond = 0, touching = 0;
         for (const TickRecord& s : session.run(3)) {
             beyond += has(s, SessionFlag::beyondTable);
@@ -168,7 +168,7 @@ TEST(VirtualSession, TheTableReachesAsFarAsAFastHandGoes)
 TEST(Servo, TheFirstButtonHeldDownResetsAFault)
 {
     const SheetSession session(sheetScene(kWart));
-    Servo              servo(session.cloud.cloud, session.index, session.scene);
+    Servo              servo(session.object, session.scene);
     Hand               hand{session.hand.position(0), {}};
     (void)servo.tick({0, 1e-3, 1e-3}, hand, nullptr);
     hand.velocity = {std::nan(""), 0, 0};
@@ -201,14 +201,13 @@ TEST(VirtualSession, TheDevicesLimitsBoundTheForce)
     };
     const SheetSession session(sheetScene(R"({"law": "constant", "value": 3e6})"), HandMotion::press, 3);
     Weak               device(session.hand);
-    Deformation        deformation(session.cloud.cloud, session.index, session.scene);
+    Deformation        deformation(session.object, session.scene);
     double             most = 0, stiffest = 0; // [N], [N/m]
-    runVirtual({session.scene, session.cloud.cloud, session.index, deformation.solver(), device, {}}, 3,
-               [&](const TickRecord& s) {
-                   const double depth = glm::length(s.proxy - s.hip), force = glm::length(s.force);
-                   most = std::max(most, force);
-                   if (s.time > 1.7 && depth > 0.3e-3) stiffest = std::max(stiffest, force / depth);
-               });
+    runVirtual({session.scene, session.object, deformation.solver(), device, {}}, 3, [&](const TickRecord& s) {
+        const double depth = glm::length(s.proxy - s.hip), force = glm::length(s.force);
+        most = std::max(most, force);
+        if (s.time > 1.7 && depth > 0.3e-3) stiffest = std::max(stiffest, force / depth);
+    });
     EXPECT_NEAR(most, 0.4, 1e-9) << "it would be 450 mN by the stiffness alone";
     EXPECT_LE(stiffest, 300 * 1.05);
     EXPECT_GT(stiffest, 250);
@@ -217,8 +216,8 @@ TEST(VirtualSession, TheDevicesLimitsBoundTheForce)
 TEST(Servo, ATickAllocatesNothing)
 {
     const SheetSession         session(sheetScene(kWart));
-    Servo                      servo(session.cloud.cloud, session.index, session.scene);
-    Deformation                deformation(session.cloud.cloud, session.index, session.scene);
+    Servo                      servo(session.object, session.scene);
+    Deformation                deformation(session.object, session.scene);
     std::optional<PatchUpdate> news;
     std::size_t                allocated = 0;
     for (int n = 0; n < 900; ++n) {
@@ -236,8 +235,8 @@ TEST(Servo, ATickAllocatesNothing)
 TEST(Servo, AStalledDeformationIsFlaggedAndTheForceStaysSmooth)
 {
     const SheetSession         session(sheetScene(kWart), HandMotion::press, 2);
-    Servo                      servo(session.cloud.cloud, session.index, session.scene);
-    Deformation                deformation(session.cloud.cloud, session.index, session.scene);
+    Servo                      servo(session.object, session.scene);
+    Deformation                deformation(session.object, session.scene);
     std::optional<PatchUpdate> news;
     glm::dvec3                 last{};
     bool                       flagged = false;
@@ -261,7 +260,7 @@ TEST(Servo, AStalledDeformationIsFlaggedAndTheForceStaysSmooth)
 TEST(Servo, AHandThatIsNotANumberEndsAtZeroForceWithAReason)
 {
     const SheetSession session(sheetScene(kWart));
-    Servo              servo(session.cloud.cloud, session.index, session.scene);
+    Servo              servo(session.object, session.scene);
     (void)servo.tick({0, 1e-3, 1e-3}, {session.hand.position(0), {}}, nullptr);
     TickRecord sample;
     for (int n = 1; n <= 20; ++n) sample = servo.tick({1e-3 * n, 1e-3, 1e-3}, {glm::dvec3(std::nan("")), {}}, nullptr);

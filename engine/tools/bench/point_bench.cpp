@@ -170,11 +170,9 @@ BenchRow measureUpdate(int nodes, double tolerance, int runs, PlateSolver& devic
     constexpr std::size_t kPoints   = 40'000;
     constexpr double      kGathered = 3000;
     const Sample&         sample    = sampleNamed("ellipsoid");
-    const PointCloud      cloud     = makeSample(sample, kPoints, 1);
-    const NeighbourIndex  index(cloud.positions());
-    const Contact         contact = touchAt(cloud, index, sample.place, sample.from, index.spacing() * 10);
+    const SoftObject      object(makeSample(sample, kPoints, 1), sample.material);
+    const Contact         contact = touchAt(object, sample.place, sample.from, object.spacing() * 10);
     PatchSettings         settings;
-    settings.material        = sample.material;
     settings.foundation      = sample.foundation;
     settings.window          = sample.window;
     settings.footprintRadius = sample.footprintRadius;
@@ -183,14 +181,14 @@ BenchRow measureUpdate(int nodes, double tolerance, int runs, PlateSolver& devic
 
     Patch patch;
     for (int n = 0; n < 4; ++n) { // points gathered grow with the square of the window
-        patch = deform(cloud, index, contact, settings, device);
+        patch = deform(object, contact, settings, device);
         settings.window *= std::sqrt(kGathered / double(patch.gathered.size()));
         settings.footprintRadius = std::min(settings.footprintRadius, settings.window / 4);
     }
 
     std::vector<StageTimes> times;
     const auto              timing = takeTurns({{"Palpate", {[&] {
-                                        patch = deform(cloud, index, contact, settings, device);
+                                        patch = deform(object, contact, settings, device);
                                         times.push_back(patch.times);
                                     }}}},
                                                runs);

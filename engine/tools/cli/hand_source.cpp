@@ -46,20 +46,19 @@ double metresPerSecond(const std::string& text, const std::string& option)
 /// Of the thickness: the deflection is at most some tenths more than the hand's depth, so theory holds [1].
 constexpr double kDepth = 0.4;
 
-HandPath pathFor(const HandOptions& o, double seconds, const Scene& scene, const PointCloud& cloud,
-                 const NeighbourIndex& index)
+HandPath pathFor(const HandOptions& o, double seconds, const Scene& scene, const SoftObject& object)
 {
     const auto motion = valueNamed<HandMotion>(o.hand);
     if (!motion) return readHand(o.hand);
-    const HandPlace place = handPlace(scene, cloud, index);
+    const HandPlace place = handPlace(scene, object);
     HandScript      script;
     script.motion   = *motion;
     script.speed    = metresPerSecond(o.speed, "--speed");
-    script.depth    = o.depth.empty() ? kDepth * scene.patch.material.thickness : metres(o.depth, "--press-depth");
+    script.depth    = o.depth.empty() ? kDepth * scene.material.thickness : metres(o.depth, "--press-depth");
     script.radius   = metres(o.reach, "--reach");
     script.height   = scene.startHeight;
     script.duration = seconds;
-    return draped(makeHand(script, place), place, cloud, index);
+    return draped(makeHand(script, place), place, object);
 }
 
 /// "150 N/m" or "150".
@@ -92,18 +91,17 @@ double widthOf(const HandPath& path)
 }
 
 /// A scripted hand or one from a file, alone or holding something that forces move.
-void script(HandSource& source, HandOptions options, const Scene& scene, const PointCloud& cloud,
-            const NeighbourIndex& index)
+void script(HandSource& source, HandOptions options, const Scene& scene, const SoftObject& object)
 {
     const bool falcon = options.hand == "falcon-emulator";
     if (falcon || options.hand == "arm") {
         options.hand = "scan";
         if (options.grip.empty()) options.grip = "300 N/m";
     }
-    source.path = std::make_unique<const HandPath>(pathFor(options, source.seconds, scene, cloud, index));
+    source.path = std::make_unique<const HandPath>(pathFor(options, source.seconds, scene, object));
     if (!valueNamed<HandMotion>(options.hand)) {
         if (options.seconds.empty()) source.seconds = source.path->duration();
-        if (const double wide = widthOf(*source.path), size = cloud.bounds().diagonal(); wide > kWide * size)
+        if (const double wide = widthOf(*source.path), size = object.cloud().bounds().diagonal(); wide > kWide * size)
             source.warnings.push_back("the hand goes over " + formatQuantity(wide, "m") + " and the object measures " +
                                       formatQuantity(size, "m") + ": are its positions metres?");
     }
@@ -112,7 +110,7 @@ void script(HandSource& source, HandOptions options, const Scene& scene, const P
         return;
     }
     const glm::dvec3 start = source.path->position(source.path->begin());
-    source.frame           = falcon ? deviceFrame(start, handPlace(scene, cloud, index).outward) : DeviceFrame{start};
+    source.frame           = falcon ? deviceFrame(start, handPlace(scene, object).outward) : DeviceFrame{start};
     const HoldingHand hand{*source.path, gripOf(options.grip), source.frame};
     if (falcon) {
         source.device = std::make_unique<HeldFalcon>(hand, HeldFalcon::ready(), options.falcon.settings());
@@ -146,10 +144,9 @@ std::unique_ptr<HapticDevice> hidFor(const NamedDevice& wanted, HidSystem& hid)
 }
 
 /// A device that somebody holds: the middle of its workspace is where the scene's hand starts.
-void hold(HandSource& source, const HandOptions& options, const Scene& scene, const PointCloud& cloud,
-          const NeighbourIndex& index)
+void hold(HandSource& source, const HandOptions& options, const Scene& scene, const SoftObject& object)
 {
-    const HandPlace place = handPlace(scene, cloud, index);
+    const HandPlace place = handPlace(scene, object);
     source.frame          = deviceFrame(place.point + scene.startHeight * place.outward, place.outward);
     const NamedDevice wanted(options.hand);
     if (wanted.name == "falcon") {
@@ -241,16 +238,16 @@ void demandGood(const HandOptions& options)
         static_cast<void>(readHand(options.hand));
 }
 
-HandSource handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
+HandSource handFor(const HandOptions& options, const Scene& scene, const SoftObject& object)
 {
     demandNamed(options);
     HandSource source;
     if (!options.seconds.empty()) source.seconds = secondsOf(options.seconds);
     const bool held = NamedDevice(options.hand).isHeld();
     if (held)
-        hold(source, options, scene, cloud, index);
+        hold(source, options, scene, object);
     else
-        script(source, options, scene, cloud, index);
+        script(source, options, scene, object);
     source.device->open();
     return source;
 }

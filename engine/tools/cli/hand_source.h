@@ -54,8 +54,7 @@ struct HandSource {
 };
 
 /// \throws Error naming the option, the file, or why the device cannot be used
-[[nodiscard]] HandSource handFor(const HandOptions& options, const Scene& scene, const PointCloud& cloud,
-                                 const NeighbourIndex& index);
+[[nodiscard]] HandSource handFor(const HandOptions& options, const Scene& scene, const SoftObject& object);
 
 /// What can be said of the options before a hand is there: its name, its numbers, a file that can be read. Whether a
 /// device is plugged in shows when it is opened.

@@ -26,19 +26,18 @@ struct HuntOptions {
     bool           json = false;
 };
 
-void draw(const HuntOptions& o, const Scene& scene, const PointCloud& cloud, const study::HuntScore& score)
+void draw(const HuntOptions& o, const Scene& scene, const SoftObject& object, const study::HuntScore& score)
 {
     if (o.out.empty()) return;
-    const NeighbourIndex index(cloud.positions());
-    const HandPlace      place = handPlace(scene, cloud, index);
-    const std::string    svg   = study::huntSvg(score, cloud, place.point, place.outward, scene.hunt->ground);
+    const HandPlace   place = handPlace(scene, object);
+    const std::string svg   = study::huntSvg(score, object.cloud(), place.point, place.outward, scene.hunt->ground);
     writeFileWhole(o.out, [&](std::ostream& file) { file << svg; });
 }
 
-void tell(const HuntOptions& o, const Scene& scene, const PointCloud& cloud, const study::HuntScore& score,
+void tell(const HuntOptions& o, const Scene& scene, const SoftObject& object, const study::HuntScore& score,
           const std::optional<SessionRun>& run)
 {
-    draw(o, scene, cloud, score);
+    draw(o, scene, object, score);
     if (o.json) {
         nlohmann::json all = jsonOf(score);
         if (run) all["session"] = jsonOf(*run);
@@ -62,13 +61,13 @@ void scoreRecorded(const HuntOptions& o)
 {
     const RecordedSession session = readSession(o.score);
     const Scene           scene   = sceneOf(session);
-    const LoadedCloud     cloud   = loadCloud(scene);
-    study::HuntScorer     scorer(scene, cloud.cloud);
-    if (!session.cloud.empty() && session.cloud != fingerprint(cloud.cloud))
+    const SoftObject      object  = loadObject(scene).object;
+    study::HuntScorer     scorer(scene, object.cloud());
+    if (!session.cloud.empty() && session.cloud != fingerprint(object.cloud()))
         throw Error(o.score + ": expected the cloud that was recorded, found another one: " + scene.cloud +
                     " has changed");
     for (const TickRecord& sample : session.samples) scorer.add(sample);
-    tell(o, scene, cloud.cloud, scorer.score(), {});
+    tell(o, scene, object, scorer.score(), {});
 }
 
 void hunt(const HuntOptions& o)
@@ -77,13 +76,11 @@ void hunt(const HuntOptions& o)
     if (!o.score.empty()) return scoreRecorded(o);
     demandGood(o.session);
     demandScene(o);
-    const Scene          scene = o.scene.load();
-    const LoadedCloud    cloud = loadCloud(scene);
-    const NeighbourIndex index(cloud.cloud.positions());
-    study::HuntScorer    scorer(scene, cloud.cloud);
-    const SessionRun     run =
-        runSession(scene, cloud, index, o.session, [&](const TickRecord& sample) { scorer.add(sample); });
-    tell(o, scene, cloud.cloud, scorer.score(), run);
+    const Scene        scene  = o.scene.load();
+    const LoadedObject loaded = loadObject(scene);
+    study::HuntScorer  scorer(scene, loaded.object.cloud());
+    const SessionRun run = runSession(scene, loaded, o.session, [&](const TickRecord& sample) { scorer.add(sample); });
+    tell(o, scene, loaded.object, scorer.score(), run);
     demandWhole(run);
 }
 

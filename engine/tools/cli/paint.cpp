@@ -107,19 +107,19 @@ void paint(const PaintOptions& o)
     static_cast<void>(holdsFaces(o.out)); // a name of no format is the first thing to say
     Canvas canvas = canvasOf(o.source);
     refuseSourceAsTarget("--out", canvas.file.empty() ? o.source.name : canvas.file, o.out);
-    const PointCloud&        cloud = canvas.loaded.cloud;
+    const SoftObject         object(canvas.loaded.cloud);
+    const PointCloud&        cloud = object.cloud();
     const std::string        unit  = cloud.kind() == StiffnessKind::modulus ? "Pa" : "N m";
     std::vector<StrokeOrder> orders;
     const auto               what = [](std::size_t k) { return "--stroke " + std::to_string(k + 1); };
     for (std::size_t k = 0; k < o.strokes.size(); ++k)
         orders.push_back(parseStroke(o.strokes[k], what(k), canvas.metresPerPlainNumber, cloud.kind()));
 
-    const NeighbourIndex index(cloud.positions());
-    StiffnessPainting    painting(cloud, index);
-    nlohmann::json       strokes = nlohmann::json::array();
-    std::string          lines;
+    StiffnessPainting painting(object);
+    nlohmann::json    strokes = nlohmann::json::array();
+    std::string       lines;
     for (std::size_t k = 0; k < orders.size(); ++k) {
-        const StrokeReport report = paintStroke(orders[k], what(k), cloud, index, painting);
+        const StrokeReport report = paintStroke(orders[k], what(k), object, painting);
         strokes.push_back(jsonOf(orders[k], report));
         lines += "  stroke " + std::to_string(k + 1) + "    " + std::to_string(report.dabs) + " dabs over " +
                  std::to_string(report.points) + " points, " +

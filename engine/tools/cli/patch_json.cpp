@@ -65,10 +65,10 @@ Json timesJson(const StageTimes& t)
 
 } // namespace
 
-Json settingsJson(const PatchSettings& s)
+Json settingsJson(const Material& material, const PatchSettings& s)
 {
-    return {{"thickness", s.material.thickness},
-            {"poisson", s.material.poissonRatio},
+    return {{"thickness", material.thickness},
+            {"poisson", material.poissonRatio},
             {"foundation", s.foundation},
             {"window", s.window},
             {"cells", s.cells},
@@ -80,12 +80,13 @@ Json settingsJson(const PatchSettings& s)
              {{"x0", name(s.edges.x0)}, {"x1", name(s.edges.x1)}, {"z0", name(s.edges.z0)}, {"z1", name(s.edges.z1)}}}};
 }
 
-Json patchJson(const Patch& patch, const PatchSettings& settings, double force, PlateSolver& device)
+Json patchJson(const Patch& patch, const Material& material, const PatchSettings& settings, double force,
+               PlateSolver& device)
 {
     Json report{
         {"contact", {{"point", vectorJson(patch.contact.point)}, {"outward", vectorJson(patch.contact.outward)}}},
         {"force", force},
-        {"settings", settingsJson(settings)},
+        {"settings", settingsJson(material, settings)},
         {"differences_from_paper", differencesFromPaper(settings)},
         {"sphere", sphereJson(patch.sphere)}};
     if (!patch.deformed()) return report;

@@ -10,10 +10,10 @@ namespace palp {
 
 /// Everything a touch says, in SI units, for --json and touch.json.
 /// \param force  that presses [N]; the patch itself holds responses to 1 N
-[[nodiscard]] nlohmann::json patchJson(const Patch& patch, const PatchSettings& settings, double force,
-                                       PlateSolver& device);
+[[nodiscard]] nlohmann::json patchJson(const Patch& patch, const Material& material, const PatchSettings& settings,
+                                       double force, PlateSolver& device);
 
 /// The scene constants of a touch.
-[[nodiscard]] nlohmann::json settingsJson(const PatchSettings& settings);
+[[nodiscard]] nlohmann::json settingsJson(const Material& material, const PatchSettings& settings);
 
 } // namespace palp

@@ -35,15 +35,14 @@ struct PerceiveOptions {
 /// The scene's object, made once.
 struct Felt {
     explicit Felt(const PerceiveOptions& o)
-        : scene(o.scene.load()), loaded(loadCloud(scene)), index(loaded.cloud.positions()),
+        : scene(o.scene.load()), object(loadObject(scene).object),
           device(orTheReference([this] { return PlateSolver(scene.device); }))
     {
         sayPassedOver(device.name(), device.note());
     }
-    Scene          scene;
-    LoadedCloud    loaded;
-    NeighbourIndex index;
-    PlateSolver    device;
+    Scene       scene;
+    SoftObject  object;
+    PlateSolver device;
 };
 
 /// To either side of the middle [m].
@@ -140,22 +139,20 @@ void perceive(const PerceiveOptions& o)
 {
     demandSvg("--out", o.out);
     demandSvg("--picture", o.picture);
-    Felt                  felt(o);
-    const FeltLine        line = feltLine(felt.scene, felt.loaded.cloud, felt.index,
+    Felt                   felt(o);
+    const FeltLine         line = feltLine(felt.scene, felt.object,
                                    o.along.empty() ? std::optional<glm::dvec3>() : parsePoint(o.along, "--along"),
-                                          reachOf(o, felt.scene));
-    Progress              progress("feeling");
-    const auto            onStep = [&](std::size_t done, std::size_t total) { progress.at(done, total); };
-    const ScenePerception found =
-        perceive(felt.scene, felt.loaded.cloud, felt.index, line, o.places, felt.device, onStep);
+                                           reachOf(o, felt.scene));
+    Progress               progress("feeling");
+    const auto             onStep = [&](std::size_t done, std::size_t total) { progress.at(done, total); };
+    const ScenePerception  found  = perceive(felt.scene, felt.object, line, o.places, felt.device, onStep);
     std::optional<FeltMap> map;
-    if (!o.picture.empty())
-        map = feltMap(felt.loaded.cloud, felt.index, felt.scene.patch, std::size_t(o.mapPlaces), felt.device, onStep);
+    if (!o.picture.empty()) map = feltMap(felt.object, felt.scene.patch, std::size_t(o.mapPlaces), felt.device, onStep);
     if (!o.out.empty())
         write(o.out, pathSvg(found, felt.scene.patch.forceLaw, "Felt stiffness along the path: " + o.scene.title()));
     constexpr double kTypicalWeber = kWeberFractions[1];
     if (map)
-        write(o.picture, mapSvg(felt.loaded.cloud, *map, kTypicalWeber, line.middle.outward,
+        write(o.picture, mapSvg(felt.object.cloud(), *map, kTypicalWeber, line.middle.outward,
                                 "What is noticed if 15 % is the smallest change: " + o.scene.title()));
     if (o.json)
         std::cout << jsonText(jsonOf(o, felt, found, map));

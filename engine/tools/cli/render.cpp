@@ -76,9 +76,8 @@ TouchLook lookOf(const RenderOptions& o)
 struct Stage {
     explicit Stage(const RenderOptions& o)
         : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.device = o.drawOn}),
-          loaded(loadCloud(scene)), index(loaded.cloud.positions()),
-          device(orTheReference([this] { return PlateSolver(scene.device); })),
-          view(loaded.cloud, index, scene.patch, loaded.faces)
+          loaded(loadObject(scene)), device(orTheReference([this] { return PlateSolver(scene.device); })),
+          view(loaded.object, scene.patch)
     {
         sayPassedOver(device.name(), device.note());
         sayPassedOver(renderer.device().name, renderer.note());
@@ -87,15 +86,14 @@ struct Stage {
     TouchLook       look;
     Scene           scene;
     SurfaceRenderer renderer; // before the cloud: what is missing is said at once
-    LoadedCloud     loaded;
-    NeighbourIndex  index;
+    LoadedObject    loaded;
     PlateSolver     device;
     TouchView       view;
 };
 
 Patch patchAt(Stage& stage, const Contact& contact)
 {
-    Patch patch = deform(stage.loaded.cloud, stage.index, contact, stage.scene.patch, stage.device);
+    Patch patch = deform(stage.loaded.object, contact, stage.scene.patch, stage.device);
     if (!patch.deformed())
         throw Error("render: the " + std::to_string(patch.gathered.size()) +
                     " points around the place do not determine a surface (" + name(patch.sphere.outcome) +
@@ -109,7 +107,7 @@ Camera cameraFor(const RenderOptions& o, const Stage& stage, const Patch& patch)
     const Camera camera = cameraAt(patch, aspect);
     if (o.view == "patch") return camera;
     if (o.view != "whole") throw Error("--view: unknown name \"" + o.view + "\"; known: patch, whole");
-    const Bounds& bounds = stage.loaded.cloud.bounds();
+    const Bounds& bounds = stage.loaded.object.cloud().bounds();
     return framed(camera, bounds.centre(), 0.5 * bounds.diagonal(), aspect);
 }
 
@@ -121,7 +119,7 @@ double deepestOf(const Patch& patch, double force)
 std::string noteOf(const Stage& stage, const Patch& patch, double force)
 {
     std::string note = formatQuantity(force, "N") + ", " + formatQuantity(deepestOf(patch, force), "m") + " deep in " +
-                       formatQuantity(stage.scene.patch.material.thickness, "m");
+                       formatQuantity(stage.scene.material.thickness, "m");
     if (stage.look.exaggeration != 1) {
         char factor[32];
         std::snprintf(factor, sizeof factor, "%g", stage.look.exaggeration);
@@ -150,10 +148,10 @@ Written write(Stage& stage, const Camera& camera, const std::filesystem::path& f
 /// A touch at the scene's place.
 Written still(const RenderOptions& o, Stage& stage)
 {
-    const HandPlace  place = handPlace(stage.scene, stage.loaded.cloud, stage.index);
+    const HandPlace  place = handPlace(stage.scene, stage.loaded.object);
     const Patch      patch = patchAt(stage, {place.point, place.outward, stage.scene.from.has_value()});
     constexpr double kMost = 1e6; // [N]
-    const double     force = o.force.empty() ? forceThatShows(patch, stage.scene.patch.material.thickness)
+    const double     force = o.force.empty() ? forceThatShows(patch, stage.scene.material.thickness)
                                              : parseQuantity(o.force, Dimension::force, "--force");
     if (!(force >= 0 && force <= kMost)) throw Error("--force: expected 0 to 1e6 N, found \"" + o.force + "\"");
     stage.view.show(&patch, force, stage.look);
@@ -173,11 +171,10 @@ std::vector<TickRecord> samplesOf(const RenderOptions& o, Stage& stage, int fram
     HandOptions hand;
     hand.hand         = o.hand;
     hand.seconds      = o.seconds;
-    HandSource source = handFor(hand, stage.scene, stage.loaded.cloud, stage.index);
+    HandSource source = handFor(hand, stage.scene, stage.loaded.object);
     if (source.isHeld()) throw Error("--hand " + o.hand + ": somebody holds it; pictures are made of scripted hands");
-    Deformation             deformation(stage.loaded.cloud, stage.index, stage.scene);
-    const SessionParts      parts{stage.scene,          stage.loaded.cloud, stage.index,
-                             deformation.solver(), *source.device,     source.frame};
+    Deformation             deformation(stage.loaded.object, stage.scene);
+    const SessionParts      parts{stage.scene, stage.loaded.object, deformation.solver(), *source.device, source.frame};
     std::vector<TickRecord> all;
     static_cast<void>(runVirtual(parts, source.seconds, [&](const TickRecord& s) { all.push_back(s); }));
     if (all.empty()) throw Error("--seconds: expected a hand of at least a millisecond");
@@ -198,7 +195,7 @@ std::filesystem::path frameFile(const std::filesystem::path& out, int number)
 /// The session of a scripted hand in virtual time, one camera and one scale of colours for all pictures.
 std::vector<Written> film(const RenderOptions& o, Stage& stage)
 {
-    const HandPlace    place   = handPlace(stage.scene, stage.loaded.cloud, stage.index);
+    const HandPlace    place   = handPlace(stage.scene, stage.loaded.object);
     const Patch        middle  = patchAt(stage, {place.point, place.outward, stage.scene.from.has_value()});
     const Camera       camera  = cameraFor(o, stage, middle);
     const auto         samples = samplesOf(o, stage, *o.frames);
@@ -233,7 +230,7 @@ void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>
     if (o.json) {
         nlohmann::ordered_json all;
         all["scene"]     = o.scene.name;
-        all["points"]    = stage.loaded.cloud.size();
+        all["points"]    = stage.loaded.object.cloud().size();
         all["size"]      = {stage.size.width, stage.size.height};
         all["drawn_on"]  = stage.renderer.device().name;
         all["solved_on"] = stage.device.name();

@@ -35,9 +35,7 @@ void run(const RunOptions& o)
         std::cout << printConfig(scene, o.json ? ConfigFormat::json : ConfigFormat::text);
         return;
     }
-    const LoadedCloud    cloud = loadCloud(scene);
-    const NeighbourIndex index(cloud.cloud.positions());
-    const SessionRun     run = runSession(scene, cloud, index, o.session);
+    const SessionRun run = runSession(scene, loadObject(scene), o.session);
     if (o.json)
         std::cout << jsonText(jsonOf(run));
     else
@@ -56,18 +54,17 @@ void replay(const ReplayOptions& o)
     if (!session.finished)
         warn({o.folder + " was not finished: its first " + std::to_string(session.samples.size()) +
               " samples are replayed"});
-    const LoadedCloud cloud = loadCloud(scene);
-    if (!session.cloud.empty() && session.cloud != fingerprint(cloud.cloud))
+    const SoftObject object = loadObject(scene).object;
+    if (!session.cloud.empty() && session.cloud != fingerprint(object.cloud()))
         warn({"the cloud is not the one that was recorded: " + scene.cloud + " has changed"});
-    const NeighbourIndex index(cloud.cloud.positions());
-    Deformation          deformation(cloud.cloud, index, scene);
+    Deformation deformation(object, scene);
 
     RecordedSession again = session;
     again.folder          = "the replay";
     again.samples.clear();
     const double         seconds = double(session.samples.size()) * 1e-3;
     ReplayDevice         hand(session.samples, session.hand);
-    const SessionSummary summary = playVirtual({scene, cloud.cloud, index, deformation.solver(), hand, {}}, seconds,
+    const SessionSummary summary = playVirtual({scene, object, deformation.solver(), hand, {}}, seconds,
                                                [&](const TickRecord& sample) { again.samples.push_back(sample); });
     if (!o.compare) {
         o.json ? void(std::cout << jsonText(jsonOf(summary)))

@@ -42,12 +42,12 @@ std::vector<std::string> strangeVariables()
 }
 
 /// What one must know before touching: the plate at the scene's place, on the host, which needs no device.
-std::vector<std::string> warningsOf(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
+std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object)
 {
     try {
-        const HandPlace place = handPlace(scene, cloud, index);
+        const HandPlace place = handPlace(scene, object);
         PlateSolver     host("host");
-        const Patch     patch = deform(cloud, index, {place.point, place.outward}, scene.patch, host);
+        const Patch     patch = deform(object, {place.point, place.outward}, scene.patch, host);
         return warnings(patch, scene.patch, 0);
     } catch (const Error& error) { // a hand from a file may work elsewhere
         return {std::string("at the scene's place nothing can be felt: ") + error.what()};
@@ -125,7 +125,7 @@ std::unique_ptr<Recording> recordingOf(const SessionOptions& o, const SessionPar
     info.device   = device;
     info.clock    = clock;
     info.command  = o.command;
-    info.cloud    = fingerprint(parts.cloud);
+    info.cloud    = fingerprint(parts.object.cloud());
     info.hand     = parts.device.info();
     return std::make_unique<Recording>(o.record, info);
 }
@@ -176,26 +176,25 @@ void demandWhole(const SessionRun& run)
         throw CheckFailed(run.folder + ": " + std::to_string(run.recorded->lost) + " samples were lost");
 }
 
-SessionRun runSession(const Scene& scene, const LoadedCloud& cloud, const NeighbourIndex& index,
-                      const SessionOptions& o, const OnTick& onTick)
+SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const SessionOptions& o, const OnTick& onTick)
 {
     demandGood(o);
     const SessionClock clock = clockNamed(o.clock);
-    Deformation        deformation(cloud.cloud, index, scene); // what can fail fails before a folder is made
-    HandSource         hand = handFor(o.hand, scene, cloud.cloud, index);
+    Deformation        deformation(loaded.object, scene); // what can fail fails before a folder is made
+    HandSource         hand = handFor(o.hand, scene, loaded.object);
     if (hand.isHeld() && clock != SessionClock::real)
         throw Error("--hand " + o.hand.hand + ": somebody holds it, in real time; leave out --clock virtual");
 
     SessionRun run;
     run.device   = deformation.device().name();
     run.folder   = o.record;
-    run.warnings = assumptions(scene, cloud.report);
-    for (const auto& more : {strangeVariables(), warningsOf(scene, cloud.cloud, index), hand.warnings})
+    run.warnings = assumptions(scene, loaded.report);
+    for (const auto& more : {strangeVariables(), warningsOf(scene, loaded.object), hand.warnings})
         run.warnings.insert(run.warnings.end(), more.begin(), more.end());
     const std::atomic<bool>& stop = catchInterrupts();
     waitForHoming(*hand.device, stop);
 
-    const SessionParts parts{scene, cloud.cloud, index, deformation.solver(), *hand.device, hand.frame};
+    const SessionParts parts{scene, loaded.object, deformation.solver(), *hand.device, hand.frame};
     const auto         recording = recordingOf(o, parts, clock, run.device);
     if (!o.blind) warn(run.warnings);
     const OnTick each = [&](const TickRecord& sample) {

@@ -41,11 +41,10 @@ struct SessionRun {
 };
 
 /// Runs a session from the first tick to the last, which leaves the device at zero force.
-/// \param index     of the cloud
 /// \param onTick  sees every sample, on the calling thread; may be empty
 /// \throws Error as handFor(), Deformation and Recording do
-[[nodiscard]] SessionRun runSession(const Scene& scene, const LoadedCloud& cloud, const NeighbourIndex& index,
-                                    const SessionOptions& options, const OnTick& onTick = {});
+[[nodiscard]] SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const SessionOptions& options,
+                                    const OnTick& onTick = {});
 
 /// A session in virtual time, with a line on a terminal. \param stop  ends it once it is true; may be null
 SessionSummary playVirtual(const SessionParts& parts, double seconds, const OnTick& also,

@@ -84,19 +84,20 @@ StrokeOrder parseStroke(const std::string& text, const std::string& what, double
     return order;
 }
 
-StrokeReport paintStroke(const StrokeOrder& order, const std::string& what, const PointCloud& cloud,
-                         const NeighbourIndex& index, StiffnessPainting& painting)
+StrokeReport paintStroke(const StrokeOrder& order, const std::string& what, const SoftObject& object,
+                         StiffnessPainting& painting)
 {
     for (const glm::dvec3& corner : order.path) {
-        const Neighbour nearest = index.nearest(corner, 1).front();
+        const Neighbour nearest = object.index().nearest(corner, 1).front();
         if (nearest.distance > order.radius)
-            throw Error(
-                what + ": expected a place on the cloud, found (" + shown(corner.x) + ", " + shown(corner.y) + ", " +
-                shown(corner.z) + ") m, " + formatQuantity(nearest.distance, "m") + " from its nearest point, " +
-                placeText(cloud.positions()[nearest.point], cloud.bounds().diagonal()) + " m; is the unit right?");
+            throw Error(what + ": expected a place on the cloud, found (" + shown(corner.x) + ", " + shown(corner.y) +
+                        ", " + shown(corner.z) + ") m, " + formatQuantity(nearest.distance, "m") +
+                        " from its nearest point, " +
+                        placeText(object.positions()[nearest.point], object.cloud().bounds().diagonal()) +
+                        " m; is the unit right?");
     }
-    const std::vector<glm::dvec3> dabs = dabsAlong(order.path, order.radius, cloud, index);
-    std::vector<bool>             covered(cloud.size());
+    const std::vector<glm::dvec3> dabs = dabsAlong(order.path, order.radius, object);
+    std::vector<bool>             covered(object.size());
     StrokeReport                  report{dabs.size(), 0};
     Progress                      progress("painting");
     painting.beginStroke();

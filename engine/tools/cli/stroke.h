@@ -32,7 +32,7 @@ struct StrokeReport {
 
 /// Paints a stroke, with progress on a terminal.
 /// \throws Error if a corner of the path is further from the cloud than the radius
-[[nodiscard]] StrokeReport paintStroke(const StrokeOrder& order, const std::string& what, const PointCloud& cloud,
-                                       const NeighbourIndex& index, StiffnessPainting& painting);
+[[nodiscard]] StrokeReport paintStroke(const StrokeOrder& order, const std::string& what, const SoftObject& object,
+                                       StiffnessPainting& painting);
 
 } // namespace palp

@@ -39,18 +39,17 @@ constexpr std::size_t kLargestFile = std::size_t(16) << 20; ///< [bytes] of it
 
 /// A condition, ready to be touched.
 struct Felt {
-    LoadedCloud    cloud;
-    NeighbourIndex index;
+    LoadedObject loaded;
 
-    explicit Felt(const Scene& scene) : cloud(loadCloud(scene)), index(cloud.cloud.positions()) {}
+    explicit Felt(const Scene& scene) : loaded(loadObject(scene)) {}
 
     /// At the scene's place, as the device renders it [N/m]; null where nothing can be felt.
     [[nodiscard]] Json stiffness(const Scene& scene) const
     {
         try {
-            const HandPlace place = handPlace(scene, cloud.cloud, index);
+            const HandPlace place = handPlace(scene, loaded.object);
             PlateSolver     host("host");
-            const Patch     patch = deform(cloud.cloud, index, {place.point, place.outward}, scene.patch, host);
+            const Patch     patch = deform(loaded.object, {place.point, place.outward}, scene.patch, host);
             return std::min(patch.feltStiffness, scene.stiffnessCap);
         } catch (const Error&) { // a hand from a file may work elsewhere
             return nullptr;
@@ -167,7 +166,7 @@ void Sitting::agree()
              {"plan", plan_.canonical},
              {"hand", run_.session.hand.hand},
              {"clock", run_.session.clock}};
-    for (std::size_t k = 0; k < felt_.size(); ++k) now["clouds"].push_back(fingerprint(felt_[k].cloud.cloud));
+    for (std::size_t k = 0; k < felt_.size(); ++k) now["clouds"].push_back(fingerprint(felt_[k].loaded.object.cloud()));
     std::error_code ignored;
     if (std::filesystem::exists(folder_ / kStudyFile, ignored)) {
         const Json before = readStudyFile(folder_);
@@ -272,12 +271,11 @@ std::string Sitting::touch(std::size_t condition, const std::string& name, Force
     std::string     fresh = name;
     for (int again = 2; std::filesystem::exists(folder_ / fresh, ignored); ++again) // a trial that did not count
         fresh = name + "_again" + std::to_string(again);
-    SessionOptions options = run_.session;
-    options.record         = (folder_ / fresh).string();
-    options.blind          = true;
-    const SessionRun session =
-        runSession(plan_.conditions[condition].scene, felt_[condition].cloud, felt_[condition].index, options,
-                   [&](const TickRecord& sample) { force.add(sample); });
+    SessionOptions options   = run_.session;
+    options.record           = (folder_ / fresh).string();
+    options.blind            = true;
+    const SessionRun session = runSession(plan_.conditions[condition].scene, felt_[condition].loaded, options,
+                                          [&](const TickRecord& sample) { force.add(sample); });
     if (session.interrupted) throw Paused();
     try {
         demandWhole(session);

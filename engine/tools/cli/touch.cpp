@@ -64,21 +64,27 @@ double lengthOf(const TouchOptions& options, const std::string& text, const std:
 
 constexpr const char* kSummary = "touch.json";
 
+Material materialOf(const TouchOptions& options)
+{
+    Material material = options.source.sample() ? options.source.sample()->material : Material{};
+    if (!options.thickness.empty()) material.thickness = lengthOf(options, options.thickness, "--thickness");
+    if (!options.poisson.empty()) material.poissonRatio = parseQuantity(options.poisson, Dimension::none, "--poisson");
+    if (!isPoissonRatio(material.poissonRatio))
+        throw Error("--poisson: expected a number above -1 and at most 0.5, found " + options.poisson);
+    return material;
+}
+
 /// Settings in order of precedence: defaults, the sample's constants, the preset, the options.
 PatchSettings settingsOf(const TouchOptions& options)
 {
     PatchSettings settings;
     if (const Sample* sample = options.source.sample()) {
-        settings.material        = sample->material;
         settings.foundation      = sample->foundation;
         settings.window          = sample->window;
         settings.footprintRadius = sample->footprintRadius;
     }
     settings =
         withPreset(settings, named(valueNamed<Preset>(options.preset), "--preset", options.preset, "palpate, paper"));
-    if (!options.thickness.empty()) settings.material.thickness = lengthOf(options, options.thickness, "--thickness");
-    if (!options.poisson.empty())
-        settings.material.poissonRatio = parseQuantity(options.poisson, Dimension::none, "--poisson");
     if (!options.foundation.empty())
         settings.foundation = between(0, kMostFoundation, "Pa/m",
                                       parseQuantity(options.foundation, Dimension::foundation, "--foundation"),
@@ -100,13 +106,11 @@ PatchSettings settingsOf(const TouchOptions& options)
     if (settings.cells < 8 || settings.cells > kMostCells || settings.cells % 2)
         throw Error("--cells: expected an even number from 8 to " + std::to_string(kMostCells) + ", found " +
                     std::to_string(settings.cells));
-    if (!isPoissonRatio(settings.material.poissonRatio))
-        throw Error("--poisson: expected a number above -1 and at most 0.5, found " + options.poisson);
     settings.tolerance = options.solver.tolerance;
     return settings;
 }
 
-Contact contactOf(const TouchOptions& options, const PointCloud& cloud, const NeighbourIndex& index, double window)
+Contact contactOf(const TouchOptions& options, const SoftObject& object, double window)
 {
     const Sample*             sample = options.source.sample();
     std::optional<glm::dvec3> from;
@@ -114,15 +118,16 @@ Contact contactOf(const TouchOptions& options, const PointCloud& cloud, const Ne
     if (!options.from.empty()) from = parsePoint(options.from, "--from");
     const double plain = options.source.metresPerPlainNumber();
     if (!sample && options.at.empty()) {
-        const glm::dvec3 middle = cloud.positions()[index.nearest(cloud.bounds().centre(), 1).front().point];
+        const Bounds&    bounds = object.cloud().bounds();
+        const glm::dvec3 middle = object.positions()[object.index().nearest(bounds.centre(), 1).front().point];
         throw Error("--at: expected a place X,Y,Z for a cloud from a file, found none; near its middle it has the "
                     "point --at " +
-                    placeText(middle, cloud.bounds().diagonal(), plain) + " (in " +
+                    placeText(middle, bounds.diagonal(), plain) + " (in " +
                     (options.source.unit.empty() ? "m" : options.source.unit) + ")");
     }
     const glm::dvec3 place = options.at.empty() ? sample->place : parsePoint(options.at, "--at", plain);
     for (int k = 0; k < 3; ++k) between(-kMostCoordinate, kMostCoordinate, "m", place[k], "--at", options.at);
-    return touchAt(cloud, index, place, from, window / 4);
+    return touchAt(object, place, from, window / 4);
 }
 
 std::string percent(double share)
@@ -134,7 +139,8 @@ std::string percent(double share)
     return text;
 }
 
-void printTouch(const TouchOptions& options, const PatchSettings& settings, const nlohmann::json& r)
+void printTouch(const TouchOptions& options, const Material& material, const PatchSettings& settings,
+                const nlohmann::json& r)
 {
     const auto  quantity = [&](const char* key, const char* unit) { return formatQuantity(r[key], unit); };
     const auto& window   = r["window"];
@@ -148,7 +154,7 @@ void printTouch(const TouchOptions& options, const PatchSettings& settings, cons
     std::printf("  length unit        %s\n", r["cloud"]["length_unit_source"].get<std::string>().c_str());
     std::printf("  stiffness          %s\n", r["cloud"]["stiffness_source"].get<std::string>().c_str());
     std::printf("  scene              thickness %s, poisson %.3g, foundation %s, footprint radius %s\n",
-                formatQuantity(settings.material.thickness, "m").c_str(), settings.material.poissonRatio,
+                formatQuantity(material.thickness, "m").c_str(), material.poissonRatio,
                 formatQuantity(settings.foundation, "Pa/m").c_str(),
                 formatQuantity(settings.footprintRadius, "m").c_str());
     std::printf("  sphere             %s, radius %s, misfit %s\n", r["sphere"]["outcome"].get<std::string>().c_str(),
@@ -247,15 +253,16 @@ void refuseOverflow(const nlohmann::json& report)
 
 void touch(const TouchOptions& options)
 {
-    const PatchSettings  settings = settingsOf(options);
-    const double         force    = between(-kMostForce, kMostForce, "N",
-                                            parseQuantity(options.force, Dimension::force, "--force"), "--force", options.force);
-    const LoadedCloud    loaded   = options.source.load();
-    const NeighbourIndex index(loaded.cloud.positions());
-    const Contact        contact = contactOf(options, loaded.cloud, index, settings.window);
-    PlateSolver          device  = options.solver.open();
-    const auto           told    = device.note();
-    const Patch          patch   = deform(loaded.cloud, index, contact, settings, device);
+    const Material      material = materialOf(options);
+    const PatchSettings settings = settingsOf(options);
+    const double        force    = between(-kMostForce, kMostForce, "N",
+                                           parseQuantity(options.force, Dimension::force, "--force"), "--force", options.force);
+    const LoadedCloud   loaded   = options.source.load();
+    const SoftObject    object(loaded.cloud, material);
+    const Contact       contact = contactOf(options, object, settings.window);
+    PlateSolver         device  = options.solver.open();
+    const auto          told    = device.note();
+    const Patch         patch   = deform(object, contact, settings, device);
     if (device.note() != told) std::cerr << "palpate: the reference solver took over: " << device.note() << "\n";
     if (!patch.deformed())
         throw Error("touch: the " + std::to_string(patch.gathered.size()) +
@@ -263,7 +270,7 @@ void touch(const TouchOptions& options)
                     "surface (" +
                     name(patch.sphere.outcome) + "); try a larger --window, or check --unit");
 
-    nlohmann::json report = patchJson(patch, settings, force, device);
+    nlohmann::json report = patchJson(patch, material, settings, force, device);
     refuseOverflow(report);
     report["cloud"] = cloudJson(options.source, loaded);
     for (std::string& line : options.source.warnings(loaded)) report["warnings"].push_back(std::move(line));
@@ -278,7 +285,7 @@ void touch(const TouchOptions& options)
     if (options.json)
         std::cout << jsonText(report);
     else
-        printTouch(options, settings, report);
+        printTouch(options, object.material(), settings, report);
 }
 
 } // namespace

@@ -86,7 +86,7 @@ SessionInfo infoOf(const ViewOptions& o, const Stage& stage, const HapticDevice&
     info.device   = stage.solvedOn();
     info.clock    = SessionClock::real;
     info.command  = o.command;
-    info.cloud    = fingerprint(stage.loaded().cloud);
+    info.cloud    = fingerprint(stage.object().cloud());
     info.hand     = device.info();
     return info;
 }
@@ -131,7 +131,7 @@ void view(const ViewOptions& o)
     if (o.hand.hand != "mouse")
         settings.hand = [&](const Stage& stage, const HandWait& wait) -> WorkbenchHand {
             source = {}; // a device is opened once at a time
-            source = handFor(o.hand, stage.scene(), stage.loaded().cloud, stage.index());
+            source = handFor(o.hand, stage.scene(), stage.object());
             waitForHoming(*source.device, wait.givenUp, wait.tell);
             return {source.device.get(), source.frame, source.isHeld() ? 1e9 : source.seconds};
         };

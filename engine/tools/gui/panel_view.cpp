@@ -66,8 +66,8 @@ void drawTool(PanelDesk& desk)
     if (const auto tool = segments(desk, "tool", int(desk.state.tool), {"touch", "paint"}))
         desk.state.tool = Tool(*tool);
     labelled(desk, "press depth", "How far below the surface the pointer carries the hand: the wheel, while touching");
-    const double most = 1e3 * kDeepest * desk.content.scene.patch.material.thickness, least = -most; // [mm]
-    double       depth = 1e3 * desk.state.pressDepth;                                                // [mm]
+    const double most = 1e3 * kDeepest * desk.content.scene.material.thickness, least = -most; // [mm]
+    double       depth = 1e3 * desk.state.pressDepth;                                          // [mm]
     if (ImGui::SliderScalar("##depth", ImGuiDataType_Double, &depth, &least, &most, "%.2f mm",
                             ImGuiSliderFlags_AlwaysClamp))
         desk.state.pressDepth = depth * 1e-3;

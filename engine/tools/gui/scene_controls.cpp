@@ -14,10 +14,8 @@ using S = Scene;
 std::vector<SceneNumber> materialNumbers()
 {
     return {
-        {"thickness", "thickness", "mm", 1e-3, 0.1, 20, true, 2, 0,
-         [](const S& s) { return s.patch.material.thickness; }},
-        {"poisson", "Poisson's ratio", "", 1, 0, 0.49, false, 2, 0,
-         [](const S& s) { return s.patch.material.poissonRatio; }},
+        {"thickness", "thickness", "mm", 1e-3, 0.1, 20, true, 2, 0, [](const S& s) { return s.material.thickness; }},
+        {"poisson", "Poisson's ratio", "", 1, 0, 0.49, false, 2, 0, [](const S& s) { return s.material.poissonRatio; }},
         {"foundation", "foundation", "MPa/m", 1e6, 0, 100, true, 2, 0, [](const S& s) { return s.patch.foundation; }},
     };
 }
@@ -103,7 +101,7 @@ std::string wishText(const SceneNumber& number, double shown)
 std::string lawPreset(std::string_view law, const Scene& scene, const PointCloud& cloud)
 {
     const Extremes  found    = extremesOf(cloud.stiffness());
-    const Material& material = scene.patch.material;
+    const Material& material = scene.material;
     const bool      isD      = cloud.kind() == StiffnessKind::rigidity;
     const double    low      = isD ? material.modulus(found.least) : found.least, // [Pa]
         high                 = isD ? material.modulus(found.most) : found.most;   // [Pa]

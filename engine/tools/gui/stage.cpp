@@ -9,12 +9,12 @@
 
 namespace palp {
 
-HandPlace startPlace(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index)
+HandPlace startPlace(const Scene& scene, const SoftObject& object)
 {
     try {
-        return handPlace(scene, cloud, index);
+        return handPlace(scene, object);
     } catch (const Error&) {
-        const auto highest = std::ranges::max_element(cloud.positions(), {}, [](const glm::dvec3& p) { return p.z; });
+        const auto highest = std::ranges::max_element(object.positions(), {}, [](const glm::dvec3& p) { return p.z; });
         return {*highest, {0, 0, 1}};
     }
 }
@@ -26,29 +26,31 @@ bool sameObject(const Scene& a, const Scene& b)
 }
 
 Stage::Stage(const Scene& scene)
-    : scene_(scene), loaded_(loadCloud(scene)), index_(loaded_.cloud.positions()),
-      view_(loaded_.cloud, index_, scene.patch, loaded_.faces), painting_(loaded_.cloud, index_),
-      place_(startPlace(scene, loaded_.cloud, index_)), painted_(std::make_shared<const PointCloud>(loaded_.cloud)),
-      solved_(painted_), deformation_(std::make_unique<Deformation>(*solved_, index_, scene_)),
+    : scene_(scene), loaded_(loadObject(scene)), view_(loaded_.object, scene.patch), painting_(loaded_.object),
+      place_(startPlace(scene, loaded_.object)), painted_(std::make_shared<const SoftObject>(loaded_.object)),
+      solved_(painted_), deformation_(std::make_unique<Deformation>(*solved_, scene_)),
       solvedOn_(deformation_->device().name())
 {
 }
 
 void Stage::change(const Scene& scene)
 {
-    auto made    = std::make_unique<Deformation>(*painted_, index_, scene);
+    auto object  = std::make_shared<const SoftObject>(painted_->withMaterial(scene.material));
+    auto made    = std::make_unique<Deformation>(*object, scene);
     deformation_ = std::move(made);
+    painted_     = std::move(object);
     solved_      = painted_;
     fresh_.take(); // older than that
     scene_    = scene;
-    place_    = startPlace(scene, loaded_.cloud, index_);
+    place_    = startPlace(scene, loaded_.object);
     solvedOn_ = deformation_->device().name();
     view_.use(scene.patch);
 }
 
 void Stage::takePaint()
 {
-    painted_ = std::make_shared<const PointCloud>(painting_.cloud());
+    const auto now = painting_.stiffness();
+    painted_       = std::make_shared<const SoftObject>(painted_->repainted({now.begin(), now.end()}));
     view_.repaint(painting_.stiffness());
     fresh_.draft() = painted_;
     fresh_.publish();

@@ -14,17 +14,17 @@ namespace palp {
 /// for solver()
 class Stage {
 public:
-    /// \throws Error as loadCloud(), Deformation and CloudSkin do
+    /// \throws Error as loadObject(), Deformation and CloudSkin do
     explicit Stage(const Scene& scene);
     Stage(const Stage&)            = delete;
     Stage& operator=(const Stage&) = delete;
 
-    [[nodiscard]] const Scene&          scene() const noexcept { return scene_; }
-    [[nodiscard]] const LoadedCloud&    loaded() const noexcept { return loaded_; }
-    [[nodiscard]] const NeighbourIndex& index() const noexcept { return index_; }
-    [[nodiscard]] TouchView&            view() noexcept { return view_; }
-    [[nodiscard]] const HandPlace&      place() const noexcept { return place_; } ///< where the hand starts
-    [[nodiscard]] const std::string&    solvedOn() const noexcept { return solvedOn_; }
+    [[nodiscard]] const Scene&           scene() const noexcept { return scene_; }
+    [[nodiscard]] const SoftObject&      object() const noexcept { return loaded_.object; } ///< as it was loaded
+    [[nodiscard]] const CloudFileReport& report() const noexcept { return loaded_.report; }
+    [[nodiscard]] TouchView&             view() noexcept { return view_; }
+    [[nodiscard]] const HandPlace&       place() const noexcept { return place_; } ///< where the hand starts
+    [[nodiscard]] const std::string&     solvedOn() const noexcept { return solvedOn_; }
 
     /// Other values for the same object: no file is read again, and its paint stays.
     /// \pre no session runs
@@ -32,7 +32,7 @@ public:
     void change(const Scene& scene);
 
     [[nodiscard]] const StiffnessPainting& painting() const noexcept { return painting_; }
-    [[nodiscard]] const PointCloud&        painted() const noexcept { return *painted_; } ///< as it is now
+    [[nodiscard]] const SoftObject&        painted() const noexcept { return *painted_; } ///< as it is now
 
     /// A dab of a brush, or whatever else changes the stiffness: shown at once and felt with the next patch.
     template <class Change>
@@ -49,21 +49,20 @@ private:
     void takePaint();
 
     Scene             scene_;
-    LoadedCloud       loaded_;
-    NeighbourIndex    index_;
+    LoadedObject      loaded_;
     TouchView         view_;
     StiffnessPainting painting_;
     HandPlace         place_;
 
-    std::shared_ptr<const PointCloud>         painted_; ///< of the window's thread
-    Latest<std::shared_ptr<const PointCloud>> fresh_;   ///< to the deformation's
-    std::shared_ptr<const PointCloud>         solved_;  ///< of the deformation's
+    std::shared_ptr<const SoftObject>         painted_; ///< of the window's thread
+    Latest<std::shared_ptr<const SoftObject>> fresh_;   ///< to the deformation's
+    std::shared_ptr<const SoftObject>         solved_;  ///< of the deformation's
     std::unique_ptr<Deformation>              deformation_;
     std::string                               solvedOn_;
 };
 
 /// The scene's hand place; where that is off the object, the point of the object that lies uppermost.
-[[nodiscard]] HandPlace startPlace(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index);
+[[nodiscard]] HandPlace startPlace(const Scene& scene, const SoftObject& object);
 
 /// Whether two scenes differ in what is touched, so that a stage must be made anew.
 [[nodiscard]] bool sameObject(const Scene& a, const Scene& b);

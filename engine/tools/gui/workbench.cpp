@@ -74,8 +74,7 @@ void Workbench::session()
         hand_  = hand;
         begun_ = true;
         startRecording();
-        const SessionParts  parts{stage_->scene(), stage_->loaded().cloud, stage_->index(),
-                                 solver(),        *hand.device,           hand.frame};
+        const SessionParts  parts{stage_->scene(), stage_->object(), solver(), *hand.device, hand.frame};
         RealSessionSettings real;
         real.seconds    = hand.seconds;
         real.viewPeriod = 1e-4; // as soon as a picture is done the next begins
@@ -303,7 +302,7 @@ void Workbench::writeTexts(const SessionView* view)
 
 PanelContent Workbench::content(const SessionView* view) const
 {
-    PanelContent now{stage_->scene(), stage_->painted(), history_};
+    PanelContent now{stage_->scene(), stage_->painted().cloud(), history_};
     if (view) {
         now.patch      = view->patch;
         now.force      = glm::length(view->sample.force);

@@ -100,9 +100,9 @@ void Workbench::savePaint()
         if (isPly) {
             CloudReadSettings settings;
             settings.lengthUnit = stage_->scene().lengthUnit;
-            property            = repaintPly(source, settings, stage_->painted(), target).property;
+            property            = repaintPly(source, settings, stage_->painted().cloud(), target).property;
         } else {
-            writeCloud(target, stage_->painted(), {}, {});
+            writeCloud(target, stage_->painted().cloud(), {}, {});
         }
         paintSaved_ = true;
         say("saved " + target.string() + ", property " + property);

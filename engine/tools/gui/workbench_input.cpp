@@ -182,7 +182,7 @@ void Workbench::touch(const WindowInput& input)
     if (!input.touch) letGo_ = false;
     if (!input.touch || input.panelsTakeKeys || letGo_) return pointer_->release();
     if (input.panelsTakePointer) return; // over a panel the hand stays where it is
-    const double     thickness = stage_->scene().patch.material.thickness;
+    const double     thickness = stage_->scene().material.thickness;
     constexpr double kStep = 0.05, kMost = 3; // of the thickness: a notch, and how deep and high it goes [1]
     state_.pressDepth =
         std::clamp(state_.pressDepth - kStep * thickness * input.wheel, -kMost * thickness, kMost * thickness);
@@ -210,7 +210,7 @@ void Workbench::paintWith(const WindowInput& input)
     if (painting_) path.insert(path.begin(), lastDab_);
     stage_->paint([&](StiffnessPainting& painting) {
         if (!painting_) painting.beginStroke();
-        for (const glm::dvec3& place : dabsAlong(path, state_.brush.radius, stage_->painted(), stage_->index())) {
+        for (const glm::dvec3& place : dabsAlong(path, state_.brush.radius, stage_->painted())) {
             const Brush brush{place, state_.brush.radius, state_.brush.strength};
             if (state_.brush.smooths)
                 painting.smooth(brush);
@@ -262,7 +262,7 @@ void Workbench::moveByCap()
 
 void Workbench::frameAll()
 {
-    const Bounds& bounds = stage_->painted().bounds();
+    const Bounds& bounds = stage_->painted().cloud().bounds();
     if (input_.size.y < 1) {
         toFrame_ = true;
         return;

@@ -123,7 +123,7 @@ void Workbench::adopt(const std::string& what, Opened opened)
     useObject();
     if (!replayed_) return tellAssumptions();
     replay_ = std::make_unique<ReplayDevice>(replayed_->samples, replayed_->hand);
-    if (!replayed_->cloud.empty() && replayed_->cloud != fingerprint(stage_->loaded().cloud))
+    if (!replayed_->cloud.empty() && replayed_->cloud != fingerprint(stage_->object().cloud()))
         complain("the cloud is not the one that was recorded: " + stage_->scene().cloud + " has changed");
 }
 
@@ -132,7 +132,7 @@ void Workbench::tellAssumptions()
 {
     if (!settings_.assumed) return;
     std::string all;
-    for (const std::string& sentence : settings_.assumed(stage_->scene(), stage_->loaded().report)) {
+    for (const std::string& sentence : settings_.assumed(stage_->scene(), stage_->report())) {
         all += (all.empty() ? "" : "; ") + sentence;
         if (settings_.complained) settings_.complained(sentence);
     }
@@ -145,11 +145,11 @@ void Workbench::useObject()
 {
     const Scene& scene = stage_->scene();
     pointer_.emplace(Hit{stage_->place().point, stage_->place().outward}, scene.startHeight,
-                     stage_->painted().bounds());
-    state_.pressDepth   = 0.4 * scene.patch.material.thickness;
+                     stage_->painted().cloud().bounds());
+    state_.pressDepth   = 0.4 * scene.material.thickness;
     state_.brush.radius = scene.patch.footprintRadius;
-    state_.brush.value  = *std::ranges::max_element(stage_->painted().stiffness());
-    deepest_            = 0.5 * scene.patch.material.thickness; // as far as theory goes
+    state_.brush.value  = *std::ranges::max_element(stage_->painted().cloud().stiffness());
+    deepest_            = 0.5 * scene.material.thickness; // as far as theory goes
     strongest_          = 0.5 * scene.maxForce;
     failed_             = false;
     paintSaved_         = true;

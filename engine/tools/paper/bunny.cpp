@@ -81,13 +81,13 @@ glm::dvec3 middleOf(const std::vector<glm::dvec3>& points)
 }
 
 /// The ear that reaches highest; y is up, as in the original.
-Ear earOf(const PointCloud& cloud, const NeighbourIndex& index)
+Ear earOf(const SoftObject& object)
 {
-    const auto       positions = cloud.positions();
+    const auto       positions = object.positions();
     const glm::dvec3 top =
         *std::max_element(positions.begin(), positions.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
     std::vector<glm::dvec3> ear, slice;
-    for (const std::uint32_t n : index.gather(top, kEar)) ear.push_back(positions[n]);
+    for (const std::uint32_t n : object.index().gather(top, kEar)) ear.push_back(positions[n]);
     const glm::dvec3 middle = middleOf(ear);
     glm::dvec3       along  = longest(spreadOf(ear, middle)); // from the root to the tip
     if (glm::dot(top - middle, along) < 0) along = -along;
@@ -117,17 +117,17 @@ Ear earOf(const PointCloud& cloud, const NeighbourIndex& index)
 
 /// The ear's skin on the side of the finger. The other one is 5 mm behind: a sphere through both would have the ear's
 /// thickness and not its shape.
-PointCloud skinOf(const PointCloud& cloud, const NeighbourIndex& index, const Ear& ear)
+SoftObject skinOf(const SoftObject& object, const Ear& ear)
 {
     std::vector<glm::dvec3> positions;
     std::vector<double>     stiffness;
-    for (const std::uint32_t n : index.gather(ear.place, kEar / 2)) {
-        const glm::dvec3& p = cloud.positions()[n];
+    for (const std::uint32_t n : object.index().gather(ear.place, kEar / 2)) {
+        const glm::dvec3& p = object.positions()[n];
         if (glm::dot(p - ear.middle, ear.frame.normal) < 0) continue;
         positions.push_back(p);
-        stiffness.push_back(cloud.stiffness()[n]);
+        stiffness.push_back(object.cloud().stiffness()[n]);
     }
-    return {positions, stiffness, cloud.kind()};
+    return SoftObject({positions, stiffness, object.cloud().kind()}, object.material());
 }
 
 } // namespace
@@ -143,24 +143,19 @@ const std::string& bunnyTerms()
 
 void addBunny(Section& lobe, const std::filesystem::path& file, const ReportRun& run)
 {
-    const Bunny          bunny = readBunny(file);
-    const NeighbourIndex all(bunny.cloud.positions());
-    const Ear            ear  = earOf(bunny.cloud, all);
-    const PointCloud     skin = skinOf(bunny.cloud, all, ear);
-    const NeighbourIndex index(skin.positions());
-    PatchSettings        settings{.material        = {4e-3, 0.45},
-                                  .window          = kWindow,
-                                  .cells           = run.quick ? 32 : 64,
-                                  .footprintRadius = 2e-3,
-                                  .frame           = ear.frame};
-    Table                table{"The outer skin of an ear of the bunny under " + formatQuantity(kForce, "N") +
+    const Bunny      bunny = readBunny(file);
+    const SoftObject all(bunny.cloud, {4e-3, 0.45});
+    const Ear        ear  = earOf(all);
+    const SoftObject skin = skinOf(all, ear);
+    PatchSettings    settings{.window = kWindow, .cells = run.quick ? 32 : 64, .footprintRadius = 2e-3};
+    Table            table{"The outer skin of an ear of the bunny under " + formatQuantity(kForce, "N") +
                     ", 300 kPa throughout, window 18 mm.",
                 {"edges", "under the finger", "at the ear's tip", "felt stiffness"},
                 {}};
     for (const auto& [name, edges] :
          {std::pair("clamped all around", PlateEdges{}), std::pair("free but for its root", kFromItsRoot)}) {
         settings.edges    = edges;
-        const Patch patch = deform(skin, index, {ear.place, ear.frame.normal}, settings, run.device);
+        const Patch patch = deform(skin, {ear.place, ear.frame.normal}, settings, run.device, ear.frame);
         if (!patch.deformed())
             throw Error(file.string() + ": the points of its highest ear determine no surface; is y up, as in the "
                                         "original?");
@@ -176,7 +171,7 @@ void addBunny(Section& lobe, const std::filesystem::path& file, const ReportRun&
         const PressedPatch pressed{&patch, kForce, ""};
         lobe.figures.push_back(
             {std::string("The outer skin of an ear, its root above: ") + name + ", displacements twice as large.",
-             surfaceSvg(skin, {&pressed, 1}, {std::string("The bunny's ear, ") + name, 2, {0, 0, 0}, true})});
+             surfaceSvg(skin.cloud(), {&pressed, 1}, {std::string("The bunny's ear, ") + name, 2, {0, 0, 0}, true})});
     }
     lobe.numbers.push_back({"bunny/place", "m", {ear.place.x, ear.place.y, ear.place.z}});
     lobe.numbers.push_back({"bunny/normal", "1", {ear.frame.normal.x, ear.frame.normal.y, ear.frame.normal.z}});

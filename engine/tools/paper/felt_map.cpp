@@ -28,11 +28,11 @@ std::vector<std::uint32_t> onePerCube(const PointCloud& cloud, double edge)
 
 /// The lattice's edge that leaves about as many places as are wanted [m]: n places a spacing s apart become
 /// n (s/edge)^2, and a surface that cuts cubes askew meets half as many again.
-double edgeFor(const PointCloud& cloud, const NeighbourIndex& index, std::size_t wanted)
+double edgeFor(const SoftObject& object, std::size_t wanted)
 {
     constexpr double kAskew  = 1.5; // [1] Cauchy's formula for a lattice of cubes and a surface in all directions
-    const double     spacing = index.spacing() > 0 ? index.spacing() : cloud.bounds().diagonal() / 100;
-    return spacing * std::sqrt(std::max(1.0, kAskew * double(cloud.size()) / double(wanted)));
+    const double     spacing = object.spacing() > 0 ? object.spacing() : object.cloud().bounds().diagonal() / 100;
+    return spacing * std::sqrt(std::max(1.0, kAskew * double(object.size()) / double(wanted)));
 }
 
 /// Felt stiffness at all points from that at the places.
@@ -59,19 +59,19 @@ std::vector<double> between(const PointCloud& cloud, const FeltMap& map, double 
 
 } // namespace
 
-FeltMap feltMap(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings, std::size_t wanted,
-                PlateSolver& device, const std::function<void(std::size_t, std::size_t)>& onStep)
+FeltMap feltMap(const SoftObject& object, const PatchSettings& settings, std::size_t wanted, PlateSolver& device,
+                const std::function<void(std::size_t, std::size_t)>& onStep)
 {
     PALP_EXPECT(wanted >= 8, std::to_string(wanted) + " places of a map");
-    const double edge   = edgeFor(cloud, index, wanted);
-    const auto   places = onePerCube(cloud, edge);
+    const double edge   = edgeFor(object, wanted);
+    const auto   places = onePerCube(object.cloud(), edge);
     FeltMap      map;
     std::string  why;
     for (std::size_t n = 0; n < places.size(); ++n) {
         if (onStep) onStep(n, places.size());
         try {
-            const Contact contact = touchAt(cloud, index, cloud.positions()[places[n]], {}, edge);
-            const Patch   patch   = deform(cloud, index, contact, settings, device);
+            const Contact contact = touchAt(object, object.positions()[places[n]], {}, edge);
+            const Patch   patch   = deform(object, contact, settings, device);
             if (!patch.deformed()) throw Error("the points determine no surface");
             map.places.push_back(places[n]);
             map.stiffness.push_back(patch.feltStiffness);
@@ -84,7 +84,7 @@ FeltMap feltMap(const PointCloud& cloud, const NeighbourIndex& index, const Patc
     std::vector<double> sorted = map.stiffness;
     std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(sorted.size() / 2), sorted.end());
     map.typical  = sorted[sorted.size() / 2];
-    map.atPoints = between(cloud, map, edge);
+    map.atPoints = between(object.cloud(), map, edge);
     return map;
 }
 

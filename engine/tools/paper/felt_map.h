@@ -22,9 +22,8 @@ struct FeltMap {
 /// \throws as deform() where not a single place can be touched
 /// \source places: our own; between them the logarithm's mean with Gaussian weights, as wide as half an edge of the
 ///         lattice
-[[nodiscard]] FeltMap feltMap(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings,
-                              std::size_t wanted, PlateSolver& device,
-                              const std::function<void(std::size_t, std::size_t)>& onStep = {});
+[[nodiscard]] FeltMap feltMap(const SoftObject& object, const PatchSettings& settings, std::size_t wanted,
+                              PlateSolver& device, const std::function<void(std::size_t, std::size_t)>& onStep = {});
 
 /// Share of right answers when a place is compared with the object's typical one, at every point [1]: 0.5 to 1.
 /// \param weber  [1]

@@ -16,8 +16,7 @@ namespace palp::report {
 namespace {
 
 /// Points of the surface along the line, from end to end.
-std::vector<glm::dvec3> surfaceAlong(const FeltLine& line, const PointCloud& cloud, const NeighbourIndex& index,
-                                     int places)
+std::vector<glm::dvec3> surfaceAlong(const FeltLine& line, const SoftObject& object, int places)
 {
     constexpr double      kPace = 10e-3; // [m/s] any that is no fault of a hand
     std::vector<HandPose> flat;
@@ -25,7 +24,7 @@ std::vector<glm::dvec3> surfaceAlong(const FeltLine& line, const PointCloud& clo
         const double along = line.reach * (2.0 * n / (places - 1) - 1);
         flat.push_back({(along + line.reach) / kPace, line.middle.point + along * line.direction});
     }
-    const HandPath          path = draped(HandPath(std::move(flat), "line"), line.middle, cloud, index);
+    const HandPath          path = draped(HandPath(std::move(flat), "line"), line.middle, object);
     std::vector<glm::dvec3> points;
     for (const HandPose& sample : path.samples()) points.push_back(sample.position);
     return points;
@@ -37,8 +36,7 @@ double alongOf(const FeltLine& line, const glm::dvec3& place)
 }
 
 /// To and fro along the line, over whatever height the surface has.
-HandPath strokingHand(const FeltLine& line, const HandScript& script, const PointCloud& cloud,
-                      const NeighbourIndex& index)
+HandPath strokingHand(const FeltLine& line, const HandScript& script, const SoftObject& object)
 {
     const Frame           from  = Frame::about(line.middle.outward);
     const glm::dvec3      north = glm::cross(from.normal, line.direction);
@@ -49,7 +47,7 @@ HandPath strokingHand(const FeltLine& line, const HandScript& script, const Poin
         samples.push_back({sample.time, line.middle.point + glm::dot(d, from.east) * line.direction +
                                             glm::dot(d, from.north) * north + glm::dot(d, from.normal) * from.normal});
     }
-    return draped(HandPath(std::move(samples), "stroke"), line.middle, cloud, index);
+    return draped(HandPath(std::move(samples), "stroke"), line.middle, object);
 }
 
 FeltRange rangeOf(const std::vector<double>& along, const std::vector<double>& logarithms)
@@ -60,11 +58,11 @@ FeltRange rangeOf(const std::vector<double>& along, const std::vector<double>& l
 
 } // namespace
 
-FeltLine feltLine(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
-                  const std::optional<glm::dvec3>& direction, double reach)
+FeltLine feltLine(const Scene& scene, const SoftObject& object, const std::optional<glm::dvec3>& direction,
+                  double reach)
 {
     constexpr double kSteep = 0.1; // of a unit vector that remains in the surface [1]: 84 degrees from it
-    const HandPlace  middle = handPlace(scene, cloud, index);
+    const HandPlace  middle = handPlace(scene, object);
     if (!direction) return {middle, Frame::about(middle.outward).east, reach};
     const double length = glm::length(*direction);
     if (!(length > 0 && std::isfinite(length))) throw Error("the path's direction: expected a vector, found zero");
@@ -76,44 +74,43 @@ FeltLine feltLine(const Scene& scene, const PointCloud& cloud, const NeighbourIn
     return {middle, glm::normalize(inside), reach};
 }
 
-std::vector<FeltPlace> windowsAlong(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings,
-                                    const FeltLine& line, int places, PlateSolver& device)
+std::vector<FeltPlace> windowsAlong(const SoftObject& object, const PatchSettings& settings, const FeltLine& line,
+                                    int places, PlateSolver& device)
 {
     PALP_EXPECT(places >= 2, std::to_string(places) + " places of a line");
-    PatchSettings          carried = settings;
+    std::optional<Frame>   carried;
     std::vector<FeltPlace> result;
-    for (const glm::dvec3& place : surfaceAlong(line, cloud, index, places)) {
-        const Patch patch = deform(cloud, index, {place, line.middle.outward}, carried, device);
+    for (const glm::dvec3& place : surfaceAlong(line, object, places)) {
+        const Patch patch = deform(object, {place, line.middle.outward}, settings, device, carried);
         if (!patch.deformed())
             throw Error("the points around a place of the path determine no surface; try a smaller reach");
-        carried.frame = patch.chart.frame;
+        carried = patch.chart.frame;
         result.push_back({alongOf(line, place), place, patch.contactStiffness, patch.compliance});
     }
     return result;
 }
 
-std::vector<FeltTick> strokeAlong(const PointCloud& cloud, const NeighbourIndex& index, const Scene& scene,
-                                  const FeltLine& line)
+std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, const FeltLine& line)
 {
     constexpr double kSpeed   = 50e-3; // [m/s] a hand that explores
     constexpr double kHeight  = 5e-3;  // [m] where it starts
     constexpr double kDepth   = 0.4;   // of the thickness: a little more deflection is still within theory [1]
     constexpr double kEngaged = 1.7;   // [s] after the first contact the force is fully on; the governor takes 1.5
-    const double     down     = std::numbers::pi * (kHeight + kDepth * scene.patch.material.thickness) / (2 * kSpeed);
+    const double     down     = std::numbers::pi * (kHeight + kDepth * scene.material.thickness) / (2 * kSpeed);
     const double     cycle    = 2 * std::numbers::pi * line.reach / kSpeed;
     const HandScript script{.motion   = HandMotion::scan,
                             .speed    = kSpeed,
-                            .depth    = kDepth * scene.patch.material.thickness,
+                            .depth    = kDepth * scene.material.thickness,
                             .radius   = line.reach,
                             .height   = kHeight,
                             .duration = down + kEngaged + cycle};
 
-    const HandPath        hand = strokingHand(line, script, cloud, index);
-    Deformation           deformation(cloud, index, scene);
+    const HandPath        hand = strokingHand(line, script, object);
+    Deformation           deformation(object, scene);
     HandDevice            device(hand);
     std::vector<FeltTick> ticks;
     double                met = std::numeric_limits<double>::infinity(); // [s]
-    runVirtual({scene, cloud, index, deformation.solver(), device, {}}, script.duration, [&](const TickRecord& s) {
+    runVirtual({scene, object, deformation.solver(), device, {}}, script.duration, [&](const TickRecord& s) {
         if (s.compliance > 0) met = std::min(met, s.time);
         const double depth = glm::length(s.proxy - s.hip), force = glm::length(s.force);
         if (s.compliance > 0 && s.time >= met + kEngaged && depth > 0 && force > 0)
@@ -123,13 +120,11 @@ std::vector<FeltTick> strokeAlong(const PointCloud& cloud, const NeighbourIndex&
     return ticks;
 }
 
-PointCloud homogeneous(const PointCloud& cloud)
+SoftObject homogeneous(const SoftObject& object)
 {
     double sum = 0;
-    for (const double stiffness : cloud.stiffness()) sum += std::log(stiffness);
-    return {{cloud.positions().begin(), cloud.positions().end()},
-            std::vector<double>(cloud.size(), std::exp(sum / double(cloud.size()))),
-            cloud.kind()};
+    for (const double stiffness : object.cloud().stiffness()) sum += std::log(stiffness);
+    return object.repainted(std::vector<double>(object.size(), std::exp(sum / double(object.size()))));
 }
 
 FeltRange rangeOf(const std::vector<FeltPlace>& places, ForceLaw law)

@@ -19,7 +19,7 @@ struct FeltLine {
 /// The line through the scene's place.
 /// \param direction  roughly; empty: the chart's east there
 /// \throws Error if the direction is zero, not finite, or runs along the outward one
-[[nodiscard]] FeltLine feltLine(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
+[[nodiscard]] FeltLine feltLine(const Scene& scene, const SoftObject& object,
                                 const std::optional<glm::dvec3>& direction, double reach);
 
 /// What a finger at rest on a place of the line has under it.
@@ -35,9 +35,8 @@ struct FeltPlace {
 /// deform() about places of the line, evenly spread, with axes carried from one to the next.
 /// \param places  at least 2
 /// \throws as deform(), and Error where the points determine no surface
-[[nodiscard]] std::vector<FeltPlace> windowsAlong(const PointCloud& cloud, const NeighbourIndex& index,
-                                                  const PatchSettings& settings, const FeltLine& line, int places,
-                                                  PlateSolver& device);
+[[nodiscard]] std::vector<FeltPlace> windowsAlong(const SoftObject& object, const PatchSettings& settings,
+                                                  const FeltLine& line, int places, PlateSolver& device);
 
 /// What a sliding finger is given at one tick.
 struct FeltTick {
@@ -48,11 +47,10 @@ struct FeltTick {
 /// A hand that strokes once to and fro along the line, at constant depth, through all that a session has: proxy, tables
 /// at the scene's rate, hand-over, tank and governor, in virtual time. Ticks count from when the force is fully on.
 /// \throws as runVirtual(), and Error if the hand met nothing
-[[nodiscard]] std::vector<FeltTick> strokeAlong(const PointCloud& cloud, const NeighbourIndex& index,
-                                                const Scene& scene, const FeltLine& line);
+[[nodiscard]] std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, const FeltLine& line);
 
 /// The same points with one stiffness for all: the geometric mean. What is felt on it is an artefact.
-[[nodiscard]] PointCloud homogeneous(const PointCloud& cloud);
+[[nodiscard]] SoftObject homogeneous(const SoftObject& object);
 
 /// How far apart the stiffest and the softest place are, as a logarithm of their ratio [1].
 struct FeltRange {

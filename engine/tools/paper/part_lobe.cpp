@@ -31,17 +31,13 @@ struct Bent {
     }
 };
 
-Bent bend(const std::string& name, const PlateEdges& edges, const PointCloud& cloud, const NeighbourIndex& index,
-          const ReportRun& run)
+Bent bend(const std::string& name, const PlateEdges& edges, const SoftObject& object, const ReportRun& run)
 {
     const Sample& sample = sampleNamed("ear-lobe");
-    PatchSettings settings{.material        = sample.material,
-                           .window          = kWindow,
-                           .cells           = run.quick ? 32 : 64,
-                           .footprintRadius = sample.footprintRadius,
-                           .edges           = edges};
-    const Contact contact = touchAt(cloud, index, kPlace, glm::dvec3(0, 0, 1), 5e-3);
-    return {name, settings, deform(cloud, index, contact, settings, run.device)};
+    PatchSettings settings{
+        .window = kWindow, .cells = run.quick ? 32 : 64, .footprintRadius = sample.footprintRadius, .edges = edges};
+    const Contact contact = touchAt(object, kPlace, glm::dvec3(0, 0, 1), 5e-3);
+    return {name, settings, deform(object, contact, settings, run.device)};
 }
 
 std::vector<double> alongMiddle(const Bent& bent)
@@ -88,13 +84,12 @@ void addFigures(Section& section, const PointCloud& cloud, const std::vector<Ben
 
 Section lobePart(const ReportRun& run)
 {
-    const Sample&        sample = sampleNamed("ear-lobe");
-    const PointCloud     cloud  = makeSample(sample, run.quick ? sample.points / 4 : sample.points, 1);
-    const NeighbourIndex index(cloud.positions());
-    std::vector<Bent>    all;
-    all.push_back(bend("clamped all around", {}, cloud, index, run));
+    const Sample&     sample = sampleNamed("ear-lobe");
+    const SoftObject  object(makeSample(sample, run.quick ? sample.points / 4 : sample.points, 1), sample.material);
+    std::vector<Bent> all;
+    all.push_back(bend("clamped all around", {}, object, run));
     run.step(1, 2);
-    all.push_back(bend("free but for its root", kFromItsRoot, cloud, index, run));
+    all.push_back(bend("free but for its root", kFromItsRoot, object, run));
 
     const Bent &              held = all[0], &hung = all[1];
     const int                 cells = hung.settings.cells, middle = cells / 2;
@@ -129,7 +124,7 @@ Section lobePart(const ReportRun& run)
                                 formatQuantity(beam.front(), "m"), "-"}}});
     section.figures.push_back(
         {"The clamped dip ends where the window ends; the free lobe bends as a whole.", profileOf(all, beam)});
-    addFigures(section, cloud, all);
+    addFigures(section, object.cloud(), all);
     section.claims.push_back(
         {"A thin lobe gets a realistic dip, with all edges of the neighbourhood fixed.",
          "Clamped: " + formatQuantity(held.at(middle), "m") +

@@ -79,12 +79,12 @@ Dent dentOfCap(Map map, const ReportRun& run)
 }
 
 /// The pipeline's own window: as many metres of chart in every map, and a footprint that is round there.
-Dent dentOfWindow(Map map, const PointCloud& cloud, const NeighbourIndex& index, const ReportRun& run)
+Dent dentOfWindow(Map map, const SoftObject& object, const ReportRun& run)
 {
-    PatchSettings settings{.material = kSkin, .window = 24e-3, .footprintRadius = 3e-3, .map = map};
+    PatchSettings settings{.window = 24e-3, .footprintRadius = 3e-3, .map = map};
     if (run.quick) settings.cells = 32;
     const Patch patch =
-        deform(cloud, index, touchAt(cloud, index, {0, 0, kRadius}, glm::dvec3(0, 0, 1), 5e-3), settings, run.device);
+        deform(object, touchAt(object, {0, 0, kRadius}, glm::dvec3(0, 0, 1), 5e-3), settings, run.device);
     return {map, patch.chart, patch.window, patch.response, dentShape(patch.chart, patch.window, patch.response)};
 }
 
@@ -141,15 +141,15 @@ void addRow(Table& table, const char* where, const Dent& dent, const Dent& best)
 
 Section mapsPart(const ReportRun& run)
 {
-    const Sample&        sample = sampleNamed("hemisphere");
-    const PointCloud     cloud  = makeSample(sample, run.quick ? sample.points / 5 : sample.points, 1,
-                                             SpatialLaw{.kind = SpatialLaw::Kind::constant, .from = kModulus});
-    const NeighbourIndex index(cloud.positions());
-    std::vector<Dent>    caps, windows;
+    const Sample&     sample = sampleNamed("hemisphere");
+    const SoftObject  object(makeSample(sample, run.quick ? sample.points / 5 : sample.points, 1,
+                                        SpatialLaw{.kind = SpatialLaw::Kind::constant, .from = kModulus}),
+                             kSkin);
+    std::vector<Dent> caps, windows;
     for (const Map map : kMaps) {
         run.step(caps.size(), kMaps.size());
         caps.push_back(dentOfCap(map, run));
-        windows.push_back(dentOfWindow(map, cloud, index, run));
+        windows.push_back(dentOfWindow(map, object, run));
     }
 
     Section section{'f', "Three equal-area maps on the same cap", {}, {}, {}, {}, {}, {}};

@@ -29,22 +29,20 @@ void feel(Felt& felt, Section& section, const ReportRun& run, std::size_t number
             run.step(from + kSteps / 2 * done / total, count * kSteps);
         };
     };
-    constexpr int        kMapPlaces = 500;
-    const Scene          scene      = parseScene(withLess(felt.scene, run.quick), felt.name, ".");
-    const LoadedCloud    loaded     = loadCloud(scene);
-    const NeighbourIndex index(loaded.cloud.positions());
-    const FeltLine       line = feltLine(scene, loaded.cloud, index, {}, felt.reach);
-    felt.perception           = perceive(scene, loaded.cloud, index, line, run.quick ? 11 : 41, run.device, part(0));
+    constexpr int    kMapPlaces = 500;
+    const Scene      scene      = parseScene(withLess(felt.scene, run.quick), felt.name, ".");
+    const SoftObject object     = loadObject(scene).object;
+    const FeltLine   line       = feltLine(scene, object, {}, felt.reach);
+    felt.perception             = perceive(scene, object, line, run.quick ? 11 : 41, run.device, part(0));
     section.figures.push_back({"A finger at rest, one that slides, and one that slides over the same points with one "
                                "stiffness: what varies there is the program's own doing.",
                                pathSvg(felt.perception, scene.patch.forceLaw, "Felt along the path: " + felt.name)});
     if (!felt.map) return;
-    const FeltMap map =
-        feltMap(loaded.cloud, index, scene.patch, run.quick ? 60 : kMapPlaces, run.device, part(kSteps / 2));
+    const FeltMap map = feltMap(object, scene.patch, run.quick ? 60 : kMapPlaces, run.device, part(kSteps / 2));
     section.figures.push_back(
         {"How surely a place is told from the object's typical one if 15 % is the smallest change "
          "that is noticed: 0.5 is guessing.",
-         mapSvg(loaded.cloud, map, kWeberFractions[1], line.middle.outward,
+         mapSvg(object.cloud(), map, kWeberFractions[1], line.middle.outward,
                 "Told from the typical place: " + felt.name)});
     section.numbers.push_back({felt.name + "/map/typical", "N/m", {map.typical}});
     section.numbers.push_back({felt.name + "/map/places", "1", {double(map.places.size())}});

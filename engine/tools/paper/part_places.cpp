@@ -53,19 +53,17 @@ PointCloud ellipsoid(SpatialLaw::Kind kind, bool quick)
     return makeSample(sample, quick ? sample.points / 5 : sample.points, 1, law);
 }
 
-Series press(const PointCloud& cloud, const NeighbourIndex& index, const std::string& law, Preset preset,
-             const ReportRun& run)
+Series press(const SoftObject& object, const std::string& law, Preset preset, const ReportRun& run)
 {
     const glm::dvec3 axes = boundsOf(sampleNamed("ellipsoid")).high;
     Series           series{law, palp::name(preset), {}, {}};
-    series.settings.material = sampleNamed("ellipsoid").material;
-    series.settings.window   = kWindow;
+    series.settings.window = kWindow;
     if (run.quick) series.settings.cells = 32;
     series.settings = withPreset(series.settings, preset);
     for (const double x : kPlaces) {
         const glm::dvec3 place{x, 0, axes.z * std::sqrt(1 - x * x / (axes.x * axes.x))};
-        const Contact    contact = touchAt(cloud, index, place, glm::dvec3(0, 0, 1), 5e-3);
-        Touch            touch{x, deform(cloud, index, contact, series.settings, run.device), {}};
+        const Contact    contact = touchAt(object, place, glm::dvec3(0, 0, 1), 5e-3);
+        Touch            touch{x, deform(object, contact, series.settings, run.device), {}};
         touch.gridError = discretisationError(touch.patch, series.settings, run.device);
         series.touches.push_back(std::move(touch));
     }
@@ -211,13 +209,12 @@ Section placesPart(const ReportRun& run)
     std::vector<Figure> surfaces;
     for (const auto& [law, kind] :
          {std::pair("linear", SpatialLaw::Kind::linear), std::pair("hyperbolic", SpatialLaw::Kind::hyperbolic)}) {
-        const PointCloud     cloud = ellipsoid(kind, run.quick);
-        const NeighbourIndex index(cloud.positions());
+        const SoftObject object(ellipsoid(kind, run.quick), sampleNamed("ellipsoid").material);
         for (const Preset preset : {Preset::paper, Preset::palpate}) {
             run.step(all.size(), 4);
-            all.push_back(press(cloud, index, law, preset, run));
+            all.push_back(press(object, law, preset, run));
             addNumbers(section, all.back());
-            surfaces.push_back(surfaceFigure(cloud, all.back()));
+            surfaces.push_back(surfaceFigure(object.cloud(), all.back()));
         }
     }
     section.claims.push_back(claimOf(all));

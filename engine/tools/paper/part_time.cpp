@@ -25,24 +25,21 @@ constexpr double kJacobisError = 1e-2;   ///< to which Jacobi is followed [1]
 /// The ellipsoid, touched on its top by the paper's recipe.
 struct Setting {
     explicit Setting(bool quick)
-        : sample(sampleNamed("ellipsoid")), cloud(makeSample(sample, quick ? sample.points / 5 : sample.points, 1)),
-          index(cloud.positions()), contact(touchAt(cloud, index, sample.place, glm::dvec3(0, 0, 1), 5e-3))
+        : sample(sampleNamed("ellipsoid")),
+          object(makeSample(sample, quick ? sample.points / 5 : sample.points, 1), sample.material),
+          contact(touchAt(object, sample.place, glm::dvec3(0, 0, 1), 5e-3))
     {
     }
 
     [[nodiscard]] PatchSettings with(int cells) const
     {
-        PatchSettings settings{.material        = sample.material,
-                               .window          = sample.window,
-                               .cells           = cells,
-                               .footprintRadius = sample.footprintRadius};
+        PatchSettings settings{.window = sample.window, .cells = cells, .footprintRadius = sample.footprintRadius};
         return withPreset(settings, Preset::paper);
     }
 
-    const Sample&  sample;
-    PointCloud     cloud;
-    NeighbourIndex index;
-    Contact        contact;
+    const Sample& sample;
+    SoftObject    object;
+    Contact       contact;
 };
 
 constexpr const char* kStages[] = {"neighbours", "sphere", "map", "rigidity", "set up", "solve", "points"};
@@ -69,7 +66,7 @@ Timed timeOf(const Setting& setting, int cells, PlateSolver& device, int runs)
     std::vector<double>              totals;
     Patch                            patch;
     for (int n = 0; n <= runs; ++n) {
-        patch = deform(setting.cloud, setting.index, setting.contact, settings, device);
+        patch = deform(setting.object, setting.contact, settings, device);
         if (n == 0) continue; // the first makes memory and kernels ready
         const auto times = stagesOf(patch.times);
         for (std::size_t s = 0; s < times.size(); ++s) stages[s].push_back(1e-3 * times[s]);
@@ -94,7 +91,7 @@ struct Jacobi {
 Jacobi jacobiOf(const Setting& setting, int cells, PlateSolver& device)
 {
     const PatchSettings settings = setting.with(cells);
-    const Plate         plate    = deform(setting.cloud, setting.index, setting.contact, settings, device).plate;
+    const Plate         plate    = deform(setting.object, setting.contact, settings, device).plate;
     const NodeField     load     = footprintLoad(plate.grid, 1, settings.window / 2, settings.window / 2,
                                                  std::max(settings.footprintRadius, 1.5 * plate.grid.spacingX));
     const NodeField     truth    = ReferencePlateSolver(plate).solve(load).deflection;
@@ -235,7 +232,7 @@ Section timePart(const ReportRun& run)
 
     Section section{'c', "Time of a deformation", {}, {}, {}, {}, {}, {}};
     section.text = {
-        "The ellipsoid of " + std::to_string(setting.cloud.size()) +
+        "The ellipsoid of " + std::to_string(setting.object.size()) +
             " points, the paper's recipe, from the contact to the moved points. Beside it the published "
             "iteration, damped by 0.6 so that it converges at all, followed until its largest error is "
             "1 %: in double precision, one thread, processor time, without any of the other stages.",

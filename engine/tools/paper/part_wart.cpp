@@ -26,15 +26,14 @@ struct Walk {
 
 Walk walk(const ReportRun& run)
 {
-    constexpr double     kReach = 20e-3; // to either side [m]: there the wart is forgotten
-    Walk                 result{parseScene(run.quick ? R"({"cloud": "sample:skin", "points": 8000, "cells": 32})"
-                                                     : R"({"cloud": "sample:skin"})",
+    constexpr double kReach = 20e-3; // to either side [m]: there the wart is forgotten
+    Walk             result{parseScene(run.quick ? R"({"cloud": "sample:skin", "points": 8000, "cells": 32})"
+                                                 : R"({"cloud": "sample:skin"})",
                            "the wart", "."),
                 {}};
-    const LoadedCloud    loaded = loadCloud(result.scene);
-    const NeighbourIndex index(loaded.cloud.positions());
-    const FeltLine       line = feltLine(result.scene, loaded.cloud, index, {}, kReach);
-    result.places = windowsAlong(loaded.cloud, index, result.scene.patch, line, run.quick ? 17 : 81, run.device);
+    const SoftObject object = loadObject(result.scene).object;
+    const FeltLine   line   = feltLine(result.scene, object, {}, kReach);
+    result.places           = windowsAlong(object, result.scene.patch, line, run.quick ? 17 : 81, run.device);
     return result;
 }
 

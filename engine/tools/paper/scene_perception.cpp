@@ -16,24 +16,24 @@ std::array<NoticedSteps, 3> stepsOf(const FeltRange& felt, const FeltRange& arte
 
 } // namespace
 
-ScenePerception perceive(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index, const FeltLine& line,
-                         int places, PlateSolver& device, const std::function<void(std::size_t, std::size_t)>& onStep)
+ScenePerception perceive(const Scene& scene, const SoftObject& object, const FeltLine& line, int places,
+                         PlateSolver& device, const std::function<void(std::size_t, std::size_t)>& onStep)
 {
     constexpr std::size_t kStages = 4;
     const auto            step    = [&](std::size_t done) {
         if (onStep) onStep(done, kStages);
     };
-    const PointCloud plain = homogeneous(cloud);
+    const SoftObject plain = homogeneous(object);
     const ForceLaw   law   = scene.patch.forceLaw;
     ScenePerception  result;
     result.line   = line;
-    result.places = windowsAlong(cloud, index, scene.patch, line, places, device);
+    result.places = windowsAlong(object, scene.patch, line, places, device);
     step(1);
-    const auto rest = windowsAlong(plain, index, scene.patch, line, places, device);
+    const auto rest = windowsAlong(plain, scene.patch, line, places, device);
     step(2);
-    result.stroke = strokeAlong(cloud, index, scene, line);
+    result.stroke = strokeAlong(object, scene, line);
     step(3);
-    result.floor   = strokeAlong(plain, index, scene, line);
+    result.floor   = strokeAlong(plain, scene, line);
     result.atRest  = stepsOf(rangeOf(result.places, law), rangeOf(rest, law));
     result.sliding = stepsOf(rangeOf(result.stroke), rangeOf(result.floor));
     return result;

@@ -38,8 +38,8 @@ struct ScenePerception {
 /// \param places  at rest along the path, at least 2
 /// \param onStep  (done, total) of some seconds each; may be empty
 /// \throws as windowsAlong() and strokeAlong()
-[[nodiscard]] ScenePerception perceive(const Scene& scene, const PointCloud& cloud, const NeighbourIndex& index,
-                                       const FeltLine& line, int places, PlateSolver& device,
+[[nodiscard]] ScenePerception perceive(const Scene& scene, const SoftObject& object, const FeltLine& line, int places,
+                                       PlateSolver&                                         device,
                                        const std::function<void(std::size_t, std::size_t)>& onStep = {});
 
 } // namespace palp::report

@@ -46,12 +46,11 @@ std::vector<ViewSegment> linesOf(const Chart& chart, double window)
 
 } // namespace
 
-TouchView::TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings,
-                     std::span<const Triangle> faces)
-    : cloud_(cloud), settings_(settings), spacing_(index.spacing()), faces_(faces), skin_(cloud.positions(), index),
-      restNormals_(skin_.normals(cloud.positions())), oneSided_(skin_.turnOutwards(cloud.positions(), restNormals_)),
-      normals_(restNormals_), positions_(cloud.positions().begin(), cloud.positions().end()),
-      deflections_(cloud.size()), stiffness_(cloud.stiffness())
+TouchView::TouchView(const SoftObject& object, const PatchSettings& settings)
+    : object_(object), settings_(settings), skin_(object.positions(), object.index()),
+      restNormals_(skin_.normals(object.positions())), oneSided_(skin_.turnOutwards(object.positions(), restNormals_)),
+      normals_(restNormals_), positions_(object.positions().begin(), object.positions().end()),
+      deflections_(object.size()), stiffness_(object.cloud().stiffness())
 {
     findRelief();
 }
@@ -59,7 +58,7 @@ TouchView::TouchView(const PointCloud& cloud, const NeighbourIndex& index, const
 void TouchView::findRelief()
 {
     // Each point sees it in the noise of its own normal.
-    relief_  = skin_.smoothed(restRelief(cloud_.positions(), restNormals_, spacing_, kCue * settings_.window));
+    relief_ = skin_.smoothed(restRelief(object_.positions(), restNormals_, object_.spacing(), kCue * settings_.window));
     hollows_ = relief_;
 }
 
@@ -77,14 +76,14 @@ void TouchView::take(const Patch* patch)
                now.points.size() == shown_.points;
     };
     if (patch ? same(*patch) : shown_.points == 0) return;
-    surface_ = patch ? PatchSurface(*patch, cloud_.positions(), kCue * settings_.window) : PatchSurface();
+    surface_ = patch ? PatchSurface(*patch, object_.positions(), kCue * settings_.window) : PatchSurface();
     shown_   = patch ? Shown{patch->contact.point, patch->compliance, patch->points.size()} : Shown{};
 }
 
 void TouchView::bend(double force, double exaggeration)
 {
     for (const std::uint32_t n : moved_) {
-        positions_[n]   = cloud_.positions()[n];
+        positions_[n]   = object_.positions()[n];
         normals_[n]     = restNormals_[n];
         deflections_[n] = 0;
         hollows_[n]     = relief_[n];
@@ -118,7 +117,7 @@ void TouchView::paint(double force, const TouchLook& look)
         const auto       range = rangeOf(stiffness_, Scale::logarithmic).value_or(ValueRange{});
         const Scale      scale = range.high > kWide * range.low ? Scale::logarithmic : Scale::linear;
         scene_.values          = stiffness_;
-        if (cloud_.kind() == StiffnessKind::modulus)
+        if (object_.cloud().kind() == StiffnessKind::modulus)
             scene_.colours = {look.map, scale, widened(range, scale), "Young's modulus", "Pa"};
         else
             scene_.colours = {look.map, scale, widened(range, scale), "rigidity", "N m"};
@@ -176,7 +175,7 @@ void TouchView::addGhost(Ground ground)
     for (std::size_t i = 0; i < surface_.moving.size(); ++i) {
         const std::uint32_t n = surface_.moving[i];
         if (std::abs(surface_.responses[i]) > kNotable * surface_.mostResponse)
-            scene_.dots.push_back({cloud_.positions()[n], kDot * skin_.cores()[n], inkOn(ground)});
+            scene_.dots.push_back({object_.positions()[n], kDot * skin_.cores()[n], inkOn(ground)});
     }
 }
 
@@ -190,7 +189,7 @@ void TouchView::show(const Patch* patch, double force, const TouchLook& look, co
     scene_.arrowRadius   = kArrow * settings_.window;
     scene_.outlineRadius = kOutline * settings_.window;
     scene_.cueRadius     = kCue * settings_.window;
-    scene_.faces         = faces_;
+    scene_.faces         = object_.faces();
     paint(force, look);
     if (patch) {
         addHand(*patch, force, look, hand);

@@ -54,12 +54,10 @@ struct TouchHand {
 /// A cloud and a touch of it as a scene to draw.
 class TouchView {
 public:
-    /// \param cloud     outlives the view  \param index  of the cloud
+    /// \param object    outlives the view
     /// \param settings  of the touches: shapes measure a share of their window and fingertip
     /// \throws as CloudSkin
-    /// \param faces     of the cloud, outlive the view; empty: it has none
-    TouchView(const PointCloud& cloud, const NeighbourIndex& index, const PatchSettings& settings,
-              std::span<const Triangle> faces = {});
+    TouchView(const SoftObject& object, const PatchSettings& settings);
 
     /// Other stiffnesses of the same points from now on. \param stiffness  outlives their use [Pa] or [N m]
     void repaint(std::span<const double> stiffness) { stiffness_ = stiffness; }
@@ -96,10 +94,8 @@ private:
     void addFit(const Patch& patch, const Overlays& overlays);
     void addGhost(Ground ground);
 
-    const PointCloud&         cloud_;
+    const SoftObject&         object_;
     PatchSettings             settings_;
-    double                    spacing_; // of the cloud [m]
-    std::span<const Triangle> faces_;
     CloudSkin                 skin_;
     std::vector<glm::dvec3>   restNormals_; // [1]
     std::vector<std::uint8_t> oneSided_;

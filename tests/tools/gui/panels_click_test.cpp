@@ -133,7 +133,7 @@ TEST_F(PanelsClick, ASliderGoesAsFarAsItIsDragged)
     drag({196, 103}, {700, 103});
     EXPECT_EQ(state_.look.exaggeration, 20);
     drag({200, 250}, {700, 250});
-    EXPECT_NEAR(state_.pressDepth, 3 * scene_.patch.material.thickness, 1e-9) << "so deep at most; rounding to mm";
+    EXPECT_NEAR(state_.pressDepth, 3 * scene_.material.thickness, 1e-9) << "so deep at most; rounding to mm";
 }
 
 TEST_F(PanelsClick, ButtonsAreWishes)

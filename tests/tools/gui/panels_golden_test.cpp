@@ -1,7 +1,6 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/cloud/neighbour_index.h"
 #include "engine/session/deformation.h"
 #include "engine/session/hand_device.h"
 #include "engine/session/virtual_session.h"
@@ -19,18 +18,17 @@ namespace {
 
 /// A hand that has pressed a palm for a while, on the virtual clock.
 struct Pressed {
-    Scene          scene  = parseScene(R"({"cloud": "sample:palm", "points": 6000, "device": "host"})", "a test", ".");
-    LoadedCloud    loaded = loadCloud(scene);
-    NeighbourIndex index{loaded.cloud.positions()};
-    Deformation    deformation{loaded.cloud, index, scene};
-    HandPlace      place = handPlace(scene, loaded.cloud, index);
-    HandPath       path{{{0, place.point + 2e-3 * place.outward},
-                         {0.5, place.point - 1.5e-3 * place.outward},
-                         {3, place.point - 1e-3 * place.outward}}};
-    HandDevice     device{path};
-    TouchHistory   history;
+    Scene        scene  = parseScene(R"({"cloud": "sample:palm", "points": 6000, "device": "host"})", "a test", ".");
+    SoftObject   object = loadObject(scene).object;
+    Deformation  deformation{object, scene};
+    HandPlace    place = handPlace(scene, object);
+    HandPath     path{{{0, place.point + 2e-3 * place.outward},
+                       {0.5, place.point - 1.5e-3 * place.outward},
+                       {3, place.point - 1e-3 * place.outward}}};
+    HandDevice   device{path};
+    TouchHistory history;
     std::optional<Patch> patch;
-    TouchView            view{loaded.cloud, index, scene.patch};
+    TouchView            view{object, scene.patch};
 
     Pressed()
     {
@@ -39,13 +37,12 @@ struct Pressed {
             if (answer.patch) patch = answer.patch;
             return answer;
         };
-        runVirtual({scene, loaded.cloud, index, solves, device, {}}, 2,
-                   [this](const TickRecord& s) { history.add(s); });
+        runVirtual({scene, object, solves, device, {}}, 2, [this](const TickRecord& s) { history.add(s); });
     }
 
     [[nodiscard]] PanelContent content() const
     {
-        PanelContent content{scene, loaded.cloud, history};
+        PanelContent content{scene, object.cloud(), history};
         content.patch           = patch ? &*patch : nullptr;
         content.force           = glm::length(history.newest().force);
         content.loopPeriod      = 1.02e-3;

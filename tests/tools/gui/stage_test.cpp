@@ -66,7 +66,7 @@ TEST(Stage, ValuesThatCannotBeSolvedChangeNothing)
 TEST(Stage, APlaceOffTheObjectBecomesItsUppermostPoint)
 {
     Stage stage(sceneOf(R"(, "place": [9, 9, 9])"));
-    for (const glm::dvec3& point : stage.loaded().cloud.positions()) EXPECT_LE(point.z, stage.place().point.z);
+    for (const glm::dvec3& point : stage.object().positions()) EXPECT_LE(point.z, stage.place().point.z);
 }
 
 } // namespace

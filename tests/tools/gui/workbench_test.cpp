@@ -152,7 +152,7 @@ protected:
             info.scene  = stage.scene();
             info.device = "host";
             info.clock  = SessionClock::real;
-            info.cloud  = fingerprint(stage.loaded().cloud);
+            info.cloud  = fingerprint(stage.object().cloud());
             info.hand   = device.info();
             return info;
         };
@@ -386,7 +386,7 @@ TEST_F(WorkbenchTest, ALawGoesBackToTheCloudsOwn)
     settings_.what = "sample:skin";
     std::string now;
     settings_.recorded = [&](const Stage& stage, const HapticDevice& device) {
-        now = stage.loaded().report.stiffnessSource;
+        now = stage.report().stiffnessSource;
         SessionInfo info;
         info.scene = stage.scene();
         info.hand  = device.info();
@@ -501,7 +501,7 @@ TEST_F(WorkbenchTest, TheFirstViewHasAllOfTheObject)
 
     const Camera first = screen_.camera;
     const Stage  stage(sceneOf("sample:sheet", settings_.values));
-    for (const glm::dvec3& point : stage.loaded().cloud.positions()) {
+    for (const glm::dvec3& point : stage.object().positions()) {
         const CameraMatrices matrices = matricesOf(first, {}, 1, double(kSize.x) / kSize.y);
         const glm::dvec4     clip     = matrices.clipFromView * (matrices.viewFromWorld * glm::dvec4(point, 1));
         ASSERT_LT(std::abs(clip.x / clip.w), 1);

@@ -13,20 +13,19 @@ namespace {
 
 TEST(FeltMap, ShowsAWartAndNothingElse)
 {
-    const Scene          scene  = sheetScene(kWart);
-    const LoadedCloud    loaded = loadCloud(scene);
-    const NeighbourIndex index(loaded.cloud.positions());
-    PlateSolver          device("host");
+    const Scene      scene  = sheetScene(kWart);
+    const SoftObject object = loadObject(scene).object;
+    PlateSolver      device("host");
 
-    const FeltMap map   = feltMap(loaded.cloud, index, scene.patch, 400, device);
+    const FeltMap map   = feltMap(object, scene.patch, 400, device);
     const auto    share = detectability(map, kWeberFractions[1]);
 
     EXPECT_GT(map.places.size(), 200u);
     EXPECT_LT(map.places.size(), 800u);
-    EXPECT_EQ(map.atPoints.size(), loaded.cloud.size());
+    EXPECT_EQ(map.atPoints.size(), object.size());
     double on = 0, off = 0;
-    for (std::size_t n = 0; n < loaded.cloud.size(); ++n) {
-        const glm::dvec3 p    = loaded.cloud.positions()[n];
+    for (std::size_t n = 0; n < object.size(); ++n) {
+        const glm::dvec3 p    = object.positions()[n];
         const double     away = std::hypot(p.x, p.y);
         if (away < 3e-3) on = std::max(on, share[n]);
         if (away > 25e-3) off = std::max(off, share[n]);
@@ -39,10 +38,9 @@ TEST(FeltMap, WhatCannotBeTouchedIsCountedAndNoPlaceAtAllIsRefused)
 {
     std::vector<glm::dvec3> line;
     for (int n = 0; n < 100; ++n) line.push_back({n * 1e-4, 0, 0});
-    const PointCloud     wire(line, std::vector<double>(100, 1e6), StiffnessKind::modulus);
-    const NeighbourIndex index(wire.positions());
-    PlateSolver          device("host");
-    EXPECT_THROW((void)feltMap(wire, index, {.window = 5e-3, .cells = 16, .footprintRadius = 1e-3}, 8, device), Error);
+    const SoftObject wire(PointCloud(line, std::vector<double>(100, 1e6), StiffnessKind::modulus));
+    PlateSolver      device("host");
+    EXPECT_THROW((void)feltMap(wire, {.window = 5e-3, .cells = 16, .footprintRadius = 1e-3}, 8, device), Error);
 }
 
 } // namespace

@@ -13,23 +13,22 @@ namespace palp::report {
 namespace {
 
 struct Felt {
-    explicit Felt(const Scene& of) : scene(of), loaded(loadCloud(of)), index(loaded.cloud.positions()) {}
+    explicit Felt(const Scene& of) : scene(of), object(loadObject(of).object) {}
 
     [[nodiscard]] FeltLine line(double reach, const std::optional<glm::dvec3>& direction = {}) const
     {
-        return feltLine(scene, loaded.cloud, index, direction, reach);
+        return feltLine(scene, object, direction, reach);
     }
 
-    Scene          scene;
-    LoadedCloud    loaded;
-    NeighbourIndex index;
-    PlateSolver    device{"host"};
+    Scene       scene;
+    SoftObject  object;
+    PlateSolver device{"host"};
 };
 
 TEST(FeltPath, AWartIsNoticedAtRestAndSlidingAndTheFloorIsNot)
 {
     Felt                  felt(sheetScene(kWart));
-    const ScenePerception p = perceive(felt.scene, felt.loaded.cloud, felt.index, felt.line(15e-3), 21, felt.device);
+    const ScenePerception p = perceive(felt.scene, felt.object, felt.line(15e-3), 21, felt.device);
 
     EXPECT_GT(p.sliding[0].whole, 5) << "ten times as stiff, 3 mm wide: about 9 steps on a fine grid";
     for (std::size_t n = 0; n < 3; ++n) {
@@ -52,8 +51,7 @@ TEST(FeltPath, TheFloorOfCurvedObjectsIsBelowHalfAStep)
             "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "device": "host", "cloud": )" +
                                  std::string(object) + "}",
                              "a test", "."));
-        const auto floor =
-            rangeOf(strokeAlong(homogeneous(felt.loaded.cloud), felt.index, felt.scene, felt.line(12e-3)));
+        const auto floor = rangeOf(strokeAlong(homogeneous(felt.object), felt.scene, felt.line(12e-3)));
         EXPECT_LT(noticeableSteps(floor.whole, kWeberFractions[0]), kMostFloor) << object;
     }
 }
@@ -62,7 +60,7 @@ TEST(FeltPath, FollowsItsDirectionAndTheSurface)
 {
     Felt             felt(parseScene(R"({"cloud": "sample:ellipsoid", "points": 8000, "cells": 16})", "a test", "."));
     const FeltLine   line   = felt.line(12e-3, glm::dvec3(0, 3, 0));
-    const auto       places = windowsAlong(felt.loaded.cloud, felt.index, felt.scene.patch, line, 5, felt.device);
+    const auto       places = windowsAlong(felt.object, felt.scene.patch, line, 5, felt.device);
     const glm::dvec3 first = places.front().place, last = places.back().place;
 
     EXPECT_NEAR(last.y - first.y, 24e-3, 1e-3) << "the place is the nearest point, a spacing of 1.3 mm off";
@@ -78,11 +76,11 @@ TEST(FeltPath, FollowsItsDirectionAndTheSurface)
 
 TEST(FeltPath, TheHomogeneousTwinHasTheGeometricMeanEverywhere)
 {
-    const PointCloud cloud({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {1, 10, 100}, StiffnessKind::rigidity);
-    const PointCloud twin = homogeneous(cloud);
-    for (const double stiffness : twin.stiffness()) EXPECT_NEAR(stiffness, 10, 1e-13) << "rounding";
-    EXPECT_EQ(twin.kind(), StiffnessKind::rigidity);
-    EXPECT_EQ(twin.positions()[1], cloud.positions()[1]);
+    const SoftObject object(PointCloud({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {1, 10, 100}, StiffnessKind::rigidity));
+    const SoftObject twin = homogeneous(object);
+    for (const double stiffness : twin.cloud().stiffness()) EXPECT_NEAR(stiffness, 10, 1e-13) << "rounding";
+    EXPECT_EQ(twin.cloud().kind(), StiffnessKind::rigidity);
+    EXPECT_EQ(twin.positions()[1], object.positions()[1]);
 }
 
 } // namespace

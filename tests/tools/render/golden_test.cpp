@@ -36,19 +36,17 @@ Image pictureOf(const GoldenCase& one, SurfaceRenderer& renderer)
 {
     constexpr std::size_t kPoints = 4000;
     const Sample&         sample  = sampleNamed(one.sample);
-    const PointCloud      cloud   = makeSample(sample, kPoints, 1);
-    const NeighbourIndex  index(cloud.positions());
+    const SoftObject      object(makeSample(sample, kPoints, 1), sample.material);
     PatchSettings         settings;
-    settings.material        = sample.material;
     settings.foundation      = sample.foundation;
     settings.window          = sample.window;
     settings.footprintRadius = sample.footprintRadius;
     settings.cells           = 32;
     PlateSolver   host("host");
-    const Contact contact = touchAt(cloud, index, sample.place, sample.from, settings.window / 4);
-    const Patch   patch   = deform(cloud, index, contact, settings, host);
-    TouchView     view(cloud, index, settings);
-    view.show(&patch, forceThatShows(patch, settings.material.thickness), one.look);
+    const Contact contact = touchAt(object, sample.place, sample.from, settings.window / 4);
+    const Patch   patch   = deform(object, contact, settings, host);
+    TouchView     view(object, settings);
+    view.show(&patch, forceThatShows(patch, sample.material.thickness), one.look);
     view.scene().title = std::string("sample:") + one.sample;
     const PictureSize size{320, 240, one.detail == Detail::fine ? 2 : 1, one.detail};
     Camera            camera = cameraAt(patch, double(size.width) / size.height);

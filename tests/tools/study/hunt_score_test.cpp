@@ -189,14 +189,13 @@ TEST(Hunt, AScriptedHandIsScoredEndToEnd)
 {
     const std::filesystem::path folder = std::filesystem::path(PALPATE_SAMPLES) / "scenes";
     const Scene                 scene  = readScene(folder / "nodule_hunt.json");
-    const LoadedCloud           cloud  = loadCloud(scene);
-    const NeighbourIndex        index(cloud.cloud.positions());
-    const HandPath              path = readHand(folder / "nodule_hunt_hand.csv");
+    const SoftObject            object = loadObject(scene).object;
+    const HandPath              path   = readHand(folder / "nodule_hunt_hand.csv");
     HandDevice                  hand(path);
-    Deformation                 deformation(cloud.cloud, index, scene);
-    HuntScorer                  scorer(scene, cloud.cloud);
+    Deformation                 deformation(object, scene);
+    HuntScorer                  scorer(scene, object.cloud());
 
-    runVirtual({scene, cloud.cloud, index, deformation.solver(), hand, {}}, path.duration(),
+    runVirtual({scene, object, deformation.solver(), hand, {}}, path.duration(),
                [&](const TickRecord& sample) { scorer.add(sample); });
 
     const HuntScore score = scorer.score();
@@ -209,7 +208,7 @@ TEST(Hunt, AScriptedHandIsScoredEndToEnd)
     EXPECT_EQ(score.nodules[3].edge, 0) << "it was never near";
     EXPECT_LT(score.nodules[0].distance, 2e-3) << "declared 1.1 mm beside the middle, the contact lags by friction";
     EXPECT_GT(score.peakForce, 1);
-    const std::string svg = huntSvg(score, cloud.cloud, scene.place, {0, 0, 1}, scene.hunt->ground);
+    const std::string svg = huntSvg(score, object.cloud(), scene.place, {0, 0, 1}, scene.hunt->ground);
     EXPECT_NE(svg.find("Nodules found: 3 of 4"), std::string::npos);
     EXPECT_NE(svg.find("nodule missed (1)"), std::string::npos);
     EXPECT_NE(svg.find("nothing there (1)"), std::string::npos);

@@ -1,0 +1,51 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/cloud/material.h"
+#include "engine/cloud/neighbour_index.h"
+#include "engine/cloud/point_cloud.h"
+#include "engine/cloud/triangle.h"
+
+namespace palp {
+
+/// What is touched: points with a stiffness, the index over them, perhaps a mesh, and the material of the sheet.
+///
+/// Nothing of it changes while it is touched; a touch returns its deformation as a field beside the object. Copies,
+/// repainted() and withMaterial() share positions, index and faces: of a million points only the stiffness is copied.
+/// It may be moved and copied freely, because the index holds its own copy of the positions.
+/// \thread immutable, so free to share
+class SoftObject {
+public:
+    /// Builds the index, about 0.3 s for a million points.
+    /// \param faces  of the cloud's points; none: the object is a cloud without a mesh
+    explicit SoftObject(PointCloud cloud, const Material& material = {}, std::vector<Triangle> faces = {});
+
+    /// The same points with other stiffnesses of the same kind [Pa] or [N m].
+    /// \throws Error as PointCloud does
+    [[nodiscard]] SoftObject repainted(std::vector<double> stiffness) const;
+
+    /// The same points, of another thickness or Poisson's ratio.
+    [[nodiscard]] SoftObject withMaterial(const Material& material) const;
+
+    [[nodiscard]] const PointCloud&         cloud() const noexcept { return cloud_; }
+    [[nodiscard]] const NeighbourIndex&     index() const noexcept { return *index_; }
+    [[nodiscard]] std::span<const Triangle> faces() const noexcept { return *faces_; } ///< may be empty
+    [[nodiscard]] const Material&           material() const noexcept { return material_; }
+
+    [[nodiscard]] std::size_t                 size() const noexcept { return cloud_.size(); } ///< number of points
+    [[nodiscard]] std::span<const glm::dvec3> positions() const noexcept { return cloud_.positions(); } ///< [m]
+    [[nodiscard]] double                      spacing() const noexcept { return index_->spacing(); }    ///< [m]
+
+    /// Flexural rigidity D at a point [N m].
+    [[nodiscard]] double rigidity(std::size_t point) const noexcept { return cloud_.rigidity(point, material_); }
+
+private:
+    PointCloud                                   cloud_;
+    std::shared_ptr<const NeighbourIndex>        index_; ///< never null
+    std::shared_ptr<const std::vector<Triangle>> faces_; ///< never null
+    Material                                     material_;
+};
+
+} // namespace palp
