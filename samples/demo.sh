@@ -75,4 +75,4 @@ say
 say "pictures: $out/index.html; the paper's claims: $out/paper/index.html; the wart: $out/skin"
 say "next: $build/bin/palpate view   (a window; hold Space over the object and move)"
 say "      $build/bin/palpate touch sample:palm --at 14mm,5mm,0 --out touch"
-say "      your own cloud: $build/bin/palpate info FILE --unit mm"
+say "      your own cloud: $build/bin/palpate info FILE --length-unit mm"

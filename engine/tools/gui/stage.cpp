@@ -19,12 +19,6 @@ HandPlace startPlace(const Scene& scene, const SoftObject& object)
     }
 }
 
-bool sameObject(const Scene& a, const Scene& b)
-{
-    return a.cloud == b.cloud && a.points == b.points && a.seed == b.seed && a.lengthUnit == b.lengthUnit &&
-           a.stiffness == b.stiffness;
-}
-
 Stage::Stage(const Scene& scene)
     : scene_(scene), loaded_(loadObject(scene)), view_(loaded_.object, scene.patch), painting_(loaded_.object),
       place_(startPlace(scene, loaded_.object)), painted_(std::make_shared<const SoftObject>(loaded_.object)),

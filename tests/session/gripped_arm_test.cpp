@@ -1,4 +1,4 @@
-#include "engine/session/held_arm.h"
+#include "engine/session/gripped_arm.h"
 
 #include <gtest/gtest.h>
 
@@ -25,9 +25,9 @@ struct Felt {
 /// The hand goes down 5 mm from above, the arm in its grip, and stays.
 Felt released(const SheetSession& session, double grip, double seconds)
 {
-    const HandPath    down({{0, {0, 0, 5e-3}}, {1.8, {0, 0, 5e-3}}, {1.85, {0, 0, -4e-3}}, {2, {0, 0, -4e-3}}});
-    const HoldingHand hand{down, {.stiffness = grip, .damping = 2}, {{0, 0, 5e-3}}};
-    HeldArm           arm(hand);
+    const HandPath     down({{0, {0, 0, 5e-3}}, {1.8, {0, 0, 5e-3}}, {1.85, {0, 0, -4e-3}}, {2, {0, 0, -4e-3}}});
+    const GrippingHand hand{down, {.stiffness = grip, .damping = 2}, {{0, 0, 5e-3}}};
+    GrippedArm         arm(hand);
     arm.open();
     Deformation deformation(session.object, session.scene);
     Felt        felt;
@@ -45,7 +45,7 @@ Felt released(const SheetSession& session, double grip, double seconds)
     return felt;
 }
 
-TEST(HeldArm, ReleasedIntoAHardWartThroughTheWholeEngineItSettles)
+TEST(GrippedArm, ReleasedIntoAHardWartThroughTheWholeEngineItSettles)
 {
     const SheetSession session(sheetScene(kHardWart));
     for (const double grip : {150.0, 500.0}) {
@@ -57,16 +57,16 @@ TEST(HeldArm, ReleasedIntoAHardWartThroughTheWholeEngineItSettles)
     }
 }
 
-TEST(HeldArm, ForcesMoveIt)
+TEST(GrippedArm, ForcesMoveIt)
 {
     const SheetSession session(sheetScene(kHardWart));
     EXPECT_LT(released(session, 150, 3).force, released(session, 500, 3).force) << "a firmer hand gets deeper";
 }
 
-TEST(HeldArm, ThePathMustLieInTheWorkspace)
+TEST(GrippedArm, ThePathMustLieInTheWorkspace)
 {
     const HandPath far({{0, {0, 0, 0}}, {1, {0.1, 0, 0}}});
-    EXPECT_THROW(HeldArm({far, {.stiffness = 150}}), Error);
+    EXPECT_THROW(GrippedArm({far, {.stiffness = 150}}), Error);
 }
 
 TEST(DeviceFrames, ADeviceOnATableBeforeTheObject)

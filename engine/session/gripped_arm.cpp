@@ -1,4 +1,4 @@
-#include "engine/session/held_arm.h"
+#include "engine/session/gripped_arm.h"
 
 #include <glm/geometric.hpp>
 
@@ -7,7 +7,16 @@
 
 namespace palp {
 
-SimulatedHand HoldingHand::at(double time) const noexcept
+const DeviceRecord kArmRecord{.name           = "arm",
+                              .model          = "a simulated arm like the Falcon's",
+                              .holder         = DeviceHolder::scriptedHand,
+                              .simulated      = true,
+                              .keepsSceneAxes = true,
+                              .make           = [](const DeviceRequest& request) -> std::unique_ptr<HapticDevice> {
+                                  return std::make_unique<GrippedArm>(*request.hand);
+                              }};
+
+SimulatedHand GrippingHand::at(double time) const noexcept
 {
     constexpr double kStep = 1e-3; // [s] over which the target's velocity is taken
     const double     there = path.begin() + time;
@@ -17,7 +26,7 @@ SimulatedHand HoldingHand::at(double time) const noexcept
     return hand;
 }
 
-void HoldingHand::demandWithin(double radius) const
+void GrippingHand::demandWithin(double radius) const
 {
     for (const HandPose& s : path.samples())
         if (const double away = glm::length(s.position - frame.origin); away > radius)
@@ -26,12 +35,13 @@ void HoldingHand::demandWithin(double radius) const
                         "; try a smaller --reach, or a scene whose start_height is lower");
 }
 
-HeldArm::HeldArm(const HoldingHand& hand, const SimulatedArmSettings& arm) : hand_(hand), arm_(arm, hand.at(0).target)
+GrippedArm::GrippedArm(const GrippingHand& hand, const SimulatedArmSettings& arm)
+    : hand_(hand), arm_(arm, hand.at(0).target)
 {
     hand.demandWithin(arm.boxRadius);
 }
 
-HapticState HeldArm::exchange(const GovernedForce& force, double now) noexcept
+HapticState GrippedArm::exchange(const GovernedForce& force, double now) noexcept
 {
     HapticState state = arm_.exchange(force, now); // on to now, by the hand of the last tick
     state.buttons     = hand_.path.buttons(hand_.path.begin() + now);

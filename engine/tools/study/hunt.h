@@ -10,7 +10,7 @@
 
 #include "engine/cloud/point_cloud.h"
 
-namespace palp {
+namespace palp::study {
 
 /// A ball of another stiffness under the surface. At its radius the modulus is the geometric mean of what is inside and
 /// outside; it fades over a quarter of the radius to either side, so that no edge is sharper than points can show.
@@ -60,4 +60,4 @@ struct Hunt {
 [[nodiscard]] PointCloud withNodules(const PointCloud& cloud, const std::vector<Nodule>& nodules,
                                      const Material& material);
 
-} // namespace palp
+} // namespace palp::study

@@ -13,7 +13,8 @@
 
 #include "engine/contact/contact.h"
 #include "engine/pipeline/deform.h"
-#include "engine/session/scene.h"
+#include "engine/session/hand_path.h"
+#include "engine/tools/study/hunt_scene.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palp {
@@ -22,6 +23,12 @@ namespace {
 using Json = nlohmann::json;
 
 const std::filesystem::path kScenes = PALPATE_SCENES;
+
+/// With the keys of hunts, as every command reads it.
+Scene sceneOf(const std::filesystem::path& file)
+{
+    return readScene(file, {.toolKeys = &study::huntKeys()});
+}
 
 /// A row of the README's table.
 struct Row {
@@ -37,7 +44,7 @@ std::vector<Row> readme()
     std::vector<Row>   rows;
     std::istringstream text(contentsOf(kScenes / "README.md"));
     for (std::string line; std::getline(text, line);) {
-        if (line.starts_with("| nodule | ")) break; // another table
+        if (line.starts_with("| nodule | ") || line.starts_with("| key | ")) break; // another table
         if (!line.starts_with("| ") || line.starts_with("| scene")) continue;
         std::ranges::replace(line, '|', ' ');
         std::ranges::replace(line, ',', ' ');
@@ -76,7 +83,7 @@ TEST(SampleScenes, TheFingerFeelsWhatTheReadmeSays)
     constexpr double kRounding = 0.005; // relative: the README gives two or three digits, and seeds are fixed
     for (const Row& row : readme()) {
         SCOPED_TRACE(row.name);
-        const Scene      scene  = readScene(kScenes / (row.name + ".json"));
+        const Scene      scene  = sceneOf(kScenes / (row.name + ".json"));
         const SoftObject object = loadObject(scene).object;
         const auto       touch  = [&](const glm::dvec3& place) {
             return deform(object, touchAt(object, place, scene.from, 10e-3), scene.patch);
@@ -96,30 +103,24 @@ TEST(SampleScenes, TheFingerFeelsWhatTheReadmeSays)
 TEST(SampleScenes, ThePlaceOfEachSceneIsOnItsCloud)
 {
     for (const auto& file : sceneFiles()) {
-        const Scene      scene  = readScene(file);
+        const Scene      scene  = sceneOf(file);
         const SoftObject object = loadObject(scene).object;
 
-        EXPECT_LT(object.index().nearest(scene.place, 1).front().distance, 2 * object.spacing()) << file;
+        EXPECT_LT(object.index().nearest(scene.place.value(), 1).front().distance, 2 * object.spacing()) << file;
     }
 }
 
-TEST(SampleScenes, TheSchemaAndTheReaderKnowTheSameKeysUnitsAndMeanings)
+TEST(SampleScenes, TheSchemaAndTheReadmesTableAreThoseOfTheKeys)
 {
-    const Json            schema     = Json::parse(contentsOf(kScenes / "scene.schema.json"));
-    const Json            properties = schema["properties"];
-    std::set<std::string> described;
-    for (const auto& [key, value] : properties.items()) described.insert(key);
-    described.erase("$schema");
+    EXPECT_EQ(contentsOf(kScenes / "scene.schema.json"), sceneSchema(&study::huntKeys()))
+        << "palpate info --schema >samples/scenes/scene.schema.json";
+    EXPECT_NE(contentsOf(kScenes / "README.md").find(sceneKeyTable(&study::huntKeys())), std::string::npos)
+        << "palpate info --keys prints the table of samples/scenes/README.md";
 
-    std::set<std::string> read;
-    for (const SceneKey& key : sceneKeys()) {
-        const std::string name(key.name);
-        read.insert(name);
-        if (!properties.contains(name)) continue;
-        EXPECT_EQ(properties[name]["unit"], key.unit) << name;
-        EXPECT_EQ(properties[name]["description"], key.means) << name;
-    }
-
+    const Json            schema = Json::parse(sceneSchema(&study::huntKeys()));
+    std::set<std::string> described, read{"$schema"};
+    for (const auto& [key, value] : schema["properties"].items()) described.insert(key);
+    for (const SceneKey* key : sceneKeysWith(&study::huntKeys())) read.insert(std::string(key->name));
     EXPECT_EQ(described, read);
     EXPECT_EQ(schema["additionalProperties"], false);
     EXPECT_EQ(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
@@ -129,14 +130,18 @@ TEST(SampleScenes, EveryNameInTheSchemaIsReadAndBoundsAreThoseOfTheReader)
 {
     const Json properties = Json::parse(contentsOf(kScenes / "scene.schema.json"))["properties"];
     const auto scene      = [](const std::string& key, const Json& value) {
-        Json object = {{"cloud", "sample:skin"}, {"static_friction", 10}, {"dynamic_friction", 0}};
+        Json       object = {{"cloud", "sample:skin"}, {"static_friction", 10}, {"dynamic_friction", 0}};
+        const auto known  = std::ranges::find(sceneKeys(), key, &SceneKey::name);
+        if (known != sceneKeys().end() && known->cloud == SceneKey::For::file)
+            object["cloud"] = (kScenes / "nodule_hunt_hand.csv").string(); // any that is there: nobody reads it
         if (key == "hunt_seed")
             object["hunt"] = {{"random", {{"count", 1}, {"radius", {3e-3, 4e-3}}, {"modulus", {1e6, 2e6}}}}};
         object[key] = value;
-        return refusalOf([&] { static_cast<void>(parseScene(object.dump(), "s.json", ".")); });
+        return refusalOf(
+            [&] { static_cast<void>(parseScene(object.dump(), "s.json", ".", {.toolKeys = &study::huntKeys()})); });
     };
     for (const auto& [key, property] : properties.items()) {
-        if (key == "cloud" || key == "$schema" || key == "length_unit") continue; // no bounds; not of a sample
+        if (key == "cloud" || key == "$schema" || key == "log_range") continue; // no bounds; not alone
         if (property.contains("enum")) {
             for (const Json& value : property["enum"]) EXPECT_EQ(scene(key, value), "") << key;
         }

@@ -10,10 +10,10 @@ namespace palp {
 /// take it (CHAI3D 15 ms, the Force Dimension SDK 20 ms). At 1 kHz one step of 48 um is 0.05 m/s from sample to sample,
 /// and 0.003 m/s over 15 ms.
 /// \thread one; allocates nothing
-class VelocityWindow {
+class VelocityFilter {
 public:
     /// \param window  [s]; less where samples come so fast that 128 of them are shorter
-    explicit VelocityWindow(double window) noexcept : window_(window) {}
+    explicit VelocityFilter(double window) noexcept : window_(window) {}
 
     /// Forgets all, so that a jump of the position is no velocity.
     void restart() noexcept { count_ = 0; }

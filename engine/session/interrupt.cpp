@@ -1,4 +1,4 @@
-#include "engine/tools/cli/interrupt.h"
+#include "engine/session/interrupt.h"
 
 #include <csignal>
 

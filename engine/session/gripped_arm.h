@@ -1,13 +1,17 @@
 #pragma once
 #include "device/arm_device.h"
+#include "device/device_record.h"
 #include "engine/session/hand_path.h"
 #include "engine/session/session_parts.h"
 
 namespace palp {
 
-/// A hand that goes along a path while it holds a device's grip by a spring and a damper: forces move the grip, as they
-/// would with a person.
-struct HoldingHand {
+/// A simulated arm, gripped by a scripted hand.
+extern const DeviceRecord kArmRecord;
+
+/// A scripted hand that grips a simulated device by a spring and a damper while it goes along a path: forces move the
+/// grip, as they would with a person.
+struct GrippingHand {
     const HandPath& path; ///< [m] of the scene, its first sample is where the hand is at time 0; outlives the device
     SimulatedHand   grip; ///< how firmly: 150 N/m is relaxed, 500 firm; its target is ignored
     DeviceFrame     frame{};
@@ -19,11 +23,12 @@ struct HoldingHand {
     void demandWithin(double radius) const;
 };
 
-/// A simulated arm in a hand. \thread as HapticDevice
-class HeldArm : public HapticDevice {
+/// A simulated arm in a scripted hand.
+/// \thread as HapticDevice
+class GrippedArm : public HapticDevice {
 public:
     /// \throws Error naming a setting out of its range, or where the path leaves the arm's workspace
-    explicit HeldArm(const HoldingHand& hand, const SimulatedArmSettings& arm = {});
+    explicit GrippedArm(const GrippingHand& hand, const SimulatedArmSettings& arm = {});
 
     [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return arm_.info(); }
 
@@ -32,8 +37,8 @@ public:
     HapticState exchange(const GovernedForce& force, double now) noexcept override;
 
 private:
-    HoldingHand hand_;
-    ArmDevice   arm_;
+    GrippingHand hand_;
+    ArmDevice    arm_;
 };
 
 } // namespace palp

@@ -1,4 +1,4 @@
-#include "engine/session/hunt.h"
+#include "engine/tools/study/hunt_scene.h"
 
 #include <cmath>
 #include <set>
@@ -6,18 +6,27 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "engine/session/scene.h"
 #include "tests/support/temporary_folder.h"
 
-namespace palp {
+namespace palp::study {
 namespace {
+
+/// With the keys of hunts, which the library does not know.
+Scene parsed(const std::string& text)
+{
+    return parseScene(text, "a test", ".", {.toolKeys = &huntKeys()});
+}
+
+std::vector<Nodule> nodulesOf(const Scene& scene, const PointCloud& cloud)
+{
+    return hiddenIn(scene)->nodules(cloud, scene);
+}
 
 Scene sceneWith(const std::string& hunt, const std::string& more = "")
 {
-    return parseScene(R"({"cloud": "sample:sheet", "points": 20000, "stiffness": {"law": "constant", "value": 3e5},
-                          "footprint_radius": "3 mm", "hunt": )" +
-                          hunt + more + "}",
-                      "a test", ".");
+    return parsed(R"({"cloud": "sample:sheet", "points": 20000, "stiffness": {"law": "constant", "value": 3e5},
+                      "footprint_radius": "3 mm", "hunt": )" +
+                  hunt + more + "}");
 }
 
 const std::string kTwo = R"({"nodules": [{"at": [0.01, 0, 0], "radius": "6 mm", "modulus": "3 MPa"},
@@ -60,12 +69,27 @@ TEST(Hunt, ComesBackFromTheTextOfItsScene)
     const Scene scene = sceneWith(R"({"random": {"count": 3, "radius": ["3 mm", 5e-3], "modulus": [6e5, "3 MPa"]},
                                       "ground": "40 mm", "press_force": 0.3, "too_hard": "3 N"})",
                                   R"(, "hunt_seed": 9)");
-    const Scene again = parseScene(sceneJson(scene), "again", ".");
+    const Scene again = parsed(sceneJson(scene));
 
     EXPECT_EQ(sceneJson(again), sceneJson(scene));
     EXPECT_EQ(fingerprint(loadCloud(again).cloud), fingerprint(loadCloud(scene).cloud));
-    EXPECT_EQ(again.hunt->tooHard, 3);
-    EXPECT_EQ(again.hunt->mostRadius, 5e-3);
+    EXPECT_EQ(hiddenIn(again)->hunt.tooHard, 3);
+    EXPECT_EQ(hiddenIn(again)->hunt.mostRadius, 5e-3);
+}
+
+TEST(Hunt, IsNoKeyOfTheLibraryAndChangesTheCloudOnlyOfScenesThatHaveIt)
+{
+    const std::string text = R"({"cloud": "sample:sheet", "hunt": )" + kTwo + "}";
+    EXPECT_NE(refusalOf([&] { static_cast<void>(parseScene(text, "a test", ".")); }).find("\"hunt\""),
+              std::string::npos);
+    const Scene with = sceneWith(kTwo), elsewhere = sceneWith(kTwo, R"(, "hunt_seed": 5)");
+    const Scene without = parsed(R"({"cloud": "sample:sheet", "points": 20000,
+        "stiffness": {"law": "constant", "value": 3e5}, "footprint_radius": "3 mm"})");
+    EXPECT_EQ(hiddenIn(without), nullptr);
+    EXPECT_EQ(fingerprint(loadBareCloud(with).cloud), fingerprint(loadCloud(without).cloud));
+    EXPECT_FALSE(haveSameCloud(with, without));
+    EXPECT_FALSE(haveSameCloud(with, elsewhere));
+    EXPECT_TRUE(haveSameCloud(with, sceneWith(kTwo, R"(, "thickness": 0.002)")));
 }
 
 TEST(Hunt, ASeedPlacesTheSameNodulesElsewhereAndTheSameAgain)
@@ -140,10 +164,10 @@ TEST(Hunt, RefusesWhatIsWrongByNameInOneSentence)
     refused(R"({"random": {"count": 2, "radius": [3e-3], "modulus": [1e6, 2e6]}})", "radius");
     refused(R"({"nodules": [{"at": [0,0,0], "radius": 4e-3, "modulus": 1e6}], "too_hard": 0})", "too_hard");
     EXPECT_NE(refusalOf([] {
-                  static_cast<void>(parseScene(R"({"cloud": "sample:sheet", "hunt_seed": 3})", "a test", "."));
+                  static_cast<void>(parsed(R"({"cloud": "sample:sheet", "hunt_seed": 3})"));
               }).find("nothing is hidden"),
               std::string::npos);
 }
 
 } // namespace
-} // namespace palp
+} // namespace palp::study

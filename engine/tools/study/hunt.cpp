@@ -1,4 +1,4 @@
-#include "engine/session/hunt.h"
+#include "engine/tools/study/hunt.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "engine/core/quantity.h"
 #include "engine/core/uniform.h"
 
-namespace palp {
+namespace palp::study {
 namespace {
 
 using Json = nlohmann::json;
@@ -295,4 +295,4 @@ PointCloud withNodules(const PointCloud& cloud, const std::vector<Nodule>& nodul
     return {{cloud.positions().begin(), cloud.positions().end()}, std::move(stiffness), cloud.kind()};
 }
 
-} // namespace palp
+} // namespace palp::study

@@ -7,10 +7,10 @@ namespace palp {
 
 /// A scripted or recorded hand as a device: it goes where it will, whatever the force. Always open.
 /// \thread as HapticDevice
-class HandDevice : public HapticDevice {
+class ScriptedHand : public HapticDevice {
 public:
     /// \param hand  outlives it; its first sample is where the hand is at time 0
-    explicit HandDevice(const HandPath& hand);
+    explicit ScriptedHand(const HandPath& hand);
 
     [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }
 

@@ -1,17 +1,17 @@
-#include "engine/session/hand_device.h"
+#include "engine/session/scripted_hand.h"
 
 #include <limits>
 
 namespace palp {
 
-HandDevice::HandDevice(const HandPath& hand) : hand_(hand)
+ScriptedHand::ScriptedHand(const HandPath& hand) : hand_(hand)
 {
     info_.model           = "scripted hand";
     info_.workspaceRadius = std::numeric_limits<double>::infinity();
     info_.isSimulation    = true;
 }
 
-HapticState HandDevice::exchange(const GovernedForce& /*force*/, double now) noexcept
+HapticState ScriptedHand::exchange(const GovernedForce& /*force*/, double now) noexcept
 {
     HapticState state;
     state.time     = now;
