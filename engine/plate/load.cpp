@@ -151,6 +151,13 @@ NodeField footprintLoad(const PlateGrid& grid, double force, double x, double z,
     return forces;
 }
 
+double dot(const NodeField& a, const NodeField& b)
+{
+    double sum = 0;
+    for (std::size_t n = 0; n < a.values().size(); ++n) sum += a.values()[n] * b.values()[n];
+    return sum;
+}
+
 double interpolate(const PlateGrid& grid, const NodeField& field, double x, double z)
 {
     PALP_EXPECT(field.on(grid),

@@ -34,6 +34,10 @@ namespace palp {
 ///          here the area is a constant of the scene, so that the answer depends neither on the grid nor on the points
 [[nodiscard]] NodeField footprintLoad(const PlateGrid& grid, double force, double x, double z, double radius);
 
+/// Sum of the products at the nodes. Of a load on a deflection it is the work; of a load of 1 N on its own response,
+/// the compliance that the load feels [m/N].
+[[nodiscard]] double dot(const NodeField& a, const NodeField& b);
+
 /// Interpolates a node field bilinearly at (x, z) [m], which must lie on the plate.
 [[nodiscard]] double interpolate(const PlateGrid& grid, const NodeField& field, double x, double z);
 

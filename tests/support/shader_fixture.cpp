@@ -149,7 +149,7 @@ template <class T>
 
 std::string deviceOfTests()
 {
-    const std::string wanted = environment("PALPATE_DEVICE");
+    const std::string wanted = environment("PALPATE_SOLVER");
     return wanted.empty() ? std::string(compute::kLavapipeProcessor) : wanted;
 }
 

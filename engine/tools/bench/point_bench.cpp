@@ -11,7 +11,7 @@
 #include "engine/chart/nearest_map.h"
 #include "engine/cloud/neighbour_index.h"
 #include "engine/cloud/samples.h"
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/deform.h"
 #include "engine/plate/load.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "engine/tools/bench/accuracy.h"

@@ -25,7 +25,7 @@ using namespace bench;
 
 struct BenchOptions {
     bool                     quick = false, json = false;
-    std::string              device = "auto", schedule = "automatic", out;
+    std::string              solver = "auto", schedule = "automatic", out;
     std::vector<std::string> cases, maps;
     std::vector<int>         nodes;
     int                      runs = 11;
@@ -83,9 +83,9 @@ void check(const BenchOptions& o)
                         std::to_string(nodes));
     if (o.runs < kFewestRuns || o.runs > 1000)
         throw Error("--runs: expected " + std::to_string(kFewestRuns) + " to 1000, found " + std::to_string(o.runs));
-    if (compute::isProcessorWord(o.device, PlateSolver::kReference))
+    if (compute::isProcessorWord(o.solver, PlateSolver::kReference))
         throw Error(
-            "--device: the reference is a direct solver like its peers; expected auto, host, lavapipe, an index "
+            "--solver: the reference is a direct solver like its peers; expected auto, host, lavapipe, an index "
             "or part of a name");
 }
 
@@ -132,7 +132,7 @@ BenchReport measure(const BenchOptions& o)
         plates.mostMemory    = 257;
     }
     {
-        compute::Context context(compute::ContextSettings{.processor = o.device});
+        compute::Context context(compute::ContextSettings{.processor = o.solver});
         sayPassedOver(context.processor().name, context.note());
         report.device = context.processor().name;
         if (wants(plateCases())) {
@@ -142,7 +142,7 @@ BenchReport measure(const BenchOptions& o)
     }
     if (wants(pointCases())) {
         const std::vector<int> nodes = o.nodes.empty() ? std::vector<int>{65, 129, 257} : o.nodes;
-        for (BenchRow& row : measurePoints(cases, o.device, nodes, o.runs, onStep))
+        for (BenchRow& row : measurePoints(cases, o.solver, nodes, o.runs, onStep))
             report.rows.push_back(std::move(row));
     }
     return report;
@@ -184,7 +184,7 @@ void addBenchCommand(CLI::App& app)
         app.add_subcommand("bench", "how fast the plate's solver is, beside what people would use instead");
     const auto o = std::make_shared<BenchOptions>();
     bench->add_flag("--quick", o->quick, "only plates of up to 257 nodes, in less than a minute");
-    bench->add_option("--device", o->device, "where Palpate computes, as for the command solve")->capture_default_str();
+    bench->add_option("--solver", o->solver, "where Palpate computes, as for the command solve")->capture_default_str();
     bench
         ->add_option(
             "--cases", o->cases,

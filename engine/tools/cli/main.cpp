@@ -89,7 +89,7 @@ int main(int argumentCount, char** arguments)
     app.set_version_flag("--version", "palpate " PALPATE_VERSION);
     app.footer("Examples:\n"
                "  palpate touch sample:skin --out touch          a poke into a wart, with pictures\n"
-               "  palpate info scan.ply --unit mm                what a file holds and how it is understood\n"
+               "  palpate info scan.ply --length-unit mm         what a file holds and how it is understood\n"
                "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
                "  palpate paint scan.ply --stroke 'at=0,0,30mm radius=5mm value=2MPa' --out wart.ply\n"
                "                                                 a stiff spot on it; the rest of the file stays\n"

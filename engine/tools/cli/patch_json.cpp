@@ -4,6 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/patch_warnings.h"
+#include "engine/pipeline/presets.h"
 #include "engine/plate/load.h"
 
 namespace palp {
@@ -74,7 +77,7 @@ Json settingsJson(const Material& material, const PatchSettings& s)
             {"cells", s.cells},
             {"footprint_radius", s.footprintRadius},
             {"map", name(s.map)},
-            {"sampling", name(s.sampling)},
+            {"resampling", name(s.sampling)},
             {"force_law", name(s.forceLaw)},
             {"edges",
              {{"x0", name(s.edges.x0)}, {"x1", name(s.edges.x1)}, {"z0", name(s.edges.z0)}, {"z1", name(s.edges.z1)}}}};

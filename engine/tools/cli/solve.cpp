@@ -66,7 +66,7 @@ Solved solved(const SolveOptions& options)
     if (const SolveReport& report = s.solution.report; !report.converged)
         s.problem.warnings.push_back("the answer is not as good as asked for: its error is about " +
                                      formatNumber(*report.errorEstimate) +
-                                     " or more, relative; try fewer cells, less contrast or --device reference");
+                                     " or more, relative; try fewer cells, less contrast or --solver reference");
     for (const std::string& warning : s.problem.warnings) std::cerr << "palpate: warning: " << warning << "\n";
     // With one plate and one load, the time of the answer includes the preparation.
     s.solution.report.milliseconds += s.solution.report.setUpMilliseconds;
@@ -234,7 +234,7 @@ void addSolveCommand(CLI::App& app)
         "A grid names a .npy file of values at the nodes, of shape (cells_x + 1, cells_z + 1).\n\n"
         "Examples:\n"
         "  palpate solve plate.json\n"
-        "  palpate solve plate.json --cells 256 --device host --tolerance 1e-6 --json\n"
+        "  palpate solve plate.json --cells 256 --solver host --tolerance 1e-6 --json\n"
         "  palpate solve plate.json --out deflection.npy");
     command->callback([command, options] {
         refuseEmptyValues(*command);

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/session/deformation.h"
-#include "engine/session/hand_device.h"
+#include "engine/session/scripted_hand.h"
 #include "engine/session/virtual_session.h"
 #include "engine/tools/gui/panel_frame.h"
 #include "engine/tools/gui/panels.h"
@@ -18,14 +18,14 @@ namespace {
 
 /// A hand that has pressed a palm for a while, on the virtual clock.
 struct Pressed {
-    Scene        scene  = parseScene(R"({"cloud": "sample:palm", "points": 6000, "device": "host"})", "a test", ".");
+    Scene        scene  = parseScene(R"({"cloud": "sample:palm", "points": 6000, "solver": "host"})", "a test", ".");
     SoftObject   object = loadObject(scene).object;
     Deformation  deformation{object, scene};
     HandPlace    place = handPlace(scene, object);
     HandPath     path{{{0, place.point + 2e-3 * place.outward},
                        {0.5, place.point - 1.5e-3 * place.outward},
                        {3, place.point - 1e-3 * place.outward}}};
-    HandDevice   device{path};
+    ScriptedHand   device{path};
     TouchHistory history;
     std::optional<Patch> patch;
     TouchView            view{object, scene.patch};

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/cloud/samples.h"
+#include "engine/pipeline/deform.h"
 #include "engine/tools/render/annotation.h"
 #include "engine/tools/render/surface_renderer.h"
 #include "engine/tools/render/touch_view.h"
