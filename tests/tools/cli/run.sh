@@ -332,7 +332,7 @@ bad 'peers in an unknown case' 'new_map' bench --cases speed
 bad 'peers on an unknown map' 'disc_100' bench --maps cubic
 bad 'too few runs for quartiles' '--runs' bench --runs 5
 bad 'the reference as its own peer' 'reference' bench --solver reference
-bad 'peers with an empty device' '--device' bench --solver ''
+bad 'peers with an empty solver' '--solver' bench --solver ''
 bad 'devices take no argument' 'voodoo' devices voodoo
 bad 'nor does the doctor' 'voodoo' doctor voodoo
 for command in 'solve plate.json --solver' 'bench --solver'; do
