@@ -21,12 +21,12 @@ std::function<OpenedObject()> ObjectSource::opener(const std::string& what, cons
         };
     std::optional<Scene> now; // its object may do
     if (stage_ && !stage_->painting().changed()) now = stage_->scene();
-    return [what, now, device = stage_ ? stage_->scene().device : "auto"] {
+    return [what, now, toolKeys = settings_.toolKeys, solver = stage_ ? stage_->scene().solver : "auto"] {
         RecordedSession session = readSession(what);
         if (session.samples.empty()) throw Error(what + ": there are no samples in it, so there is nothing to replay");
-        Scene scene  = palp::sceneOf(session);
-        scene.device = device;
-        auto stage   = now && sameObject(scene, *now) ? nullptr : std::make_unique<Stage>(scene);
+        Scene scene  = palp::sceneOf(session, toolKeys);
+        scene.solver = solver;
+        auto stage   = now && haveSameCloud(scene, *now) ? nullptr : std::make_unique<Stage>(scene);
         return OpenedObject{what, std::move(scene), std::move(stage), std::move(session)};
     };
 }
@@ -44,8 +44,9 @@ void ObjectSource::adopt(OpenedObject opened)
 Scene ObjectSource::sceneWith(const SceneValues& values) const
 {
     if (!recorded_) return settings_.open(what_, values);
-    Scene scene = parseScene(recorded_->scene, what_, std::filesystem::current_path(), {values, {}});
-    if (!values.contains("device")) scene.device = stage_->scene().device;
+    Scene scene = parseScene(recorded_->scene, what_, std::filesystem::current_path(),
+                             {.flags = values, .toolKeys = settings_.toolKeys});
+    if (!values.contains("solver")) scene.solver = stage_->scene().solver;
     return scene;
 }
 

@@ -65,9 +65,7 @@ void PaintTool::save(const Stage& stage)
         const auto                  target   = unusedPath(stem + "-painted", ".ply");
         std::string                 property = "stiffness";
         if (isPly) {
-            CloudReadSettings settings;
-            settings.lengthUnit = stage.scene().lengthUnit;
-            property            = repaintPly(source, settings, stage.painted().cloud(), target).property;
+            property = repaintPly(source, stage.scene().reading, stage.painted().cloud(), target).property;
         } else {
             writeCloud(target, stage.painted().cloud(), {}, {});
         }

@@ -68,7 +68,4 @@ private:
 /// The scene's hand place; where that is off the object, the point of the object that lies uppermost.
 [[nodiscard]] HandPlace startPlace(const Scene& scene, const SoftObject& object);
 
-/// Whether two scenes differ in what is touched, so that a stage must be made anew.
-[[nodiscard]] bool sameObject(const Scene& a, const Scene& b);
-
 } // namespace palp

@@ -127,7 +127,7 @@ void Workbench::takeValues(const SceneValues& wanted)
     for (const auto& [key, value] : wanted) values[key] = value;
     try {
         const Scene scene = object_.sceneWith(values);
-        if (sameObject(scene, object_.stage().scene())) {
+        if (haveSameCloud(scene, object_.stage().scene())) {
             object_.stage().change(scene);
         } else if (paint_.mayDiscard(object_.stage())) {
             object_.adopt(meanwhile("reading " + fileNameOf(scene.cloud) + " once more ...",
@@ -184,7 +184,7 @@ void Workbench::useObject()
     state_.brush.value    = *std::ranges::max_element(stage.painted().cloud().stiffness());
     state_.look.deepest   = 0.5 * scene.material.thickness; // as far as theory goes
     state_.look.strongest = 0.5 * scene.maxForce;
-    state_.blind          = scene.hunt.has_value();
+    state_.blind          = scene.overlay != nullptr;
     if (!state_.blind) return;
     state_.look.paint              = ViewPaint::plain; // what is hidden stays hidden
     state_.look.overlays.projected = false;

@@ -10,7 +10,7 @@
 #include "engine/contact/contact.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/deform.h"
 #include "engine/tools/paper/parts.h"
 #include "engine/tools/render/cloud_figure.h"
 

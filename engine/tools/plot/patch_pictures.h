@@ -2,7 +2,7 @@
 #include <span>
 #include <string>
 
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/patch.h"
 
 namespace palp {
 

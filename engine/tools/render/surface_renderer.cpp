@@ -276,7 +276,7 @@ void SurfaceRenderer::takePanels()
 
 const compute::Processor& SurfaceRenderer::device() const noexcept
 {
-    return impl_->context.device();
+    return impl_->context.processor();
 }
 
 const std::string& SurfaceRenderer::note() const noexcept

@@ -19,7 +19,7 @@ class KeyBindings : public ::testing::Test {
 protected:
     KeyBindings()
     {
-        const Scene scene = parseScene(R"({"cloud": "sample:sheet", "points": 300, "device": "host"})", "a test", ".");
+        const Scene scene = parseScene(R"({"cloud": "sample:sheet", "points": 300, "solver": "host"})", "a test", ".");
         object_.adopt({"sample:sheet", scene, std::make_unique<Stage>(scene)});
         session_.setStage(object_.stage());
     }
