@@ -18,6 +18,7 @@
 #include "engine/core/enum_names.h"
 #include "engine/force/compliance_tracker.h"
 #include "engine/pipeline/patch.h"
+#include "engine/pipeline/presets.h"
 
 namespace palp {
 
