@@ -66,7 +66,7 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
     std::printf("  length unit        %s\n", r["cloud"]["length_unit_source"].get<std::string>().c_str());
     std::printf("  stiffness          %s\n", r["cloud"]["stiffness_source"].get<std::string>().c_str());
     std::printf("  scene              thickness %s, poisson %.3g, foundation %s, footprint radius %s\n",
-                formatQuantity(material.thickness, "m").c_str(), material.poissonRatio,
+                formatQuantity(scene.material.thickness, "m").c_str(), scene.material.poissonRatio,
                 formatQuantity(settings.foundation, "Pa/m").c_str(),
                 formatQuantity(settings.footprintRadius, "m").c_str());
     std::printf("  sphere             %s, radius %s, misfit %s\n", r["sphere"]["outcome"].get<std::string>().c_str(),

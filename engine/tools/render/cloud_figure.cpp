@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/tools/plot/colour_bar.h"
 #include "engine/tools/plot/svg.h"
-#include "engine/tools/render/annotation.h"
 #include "engine/tools/render/cloud_skin.h"
 #include "engine/tools/render/surface_renderer.h"
 
@@ -18,7 +18,7 @@ constexpr PictureSize kSize{900, 700, 2, Detail::fine};
 
 Camera cameraOf(std::span<const glm::dvec3> points, const CloudFigure& figure)
 {
-    constexpr double kFilled = 0.92; // share of the figure that the cloud takes [1]
+    constexpr double kFilled = 0.88; // share of the picture that the points take: their discs reach beyond [1]
     const double     aspect  = double(kSize.width) / kSize.height;
     Camera           camera;
     camera.projection = Projection::orthographic;
@@ -50,21 +50,20 @@ ValueRange rangeOf(std::span<const double> values, const CloudFigure& figure)
     return rangeOf(values, Scale::linear).value_or(ValueRange{0, 1});
 }
 
-/// Draws the cloud with its texts. \throws Error if it has no surface, compute::ProcessorError if no device can draw
+/// Draws the cloud alone.
+/// \throws Error if it has no surface, compute::ProcessorError if no device can draw
 Image imageOf(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now, std::span<const double> values,
-              const CloudFigure& figure)
+              const CloudFigure& figure, const Camera& camera)
 {
-    constexpr double                kCue = 0.05, kMark = 0.012; // of the figure's height [1]
+    constexpr double kCue = 0.05, kMark = 0.012; // of the picture's height [1]
+    if (rest.empty()) throw Error("there are no points");
     const NeighbourIndex            index(rest);
     const CloudSkin                 skin(rest, index);
     std::vector<glm::dvec3>         restNormals = skin.normals(rest), normals = skin.normals(now);
     const std::vector<std::uint8_t> oneSided = skin.turnOutwards(rest, restNormals);
     for (std::size_t n = 0; n < normals.size(); ++n)
         if (glm::dot(normals[n], restNormals[n]) < 0) normals[n] = -normals[n];
-    const Camera camera   = cameraOf(now, figure);
-    const double height   = 2 * camera.halfHeight(); // of the figure [m]
-    const auto   valued   = std::ranges::count_if(values, [](double value) { return std::isfinite(value); });
-    const auto   unvalued = std::ptrdiff_t(values.size()) - valued;
+    const double height = 2 * camera.halfHeight(); // of the picture [m]
 
     ViewScene scene;
     scene.positions = now;
@@ -75,13 +74,23 @@ Image imageOf(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now,
     scene.oneSided  = oneSided;
     scene.colours   = {ColourMap::viridis, Scale::linear, rangeOf(values, figure), figure.quantity, figure.unit};
     scene.cueRadius = kCue * height;
-    scene.title     = figure.title;
-    if (unvalued > 0) scene.note = std::to_string(unvalued) + " points without a value are grey";
     for (const glm::dvec3& place : figure.marks) scene.dots.push_back({place, kMark * height, kForceColour});
-    SurfaceRenderer renderer;
-    Image           image = renderer.draw(scene, camera, kSize);
-    annotate(image, scene, camera);
-    return image;
+    return SurfaceRenderer().draw(scene, camera, kSize);
+}
+
+void drawScaleBar(SvgDrawing& svg, double pixelsPerMetre, glm::dvec2 rightEnd)
+{
+    constexpr double kLongest = 160; // [px]
+    const ValueRange range{0, kLongest / pixelsPerMetre};
+    Axis             axis(range, Scale::linear, "m", 2);
+    if (axis.ticks().size() < 2) axis = Axis(range, Scale::linear, "m", 3); // 4 to 5: steps of 5 leave only zero
+    const Tick&      last    = axis.ticks().back();
+    const glm::dvec2 leftEnd = rightEnd - glm::dvec2(last.value * pixelsPerMetre, 0);
+    svg.line(leftEnd, rightEnd, {"#1a1a1a", 2.5});
+    for (const glm::dvec2 end : {leftEnd, rightEnd})
+        svg.line(end - glm::dvec2(0, 4), end + glm::dvec2(0, 4), {"#1a1a1a", 1.5});
+    svg.text(0.5 * (leftEnd + rightEnd) - glm::dvec2(0, 8), last.label + " " + axis.unit(),
+             {.anchor = Anchor::middle, .halo = true});
 }
 
 /// Looks at the contact from outside, 55 degrees off its normal, so that a dent shows its depth.
@@ -97,17 +106,30 @@ std::string cloudFigureSvg(std::span<const glm::dvec3> rest, std::span<const glm
 {
     PALP_EXPECT(rest.size() == now.size() && now.size() == values.size(),
                 "a figure has a value and two positions for each point");
-    const glm::dvec2 size(kSize.width, kSize.height);
+    const glm::dvec2 corner(18, 42), size(kSize.width, kSize.height); // [px]
     SvgDrawing       svg;
+    svg.text({corner.x, 25}, figure.title, {.size = 15, .bold = true});
     try {
-        svg.image({0, 0}, size, imageOf(rest, now, values, figure));
-        return svg.finish(size, figure.title);
+        const Camera camera = cameraOf(now, figure);
+        svg.image(corner, size, imageOf(rest, now, values, figure, camera));
+        drawScaleBar(svg, 0.5 * size.y / camera.halfHeight(), corner + size - glm::dvec2(14, 14));
     } catch (const Error& error) {
         const std::string sentence = std::string("this picture could not be drawn: ") + error.what();
-        svg.text({12, 24}, figure.title, {.size = 15, .bold = true});
-        svg.text({12, 48}, sentence);
-        return svg.finish({24 + textWidth(sentence, 12), 64}, figure.title);
+        svg.text({corner.x, 48}, sentence);
+        return svg.finish({2 * corner.x + textWidth(sentence, 12), 64}, figure.title);
     }
+    constexpr double kBarHeight = 420; // [px]
+    const Axis       axis(rangeOf(values, figure), Scale::linear, figure.unit, 9);
+    drawColourBar(svg,
+                  {&axis, [](double position) { return surfaceColour(position); }, figure.quantity,
+                   rangeOf(values, Scale::linear)},
+                  corner + glm::dvec2(size.x + 10, 0.5 * (size.y - kBarHeight)), kBarHeight);
+    double     bottom   = corner.y + size.y + 12;
+    const auto unvalued = std::ranges::count_if(values, [](double value) { return !std::isfinite(value); });
+    if (unvalued > 0)
+        svg.text({corner.x, bottom += 8}, std::to_string(unvalued) + " points without a value are grey.",
+                 {.colour = "#595959"});
+    return svg.finish({corner.x + size.x + 10 + kColourBarWidth, bottom + 8}, figure.title);
 }
 
 std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> patches, const SurfaceView& view)
