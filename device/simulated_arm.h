@@ -4,7 +4,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "device/velocity_window.h"
+#include "device/velocity_filter.h"
 
 namespace palp {
 
@@ -80,7 +80,7 @@ private:
     glm::dvec3                      velocity_;
     std::array<glm::dvec3, kDelays> forces_{};
     std::size_t                     tick_ = 0;
-    VelocityWindow                  window_; ///< of positions in encoder steps
+    VelocityFilter                  window_; ///< of positions in encoder steps
 };
 
 } // namespace palp

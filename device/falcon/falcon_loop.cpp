@@ -47,6 +47,20 @@ DeviceLight falconLight(const HapticState& state) noexcept
     return state.fault == DeviceFault::none && state.inBox ? DeviceLight::green : DeviceLight::blue;
 }
 
+const char* meaningOf(DeviceLight light) noexcept
+{
+    switch (light) {
+    case DeviceLight::red:
+        return "red    it is to be homed";
+    case DeviceLight::blue:
+        return "blue   no force flows: the grip is out of its workspace, or something is wrong";
+    case DeviceLight::green:
+        return "green  forces flow";
+    default:
+        return "none";
+    }
+}
+
 FalconLoop::FalconLoop(std::unique_ptr<FalconLink> link, const FalconLoopSettings& settings)
     : link_(std::move(link)), settings_(settings), kinematics_(settings.geometry),
       motors_(kinematics_, settings.countsPerTorque), window_(settings.velocityWindow)

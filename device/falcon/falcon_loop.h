@@ -10,7 +10,7 @@
 #include "device/falcon/falcon_link.h"
 #include "device/falcon/falcon_motors.h"
 #include "device/haptic_device.h"
-#include "device/velocity_window.h"
+#include "device/velocity_filter.h"
 
 namespace palp {
 
@@ -23,9 +23,11 @@ struct FalconLoopSettings {
     bool           showsState      = true;   ///< by falconLight()
 };
 
-/// The light of a Falcon that shows its state, FalconLoopSettings::showsState: red: to be homed; blue: no force flows;
-/// green: forces flow.
+/// The light of a Falcon that shows its state, see FalconLoopSettings::showsState.
 [[nodiscard]] DeviceLight falconLight(const HapticState& state) noexcept;
+
+/// What that light tells the user: "green  forces flow".
+[[nodiscard]] const char* meaningOf(DeviceLight light) noexcept;
 
 /// What the host wants of one exchange.
 struct FalconRequest {
@@ -85,7 +87,7 @@ private:
     FalconKinematics            kinematics_;
     FalconMotors                motors_;
     FalconParser                parser_;
-    VelocityWindow              window_;
+    VelocityFilter              window_;
     HapticState                 state_{};
     FalconCommand               command_{};
     DeviceFault                 line_      = DeviceFault::none; ///< what is wrong with the line or the arm

@@ -132,8 +132,8 @@ NodeField footprintLoad(const PlateGrid& grid, double force, double x, double z,
 
     // Sub-cells are laid out from the contact, not from the grid: their pattern then slides with the contact, so that
     // the load changes smoothly, and a contact on a node gets a symmetric one.
-    constexpr double kSubcellsPerSpacing = 4;  // [1] chosen: a finer pattern moves no node's share by more than 1 %
-    constexpr double kFewestPerRadius    = 16; // [1] chosen: the same for a footprint of one spacing
+    constexpr double kSubcellsPerSpacing = 4;  // chosen: a finer pattern moves no node's share by more than 1 %
+    constexpr double kFewestPerRadius    = 16; // chosen: the same for a footprint of one spacing
     const int        halfCount = int(std::ceil(std::max(kFewestPerRadius, kSubcellsPerSpacing * radius / spacing)));
     const double     step      = 1.0 / halfCount; // sub-cell edge over radius [1]
 

@@ -12,9 +12,9 @@ namespace {
 FootprintLattice latticeOf(const Scene& scene, const SoftObject& object, PlateSolver& solver)
 {
     const auto of = [&](int side) { return footprintLattice(object, scene.patch, side, solver); };
-    if (scene.handOver != ComplianceLaw::table) return of(1);
+    if (scene.complianceLaw != ComplianceLaw::table) return of(1);
     if (scene.tableSize > 0) return of(scene.tableSize);
-    for (int side = tableSide(scene.handOver, 1 / scene.deformationRate, scene.patch.footprintRadius); side > 3;
+    for (int side = tableSide(scene.complianceLaw, 1 / scene.deformationRate, scene.patch.footprintRadius); side > 3;
          side -= 2) {
         try {
             return of(side);
@@ -28,7 +28,7 @@ FootprintLattice latticeOf(const Scene& scene, const SoftObject& object, PlateSo
 } // namespace
 
 Deformation::Deformation(const SoftObject& object, const Scene& scene)
-    : object_(&object), law_(scene.handOver), settings_(scene.patch), solver_(scene.device, 0, SoftwareBits::ofTheHost),
+    : object_(&object), law_(scene.complianceLaw), settings_(scene.patch), solver_(scene.solver, 0, SoftwareBits::ofTheHost),
       lattice_(latticeOf(scene, object, solver_))
 {
 }

@@ -75,7 +75,7 @@ const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip) noexce
 
 ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads)
     : law_(scene.patch.forceLaw), thickness_(scene.material.thickness), patchPeriod_(1 / scene.deformationRate),
-      compliance_(scene.handOver), tank_(tankOf(scene, limits)), governor_(governorOf(scene, limits, threads))
+      compliance_(scene.complianceLaw), tank_(tankOf(scene, limits)), governor_(governorOf(scene, limits, threads))
 {
 }
 

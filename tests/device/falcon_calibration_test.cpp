@@ -121,6 +121,20 @@ TEST(FalconCalibration, WithoutTheMassItFails)
     EXPECT_FALSE(weighing.calibration.countsPerTorque());
 }
 
+/// Such a number would be refused wherever it is used, so it is no result: the mass is another one than was named.
+TEST(FalconCalibration, CountsOutOfTheBoundsAreNoResult)
+{
+    for (const double named : {0.05, 0.5}) { // [kg]; 0.2 hang: 16 800 and 1680 counts
+        Weighing weighing(4200, 0.05, {.mass = named});
+
+        weighing.run(0.2);
+
+        EXPECT_EQ(weighing.calibration.stage(), FalconCalibrationStage::failed) << named;
+        EXPECT_NE(std::string(weighing.calibration.failure()).find("check the mass"), std::string::npos) << named;
+        EXPECT_FALSE(weighing.calibration.countsPerTorque()) << named;
+    }
+}
+
 TEST(FalconCalibration, TouchedItFails)
 {
     Weighing weighing(4200, 0.05);

@@ -177,8 +177,8 @@ TEST(TableSolve, TheReferenceAgreesWithTheMultigrid)
     const FootprintTable shape{Sheet::kRadius, 3, 1e6};
     const auto           slow = solveTable(plate, solveLattice(flat, shape, reference, 1e-4), reference, 1e-4);
     const auto           fast = solveTable(plate, solveLattice(flat, shape, host, 1e-4), host, 1e-4);
-    EXPECT_EQ(slow.middle.report.device, "reference");
-    EXPECT_EQ(fast.middle.report.device, "host");
+    EXPECT_EQ(slow.middle.report.solver, "reference");
+    EXPECT_EQ(fast.middle.report.solver, "host");
     for (std::size_t n = 0; n < 9; ++n) {
         EXPECT_NEAR(fast.table.compliance[n].value, slow.table.compliance[n].value, 1e-4) << "the tolerance";
         EXPECT_NEAR(fast.table.compliance[n].slopeX, slow.table.compliance[n].slopeX, 0.1) << "per metre, of up to 100";

@@ -439,7 +439,7 @@ TEST(ReferenceSolver, ReportsWhatItKnowsAndNothingElse)
     const Plate         plate    = unitSquare(64);
     const PlateSolution solution = ReferencePlateSolver(plate).solve(uniformLoad(plate.grid, 1));
 
-    EXPECT_EQ(solution.report.device, "reference");
+    EXPECT_EQ(solution.report.solver, "reference");
     EXPECT_FALSE(solution.report.iterations);
     EXPECT_FALSE(solution.report.workUnits);
     ASSERT_TRUE(solution.report.errorEstimate);

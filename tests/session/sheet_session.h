@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "engine/session/deformation.h"
-#include "engine/session/hand_device.h"
+#include "engine/session/scripted_hand.h"
 #include "engine/session/virtual_session.h"
 
 namespace palp {
@@ -14,7 +14,7 @@ inline Scene sheetScene(const std::string& stiffness, const std::string& device 
 {
     const std::string text = R"({"cloud": "sample:sheet", "points": 4000, "thickness": "4 mm", "poisson": 0.45,
         "foundation": "1.74 MPa/m", "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "stiffness": )" +
-                             stiffness + R"(, "device": ")" + device + "\"}";
+                             stiffness + R"(, "solver": ")" + device + "\"}";
     return parseScene(text, "a test", ".");
 }
 
@@ -40,7 +40,7 @@ struct SheetSession {
     {
         std::vector<TickRecord> samples;
         Deformation             deformation(object, scene);
-        HandDevice              device(hand);
+        ScriptedHand              device(hand);
         runVirtual({scene, object, deformation.solver(), device, {}}, seconds,
                    [&](const TickRecord& s) { samples.push_back(s); });
         return samples;

@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 
 #include "engine/session/deformation.h"
-#include "engine/session/hand_device.h"
 #include "engine/session/recorded_session.h"
+#include "engine/session/scripted_hand.h"
 #include "tests/session/sheet_session.h"
 #include "tests/support/allocations.h"
 
@@ -86,7 +86,7 @@ TEST(VirtualSession, AHomogeneousCurvedObjectFeelsTheSameAlongThePath)
     for (const char* const object : {R"("sample:ellipsoid", "place": [0.03, 0, 0.0303])",
                                      R"("sample:palm", "place": [0, 0, 0], "from": [0, 0, 1])"}) {
         SheetSession session(parseScene(R"({"thickness": "4 mm", "poisson": 0.45, "foundation": "1.74 MPa/m",
-            "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "device": "host",
+            "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "solver": "host",
             "stiffness": {"law": "constant", "value": 0.5e6}, "cloud": )" +
                                             std::string(object) + "}",
                                         "a test", "."));
@@ -187,9 +187,9 @@ TEST(Servo, TheFirstButtonHeldDownResetsAFault)
 /// A device that renders little is never asked for more, whatever the scene allows.
 TEST(VirtualSession, TheDevicesLimitsBoundTheForce)
 {
-    class Weak : public HandDevice {
+    class Weak : public ScriptedHand {
     public:
-        explicit Weak(const HandPath& hand) : HandDevice(hand), weak_(HandDevice::info())
+        explicit Weak(const HandPath& hand) : ScriptedHand(hand), weak_(ScriptedHand::info())
         {
             weak_.maximumForce     = 0.4;
             weak_.maximumStiffness = 300;

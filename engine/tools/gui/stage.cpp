@@ -19,12 +19,6 @@ HandPlace startPlace(const Scene& scene, const SoftObject& object)
     }
 }
 
-bool sameObject(const Scene& a, const Scene& b)
-{
-    return a.cloud == b.cloud && a.points == b.points && a.seed == b.seed && a.lengthUnit == b.lengthUnit &&
-           a.stiffness == b.stiffness;
-}
-
 Stage::Stage(const Scene& scene)
     : scene_(scene), loaded_(loadObject(scene)), view_(loaded_.object, scene.patch), painting_(loaded_.object),
       place_(startPlace(scene, loaded_.object)), painted_(std::make_shared<const SoftObject>(loaded_.object)),
@@ -45,6 +39,12 @@ void Stage::change(const Scene& scene)
     place_    = startPlace(scene, loaded_.object);
     solvedOn_ = deformation_->plateSolver().name();
     view_.use(scene.patch);
+}
+
+std::optional<Hit> Stage::hitAt(const Camera& camera, const glm::dvec2& at, const glm::dvec2& size) const
+{
+    const double blur = std::max(0.5 * scene_.patch.footprintRadius, 1e-9); // [m]
+    return pick(rayThrough(camera, at, size), painted_->positions(), view_.restNormals(), view_.radii(), blur);
 }
 
 void Stage::takePaint()

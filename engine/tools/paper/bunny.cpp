@@ -12,7 +12,7 @@
 #include "engine/core/quantity.h"
 #include "engine/pipeline/deform.h"
 #include "engine/tools/paper/parts.h"
-#include "engine/tools/plot/patch_pictures.h"
+#include "engine/tools/render/cloud_figure.h"
 
 namespace palp::report {
 namespace {

@@ -9,7 +9,7 @@
 #include "engine/tools/paper/cantilever.h"
 #include "engine/tools/paper/parts.h"
 #include "engine/tools/plot/line_plot.h"
-#include "engine/tools/plot/patch_pictures.h"
+#include "engine/tools/render/cloud_figure.h"
 
 namespace palp::report {
 namespace {
