@@ -5,11 +5,11 @@
 
 namespace palp {
 
-/// A scripted or recorded hand as a device: it goes where it will, whatever the force. Always open.
+/// Plays a scripted or recorded hand as a device that no force moves. It is always open.
 /// \thread as HapticDevice
 class ScriptedHand : public HapticDevice {
 public:
-    /// \param hand  outlives it; its first sample is where the hand is at time 0
+    /// \param hand  outlives this; its first sample is where the hand is at time 0
     explicit ScriptedHand(const HandPath& hand);
 
     [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }

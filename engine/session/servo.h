@@ -46,7 +46,7 @@ enum class SessionFlag : std::uint32_t {
     governed     = 1U << 13  ///< the governor held the force back: damped, clamped, slewed, waiting or coming on
 };
 
-/// Where the hand is, as a device tells.
+/// Where a device says the hand is.
 struct Hand {
     glm::dvec3    position{};     ///< of the HIP [m]
     glm::dvec3    velocity{};     ///< filtered [m/s]
@@ -56,7 +56,7 @@ struct Hand {
     DeviceFault   device  = DeviceFault::none;
     std::uint32_t buttons = 0; ///< of the device, the lower 16
 
-    /// As TickRecord::device has it, and back.
+    /// Packs all but position, velocity and missed into TickRecord::device; setBits() reads it back.
     [[nodiscard]] std::uint32_t bits() const noexcept
     {
         return static_cast<std::uint32_t>(device) | (homed ? kHomed : 0U) | (inBox ? kInBox : 0U) | buttons << 16U;
@@ -95,10 +95,11 @@ struct ProxyContact {
 /// \thread one; tick() allocates, locks, throws and prints nothing, and the same input gives the same bits
 class ContactHalf {
 public:
-    /// \param object  outlives it
+    /// \param object  outlives this
     ContactHalf(const SoftObject& object, const Scene& scene);
 
-    /// \param time  [s] of the session's clock  \param hip  [m]
+    /// \param time  [s] of the session's clock
+    /// \param hip   [m]
     const ProxyContact& tick(double time, const glm::dvec3& hip) noexcept;
 
     [[nodiscard]] const Touch& touch() const noexcept { return held_.touch; }
@@ -109,7 +110,8 @@ private:
     ProxyContact held_;
 };
 
-/// The second half of a tick: pull -> compliance -> stiffness -> tank -> governor -> force. \thread as ContactHalf
+/// The second half of a tick: pull -> compliance -> stiffness -> tank -> governor -> force.
+/// \thread as ContactHalf
 class ForceHalf {
 public:
     /// The device's first button. Held down for 20 ms it resets the governor's fault, because whoever holds the device is
@@ -128,8 +130,8 @@ public:
         double loopPeriod; ///< [s] measured, as a mean over some 0.1 s
     };
 
-    /// \param newest  the deformation's last word; null: none yet
-    /// \return everything but tickTime
+    /// \param newest  the deformation's last update; null: none yet
+    /// \return the record of the tick, complete but for tickTime
     TickRecord tick(const TickTime& now, const Hand& hand, const ProxyContact& held,
                     const PatchUpdate* newest) noexcept;
 
