@@ -212,7 +212,7 @@ struct EmulatedBench {
     /// Holds the grip until force comes on, and hangs `mass` [kg] on it two seconds after being asked to.
     void act(double gain, Stage stage, double mass)
     {
-        arm.hold(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = kHeld} : SimulatedHand{});
+        arm.holdBy(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = kHeld} : SimulatedHand{});
         if (stage == Stage::hang) asked += 1e-3;
         if (asked > 2) hanging = mass;
     }
