@@ -11,7 +11,7 @@ usage: sh samples/demo.sh [--yes] [--no-install] [--dry-run]
 
   --yes          install missing packages without asking (password-less sudo)
   --no-install   install nothing; exit 3 naming what is missing
-  --dry-run      say what would be done
+  --dry-run      print what would be done
 TEXT
 }
 
@@ -75,4 +75,4 @@ say
 say "pictures: $out/index.html; the paper's claims: $out/paper/index.html; the wart: $out/skin"
 say "next: $build/bin/palpate view   (a window; hold Space over the object and move)"
 say "      $build/bin/palpate touch sample:palm --at 14mm,5mm,0 --out touch"
-say "      your own cloud: $build/bin/palpate info FILE --unit mm"
+say "      your own cloud: $build/bin/palpate info FILE --length-unit mm"

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/pipeline/deform.h"
 #include "engine/session/servo.h"
 
 namespace palp {
@@ -18,10 +19,10 @@ struct DeformationAnswer {
 using PatchSolver = std::function<DeformationAnswer(const Touch&, double period)>;
 
 /// The slow half of a session: from a touch to the patch and the table of compliances for where it will be.
-/// \thread one at a time, together with its device
+/// \thread one at a time, together with its plate solver
 class Deformation {
 public:
-    /// Opens the scene's device and solves the homogeneous window, some tenths of a second.
+    /// Opens the plate solver of the scene and solves the homogeneous window, some tenths of a second.
     /// \param object  outlives it
     /// \throws Error as PlateSolver and footprintLattice() do
     Deformation(const SoftObject& object, const Scene& scene);
@@ -42,7 +43,7 @@ public:
     /// \param object  repainted() or as it was; outlives this
     void repaint(const SoftObject& object);
 
-    [[nodiscard]] const PlateSolver& device() const noexcept { return device_; }
+    [[nodiscard]] const PlateSolver& plateSolver() const noexcept { return solver_; }
 
 private:
     [[nodiscard]] DeformationAnswer solveAt(const glm::dvec3& place, const Touch& touch);
@@ -50,7 +51,7 @@ private:
     const SoftObject*    object_; ///< never null
     ComplianceLaw        law_;
     PatchSettings        settings_;
-    PlateSolver          device_;
+    PlateSolver          solver_;
     FootprintLattice     lattice_;
     std::optional<Frame> frame_; ///< of the last patch, carried to the next
 };

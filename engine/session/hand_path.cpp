@@ -286,9 +286,22 @@ HandPath readHand(const std::filesystem::path& path)
     return parseHand(in, path.string());
 }
 
+glm::dvec3 placeOf(const Scene& scene, const PointCloud& cloud)
+{
+    if (scene.place) return *scene.place;
+    return *std::ranges::max_element(cloud.positions(), {}, [](const glm::dvec3& p) { return p.z; });
+}
+
+Contact contactOf(const Scene& scene, const SoftObject& object)
+{
+    std::optional<glm::dvec3> from = scene.from;
+    if (!scene.place && !from) from = glm::dvec3(0, 0, 1);
+    return touchAt(object, placeOf(scene, object.cloud()), from, scene.patch.window / 4);
+}
+
 HandPlace handPlace(const Scene& scene, const SoftObject& object)
 {
-    const Contact contact = touchAt(object, scene.place, scene.from, scene.patch.window / 4);
+    const Contact contact = contactOf(scene, object);
     return {contact.point, contact.outward};
 }
 

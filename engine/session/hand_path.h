@@ -74,8 +74,16 @@ struct HandPlace {
     glm::dvec3 outward{0, 0, 1}; ///< [1] unit vector to the hand
 };
 
-/// Where the scene's hand works: the cloud's point nearest to Scene::place, and the direction Scene::from.
+/// Scene::place, or the point of the cloud that is nearest to who looks along -z: that of the largest z.
+[[nodiscard]] glm::dvec3 placeOf(const Scene& scene, const PointCloud& cloud);
+
+/// Where the scene is touched: the cloud's point nearest to placeOf(), and the side Scene::from; where the scene names no
+/// place, the viewer's side.
 /// \throws Error if the place is farther than a quarter of the window from the cloud
+[[nodiscard]] Contact contactOf(const Scene& scene, const SoftObject& object);
+
+/// Where the scene's hand works: contactOf() without what is known of its side.
+/// \throws Error as contactOf()
 [[nodiscard]] HandPlace handPlace(const Scene& scene, const SoftObject& object);
 
 enum class HandMotion {

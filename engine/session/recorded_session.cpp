@@ -7,6 +7,8 @@
 #include <limits>
 #include <span>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/json_object.h"
@@ -99,6 +101,20 @@ std::vector<TickRecord> readColumns(const std::filesystem::path& folder, std::op
     return samples;
 }
 
+/// The scene of a recording of format 1, whose keys had other names.
+std::string withNamesOfToday(const std::string& scene)
+{
+    using Json       = nlohmann::ordered_json;
+    const Json then  = Json::parse(scene);
+    Json       today = Json::object();
+    for (const auto& [name, value] : then.items())
+        today[name == "device"      ? "solver"
+              : name == "hand_over" ? "compliance_law"
+              : name == "sampling"  ? "resampling"
+                                    : name] = value;
+    return today.dump();
+}
+
 const char* bytesOf(const TickRecord& sample, const SessionColumn& column)
 {
     return reinterpret_cast<const char*>(&sample) + column.offset;
@@ -167,15 +183,16 @@ RecordedSession readSession(const std::filesystem::path& folder)
                     "palpate run --record makes one, and so does F5 in the window");
     const JsonObject file =
         JsonObject::parse(readWhole(path, kMostOfDescription, "the description of a session"), path.string());
-    if (!file.has("format") || file.wholeNumber("format", 1, std::numeric_limits<int>::max()) != 1)
-        throw Error(path.string() + ": expected \"format\": 1, found " +
-                    (file.has("format") ? file.json("format") + "; a later palpate wrote it" : "none"));
+    const int format = file.has("format") ? file.wholeNumber("format", 1, std::numeric_limits<int>::max()) : 0;
+    if (format < 1 || format > kSessionFormat)
+        throw Error(path.string() + ": expected \"format\": 1 or " + std::to_string(kSessionFormat) + ", found " +
+                    (format > 0 ? std::to_string(format) + "; a later palpate wrote it" : "none"));
     RecordedSession session;
     session.folder  = folder;
     session.clock   = file.text("clock");
-    session.device  = file.text("device");
+    session.solver  = file.text(format == 1 ? "device" : "solver");
     session.command = file.text("command");
-    session.scene   = file.json("scene");
+    session.scene   = format == 1 ? withNamesOfToday(file.json("scene")) : file.json("scene");
     if (file.has("finished")) session.finished = file.json("finished") == "true";
     std::optional<std::uint64_t> expected;
     if (session.finished) expected = file.wholeNumber("samples", 0, std::numeric_limits<int>::max());
@@ -190,9 +207,11 @@ RecordedSession readSession(const std::filesystem::path& folder)
     return session;
 }
 
-Scene sceneOf(const RecordedSession& session)
+Scene sceneOf(const RecordedSession& session, const std::vector<SceneKey>* toolKeys)
 {
-    return parseScene(session.scene, (session.folder / "session.json").string() + ": scene", session.folder);
+    SceneOverrides overrides;
+    overrides.toolKeys = toolKeys;
+    return parseScene(session.scene, (session.folder / "session.json").string() + ": scene", session.folder, overrides);
 }
 
 std::optional<SessionDifference> compareSessions(const RecordedSession& a, const RecordedSession& b)

@@ -15,7 +15,7 @@ namespace palp {
 struct RecordedSession {
     std::filesystem::path   folder;
     std::string             clock;            ///< "real", "virtual"
-    std::string             device;           ///< as it was called then
+    std::string             solver;           ///< of the plate, as it was called then
     std::string             command;          ///< that recorded it
     std::string             scene;            ///< JSON for parseScene()
     std::string             cloud;            ///< fingerprint() of what was touched
@@ -24,12 +24,18 @@ struct RecordedSession {
     std::vector<TickRecord> samples;
 };
 
+/// The number of the format that Recording writes. Format 1 had other names of three keys of the scene and of the solver;
+/// readSession() translates them.
+inline constexpr int kSessionFormat = 2;
+
 /// Reads what Recording wrote, also of a session that was killed: then the samples that all columns have.
 /// \throws Error naming the file, what was expected and found
 [[nodiscard]] RecordedSession readSession(const std::filesystem::path& folder);
 
-/// The scene as it was run. \throws Error, also if its cloud is not where it was
-[[nodiscard]] Scene sceneOf(const RecordedSession& session);
+/// The scene as it was run.
+/// \param toolKeys  see SceneOverrides
+/// \throws Error, also if its cloud is not where it was
+[[nodiscard]] Scene sceneOf(const RecordedSession& session, const std::vector<SceneKey>* toolKeys = nullptr);
 
 /// The first place where two sessions differ.
 struct SessionDifference {

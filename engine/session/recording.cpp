@@ -22,6 +22,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
+#include "engine/session/recorded_session.h"
 #include "engine/session/tick_ring.h"
 
 namespace palp {
@@ -233,12 +234,12 @@ nlohmann::ordered_json describe(const SessionInfo& info)
     nlohmann::ordered_json origins = nlohmann::ordered_json::object();
     for (const auto& [key, origin] : info.scene.origins)
         origins[key] = name(origin.origin) + (origin.where.empty() ? "" : " " + origin.where);
-    return {{"format", 1},
+    return {{"format", kSessionFormat},
             {"versions", info.versions},
             {"started", now()},
             {"command", info.command},
             {"clock", name(info.clock)},
-            {"device", info.device},
+            {"solver", info.solver},
             {"cloud", info.cloud},
             {"hand",
              {{"model", info.hand.model},

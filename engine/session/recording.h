@@ -28,7 +28,7 @@ constexpr auto namesOf(SessionClock)
 struct SessionInfo {
     Scene                              scene;
     std::map<std::string, std::string> versions; ///< such as {"palpate", "0.1.0"}, {"driver", "llvmpipe 15"}
-    std::string                        device;   ///< that solves the plate, as it is called
+    std::string                        solver;   ///< of the plate, as it is called
     SessionClock                       clock = SessionClock::real;
     std::string                        command; ///< line by which the session was started
     std::string                        cloud{}; ///< fingerprint() of what is touched

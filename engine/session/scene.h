@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,8 +17,8 @@
 #include "engine/contact/proxy.h"
 #include "engine/core/enum_names.h"
 #include "engine/force/compliance_tracker.h"
-#include "engine/pipeline/pipeline.h"
-#include "engine/session/hunt.h"
+#include "engine/pipeline/patch.h"
+#include "engine/pipeline/presets.h"
 
 namespace palp {
 
@@ -39,7 +39,20 @@ constexpr auto namesOf(Origin)
 
 struct ValueOrigin {
     Origin      origin = Origin::standard;
-    std::string where; ///< "sample:skin", a file, "PALPATE_THICKNESS", "--thickness"; empty for a default
+    std::string where; ///< "sample:skin", a file, "PALPATE_THICKNESS", "--preset paper"; empty for a default
+};
+
+struct Scene;
+struct SceneKey;
+
+/// What a tool lays over the cloud of a scene, by keys of its own in the scene's file: nodules that are to be found,
+/// for example. A scene carries it into recordings and replays; the library knows no more of it.
+class CloudOverlay {
+public:
+    virtual ~CloudOverlay() = default;
+
+    /// The cloud with what lies over it. \throws Error if it does not fit the cloud
+    [[nodiscard]] virtual PointCloud over(const PointCloud& cloud, const Scene& scene) const = 0;
 };
 
 /// Everything that decides a session but the hand: what is touched, how it bends, how that becomes a force.
@@ -47,51 +60,36 @@ struct ValueOrigin {
 /// Invariant of what readScene() returns: every value is within the bounds that sceneKeys() state, and a cloud's file
 /// existed when the scene was read.
 struct Scene {
-    std::string   cloud;      ///< "sample:NAME", or the path of a cloud file
-    std::size_t   points = 0; ///< of a sample [1]; 0: a file's own
-    std::uint64_t seed   = 1; ///< of a sample [1]
-    std::string   lengthUnit; ///< of a file's coordinates; empty: its comment, else m
-    std::string   stiffness;  ///< law of the modulus over the cloud, see parseSpatialLaw [Pa]; empty: the cloud's own
-    Material      material;   ///< of the object
-    PatchSettings patch;      ///< foundation, window, map, force law, ...
+    std::string       cloud;      ///< "sample:NAME", or the path of a cloud file
+    std::size_t       points = 0; ///< of a sample; 0: a file's own
+    std::uint64_t     seed   = 1; ///< of a sample
+    CloudReadSettings reading;    ///< how a cloud file is read
+    std::string stiffness; ///< law of the modulus over the cloud, see parseSpatialLaw [Pa]; empty: the cloud's own
 
-    ComplianceLaw handOver = ComplianceLaw::table;
-    int    tableSize       = 0; ///< footprints a side of the table, odd [1]; reaches (size - 1)/2 radii; 0: tableSide()
-    double deformationRate = 60; ///< of the plate's thread [Hz]
+    std::optional<glm::dvec3> place{}; ///< [m] on the cloud; empty: where it comes nearest to who looks along -z
+    std::optional<glm::dvec3> from{};  ///< the hand's side there, of any length; empty: away from the cloud's middle
+
+    Preset        preset = Preset::palpate; ///< the last one that was asked for; its values stand in `patch`
+    Material      material{};               ///< of the sheet
+    PatchSettings patch;                    ///< foundation, window, map, force law, ...
+    std::string   solver = "auto";          ///< of the plate, as PlateSolver takes it
+
+    ComplianceLaw complianceLaw = ComplianceLaw::table;
+    int           tableSize = 0; ///< footprints a side of the table, odd; reaches (size - 1)/2 radii; 0: tableSide()
+    double        deformationRate = 60; ///< of the plate's thread [Hz]
 
     ProxyForm proxy           = ProxyForm::hybrid;
-    double    staticFriction  = 0.5;  ///< mu_s [1]; skin on skin 0.5 to 1
-    double    dynamicFriction = 0.3;  ///< mu_d [1], at most mu_s
-    double    maxForce        = 6;    ///< beyond it the governor clamps [N]
-    double    stiffnessCap    = 1000; ///< of what the device renders at a period of 1 ms [N/m]
+    double    staticFriction  = 0.5;   ///< mu_s [1]; skin on skin 0.5 to 1
+    double    dynamicFriction = 0.3;   ///< mu_d [1], at most mu_s
+    double    maxForce        = 6;     ///< the governor clamps the force to it [N]
+    double    stiffnessCap    = 1000;  ///< of what the device renders at a period of 1 ms [N/m]
+    double    startHeight     = 10e-3; ///< of the hand above the place when the session starts [m]
 
-    std::string device = "auto"; ///< of the plate, as `--device` takes it
-
-    glm::dvec3                place{};             ///< [m] on the cloud, where there is something to feel
-    std::optional<glm::dvec3> from{};              ///< [1] the hand's side there; empty: away from the cloud's middle
-    double                    startHeight = 10e-3; ///< [m] of the hand above `place` when the session starts
-
-    std::optional<Hunt>          hunt{};     ///< nodules that are hidden in the cloud, see engine/session/hunt.h
-    std::optional<std::uint64_t> huntSeed{}; ///< places them anew [1]
+    std::shared_ptr<const CloudOverlay> overlay{};          ///< of a tool; empty: the cloud as it is loaded
+    const std::vector<SceneKey>*        toolKeys = nullptr; ///< of the tool that read the scene; null: none
 
     std::map<std::string, ValueOrigin, std::less<>> origins; ///< of every key that has a value
 };
-
-/// One value of a scene, under the same name in a file ("max_force"), the environment (PALPATE_MAX_FORCE) and as a
-/// flag (--max-force). Quantities may be plain numbers in `unit` or texts with a unit of the same dimension ("4 mm").
-struct SceneKey {
-    std::string_view name;
-    std::string_view unit;     ///< of plain numbers; "1" for a ratio or a count, empty for names and texts
-    std::string_view means;    ///< one line
-    std::string_view expected; ///< its bounds, as complaints state them
-};
-
-/// All keys, in the order in which help texts and printConfig() list them.
-[[nodiscard]] std::span<const SceneKey> sceneKeys();
-
-/// "--max-force" and "PALPATE_MAX_FORCE".
-[[nodiscard]] std::string flagOf(std::string_view key);
-[[nodiscard]] std::string variableOf(std::string_view key);
 
 /// The value of an environment variable, or nullptr; an empty value counts as none.
 using Environment = std::function<const char*(const char*)>;
@@ -101,12 +99,19 @@ using Environment = std::function<const char*(const char*)>;
 
 /// What the user says beside the file.
 struct SceneOverrides {
-    std::map<std::string, std::string, std::less<>> flags;       ///< text per key ("max_force": "4 N")
-    Environment                                     environment; ///< none: no variable counts, as in replays
+    std::map<std::string, std::string, std::less<>> flags{};       ///< text per key ("max_force": "4 N")
+    Environment                                     environment{}; ///< none: no variable counts, as in replays
+
+    /// Plain numbers of lengths among the flags are in the scene's length_unit, as a command line takes them; in files
+    /// and in the environment they are metres.
+    bool flagsInLengthUnit = false;
+
+    const std::vector<SceneKey>* toolKeys = nullptr; ///< that a tool adds to the library's, see scene_keys.h
 };
 
 /// Reads a scene file: JSON, comments allowed, SI unless a text says its unit. samples/scenes/scene.schema.json
-/// describes every key. Precedence: default < sample < scene < environment < flag.
+/// describes every key. Precedence: default < sample < scene < environment < flag. A preset sets its values where it is
+/// asked for: a file's preset below the file's own keys, that of a flag above all of the file, below other flags.
 ///
 /// A relative path of a cloud starts at the scene file's folder; in the environment or a flag at the current one.
 /// \throws Error, one sentence: the file, variable or flag, the key, what was expected and found, what to try
@@ -136,8 +141,11 @@ inline constexpr std::string_view kSamplePrefix = "sample:";
     return std::string_view(scene.cloud).substr(kSamplePrefix.size());
 }
 
-/// The cloud with the scene's law, if it has one, and the nodules of its hunt.
-/// \throws Error as readCloud() and hiddenNodules() do
+/// Whether two scenes have the same cloud, as far as their keys say.
+[[nodiscard]] bool haveSameCloud(const Scene& a, const Scene& b);
+
+/// The cloud as the scene says that it is read, with the scene's law and overlay, if it has them.
+/// \throws Error as readCloud() and CloudOverlay::over() do, and if the file's stiffness contradicts the scene
 [[nodiscard]] LoadedCloud loadCloud(const Scene& scene);
 
 /// What is touched in a scene, and how its file was understood.
@@ -149,8 +157,8 @@ struct LoadedObject {
 /// loadCloud() with its index, of the scene's material.
 [[nodiscard]] LoadedObject loadObject(const Scene& scene);
 
-/// The nodules that loadCloud() has hidden in this cloud; none without a hunt.
-[[nodiscard]] std::vector<Nodule> nodulesOf(const Scene& scene, const PointCloud& cloud);
+/// The cloud without the overlay.
+[[nodiscard]] LoadedCloud loadBareCloud(const Scene& scene);
 
 /// 16 hexadecimal digits that tell clouds apart: FNV-1a over the bits of places and stiffnesses. Not against malice.
 [[nodiscard]] std::string fingerprint(const PointCloud& cloud);

@@ -1,57 +1,84 @@
+#include <algorithm>
 #include <bit>
 #include <cstdio>
 
 #include "engine/cloud/samples.h"
+#include "engine/core/contract.h"
 #include "engine/core/spatial_law.h"
-#include "engine/session/scene.h"
+#include "engine/session/scene_keys.h"
 
 // What a scene's cloud is made of.
 
 namespace palp {
 namespace {
 
-LoadedCloud loadBare(const Scene& scene)
+/// The scene's law at every place, in place of the stiffness that the cloud has.
+PointCloud withLaw(const PointCloud& cloud, const Scene& scene, StiffnessKind kind)
 {
-    const auto lawAcross = [&](const Bounds& bounds) {
-        return parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume);
-    };
-    if (isSample(scene)) {
-        const Sample&             sample = sampleNamed(sampleName(scene));
-        std::optional<SpatialLaw> law;
-        if (!scene.stiffness.empty()) law = lawAcross(boundsOf(sample));
-        CloudFileReport report;
-        report.format           = "procedural sample";
-        report.points           = scene.points;
-        report.lengthUnitSource = "m, by construction";
-        report.stiffnessSource  = law ? "the scene's law [Pa]" : "the sample's own law [Pa]";
-        return {makeSample(sample, scene.points, scene.seed, law), std::move(report)};
-    }
-    CloudReadSettings settings;
-    settings.lengthUnit = scene.lengthUnit;
-    LoadedCloud loaded  = readCloud(scene.cloud, settings);
-    if (scene.stiffness.empty()) return loaded;
-    const SpatialLaw    law = lawAcross(loaded.cloud.bounds());
+    const Bounds&       bounds = cloud.bounds();
+    const SpatialLaw    law    = parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume);
     std::vector<double> stiffness;
-    stiffness.reserve(loaded.cloud.size());
-    for (const glm::dvec3& p : loaded.cloud.positions()) stiffness.push_back(law(p));
-    loaded.cloud = PointCloud({loaded.cloud.positions().begin(), loaded.cloud.positions().end()}, std::move(stiffness),
-                              StiffnessKind::modulus);
-    loaded.report.stiffnessSource = "the scene's law [Pa]";
-    return loaded;
+    stiffness.reserve(cloud.size());
+    for (const glm::dvec3& p : cloud.positions()) stiffness.push_back(law(p));
+    return {{cloud.positions().begin(), cloud.positions().end()}, std::move(stiffness), kind};
+}
+
+LoadedCloud sampleOf(const Scene& scene)
+{
+    const Sample&             sample = sampleNamed(sampleName(scene));
+    const Bounds              bounds = boundsOf(sample);
+    std::optional<SpatialLaw> law;
+    if (!scene.stiffness.empty())
+        law = parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume);
+    CloudFileReport report;
+    report.format           = "procedural sample";
+    report.points           = scene.points;
+    report.lengthUnitSource = "m, by construction";
+    report.stiffnessSource  = law ? "the scene's law [Pa]" : "the sample's own law [Pa]";
+    return {makeSample(sample, scene.points, scene.seed, law), std::move(report)};
+}
+
+/// How a complaint about a key begins: "--uniform", or "skin.json: key \"uniform\"".
+std::string openingOf(const Scene& scene, const std::string& key)
+{
+    const auto found = scene.origins.find(key);
+    if (found == scene.origins.end()) return "key \"" + key + "\"";
+    const auto& [origin, where] = found->second;
+    return origin == Origin::scene ? where + ": key \"" + key + "\"" : where;
+}
+
+/// The file's own word on its stiffness stands against the user's, or its stiffness against a uniform one.
+void refuseContradiction(const Scene& scene, const LoadedCloud& loaded)
+{
+    if (!scene.stiffness.empty() || !loaded.report.stiffnessProperty) return;
+    if (scene.reading.uniformStiffness)
+        throw Error(openingOf(scene, "uniform") + ": expected a file without stiffness, found " +
+                    loaded.report.stiffnessSource + "; to replace it give stiffness constant:value=PASCAL");
+    const auto stated = loaded.report.statedKind;
+    if (stated && *stated != loaded.cloud.kind())
+        throw Error(openingOf(scene, "stiffness_unit") + ": " + unitOf(loaded.cloud.kind()) +
+                    " contradicts the file's comment, stiffness_unit " + unitOf(*stated) +
+                    "; omit stiffness_unit or correct the comment in " + scene.cloud);
 }
 
 } // namespace
 
-std::vector<Nodule> nodulesOf(const Scene& scene, const PointCloud& cloud)
+LoadedCloud loadBareCloud(const Scene& scene)
 {
-    if (!scene.hunt) return {};
-    return hiddenNodules(*scene.hunt, scene.huntSeed, cloud, scene.place, scene.patch.footprintRadius);
+    if (isSample(scene)) return sampleOf(scene);
+    LoadedCloud loaded = readCloud(scene.cloud, scene.reading);
+    refuseContradiction(scene, loaded);
+    if (scene.stiffness.empty()) return loaded;
+    const StiffnessKind kind      = scene.reading.stiffnessKind.value_or(StiffnessKind::modulus);
+    loaded.cloud                  = withLaw(loaded.cloud, scene, kind);
+    loaded.report.stiffnessSource = std::string("the scene's law [") + unitOf(kind) + "]";
+    return loaded;
 }
 
 LoadedCloud loadCloud(const Scene& scene)
 {
-    LoadedCloud loaded = loadBare(scene);
-    if (scene.hunt) loaded.cloud = withNodules(loaded.cloud, nodulesOf(scene, loaded.cloud), scene.material);
+    LoadedCloud loaded = loadBareCloud(scene);
+    if (scene.overlay) loaded.cloud = scene.overlay->over(loaded.cloud, scene);
     return loaded;
 }
 
@@ -59,6 +86,14 @@ LoadedObject loadObject(const Scene& scene)
 {
     LoadedCloud loaded = loadCloud(scene);
     return {SoftObject(std::move(loaded.cloud), scene.material, std::move(loaded.faces)), std::move(loaded.report)};
+}
+
+bool haveSameCloud(const Scene& a, const Scene& b)
+{
+    if (a.toolKeys != b.toolKeys) return false;
+    return std::ranges::all_of(sceneKeysWith(a.toolKeys), [&](const SceneKey* key) {
+        return !key->decidesCloud || key->write(a) == key->write(b);
+    });
 }
 
 std::string fingerprint(const PointCloud& cloud)

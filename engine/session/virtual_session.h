@@ -14,7 +14,7 @@ namespace palp {
 /// \param onTick  sees every sample; may be empty
 /// \param stop      ends the session once it is true; may be null
 /// \throws what the solver throws
-SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTick& onTick,
+SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTick& onTick = {},
                           const std::atomic<bool>* stop = nullptr);
 
 } // namespace palp

@@ -54,7 +54,7 @@ cat >scene/skin <<END
  "footprint_radius": "4.4 mm", "place": [0, 0, 0.0015], "from": [0, 0, 1], "max_force": "6 N", "proxy": "sphere"}
 END
 printf '{"cloud": "sample:sheet", "thicknes": 0.004}' >scene/unknown
-printf '{"cloud": "sample:sheet", "thickness": "4 kPa", "poisson": 0.5, "force_law": "paper", "device": "host"}' >scene/refused
+printf '{"cloud": "sample:sheet", "thickness": "4 kPa", "poisson": 0.5, "force_law": "paper", "solver": "host"}' >scene/refused
 
 printf 'time,x,y,z\n0,0,0,0.01\n0.1,0,0,0\n1e0,1e-3,0,-2e-3,ignored\n' >hand/csv
 printf '# down and up\n0 0 0 0.01\n0.5; 0; 0; -1e-3\n1\t0\t0\t0.01\n' >hand/mixed

@@ -242,7 +242,7 @@ TEST(GeneratedHand, ThePlaceOfASceneIsOnItsCloudOnTheHandsSide)
 
     const HandPlace place = handPlace(scene, loadObject(scene).object);
 
-    EXPECT_LT(glm::length(place.point - scene.place), 3e-3);
+    EXPECT_LT(glm::length(place.point - scene.place.value()), 3e-3);
     EXPECT_GT(place.outward.z, 0.9);
     EXPECT_NEAR(glm::length(place.outward), 1, 1e-12);
 }

@@ -79,7 +79,7 @@ TEST(Recording, TheDescriptionSaysWhatWasRunAndHow)
     const Json json = Json::parse(contentsOf(folder / "run" / "session.json"));
 
     EXPECT_EQ(json["versions"]["palpate"], "0.1.0");
-    EXPECT_EQ(json["device"], "host");
+    EXPECT_EQ(json["solver"], "host");
     EXPECT_EQ(json["command"], "palpate run skin.json --hand press");
     EXPECT_EQ(json["scene"]["thickness"], 0.003);
     EXPECT_EQ(json["origins"]["thickness"], "scene skin.json");

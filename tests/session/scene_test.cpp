@@ -1,4 +1,4 @@
-#include "engine/session/scene.h"
+#include "engine/session/scene_keys.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/cloud/samples.h"
+#include "engine/session/hand_path.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palp {
@@ -111,10 +112,10 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
     const Scene scene = parsed(R"({
         "cloud": "sample:sheet", "points": 1000, "seed": 7, "stiffness": "linear:from=1e5,to=1e6,axis=y",
         "thickness": "0.5 cm", "poisson": -0.2, "foundation": "2 MPa/m", "window": 0.05, "cells": 32.0,
-        "footprint_radius": "3mm", "map": "gall-peters", "sampling": "nearest", "edges": {"x0": "free"},
-        "force_law": "paper", "tolerance": 1e-6, "hand_over": "blend", "table_size": 7, "deformation_rate": 30,
+        "footprint_radius": "3mm", "map": "gall-peters", "resampling": "nearest", "edges": {"x0": "free"},
+        "force_law": "paper", "tolerance": 1e-6, "compliance_law": "blend", "table_size": 7, "deformation_rate": 30,
         "proxy": "sphere", "static_friction": 1, "dynamic_friction": 0, "max_force": "500 mN",
-        "stiffness_cap": 800, "device": "host", "place": [1e-3, 0, 0], "from": [0, 0, 2], "start_height": "2 cm"})");
+        "stiffness_cap": 800, "solver": "host", "place": [1e-3, 0, 0], "from": [0, 0, 2], "start_height": "2 cm"})");
 
     EXPECT_EQ(scene.points, 1000u);
     EXPECT_EQ(scene.seed, 7u);
@@ -128,7 +129,7 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
     EXPECT_EQ(scene.patch.edges, (PlateEdges{.x0 = Edge::free}));
     EXPECT_EQ(scene.patch.forceLaw, ForceLaw::paper);
     EXPECT_EQ(scene.patch.tolerance, 1e-6);
-    EXPECT_EQ(scene.handOver, ComplianceLaw::blend);
+    EXPECT_EQ(scene.complianceLaw, ComplianceLaw::blend);
     EXPECT_EQ(scene.tableSize, 7);
     EXPECT_EQ(scene.deformationRate, 30);
     EXPECT_EQ(scene.proxy, ProxyForm::sphere);
@@ -136,7 +137,7 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
     EXPECT_EQ(scene.dynamicFriction, 0);
     EXPECT_EQ(scene.maxForce, 0.5);
     EXPECT_EQ(scene.stiffnessCap, 800);
-    EXPECT_EQ(scene.device, "host");
+    EXPECT_EQ(scene.solver, "host");
     EXPECT_EQ(scene.place, glm::dvec3(1e-3, 0, 0));
     EXPECT_EQ(scene.from, glm::dvec3(0, 0, 2));
     EXPECT_EQ(scene.startHeight, 20e-3);
@@ -184,13 +185,14 @@ TEST(Scene, UnknownKeysAreRefusedWithTheNearestKnownOne)
 TEST(Scene, EachBadValueIsRefusedWithKeyExpectationAndFinding)
 {
     const std::pair<const char*, std::vector<std::string_view>> cases[] = {
-        {R"("thickness": -0.004)", {"s.json: key \"thickness\": expected a thickness from 1e-6", "found \"-0.004\""}},
+        {R"("thickness": -0.004)",
+         {"s.json: key \"thickness\": expected a length from 1e-6 to 1 m, such as 4 mm", "found \"-0.004\""}},
         {R"("thickness": 0)", {"key \"thickness\"", "found \"0\""}},
         {R"("thickness": "4 N")", {"key \"thickness\"", "unknown unit \"N\"", "mm"}},
         {R"("thickness": "4 furlong")", {"key \"thickness\"", "furlong", "known units"}},
         {R"("thickness": "nan mm")", {"key \"thickness\"", "finite"}},
         {R"("thickness": "inf")", {"key \"thickness\"", "finite"}},
-        {R"("thickness": true)", {"key \"thickness\"", "expected a thickness", "found true"}},
+        {R"("thickness": true)", {"key \"thickness\"", "expected a length", "found true"}},
         {R"("thickness": null)", {"key \"thickness\"", "found null"}},
         {R"("thickness": [0.004])", {"key \"thickness\"", "found [0.004]"}},
         {R"("poisson": 0.5)", {"key \"poisson\"", "below 0.5", "found \"0.5\"", "0.49"}},
@@ -208,7 +210,7 @@ TEST(Scene, EachBadValueIsRefusedWithKeyExpectationAndFinding)
         {R"("table_size": 9)", {"key \"table_size\"", "0, 1, 3, 5 or 7"}},
         {R"("map": "mercator")", {"key \"map\"", "lambert-azimuthal", "mercator"}},
         {R"("force_law": "seires")", {"key \"force_law\"", "series or paper", "did you mean \"series\"?"}},
-        {R"("hand_over": 1)", {"key \"hand_over\"", "table, hold or blend"}},
+        {R"("compliance_law": 1)", {"key \"compliance_law\"", "table, hold or blend"}},
         {R"("proxy": "")", {"key \"proxy\"", "hybrid"}},
         {R"("edges": "glued")", {"key \"edges\"", "glued", "clamped"}},
         {R"("edges": {"x2": "free"})", {"edges", "x2", "x0"}},
@@ -221,7 +223,7 @@ TEST(Scene, EachBadValueIsRefusedWithKeyExpectationAndFinding)
         {R"("place": [0, 0])", {"key \"place\"", "3 numbers"}},
         {R"("place": [0, 0, "x"])", {"key \"place\""}},
         {R"("from": [0, 0, 0])", {"key \"from\"", "not zero"}},
-        {R"("device": "")", {"key \"device\""}},
+        {R"("solver": "")", {"key \"solver\""}},
         {R"("length_unit": "mm")", {"key \"length_unit\"", "sample:skin"}},
         {R"("dynamic_friction": 0.9)", {"key \"dynamic_friction\"", "static_friction"}},
         {R"("footprint_radius": 0.1)", {"key \"footprint_radius\"", "window"}},
@@ -232,7 +234,7 @@ TEST(Scene, EachBadValueIsRefusedWithKeyExpectationAndFinding)
 
 TEST(Scene, FlagsAndVariablesAreRefusedUnderTheirOwnNames)
 {
-    EXPECT_TRUE(says(refusal("", overrides({{"thickness", "-4mm"}})), {"--thickness: expected a thickness", "-4mm"}));
+    EXPECT_TRUE(says(refusal("", overrides({{"thickness", "-4mm"}})), {"--thickness: expected a length", "-4mm"}));
     EXPECT_TRUE(says(refusal("", overrides({{"static_friction", ""}})), {"--static-friction: expected a value"}));
     EXPECT_TRUE(says(refusal("", overrides({}, {{"PALPATE_MAX_FORCE", "lots"}})), {"PALPATE_MAX_FORCE", "lots"}));
     EXPECT_TRUE(
@@ -297,7 +299,172 @@ TEST(Scene, ACloudFileLiesBesideItsSceneAndIsScaledByItsUnit)
                      }),
                      {"--points", "sample"}));
     const auto placeless = folder.write("t.json", R"({"cloud": "plane.xyz"})");
-    EXPECT_TRUE(says(refusalOf([&] { static_cast<void>(readScene(placeless)); }), {"\"place\""}));
+    EXPECT_FALSE(readScene(placeless).place) << "it is touched where it comes nearest to the viewer";
+}
+
+/// A plane of points in millimetres whose property "quality" runs from 0 to 9.
+std::filesystem::path paintedScan(const TemporaryFolder& folder, const std::string& comment = "")
+{
+    std::string text = "ply\nformat ascii 1.0\n" + comment +
+                       "element vertex 100\nproperty float x\nproperty float y\nproperty float z\n"
+                       "property float quality\nend_header\n";
+    for (int i = 0; i < 100; ++i)
+        text += std::to_string(i % 10) + " " + std::to_string(i / 10) + " 0 " + std::to_string(i % 10) + "\n";
+    return folder.write("scan.ply", text);
+}
+
+TEST(Scene, EveryKeyForReadingAFileIsRead)
+{
+    const TemporaryFolder folder;
+    static_cast<void>(paintedScan(folder));
+    const auto file = folder.write("s.json", R"({"cloud": "scan.ply", "length_unit": "mm",
+        "stiffness_property": "quality", "stiffness_unit": "N_m", "stiffness_range": [1e-3, 0.1], "log_range": true,
+        "columns": "x,y,z", "drop_invalid": true, "place": ["1mm", 0, 0]})");
+    EXPECT_TRUE(says(refusalOf([&] { static_cast<void>(readScene(file)); }), {"key \"place\""}));
+    static_cast<void>(folder.write("t.json", R"({"cloud": "scan.ply", "length_unit": "mm",
+        "stiffness_property": "quality", "stiffness_unit": "N_m", "stiffness_range": [1e-3, 0.1], "log_range": true,
+        "columns": "x,y,z", "drop_invalid": true})"));
+    const Scene scene = readScene(folder / "t.json");
+
+    EXPECT_EQ(scene.reading.lengthUnit, "mm");
+    EXPECT_EQ(scene.reading.stiffnessProperty, "quality");
+    EXPECT_EQ(scene.reading.stiffnessKind, StiffnessKind::rigidity);
+    EXPECT_EQ(scene.reading.range->from, 1e-3);
+    EXPECT_EQ(scene.reading.range->to, 0.1);
+    EXPECT_EQ(scene.reading.range->scale, RangeScale::logarithmic);
+    EXPECT_EQ(scene.reading.columns, "x,y,z");
+    EXPECT_TRUE(scene.reading.dropInvalid);
+    EXPECT_FALSE(scene.place);
+    EXPECT_EQ(sceneJson(parseScene(sceneJson(scene), "again", "/elsewhere")), sceneJson(scene));
+
+    const PointCloud cloud = loadCloud(scene).cloud;
+    EXPECT_EQ(cloud.kind(), StiffnessKind::rigidity);
+    EXPECT_NEAR(cloud.bounds().high.x, 9e-3, 1e-12);
+    EXPECT_NEAR(cloud.stiffness()[0], 1e-3, 1e-15);
+    EXPECT_NEAR(cloud.stiffness()[9], 0.1, 1e-13);
+    EXPECT_NEAR(cloud.stiffness()[3], std::pow(10, -3 + 2 * 3.0 / 9), 1e-12) << "equal factors";
+}
+
+TEST(Scene, AStiffnessThatContradictsTheFileIsRefusedUnderItsOwnName)
+{
+    const TemporaryFolder folder;
+    const auto            scan = paintedScan(folder, "comment length_unit mm\n");
+    const auto            read = [&](std::map<std::string, std::string, std::less<>> flags) {
+        flags["cloud"] = scan.string();
+        return refusalOf([&] { static_cast<void>(loadCloud(parsed("{}", overrides(flags)))); });
+    };
+    EXPECT_EQ(read({{"uniform", "300kPa"}}), "") << "quality is no stiffness unless somebody names it";
+    EXPECT_TRUE(says(read({{"uniform", "300kPa"}, {"stiffness_property", "quality"}, {"stiffness_range", "1kPa,2kPa"}}),
+                     {"--uniform: expected a file without stiffness", "constant:value"}));
+    EXPECT_TRUE(says(read({{"log_range", "true"}}), {"--log-range: expected --stiffness-range beside it"}));
+    EXPECT_TRUE(says(read({{"log_range", "yes"}}), {"--log-range: expected true or false", "yes"}));
+    EXPECT_TRUE(says(read({{"stiffness_range", "1kPa"}}), {"--stiffness-range: expected two stiffnesses", "1kPa"}));
+    EXPECT_TRUE(
+        says(read({{"stiffness_range", "0,1kPa"}}), {"--stiffness-range: expected two stiffnesses above zero"}));
+    EXPECT_TRUE(says(read({{"stiffness_range", "1kPa,2mm"}}), {"--stiffness-range", "unknown unit \"mm\""}));
+    EXPECT_TRUE(says(read({{"stiffness_unit", "kPa"}}), {"--stiffness-unit: expected Pa or N_m", "kPa"}));
+    EXPECT_TRUE(says(read({{"stiffness_property", "qualty"}}), {"scan.ply", "qualty"}));
+    EXPECT_TRUE(says(read({{"uniform", "nan"}}), {"--uniform", "finite"}));
+    for (const char* key : {"stiffness_property", "stiffness_unit", "stiffness_range", "uniform", "columns",
+                            "drop_invalid", "length_unit"})
+        EXPECT_TRUE(says(refusal("\"" + std::string(key) + "\": \"x\""),
+                         {"key \"" + std::string(key) + "\": expected a file as the cloud, found sample:skin"}));
+}
+
+TEST(Scene, APresetStandsBelowTheKeysOfItsOwnSourceAndAboveWeakerSources)
+{
+    const std::string file = R"({"cloud": "sample:skin", "preset": "paper", "force_law": "series"})";
+    const Scene       own  = parsed(file);
+    EXPECT_EQ(own.preset, Preset::paper);
+    EXPECT_EQ(own.patch.map, Map::gallPeters) << "over the default";
+    EXPECT_EQ(own.patch.foundation, 0) << "over the sample";
+    EXPECT_EQ(own.patch.forceLaw, ForceLaw::series) << "the file's own key wins";
+    EXPECT_EQ(own.origins.at("map").where, "s.json: preset paper");
+    EXPECT_EQ(own.origins.at("map").origin, Origin::scene);
+
+    const Scene over = parsed(R"({"cloud": "sample:skin", "force_law": "series", "foundation": "1 MPa/m"})",
+                              overrides({{"preset", "paper"}, {"map", "lambert-cylindrical"}}));
+    EXPECT_EQ(over.patch.forceLaw, ForceLaw::paper) << "a flag's preset wins over the file's keys";
+    EXPECT_EQ(over.patch.foundation, 0);
+    EXPECT_EQ(over.patch.map, Map::lambertCylindrical) << "another flag wins over it";
+
+    const Scene back = parsed(file, overrides({{"preset", "palpate"}}, {{"PALPATE_MAP", "gall-peters"}}));
+    EXPECT_EQ(back.patch.map, Map::lambertAzimuthal) << "a flag's preset wins over the environment";
+    EXPECT_EQ(back.patch.sampling, Resampling::logMean);
+    EXPECT_EQ(back.patch.foundation, 0) << "palpate leaves the foundation to the file's preset";
+    EXPECT_EQ(sceneJson(parsed(sceneJson(own))), sceneJson(own));
+    EXPECT_TRUE(says(refusal(R"("preset": "papre")"), {"palpate or paper", "did you mean \"paper\"?"}));
+}
+
+TEST(Scene, PlainLengthsOfACommandLineAreInItsLengthUnitAndThoseOfFilesInMetres)
+{
+    const TemporaryFolder folder;
+    const auto            scan = paintedScan(folder);
+    SceneOverrides        line = overrides({{"length_unit", "mm"},
+                                            {"place", "1,0.002m,0"},
+                                            {"window", "20"},
+                                            {"footprint_radius", "2"},
+                                            {"thickness", "0.5"},
+                                            {"from", "0,0,7"}},
+                                           {{"PALPATE_START_HEIGHT", "0.004"}});
+    line.flagsInLengthUnit     = true;
+    line.flags["cloud"]        = scan.string();
+    const Scene scene          = parsed("{}", line);
+    EXPECT_NEAR(scene.place->x, 1e-3, 1e-18);
+    EXPECT_EQ(scene.place->y, 0.002);
+    EXPECT_NEAR(scene.patch.window, 20e-3, 1e-15);
+    EXPECT_NEAR(scene.material.thickness, 0.5e-3, 1e-15);
+    EXPECT_EQ(scene.from, glm::dvec3(0, 0, 7)) << "a direction has no unit";
+    EXPECT_EQ(scene.startHeight, 0.004) << "the environment is in metres";
+
+    line.flags.erase("cloud");
+    line.flags.erase("length_unit");
+    const std::string file = R"({"cloud": ")" + scan.string() + R"(", "length_unit": "mm", "start_height": 0.003})";
+    EXPECT_NEAR(parsed(file, line).patch.window, 20e-3, 1e-15) << "the file's unit counts for the line";
+    line.environment = nullptr;
+    EXPECT_EQ(parsed(file, line).startHeight, 0.003) << "but not for its own numbers";
+
+    SceneOverrides sample    = overrides({{"length_unit", "mm"}, {"thickness", "3"}});
+    sample.flagsInLengthUnit = true;
+    EXPECT_NEAR(parsed(R"({"cloud": "sample:skin"})", sample).material.thickness, 3e-3, 1e-15);
+    EXPECT_EQ(parsed(R"({"cloud": "sample:skin"})", sample).reading.lengthUnit, "");
+    sample.flags["length_unit"] = "parsec";
+    EXPECT_TRUE(says(refusalOf([&] { static_cast<void>(parsed(R"({"cloud": "sample:skin"})", sample)); }),
+                     {"--length-unit: expected m, mm", "parsec"}));
+}
+
+TEST(Scene, WithoutAPlaceAFilesCloudIsTouchedWhereItComesNearestToTheViewer)
+{
+    const TemporaryFolder folder;
+    std::string           points;
+    for (int i = 0; i < 400; ++i) {
+        const double x = i % 20 - 10, y = i / 20 - 10;
+        points += std::to_string(x) + " " + std::to_string(y) + " " +
+                  std::to_string(9 - 0.02 * (x * x + (y - 3) * (y - 3))) + "\n";
+    }
+    static_cast<void>(folder.write("dome.xyz", points));
+    const Scene     scene = parsed("{}", overrides({{"cloud", (folder / "dome.xyz").string()}, {"length_unit", "mm"}}));
+    const HandPlace place = handPlace(scene, loadObject(scene).object);
+
+    EXPECT_NEAR(place.point.x, 0, 1e-12);
+    EXPECT_NEAR(place.point.y, 3e-3, 1e-12);
+    EXPECT_GT(place.outward.z, 0.9);
+}
+
+TEST(Scene, TwoScenesHaveTheSameCloudUnlessAKeyThatDecidesItDiffers)
+{
+    const auto scene = [](const std::string& more) { return parsed(R"({"cloud": "sample:skin")" + more + "}"); };
+    EXPECT_TRUE(haveSameCloud(scene(""), scene(R"(, "thickness": 0.001, "place": [0, 0, 0])")));
+    EXPECT_FALSE(haveSameCloud(scene(""), scene(R"(, "points": 500)")));
+    EXPECT_FALSE(haveSameCloud(scene(""), scene(R"(, "seed": 2)")));
+    EXPECT_FALSE(haveSameCloud(scene(""), scene(R"(, "stiffness": "constant:value=1e5")")));
+    const TemporaryFolder folder;
+    const std::string     file  = paintedScan(folder).string();
+    const auto            other = [&](const char* key, const char* value) {
+        return parsed("{}", overrides({{"cloud", file}, {key, value}}));
+    };
+    EXPECT_FALSE(haveSameCloud(other("length_unit", "mm"), other("length_unit", "cm")));
+    EXPECT_FALSE(haveSameCloud(other("uniform", "1kPa"), other("uniform", "2kPa")));
 }
 
 TEST(Scene, NamesOfFlagsAndVariablesAreUnique)
@@ -305,7 +472,7 @@ TEST(Scene, NamesOfFlagsAndVariablesAreUnique)
     std::set<std::string> names;
     for (const SceneKey& key : sceneKeys()) {
         EXPECT_TRUE(names.insert(flagOf(key.name)).second);
-        EXPECT_FALSE(key.means.empty() || key.expected.empty()) << key.name;
+        EXPECT_FALSE(key.help.empty() || key.expected().empty()) << key.name;
     }
     EXPECT_EQ(flagOf("max_force"), "--max-force");
     EXPECT_EQ(variableOf("max_force"), "PALPATE_MAX_FORCE");

@@ -32,7 +32,7 @@ inline SessionInfo someInfo()
 {
     return {.scene    = parseScene(R"({"cloud": "sample:skin", "thickness": "3 mm"})", "skin.json", "."),
             .versions = {{"palpate", "0.1.0"}},
-            .device   = "host",
+            .solver   = "host",
             .clock    = SessionClock::virtualTime,
             .command  = "palpate run skin.json --hand press"};
 }

@@ -14,7 +14,7 @@ inline Scene sheetScene(const std::string& stiffness, const std::string& device 
 {
     const std::string text = R"({"cloud": "sample:sheet", "points": 4000, "thickness": "4 mm", "poisson": 0.45,
         "foundation": "1.74 MPa/m", "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "stiffness": )" +
-                             stiffness + R"(, "device": ")" + device + "\"}";
+                             stiffness + R"(, "solver": ")" + device + "\"}";
     return parseScene(text, "a test", ".");
 }
 

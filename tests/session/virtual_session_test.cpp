@@ -86,7 +86,7 @@ TEST(VirtualSession, AHomogeneousCurvedObjectFeelsTheSameAlongThePath)
     for (const char* const object : {R"("sample:ellipsoid", "place": [0.03, 0, 0.0303])",
                                      R"("sample:palm", "place": [0, 0, 0], "from": [0, 0, 1])"}) {
         SheetSession session(parseScene(R"({"thickness": "4 mm", "poisson": 0.45, "foundation": "1.74 MPa/m",
-            "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "device": "host",
+            "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "solver": "host",
             "stiffness": {"law": "constant", "value": 0.5e6}, "cloud": )" +
                                             std::string(object) + "}",
                                         "a test", "."));

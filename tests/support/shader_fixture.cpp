@@ -47,7 +47,7 @@ public:
     {
         if (!context_) {
             compute::ContextSettings settings;
-            settings.device     = deviceOfTests();
+            settings.processor  = deviceOfTests();
             settings.validation = wantedValidation();
             context_            = std::make_unique<compute::Context>(settings);
         }
@@ -149,7 +149,7 @@ template <class T>
 
 std::string deviceOfTests()
 {
-    const std::string wanted = environment("PALPATE_DEVICE");
+    const std::string wanted = environment("PALPATE_SOLVER");
     return wanted.empty() ? std::string(compute::kLavapipeProcessor) : wanted;
 }
 

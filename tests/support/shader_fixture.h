@@ -57,13 +57,13 @@ struct UlpTolerance {
     const char* because; ///< printed on failure
 };
 
-/// What PALPATE_DEVICE names; lavapipe if it is not set. Never what "auto" takes by itself: that may be the host, which
+/// What PALPATE_SOLVER names; lavapipe if it is not set. Never what "auto" takes by itself: that may be the host, which
 /// runs no shader.
 [[nodiscard]] std::string deviceOfTests();
 
 /// A test of one shader. The device is opened once per process; any message of the validation layer fails the test.
 ///
-/// Environment: PALPATE_DEVICE, see deviceOfTests() and compute::chooseProcessor(); PALPATE_VALIDATION off, core,
+/// Environment: PALPATE_SOLVER, see deviceOfTests() and compute::chooseProcessor(); PALPATE_VALIDATION off, core,
 /// synchronization or gpu.
 class ShaderTest : public ::testing::Test {
 protected:
@@ -71,7 +71,7 @@ protected:
     static compute::Context& context();
 
     /// Whether the device is the host, which has functions for the plate's kernels only.
-    static bool onHost() { return context().device().kind == compute::kHostProcessor; }
+    static bool onHost() { return context().processor().kind == compute::kHostProcessor; }
 
     /// What PALPATE_VALIDATION asks for.
     static compute::Validation validation();

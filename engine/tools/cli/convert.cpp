@@ -4,14 +4,15 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
-#include "engine/tools/cli/cloud_source.h"
+#include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/scene_source.h"
 
 namespace palp {
 namespace {
 
 struct ConvertOptions {
-    CloudSource source;
+    SceneSource source;
     std::string target, encoding = "binary";
     bool        json = false;
 };
@@ -27,16 +28,17 @@ CloudEncoding encodingNamed(const std::string& name)
 void convert(const ConvertOptions& options)
 {
     const CloudEncoding encoding = encodingNamed(options.encoding);
-    refuseSourceAsTarget("TARGET", options.source.name, options.target);
-    const LoadedCloud loaded = options.source.load();
+    const Scene         scene    = options.source.load();
+    refuseSourceAsTarget("TARGET", scene.cloud, options.target);
+    const LoadedCloud loaded = options.source.loadCloud(scene);
     const bool        faces  = holdsFaces(options.target);
     writeCloud(options.target, loaded.cloud, {}, {encoding, loaded.faces});
-    std::vector<std::string> warnings = options.source.warnings(loaded);
+    std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
     if (!faces && !loaded.faces.empty())
         warnings.push_back("the " + std::to_string(loaded.faces.size()) +
                            " triangles are not in it: only PLY holds faces; name a .ply file to keep them");
     if (options.json) {
-        nlohmann::json report = cloudJson(options.source, loaded);
+        nlohmann::json report = cloudJson(options.source.name, loaded);
         report["written"]     = options.target;
         report["faces"]       = faces ? loaded.faces.size() : 0;
         report["warnings"]    = warnings;
@@ -56,14 +58,15 @@ void addConvertCommand(CLI::App& app)
 {
     CLI::App*  command = app.add_subcommand("convert", "reads a cloud and writes it in metres, with its stiffness");
     const auto options = std::make_shared<ConvertOptions>();
-    options->source.addTo(*command);
+    options->source.addTo(*command, SceneKey::Group::object);
     command->add_option("TARGET", options->target, "a .ply, .pcd, .xyz, .txt or .csv file")->required();
     command->add_option("--encoding", options->encoding, "of PLY and PCD: binary, binary-big-endian, ascii")
         ->capture_default_str();
     command->add_flag("--json", options->json, "machine-readable report");
     command->footer("Examples:\n"
                     "  palpate convert sample:ear-lobe lobe.ply\n"
-                    "  palpate convert scan.pcd scan.ply --unit mm --stiffness-property intensity --range 20kPa,2MPa\n"
+                    "  palpate convert scan.pcd scan.ply --length-unit mm --stiffness-property intensity \\\n"
+                    "    --stiffness-range 20kPa,2MPa\n"
                     "  palpate convert scan.ply ramp.csv --stiffness linear:from=2e4,to=2e6,axis=z");
     command->callback([command, options] {
         refuseEmptyValues(*command);

@@ -30,7 +30,8 @@ void draw(const HuntOptions& o, const Scene& scene, const SoftObject& object, co
 {
     if (o.out.empty()) return;
     const HandPlace   place = handPlace(scene, object);
-    const std::string svg   = study::huntSvg(score, object.cloud(), place.point, place.outward, scene.hunt->ground);
+    const std::string svg =
+        study::huntSvg(score, object.cloud(), place.point, place.outward, study::hiddenIn(scene)->hunt.ground);
     writeFileWhole(o.out, [&](std::ostream& file) { file << svg; });
 }
 
@@ -45,7 +46,7 @@ void tell(const HuntOptions& o, const Scene& scene, const SoftObject& object, co
         return;
     }
     if (run) printText(*run);
-    printText(score, *scene.hunt);
+    printText(score, study::hiddenIn(scene)->hunt);
 }
 
 /// The scene of who named none is there in a checkout alone.
@@ -60,7 +61,7 @@ void demandScene(const HuntOptions& o)
 void scoreRecorded(const HuntOptions& o)
 {
     const RecordedSession session = readSession(o.score);
-    const Scene           scene   = sceneOf(session);
+    const Scene           scene   = sceneOf(session, &study::huntKeys());
     const SoftObject      object  = loadObject(scene).object;
     study::HuntScorer     scorer(scene, object.cloud());
     if (!session.cloud.empty() && session.cloud != fingerprint(object.cloud()))
@@ -77,7 +78,7 @@ void hunt(const HuntOptions& o)
     demandGood(o.session);
     demandScene(o);
     const Scene        scene  = o.scene.load();
-    const LoadedObject loaded = loadObject(scene);
+    const LoadedObject loaded = o.scene.loadObject(scene);
     study::HuntScorer  scorer(scene, loaded.object.cloud());
     const SessionRun run = runSession(scene, loaded, o.session, [&](const TickRecord& sample) { scorer.add(sample); });
     tell(o, scene, loaded.object, scorer.score(), run);
@@ -88,23 +89,21 @@ void hunt(const HuntOptions& o)
 
 void addHuntCommand(CLI::App& app)
 {
-    CLI::App*   command = app.add_subcommand("hunt", "a hand looks for hidden nodules, and is scored");
-    const auto  o       = std::make_shared<HuntOptions>();
-    auto* const scene =
-        command->add_option("SCENE", o->scene.name, "scene file with a \"hunt\"")->capture_default_str();
+    CLI::App*  command = app.add_subcommand("hunt", "a hand looks for hidden nodules, and is scored");
+    const auto o       = std::make_shared<HuntOptions>();
+    o->scene.addTo(*command, SceneKey::Group::session);
     command->add_option("--score", o->score, "folder of a session that was recorded: nothing is felt, only scored")
-        ->excludes(scene);
+        ->excludes(command->get_option("SCENE"));
     addSessionOptions(*command, o->session);
     command->add_option("--record", o->session.record, "a new folder for the session");
     command->add_option("--out", o->out, "a picture from above: what was hidden, found, missed and declared (.svg)");
     command->add_flag("--json", o->json, "machine-readable, SI units");
-    o->scene.addFlagsTo(*command, SceneSource::Seed::ofTheHunt);
     command->footer(
         "A button of the device, held for 20 ms, declares the place that is touched. A hand from a file "
         "presses with a column\n\"buttons\". Nobody holding a device: palpate view SCENE, where M "
         "declares.\n"
         "Examples:\n"
-        "  palpate hunt samples/scenes/nodule_hunt.json --hand falcon --seconds 60 --seed 7 --out hunt.svg\n"
+        "  palpate hunt samples/scenes/nodule_hunt.json --hand falcon --seconds 60 --hunt-seed 7 --out hunt.svg\n"
         "  palpate hunt samples/scenes/nodule_hunt.json --hand samples/scenes/nodule_hunt_hand.csv --clock "
         "virtual\n"
         "  palpate hunt --score session --json");

@@ -68,7 +68,7 @@ nlohmann::json jsonOf(const HuntScore& s)
             {"mark_formula", HuntScore::kMarkFormula}};
 }
 
-void printText(const HuntScore& s, const Hunt& hunt)
+void printText(const HuntScore& s, const study::Hunt& hunt)
 {
     std::cout << "found " << s.found << " of " << s.nodules.size() << " nodules, "
               << counted(s.falseAlarms, "false alarm") << "; mark " << percent(s.mark) << " = "

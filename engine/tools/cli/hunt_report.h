@@ -9,6 +9,6 @@ namespace palp {
 [[nodiscard]] nlohmann::json jsonOf(const study::HuntScore& score);
 
 /// The same as a table on standard output.
-void printText(const study::HuntScore& score, const Hunt& hunt);
+void printText(const study::HuntScore& score, const study::Hunt& hunt);
 
 } // namespace palp

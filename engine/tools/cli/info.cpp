@@ -5,15 +5,18 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/cloud/neighbour_index.h"
+#include "engine/cloud/samples.h"
 #include "engine/core/quantity.h"
-#include "engine/tools/cli/cloud_source.h"
+#include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/scene_source.h"
+#include "engine/tools/study/hunt_scene.h"
 
 namespace palp {
 namespace {
 
 struct InfoOptions {
-    CloudSource source;
+    SceneSource source;
     bool        json = false;
 };
 
@@ -39,12 +42,13 @@ std::string facesText(const LoadedCloud& loaded)
 
 void printInfo(const InfoOptions& options)
 {
-    const LoadedCloud    loaded = options.source.load();
+    const Scene          scene  = options.source.load();
+    const LoadedCloud    loaded = options.source.loadCloud(scene);
     const NeighbourIndex index(loaded.cloud.positions());
-    nlohmann::json       report = cloudJson(options.source, loaded);
+    nlohmann::json       report = cloudJson(options.source.name, loaded);
     report["point_spacing"]     = index.spacing();
 
-    const std::vector<std::string> warnings = options.source.warnings(loaded);
+    const std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
     report["warnings"]                      = warnings;
     if (options.json) {
         std::cout << jsonText(report);
@@ -84,19 +88,24 @@ void addInfoCommand(CLI::App& app)
 {
     CLI::App*  command = app.add_subcommand("info", "what a cloud holds and how it is understood");
     const auto options = std::make_shared<InfoOptions>();
-    options->source.addTo(*command);
-    command->get_option("CLOUD")->required(false);
-    const auto list = std::make_shared<bool>(false);
+    options->source.addTo(*command, SceneKey::Group::object);
+    command->get_option("SCENE")->required(false);
+    const auto list = std::make_shared<bool>(false), keys = std::make_shared<bool>(false),
+               schema = std::make_shared<bool>(false);
     command->add_flag("--samples", *list, "lists the procedural samples");
+    command->add_flag("--keys", *keys, "lists the keys of scenes, as a table in Markdown");
+    command->add_flag("--schema", *schema, "prints the JSON Schema of scene files");
     command->add_flag("--json", options->json, "machine-readable");
     command->footer("Examples:\n"
-                    "  palpate info scan.ply --unit mm\n"
-                    "  palpate info painted.ply --stiffness-property quality --range 20kPa,2MPa\n"
+                    "  palpate info scan.ply --length-unit mm\n"
+                    "  palpate info painted.ply --stiffness-property quality --stiffness-range 20kPa,2MPa\n"
                     "  palpate info --samples");
-    command->callback([command, options, list] {
+    command->callback([command, options, list, keys, schema] {
         refuseEmptyValues(*command);
         if (*list) return printSamples(options->json);
-        if (options->source.name.empty()) throw CLI::RequiredError("CLOUD");
+        if (*keys) return void(std::cout << sceneKeyTable(&study::huntKeys()));
+        if (*schema) return void(std::cout << sceneSchema(&study::huntKeys()));
+        if (options->source.name.empty()) throw CLI::RequiredError("SCENE");
         printInfo(*options);
     });
 }

@@ -89,7 +89,7 @@ int main(int argumentCount, char** arguments)
     app.set_version_flag("--version", "palpate " PALPATE_VERSION);
     app.footer("Examples:\n"
                "  palpate touch sample:skin --out touch          a poke into a wart, with pictures\n"
-               "  palpate info scan.ply --unit mm                what a file holds and how it is understood\n"
+               "  palpate info scan.ply --length-unit mm         what a file holds and how it is understood\n"
                "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
                "  palpate paint scan.ply --stroke 'at=0,0,30mm radius=5mm value=2MPa' --out wart.ply\n"
                "                                                 a stiff spot on it; the rest of the file stays\n"
@@ -104,8 +104,7 @@ int main(int argumentCount, char** arguments)
                "  palpate devices                                what this machine can compute on, and feel with\n"
                "  palpate doctor                                 what it lacks, and what helps\n"
                "  palpate calibrate --mass '200 g'               a Falcon weighs a mass, so that its newtons are true\n"
-               "  palpate bench solve                            how fast its solvers are\n"
-               "  palpate bench plate --quick                    and how fast those of others\n"
+               "  palpate bench --quick                          how fast its solver is, and those of others\n"
                "Each command explains itself with --help.");
     palp::addTouchCommand(app);
     palp::addSolveCommand(app);

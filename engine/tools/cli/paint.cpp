@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
-#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -9,8 +8,9 @@
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/session/scene.h"
-#include "engine/tools/cli/cloud_source.h"
+#include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/stroke.h"
 
 // palpate paint: strokes of a brush over a cloud, without a window.
@@ -19,7 +19,7 @@ namespace palp {
 namespace {
 
 struct PaintOptions {
-    CloudSource              source;
+    SceneSource              source;
     std::vector<std::string> strokes;
     std::string              out;
     bool                     json = false;
@@ -27,54 +27,20 @@ struct PaintOptions {
 
 /// What is painted, and how its file was read.
 struct Canvas {
-    explicit Canvas(LoadedCloud cloud) : loaded(std::move(cloud)) {}
+    explicit Canvas(const SceneSource& source)
+        : scene(source.load()), loaded(source.loadCloud(scene)), file(isSample(scene) ? "" : scene.cloud),
+          warnings(cloudWarnings(scene, loaded.cloud, loaded.report))
+    {
+        if (!scene.stiffness.empty() && source.name.ends_with(".json"))
+            warnings.emplace_back("the scene's law is painted over here, but in a session it would replace what is "
+                                  "painted: take the key \"stiffness\" out of a scene of the new cloud");
+    }
 
+    Scene                    scene;
     LoadedCloud              loaded;
     std::string              file; ///< empty: a sample
-    CloudReadSettings        readAs;
-    double                   metresPerPlainNumber = 1;
     std::vector<std::string> warnings;
 };
-
-/// The cloud of a scene, read by the scene's keys; --points, --seed, --unit and --stiffness stand over them.
-Canvas canvasOfScene(const CloudSource& s)
-{
-    for (const auto& [option, given] : {std::pair{"--stiffness-property", !s.stiffnessProperty.empty()},
-                                        {"--range", !s.range.empty()},
-                                        {"--log-range", s.logRange},
-                                        {"--stiffness-unit", !s.stiffnessUnit.empty()},
-                                        {"--uniform", !s.uniform.empty()},
-                                        {"--columns", !s.columns.empty()},
-                                        {"--drop-invalid", s.dropInvalid}})
-        if (given)
-            throw Error(std::string(option) + ": expected a cloud, but " + s.name +
-                        " is a scene, whose keys say how its cloud is read; leave it away or name the cloud");
-    SceneOverrides overrides{{}, processEnvironment()};
-    if (s.points) overrides.flags["points"] = std::to_string(*s.points);
-    if (s.seed) overrides.flags["seed"] = std::to_string(*s.seed);
-    if (!s.unit.empty()) overrides.flags["length_unit"] = s.unit;
-    if (!s.law.empty()) overrides.flags["stiffness"] = s.law;
-    const Scene scene = readScene(s.name, overrides);
-    Canvas      canvas(loadCloud(scene));
-    if (!scene.cloud.starts_with("sample:")) canvas.file = scene.cloud;
-    canvas.readAs.lengthUnit = scene.lengthUnit;
-    if (!scene.stiffness.empty())
-        canvas.warnings.push_back("the scene's law is painted over here, but in a session it would replace what is "
-                                  "painted: take the key \"stiffness\" out of a scene of the new cloud");
-    return canvas;
-}
-
-Canvas canvasOf(const CloudSource& source)
-{
-    if (source.name.ends_with(".json")) return canvasOfScene(source);
-    Canvas canvas(source.load());
-    canvas.metresPerPlainNumber = source.metresPerPlainNumber();
-    canvas.warnings             = source.warnings(canvas.loaded);
-    if (source.sample()) return canvas;
-    canvas.file   = source.name;
-    canvas.readAs = source.readSettings();
-    return canvas;
-}
 
 bool isPly(const std::string& file)
 {
@@ -84,7 +50,7 @@ bool isPly(const std::string& file)
 /// Writes the file of the source once more, or a new one where that cannot be; says how the stiffness is found in it.
 RepaintedPly write(const PaintOptions& o, const Canvas& canvas, const PointCloud& painted)
 {
-    if (isPly(canvas.file) && isPly(o.out)) return repaintPly(canvas.file, canvas.readAs, painted, o.out);
+    if (isPly(canvas.file) && isPly(o.out)) return repaintPly(canvas.file, canvas.scene.reading, painted, o.out);
     writeCloud(o.out, painted, {}, {CloudEncoding::binaryLittleEndian, canvas.loaded.faces});
     return {painted.kind() == StiffnessKind::modulus ? "stiffness" : "flexural_rigidity", true};
 }
@@ -105,15 +71,16 @@ nlohmann::json jsonOf(const StrokeOrder& order, const StrokeReport& report)
 void paint(const PaintOptions& o)
 {
     static_cast<void>(holdsFaces(o.out)); // a name of no format is the first thing to say
-    Canvas canvas = canvasOf(o.source);
+    Canvas canvas(o.source);
     refuseSourceAsTarget("--out", canvas.file.empty() ? o.source.name : canvas.file, o.out);
     const SoftObject         object(canvas.loaded.cloud);
-    const PointCloud&        cloud = object.cloud();
-    const std::string        unit  = cloud.kind() == StiffnessKind::modulus ? "Pa" : "N m";
+    const PointCloud&        cloud  = object.cloud();
+    const std::string        unit   = cloud.kind() == StiffnessKind::modulus ? "Pa" : "N m";
+    const double             metres = metresPerPlainNumber(o.source, canvas.scene);
     std::vector<StrokeOrder> orders;
     const auto               what = [](std::size_t k) { return "--stroke " + std::to_string(k + 1); };
     for (std::size_t k = 0; k < o.strokes.size(); ++k)
-        orders.push_back(parseStroke(o.strokes[k], what(k), canvas.metresPerPlainNumber, cloud.kind()));
+        orders.push_back(parseStroke(o.strokes[k], what(k), metres, cloud.kind()));
 
     StiffnessPainting painting(object);
     nlohmann::json    strokes = nlohmann::json::array();
@@ -131,9 +98,9 @@ void paint(const PaintOptions& o)
     for (std::size_t i = 0; i < cloud.size(); ++i) changed += painted.stiffness()[i] != cloud.stiffness()[i] ? 1 : 0;
     if (changed == 0) canvas.warnings.emplace_back("no stroke changed anything");
     const bool kept = isPly(canvas.file) && isPly(o.out); // what the original had
-    if (!written.appended && !o.source.stiffnessProperty.empty())
+    if (!written.appended && !canvas.scene.reading.stiffnessProperty.empty())
         canvas.warnings.push_back("the stiffness is where it was: read it with --stiffness-property " +
-                                  written.property + ", and without --range");
+                                  written.property + ", and without --stiffness-range");
     const auto [least, most] = std::minmax_element(painted.stiffness().begin(), painted.stiffness().end());
     if (o.json) {
         std::cout << jsonText(nlohmann::json{{"name", o.source.name},
@@ -161,12 +128,9 @@ void paint(const PaintOptions& o)
 
 void addPaintCommand(CLI::App& app)
 {
-    CLI::App* command = app.add_subcommand(
-        "paint", "paints stiffness onto a cloud, or that of a scene (SCENE.json), with a round brush");
+    CLI::App*  command = app.add_subcommand("paint", "paints stiffness onto a cloud with a round brush");
     const auto options = std::make_shared<PaintOptions>();
-    options->source.addTo(*command);
-    command->get_option("CLOUD")->description(
-        "a .ply, .pcd, .xyz, .txt or .csv file, sample:NAME, or a scene that ends in .json");
+    options->source.addTo(*command, SceneKey::Group::object);
     command
         ->add_option("--stroke", options->strokes,
                      "a stroke of the brush, once for each:\n"
@@ -186,7 +150,8 @@ void addPaintCommand(CLI::App& app)
         "Only the side that the brush is on is painted, if the other one is three point spacings away.\n"
         "Examples:\n"
         "  palpate paint sample:palm --stroke 'at=14mm,5mm,0 radius=6mm value=2MPa' --out palm.ply\n"
-        "  palpate paint scan.ply --unit mm --stroke 'at=12,0,30;15,2,30;18,5,29 radius=3 value=1MPa strength=0.5' \\\n"
+        "  palpate paint scan.ply --length-unit mm --stroke 'at=12,0,30;15,2,30;18,5,29 radius=3 value=1MPa "
+        "strength=0.5' \\\n"
         "    --stroke 'at=12,0,30 radius=8 smooth' --out painted.ply\n"
         "  palpate paint samples/scenes/palm.json --stroke 'at=0,0,0 radius=1cm smooth' --out smoother.ply --json");
     command->callback([command, options] {

@@ -28,7 +28,7 @@ namespace {
 using namespace report;
 
 struct PaperOptions {
-    std::string out, only, bunny, device = "auto", command;
+    std::string out, only, bunny, solver = "auto", command;
     bool        quick = false, json = false;
 };
 
@@ -71,7 +71,7 @@ std::string wantedParts(const std::string& only)
 /// Devices whose time is taken: with auto the host and every GPU that can be used, else the one that is named.
 std::vector<std::string> timedDevices(const PaperOptions& o, const PlateSolver& device)
 {
-    if (!compute::isProcessorWord(o.device, compute::kAutoProcessor)) return {o.device};
+    if (!compute::isProcessorWord(o.solver, compute::kAutoProcessor)) return {o.solver};
     std::vector<std::string> devices;
     if (!compute::isProcessorWord(device.name(), compute::kHostProcessor)) try {
             for (const compute::Processor& d : compute::listProcessors())
@@ -109,7 +109,7 @@ void paper(const PaperOptions& o)
     if (!o.bunny.empty() && wanted.find('b') == std::string::npos)
         throw Error("--bunny: belongs to part b, which --only leaves out; add b to it");
     SolverChoice choice;
-    choice.device      = o.device;
+    choice.solver      = o.solver;
     PlateSolver device = choice.open();
     if (!o.bunny.empty()) {
         static_cast<void>(openForReading(o.bunny)); // before minutes of work
@@ -147,7 +147,7 @@ std::string commandOf(const PaperOptions& o)
     if (!o.only.empty()) command += " --only " + o.only;
     if (o.quick) command += " --quick";
     if (!o.bunny.empty()) command += " --bunny '" + o.bunny + "'";
-    return command + " --device '" + o.device + "'";
+    return command + " --solver '" + o.solver + "'";
 }
 
 } // namespace
@@ -163,7 +163,7 @@ void addPaperCommand(CLI::App& app)
     command->add_option("--bunny", o->bunny,
                         "your copy of the Stanford bunny, for an ear in part b (prints its terms)");
     command
-        ->add_option("--device", o->device,
+        ->add_option("--solver", o->solver,
                      "where plates are solved, as for solve; auto also takes the time of every GPU that works")
         ->capture_default_str();
     command->add_flag("--json", o->json, "prints every number too, SI units");
@@ -175,7 +175,7 @@ void addPaperCommand(CLI::App& app)
         "  d  1000 random maps of rigidity, all edges             h  what a person would notice, predicted\n"
         "Examples:\n"
         "  palpate paper --out report\n"
-        "  palpate paper --out report --only a,f,g --device host\n"
+        "  palpate paper --out report --only a,f,g --solver host\n"
         "  palpate paper --out report --only b --bunny bun_zipper.ply");
     command->callback([command, o] {
         refuseEmptyValues(*command);

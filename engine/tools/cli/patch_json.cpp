@@ -4,6 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/patch_warnings.h"
+#include "engine/pipeline/presets.h"
 #include "engine/plate/load.h"
 
 namespace palp {
@@ -74,7 +77,7 @@ Json settingsJson(const Material& material, const PatchSettings& s)
             {"cells", s.cells},
             {"footprint_radius", s.footprintRadius},
             {"map", name(s.map)},
-            {"sampling", name(s.sampling)},
+            {"resampling", name(s.sampling)},
             {"force_law", name(s.forceLaw)},
             {"edges",
              {{"x0", name(s.edges.x0)}, {"x1", name(s.edges.x1)}, {"z0", name(s.edges.z0)}, {"z1", name(s.edges.z1)}}}};
@@ -102,7 +105,7 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
         force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
     report["error"]        = {{"discretisation", orNull(discretisationError(patch, settings, device))},
                               {"solver", orNull(patch.report.errorEstimate)}};
-    report["solver"]       = {{"device", patch.report.device},
+    report["solver"]       = {{"device", patch.report.solver},
                               {"note", device.note().empty() ? Json(nullptr) : Json(device.note())},
                               {"converged", patch.report.converged},
                               {"iterations", orNull(patch.report.iterations)},

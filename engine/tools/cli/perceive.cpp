@@ -11,6 +11,7 @@
 #include "engine/core/file.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
+#include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/solver_choice.h"
@@ -35,14 +36,16 @@ struct PerceiveOptions {
 /// The scene's object, made once.
 struct Felt {
     explicit Felt(const PerceiveOptions& o)
-        : scene(o.scene.load()), object(loadObject(scene).object),
-          device(orTheReference([this] { return PlateSolver(scene.device); }))
+        : scene(o.scene.load()), loaded(o.scene.loadObject(scene)), object(loaded.object),
+          solver(openSolver(scene.solver))
     {
-        sayPassedOver(device.name(), device.note());
+        for (const std::string& sentence : cloudWarnings(scene, object.cloud(), loaded.report))
+            std::cerr << "palpate: warning: " << sentence << "\n";
     }
-    Scene       scene;
-    SoftObject  object;
-    PlateSolver device;
+    Scene             scene;
+    LoadedObject      loaded;
+    const SoftObject& object;
+    PlateSolver       solver;
 };
 
 /// To either side of the middle [m].
@@ -50,7 +53,7 @@ double reachOf(const PerceiveOptions& o, const Scene& scene)
 {
     constexpr double kShare = 1.0 / 3, kMost = 1; // of the window: what is felt in the middle is not felt there; [m]
     if (o.reach.empty()) return kShare * scene.patch.window;
-    const double reach = parseQuantity(o.reach, Dimension::length, "--reach");
+    const double reach = parseQuantity(o.reach, Dimension::length, "--reach", metresPerPlainNumber(o.scene, scene));
     if (!(reach > 0 && reach <= kMost))
         throw Error("--reach: expected more than 0 and at most 1 m, found \"" + o.reach + "\"");
     return reach;
@@ -80,7 +83,7 @@ nlohmann::ordered_json jsonOf(const PerceiveOptions& o, const Felt& felt, const 
     all["scene"]      = o.scene.name;
     all["prediction"] = true;
     all["force_law"]  = name(felt.scene.patch.forceLaw);
-    all["solved_on"]  = felt.device.name();
+    all["solved_on"]  = felt.solver.name();
     all["path"]       = {{"middle", {p.line.middle.point.x, p.line.middle.point.y, p.line.middle.point.z}},
                          {"direction", {p.line.direction.x, p.line.direction.y, p.line.direction.z}},
                          {"reach", p.line.reach},
@@ -145,9 +148,9 @@ void perceive(const PerceiveOptions& o)
                                            reachOf(o, felt.scene));
     Progress               progress("feeling");
     const auto             onStep = [&](std::size_t done, std::size_t total) { progress.at(done, total); };
-    const ScenePerception  found  = perceive(felt.scene, felt.object, line, o.places, felt.device, onStep);
+    const ScenePerception  found  = perceive(felt.scene, felt.object, line, o.places, felt.solver, onStep);
     std::optional<FeltMap> map;
-    if (!o.picture.empty()) map = feltMap(felt.object, felt.scene.patch, std::size_t(o.mapPlaces), felt.device, onStep);
+    if (!o.picture.empty()) map = feltMap(felt.object, felt.scene.patch, std::size_t(o.mapPlaces), felt.solver, onStep);
     if (!o.out.empty())
         write(o.out, pathSvg(found, felt.scene.patch.forceLaw, "Felt stiffness along the path: " + o.scene.title()));
     constexpr double kTypicalWeber = kWeberFractions[1];
@@ -172,7 +175,7 @@ void addPerceiveCommand(CLI::App& app)
 {
     CLI::App*  command = app.add_subcommand("perceive", "what a person would notice of an object, predicted");
     const auto o       = std::make_shared<PerceiveOptions>();
-    o->scene.addTo(*command);
+    o->scene.addTo(*command, SceneKey::Group::session);
     command->add_option("--along", o->along, "direction of the path through the place, X,Y,Z [the chart's east]");
     command->add_option("--reach", o->reach, "of the path to either side, such as 10mm [a third of the window]");
     command->add_option("--places", o->places, "at rest along the path")

@@ -13,7 +13,10 @@
 #include "engine/core/file.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/patch_warnings.h"
 #include "engine/session/virtual_session.h"
+#include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/hand_source.h"
 #include "engine/tools/cli/scene_source.h"
@@ -75,11 +78,9 @@ TouchLook lookOf(const RenderOptions& o)
 /// Everything that is touched and drawn, made once.
 struct Stage {
     explicit Stage(const RenderOptions& o)
-        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.device = o.drawOn}),
-          loaded(loadObject(scene)), device(orTheReference([this] { return PlateSolver(scene.device); })),
-          view(loaded.object, scene.patch)
+        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.processor = o.drawOn}),
+          loaded(o.scene.loadObject(scene)), solver(openSolver(scene.solver)), view(loaded.object, scene.patch)
     {
-        sayPassedOver(device.name(), device.note());
         sayPassedOver(renderer.device().name, renderer.note());
     }
     PictureSize     size;
@@ -87,13 +88,13 @@ struct Stage {
     Scene           scene;
     SurfaceRenderer renderer; // before the cloud: what is missing is said at once
     LoadedObject    loaded;
-    PlateSolver     device;
+    PlateSolver     solver;
     TouchView       view;
 };
 
 Patch patchAt(Stage& stage, const Contact& contact)
 {
-    Patch patch = deform(stage.loaded.object, contact, stage.scene.patch, stage.device);
+    Patch patch = deform(stage.loaded.object, contact, stage.scene.patch, stage.solver);
     if (!patch.deformed())
         throw Error("render: the " + std::to_string(patch.gathered.size()) +
                     " points around the place do not determine a surface (" + name(patch.sphere.outcome) +
@@ -148,8 +149,7 @@ Written write(Stage& stage, const Camera& camera, const std::filesystem::path& f
 /// A touch at the scene's place.
 Written still(const RenderOptions& o, Stage& stage)
 {
-    const HandPlace  place = handPlace(stage.scene, stage.loaded.object);
-    const Patch      patch = patchAt(stage, {place.point, place.outward, stage.scene.from.has_value()});
+    const Patch      patch = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
     constexpr double kMost = 1e6; // [N]
     const double     force = o.force.empty() ? forceThatShows(patch, stage.scene.material.thickness)
                                              : parseQuantity(o.force, Dimension::force, "--force");
@@ -195,8 +195,7 @@ std::filesystem::path frameFile(const std::filesystem::path& out, int number)
 /// The session of a scripted hand in virtual time, one camera and one scale of colours for all pictures.
 std::vector<Written> film(const RenderOptions& o, Stage& stage)
 {
-    const HandPlace    place   = handPlace(stage.scene, stage.loaded.object);
-    const Patch        middle  = patchAt(stage, {place.point, place.outward, stage.scene.from.has_value()});
+    const Patch        middle  = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
     const Camera       camera  = cameraFor(o, stage, middle);
     const auto         samples = samplesOf(o, stage, *o.frames);
     std::vector<Patch> patches;
@@ -233,7 +232,7 @@ void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>
         all["points"]    = stage.loaded.object.cloud().size();
         all["size"]      = {stage.size.width, stage.size.height};
         all["drawn_on"]  = stage.renderer.device().name;
-        all["solved_on"] = stage.device.name();
+        all["solved_on"] = stage.solver.name();
         for (const Written& w : written)
             all["pictures"].push_back({{"file", w.file},
                                        {"force", w.force},
@@ -257,7 +256,7 @@ void render(const RenderOptions& o)
     if (o.frames && !o.force.empty())
         throw Error("--force: with --frames the hand decides how hard it presses; leave one of the two out");
     Stage stage(o);
-    for (const std::string& sentence : assumptions(stage.scene, stage.loaded.report))
+    for (const std::string& sentence : cloudWarnings(stage.scene, stage.loaded.object.cloud(), stage.loaded.report))
         std::cerr << "palpate: warning: " << sentence << "\n";
     tell(o, stage, o.frames ? film(o, stage) : std::vector{still(o, stage)});
 }
@@ -289,11 +288,11 @@ void addRenderCommand(CLI::App& app)
     command->add_option("--draw-on", o->drawOn, "Vulkan device that draws, as \"palpate devices\" names it")
         ->capture_default_str();
     command->add_flag("--json", o->json, "machine-readable, SI units");
-    o->scene.addTo(*command);
+    o->scene.addTo(*command, SceneKey::Group::session);
     command->footer("Examples:\n"
                     "  palpate render sample:ear-lobe --out lobe.png\n"
                     "  palpate render samples/scenes/skin_wart.json --force '1 N' --colour stiffness --out wart.png\n"
-                    "  palpate render scan.ply --at 12mm,0,30mm --length-unit mm --size 800x600 --dark --out scan.png\n"
+                    "  palpate render scan.ply --length-unit mm --at 12,0,30 --size 800x600 --dark --out scan.png\n"
                     "  palpate render samples/scenes/palm.json --frames 50 --out film.png");
     command->callback([command, o] {
         refuseEmptyValues(*command);

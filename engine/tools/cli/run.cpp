@@ -6,9 +6,12 @@
 #include "engine/core/contract.h"
 #include "engine/session/recorded_session.h"
 #include "engine/session/replay_device.h"
+#include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/session_report.h"
 #include "engine/tools/cli/session_run.h"
+#include "engine/tools/study/hunt_scene.h"
 
 // palpate run and palpate replay: a hand feels a scene, and a recorded session is felt again.
 
@@ -16,26 +19,27 @@ namespace palp {
 namespace {
 
 struct RunOptions {
-    SessionOptions                                  session;
-    std::string                                     scene;
-    std::map<std::string, std::string, std::less<>> flags; ///< of the scene's keys, as given
-    bool                                            printConfig = false, json = false;
+    SceneSource    scene;
+    SessionOptions session;
+    bool           printConfig = false, json = false;
 };
 
 struct ReplayOptions {
-    std::string folder, device;
+    std::string folder, solver;
     bool        compare = false, json = false;
 };
 
 void run(const RunOptions& o)
 {
-    const Scene scene = readScene(o.scene, {o.flags, processEnvironment()});
+    const Scene scene = o.scene.load();
     demandGood(o.session);
     if (o.printConfig) {
         std::cout << printConfig(scene, o.json ? ConfigFormat::json : ConfigFormat::text);
         return;
     }
-    const SessionRun run = runSession(scene, loadObject(scene), o.session);
+    const LoadedObject loaded = o.scene.loadObject(scene);
+    warn(huntNote(scene, loaded.object.cloud()));
+    const SessionRun run = runSession(scene, loaded, o.session);
     if (o.json)
         std::cout << jsonText(jsonOf(run));
     else
@@ -48,8 +52,8 @@ void replay(const ReplayOptions& o)
     const RecordedSession session = readSession(o.folder);
     if (session.clock != "virtual")
         throw Error(o.folder + ": recorded in real time, which no replay can repeat; expected clock \"virtual\"");
-    Scene scene  = sceneOf(session);
-    scene.device = o.device.empty() ? session.device : o.device;
+    Scene scene  = sceneOf(session, &study::huntKeys());
+    scene.solver = o.solver.empty() ? session.solver : o.solver;
     if (session.samples.empty()) throw Error(o.folder + ": there are no samples in it, so there is nothing to replay");
     if (!session.finished)
         warn({o.folder + " was not finished: its first " + std::to_string(session.samples.size()) +
@@ -68,7 +72,7 @@ void replay(const ReplayOptions& o)
                                                [&](const TickRecord& sample) { again.samples.push_back(sample); });
     if (!o.compare) {
         o.json ? void(std::cout << jsonText(jsonOf(summary)))
-               : printText(summary, deformation.device().name(), hand.info().model);
+               : printText(summary, deformation.plateSolver().name(), hand.info().model);
         return;
     }
     const auto difference = compareSessions(session, again);
@@ -87,20 +91,16 @@ void addRunCommand(CLI::App& app)
 {
     auto* run_ = app.add_subcommand("run", "a hand feels a scene");
     auto  o    = std::make_shared<RunOptions>();
-    run_->add_option("SCENE", o->scene, "scene file, see samples/scenes")->required();
     addSessionOptions(*run_, o->session);
     run_->add_option("--record", o->session.record, "a new folder for the session");
     run_->add_flag("--print-config", o->printConfig,
                    "every value of the scene, with where it came from, and nothing else");
     run_->add_flag("--json", o->json, "machine-readable");
-    for (const SceneKey& key : sceneKeys())
-        run_->add_option_function<std::string>(
-                flagOf(key.name), [o, name = std::string(key.name)](const std::string& text) { o->flags[name] = text; },
-                std::string(key.means) + (key.unit.empty() ? "" : " [" + std::string(key.unit) + "]"))
-            ->group("Values of the scene (over PALPATE_<KEY> and the file)");
+    o->scene.addTo(*run_, SceneKey::Group::session);
     run_->footer("Examples:\n"
                  "  palpate run samples/scenes/palm_wart.json --hand scan --seconds 5\n"
                  "  palpate run samples/scenes/palm_wart.json --clock virtual --record session --max-force '4 N'\n"
+                 "  palpate run scan.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa\n"
                  "  palpate run samples/scenes/skin_wart.json --print-config");
     run_->callback([run_, o] {
         refuseEmptyValues(*run_);
@@ -112,7 +112,7 @@ void addRunCommand(CLI::App& app)
     auto* again = app.add_subcommand("replay", "a recorded session is felt again");
     auto  r     = std::make_shared<ReplayOptions>();
     again->add_option("DIR", r->folder, "folder of a session that was recorded in virtual time")->required();
-    again->add_option("--device", r->device, "where the plate is solved; the session's if absent");
+    again->add_option("--solver", r->solver, "where the plate is solved [as in the session]");
     again->add_flag("--compare", r->compare, "exit code 1 and the first sample that differs, if one does");
     again->add_flag("--json", r->json, "machine-readable");
     again->footer("Examples:\n  palpate replay session --compare\n  palpate replay session --json");

@@ -1,67 +1,136 @@
 #include "engine/tools/cli/scene_source.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
-#include <nlohmann/json.hpp>
-
+#include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
+#include "engine/tools/study/hunt_scene.h"
 
 namespace palp {
+namespace {
 
-void SceneSource::addTo(CLI::App& command)
+const char* titleOf(SceneKey::Group group)
 {
-    command.add_option("SCENE", name, "scene file, cloud file or sample:NAME")->required();
-    addFlagsTo(command);
+    switch (group) {
+    case SceneKey::Group::object:
+        return "What is touched (over PALPATE_<KEY> and the scene file)";
+    case SceneKey::Group::touch:
+        return "Where it is touched, and how it bends";
+    case SceneKey::Group::session:
+        return "From tick to tick";
+    }
+    return "";
 }
 
-void SceneSource::addFlagsTo(CLI::App& command, Seed seed)
+std::string helpOf(const SceneKey& key)
 {
-    const auto flagsOf = [&](std::string_view key) {
-        if (key == "place") return std::string("--at,--place");
-        if (seed == Seed::ofTheHunt && key == "hunt_seed") return std::string("--seed,--hunt-seed");
-        return flagOf(key);
-    };
-    for (const SceneKey& key : sceneKeys()) {
-        if (seed == Seed::ofTheHunt && key.name == "seed") continue; // of the sample's points: in the file alone
-        command
-            .add_option_function<std::string>(
-                flagsOf(key.name),
-                [this, text = std::string(key.name)](const std::string& value) { flags[text] = value; },
-                std::string(key.means) + (key.unit.empty() ? "" : " [" + std::string(key.unit) + "]"))
-            ->group("Values of the scene (over PALPATE_<KEY> and the file)");
+    std::string help(key.help);
+    if (!key.words.empty() && key.name != "preset") help += ": " + key.expected();
+    if (!key.unit.empty() && key.unit != "1") help += " [" + std::string(key.unit) + "]";
+    if (key.name != "stiffness") return help;
+    return help + "; NAME:key=value,... in SI units:\n"
+                  "  constant: value\n"
+                  "  linear, hyperbolic, exponential: from, to, and axis (x, y or z; x if absent) or start, end\n"
+                  "  gaussian: from, to, centre or centres, sigma\n"
+                  "  disc: from, to, centre or centres, radius\n"
+                  "  box: from, to, low, high\n"
+                  "  checker: from, to, edge\n"
+                  "such as linear:from=2e4,to=2e6,axis=x or gaussian:from=3e5,to=3e6,centre=0;0;0,sigma=0.003";
+}
+
+/// Whether the text holds a number other than zero without a unit.
+bool holdsPlainNumber(const std::string& text)
+{
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end   = std::min(text.find(',', begin), text.size());
+        const std::string part  = text.substr(begin, end - begin);
+        char*             rest  = nullptr;
+        const double      value = std::strtod(part.c_str(), &rest);
+        if (value != 0 && rest && *rest == '\0') return true;
+        begin = end + 1;
+    }
+    return false;
+}
+
+} // namespace
+
+void SceneSource::addTo(CLI::App& command, SceneKey::Group upTo)
+{
+    auto* const positional = command.add_option(
+        "SCENE", name, "a scene file (.json), a cloud file (.ply, .pcd, .xyz, .txt, .csv) or sample:NAME");
+    if (name.empty())
+        positional->required();
+    else
+        positional->capture_default_str();
+    for (const SceneKey* key : sceneKeysWith(&study::huntKeys())) {
+        if (key->group > upTo) continue;
+        const std::string text(key->name);
+        CLI::Option*      option =
+            key->kind == SceneKey::Kind::yesNo
+                     ? command.add_flag_callback(
+                           flagOf(key->name), [this, text] { flags[text] = "true"; }, helpOf(*key))
+                     : command.add_option_function<std::string>(
+                      flagOf(key->name), [this, text](const std::string& value) { flags[text] = value; }, helpOf(*key));
+        option->group(titleOf(key->group));
     }
 }
 
-Scene SceneSource::load(PlaceNeeded place) const
+Scene sceneFrom(const std::string& name, const std::map<std::string, std::string, std::less<>>& flags)
 {
-    const SceneOverrides overrides{flags, processEnvironment()};
+    SceneOverrides overrides{flags, processEnvironment(), true, &study::huntKeys()};
     if (name.ends_with(".json")) return readScene(name, overrides);
-    if (!name.starts_with("sample:") && !flags.contains("place")) {
-        static_cast<void>(openForReading(name)); // a file that is not there is the first thing to say
-        if (place == PlaceNeeded::yes)
-            throw Error("--at: expected a place X,Y,Z for a cloud from a file, found none; palpate info " + name +
-                        " shows where the cloud is");
+    if (name.starts_with(kSamplePrefix)) // whether it is there is the first thing to say
+        static_cast<void>(sampleNamed(std::string_view(name).substr(kSamplePrefix.size())));
+    else
+        static_cast<void>(openForReading(name));
+    overrides.flags.try_emplace("cloud", name); // not as JSON: a file's name may hold bytes that JSON cannot
+    return parseScene("{}", name, ".", overrides);
+}
+
+Scene SceneSource::load() const
+{
+    if (flags.contains("stiffness"))
+        for (const char* key : {"stiffness_property", "stiffness_range", "log_range", "uniform"})
+            if (flags.contains(key))
+                throw Error(flagOf(key) + ": --stiffness replaces the stiffness that this option is about; omit it");
+    return sceneFrom(name, flags);
+}
+
+LoadedObject SceneSource::loadObject(const Scene& scene) const
+{
+    LoadedCloud loaded = loadCloud(scene);
+    return {SoftObject(std::move(loaded.cloud), scene.material, std::move(loaded.faces)), std::move(loaded.report)};
+}
+
+LoadedCloud SceneSource::loadCloud(const Scene& scene) const
+{
+    LoadedCloud        loaded = palp::loadCloud(scene);
+    const std::string& source = loaded.report.lengthUnitSource;
+    if (!scene.reading.lengthUnit.empty() || loaded.report.lengthUnitAssumed || source.starts_with("m,")) return loaded;
+    for (const auto& [key, text] : flags) {
+        const auto& keys     = sceneKeys();
+        const auto  found    = std::ranges::find(keys, key, &SceneKey::name);
+        const bool  isLength = found != keys.end() && (key == "place" || found->dimension == Dimension::length);
+        if (isLength && holdsPlainNumber(text))
+            throw Error(flagOf(key) + ": " + text +
+                        " has no unit, and would be metres, but the file's lengths are in " + source +
+                        "; write units, or add --length-unit");
     }
-    nlohmann::json scene{{"cloud", name}};
-    if (place == PlaceNeeded::no && !name.starts_with("sample:") && !flags.contains("place"))
-        scene["place"] = {0, 0, 0}; // whoever needs none finds one
-    return parseScene(scene.dump(), name, std::filesystem::current_path(), overrides);
+    return loaded;
 }
 
 std::string SceneSource::title() const
 {
-    return name.starts_with("sample:") ? name : std::filesystem::path(name).stem().string();
+    return name.starts_with(kSamplePrefix) ? name : std::filesystem::path(name).stem().string();
 }
 
-std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& report)
+double metresPerPlainNumber(const SceneSource& source, const Scene& scene)
 {
-    std::vector<std::string> said;
-    if (report.lengthUnitAssumed)
-        said.emplace_back("assumed metres: the scene has no length_unit, and the file no comment that names one");
-    if (report.stiffnessAssumed && scene.stiffness.empty())
-        said.emplace_back("no stiffness in the file: uniform 300 kPa assumed; the scene's stiffness says otherwise");
-    return said;
+    if (const auto unit = source.flags.find("length_unit"); unit != source.flags.end()) return metresPer(unit->second);
+    return scene.reading.lengthUnit.empty() ? 1 : metresPer(scene.reading.lengthUnit);
 }
 
 } // namespace palp

@@ -12,14 +12,17 @@
 #include "engine/core/nearest_name.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/patch_warnings.h"
 #include "engine/session/interrupt.h"
 #include "engine/session/real_session.h"
 #include "engine/session/session_line.h"
 #include "engine/session/tick_ring.h"
 #include "engine/session/virtual_session.h"
+#include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/session_report.h"
+#include "engine/tools/study/hunt_scene.h"
 
 namespace palp {
 namespace {
@@ -28,13 +31,13 @@ namespace {
 std::vector<std::string> strangeVariables()
 {
     std::vector<std::string> variables, said;
-    for (const SceneKey& key : sceneKeys()) variables.push_back(variableOf(key.name));
+    for (const SceneKey* key : sceneKeysWith(&study::huntKeys())) variables.push_back(variableOf(key->name));
     const std::vector<std::string_view> known(variables.begin(), variables.end());
     for (char** entry = environ; *entry; ++entry) {
         const std::string_view name = std::string_view(*entry).substr(0, std::string_view(*entry).find('='));
         if (!name.starts_with("PALPATE_") || std::ranges::find(known, name) != known.end()) continue;
         if (const auto meant = nearestName(name, known))
-            said.push_back("the environment's " + std::string(name) + " says nothing; did you mean " +
+            said.push_back("the environment's " + std::string(name) + " is not used; did you mean " +
                            std::string(*meant) + "?");
     }
     return said;
@@ -101,13 +104,13 @@ SessionClock clockNamed(const std::string& text)
 }
 
 std::unique_ptr<Recording> recordingOf(const SessionOptions& o, const SessionParts& parts, SessionClock clock,
-                                       const std::string& device)
+                                       const std::string& solver)
 {
     if (o.record.empty()) return nullptr;
     SessionInfo info;
     info.scene    = parts.scene;
     info.versions = {{"palpate", PALPATE_VERSION}, {"compiler", __VERSION__}, {"libraries", PALPATE_LIBRARIES}};
-    info.device   = device;
+    info.solver   = solver;
     info.clock    = clock;
     info.command  = o.command;
     info.cloud    = fingerprint(parts.object.cloud());
@@ -140,7 +143,7 @@ nlohmann::json jsonOf(const SessionRun& run)
 {
     nlohmann::json all = jsonOf(run.summary);
     all["hand"]        = run.hand;
-    all["device"]      = run.device;
+    all["solver"]      = run.solver;
     all["warnings"]    = run.warnings;
     if (run.recorded)
         all["recorded"] = {{"folder", run.folder}, {"samples", run.recorded->samples}, {"lost", run.recorded->lost}};
@@ -149,7 +152,7 @@ nlohmann::json jsonOf(const SessionRun& run)
 
 void printText(const SessionRun& run)
 {
-    printText(run.summary, run.device, run.hand);
+    printText(run.summary, run.solver, run.hand);
     if (run.recorded) std::cout << "  " << run.recorded->samples << " samples in " << run.folder << "\n";
 }
 
@@ -171,7 +174,7 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
         throw Error("--hand " + o.hand.hand + ": somebody holds it, in real time; leave out --clock virtual");
 
     SessionRun run;
-    run.device   = deformation.device().name();
+    run.solver   = deformation.plateSolver().name();
     run.folder   = o.record;
     run.warnings = assumptions(scene, loaded.report);
     for (const auto& more : {strangeVariables(), warningsOf(scene, loaded.object), hand.warnings})
@@ -180,7 +183,7 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     waitForHoming(*hand.device, stop);
 
     const SessionParts parts{scene, loaded.object, deformation.solver(), *hand.device, hand.frame};
-    const auto         recording = recordingOf(o, parts, clock, run.device);
+    const auto         recording = recordingOf(o, parts, clock, run.solver);
     if (!o.blind) warn(run.warnings);
     const OnTick each = [&](const TickRecord& sample) {
         if (recording) recording->pushWaiting(sample);

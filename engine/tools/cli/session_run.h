@@ -32,7 +32,7 @@ void demandGood(const SessionOptions& options);
 /// What a session was.
 struct SessionRun {
     SessionSummary                 summary;
-    std::string                    device; ///< that solved the plate
+    std::string                    solver; ///< of the plate
     std::string                    hand;
     std::vector<std::string>       warnings;
     std::optional<RecordingReport> recorded;

@@ -8,26 +8,29 @@
 
 namespace palp {
 
-/// The options --device and --tolerance of commands that solve plates.
+/// The options --solver and --tolerance of commands that solve plates without a scene: the scene's keys of those names.
 struct SolverChoice {
-    std::string device    = "auto";
+    std::string solver    = "auto";
     double      tolerance = 1e-4; ///< of the error, relative [1]
 
     void addTo(CLI::App& command);
 
     /// Says on standard error what "auto" found broken.
-    /// \throws Error for a tolerance out of range, compute::UnknownProcessor for a name that no device has, compute::ProcessorError
-    ///         for a device that cannot be used
+    /// \throws Error for a tolerance out of range, and as openSolver() does
     [[nodiscard]] PlateSolver open() const;
 };
+
+/// Opens the solver of a scene; says on standard error what "auto" found broken.
+/// \throws compute::UnknownProcessor for a name that no solver has, compute::ProcessorError for one that cannot be used
+[[nodiscard]] PlateSolver openSolver(const std::string& name);
 
 /// \throws Error that names --tolerance and its bounds
 void checkTolerance(double tolerance);
 
-/// Says on standard error which device "auto" took in place of a broken one, if there is a note of that.
+/// Says on standard error which processor "auto" took in place of a broken one, if there is a note of that.
 void sayPassedOver(const std::string& name, const std::string& note);
 
-/// Returns open(); where the device is refused, the sentence adds that --device takes the reference solver too.
+/// Returns open(); where the processor is refused, the sentence adds that --solver takes the reference solver too.
 template <class Open>
 [[nodiscard]] auto orTheReference(const Open& open)
 {

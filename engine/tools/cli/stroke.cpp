@@ -10,7 +10,7 @@
 #include "engine/core/nearest_name.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
-#include "engine/tools/cli/cloud_source.h"
+#include "engine/tools/cli/cloud_report.h"
 
 namespace palp {
 namespace {

@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -11,124 +10,37 @@
 #include "engine/core/file.h"
 #include "engine/core/npy.h"
 #include "engine/core/quantity.h"
-#include "engine/tools/cli/cloud_source.h"
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/presets.h"
+#include "engine/session/hand_path.h"
+#include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/patch_json.h"
+#include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/solver_choice.h"
 #include "engine/tools/plot/patch_pictures.h"
+#include "engine/tools/render/cloud_figure.h"
 
 namespace palp {
 namespace {
 
 struct TouchOptions {
-    CloudSource  source;
-    SolverChoice solver;
-    std::string  at, from, force = "0.5N", preset = "palpate";
-    std::string  map, sampling, edges, forceLaw, foundation, thickness, poisson, window,
-        footprint;            // empty: the preset's
-    std::optional<int> cells; ///< empty: the default
-    std::string        out;
-    bool               json = false;
+    SceneSource source;
+    std::string force = "0.5N", out;
+    bool        json  = false;
 };
 
-/// The value of an option with a fixed set of names, or a sentence that lists them.
-template <class T>
-T named(const std::optional<T>& value, const std::string& option, const std::string& text, const char* known)
+/// The force that presses [N].
+double forceOf(const TouchOptions& options)
 {
-    if (value) return *value;
-    throw Error(option + ": unknown name \"" + text + "\"; known: " + known);
-}
-
-// Far beyond what a hand can feel, and far from where single precision or a result could overflow.
-constexpr double kLeastLength    = 1e-9; // [m]
-constexpr double kMostLength     = 1e4;  // [m]
-constexpr double kMostCoordinate = 1e9;  // [m] as in files: surveyors count from far away
-constexpr double kMostForce      = 1e6;  // [N]
-constexpr double kMostFoundation = 1e15; // [Pa/m] a micrometre of steel has less
-
-double between(double least, double most, const char* unit, double value, const std::string& option,
-               const std::string& text)
-{
-    if (value >= least && value <= most) return value;
-    char bounds[64];
-    std::snprintf(bounds, sizeof bounds, "%g to %g %s", least, most, unit);
-    throw Error(option + ": expected a value from " + bounds + ", found \"" + text + "\"");
-}
-
-/// A plain number is in the unit of --unit, as in --at.
-double lengthOf(const TouchOptions& options, const std::string& text, const std::string& option)
-{
-    const double value = parseQuantity(text, Dimension::length, option, options.source.metresPerPlainNumber());
-    return between(kLeastLength, kMostLength, "m", value, option, text);
+    constexpr double kMost = 1e6; // [N] far beyond what a hand can feel, and far from where a result could overflow
+    const double     force = parseQuantity(options.force, Dimension::force, "--force");
+    if (!(std::abs(force) <= kMost))
+        throw Error("--force: expected a force from -1e6 to 1e6 N, found \"" + options.force + "\"");
+    return force;
 }
 
 constexpr const char* kSummary = "touch.json";
-
-Material materialOf(const TouchOptions& options)
-{
-    Material material = options.source.sample() ? options.source.sample()->material : Material{};
-    if (!options.thickness.empty()) material.thickness = lengthOf(options, options.thickness, "--thickness");
-    if (!options.poisson.empty()) material.poissonRatio = parseQuantity(options.poisson, Dimension::none, "--poisson");
-    if (!isPoissonRatio(material.poissonRatio))
-        throw Error("--poisson: expected a number above -1 and at most 0.5, found " + options.poisson);
-    return material;
-}
-
-/// Settings in order of precedence: defaults, the sample's constants, the preset, the options.
-PatchSettings settingsOf(const TouchOptions& options)
-{
-    PatchSettings settings;
-    if (const Sample* sample = options.source.sample()) {
-        settings.foundation      = sample->foundation;
-        settings.window          = sample->window;
-        settings.footprintRadius = sample->footprintRadius;
-    }
-    settings =
-        withPreset(settings, named(valueNamed<Preset>(options.preset), "--preset", options.preset, "palpate, paper"));
-    if (!options.foundation.empty())
-        settings.foundation = between(0, kMostFoundation, "Pa/m",
-                                      parseQuantity(options.foundation, Dimension::foundation, "--foundation"),
-                                      "--foundation", options.foundation);
-    if (!options.window.empty()) settings.window = lengthOf(options, options.window, "--window");
-    if (!options.footprint.empty()) settings.footprintRadius = lengthOf(options, options.footprint, "--footprint");
-    if (!options.edges.empty()) settings.edges = parseEdges(options.edges, "--edges");
-    if (!options.map.empty())
-        settings.map = named(valueNamed<Map>(options.map), "--map", options.map,
-                             "lambert-azimuthal, lambert-cylindrical, gall-peters");
-    if (!options.sampling.empty())
-        settings.sampling =
-            named(valueNamed<Resampling>(options.sampling), "--sampling", options.sampling, "log-mean, nearest");
-    if (!options.forceLaw.empty())
-        settings.forceLaw =
-            named(valueNamed<ForceLaw>(options.forceLaw), "--force-law", options.forceLaw, "series, paper");
-    if (options.cells) settings.cells = *options.cells;
-    constexpr int kMostCells = 1024; // --device reference: the factor then takes about 4 GB
-    if (settings.cells < 8 || settings.cells > kMostCells || settings.cells % 2)
-        throw Error("--cells: expected an even number from 8 to " + std::to_string(kMostCells) + ", found " +
-                    std::to_string(settings.cells));
-    settings.tolerance = options.solver.tolerance;
-    return settings;
-}
-
-Contact contactOf(const TouchOptions& options, const SoftObject& object, double window)
-{
-    const Sample*             sample = options.source.sample();
-    std::optional<glm::dvec3> from;
-    if (sample) from = sample->from;
-    if (!options.from.empty()) from = parsePoint(options.from, "--from");
-    const double plain = options.source.metresPerPlainNumber();
-    if (!sample && options.at.empty()) {
-        const Bounds&    bounds = object.cloud().bounds();
-        const glm::dvec3 middle = object.positions()[object.index().nearest(bounds.centre(), 1).front().point];
-        throw Error("--at: expected a place X,Y,Z for a cloud from a file, found none; near its middle it has the "
-                    "point --at " +
-                    placeText(middle, bounds.diagonal(), plain) + " (in " +
-                    (options.source.unit.empty() ? "m" : options.source.unit) + ")");
-    }
-    const glm::dvec3 place = options.at.empty() ? sample->place : parsePoint(options.at, "--at", plain);
-    for (int k = 0; k < 3; ++k) between(-kMostCoordinate, kMostCoordinate, "m", place[k], "--at", options.at);
-    return touchAt(object, place, from, window / 4);
-}
 
 std::string percent(double share)
 {
@@ -139,16 +51,16 @@ std::string percent(double share)
     return text;
 }
 
-void printTouch(const TouchOptions& options, const Material& material, const PatchSettings& settings,
-                const nlohmann::json& r)
+void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann::json& r)
 {
-    const auto  quantity = [&](const char* key, const char* unit) { return formatQuantity(r[key], unit); };
-    const auto& window   = r["window"];
-    const auto& error    = r["error"];
-    const auto& at       = r["contact"]["point"];
-    const auto& normal   = r["chart"]["normal"];
+    const PatchSettings& settings = scene.patch;
+    const auto           quantity = [&](const char* key, const char* unit) { return formatQuantity(r[key], unit); };
+    const auto&          window   = r["window"];
+    const auto&          error    = r["error"];
+    const auto&          at       = r["contact"]["point"];
+    const auto&          normal   = r["chart"]["normal"];
     std::printf("%s, preset %s, %s at (%.4g, %.4g, %.4g) m, pressed against (%.2f, %.2f, %.2f)\n",
-                options.source.name.c_str(), options.preset.c_str(), formatQuantity(r["force"], "N").c_str(),
+                options.source.name.c_str(), name(scene.preset), formatQuantity(r["force"], "N").c_str(),
                 at[0].get<double>(), at[1].get<double>(), at[2].get<double>(), normal[0].get<double>(),
                 normal[1].get<double>(), normal[2].get<double>());
     std::printf("  length unit        %s\n", r["cloud"]["length_unit_source"].get<std::string>().c_str());
@@ -253,28 +165,27 @@ void refuseOverflow(const nlohmann::json& report)
 
 void touch(const TouchOptions& options)
 {
-    const Material      material = materialOf(options);
-    const PatchSettings settings = settingsOf(options);
-    const double        force    = between(-kMostForce, kMostForce, "N",
-                                           parseQuantity(options.force, Dimension::force, "--force"), "--force", options.force);
-    const LoadedCloud   loaded   = options.source.load();
-    const SoftObject    object(loaded.cloud, material);
-    const Contact       contact = contactOf(options, object, settings.window);
-    PlateSolver         device  = options.solver.open();
-    const auto          told    = device.note();
-    const Patch         patch   = deform(object, contact, settings, device);
-    if (device.note() != told) std::cerr << "palpate: the reference solver took over: " << device.note() << "\n";
+    const Scene          scene    = options.source.load();
+    const PatchSettings& settings = scene.patch;
+    const double         force    = forceOf(options);
+    const LoadedCloud    loaded   = options.source.loadCloud(scene);
+    const SoftObject     object(loaded.cloud, scene.material);
+    const Contact        contact = contactOf(scene, object);
+    PlateSolver          solver  = openSolver(scene.solver);
+    const auto           told    = solver.note();
+    const Patch          patch   = deform(object, contact, settings, solver);
+    if (solver.note() != told) std::cerr << "palpate: the reference solver took over: " << solver.note() << "\n";
     if (!patch.deformed())
         throw Error("touch: the " + std::to_string(patch.gathered.size()) +
-                    " points around the contact do not determine a "
-                    "surface (" +
-                    name(patch.sphere.outcome) + "); try a larger --window, or check --unit");
+                    " points around the contact do not determine a surface (" + name(patch.sphere.outcome) +
+                    "); try a larger --window, or check --length-unit");
 
-    nlohmann::json report = patchJson(patch, material, settings, force, device);
+    nlohmann::json report = patchJson(patch, scene.material, settings, force, solver);
     refuseOverflow(report);
-    report["cloud"] = cloudJson(options.source, loaded);
-    for (std::string& line : options.source.warnings(loaded)) report["warnings"].push_back(std::move(line));
-    report["preset"] = options.preset;
+    report["cloud"] = cloudJson(options.source.name, loaded);
+    for (std::string& line : cloudWarnings(scene, loaded.cloud, loaded.report))
+        report["warnings"].push_back(std::move(line));
+    report["preset"] = name(scene.preset);
     if (!options.out.empty()) {
         std::vector<std::string> files = writeFiles(options, loaded.cloud, patch, settings, force);
         files.emplace_back(kSummary);
@@ -285,7 +196,7 @@ void touch(const TouchOptions& options)
     if (options.json)
         std::cout << jsonText(report);
     else
-        printTouch(options, object.material(), settings, report);
+        printTouch(options, scene, report);
 }
 
 } // namespace
@@ -295,35 +206,21 @@ void addTouchCommand(CLI::App& app)
     CLI::App* command =
         app.add_subcommand("touch", "presses a scripted finger on a cloud: how far it gives, how it feels");
     const auto o = std::make_shared<TouchOptions>();
-    o->source.addTo(*command);
-    command->add_option("--at", o->at,
-                        "place X,Y,Z, such as 10mm,0,35mm; plain numbers are in the unit of --unit (else m)");
-    command->add_option("--from", o->from, "direction X,Y,Z from which the finger comes (else from outside)");
-    command->add_option("--force", o->force, "that presses, such as 0.5N")->capture_default_str();
-    command->add_option("--preset", o->preset, "palpate, or paper: as Kumari and Chaudhuri published it")
-        ->capture_default_str();
-    command->add_option("--thickness", o->thickness,
-                        "of the sheet, such as 4mm; plain numbers of all lengths are in the unit of --unit (else m)");
-    command->add_option("--poisson", o->poisson, "Poisson's ratio");
-    command->add_option("--foundation", o->foundation, "stiffness of what lies below, such as 1.74MPa/m; 0 is nothing");
-    command->add_option("--window", o->window, "edge of the square that bends, such as 40mm");
-    command->add_option("--cells", o->cells, "of the grid along the window's edge, even (default 64)");
-    command->add_option("--footprint", o->footprint, "radius of the fingertip, such as 4mm");
-    command->add_option("--map", o->map, "lambert-azimuthal, lambert-cylindrical or gall-peters");
-    command->add_option("--sampling", o->sampling, "rigidity of a node: log-mean or nearest");
-    command->add_option("--edges", o->edges,
-                        "of the window: clamped, supported, free, or such as x0=free,z1=supported, the others clamped");
-    o->solver.addTo(*command);
-    command->add_option("--force-law", o->forceLaw, "series (plate and contact) or paper (contact alone)");
+    o->source.addTo(*command, SceneKey::Group::touch);
+    command->add_option("--force", o->force, "force that presses, such as 0.5N")->capture_default_str();
     command->add_option(
         "--out", o->out,
         "folder for the deformed cloud, grids, pictures and touch.json; that comes last: a folder without it "
         "holds no whole set");
     command->add_flag("--json", o->json, "machine-readable, SI units");
-    command->footer("Examples:\n"
-                    "  palpate touch sample:skin --out touch\n"
-                    "  palpate touch sample:ellipsoid --at 30mm,0,30mm --force 0.3N --preset paper --json\n"
-                    "  palpate touch scan.ply --unit mm --at 12,0,30 --uniform 300kPa --thickness 3mm --window 30mm");
+    command->footer(
+        "Examples:\n"
+        "  palpate touch sample:skin --out touch\n"
+        "  palpate touch sample:ellipsoid --at 30mm,0,30mm --force 0.3N --preset paper --json\n"
+        "  palpate touch scan.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa --at "
+        "12,0,30\n"
+        "Without --at a cloud from a file is touched where it comes nearest to the viewer. Plain numbers of\n"
+        "lengths are in the unit of --length-unit, else metres.");
     command->callback([command, o] {
         refuseEmptyValues(*command);
         touch(*o);

@@ -13,6 +13,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/session/interrupt.h"
+#include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/hand_source.h"
 #include "engine/tools/cli/hunt_report.h"
@@ -86,7 +87,7 @@ SessionInfo infoOf(const ViewOptions& o, const Stage& stage, const HapticDevice&
     SessionInfo info;
     info.scene    = stage.scene();
     info.versions = {{"palpate", PALPATE_VERSION}, {"compiler", __VERSION__}, {"libraries", PALPATE_LIBRARIES}};
-    info.device   = stage.solvedOn();
+    info.solver   = stage.solvedOn();
     info.clock    = SessionClock::real;
     info.command  = o.command;
     info.cloud    = fingerprint(stage.object().cloud());
@@ -114,9 +115,9 @@ std::unique_ptr<SpaceMouse> capFor(const ViewOptions& o, HidSystem& system)
 std::optional<study::HuntScorer> scorerFor(const SceneSource& source)
 {
     if (std::filesystem::is_directory(source.name)) return {};
-    const Scene scene = source.load(PlaceNeeded::no);
-    if (!scene.hunt) return {};
-    return std::make_optional<study::HuntScorer>(scene, loadCloud(scene).cloud);
+    const Scene scene = source.load();
+    if (!study::hiddenIn(scene)) return {};
+    return std::make_optional<study::HuntScorer>(scene, source.loadCloud(scene).cloud);
 }
 
 void view(const ViewOptions& o)
@@ -124,11 +125,10 @@ void view(const ViewOptions& o)
     WorkbenchSettings settings;
     auto              scorer = scorerFor(o.scene);
     if (scorer) settings.onTick = [&scorer](const TickRecord& sample) { scorer->add(sample); };
-    settings.what   = o.scene.name;
-    settings.values = o.scene.flags;
-    settings.open   = [](const std::string& what, const SceneValues& values) {
-        return SceneSource{what, values}.load(PlaceNeeded::no);
-    };
+    settings.what     = o.scene.name;
+    settings.values   = o.scene.flags;
+    settings.toolKeys = &study::huntKeys();
+    settings.open     = sceneFrom;
     settings.recorded = [&o](const Stage& stage, const HapticDevice& device) { return infoOf(o, stage, device); };
     SessionHand source;
     if (deviceNamed(o.hand.hand) != &kMouseRecord)
@@ -154,20 +154,12 @@ void view(const ViewOptions& o)
     const auto   cap = capFor(o, hid);
     settings.camera  = cap.get();
 
-#ifdef PALPATE_PANELS
     std::optional<PanelFrame> panels; // outlives what draws it and what feeds it
-#endif
     GlfwWindow               window("Palpate", sizeOf(o.size));
-    compute::ContextSettings gpu{.device = o.drawOn};
+    compute::ContextSettings gpu{.processor = o.drawOn};
     if (o.validate) gpu.validation = compute::Validation::synchronization;
     SurfaceRenderer renderer(gpu, window.link());
-    PanelFrame*     shown = nullptr;
-#ifdef PALPATE_PANELS
-    if (!o.noPanels) {
-        panels.emplace(window.scale());
-        shown = &*panels;
-    }
-#endif
+    if (!o.noPanels && PanelFrame::available()) panels.emplace(window.scale());
     glm::ivec2 last{};
     settings.titled = [&window](const std::string& name) { window.setTitle(name + " - Palpate"); };
     WindowScreen screen(renderer);
@@ -178,12 +170,12 @@ void view(const ViewOptions& o)
             if (input.size.x > 0) last = input.size;
             return input;
         },
-        shown);
+        panels ? &*panels : nullptr);
     if (o.size.empty()) rememberSize(last);
     if (!report.said.empty()) std::cerr << "palpate: " << report.said << "\n";
     const auto score = scorer ? std::optional(scorer->score()) : std::nullopt;
     tell(o, report, renderer, score);
-    if (score && !o.json) printText(*score, *o.scene.load(PlaceNeeded::no).hunt);
+    if (score && !o.json) printText(*score, study::hiddenIn(o.scene.load())->hunt);
     const auto messages = renderer.takeMessages();
     for (const std::string& message : messages) std::cerr << "palpate: validation: " << message << "\n";
     if (!messages.empty()) throw CheckFailed("the validation layer has complained");
@@ -206,9 +198,9 @@ void addViewCommand(CLI::App& app)
     CLI::App*  command = app.add_subcommand("view", "an object in a window, touched with the mouse");
     const auto o       = std::make_shared<ViewOptions>();
     o->hand.hand       = kMouseRecord.name;
-    command
-        ->add_option("SCENE", o->scene.name, "scene file, cloud file, sample:NAME or the folder of a recorded session")
-        ->capture_default_str();
+    o->scene.addTo(*command, SceneKey::Group::session);
+    command->get_option("SCENE")->description(command->get_option("SCENE")->get_description() +
+                                              ", or the folder of a recorded session");
     command
         ->add_option("--hand", o->hand.hand,
                      std::string(kMouseRecord.name) + "; or any hand of palpate run: " + generatedHands() +
@@ -226,13 +218,12 @@ void addViewCommand(CLI::App& app)
     command->add_flag("--validate", o->validate, "under Vulkan's validation layer; any message is exit code 1");
     command->add_flag("--json", o->json, "machine-readable, SI units");
     addDeviceOptions(*command, o->hand.device, deviceRecords());
-    o->scene.addFlagsTo(*command);
     command->footer("Hold Space over the object and move: that touches it, the wheel is depth. F1 shows all keys.\n"
                     "Examples:\n"
                     "  palpate view\n"
                     "  palpate view samples/scenes/skin_wart.json --colour stiffness\n"
                     "  palpate view samples/scenes/nodule_hunt.json --hunt-seed 7     hidden nodules: M declares one\n"
-                    "  palpate view scan.ply --length-unit mm --at 12mm,0,30mm\n"
+                    "  palpate view scan.ply --length-unit mm --at 12,0,30\n"
                     "  palpate view sample:ellipsoid --hand circle --seconds 10 --json");
     command->callback([command, o] {
         refuseEmptyValues(*command);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -13,17 +12,12 @@ namespace {
 constexpr float kLabels   = 118; ///< width of this section's labels, at scale 1 [px]
 constexpr float kOwnWidth = 44;  ///< of the button beside a law, at scale 1 [px]
 
-const SceneKey& keyNamed(std::string_view name)
-{
-    return *std::ranges::find(sceneKeys(), name, &SceneKey::name);
-}
-
 /// What a key means, what it takes, and where its value came from.
 void explain(const PanelDesk& desk, std::string_view name)
 {
     if (!ImGui::IsItemHovered()) return;
-    const SceneKey& key = keyNamed(name);
-    std::string text = std::string(name) + ": " + std::string(key.means) + "\nexpected: " + std::string(key.expected);
+    const SceneKey& key  = sceneKey(name);
+    std::string     text = std::string(name) + ": " + std::string(key.help) + "\nexpected: " + key.expected();
     if (const auto from = desk.content.scene.origins.find(name); from != desk.content.scene.origins.end())
         text += std::string("\nnow from: ") + palp::name(from->second.origin) +
                 (from->second.where.empty() ? "" : ", " + from->second.where);
@@ -40,36 +34,37 @@ void labelOf(const PanelDesk& desk, const char* label, std::string_view key)
 }
 
 /// A slider whose value is the scene's but while it is dragged, and a wish when it is let go.
-void drawNumber(PanelDesk& desk, const SceneNumber& number)
+void drawSlider(PanelDesk& desk, const SceneKey& key)
 {
-    ImGui::PushID(number.key.data(), number.key.data() + number.key.size());
-    labelOf(desk, number.label, number.key);
+    const KeyControl& control = *key.control;
+    ImGui::PushID(key.name.data(), key.name.data() + key.name.size());
+    labelOf(desk, control.label, key.name);
     ImGuiStorage* const kept  = ImGui::GetStateStorage();
     const ImGuiID       value = ImGui::GetID("dragged"), isDragged = ImGui::GetID("is dragged");
-    const double        now    = number.of(desk.content.scene) / number.perUnit;
+    const double        now    = key.number(desk.content.scene) / control.perUnit;
     double              shown  = kept->GetBool(isDragged) ? double(kept->GetFloat(value)) : now;
-    const std::string   format = formatted("%%.%df%s%s", number.decimals, *number.unit ? " " : "", number.unit);
-    ImGui::SliderScalar("##slider", ImGuiDataType_Double, &shown, &number.least, &number.most, format.c_str(),
-                        number.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
-    explain(desk, number.key);
-    if (ImGui::IsItemDeactivatedAfterEdit() && wishText(number, shown) != wishText(number, now))
-        desk.wishes.values[std::string(number.key)] = wishText(number, shown);
+    const std::string   format = formatted("%%.%df%s%s", control.decimals, *control.unit ? " " : "", control.unit);
+    ImGui::SliderScalar("##slider", ImGuiDataType_Double, &shown, &control.least, &control.most, format.c_str(),
+                        control.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
+    explain(desk, key.name);
+    if (ImGui::IsItemDeactivatedAfterEdit() && wishText(key, shown) != wishText(key, now))
+        desk.wishes.values[std::string(key.name)] = wishText(key, shown);
     kept->SetFloat(value, float(shown));
     kept->SetBool(isDragged, ImGui::IsItemActive());
     ImGui::PopID();
 }
 
-void drawChoice(PanelDesk& desk, const SceneChoice& choice)
+void drawList(PanelDesk& desk, const SceneKey& key)
 {
-    ImGui::PushID(choice.key.data(), choice.key.data() + choice.key.size());
-    labelOf(desk, choice.label, choice.key);
-    const std::string now  = choice.of(desk.content.scene);
+    ImGui::PushID(key.name.data(), key.name.data() + key.name.size());
+    labelOf(desk, key.control->label, key.name);
+    const std::string now  = optionNow(key, desk.content.scene);
     const bool        open = ImGui::BeginCombo("##combo", now.c_str());
-    if (!open) explain(desk, choice.key);
+    if (!open) explain(desk, key.name);
     if (open) {
-        for (const char* option : choice.options)
-            if (ImGui::Selectable(option, now == option) && now != option)
-                desk.wishes.values[std::string(choice.key)] = option;
+        for (const std::string& option : optionsOf(key))
+            if (ImGui::Selectable(option.c_str(), now == option) && now != option)
+                desk.wishes.values[std::string(key.name)] = option;
         ImGui::EndCombo();
     }
     ImGui::PopID();
@@ -120,8 +115,8 @@ void drawSides(PanelDesk& desk, const char* label, Edge PlateEdges::*low, Edge P
         ImGui::SetNextItemWidth(width);
         const bool open = ImGui::BeginCombo("##side", name(now.*side), ImGuiComboFlags_NoArrowButton);
         if (!open) explain(desk, "edges");
-        for (const Edge edge : {Edge::clamped, Edge::supported, Edge::free}) {
-            if (!open || !ImGui::Selectable(name(edge), edge == now.*side) || edge == now.*side) continue;
+        for (const auto& [edge, word] : namesOf(Edge{})) {
+            if (!open || !ImGui::Selectable(word, edge == now.*side) || edge == now.*side) continue;
             PlateEdges changed          = now;
             changed.*side               = edge;
             desk.wishes.values["edges"] = edgesText(changed);
@@ -139,8 +134,8 @@ void drawSceneSection(PanelDesk& desk)
     drawLaw(desk);
     for (const SceneControls& group : sceneControls()) {
         ImGui::Separator();
-        for (const SceneNumber& number : group.numbers) drawNumber(desk, number);
-        for (const SceneChoice& choice : group.choices) drawChoice(desk, choice);
+        for (const SceneKey* key : group.sliders) drawSlider(desk, *key);
+        for (const SceneKey* key : group.lists) drawList(desk, *key);
         if (!group.edges) continue;
         drawSides(desk, "edges x0, x1", &PlateEdges::x0, &PlateEdges::x1);
         drawSides(desk, "edges z0, z1", &PlateEdges::z0, &PlateEdges::z1);

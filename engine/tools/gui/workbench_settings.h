@@ -38,6 +38,9 @@ struct WorkbenchSettings {
     ViewState   state;
     double      seconds = 0; ///< closes by itself after so long [s]; 0: when it is told to
 
+    /// Keys that a tool adds to scenes, for the scenes of recordings; null: none.
+    const std::vector<SceneKey>* toolKeys = nullptr;
+
     /// A scene from what the user names. \thread any, one at a time \throws Error
     std::function<Scene(const std::string& what, const SceneValues& values)> open;
     /// The hand for a scene, homed; empty: the pointer. May take as long as a person needs. \thread as open

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/session/hand_path.h"
 #include "engine/session/servo.h"
 
 namespace palp::study {
@@ -16,10 +17,12 @@ namespace {
 /// The points on which nodules may lie, on the hand's side or not: sides are not told apart.
 std::vector<glm::dvec3> groundOf(const Scene& scene, const PointCloud& cloud)
 {
-    if (!scene.hunt) throw Error("nothing is hidden in this scene: it has no \"hunt\"; see samples/scenes");
+    const HiddenNodules* const hidden = hiddenIn(scene);
+    if (!hidden) throw Error("nothing is hidden in this scene: it has no \"hunt\"; see samples/scenes");
+    const glm::dvec3        place = placeOf(scene, cloud);
     std::vector<glm::dvec3> ground;
     for (const glm::dvec3& p : cloud.positions())
-        if (scene.hunt->ground <= 0 || glm::distance(p, scene.place) <= scene.hunt->ground) ground.push_back(p);
+        if (hidden->hunt.ground <= 0 || glm::distance(p, place) <= hidden->hunt.ground) ground.push_back(p);
     if (ground.empty())
         throw Error("hunt: key \"ground\": expected a radius about the scene's place that holds points of the object, "
                     "found none");
@@ -31,9 +34,9 @@ std::vector<glm::dvec3> groundOf(const Scene& scene, const PointCloud& cloud)
 HuntScorer::HuntScorer(const Scene& scene, const PointCloud& cloud)
     : ground_(groundOf(scene, cloud)), index_(ground_), covered_(ground_.size())
 {
-    hunt_      = *scene.hunt;
+    hunt_      = hiddenIn(scene)->hunt;
     footprint_ = scene.patch.footprintRadius;
-    for (const Nodule& nodule : nodulesOf(scene, cloud)) score_.nodules.push_back({.nodule = nodule});
+    for (const Nodule& nodule : hiddenIn(scene)->nodules(cloud, scene)) score_.nodules.push_back({.nodule = nodule});
     edges_.resize(score_.nodules.size());
 }
 

@@ -9,6 +9,7 @@
 #include "engine/cloud/neighbour_index.h"
 #include "engine/session/scene.h"
 #include "engine/session/tick_record.h"
+#include "engine/tools/study/hunt_scene.h"
 
 namespace palp::study {
 

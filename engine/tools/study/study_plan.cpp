@@ -10,6 +10,8 @@
 #include "engine/core/json_object.h"
 #include "engine/core/nearest_name.h"
 #include "engine/force/governor.h"
+#include "engine/pipeline/presets.h"
+#include "engine/tools/study/hunt_scene.h"
 
 namespace palp::study {
 namespace {
@@ -47,28 +49,14 @@ std::vector<JsonObject> objectsIn(const JsonObject& object, const char* key, con
 
 using Flags = std::map<std::string, std::string, std::less<>>;
 
-/// A preset as the flags that it stands for.
-void addPreset(Flags& flags, const JsonObject& condition)
-{
-    if (!condition.has("preset")) return;
-    const auto preset = valueNamed<Preset>(condition.text("preset"));
-    if (!preset) condition.refuse("preset", "palpate or paper");
-    const PatchSettings set = withPreset({}, *preset);
-    flags["map"]            = name(set.map);
-    flags["sampling"]       = name(set.sampling);
-    flags["force_law"]      = name(set.forceLaw);
-    flags["edges"]          = "clamped";
-    if (*preset == Preset::paper) flags["foundation"] = "0";
-}
-
 /// Values as a scene file has them, in the spelling of flags.
 void addValues(Flags& flags, const JsonObject& condition)
 {
     if (!condition.has("values")) return;
     const JsonObject              values = condition.object("values");
     std::vector<std::string_view> known;
-    for (const SceneKey& key : sceneKeys())
-        if (key.name != "cloud") known.push_back(key.name); // another scene says that better
+    for (const SceneKey* key : sceneKeysWith(&huntKeys()))
+        if (key->name != "cloud") known.push_back(key->name); // another scene says that better
     values.allowOnly(known);
     for (const std::string_view key : known) {
         if (!values.has(key)) continue;
@@ -84,10 +72,10 @@ Condition conditionOf(const JsonObject& object, const std::filesystem::path& fol
     object.allowOnly({"name", "scene", "preset", "values"});
     Condition condition{textOf(object, "name"), {}};
     Flags     flags;
-    addPreset(flags, object);
+    if (object.has("preset")) flags["preset"] = object.text("preset");
     addValues(flags, object);
     try {
-        condition.scene = readScene(folder / textOf(object, "scene"), {flags, {}});
+        condition.scene = readScene(folder / textOf(object, "scene"), {.flags = flags, .toolKeys = &huntKeys()});
     } catch (const Error& error) {
         throw Error(object.where() + " (" + condition.name + "): " + error.what());
     }

@@ -39,15 +39,15 @@ good 'as a table' hunt --score session
 holds 'found 3 of 4 nodules, 1 false alarm;'
 good 'in real time' hunt "$scene" --hand "$hand" --seconds 1
 holds 'nothing was declared'
-good 'hidden anew' hunt "$scene" --hand "$hand" --clock virtual --seed 7 --json
+good 'hidden anew' hunt "$scene" --hand "$hand" --clock virtual --hunt-seed 7 --json
 holds '"found": '
 grep -A3 centre_m out.txt >seven.txt
-good 'the same again' hunt "$scene" --hand "$hand" --clock virtual --seed 7 --json
+good 'the same again' hunt "$scene" --hand "$hand" --clock virtual --hunt-seed 7 --json
 grep -A3 centre_m out.txt | cmp -s - seven.txt && pass || complain 'the same seed hides elsewhere'
-good 'another seed' hunt "$scene" --hand "$hand" --clock virtual --seed 8 --json
+good 'another seed' hunt "$scene" --hand "$hand" --clock virtual --hunt-seed 8 --json
 grep -A3 centre_m out.txt | cmp -s - seven.txt && complain 'another seed hides at the same places' || pass
 bad 'nothing is hidden' 'nothing is hidden' hunt "$samples/scenes/skin_wart.json" --clock virtual
-bad 'a seed of nothing' 'nothing is hidden' hunt "$samples/scenes/skin_wart.json" --seed 3
+bad 'a seed of nothing' 'nothing is hidden' hunt "$samples/scenes/skin_wart.json" --hunt-seed 3
 bad 'both a scene and a recording' '--score' hunt "$scene" --score session
 bad 'no recording' 'session.json' hunt --score nowhere
 cp "$scene" scene.json

@@ -6,6 +6,7 @@ palpate=$1 broken=$2
 place=$(mktemp -d "${TMPDIR:-/tmp}/palpate program XXXXXX") || exit 1
 trap 'chmod -R u+w "$place"; rm -rf "$place"' EXIT
 cd "$place" || exit 1
+unset PALPATE_SOLVER # of the shaders' tests; here every command chooses for itself
 
 failed=0 passed=0
 complain() { echo "FAILED: $*"; failed=$((failed + 1)); }
@@ -31,7 +32,7 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert paint render view hunt study perceive paper devices doctor calibrate 'bench solve'; do
+for command in touch solve info convert paint render view hunt study perceive paper devices doctor calibrate bench; do
     # shellcheck disable=SC2086  # a command, or one within another
     good "help of $command" $command --help; holds 'Examples:'
     mv out.txt help.txt
@@ -40,7 +41,7 @@ for command in touch solve info convert paint render view hunt study perceive pa
     cmp -s out.txt help.txt && passed=$((passed + 1)) || complain "'help $command' is not '$command --help'"
 done
 good 'help of bench' bench --help
-holds 'bench solve --out bench'
+holds 'palpate bench --out bench'
 grep -qF 'palpate touch' out.txt && complain 'the help of bench has the examples of touch' || passed=$((passed + 1))
 good 'list of samples' info --samples
 for sample in ellipsoid sheet pad hemisphere saddle skin palm ear-lobe; do holds "sample:$sample"; done
@@ -83,16 +84,16 @@ grep -qF 'palpate: warning: odd.json: load: ' err.txt && passed=$((passed + 1)) 
 good 'solve, finer' solve plate.json --cells 32 --out w.npy
 [ -s w.npy ] || complain 'solve --out wrote nothing'
 
-good 'solve by the reference' solve plate.json --device Reference --json
+good 'solve by the reference' solve plate.json --solver Reference --json
 holds '"device": "reference"'
-good 'solve on the host' solve plate.json --device Host --json --out host.npy
+good 'solve on the host' solve plate.json --solver Host --json --out host.npy
 holds '"device": "host"'
 cp out.txt host.json
-good 'solve on lavapipe' solve plate.json --device lavapipe --json
+good 'solve on lavapipe' solve plate.json --solver lavapipe --json
 agree max_deflection host.json out.txt 1e-4
 without() { env VK_DRIVER_FILES="$place/none.json" VK_ICD_FILENAMES="$place/none.json" "$@" >out.txt 2>err.txt; } # any Vulkan driver
 failing() { where=$1; shift; env PALPATE_BROKEN="$where" VK_DRIVER_FILES="$broken" VK_ICD_FILENAMES="$broken" "$@" >out.txt 2>err.txt; }
-without "$palpate" solve plate.json --device host && [ ! -s err.txt ] && passed=$((passed + 1)) || complain "the host needs a driver: $(cat out.txt err.txt)"
+without "$palpate" solve plate.json --solver host && [ ! -s err.txt ] && passed=$((passed + 1)) || complain "the host needs a driver: $(cat out.txt err.txt)"
 good 'solve where there is only software' solve plate.json --json --out auto.npy
 holds '"device": "host"'
 holds '"note": null'
@@ -109,29 +110,28 @@ cmp -s portable.npy host.npy && passed=$((passed + 1)) || complain 'instruction 
 good 'its name' devices --json
 holds '"instruction_set": "portable"'
 unset PALPATE_HOST_ISA
-good 'solve tightly' solve plate.json --device Lavapipe --tolerance 1e-7 --json
+good 'solve tightly' solve plate.json --solver Lavapipe --tolerance 1e-7 --json
 holds '"work_units"'
-good 'touch by the reference' touch sample:skin --points 5000 --cells 32 --device reference
+good 'touch by the reference' touch sample:skin --points 5000 --cells 32 --solver reference
 holds '(reference)'
-good 'benchmark' bench solve --device lavapipe,REFERENCE --schedule Pass-by-pass --nodes 17,33 --loads 1,4 --repeats 2 --out bench --json
-for key in '"cold_p50_ms"' '"cold_p99_ms"' '"warm_p50_ms"' '"iterations"' '"work_units"' '"error"' '"copy_gb_per_s"' '"dispatches_per_cycle"'; do holds "$key"; done
-[ -s bench/solve.json ] && [ -s bench/solve.svg ] && passed=$((passed + 1)) || complain 'bench --out wrote nothing'
+good 'batches of loads' bench --solver lavapipe --schedule pass-by-pass --nodes 33 --cases batch --json
+for key in '"case": "batch"' '"loads": 49' '"palpate_parts_ms"' '"iterations"' '"work_units"' '"moved_gb_per_s"' '"copy_gb_per_s"' '"dispatches_per_cycle": 12'; do holds "$key"; done
 
-good 'peers' bench plate --device lavapipe --nodes 33,65 --maps linear,disc_0.1 --cases new_map,contrast,memory --out peers --json
+good 'peers' bench --solver lavapipe --nodes 33,65 --maps linear,disc_0.1 --cases new_map,contrast,memory --out peers --json
 for key in '"case": "new_map"' '"case": "contrast"' '"case": "memory"' '"peer": "CHOLMOD"' '"peer": "Eigen SimplicialLDLT"' '"accuracy": "discretisation"' '"accuracy": "1e-6"' \
     '"peer_ms"' '"palpate_ms"' '"ratio"' '"error"' '"peer_error"' '"work_units"' '"iterations"' 'OPENBLAS_NUM_THREADS=1'; do holds "$key"; done
 for file in plate.json plate.txt new_map.svg; do
-    [ -s "peers/$file" ] && passed=$((passed + 1)) || complain "bench plate --out did not write $file"
+    [ -s "peers/$file" ] && passed=$((passed + 1)) || complain "bench --out did not write $file"
 done
-[ ! -e peers/new_load.svg ] && passed=$((passed + 1)) || complain 'bench plate --out wrote a picture of nothing'
-bad 'nothing to measure' 'begin at 65 nodes' bench plate --device host --nodes 33 --cases new_map
-bad 'quick and large' 'with --quick at most 257' bench plate --quick --nodes 513
-"$palpate" solve plate.json --device 77 >out.txt 2>err.txt
+[ ! -e peers/new_load.svg ] && passed=$((passed + 1)) || complain 'bench --out wrote a picture of nothing'
+bad 'nothing to measure' 'begin at 65 nodes' bench --solver host --nodes 33 --cases new_map
+bad 'quick and large' 'with --quick at most 257' bench --quick --nodes 513
+"$palpate" solve plate.json --solver 77 >out.txt 2>err.txt
 [ $? -eq 2 ] && grep -qF 'there is no GPU 77' err.txt && passed=$((passed + 1)) || complain "no such index: $(cat err.txt)"
-good 'the paper'\''s iteration' bench plate --device lavapipe --nodes 33 --cases jacobi
+good 'the paper'\''s iteration' bench --solver lavapipe --nodes 33 --cases jacobi
 holds 'Jacobi 0.6, same error'
 mkdir alone && cp "$palpate" alone/palpate
-alone/palpate bench plate --device lavapipe --nodes 33 --cases memory >out.txt 2>err.txt || complain "bench plate without peers: exit $? $(cat err.txt)"
+alone/palpate bench --solver lavapipe --nodes 33 --cases memory >out.txt 2>err.txt || complain "bench without peers: exit $? $(cat err.txt)"
 holds 'install libsuitesparse-dev'
 
 good 'list of devices' devices
@@ -197,12 +197,12 @@ without "$palpate" devices && grep -qF 'auto takes it' out.txt && [ ! -s err.txt
     complain "a machine without a GPU has its host: $(cat out.txt err.txt)"
 without "$palpate" solve plate.json --json && grep -qF '"device": "host"' out.txt && grep -qF '"note": null' out.txt && [ ! -s err.txt ] && passed=$((passed + 1)) ||
     complain "solving without a GPU, on the host: $(cat out.txt err.txt)"
-without "$palpate" solve plate.json --device lavapipe
+without "$palpate" solve plate.json --solver lavapipe
 code=$?
 [ $code -eq 4 ] && [ ! -s out.txt ] && passed=$((passed + 1)) ||
     complain "a GPU that is asked for and is not there: exit $code, expected 4: $(cat out.txt err.txt)"
 for where in start list open; do
-    for command in 'solve plate.json' 'touch sample:sheet --points 5000 --cells 16' 'bench solve --device auto --nodes 17 --repeats 1' 'bench plate --nodes 33 --cases memory'; do
+    for command in 'solve plate.json' 'touch sample:sheet --points 5000 --cells 16' 'bench --nodes 33 --cases memory'; do
         # shellcheck disable=SC2086  # a command and its arguments
         failing $where "$palpate" $command --json && grep -qF '"device": "host"' out.txt && [ "$(wc -l <err.txt)" -eq 1 ] &&
             grep -qF 'palpate: auto takes host: ' err.txt && passed=$((passed + 1)) || complain "$command, Vulkan broken at $where: $(cat out.txt err.txt)"
@@ -210,7 +210,7 @@ for where in start list open; do
         grep -qE '"note": "(Vulkan|the GPU) ' out.txt && passed=$((passed + 1)) || complain "$command does not report it: $(cat out.txt)"
     done
     failing $where "$palpate" devices && grep -qF 'host  ' out.txt && passed=$((passed + 1)) || complain "devices, Vulkan broken at $where: $(cat out.txt err.txt)"
-    failing $where "$palpate" solve plate.json --device lavapipe
+    failing $where "$palpate" solve plate.json --solver lavapipe
     code=$?
     [ $code -eq 4 ] && [ ! -s out.txt ] && passed=$((passed + 1)) || complain "asked for, Vulkan broken at $where: exit $code: $(cat err.txt)"
 done
@@ -224,12 +224,12 @@ good 'run' run scene.json --clock virtual --seconds 0.5 --record session --json
 for key in '"ticks": 500' '"fault": "none"' '"samples": 500' '"p99.9_s"'; do holds "$key"; done
 good 'replay' replay session --compare
 holds 'equal to the bit'
-good 'replay on lavapipe' replay session --compare --device lavapipe
+good 'replay on lavapipe' replay session --compare --solver lavapipe
 good 'the configuration' run scene.json --print-config --max-force '4 N'
 holds '4 '
 bad 'a session is not overwritten' session run scene.json --clock virtual --seconds 0.1 --record session
 printf '{"cloud": "sample:sheet", "thicknes": 0.004}' >wrong.json
-"$palpate" run scene.json --device gpu9000 --record unmade >out.txt 2>err.txt
+"$palpate" run scene.json --solver gpu9000 --record unmade >out.txt 2>err.txt
 [ $? -eq 2 ] && [ ! -e unmade ] && passed=$((passed + 1)) || complain "a missing device left a session behind: $(cat err.txt)"
 bad 'an unknown key of a scene' 'did you mean' run wrong.json
 printf '{"cloud": "sample:sheet", "thickness": -0.004}' >wrong.json
@@ -301,7 +301,7 @@ bad 'a mass that is none' '--mass' calibrate --emulator --mass '200 N'
 
 # --- the same numbers every time
 for run in one two; do "$palpate" touch sample:palm --points 8000 --cells 32 --out $run --json >touch.json; done
-"$palpate" touch sample:palm --points 8000 --cells 32 --device lavapipe --out three --json >lavapipe.json
+"$palpate" touch sample:palm --points 8000 --cells 32 --solver lavapipe --out three --json >lavapipe.json
 grep -qF '"device": "llvmpipe' lavapipe.json && passed=$((passed + 1)) || complain "that was not lavapipe: $(cat lavapipe.json)"
 agree compliance touch.json lavapipe.json 1e-4
 cmp -s one/rigidity.npy three/rigidity.npy && passed=$((passed + 1)) || complain 'the host and lavapipe sample differently'
@@ -312,42 +312,42 @@ done
 # --- bad usage
 bad 'unknown option' 'frobnicate' touch sample:skin --frobnicate
 bad 'unknown sample' 'palm' touch sample:elbow
-bad 'unknown unit' 'parsec' info skin.ply --unit parsec
+bad 'unknown unit' 'parsec' info skin.ply --length-unit parsec
 bad 'unknown preset' 'paper' touch sample:skin --preset rabbit
 bad 'unknown map' 'gall-peters' touch sample:skin --map mercator
 bad 'odd cells' 'even' touch sample:skin --cells 33
 bad 'force that is no number' '--force' touch sample:skin --force nan
 bad 'negative window' '--window' touch sample:skin --window -40mm
 bad 'all edges free, nothing below' 'rigid' touch sample:sheet --points 5000 --cells 16 --edges free
-bad 'footprint wider than the window' 'footprint' touch sample:sheet --points 5000 --cells 16 --footprint 50mm
+bad 'footprint wider than the window' 'footprint' touch sample:sheet --points 5000 --cells 16 --footprint-radius 50mm
 bad 'contact far from the cloud' 'contact' touch sample:skin --points 5000 --at 1m,0,0
-bad 'no place for a file' '--at' touch skin.ply
+good 'a file without a place is touched where it comes nearest to the viewer' touch skin.ply --window 40mm --cells 32 --json
+tr -d ' \n' <out.txt >flat.txt
+grep -q '"point":\[-*0.00[0-9]*,-*0.00[0-9]*,0.001[0-9]*\]' flat.txt && passed=$((passed + 1)) || complain "not the top of the wart: $(grep -A4 '"point"' out.txt)"
 bad 'tolerance that 32 bits cannot give' '--tolerance' solve plate.json --tolerance 1e-12
 bad 'tolerance that is no number' '--tolerance' touch sample:skin --tolerance nan
-bad 'benchmark of a giant' '--nodes' bench solve --nodes 4097
-bad 'benchmark of an unknown law' 'hyperbolic' bench solve --law cubic
-bad 'peers on an even grid' 'multiple of 4' bench plate --nodes 64
-bad 'peers on a giant' '--nodes' bench plate --nodes 2049
-bad 'peers in an unknown case' 'new_map' bench plate --cases speed
-bad 'peers on an unknown map' 'disc_100' bench plate --maps cubic
-bad 'too few runs for quartiles' '--runs' bench plate --runs 5
-bad 'the reference as its own peer' 'reference' bench plate --device reference
-bad 'peers with an empty device' '--device' bench plate --device ''
+bad 'peers on an even grid' 'multiple of 4' bench --nodes 64
+bad 'peers on a giant' '--nodes' bench --nodes 2049
+bad 'peers in an unknown case' 'new_map' bench --cases speed
+bad 'peers on an unknown map' 'disc_100' bench --maps cubic
+bad 'too few runs for quartiles' '--runs' bench --runs 5
+bad 'the reference as its own peer' 'reference' bench --solver reference
+bad 'peers with an empty device' '--device' bench --solver ''
 bad 'devices take no argument' 'voodoo' devices voodoo
 bad 'nor does the doctor' 'voodoo' doctor voodoo
-for command in 'solve plate.json' 'bench solve'; do
+for command in 'solve plate.json --solver' 'bench --solver'; do
     # shellcheck disable=SC2086  # a command and its arguments
-    "$palpate" $command --device gpu9000 >out.txt 2>err.txt
+    "$palpate" $command gpu9000 >out.txt 2>err.txt
     code=$?
     [ $code -eq 2 ] && grep -qF "'gpu9000'; expected auto, host, lavapipe, an index or part of a name" err.txt && grep -qF usable err.txt && grep -qF '  host  ' err.txt && grep -qF '  reference  ' err.txt && [ ! -s out.txt ] && passed=$((passed + 1)) ||
         complain "unknown device: exit $code, expected 2 and the list of devices: $(cat err.txt)"
 done
 for tolerance in 0 1e-12 nan 1; do
-    bad "benchmark with a tolerance of $tolerance" '--tolerance: expected at least 1e-07' bench solve --tolerance $tolerance
+    bad "a tolerance of $tolerance" '--tolerance: expected at least 1e-07' solve plate.json --tolerance $tolerance
     grep -qF "below 1, found $tolerance" err.txt && passed=$((passed + 1)) || complain "the tolerance's bounds: $(cat err.txt)"
 done
 for schedule in nosuch 0; do
-    bad 'unknown schedule' "--schedule: expected automatic, pass-by-pass or fused, found \"$schedule\"" bench solve --schedule $schedule
+    bad 'unknown schedule' "--schedule: expected automatic, pass-by-pass or fused, found \"$schedule\"" bench --schedule $schedule
 done
 
 # --- bad files
@@ -382,13 +382,13 @@ printf 'precious' >kept.ply
 bad 'bad input keeps the old target' 'short.ply' convert short.ply kept.ply
 [ "$(cat kept.ply)" = precious ] && passed=$((passed + 1)) || complain 'an old file was lost'
 (
-    ulimit -f 100 && "$palpate" solve plate.json --cells 128 --device reference --out big.npy >out.txt 2>err.txt
+    ulimit -f 100 && "$palpate" solve plate.json --cells 128 --solver reference --out big.npy >out.txt 2>err.txt
     code=$?
     [ $code -eq 2 ] && grep -qF 'big.npy: cannot be written: File too large' err.txt
 ) && [ ! -e big.npy ] && passed=$((passed + 1)) || complain "a limit on the size of files: $(cat err.txt)"
 # Without memory: the sentence, and no exit handler, where a driver may wait for its own lock. No sanitizer runs so.
 (
-    ulimit -v 400000 && LD_DEBUG=files "$palpate" solve plate.json --cells 512 --device reference >out.txt 2>err.txt
+    ulimit -v 400000 && LD_DEBUG=files "$palpate" solve plate.json --cells 512 --solver reference >out.txt 2>err.txt
     code=$?
     grep -qF Sanitizer err.txt && exit 0
     [ $code -eq 2 ] && grep -qF 'out of memory' err.txt && ! grep -qF 'calling fini' err.txt
@@ -396,16 +396,16 @@ bad 'bad input keeps the old target' 'short.ply' convert short.ply kept.ply
 mkdir full && : >full/out
 bad 'a folder that is a file' 'full/out' touch sample:skin --points 5000 --cells 48 --out full/out
 # --- options that cannot apply
-for option in '--stiffness-property quality' '--range 1kPa,2kPa' --log-range '--uniform 3kPa' '--stiffness-unit N_m' '--columns x,y,z' --drop-invalid; do
+for option in '--stiffness-property quality' '--stiffness-range 1kPa,2kPa' --log-range '--uniform 3kPa' '--stiffness-unit N_m' '--columns x,y,z' --drop-invalid; do
     # shellcheck disable=SC2086  # an option and its value
     bad "a sample with $option" "${option%% *}: expected a file" info sample:skin $option
 done
-bad 'an unknown unit on a sample' 'parsec' info sample:skin --unit parsec
+bad 'an unknown unit on a sample' 'parsec' info sample:skin --length-unit parsec
 for option in --points --seed; do bad "a file with $option" "$option: expected a sample" info skin.ply $option 100; done
-bad 'points below zero' 'found -3' info sample:skin --points -3
-bad 'no points' '--points: expected at least 16, found 0' info sample:skin --points 0
-bad 'no cells' 'found 0' touch sample:skin --cells 0
-bad 'a scale without a range' '--range' info skin.ply --log-range
+bad 'points below zero' 'found "-3"' info sample:skin --points -3
+bad 'no points' '--points: expected a whole number from 16 to 10000000, found "0"' info sample:skin --points 0
+bad 'no cells' 'found "0"' touch sample:skin --cells 0
+bad 'a scale without a range' '--stiffness-range' info skin.ply --log-range
 bad 'uniform where there is a stiffness' '--uniform: expected a file without' info skin.ply --uniform 300kPa
 bad 'uniform beside a law' '--uniform: --stiffness replaces' info skin.ply --uniform 300kPa --stiffness constant:value=1
 bad 'a folder without a name' '--out: expected a value' touch sample:skin --out ''
@@ -420,12 +420,12 @@ sed 's/"constant","value"/"odd","value"/' plate.json >odd.json
 bad 'an unknown rigidity law' 'checker, grid' solve odd.json
 
 # --- values beyond all sense
-bad 'a window beyond the world' '--window: expected a value from 1e-09 to 10000 m' touch sample:sheet --window 1e300m --footprint 1e299m
-for option in --thickness --footprint --window; do bad "nothing of $option" "$option" touch sample:sheet $option 1e-12m; done
+bad 'a window beyond the world' '--window: expected a length from 1e-6 to 100 m' touch sample:sheet --window 1e300m --footprint-radius 1e299m
+for option in --thickness --footprint-radius --window; do bad "nothing of $option" "$option" touch sample:sheet $option 1e-12m; done
 bad 'a force beyond the world' '--force' touch sample:sheet --force 1e308 --thickness 0.001mm
 bad 'a foundation beyond the world' '--foundation' touch sample:sheet --foundation 1e300
 bad 'a place beyond the world' '--at' touch sample:sheet --at 1e300,0,0
-bad 'a stiffness beyond the world' 'that 32 bits cannot hold' touch sample:sheet --points 5000 --cells 16 --stiffness constant:value=1e307 --thickness 1e-9m
+bad 'a stiffness beyond the world' 'that 32 bits cannot hold' touch sample:sheet --points 5000 --cells 16 --stiffness constant:value=1e307 --thickness 1e-6m
 
 # --- what is assumed is said
 printf 'x,y,z\n' >bare.csv
@@ -433,13 +433,13 @@ awk 'BEGIN { for (i = -20; i <= 20; ++i) for (j = -20; j <= 20; ++j) print i ","
 good 'a bare file' convert bare.csv bare.ply
 holds 'assumed metres'
 holds '300 kPa assumed'
-good 'a bare file, touched in millimetres' touch bare.csv --unit mm --at 0,0,0 --window 20 --thickness 3 --footprint 2mm --cells 32
+good 'a bare file, touched in millimetres' touch bare.csv --length-unit mm --at 0,0,0 --window 20 --thickness 3 --footprint-radius 2mm --cells 32
 holds '300 kPa assumed'
 holds 'mm, from the setting'
 holds 'thickness 3.00 mm'
-bad 'a suggested place on the cloud' '--at 0.00,0.00,' touch bare.csv --unit mm
-bad 'no place near the cloud' '--unit' touch bare.csv --at 5,5,1000 --window 20 --footprint 2 --cells 16
-good 'a law beside the cloud' info bare.csv --unit mm --stiffness disc:from=1,to=2,centre=5\;5\;5,radius=1
+bad 'a place beside the cloud' 'nearest point' touch bare.csv --length-unit mm --at 0,0,50 --window 20 --footprint-radius 2
+bad 'no place near the cloud' '--length-unit' touch bare.csv --at 5,5,1000 --window 20 --footprint-radius 2 --thickness 0.5 --cells 16
+good 'a law beside the cloud' info bare.csv --length-unit mm --stiffness disc:from=1,to=2,centre=5\;5\;5,radius=1
 holds 'same stiffness'
 printf '0 0 0 1\n1 0 0 1\n0 1 0 1\n' >three.xyz
 good 'three points' info three.xyz
@@ -451,7 +451,7 @@ name=$(printf 'caf\351.csv')
 cp bare.csv "$name"
 good 'a name that is not UTF-8' info "$name" --json
 good 'nor in convert' convert bare.csv "$name" --json
-good 'nor in touch' touch "$name" --unit mm --at 0,0,0 --window 20 --footprint 2 --cells 16 --json --out "folder $name"
+good 'nor in touch' touch "$name" --length-unit mm --at 0,0,0 --window 20 --footprint-radius 2 --cells 16 --json --out "folder $name"
 
 # --- standard output that cannot be written
 full() { # full DESCRIPTION ARGUMENTS...: exit 2 and a sentence, on a full device and on a closed output
@@ -511,7 +511,8 @@ JSON
     bad 'an unknown sample' 'known' render sample:nose --out no.png
     bad 'a scene that is not there' 'nowhere.json' render nowhere.json --out no.png
     bad 'a cloud that is not there' 'nowhere.ply' render nowhere.ply --out no.png
-    bad 'a cloud without a place' '--at' render skin.ply --out no.png
+    good 'a cloud without a place' render skin.ply --window 40mm --cells 32 --size 64x48 --out placeless.png
+    png placeless.png 64 48
     bad 'a place off the cloud' '1' render sample:skin $small --at 1,1,1 --out no.png
     bad 'a force of the hand' '--force' render soft.json --frames 2 --force 1N --out no.png
     bad 'no frames' '--frames' render soft.json --frames 0 --out no.png
@@ -570,7 +571,7 @@ holds 'only PLY holds faces'
 sed 's/^3 3 4 7/3 3 4 9/' mesh.ply >hole.ply
 bad 'a face of a point that is not there' 'hole.ply: line 25: face 2: expected the number of a point from 0 to below 9, found 9' info hole.ply
 
-good 'paint one point of a mesh' paint mesh.ply --stiffness-property quality --unit mm --stroke 'at=1,1,0 radius=0.5mm value=2kPa' --out painted.ply
+good 'paint one point of a mesh' paint mesh.ply --stiffness-property quality --length-unit mm --stroke 'at=1,1,0 radius=0.5mm value=2kPa' --out painted.ply
 holds '9 points, 1 with another stiffness'
 holds 'property quality, all else as in mesh.ply'
 holds '--stiffness-property quality'
@@ -607,15 +608,80 @@ mesh='paint mesh.ply --uniform 1kPa --out no.ply --stroke'
     bad 'no stroke' '--stroke' paint mesh.ply --out no.ply
     cp mesh.ply itself.ply
     bad 'the cloud itself' '--out: ./itself.ply is the cloud that is read' paint itself.ply --uniform 1kPa --stroke 'at=1mm,1mm,0 radius=1mm value=2kPa' --out ./itself.ply
-    bad 'the cloud itself, converted' 'TARGET: itself.ply is the cloud that is read' convert itself.ply itself.ply --unit mm
+    bad 'the cloud itself, converted' 'TARGET: itself.ply is the cloud that is read' convert itself.ply itself.ply --length-unit mm
     cmp -s mesh.ply itself.ply && passed=$((passed + 1)) || complain 'a cloud was written over'
     bad 'another kind of file' '.ply' paint mesh.ply --stroke 'at=1,1,0 radius=1mm smooth' --out no.stl
-    bad 'an option of clouds for a scene' '--range: expected a cloud' paint scene.json --range 1kPa,2kPa --out no.ply --stroke 'at=0,0,0 radius=6mm smooth'
+    bad 'an option of files for a scene of a sample' '--stiffness-range: expected a file' paint scene.json --stiffness-range 1kPa,2kPa --out no.ply --stroke 'at=0,0,0 radius=6mm smooth'
     bad 'a folder that is not there' 'nowhere/no.ply' paint mesh.ply --uniform 1kPa --stroke 'at=1mm,1mm,0 radius=1mm smooth' --out nowhere/no.ply
 }
 [ ! -e no.ply ] && passed=$((passed + 1)) || complain 'a refused painting was written'
 sed 's/^1 2 0 0 1000/nan 2 0 0 1000/' mesh.ply >lost.ply
 bad 'a file that lost points' '1 points were dropped' paint lost.ply --drop-invalid --stroke 'at=1mm,1mm,0 radius=1mm value=1kPa' --out no.ply
+
+# --- one scene for every command: a scan in millimetres whose stiffness was painted as "quality"
+awk 'BEGIN {
+    print "ply\nformat ascii 1.0\ncomment VCGLIB generated\nelement vertex 3721\nproperty float x\nproperty float y\nproperty float z\nproperty float quality\nend_header"
+    for (x = -30; x <= 30; ++x) for (y = -30; y <= 30; ++y) print x, y, 30 - (x * x + y * y) / 200, exp(-((x - 5) ^ 2 + y * y) / 32)
+}' >scan.ply
+words='scan.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa --log-range'
+touched='--window 40 --cells 32 --thickness 4 --footprint-radius 4'
+cat >scan.json <<'JSON'
+{"cloud": "scan.ply", "length_unit": "mm", "stiffness_property": "quality", "stiffness_range": [2e4, 2e6], "log_range": true,
+ "window": "40 mm", "cells": 32, "thickness": 0.004, "footprint_radius": 4e-3}
+JSON
+# shellcheck disable=SC2086  # lists of words on purpose
+{
+    good 'info of the scan' info $words
+    holds '20.0 kPa to 2.00 MPa'
+    holds 'mm, from the setting'
+    good 'info of its scene' info scan.json
+    holds '20.0 kPa to 2.00 MPa'
+    good 'touch the scan' touch $words $touched --json
+    cp out.txt touched.txt
+    good 'touch its scene' touch scan.json --json
+    agree felt_stiffness touched.txt out.txt 1e-12
+    good 'touch its stiff spot' touch $words $touched --at 5,0,30 --json
+    cp out.txt stiff.txt
+    good 'the same place in metres' touch $words $touched --at 5mm,0,0.03m --json
+    agree felt_stiffness stiff.txt out.txt 1e-12
+    good 'run the scan' run $words $touched --clock virtual --seconds 0.3 --record scanned --json
+    holds '"fault": "none"'
+    good 'replay it' replay scanned --compare
+    holds 'equal to the bit'
+    good 'draw the scan' render $words $touched --size 64x48 --colour stiffness --out scan.png
+    png scan.png 64 48
+    good 'perceive the scan' perceive $words $touched --places 5 --reach 8 --json
+    good 'paint the scan' paint $words --stroke 'at=0,0,30 radius=5 value=1MPa' --out painted-scan.ply
+    good 'paint its scene' paint scan.json --stroke 'at=0,0,30 radius=5 value=1MPa' --out painted-scene.ply
+    cmp -s painted-scan.ply painted-scene.ply && passed=$((passed + 1)) || complain 'a scan and its scene are painted differently'
+    good 'convert the scan' convert $words scan-in-metres.ply
+    good 'which is the same cloud' touch scan-in-metres.ply --window 40mm --cells 32 --thickness 4mm --footprint-radius 4mm --json
+    agree felt_stiffness touched.txt out.txt 1e-9
+    good 'where its values come from' run $words --print-config --preset paper
+    holds 'flag --preset: preset paper'
+    for command in info touch run; do
+        bad "$command, a property that is not there" 'qualty' $command scan.ply --length-unit mm --stiffness-property qualty
+        bad "$command, a unit that is none" '--length-unit: expected m, mm, cm, um, km, in or ft, found "parsec"' $command scan.ply --length-unit parsec
+        bad "$command, a range that is none" '--stiffness-range: expected two stiffnesses above zero, FROM,TO' $command $words --stiffness-range 20kPa
+    done
+    sed '40s/ [^ ]*$/ nan/' scan.ply >holed.ply
+    for command in info touch run; do bad "$command, NaN" 'holed.ply' $command holed.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa; done
+    good 'without that point' touch holed.ply --drop-invalid --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa $touched
+    sed 's/^comment VCGLIB generated/comment length_unit mm/' scan.ply >stated.ply
+    bad 'a place that would be metres' '--at: 5,0,30 has no unit, and would be metres, but the file'\''s lengths are in mm' touch stated.ply --at 5,0,30
+    good 'a place with units' touch stated.ply --at 5mm,0,30mm --window 40mm --cells 32
+    good 'in hundredths of that unit' touch stated.ply --length-unit mm --at 5,0,30 --window 40 --cells 32
+    good 'the host by the environment' touch scan.json --json
+    PALPATE_SOLVER=reference "$palpate" touch scan.json >out.txt 2>err.txt
+    holds '(reference)'
+    printf '{"cloud": "sample:sheet", "hunt": {"nodules": [{"at": [0, 0, 0], "radius": "6 mm", "modulus": "3 MPa"}]}}' >hidden.json
+    good 'what touch does with a hunt' touch hidden.json --json
+    holds 'has hidden 1 nodule in this stiffness; palpate hunt and palpate view score'
+    good 'keys of scenes' info --keys
+    holds '| `compliance_law` |'
+    good 'their schema' info --schema
+    holds '"hunt_seed"'
+}
 
 experiment=$(dirname "$palpate")/paper_experiment
 if [ -x "$experiment" ]; then
@@ -640,12 +706,12 @@ bad 'an object of another kind' '.svg' perceive soft.json --picture object.png
 bad 'a scene that is not there' 'nowhere.json' perceive nowhere.json
 
 # --- the paper, computed again: all of it at once, and again what has clocks in it
-good 'the paper' paper --quick --device host --out paper
+good 'the paper' paper --quick --solver host --out paper
 for part in a b c d e f g h; do holds "$part  "; done
 for file in index.html numbers.json timings.json; do [ -s paper/$file ] && passed=$((passed + 1)) || complain "paper did not write $file"; done
 for word in 'does not hold' 'A quick run' '<svg' 'commit'; do grep -qF "$word" paper/index.html && passed=$((passed + 1)) || complain "the page lacks '$word'"; done
-good 'parts of the paper' paper --quick --device host --only a,c,d --out one
-good 'the same parts again' paper --quick --device host --only a,c,d --out two --json
+good 'parts of the paper' paper --quick --solver host --only a,c,d --out one
+good 'the same parts again' paper --quick --solver host --only a,c,d --out two --json
 holds '"timings"'
 cmp -s one/numbers.json two/numbers.json && passed=$((passed + 1)) || complain 'the same numbers have other bytes'
 cmp -s one/timings.json two/timings.json && complain 'two clocks agree to the last digit' || passed=$((passed + 1))
@@ -656,7 +722,7 @@ bad 'a bunny that is not there' 'nowhere.ply' paper --out no --bunny nowhere.ply
 bad 'an empty folder name' '--out' paper --out ''
 [ ! -e no ] && passed=$((passed + 1)) || complain 'a refused report left a folder'
 : >taken
-bad 'a folder that is a file' 'taken' paper --quick --device host --only g --out taken
+bad 'a folder that is a file' 'taken' paper --quick --solver host --only g --out taken
 
 # --- a folder without touch.json holds no whole set
 mkdir -p broken/profile.svg && : >broken/touch.json

@@ -18,7 +18,7 @@ namespace {
 
 /// A hand that has pressed a palm for a while, on the virtual clock.
 struct Pressed {
-    Scene        scene  = parseScene(R"({"cloud": "sample:palm", "points": 6000, "device": "host"})", "a test", ".");
+    Scene        scene  = parseScene(R"({"cloud": "sample:palm", "points": 6000, "solver": "host"})", "a test", ".");
     SoftObject   object = loadObject(scene).object;
     Deformation  deformation{object, scene};
     HandPlace    place = handPlace(scene, object);
@@ -116,7 +116,7 @@ protected:
     void expectGolden(const std::string& name, const Shown& shown, const PanelContent& now)
     {
         PanelFrame      frame(shown.scale);
-        SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
+        SurfaceRenderer renderer({.processor = deviceOfTests(), .validation = validation()});
         const Image     image = pictureOf(shown, now, renderer, frame);
         palp::expectGolden(PALPATE_GOLDEN, name + ".png", leftOf(image, shown.kept), renderer);
     }
@@ -143,7 +143,7 @@ TEST_F(PanelsGolden, DarkAndLargeAtTwiceTheScale)
     now.recording           = "recordings/2016-05-20";
 
     PanelFrame      frame;
-    SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
+    SurfaceRenderer renderer({.processor = deviceOfTests(), .validation = validation()});
     Shown           before = shown;
     before.size            = {960, 540, 1, Detail::fast};
     before.scale           = 1;
@@ -164,7 +164,7 @@ TEST_F(PanelsGolden, TheOtherSectionsOpenAtAClick)
     mixed.plate.edges      = {Edge::clamped, Edge::free, Edge::supported, Edge::clamped};
     now.patch              = &mixed;
     PanelFrame      frame;
-    SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
+    SurfaceRenderer renderer({.processor = deviceOfTests(), .validation = validation()});
     const auto      at = [&](double y) { click({60, y}, shown, now, frame); };
 
     static_cast<void>(pictureOf(shown, now, renderer, frame));

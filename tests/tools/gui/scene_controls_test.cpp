@@ -18,54 +18,62 @@ Scene sceneWith(const std::string& key, const std::string& text)
                       "a test", ".", overrides);
 }
 
-TEST(SceneControls, EveryKeyIsOneOfAScene)
-{
-    for (const SceneControls& group : sceneControls()) {
-        for (const SceneNumber& number : group.numbers)
-            EXPECT_NE(std::ranges::find(sceneKeys(), number.key, &SceneKey::name), sceneKeys().end()) << number.key;
-        for (const SceneChoice& choice : group.choices)
-            EXPECT_NE(std::ranges::find(sceneKeys(), choice.key, &SceneKey::name), sceneKeys().end()) << choice.key;
-    }
-}
-
 TEST(SceneControls, EveryKeyOfASceneIsThereOrCannotChangeWhileOneTouches)
 {
-    // What is touched, where, and on which device: a new session, not another value. The law and the edges have fields
-    // of their own, and the size of the table follows from the rate.
-    std::set<std::string_view> found{"cloud",  "points", "seed",     "length_unit",  "stiffness",
-                                     "device", "place",  "from",     "start_height", "table_size",
-                                     "edges",  "hunt",   "hunt_seed"};
-    for (const SceneControls& group : sceneControls()) {
-        for (const SceneNumber& number : group.numbers) EXPECT_TRUE(found.insert(number.key).second) << number.key;
-        for (const SceneChoice& choice : group.choices) EXPECT_TRUE(found.insert(choice.key).second) << choice.key;
-    }
+    // What is touched, where, and with which solver: a new session, not another value. The law and the edges have
+    // fields of their own, a preset is the values that it sets, and the size of the table follows from the rate.
+    std::set<std::string_view> found{"cloud", "points",       "seed",       "stiffness", "solver", "place",
+                                     "from",  "start_height", "table_size", "edges",     "preset"};
+    for (const SceneKey& key : sceneKeys())
+        if (key.cloud == SceneKey::For::file) found.insert(key.name);
+    std::size_t controls = 0;
+    for (const SceneControls& group : sceneControls())
+        for (const auto& keys : {group.sliders, group.lists})
+            for (const SceneKey* key : keys) {
+                EXPECT_TRUE(found.insert(key->name).second) << key->name;
+                ++controls;
+            }
+    EXPECT_EQ(controls, 17u);
     for (const SceneKey& key : sceneKeys()) EXPECT_TRUE(found.contains(key.name)) << key.name << " has no control";
+}
+
+TEST(SceneControls, EverySliderIsWithinWhatASceneTakes)
+{
+    for (const SceneControls& group : sceneControls())
+        for (const SceneKey* key : group.sliders) {
+            EXPECT_GE(key->control->least * key->control->perUnit, key->bounds->least * (1 - 1e-12)) << key->name;
+            EXPECT_LE(key->control->most * key->control->perUnit, key->bounds->most * (1 + 1e-12)) << key->name;
+        }
 }
 
 /// Both ends and a value between, as the slider sends them, are taken by a scene and come back as the same number.
 TEST(SceneControls, ASliderSaysWhatASceneReads)
 {
     for (const SceneControls& group : sceneControls())
-        for (const SceneNumber& number : group.numbers)
-            for (const double shown : {number.least, number.most, 0.3 * number.least + 0.7 * number.most}) {
-                const std::string text = wishText(number, shown);
+        for (const SceneKey* key : group.sliders) {
+            const KeyControl& control = *key->control;
+            for (const double shown : {control.least, control.most, 0.3 * control.least + 0.7 * control.most}) {
+                const std::string text = wishText(*key, shown);
                 double            read = 0;
-                ASSERT_NO_THROW(read = number.of(sceneWith(std::string(number.key), text)) / number.perUnit)
-                    << number.key << " = " << text;
+                ASSERT_NO_THROW(read = key->number(sceneWith(std::string(key->name), text)) / control.perUnit)
+                    << key->name << " = " << text;
                 // Six digits are sent; then there are whole steps.
-                EXPECT_NEAR(read, shown, std::max(1e-5 * shown, number.step)) << number.key << " = " << text;
+                EXPECT_NEAR(read, shown, std::max(1e-5 * shown, control.step)) << key->name << " = " << text;
             }
+        }
 }
 
 TEST(SceneControls, EveryOptionIsReadAndComesBack)
 {
     for (const SceneControls& group : sceneControls())
-        for (const SceneChoice& choice : group.choices)
-            for (const char* option : choice.options) {
-                ASSERT_NO_THROW(static_cast<void>(sceneWith(std::string(choice.key), option)))
-                    << choice.key << " = " << option;
-                EXPECT_EQ(choice.of(sceneWith(std::string(choice.key), option)), option) << choice.key;
+        for (const SceneKey* key : group.lists) {
+            EXPECT_GE(optionsOf(*key).size(), 2u) << key->name;
+            for (const std::string& option : optionsOf(*key)) {
+                ASSERT_NO_THROW(static_cast<void>(sceneWith(std::string(key->name), option)))
+                    << key->name << " = " << option;
+                EXPECT_EQ(optionNow(*key, sceneWith(std::string(key->name), option)), option) << key->name;
             }
+        }
 }
 
 TEST(SceneControls, EveryLawToStartFromSpansTheCloud)

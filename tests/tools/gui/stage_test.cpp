@@ -9,7 +9,7 @@ namespace {
 
 Scene sceneOf(const std::string& more = "")
 {
-    return parseScene(R"({"cloud": "sample:sheet", "points": 4000, "cells": 32, "device": "host")" + more + "}",
+    return parseScene(R"({"cloud": "sample:sheet", "points": 4000, "cells": 32, "solver": "host")" + more + "}",
                       "a test", ".");
 }
 
@@ -57,10 +57,10 @@ TEST(Stage, ValuesThatCannotBeSolvedChangeNothing)
     Stage        stage(sceneOf());
     const double before = complianceAt(stage);
     Scene        broken = stage.scene();
-    broken.device       = "no such device";
+    broken.solver       = "no such device";
     EXPECT_THROW(stage.change(broken), Error);
     EXPECT_EQ(complianceAt(stage), before);
-    EXPECT_EQ(stage.scene().device, "host");
+    EXPECT_EQ(stage.scene().solver, "host");
 }
 
 TEST(Stage, APlaceOffTheObjectBecomesItsUppermostPoint)

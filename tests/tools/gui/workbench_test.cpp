@@ -95,7 +95,7 @@ protected:
     {
         std::filesystem::current_path(folder_.path()); // where pictures and recordings go
         settings_.what   = "sample:sheet";
-        settings_.values = {{"points", "2000"}, {"cells", "32"}, {"device", "host"}};
+        settings_.values = {{"points", "2000"}, {"cells", "32"}, {"solver", "host"}};
         settings_.open   = [this](const std::string& what, const SceneValues& values) { return sceneOf(what, values); };
         settings_.complained = [this](const std::string& sentence) { complaints_ += sentence + "\n"; };
         input_.size          = kSize;
@@ -105,7 +105,7 @@ protected:
 
     static Scene sceneOf(const std::string& what, SceneValues values)
     {
-        values.try_emplace("device", "host");
+        values.try_emplace("solver", "host");
         return parseScene(R"({"cloud": ")" + what + R"(", "place": [0, 0, 0]})", what, ".", {values, {}});
     }
 
@@ -150,7 +150,7 @@ protected:
         settings_.recorded = [](const Stage& stage, const HapticDevice& device) {
             SessionInfo info;
             info.scene  = stage.scene();
-            info.device = "host";
+            info.solver = "host";
             info.clock  = SessionClock::real;
             info.cloud  = fingerprint(stage.object().cloud());
             info.hand   = device.info();

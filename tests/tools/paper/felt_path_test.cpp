@@ -48,7 +48,7 @@ TEST(FeltPath, TheFloorOfCurvedObjectsIsBelowHalfAStep)
     for (const char* const object : {R"("sample:ellipsoid", "place": [0.03, 0, 0.0303])",
                                      R"("sample:palm", "place": [0, 0, 0], "from": [0, 0, 1])"}) {
         Felt felt(parseScene(R"({"thickness": "4 mm", "poisson": 0.45, "foundation": "1.74 MPa/m", "points": 8000,
-            "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "device": "host", "cloud": )" +
+            "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "solver": "host", "cloud": )" +
                                  std::string(object) + "}",
                              "a test", "."));
         const auto floor = rangeOf(strokeAlong(homogeneous(felt.object), felt.scene, felt.line(12e-3)));

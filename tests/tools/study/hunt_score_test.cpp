@@ -22,7 +22,7 @@ Scene scene()
     return parseScene(R"({"cloud": "sample:sheet", "points": 40000, "stiffness": {"law": "constant", "value": 3e5},
         "footprint_radius": "2 mm", "hunt": {"nodules": [{"at": [0.01, 0, 0], "radius": "6 mm", "modulus": "3 MPa"},
         {"at": [-0.01, 0, 0], "radius": "3 mm", "modulus": "1 MPa"}], "ground": "30 mm", "too_hard": "1.5 N"}})",
-                      "a test", ".");
+                      "a test", ".", {.toolKeys = &huntKeys()});
 }
 
 /// A made-up session on that sheet.
@@ -188,7 +188,7 @@ TEST(HuntScore, ASecondSessionGoesOnWhereTheFirstEnded)
 TEST(Hunt, AScriptedHandIsScoredEndToEnd)
 {
     const std::filesystem::path folder = std::filesystem::path(PALPATE_SAMPLES) / "scenes";
-    const Scene                 scene  = readScene(folder / "nodule_hunt.json");
+    const Scene                 scene  = readScene(folder / "nodule_hunt.json", {.toolKeys = &huntKeys()});
     const SoftObject            object = loadObject(scene).object;
     const HandPath              path   = readHand(folder / "nodule_hunt_hand.csv");
     ScriptedHand                  hand(path);
@@ -208,7 +208,8 @@ TEST(Hunt, AScriptedHandIsScoredEndToEnd)
     EXPECT_EQ(score.nodules[3].edge, 0) << "it was never near";
     EXPECT_LT(score.nodules[0].distance, 2e-3) << "declared 1.1 mm beside the middle, the contact lags by friction";
     EXPECT_GT(score.peakForce, 1);
-    const std::string svg = huntSvg(score, object.cloud(), scene.place, {0, 0, 1}, scene.hunt->ground);
+    const std::string svg =
+        huntSvg(score, object.cloud(), scene.place.value(), {0, 0, 1}, hiddenIn(scene)->hunt.ground);
     EXPECT_NE(svg.find("Nodules found: 3 of 4"), std::string::npos);
     EXPECT_NE(svg.find("nodule missed (1)"), std::string::npos);
     EXPECT_NE(svg.find("nothing there (1)"), std::string::npos);

@@ -1,0 +1,518 @@
+#include "engine/session/scene_keys.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/spatial_law.h"
+#include "engine/plate/multigrid/multigrid_plate_solver.h"
+#include "engine/session/scene_schema.h"
+
+// The table of scene keys, and nothing else; scene_value.cpp reads the values, scene_schema.cpp describes them.
+
+namespace palp {
+namespace {
+
+using Json    = nlohmann::json;
+using S       = Scene;
+using V       = WrittenValue;
+using Control = KeyControl;
+using Panel   = KeyControl::Panel;
+using Kind    = SceneKey::Kind;
+using D       = Dimension;
+
+constexpr auto kTouch   = SceneKey::Group::touch;
+constexpr auto kSession = SceneKey::Group::session;
+
+std::string textOrNothing(const std::string& text)
+{
+    return text.empty() ? "" : quotedJson(text);
+}
+
+/// Completes a key whose value is any text.
+template <class Field>
+SceneKey textKey(SceneKey key, Field)
+{
+    key.read = [](S& s, const V& v) {
+        if (v.text.empty()) v.refuse();
+        Field{}(s) = v.key.words.empty() ? v.text : v.word();
+    };
+    key.write = [](const S& s) { return textOrNothing(Field{}(s)); };
+    return key;
+}
+
+void readLaw(S& scene, const V& given)
+{
+    if (given.text == "own") return scene.stiffness.clear();
+    try { // across any region: the cloud is not there yet
+        static_cast<void>(parseSpatialLaw(given.text, {-1, -1, -1}, {1, 1, 1}, SpatialLaw::Space::volume));
+    } catch (const Error& error) {
+        throw Error(given.what + ": " + error.what());
+    }
+    scene.stiffness = given.text;
+}
+
+void readFrom(S& scene, const V& given)
+{
+    const glm::dvec3 from  = parsePoint(given.text, given.what);
+    const double     scale = std::max({std::abs(from.x), std::abs(from.y), std::abs(from.z)});
+    if (scale == 0) given.refuse();
+    scene.from =
+        scale < 1e100 && scale > 1e-100 ? from : from / scale; // its length means nothing, and must not overflow
+}
+
+void readPlace(S& scene, const V& given)
+{
+    const glm::dvec3 place = parsePoint(given.text, given.what, given.metresPerPlainNumber);
+    for (int k = 0; k < 3; ++k)
+        if (!(std::abs(place[k]) <= given.key.bounds->most)) given.refuse();
+    scene.place = place;
+}
+
+std::string pointJson(const std::optional<glm::dvec3>& p)
+{
+    return p ? Json{p->x, p->y, p->z}.dump() : "";
+}
+
+D dimensionOf(const CloudReadSettings& reading)
+{
+    return reading.stiffnessKind.value_or(StiffnessKind::modulus) == StiffnessKind::modulus ? D::pressure : D::rigidity;
+}
+
+/// A stiffness above zero, a modulus or a rigidity as the scene's stiffness_unit says.
+double stiffnessOf(const S& scene, const V& given, std::string_view text)
+{
+    const double value = parseQuantity(text, dimensionOf(scene.reading), given.what);
+    if (!(value > 0)) given.refuse();
+    return value;
+}
+
+/// "20kPa,2MPa".
+void readRange(S& scene, const V& given)
+{
+    const std::size_t comma = given.text.find(',');
+    if (comma == std::string::npos) given.refuse();
+    const std::string_view text = given.text;
+    scene.reading.range         = StiffnessRange{stiffnessOf(scene, given, text.substr(0, comma)),
+                                         stiffnessOf(scene, given, text.substr(comma + 1)), RangeScale::linear};
+}
+
+/// After stiffness_range.
+void readLogRange(S& scene, const V& given)
+{
+    if (!given.yesNo()) return;
+    if (!scene.reading.range)
+        throw Error(given.what + ": expected " + flagOf("stiffness_range") + " beside it, found none");
+    scene.reading.range->scale = RangeScale::logarithmic;
+}
+
+void readStiffnessUnit(S& scene, const V& given)
+{
+    scene.reading.stiffnessKind =
+        given.word() == unitOf(StiffnessKind::modulus) ? StiffnessKind::modulus : StiffnessKind::rigidity;
+}
+
+/// The plate's own bound is nu <= 0.5: its equations hold there. A scene is of a material, and none is incompressible:
+/// nu of 0.5 and more is a slip (per cent, or another number in the wrong place).
+void readPoisson(S& scene, const V& given)
+{
+    const double nu = parseQuantity(given.text, D::none, given.what);
+    if (nu >= given.key.bounds->most)
+        given.refuse("; no material is incompressible: take 0.49 for rubber, which is 1.3 % softer");
+    scene.material.poissonRatio = given.number();
+}
+
+std::vector<SceneKey> fileKeys()
+{
+    std::vector<SceneKey> keys = {
+        textKey(
+            {.name  = "length_unit",
+             .help  = "unit of the coordinates in a cloud file [its own comment, else m]; on the command line also "
+                      "of plain numbers of lengths [m]",
+             .kind  = Kind::word,
+             .words = {"m", "mm", "cm", "um", "km", "in", "ft"}},
+            [](auto& s) -> auto& { return s.reading.lengthUnit; }),
+        textKey(
+            {.name = "stiffness_property",
+             .help = "property of a cloud file that holds the stiffness, such as quality [stiffness or another "
+                     "name that says so]",
+             .form = "the name of a property of the file's points"},
+            [](auto& s) -> auto& { return s.reading.stiffnessProperty; }),
+        {.name  = "stiffness_unit",
+         .help  = "what the stiffness of a cloud file is: Pa for Young's modulus, N_m for the flexural rigidity",
+         .kind  = Kind::word,
+         .words = {unitOf(StiffnessKind::modulus), unitOf(StiffnessKind::rigidity)},
+         .read  = readStiffnessUnit,
+         .write = [](const S& s) -> std::string {
+             return s.reading.stiffnessKind ? quotedJson(unitOf(*s.reading.stiffnessKind)) : "";
+         }},
+        {.name = "stiffness_range",
+         .help = "stiffnesses of the property's smallest and largest value, for one that has no unit of its own",
+         .kind = Kind::range,
+         .form = "two stiffnesses above zero, FROM,TO, such as 20kPa,2MPa",
+         .read = readRange,
+         .write =
+             [](const S& s) {
+                 return s.reading.range ? Json{s.reading.range->from, s.reading.range->to}.dump() : std::string();
+             }},
+        {.name  = "log_range",
+         .help  = "stiffness_range goes by equal factors instead of equal steps",
+         .kind  = Kind::yesNo,
+         .read  = readLogRange,
+         .write = [](const S& s) -> std::string {
+             return s.reading.range && s.reading.range->scale == RangeScale::logarithmic ? "true" : "";
+         }},
+        {.name   = "uniform",
+         .help   = "stiffness everywhere, for a cloud file that has none [300 kPa]",
+         .kind   = Kind::number,
+         .form   = "a stiffness above zero, such as 300kPa",
+         .schema = R"({"anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"type": "string"}]})",
+         .read   = [](S& s, const V& v) { s.reading.uniformStiffness = stiffnessOf(s, v, v.text); },
+         .write  = [](const S& s) -> std::string {
+             return s.reading.uniformStiffness ? plainNumber(*s.reading.uniformStiffness) : "";
+         }},
+        textKey(
+            {.name = "columns",
+             .help = "meaning of the columns of a text file, such as x,y,z,-,stiffness [its header line]",
+             .form = "names of columns, such as x,y,z,-,stiffness"},
+            [](auto& s) -> auto& { return s.reading.columns; }),
+        {.name  = "drop_invalid",
+         .help  = "omits points with NaN or infinity instead of refusing the file",
+         .kind  = Kind::yesNo,
+         .read  = [](S& s, const V& v) { s.reading.dropInvalid = v.yesNo(); },
+         .write = [](const S& s) -> std::string { return s.reading.dropInvalid ? "true" : ""; }},
+    };
+    for (SceneKey& key : keys) key.cloud = SceneKey::For::file, key.decidesCloud = true;
+    return keys;
+}
+
+std::vector<SceneKey> objectKeys()
+{
+    std::vector<SceneKey> keys = {
+        {.name         = "cloud",
+         .help         = "what is touched: a .ply, .pcd, .xyz, .txt or .csv file, or a procedural sample",
+         .form         = "the path of a cloud file, or sample:NAME",
+         .schema       = R"({"type": "string", "minLength": 1, "examples": ["sample:skin", "scan.ply"]})",
+         .decidesCloud = true,
+         .read         = [](S&, const V&) {}, // the scene's reader has read it before the others
+         .write        = [](const S& s) { return quotedJson(s.cloud); }},
+        countKey(
+            {.name = "points", .help = "number of points of a sample", .bounds = KeyBounds{16, 10'000'000}},
+            [](auto& s) -> auto& { return s.points; }),
+        countKey(
+            {.name = "seed", .help = "seed of a sample's random points", .bounds = KeyBounds{0, 4294967295}},
+            [](auto& s) -> auto& { return s.seed; }),
+    };
+    keys[1].write = [](const S& s) -> std::string { return s.points ? std::to_string(s.points) : ""; };
+    keys[2].write = [](const S& s) -> std::string { return isSample(s) ? std::to_string(s.seed) : ""; };
+    for (SceneKey* key : {&keys[1], &keys[2]}) key->cloud = SceneKey::For::sample, key->decidesCloud = true;
+    for (SceneKey& key : fileKeys()) keys.push_back(std::move(key));
+    keys.push_back(
+        {.name         = "stiffness",
+         .help         = "law of Young's modulus over the cloud, in place of the cloud's own; its places are "
+                         "in m",
+         .kind         = Kind::object,
+         .unit         = "Pa",
+         .form         = "a law such as {\"law\":\"linear\",\"from\":3e5,\"to\":3e6,\"axis\":\"x\"}, "
+                         "linear:from=3e5,to=3e6,axis=x, or own",
+         .schema       = std::string(kLawSchema),
+         .decidesCloud = true,
+         .read         = readLaw,
+         .write = [](const S& s) { return s.stiffness.starts_with('{') ? s.stiffness : textOrNothing(s.stiffness); }});
+    return keys;
+}
+
+std::vector<SceneKey> placeKeys()
+{
+    return {
+        {.name  = "place",
+         .help  = "where it is touched, on the cloud [where a sample has something to feel; on a file's cloud where it "
+                  "comes nearest to the viewer, at its largest z]",
+         .group = kTouch,
+         .kind  = Kind::point,
+         .unit  = "m",
+         .form  = "a place X,Y,Z up to 1e9 m away, such as 10mm,0,35mm",
+         .bounds = KeyBounds{-1e9, 1e9}, // surveyors count from far away, and clouds have the same bound
+         .read   = readPlace,
+         .write  = [](const S& s) { return pointJson(s.place); }},
+        {.name  = "from",
+         .help  = "direction from which the hand comes [away from the middle of the cloud]",
+         .group = kTouch,
+         .kind  = Kind::point,
+         .unit  = "1",
+         .form  = "a direction X,Y,Z that is not zero",
+         .read  = readFrom,
+         .write = [](const S& s) { return pointJson(s.from); }},
+    };
+}
+
+std::vector<SceneKey> materialKeys()
+{
+    const Control         thickness{Panel::material, "thickness", "mm", 1e-3, 0.1, 20, true, 2};
+    const Control         poisson{Panel::material, "Poisson's ratio", "", 1, 0, 0.49, false, 2};
+    const Control         foundation{Panel::material, "foundation", "MPa/m", 1e6, 0, 100, true, 2};
+    std::vector<SceneKey> keys = {
+        wordKey(
+            {.name  = "preset",
+             .help  = "sets map, resampling, edges, foundation and force_law: palpate, or paper as Kumari and "
+                      "Chaudhuri published it; keys beside it win over it",
+             .group = kTouch},
+            [](auto& s) -> auto& { return s.preset; }),
+        numberKey(
+            {.name      = "thickness",
+             .help      = "thickness h of the soft sheet; skin 1.5 mm, palm 4 mm",
+             .group     = kTouch,
+             .unit      = "m",
+             .example   = "4 mm",
+             .dimension = D::length,
+             .bounds    = KeyBounds{1e-6, 1},
+             .control   = thickness},
+            [](auto& s) -> auto& { return s.material.thickness; }),
+        numberKey(
+            {.name    = "poisson",
+             .help    = "Poisson's ratio; skin 0.45, rubber 0.49",
+             .group   = kTouch,
+             .unit    = "1",
+             .bounds  = KeyBounds{-1, 0.5, true},
+             .control = poisson},
+            [](auto& s) -> auto& { return s.material.poissonRatio; }),
+        numberKey(
+            {.name      = "foundation",
+             .help      = "pressure per deflection of what lies below the sheet; 0 for nothing",
+             .group     = kTouch,
+             .unit      = "Pa/m",
+             .example   = "1.74 MPa/m",
+             .dimension = D::foundation,
+             .bounds    = KeyBounds{0, 1e15}, // a micrometre of steel has less
+             .control   = foundation},
+            [](auto& s) -> auto& { return s.patch.foundation; }),
+    };
+    keys[2].read = readPoisson;
+    return keys;
+}
+
+std::vector<SceneKey> patchKeys()
+{
+    const Control window{Panel::patch, "window", "mm", 1e-3, 5, 200, true, 1};
+    const Control cells{Panel::patch, "cells a side", "", 1, 16, 256, true, 0, 2};
+    const Control fingertip{Panel::patch, "fingertip", "mm", 1e-3, 0.5, 20, true, 2};
+    return {
+        numberKey(
+            {.name      = "window",
+             .help      = "edge of the square of surface that bends with the finger",
+             .group     = kTouch,
+             .unit      = "m",
+             .example   = "70 mm",
+             .dimension = D::length,
+             .bounds    = KeyBounds{1e-6, 100},
+             .control   = window},
+            [](auto& s) -> auto& { return s.patch.window; }),
+        countKey(
+            {.name    = "cells",
+             .help    = "cells of the plate's grid along a side of the window",
+             .group   = kTouch,
+             .bounds  = KeyBounds{.least = 8, .most = 1024, .multipleOf = 2},
+             .control = cells},
+            [](auto& s) -> auto& { return s.patch.cells; }),
+        numberKey(
+            {.name      = "footprint_radius",
+             .help      = "radius of the fingertip's smooth load",
+             .group     = kTouch,
+             .unit      = "m",
+             .example   = "4 mm",
+             .dimension = D::length,
+             .bounds    = KeyBounds{1e-6, 10},
+             .control   = fingertip},
+            [](auto& s) -> auto& { return s.patch.footprintRadius; }),
+        wordKey(
+            {.name    = "map",
+             .help    = "map from the fitted sphere to the plane",
+             .group   = kTouch,
+             .control = Control{Panel::patch, "map"}},
+            [](auto& s) -> auto& { return s.patch.map; }),
+        wordKey(
+            {.name    = "resampling",
+             .help    = "how the rigidity comes to the grid's nodes",
+             .group   = kTouch,
+             .control = Control{Panel::patch, "sampling"}},
+            [](auto& s) -> auto& { return s.patch.sampling; }),
+        {.name   = "edges",
+         .help   = "edges of the window: one name for all, or SIDE=EDGE of the sides x0, x1, z0, z1",
+         .group  = kTouch,
+         .kind   = Kind::object,
+         .form   = "clamped, supported or free, or a list such as x0=free,z1=supported",
+         .schema = std::string(kEdgesSchema),
+         .read   = [](S& s, const V& v) { s.patch.edges = parseEdges(v.text, v.what); },
+         .write  = [](const S& s) { return quotedJson(edgesText(s.patch.edges)); }},
+        wordKey(
+            {.name    = "force_law",
+             .help    = "how depth becomes force: series is plate and contact, paper the contact alone",
+             .group   = kTouch,
+             .control = Control{Panel::servo, "force law"}},
+            [](auto& s) -> auto& { return s.patch.forceLaw; }),
+        numberKey(
+            {.name    = "tolerance",
+             .help    = "error of the plate's solution, relative in the energy norm; the reference solver has none",
+             .group   = kTouch,
+             .unit    = "1",
+             .bounds  = KeyBounds{MultigridPlateSolver::kLeastTolerance, 0.1},
+             .control = Control{.panel = Panel::patch, .label = "tolerance"}},
+            [](auto& s) -> auto& { return s.patch.tolerance; }),
+        textKey(
+            {.name   = "solver",
+             .help   = "where the plate is solved: auto (the best GPU, else the host), host (native code on this "
+                       "processor), lavapipe (Vulkan in software, much slower), an index or part of a name that "
+                       "palpate devices shows, or reference (sparse Cholesky in doubles)",
+             .group  = kTouch,
+             .form   = "auto, host, lavapipe, reference, or an index or name of a GPU",
+             .schema = R"({"type": "string", "minLength": 1})"},
+            [](auto& s) -> auto& { return s.solver; }),
+    };
+}
+
+std::vector<SceneKey> plateThreadKeys()
+{
+    SceneKey size = countKey(
+        {.name   = "table_size",
+         .help   = "footprints along a side of the table of compliances; 0 for as many as the rate "
+                   "asks for, 3 at 60 Hz",
+         .group  = kSession,
+         .bounds = KeyBounds{0, double(ComplianceTable::kMostSide)},
+         .words  = {"0", "1", "3", "5", "7"}},
+        [](auto& s) -> auto& { return s.tableSize; });
+    return {
+        wordKey(
+            {.name    = "compliance_law",
+             .help    = "what the servo takes between two answers of the plate",
+             .group   = kSession,
+             .control = Control{Panel::servo, "hand-over"}},
+            [](auto& s) -> auto& { return s.complianceLaw; }),
+        std::move(size),
+        numberKey(
+            {.name    = "deformation_rate",
+             .help    = "rate of the plate's answers",
+             .group   = kSession,
+             .unit    = "Hz",
+             .bounds  = KeyBounds{1, 1000},
+             .control = Control{Panel::servo, "plate's rate", "Hz", 1, 5, 240, true, 0, 1}},
+            [](auto& s) -> auto& { return s.deformationRate; }),
+    };
+}
+
+std::vector<SceneKey> servoKeys()
+{
+    const Control atRest{Panel::servo, "friction at rest", "", 1, 0, 2, false, 2};
+    const Control sliding{Panel::servo, "friction, sliding", "", 1, 0, 2, false, 2};
+    return {
+        wordKey(
+            {.name    = "proxy",
+             .help    = "what stands for the finger",
+             .group   = kSession,
+             .control = Control{Panel::servo, "proxy"}},
+            [](auto& s) -> auto& { return s.proxy; }),
+        numberKey(
+            {.name    = "static_friction",
+             .help    = "friction coefficient of a finger at rest",
+             .group   = kSession,
+             .unit    = "1",
+             .bounds  = KeyBounds{0, 10},
+             .control = atRest},
+            [](auto& s) -> auto& { return s.staticFriction; }),
+        numberKey(
+            {.name    = "dynamic_friction",
+             .help    = "friction coefficient of a finger that slides, at most static_friction",
+             .group   = kSession,
+             .unit    = "1",
+             .bounds  = KeyBounds{0, 10},
+             .control = sliding},
+            [](auto& s) -> auto& { return s.dynamicFriction; }),
+        numberKey(
+            {.name      = "max_force",
+             .help      = "largest force; the governor clamps to it",
+             .group     = kSession,
+             .unit      = "N",
+             .example   = "4 N",
+             .dimension = D::force,
+             .bounds    = KeyBounds{0.01, 8},
+             .control   = Control{Panel::servo, "most force", "N", 1, 0.1, 8, false, 1}},
+            [](auto& s) -> auto& { return s.maxForce; }),
+        numberKey(
+            {.name    = "stiffness_cap",
+             .help    = "largest stiffness that is rendered at a servo period of 1 ms; a released arm swings from "
+                        "2120 N/m on",
+             .group   = kSession,
+             .unit    = "N/m",
+             .bounds  = KeyBounds{1, 2000},
+             .control = Control{Panel::servo, "most stiffness", "N/m", 1, 50, 2000, true, 0, 1}},
+            [](auto& s) -> auto& { return s.stiffnessCap; }),
+        numberKey(
+            {.name      = "start_height",
+             .help      = "height of the hand above the place when the session starts",
+             .group     = kSession,
+             .unit      = "m",
+             .example   = "10 mm",
+             .dimension = D::length,
+             .bounds    = KeyBounds{0, 1}},
+            [](auto& s) -> auto& { return s.startHeight; }),
+    };
+}
+
+} // namespace
+
+const std::vector<SceneKey>& sceneKeys()
+{
+    static const std::vector<SceneKey> keys = [] {
+        std::vector<SceneKey> all;
+        for (const auto& part :
+             {objectKeys(), placeKeys(), materialKeys(), patchKeys(), plateThreadKeys(), servoKeys()})
+            all.insert(all.end(), part.begin(), part.end());
+        return all;
+    }();
+    return keys;
+}
+
+std::vector<const SceneKey*> sceneKeysWith(const std::vector<SceneKey>* toolKeys)
+{
+    std::vector<const SceneKey*> all;
+    for (const SceneKey& key : sceneKeys()) all.push_back(&key);
+    if (toolKeys)
+        for (const SceneKey& key : *toolKeys) all.push_back(&key);
+    return all;
+}
+
+const SceneKey& sceneKey(std::string_view name)
+{
+    const auto found = std::ranges::find(sceneKeys(), name, &SceneKey::name);
+    PALP_EXPECT(found != sceneKeys().end(), "no scene key is called " + std::string(name));
+    return *found;
+}
+
+std::string flagOf(std::string_view key)
+{
+    if (key == "place") return "--at";
+    std::string flag = "--" + std::string(key);
+    std::ranges::replace(flag, '_', '-');
+    return flag;
+}
+
+std::string variableOf(std::string_view key)
+{
+    std::string variable = "PALPATE_";
+    for (const char c : key) variable += c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c;
+    return variable;
+}
+
+std::map<std::string, std::string, std::less<>> presetValues(Preset preset)
+{
+    const PatchSettings                             set = withPreset({}, preset);
+    std::map<std::string, std::string, std::less<>> values{{"map", name(set.map)},
+                                                           {"resampling", name(set.sampling)},
+                                                           {"force_law", name(set.forceLaw)},
+                                                           {"edges", edgesText(set.edges)}};
+    if (preset == Preset::paper) values["foundation"] = plainNumber(set.foundation);
+    return values;
+}
+
+} // namespace palp

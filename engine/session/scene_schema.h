@@ -1,0 +1,36 @@
+#pragma once
+#include <string_view>
+
+// Internal to the session layer: JSON Schema of the values that no kind of key describes.
+
+namespace palp {
+
+// clang-format off
+/// A law of stiffness, see parseSpatialLaw().
+inline constexpr std::string_view kLawSchema = R"({"anyOf": [{"type": "string"}, {"type": "object", "required": ["law"], "additionalProperties":
+false, "properties": {"law": {"enum": ["constant", "linear", "hyperbolic", "exponential",
+"gaussian", "disc", "box", "checker"]}, "value": {"description": "of constant [Pa]", "type":
+"number", "exclusiveMinimum": 0}, "from": {"description": "[Pa]", "type": "number",
+"exclusiveMinimum": 0}, "to": {"description": "[Pa]", "type": "number", "exclusiveMinimum": 0},
+"axis": {"description": "along which linear, hyperbolic and exponential run across the cloud",
+"enum": ["x", "y", "z"]}, "start": {"description": "of the line, instead of an axis [m]", "type":
+"array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, "end": {"description": "of the
+line [m]", "type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, "centre":
+{"description": "of gaussian and disc [m]", "type": "array", "items": {"type": "number"},
+"minItems": 3, "maxItems": 3}, "centres": {"description": "of gaussian and disc [m]", "type":
+"array", "items": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
+"minItems": 1}, "sigma": {"description": "standard deviation of gaussian [m]", "type": "number",
+"exclusiveMinimum": 0}, "radius": {"description": "of disc [m]", "type": "number",
+"exclusiveMinimum": 0}, "edge": {"description": "of checker's cubes [m]", "type": "number",
+"exclusiveMinimum": 0}, "low": {"description": "corner of box [m]", "type": "array", "items":
+{"type": "number"}, "minItems": 3, "maxItems": 3}, "high": {"description": "opposite corner of box
+[m]", "type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}}}]})";
+
+/// The edges of the window, see parseEdges().
+inline constexpr std::string_view kEdgesSchema = R"({"anyOf": [{"type": "string"}, {"type": "object", "additionalProperties": false, "properties":
+{"x0": {"enum": ["clamped", "supported", "free"]}, "x1": {"enum": ["clamped", "supported", "free"]},
+"z0": {"enum": ["clamped", "supported", "free"]}, "z1": {"enum": ["clamped", "supported",
+"free"]}}}]})";
+// clang-format on
+
+} // namespace palp

@@ -1,0 +1,106 @@
+#include "engine/tools/cli/cloud_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/extremes.h"
+#include "engine/core/quantity.h"
+#include "engine/core/spatial_law.h"
+#include "engine/tools/cli/counted.h"
+#include "engine/tools/study/hunt_scene.h"
+
+namespace palp {
+namespace {
+
+nlohmann::json pointJson(const glm::dvec3& p)
+{
+    return {p.x, p.y, p.z};
+}
+
+} // namespace
+
+void refuseSourceAsTarget(const std::string& option, const std::string& source, const std::string& target)
+{
+    std::error_code none; // no such file: no danger
+    if (!std::filesystem::equivalent(source, target, none) || none) return;
+    throw Error(option + ": " + target + " is the cloud that is read, which would be lost; name another file");
+}
+
+std::string placeText(const glm::dvec3& place, double diagonal, double metresPerUnit)
+{
+    // A thousandth of the cloud, in decimals of the unit.
+    const int   decimals = std::max(0, int(std::ceil(3 - std::log10(diagonal / metresPerUnit))));
+    std::string text;
+    for (int k = 0; k < 3; ++k) {
+        char number[64];
+        std::snprintf(number, sizeof number, "%.*f", std::min(decimals, 12), place[k] / metresPerUnit);
+        text += std::string(k ? "," : "") + number;
+    }
+    return text;
+}
+
+std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& report)
+{
+    std::vector<std::string> said;
+    if (report.lengthUnitAssumed)
+        said.emplace_back("assumed metres: there is no length_unit, and no comment in the file; set --length-unit");
+    if (report.stiffnessAssumed && scene.stiffness.empty())
+        said.push_back("no stiffness in the file: uniform " + formatQuantity(kDefaultModulus, "Pa") +
+                       " assumed; set --uniform or --stiffness");
+    return said;
+}
+
+std::vector<std::string> huntNote(const Scene& scene, const PointCloud& cloud)
+{
+    const study::HiddenNodules* const hidden = study::hiddenIn(scene);
+    if (!hidden) return {};
+    return {"the scene's hunt has hidden " + counted(hidden->nodules(cloud, scene).size(), "nodule") +
+            " in this stiffness; palpate hunt and palpate view score who looks for them"};
+}
+
+std::vector<std::string> cloudWarnings(const Scene& scene, const PointCloud& cloud, const CloudFileReport& report)
+{
+    std::vector<std::string> said = assumptions(scene, report);
+    for (std::string& line : huntNote(scene, cloud)) said.push_back(std::move(line));
+    if (scene.stiffness.empty()) return said;
+
+    constexpr double kSame  = 1e-6; // relative: no hand feels a smaller difference [1]
+    const Bounds&    bounds = cloud.bounds();
+    const SpatialLaw law    = parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume);
+    const Extremes   found  = extremesOf(cloud.stiffness());
+    if (law.from != law.to && found.most - found.least <= kSame * found.most)
+        said.push_back("the law \"" + scene.stiffness +
+                       "\" gives every point the same stiffness: its coordinates are metres, and the cloud's middle is "
+                       "at " +
+                       placeText(bounds.centre(), bounds.diagonal()) + " m");
+    return said;
+}
+
+nlohmann::json cloudJson(const std::string& name, const LoadedCloud& loaded)
+{
+    const PointCloud& cloud = loaded.cloud;
+    const Extremes    found = extremesOf(cloud.stiffness());
+    return {{"name", name},
+            {"format", loaded.report.format},
+            {"points", cloud.size()},
+            {"dropped_points", loaded.report.droppedPoints},
+            {"duplicate_positions", loaded.report.duplicatePositions},
+            {"faces", loaded.faces.size()},
+            {"degenerate_faces", loaded.report.degenerateFaces},
+            {"dropped_faces", loaded.report.droppedFaces},
+            {"properties", loaded.report.properties},
+            {"length_unit_source", loaded.report.lengthUnitSource},
+            {"stiffness_source", loaded.report.stiffnessSource},
+            {"stiffness_unit", unitOf(cloud.kind())},
+            {"stiffness_min", found.least},
+            {"stiffness_max", found.most},
+            {"low", pointJson(cloud.bounds().low)},
+            {"high", pointJson(cloud.bounds().high)}};
+}
+
+} // namespace palp

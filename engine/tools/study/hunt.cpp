@@ -1,0 +1,298 @@
+#include "engine/tools/study/hunt.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "engine/cloud/neighbour_index.h"
+#include "engine/core/contract.h"
+#include "engine/core/json_object.h"
+#include "engine/core/quantity.h"
+#include "engine/core/uniform.h"
+
+namespace palp::study {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t kMostNodules = 64;                  ///< [1] more are a texture
+constexpr double      kLeastRadius = 1e-5, kMost = 1;     ///< of a nodule and of the ground [m]
+constexpr double      kSoftest = 1, kStiffest = 1e12;     ///< moduli [Pa]: softer than any gel, stiffer than diamond
+constexpr double      kLeastForce = 1e-3, kMostForce = 8; ///< what scenes can ask of a device at most [N]
+
+struct Limits {
+    Dimension   dimension;
+    double      least, most;
+    const char* expected;
+};
+constexpr Limits kRadius{Dimension::length, kLeastRadius, kMost, "a length from 1e-5 to 1 m, such as 4 mm"};
+constexpr Limits kModulus{Dimension::pressure, kSoftest, kStiffest, "a modulus from 1 to 1e12 Pa, such as 3 MPa"};
+constexpr Limits kForce{Dimension::force, kLeastForce, kMostForce, "a force from 1e-3 to 8 N, such as 2 N"};
+
+double within(const JsonObject& object, const char* key, const Limits& limits)
+{
+    const std::string what  = object.where() + ": key \"" + key + "\"";
+    const double      value = object.kind(key) == JsonObject::Kind::text
+                                  ? parseQuantity(object.text(key), limits.dimension, what)
+                                  : object.number(key);
+    if (!(value >= limits.least && value <= limits.most)) object.refuse(key, limits.expected);
+    return value;
+}
+
+/// Both ends of a range, each a number or a text.
+std::array<double, 2> range(const JsonObject& object, const char* key, const Limits& limits)
+{
+    const Json list = Json::parse(object.json(key));
+    if (!list.is_array() || list.size() != 2) object.refuse(key, "a list of two, the least and the most");
+    std::array<double, 2> ends{};
+    for (std::size_t k = 0; k < 2; ++k)
+        ends[k] = within(JsonObject::parse(Json{{key, list[k]}}.dump(), object.where()), key, limits);
+    if (ends[0] > ends[1]) object.refuse(key, "the least first, then the most");
+    return ends;
+}
+
+Nodule noduleOf(const JsonObject& object)
+{
+    object.allowOnly({"at", "radius", "modulus"});
+    Nodule nodule;
+    if (object.kind("at") == JsonObject::Kind::text) {
+        nodule.centre = parsePoint(object.text("at"), object.where() + ": key \"at\"");
+    } else {
+        const std::vector<double> at = object.numbers("at", 3);
+        nodule.centre                = {at[0], at[1], at[2]};
+    }
+    nodule.radius  = within(object, "radius", kRadius);
+    nodule.modulus = within(object, "modulus", kModulus);
+    return nodule;
+}
+
+std::vector<Nodule> nodulesIn(const JsonObject& hunt)
+{
+    const Json list = Json::parse(hunt.json("nodules"));
+    if (!list.is_array() || list.empty() || list.size() > kMostNodules)
+        hunt.refuse("nodules", "a list of 1 to 64 nodules, each with \"at\", \"radius\" and \"modulus\"");
+    std::vector<Nodule> nodules;
+    for (const Json& one : list)
+        nodules.push_back(
+            noduleOf(JsonObject::parse(one.dump(), hunt.where() + ": nodule " + std::to_string(nodules.size() + 1))));
+    return nodules;
+}
+
+std::string length(double metres)
+{
+    return formatQuantity(metres, "m");
+}
+
+/// How far the fading edge reaches from the middle [m].
+double reachOf(const Nodule& nodule)
+{
+    return (1 + Nodule::kFade) * nodule.radius;
+}
+
+void demandApart(const std::vector<Nodule>& nodules)
+{
+    for (std::size_t i = 0; i < nodules.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k) {
+            const double apart  = glm::distance(nodules[i].centre, nodules[k].centre);
+            const double needed = reachOf(nodules[i]) + reachOf(nodules[k]);
+            if (apart < needed)
+                throw Error("hunt: nodules " + std::to_string(k + 1) + " and " + std::to_string(i + 1) +
+                            " overlap: expected middles at least " + length(needed) +
+                            " apart (each fades out at 1.25 of its radius), found " + length(apart));
+        }
+}
+
+/// Places for nodules on the points of a cloud.
+class HidingPlaces {
+public:
+    HidingPlaces(const Hunt& hunt, const PointCloud& cloud, const glm::dvec3& place, double footprintRadius)
+        : hunt_(hunt), cloud_(cloud), index_(cloud.positions()), place_(place), footprint_(footprintRadius)
+    {
+    }
+
+    void demandOnObject(const std::vector<Nodule>& nodules) const
+    {
+        constexpr double kSpacings = 2; // [1] across a smaller radius lie too few points to show an edge
+        for (std::size_t i = 0; i < nodules.size(); ++i) {
+            const std::string which = "hunt: nodule " + std::to_string(i + 1) + ": ";
+            const double      off   = index_.nearest(nodules[i].centre, 1).front().distance;
+            if (off > nodules[i].radius / 2)
+                throw Error(which + "expected a middle on the object, found one that is " + length(off) +
+                            " beside its nearest point");
+            if (nodules[i].radius < kSpacings * index_.spacing())
+                throw Error(which + "expected a radius of at least two spacings of the cloud, " +
+                            length(kSpacings * index_.spacing()) + ", found " + length(nodules[i].radius) +
+                            "; a denser cloud shows smaller ones");
+        }
+    }
+
+    /// Who looks for them looks there alone.
+    void demandInGround(const std::vector<Nodule>& nodules) const
+    {
+        for (std::size_t i = 0; hunt_.ground > 0 && i < nodules.size(); ++i)
+            if (const double away = glm::distance(nodules[i].centre, place_); away > hunt_.ground)
+                throw Error("hunt: nodule " + std::to_string(i + 1) +
+                            ": key \"at\": expected a middle within the \"ground\", " + length(hunt_.ground) +
+                            " about the scene's place, found one that is " + length(away) + " from it");
+    }
+
+    /// Random middles for nodules of these radii: the largest first, which find room most hardly.
+    void scatter(std::vector<Nodule>& nodules, Uniform& random) const
+    {
+        constexpr int kTries = 4000; // [1] far more than a ground that is half full needs
+        std::ranges::stable_sort(nodules, std::greater<>(), &Nodule::radius);
+        for (std::size_t i = 0; i < nodules.size(); ++i) {
+            int tries = 0;
+            for (; tries < kTries; ++tries) {
+                const auto point  = std::size_t(random() * double(cloud_.size()));
+                nodules[i].centre = cloud_.positions()[std::min(point, cloud_.size() - 1)];
+                if (isFree(nodules, i)) break;
+            }
+            if (tries == kTries)
+                throw Error("hunt: expected room for " + std::to_string(nodules.size()) + " nodules of up to " +
+                            length(nodules.front().radius) + ", found none for number " + std::to_string(i + 1) +
+                            "; take fewer, smaller ones, or a larger ground");
+        }
+    }
+
+private:
+    [[nodiscard]] bool isFree(const std::vector<Nodule>& nodules, std::size_t i) const
+    {
+        const Nodule& one = nodules[i];
+        if (hunt_.ground > 0 && glm::distance(one.centre, place_) > hunt_.ground - one.radius) return false;
+        for (std::size_t k = 0; k < i; ++k)
+            if (glm::distance(one.centre, nodules[k].centre) < reachOf(one) + reachOf(nodules[k]) + footprint_)
+                return false;
+        return isInside(one);
+    }
+
+    /// No border of the object is near: beside one at t radii of the ball the points' mean lies off by (2/3)
+    /// (1 - t^2)^(3/2) / (pi - acos t + t sqrt(1 - t^2)) of it, a quarter where the border touches the nodule.
+    [[nodiscard]] bool isInside(const Nodule& nodule) const
+    {
+        // Of the radius: above what a bent surface (a tenth on a ball of 50 mm) and chance do, four standard deviations
+        // of 400 points below a quarter [1].
+        constexpr double kOff   = 0.15;
+        const double     radius = 2 * (nodule.radius + footprint_);
+        const auto       near   = index_.gather(nodule.centre, radius);
+        glm::dvec3       mean(0);
+        for (const std::uint32_t point : near) mean += cloud_.positions()[point] - nodule.centre;
+        return glm::length(mean) / double(near.size()) < kOff * radius; // it is one of the points itself
+    }
+
+    const Hunt&       hunt_;
+    const PointCloud& cloud_;
+    NeighbourIndex    index_;
+    glm::dvec3        place_;     ///< [m]
+    double            footprint_; ///< [m]
+};
+
+/// \param change  of the stiffness at most, relative [1]
+void demandFelt(std::size_t nodule, const Nodule& one, double change)
+{
+    constexpr double kLeast = 1e-3; // [1] a seventieth of what a finger tells apart (Weber fraction 0.07)
+    if (change < kLeast)
+        throw Error("hunt: nodule " + std::to_string(nodule + 1) +
+                    ": key \"modulus\": expected another than the object has there, found " +
+                    formatQuantity(one.modulus, "Pa") + ", which nobody can feel");
+}
+
+/// Evenly in the logarithm.
+double between(double low, double high, Uniform& random)
+{
+    return low * std::pow(high / low, random());
+}
+
+} // namespace
+
+double Nodule::share(double distance) const noexcept
+{
+    const double t = std::clamp((distance / radius - (1 - kFade)) / (2 * kFade), 0.0, 1.0);
+    return 1 - t * t * (3 - 2 * t);
+}
+
+Hunt parseHunt(std::string_view text, const std::string& what)
+{
+    const JsonObject object = JsonObject::parse(text, what);
+    object.allowOnly({"nodules", "random", "ground", "press_force", "too_hard"});
+    if (object.has("nodules") == object.has("random"))
+        throw Error(what + ": expected either \"nodules\" or \"random\", found " +
+                    (object.has("random") ? "both" : "neither"));
+    Hunt hunt;
+    if (object.has("nodules")) {
+        hunt.nodules = nodulesIn(object);
+        demandApart(hunt.nodules);
+    } else {
+        const JsonObject random = object.object("random");
+        random.allowOnly({"count", "radius", "modulus"});
+        hunt.count       = std::size_t(random.wholeNumber("count", 1, int(kMostNodules)));
+        const auto radii = range(random, "radius", kRadius), moduli = range(random, "modulus", kModulus);
+        hunt.leastRadius = radii[0], hunt.mostRadius = radii[1];
+        hunt.leastModulus = moduli[0], hunt.mostModulus = moduli[1];
+    }
+    if (object.has("ground")) hunt.ground = within(object, "ground", kRadius);
+    if (object.has("press_force")) hunt.pressForce = within(object, "press_force", kForce);
+    if (object.has("too_hard")) hunt.tooHard = within(object, "too_hard", kForce);
+    if (hunt.pressForce > hunt.tooHard)
+        throw Error(what + ": key \"press_force\": expected at most \"too_hard\", " +
+                    formatQuantity(hunt.tooHard, "N") + ", found " + formatQuantity(hunt.pressForce, "N"));
+    return hunt;
+}
+
+std::string huntJson(const Hunt& hunt)
+{
+    nlohmann::ordered_json json;
+    for (const Nodule& n : hunt.nodules)
+        json["nodules"].push_back(
+            {{"at", {n.centre.x, n.centre.y, n.centre.z}}, {"radius", n.radius}, {"modulus", n.modulus}});
+    if (hunt.nodules.empty())
+        json["random"] = {{"count", hunt.count},
+                          {"radius", {hunt.leastRadius, hunt.mostRadius}},
+                          {"modulus", {hunt.leastModulus, hunt.mostModulus}}};
+    if (hunt.ground > 0) json["ground"] = hunt.ground;
+    json["press_force"] = hunt.pressForce;
+    json["too_hard"]    = hunt.tooHard;
+    return json.dump();
+}
+
+std::vector<Nodule> hiddenNodules(const Hunt& hunt, const std::optional<std::uint64_t>& seed, const PointCloud& cloud,
+                                  const glm::dvec3& place, double footprintRadius)
+{
+    const HidingPlaces  places(hunt, cloud, place, footprintRadius);
+    std::vector<Nodule> nodules = hunt.nodules;
+    if (seed || nodules.empty()) {
+        Uniform random(seed.value_or(1));
+        for (std::size_t i = nodules.size(); i < hunt.count; ++i) {
+            const double radius = between(hunt.leastRadius, hunt.mostRadius, random);
+            nodules.push_back({{}, radius, between(hunt.leastModulus, hunt.mostModulus, random)});
+        }
+        places.scatter(nodules, random);
+    }
+    places.demandOnObject(nodules);
+    places.demandInGround(nodules);
+    return nodules;
+}
+
+PointCloud withNodules(const PointCloud& cloud, const std::vector<Nodule>& nodules, const Material& material)
+{
+    std::vector<double> stiffness(cloud.stiffness().begin(), cloud.stiffness().end());
+    for (std::size_t n = 0; n < nodules.size(); ++n) {
+        const Nodule& nodule = nodules[n];
+        double        change = 0;
+        const double  there =
+            cloud.kind() == StiffnessKind::modulus ? nodule.modulus : material.rigidity(nodule.modulus);
+        for (std::size_t i = 0; i < stiffness.size(); ++i) {
+            const double share = nodule.share(glm::distance(cloud.positions()[i], nodule.centre));
+            if (share <= 0) continue;
+            change = std::max(change, std::abs(there / stiffness[i] - 1));
+            stiffness[i] *= std::pow(there / stiffness[i], share);
+        }
+        demandFelt(n, nodule, change);
+    }
+    return {{cloud.positions().begin(), cloud.positions().end()}, std::move(stiffness), cloud.kind()};
+}
+
+} // namespace palp::study
