@@ -6,8 +6,8 @@
 
 namespace palp {
 
-/// The velocity of a position that comes in encoder steps: the difference over a window, as drivers of haptic devices
-/// take it (CHAI3D 15 ms, the Force Dimension SDK 20 ms). At 1 kHz one step of 48 um is 0.05 m/s from sample to sample,
+/// Filters the velocity of a position that comes in encoder steps: the difference over some time, as drivers of haptic
+/// devices take it (CHAI3D 15 ms, the Force Dimension SDK 20 ms). At 1 kHz one step of 48 um is 0.05 m/s from sample to sample,
 /// and 0.003 m/s over 15 ms.
 /// \thread one; allocates nothing
 class VelocityFilter {
@@ -32,8 +32,8 @@ public:
     [[nodiscard]] glm::dvec3 velocity() const noexcept
     {
         if (count_ < 2) return {};
-        const Past& now  = past_[newest_];
-        std::size_t back = 1;
+        const TimedPosition& now  = past_[newest_];
+        std::size_t          back = 1;
         while (back + 1 < count_ && now.time - before(back).time < window_ * (1 - 1e-9)) ++back;
         return (now.position - before(back).position) / (now.time - before(back).time);
     }
@@ -41,20 +41,20 @@ public:
 private:
     static constexpr std::size_t kPast = 128; ///< a ring
 
-    struct Past {
+    struct TimedPosition {
         double     time = 0;   ///< [s]
         glm::dvec3 position{}; ///< [m]
     };
 
-    [[nodiscard]] const Past& before(std::size_t back) const noexcept
+    [[nodiscard]] const TimedPosition& before(std::size_t back) const noexcept
     {
         return past_[(newest_ + kPast - back) % kPast];
     }
 
-    double                  window_; ///< [s]
-    std::array<Past, kPast> past_{};
-    std::size_t             newest_ = 0;
-    std::size_t             count_  = 0;
+    double                           window_; ///< [s]
+    std::array<TimedPosition, kPast> past_{};
+    std::size_t                      newest_ = 0;
+    std::size_t                      count_  = 0;
 };
 
 } // namespace palp

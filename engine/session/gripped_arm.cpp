@@ -45,7 +45,7 @@ HapticState GrippedArm::exchange(const GovernedForce& force, double now) noexcep
 {
     HapticState state = arm_.exchange(force, now); // on to now, by the hand of the last tick
     state.buttons     = hand_.path.buttons(hand_.path.begin() + now);
-    arm_.hold(hand_.at(now));
+    arm_.holdBy(hand_.at(now));
     return state;
 }
 

@@ -116,7 +116,7 @@ SimulatedHand GrippedFalcon::handNow()
 
 glm::dvec3 GrippedFalcon::moved(const glm::dvec3& force, double dt)
 {
-    arm_.hold(handNow());
+    arm_.holdBy(handNow());
     emulated_ += dt;
     arm_.step(force, dt);
     return arm_.position();

@@ -78,8 +78,8 @@ struct Weighing {
         double gain = 0, asked = -1; // s
         bench.tick();
         for (const double until = bench.now + 60; bench.now < until;) {
-            arm.hold(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = {0, 0.004, -0.006}}
-                              : SimulatedHand{});
+            arm.holdBy(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = {0, 0.004, -0.006}}
+                                : SimulatedHand{});
             tick(gain);
             const auto stage = calibration.stage();
             if (stage == FalconCalibrationStage::done || stage == FalconCalibrationStage::failed) return;

@@ -60,11 +60,11 @@ double kilograms(std::string text)
 /// A Falcon, a clock, and somebody with a mass.
 struct Bench {
     HapticDevice&                           device;
-    std::function<double()>                 wait; ///< until the next tick \return [s] when that is
+    std::function<double()>                 wait; ///< waits for the next tick and returns when it is [s]
     std::function<void(double gain, Stage)> act;  ///< what the user does, each tick; may be empty
 };
 
-/// Whether a mass has come onto the grip and hangs still.
+/// Tells whether a mass has come onto the grip and hangs still.
 class HangsStill {
 public:
     bool operator()(double upwards, double speed, double dt) noexcept
@@ -107,7 +107,7 @@ void demandWell(const HapticState& state, double ill, GovernorFault fault)
         giveUp(std::string("the governor stopped the force: ") + name(fault) + "; start again, move the grip slowly");
 }
 
-/// Through all stages. On whatever way out, the device's last force is none: it closes.
+/// Goes through all stages. Whichever way it ends, the device closes, and so its last force is zero.
 void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibration)
 {
     constexpr double         kPatience = 300; // [s] for all of it
@@ -162,7 +162,7 @@ void weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
     weigh(o, bench, calibration);
 }
 
-/// What the emulated Falcon is in truth, and its driver does not know.
+/// What is true of the emulated Falcon, and unknown to its driver.
 constexpr double kEmulatedCounts = 5000; ///< [counts/(N m)]
 constexpr double kEmulatedArm    = 0.21; ///< [kg] of it weighs on the grip
 
@@ -202,7 +202,7 @@ struct EmulatedBench {
         return settings;
     }
 
-    /// The mass's inertia is left out: means do not see it.
+    /// The mass's inertia is omitted, because means do not see it.
     glm::dvec3 moved(const glm::dvec3& force, double dt)
     {
         arm.step(force - glm::dvec3(0, (kEmulatedArm + hanging) * 9.81, 0), dt);
@@ -212,7 +212,7 @@ struct EmulatedBench {
     /// Holds the grip until force comes on, and hangs `mass` [kg] on it two seconds after being asked to.
     void act(double gain, Stage stage, double mass)
     {
-        arm.hold(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = kHeld} : SimulatedHand{});
+        arm.holdBy(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = kHeld} : SimulatedHand{});
         if (stage == Stage::hang) asked += 1e-3;
         if (asked > 2) hanging = mass;
     }
