@@ -25,9 +25,9 @@
 namespace palp {
 namespace {
 
-double metres(const std::string& text, const std::string& option)
+double metres(const std::string& text, const std::string& option, double metresPerPlainNumber)
 {
-    const double value = parseQuantity(text, Dimension::length, option);
+    const double value = parseQuantity(text, Dimension::length, option, metresPerPlainNumber);
     if (value > 0) return value;
     throw Error(option + ": expected a length above 0, found \"" + text + "\"");
 }
@@ -52,10 +52,11 @@ HandPath pathFor(const HandOptions& o, double seconds, const Scene& scene, const
     if (!motion) return readHand(o.hand);
     const HandPlace place = handPlace(scene, object);
     HandScript      script;
-    script.motion   = *motion;
-    script.speed    = metresPerSecond(o.speed, "--speed");
-    script.depth    = o.depth.empty() ? kDepth * scene.material.thickness : metres(o.depth, "--press-depth");
-    script.radius   = metres(o.reach, "--reach");
+    script.motion = *motion;
+    script.speed  = metresPerSecond(o.speed, "--speed");
+    script.depth =
+        o.depth.empty() ? kDepth * scene.material.thickness : metres(o.depth, "--press-depth", o.metresPerPlainNumber);
+    script.radius   = metres(o.reach, "--reach", o.metresPerPlainNumber);
     script.height   = scene.startHeight;
     script.duration = seconds;
     return draped(makeHand(script, place), place, object);

@@ -34,6 +34,7 @@ struct HandOptions {
     std::string   hand  = "scan"; ///< press, circle, scan, a file, or a device as `palpate devices` names it
     std::string   speed = "50 mm/s", depth, reach = "10 mm";
     std::string   grip; ///< of the hand that holds a simulated arm; empty: forces do not move the hand
+    double        metresPerPlainNumber = 1; ///< of depth and reach, as of all lengths on the command line
     FalconOptions falcon;
     std::string   seconds; ///< "5 s"; empty: 5 s, or a file's own length
 };
