@@ -1,5 +1,6 @@
 #include "engine/session/scene_schema.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -45,7 +46,11 @@ Json orText(const Json& first)
 
 Json valueSchema(const SceneKey& key)
 {
-    if (!key.schema.empty()) return Json::parse(key.schema);
+    if (!key.schema.empty()) {
+        std::string schema = key.schema;
+        std::ranges::replace(schema, '\n', ' '); // the source breaks its lines also within texts
+        return Json::parse(schema);
+    }
     switch (key.kind) {
     case SceneKey::Kind::word:
         return {{"enum", key.words}};

@@ -10,9 +10,9 @@
 namespace palp {
 namespace {
 
-double metres(const std::string& text, const std::string& option)
+double metres(const std::string& text, const std::string& option, double metresPerPlainNumber)
 {
-    const double value = parseQuantity(text, Dimension::length, option);
+    const double value = parseQuantity(text, Dimension::length, option, metresPerPlainNumber);
     if (value > 0) return value;
     throw Error(option + ": expected a length above 0, found \"" + text + "\"");
 }
@@ -49,9 +49,9 @@ HandChoice choiceOf(const HandOptions& o)
     HandChoice choice;
     choice.hand    = o.hand;
     choice.speed   = metresPerSecond(o.speed, "--speed");
-    choice.radius  = metres(o.reach, "--reach");
+    choice.radius  = metres(o.reach, "--reach", o.metresPerPlainNumber);
     choice.options = o.device;
-    if (!o.depth.empty()) choice.depth = metres(o.depth, "--press-depth");
+    if (!o.depth.empty()) choice.depth = metres(o.depth, "--press-depth", o.metresPerPlainNumber);
     if (!o.grip.empty()) choice.grip = gripOf(o.grip);
     if (!o.seconds.empty()) choice.seconds = secondsOf(o.seconds);
     return choice;

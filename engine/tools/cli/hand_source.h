@@ -12,6 +12,7 @@ namespace palp {
 struct HandOptions {
     std::string        hand  = "scan"; ///< as HandChoice::hand
     std::string        speed = "50 mm/s", depth, reach = "10 mm";
+    double             metresPerPlainNumber = 1; ///< of depth and reach, as of all lengths on the command line
     std::string        grip;    ///< of a scripted hand on a simulated device; empty: forces do not move the hand
     DeviceOptionValues device;  ///< options of the device
     std::string        seconds; ///< "5 s"; empty: 5 s, or a file's own length

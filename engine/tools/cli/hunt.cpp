@@ -71,16 +71,17 @@ void scoreRecorded(const HuntOptions& o)
     tell(o, scene, object, scorer.score(), {});
 }
 
-void hunt(const HuntOptions& o)
+void hunt(HuntOptions o)
 {
     demandSvg("--out", o.out);
     if (!o.score.empty()) return scoreRecorded(o);
     demandGood(o.session);
     demandScene(o);
-    const Scene        scene  = o.scene.load();
-    const LoadedObject loaded = o.scene.loadObject(scene);
-    study::HuntScorer  scorer(scene, loaded.object.cloud());
-    const SessionRun run = runSession(scene, loaded, o.session, [&](const TickRecord& sample) { scorer.add(sample); });
+    const Scene        scene            = o.scene.load();
+    const LoadedObject loaded           = o.scene.loadObject(scene);
+    o.session.hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, scene);
+    study::HuntScorer scorer(scene, loaded.object.cloud());
+    const SessionRun  run = runSession(scene, loaded, o.session, [&](const TickRecord& sample) { scorer.add(sample); });
     tell(o, scene, loaded.object, scorer.score(), run);
     demandWhole(run);
 }

@@ -29,9 +29,10 @@ struct ReplayOptions {
     bool        compare = false, json = false;
 };
 
-void run(const RunOptions& o)
+void run(RunOptions o)
 {
-    const Scene scene = o.scene.load();
+    const Scene scene                   = o.scene.load();
+    o.session.hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, scene);
     demandGood(o.session);
     if (o.printConfig) {
         std::cout << printConfig(scene, o.json ? ConfigFormat::json : ConfigFormat::text);

@@ -662,7 +662,7 @@ JSON
     for command in info touch run; do
         bad "$command, a property that is not there" 'qualty' $command scan.ply --length-unit mm --stiffness-property qualty
         bad "$command, a unit that is none" '--length-unit: expected m, mm, cm, um, km, in or ft, found "parsec"' $command scan.ply --length-unit parsec
-        bad "$command, a range that is none" '--stiffness-range: expected two stiffnesses above zero, FROM,TO' $command $words --stiffness-range 20kPa
+        bad "$command, a range that is none" '--stiffness-range: expected two stiffnesses above zero, FROM,TO' $command scan.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa
     done
     sed '40s/ [^ ]*$/ nan/' scan.ply >holed.ply
     for command in info touch run; do bad "$command, NaN" 'holed.ply' $command holed.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa; done
