@@ -53,7 +53,6 @@ std::string percent(double share)
 
 void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann::json& r)
 {
-    const Material&      material = scene.material;
     const PatchSettings& settings = scene.patch;
     const auto           quantity = [&](const char* key, const char* unit) { return formatQuantity(r[key], unit); };
     const auto&          window   = r["window"];
