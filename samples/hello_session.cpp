@@ -3,7 +3,7 @@
 #include <exception>
 
 #include "engine/session/deformation.h"
-#include "engine/session/hand_device.h"
+#include "engine/session/scripted_hand.h"
 #include "engine/session/virtual_session.h"
 
 constexpr const char* kScene = R"({
@@ -22,7 +22,7 @@ try {
     // The hand: 1.5 mm deep and up again, from 2 mm above the surface. Any HapticDevice can stand here.
     const palp::HandScript script{.motion = palp::HandMotion::press, .depth = 1.5e-3, .height = 2e-3, .duration = 3};
     const palp::HandPath   path = palp::makeHand(script, palp::handPlace(scene, object));
-    palp::HandDevice       hand(path);
+    palp::ScriptedHand     hand(path);
 
     // The same ticks on a virtual clock, as fast as they go; runReal() takes the same parts in real time.
     const palp::SessionSummary summary =
