@@ -2,7 +2,7 @@
 //
 // Invocations   x over j (z of the plate, contiguous in memory), y over i, z over loads
 // Fields        one number per node, node (i, j) at [i nodesZ + j]; several loads one after the other
-// real          float, or double in the variants of conjugate gradients for devices that have it
+// real          float, or double in the variants of conjugate gradients for processors that have it
 
 #include "compute_shaders/shared/plate_push.h"
 

@@ -30,7 +30,7 @@ void ArmDevice::open()
 {
     if (state_.fault != DeviceFault::closed) return;
     arm_ = SimulatedArm(settings_, start_);
-    arm_.hold(hand_);
+    arm_.holdBy(hand_);
     ticked_      = false;
     state_       = {};
     state_.homed = true;
@@ -70,10 +70,10 @@ HapticState ArmDevice::exchange(const GovernedForce& force, double now) noexcept
     return state_;
 }
 
-void ArmDevice::hold(const SimulatedHand& hand) noexcept
+void ArmDevice::holdBy(const SimulatedHand& hand) noexcept
 {
     hand_ = hand;
-    arm_.hold(hand);
+    arm_.holdBy(hand);
 }
 
 } // namespace palp

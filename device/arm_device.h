@@ -21,10 +21,13 @@ public:
     void        close() noexcept override;
     HapticState exchange(const GovernedForce& force, double now) noexcept override;
 
-    /// The hand from now on; see SimulatedArm::hold(). \thread that of exchange(), or any while none runs
-    void hold(const SimulatedHand& hand) noexcept;
+    /// Sets the hand from now on, see SimulatedArm::holdBy().
+    /// \thread that of exchange(), or any while none runs
+    void holdBy(const SimulatedHand& hand) noexcept;
 
-    [[nodiscard]] const SimulatedArm& arm() const noexcept { return arm_; } ///< where it truly is \thread as hold()
+    /// Where the arm truly is.
+    /// \thread as holdBy()
+    [[nodiscard]] const SimulatedArm& arm() const noexcept { return arm_; }
 
 private:
     SimulatedArmSettings settings_;

@@ -21,7 +21,7 @@ struct HapticDeviceInfo {
     double maximumStiffness = 0; ///< [N/m] of a wall it renders stably at 1 kHz
     double maximumDamping   = 0; ///< [N s/m]
 
-    unsigned buttons      = 0;     ///< [1] how many
+    unsigned buttons      = 0;     ///< how many
     bool     needsHoming  = false; ///< its position is unknown until the user has moved it to its stops
     bool     rotates      = false; ///< senses its orientation
     bool     hasGripper   = false; ///< senses how far the grip is closed
@@ -60,7 +60,7 @@ constexpr auto namesOf(DeviceFault)
 /// of its workspace.
 struct HapticState {
     double        time     = 0; ///< [s] of that answer, by the clock that exchange() is given
-    std::uint64_t sequence = 0; ///< [1] answers so far; unchanged: nothing new since the last exchange
+    std::uint64_t sequence = 0; ///< answers so far; unchanged: nothing new since the last exchange
     glm::dvec3    position{};   ///< [m]
     glm::dvec3    velocity{};   ///< [m/s] filtered
     glm::dquat    orientation{1, 0, 0, 0};
@@ -69,7 +69,7 @@ struct HapticState {
     std::uint32_t buttons      = 0;     ///< bit i: button i is down
     bool          homed        = false; ///< the position is known
     bool          inBox        = false; ///< within the workspace, and the kinematics could be solved
-    int           missed       = 0;     ///< [1] exchanges without an answer, in a row
+    int           missed       = 0;     ///< exchanges without an answer, in a row
     DeviceFault   fault        = DeviceFault::closed;
 };
 
@@ -96,10 +96,11 @@ public:
     /// Zero force, then lets go of the device. Closed already: nothing.
     virtual void close() noexcept = 0;
 
-    /// One tick: render `force` from now on, and tell where the hand is. Bounded: takes well below a millisecond, waits
-    /// for no thread, allocates nothing. If it is not called, a driver with a thread holds the force for 5 ms and lets
-    /// it fall to zero in 20 ms more; any other device by its own watchdog. After 100 ms the next state says so. \param
-    /// force  [N] in the device's frame \param now    [s] of the servo's clock; simulated devices move on to it
+    /// One tick: renders `force` from now on, and tells where the hand is. It takes well below a millisecond, waits for
+    /// no thread and allocates nothing. If it is not called, a driver with a thread holds the force for 5 ms and lets
+    /// it fall to zero in 20 ms more; any other device does so by its own watchdog. After 100 ms the next state says so.
+    /// \param force  [N] in the device's frame
+    /// \param now    [s] of the servo's clock; simulated devices move on to it
     virtual HapticState exchange(const GovernedForce& force, double now) noexcept = 0;
 
     /// Asks the user to home it, by lights or words, where that is needed. Until HapticState::homed no force flows.

@@ -9,7 +9,8 @@ inline constexpr double kForceHold   = 5e-3;  ///< [s] ticks that are a little l
 inline constexpr double kForceFall   = 20e-3; ///< [s] then, to zero; and as long to come back
 inline constexpr double kHostTooSlow = 0.1;   ///< [s] then DeviceFault::hostTooSlow
 
-/// [1] of the last force that may still act. \param age  [s] since it was asked for
+/// [1] of the last force that may still act.
+/// \param age  [s] since it was asked for
 [[nodiscard]] inline double heldShare(double age) noexcept
 {
     return 1 - std::clamp((age - kForceHold) / kForceFall, 0.0, 1.0);

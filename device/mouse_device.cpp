@@ -22,6 +22,13 @@ glm::dvec3 within(const glm::dvec3& point, double reach) noexcept
 
 } // namespace
 
+const DeviceRecord kMouseRecord{
+    .name      = "mouse",
+    .model     = "a pointer in the window, without force",
+    .holder    = DeviceHolder::pointer,
+    .simulated = true,
+    .make      = [](const DeviceRequest&) -> std::unique_ptr<HapticDevice> { return std::make_unique<MouseDevice>(); }};
+
 MouseDevice::MouseDevice(const MouseDeviceSettings& settings) : settings_(settings)
 {
     demandRange("mouse", "settle", settings.settle, 1e-3, 10);

@@ -3,10 +3,14 @@
 
 #include <glm/vec3.hpp>
 
+#include "device/device_record.h"
 #include "device/haptic_device.h"
 #include "engine/core/latest.h"
 
 namespace palp {
+
+/// The pointer of a window.
+extern const DeviceRecord kMouseRecord;
 
 struct MouseDeviceSettings {
     double     settle = 20e-3; ///< [s] time constant of the spring to the target; a display shows a picture every 16 ms

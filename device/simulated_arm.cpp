@@ -17,7 +17,7 @@ constexpr int    kOrder = 10;     ///< of the Taylor series; the rest is below 1
 } // namespace
 
 SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, const glm::dvec3& position, const glm::dvec3& velocity)
-    : settings_(settings), position_(position), velocity_(velocity), window_(settings.velocityWindow)
+    : settings_(settings), position_(position), velocity_(velocity), velocityFilter_(settings.velocityWindow)
 {
     demandRange("simulated arm", "mass", settings.mass, 1e-3, 1e3);
     demandRange("simulated arm", "damping", settings.damping, 0, 1e3);
@@ -27,7 +27,7 @@ SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, const glm::dvec
     demandRange("simulated arm", "halfWorkspace", settings.halfWorkspace, 1e-3, 1e3);
     demandRange("simulated arm", "boxRadius", settings.boxRadius, 0, 1e3);
     demandRange("simulated arm", "delaySamples", settings.delaySamples, 0, int(kDelays) - 1);
-    window_.add(time_, encoded());
+    velocityFilter_.add(time_, encoded());
 }
 
 ArmState SimulatedArm::step(const glm::dvec3& force, double period) noexcept
@@ -41,14 +41,14 @@ ArmState SimulatedArm::step(const glm::dvec3& force, double period) noexcept
     const double pieces = std::ceil(period / kPiece * (1 - 1e-12));
     for (double piece = 0; piece < pieces; ++piece) move(held, period / pieces);
     time_ += period;
-    window_.add(time_, encoded());
+    velocityFilter_.add(time_, encoded());
     return sample();
 }
 
 ArmState SimulatedArm::sample() const noexcept
 {
     const glm::dvec3 place = encoded();
-    return {time_, place, window_.velocity(), glm::length(place) <= settings_.boxRadius};
+    return {time_, place, velocityFilter_.velocity(), glm::length(place) <= settings_.boxRadius};
 }
 
 glm::dvec3 SimulatedArm::encoded() const noexcept

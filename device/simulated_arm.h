@@ -4,7 +4,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "device/velocity_window.h"
+#include "device/velocity_filter.h"
 
 namespace palp {
 
@@ -19,7 +19,7 @@ struct SimulatedArmSettings {
     double velocityWindow = 15e-3; ///< [s] over which positions are differenced; drivers take 15 to 20 ms
     double halfWorkspace  = 0.05;  ///< [m] per axis; the arm stops dead there
     double boxRadius      = 0.045; ///< [m] sphere about the origin, inside which ArmState::inBox holds
-    int    delaySamples   = 1;     ///< [1] from a force to its effect, 0 to 7; beside the hold until the next one
+    int    delaySamples   = 1;     ///< from a force to its effect, 0 to 7; beside the hold until the next one
 };
 
 /// A hand that holds the grip by a spring and a damper to a place that moves evenly.
@@ -53,8 +53,8 @@ public:
     explicit SimulatedArm(const SimulatedArmSettings& settings = {}, const glm::dvec3& position = {},
                           const glm::dvec3& velocity = {});
 
-    /// The place and the strength of the hand from now on; between ticks its target moves on evenly.
-    void hold(const SimulatedHand& hand) noexcept { hand_ = hand; }
+    /// Sets the place and the strength of the hand from now on; between ticks its target moves on evenly.
+    void holdBy(const SimulatedHand& hand) noexcept { hand_ = hand; }
 
     /// One tick: the motors take over `force` (after the delay) and hold it while `period` goes by.
     /// \param force   [N] on the hand; one that is not finite counts as none
@@ -80,7 +80,7 @@ private:
     glm::dvec3                      velocity_;
     std::array<glm::dvec3, kDelays> forces_{};
     std::size_t                     tick_ = 0;
-    VelocityWindow                  window_; ///< of positions in encoder steps
+    VelocityFilter                  velocityFilter_; ///< of positions in encoder steps
 };
 
 } // namespace palp

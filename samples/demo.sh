@@ -11,7 +11,7 @@ usage: sh samples/demo.sh [--yes] [--no-install] [--dry-run]
 
   --yes          install missing packages without asking (password-less sudo)
   --no-install   install nothing; exit 3 naming what is missing
-  --dry-run      say what would be done
+  --dry-run      print what would be done
 TEXT
 }
 

@@ -14,7 +14,7 @@ usage: sh tests/run.sh [--asan | --tsan | --all] [--yes] [--no-install] [--dry-r
   --all          the three one after the other, and GPU-assisted validation of the shaders
   --yes          install missing packages without asking (password-less sudo)
   --no-install   install nothing; exit 3 naming what is missing
-  --dry-run      say what would be done
+  --dry-run      print what would be done
 
   sh tests/run.sh -- -R plate        only the tests whose name contains "plate"
   PALPATE_BUILD=/tmp/b sh tests/run.sh   builds elsewhere, for a checkout that cannot be written
@@ -46,14 +46,14 @@ for flavour in ${flavours:-plain}; do
     tsan) folder=$top/tsan sanitizers=thread ;;
     esac
     say "== $flavour: building in $folder"
-    # The demo, where it came first, has cached that there are no tests.
+    # A build by the demo has cached that there are no tests.
     prepare_build "$folder" -DPALPATE_TESTS=ON -DPALPATE_WERROR=ON -DPALPATE_SANITIZE=$sanitizers -DPALPATE_BENCHMARKS=$([ $flavour = plain ] && echo ON || echo OFF)
     if [ -n "$dry_run" ]; then say "would run the tests in $folder"; continue; fi
     say "== $flavour: testing"
-    # Instrumented shaders are 20 times slower: minutes, which only --all takes, or who asks for them.
-    leave_out=
-    [ $# -gt 0 ] || { [ -n "$all" ] && [ $flavour = plain ]; } || leave_out='-LE shader-gpu-assisted'
+    # Instrumented shaders are 20 times slower: they run with --all, or when they are asked for.
+    excluded=
+    [ $# -gt 0 ] || { [ -n "$all" ] && [ $flavour = plain ]; } || excluded='-LE shader-gpu-assisted'
     # shellcheck disable=SC2086
-    ctest --test-dir "$folder" --output-on-failure --no-tests=error --parallel "$(jobs)" $leave_out "$@" || failed=1
+    ctest --test-dir "$folder" --output-on-failure --no-tests=error --parallel "$(jobs)" $excluded "$@" || failed=1
 done
 exit $failed

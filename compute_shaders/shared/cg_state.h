@@ -17,7 +17,7 @@ const int kStateAlpha    = 2; // of the next update [1]
 const int kStateEnergy   = 3; // (f, x)
 const int kStateGain     = 4; // of the last step
 const int kStateEstimate = 5; // of the relative error in the energy norm [1]
-const int kStateSteps    = 6; // done since they were last counted anew [1]
+const int kStateSteps    = 6; // done since they were last counted anew
 const int kStateRatio    = 7; // of gains to those before them, the largest of late [1]
 
 #ifdef __cplusplus

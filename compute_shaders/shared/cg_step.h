@@ -5,7 +5,7 @@ struct CgStep {
     real gain;     // in the squared energy norm of the error
     real ratio;    // of gains to those before them, the largest of late [1]
     real estimate; // of the relative error in the energy norm after this step [1]
-    real steps;    // done, this one included [1]
+    real steps;    // done, this one included
 };
 
 // Largest ratio that the geometric tail is trusted with: beyond it a tail of twenty steps is assumed. A first step has
@@ -19,14 +19,14 @@ CgStep stepOf(real pq, real rz, real energy, real lastGain, real lastRatio, real
     const real kMostRatio = real(0.953125f), kLeastRatio = real(0.0078125f), kFirstRatio = real(0.5f);
     const real kSecondRatio = real(0.09375f), kMemory = real(0.8125f);
     CgStep     now;
-    now.alpha = pq > real(0.0f) ? rz / pq : real(0.0f);
-    now.gain  = now.alpha * rz;
-    now.steps = steps + real(1.0f);
-    now.ratio = lastGain > real(0.0f) ? max(now.gain / lastGain, kMemory * lastRatio) : real(0.0f);
-    real rho  = steps == real(0.0f) && lastGain == real(0.0f) ? kFirstRatio : now.ratio;
-    rho       = min(max(rho, lastRatio > real(0.0f) ? kLeastRatio : kSecondRatio), kMostRatio);
-    real left = pq > real(0.0f) ? now.gain * rho / (real(1.0f) - rho) : abs(rz);
-    real all  = max(max(energy, real(0.0f)) + now.gain, left); // an estimate is at most 1
+    now.alpha    = pq > real(0.0f) ? rz / pq : real(0.0f);
+    now.gain     = now.alpha * rz;
+    now.steps    = steps + real(1.0f);
+    now.ratio    = lastGain > real(0.0f) ? max(now.gain / lastGain, kMemory * lastRatio) : real(0.0f);
+    real rho     = steps == real(0.0f) && lastGain == real(0.0f) ? kFirstRatio : now.ratio;
+    rho          = min(max(rho, lastRatio > real(0.0f) ? kLeastRatio : kSecondRatio), kMostRatio);
+    real left    = pq > real(0.0f) ? now.gain * rho / (real(1.0f) - rho) : abs(rz);
+    real all     = max(max(energy, real(0.0f)) + now.gain, left); // an estimate is at most 1
     now.estimate = all > real(0.0f) ? sqrt(left / all) : real(0.0f);
     return now;
 }

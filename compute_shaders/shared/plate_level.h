@@ -20,8 +20,8 @@ const uint kSideZ1 = 8u;
 // Deflection is measured in units in which the finest grid has stiffness D0/(hx hz) = 1, so every number below is of
 // order one whatever the units of the plate. With a = hx hz of this level over that of the finest one:
 struct PlateLevel {
-    int   cellsX; // [1]
-    int   cellsZ; // [1]
+    int   cellsX;
+    int   cellsZ;
     uint  hinged; // sides without bending moment: supported and free
     uint  free;   // sides whose nodes move
     float kxx;    // hz^2/hx^2 / a          of the moment along x per second difference along x [1]

@@ -10,10 +10,10 @@
 // node stands for half a cell.
 //
 // A second difference is written as a change of changes: changes between neighbours of a smooth field are exact in
-// floating point, so that the rounding of a curvature is relative to the slope and not to the deflection. Whoever goes
+// floating point, so that the rounding of a curvature is relative to the slope and not to the deflection. Code that goes
 // along rows can keep changes for the next row.
 //
-// All loads come first and nothing branches round them: a compiler can then share them, and a software device, which
+// All loads come first and nothing branches round them: a compiler can then share them, and Vulkan in software, which
 // pays for each, loads 13 deflections and 9 rigidities.
 //
 // The includer provides, for nodes of the grid,  real rigidity(int i, int j),  real deflection(int i, int j)  for nodes of

@@ -31,16 +31,16 @@ struct TransferPush {
 };
 
 struct VectorPush {
-    uint nodes;     // of one load [1]
-    uint partials;  // sums that each dot product is split into [1]
-    uint iteration; // of the solve; an update is left out if the solve stopped before it [1]
+    uint nodes;     // of one load
+    uint partials;  // sums that each dot product is split into
+    uint iteration; // of the solve; an update is omitted if the solve stopped before it
 };
 
 struct ScalarsPush {
-    uint  loads;         // [1]
-    uint  partials;      // per dot product [1]
+    uint  loads;
+    uint  partials;      // per dot product
     uint  begins;        // 2: anew, without a previous direction; 1: counts its steps anew; 0: goes on
-    uint  argumentWords; // of the indirect dispatches that a finished solve makes empty [1]
+    uint  argumentWords; // of the indirect dispatches that a finished solve makes empty
     float tolerance;     // of the error estimate, relative [1]; 0 never stops
 };
 

@@ -7,7 +7,7 @@
 // transfer_layout.h first.
 //
 // The inner sums are those that can be shared: of a coarse row of nodes with all fine rows that it gives to, of a coarse
-// row with all fine rows that it takes from. A weight of 0 may be left out, as deflections and forces are finite.
+// row with all fine rows that it takes from. A weight of 0 may be omitted, as deflections and forces are finite.
 //
 // The includer provides  float tableX(int n), float tableZ(int n)  and  real coarseValue(int i, int j)  or
 // float fineValue(int i, int j).

@@ -1,7 +1,7 @@
 // rigidity_coarsen.h - rigidity of a coarser level (GLSL and C++).
 //
 // Geometric mean with weights 1/4, 1/2, 1/4 along each axis that is coarsened. Square roots of products, in place of
-// exponentials of logarithms, are rounded alike on every device. Arithmetic means serve random rigidities as well but
+// exponentials of logarithms, are rounded alike on every processor. Arithmetic means serve random rigidities as well but
 // sharp inclusions much worse; harmonic means fail.
 //
 // The includer provides  float fineRigidity(int i, int j).

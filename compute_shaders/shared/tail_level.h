@@ -9,10 +9,10 @@ namespace palp::shared {
 #endif
 
 // What the kernel's shared arrays and loops are made for: levels of 64, 32 and 16 cells a side.
-const int kTailPool    = 8000;    // numbers in shared memory, 32 kB [1]
-const int kTailNodes   = 65 * 65; // of a level [1]
-const int kTailHalf    = 65 * 33; // nodes of one colour of a level, counted as columns times half rows rounded up [1]
-const int kTailLevels  = 8;       // [1]
+const int kTailPool   = 8000;    // numbers in shared memory, 32 kB
+const int kTailNodes  = 65 * 65; // of a level
+const int kTailHalf   = 65 * 33; // nodes of one colour of a level, counted as columns times half rows rounded up
+const int kTailLevels = 8;
 
 // Positions are those of the first number of this level in arrays that hold all levels of the tail.
 struct TailLevel {
@@ -25,9 +25,9 @@ struct TailLevel {
 };
 
 struct TailPush {
-    uint first;  // level to begin with; the last one is solved at once [1]
-    uint levels; // of the tail [1]
-    uint nodes;  // of all of them together [1]
+    uint first;  // level to begin with; the last one is solved at once
+    uint levels; // of the tail
+    uint nodes;  // of all of them together
 };
 
 #ifdef __cplusplus

@@ -7,7 +7,8 @@
 
 namespace palp {
 
-/// What came in and was not read yet: the newest `Size` bytes. \thread one; fixed memory
+/// What came in and was not read yet: the newest `Size` bytes.
+/// \thread one; fixed memory
 template <std::size_t Size>
 class ByteRing {
 public:

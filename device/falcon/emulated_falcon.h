@@ -60,7 +60,8 @@ public:
     /// \param arm  none: the grip stays in the middle
     explicit EmulatedFalcon(const EmulatedFalconSettings& settings = {}, Arm arm = {});
 
-    /// One byte has come in whole, at that divisor and time [s]. \return the answer; holds until the next call
+    /// Takes one byte that has come in whole, at that divisor and time [s].
+    /// \return the answer, which holds until the next call
     std::span<const std::uint8_t> receive(std::uint8_t byte, std::uint16_t divisor, double time);
 
     void setDtr(bool high) noexcept;
@@ -77,7 +78,7 @@ public:
     [[nodiscard]] const glm::dvec3&                position() const noexcept { return position_; } ///< [m] true
     [[nodiscard]] double                           answerTime() const noexcept { return settings_.answerTime; } ///< [s]
     [[nodiscard]] double        lastTorque() const noexcept { return lastTorque_; } ///< [s] when a motor last pushed
-    [[nodiscard]] std::uint64_t packets() const noexcept { return packets_; }       ///< [1] good ones so far
+    [[nodiscard]] std::uint64_t packets() const noexcept { return packets_; }       ///< good ones so far
 
 private:
     [[nodiscard]] std::uint16_t   divisor() const noexcept;

@@ -2,11 +2,10 @@
 
 #include <cmath>
 #include <numbers>
-#include <string>
 
 #include <glm/geometric.hpp>
 
-#include "engine/core/contract.h"
+#include "device/setting_range.h"
 
 namespace palp {
 namespace {
@@ -24,15 +23,10 @@ constexpr const char* kTooHeavy = "arm and mass could not be held: take a lighte
 
 FalconCalibration::FalconCalibration(const FalconCalibrationSettings& settings) : settings_(settings)
 {
-    const auto demand = [](const char* what, double value, double least, double most) {
-        if (!(value >= least && value <= most))
-            throw Error("calibration: " + std::string(what) + " must be from " + std::to_string(least) + " to " +
-                        std::to_string(most) + ", found " + std::to_string(value));
-    };
-    demand("mass", settings.mass, 0.05, 0.5);
-    demand("countsPerTorque", settings.countsPerTorque, 100, 100000);
-    demand("gravity", settings.gravity, 9, 10);
-    demand("the length of up", glm::length(settings.up), 1 - 1e-6, 1 + 1e-6);
+    demandRange("calibration", "mass", settings.mass, 0.05, 0.5);
+    FalconMotors::demandCountsPerTorque(settings.countsPerTorque);
+    demandRange("calibration", "gravity", settings.gravity, 9, 10);
+    demandRange("calibration", "the length of up", glm::length(settings.up), 1 - 1e-6, 1 + 1e-6);
 }
 
 glm::dvec3 FalconCalibration::step(const HapticState& state, const GovernedForce& sent, double gain, double dt) noexcept
@@ -77,6 +71,9 @@ void FalconCalibration::endPeriod() noexcept
     }
     loaded_ = mean;
     if (loaded_ - bare_ < kLeast) return fail("no mass was felt: hang it on the grip when asked to");
+    if (const double found = foundCountsPerTorque();
+        found < FalconMotors::kLeastCountsPerTorque || found > FalconMotors::kMostCountsPerTorque)
+        return fail("the counts per N m that were found are out of the bounds, as no Falcon's are: check the mass");
     stage_ = FalconCalibrationStage::done;
 }
 
@@ -101,6 +98,11 @@ void FalconCalibration::fail(const char* why) noexcept
 std::optional<double> FalconCalibration::countsPerTorque() const noexcept
 {
     if (stage_ != FalconCalibrationStage::done) return {};
+    return foundCountsPerTorque();
+}
+
+double FalconCalibration::foundCountsPerTorque() const noexcept
+{
     return settings_.countsPerTorque * (loaded_ - bare_) / (settings_.mass * settings_.gravity);
 }
 

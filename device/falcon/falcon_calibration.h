@@ -33,7 +33,8 @@ enum class FalconCalibrationStage : std::uint8_t {
 ///
 ///     G' = G (F1 - F0) / (mass gravity),
 ///
-/// which goes into FalconLoopSettings::countsPerTorque. A quarter of a minute for each weighing, hands off.
+/// which goes into FalconLoopSettings::countsPerTorque. A G' out of the bounds of FalconMotors is a failure: the mass was
+/// another one than was named, or something else was weighed. A quarter of a minute for each weighing, hands off.
 ///
 ///     1  home the device; lift the grip to the middle of its workspace and hold it there loosely
 ///     2  each tick: state = device.exchange(force), then governor.step() with step()'s force; let go as force comes on
@@ -69,6 +70,8 @@ private:
     void start(FalconCalibrationStage stage) noexcept;
     void endPeriod() noexcept;
     void fail(const char* why) noexcept;
+
+    [[nodiscard]] double foundCountsPerTorque() const noexcept; ///< [counts/(N m)] by both means
 
     FalconCalibrationSettings    settings_;
     FalconCalibrationStage       stage_   = FalconCalibrationStage::bare;

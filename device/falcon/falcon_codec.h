@@ -34,9 +34,9 @@ struct FalconReply {
 ///     in    '<'  three encoders, the same way   bits 0-3 grip, 4-6 leg homed                 ?   '>'
 ///
 /// A number is four nibbles, the lowest first. Each byte between the brackets is sent as 0x41 + value, so that '<'
-/// (0x3C) and '>' (0x3E) stand nowhere else. \source   libnifalcon (BSD-3), src/firmware/FalconFirmwareNovintSDK.cpp
-/// and include/falcon/firmware/FalconFirmware.h \differs  a comment there gives other colours to the lights and bit 4
-/// to homing; its code does as above. Nobody has
+/// (0x3C) and '>' (0x3E) stand nowhere else.
+/// \source   libnifalcon (BSD-3), src/firmware/FalconFirmwareNovintSDK.cpp and include/falcon/firmware/FalconFirmware.h
+/// \differs  a comment there gives other colours to the lights and bit 4 to homing; its code does as above. Nobody has
 ///           yet checked the colours on a device for us.
 using FalconPacket = std::array<std::uint8_t, 16>;
 

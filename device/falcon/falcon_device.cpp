@@ -75,7 +75,7 @@ void FalconDevice::converse(Line& line, bool asksForRealTime) noexcept
     while (!line.isOver && !line.loop->isLost()) {
         line.requests.take();
         FalconRequest request;
-        if (const Asked* asked = line.requests.held()) {
+        if (const TimedRequest* asked = line.requests.held()) {
             const double age = seconds(Clock::now() - asked->time);
             request          = asked->request;
             request.share    = heldShare(age);

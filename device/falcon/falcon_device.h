@@ -51,13 +51,14 @@ public:
     HapticState                           exchange(const GovernedForce& force, double now) noexcept override;
     void light(std::uint8_t lights) noexcept override { lights_ = lights; } ///< if settings.loop.showsState is off
 
-    /// Makes an open() that runs give up, or the next one; while it is open: nothing. \thread any
+    /// Makes an open() that runs give up, or the next one. While the device is open it does nothing.
+    /// \thread any
     void cancelOpen() noexcept { cancel_ = true; }
 
 private:
     using Clock = std::chrono::steady_clock;
 
-    struct Asked {
+    struct TimedRequest {
         FalconRequest     request{};
         Clock::time_point time{};
     };
@@ -70,7 +71,7 @@ private:
     struct Line {
         explicit Line(std::unique_ptr<FalconLoop> newLoop) : loop(std::move(newLoop)) {}
         std::unique_ptr<FalconLoop> loop;
-        Latest<Asked>               requests;
+        Latest<TimedRequest>        requests;
         Latest<Answer>              answers;
         std::atomic<bool>           isOver = false;
         std::thread                 thread;

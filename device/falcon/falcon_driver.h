@@ -11,11 +11,12 @@
 
 namespace palp {
 
-/// Opens the bridge of one Falcon, the same one each time. \throws Error, one sentence why it cannot be opened
+/// Opens the bridge of one Falcon, the same one each time.
+/// \throws Error, one sentence why it cannot be opened
 using FalconLinkOpener = std::function<std::unique_ptr<FalconLink>()>;
 
 struct FalconStartSettings {
-    int    attempts = 10; ///< [1] at most, each with a link opened anew; peers take 10 to 40
+    int    attempts = 10; ///< at most, each with a link opened anew; peers take 10 to 40
     double deadline = 30; ///< [s] for all of it; an attempt that goes well takes 0.8 s
 
     /// [s] of steady time after an attempt in which it could not be opened: a bridge needs some tenths of a second to
@@ -46,7 +47,7 @@ enum class FalconReadiness : std::uint8_t {
 struct StartedFalcon {
     std::unique_ptr<FalconLink> link;
     FalconReply                 reply{};      ///< its last answer
-    int                         attempts = 0; ///< [1] uploads that it took; 0: its firmware was running
+    int                         attempts = 0; ///< uploads that it took; 0: its firmware was running
 };
 
 /// Opens a Falcon and sees to it that its firmware runs: it is lost whenever the power is. Asks for answers first; then

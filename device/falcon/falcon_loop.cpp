@@ -47,9 +47,23 @@ DeviceLight falconLight(const HapticState& state) noexcept
     return state.fault == DeviceFault::none && state.inBox ? DeviceLight::green : DeviceLight::blue;
 }
 
+const char* meaningOf(DeviceLight light) noexcept
+{
+    switch (light) {
+    case DeviceLight::red:
+        return "red    it is to be homed";
+    case DeviceLight::blue:
+        return "blue   no force flows: the grip is out of its workspace, or something is wrong";
+    case DeviceLight::green:
+        return "green  forces flow";
+    default:
+        return "none";
+    }
+}
+
 FalconLoop::FalconLoop(std::unique_ptr<FalconLink> link, const FalconLoopSettings& settings)
     : link_(std::move(link)), settings_(settings), kinematics_(settings.geometry),
-      motors_(kinematics_, settings.countsPerTorque), window_(settings.velocityWindow)
+      motors_(kinematics_, settings.countsPerTorque), velocityFilter_(settings.velocityWindow)
 {
     const auto demand = [](const char* what, double value, double least, double most) {
         if (!(value >= least && value <= most))
@@ -158,7 +172,7 @@ bool FalconLoop::collect(double timeout)
 bool FalconLoop::accept(const FalconReply& reply) noexcept
 {
     const double now    = link_->now();
-    const bool   isGood = reply.homed() && place(reply, now);
+    const bool   isGood = reply.homed() && placeGrip(reply, now);
     disbelief_          = reply.homed() && !isGood && hasPlace_ && now - placed_ <= kBlink;
     if (disbelief_) return false;
 
@@ -182,7 +196,7 @@ bool FalconLoop::accept(const FalconReply& reply) noexcept
 }
 
 /// Position and velocity of a homed arm; both stay where there is none, or none that is believed.
-bool FalconLoop::place(const FalconReply& reply, double now) noexcept
+bool FalconLoop::placeGrip(const FalconReply& reply, double now) noexcept
 {
     const auto angles   = kinematics_.angles(reply.encoders);
     const auto position = kinematics_.position(angles, state_.position + FalconKinematics::kMiddle);
@@ -193,11 +207,11 @@ bool FalconLoop::place(const FalconReply& reply, double now) noexcept
     }
     const glm::dvec3 here = *position - FalconKinematics::kMiddle;
     if (hasPlace_ && !isCredible(here, now)) return false;
-    if (!hasPlace_ || glm::length(here - state_.position) > kJump) window_.restart();
+    if (!hasPlace_ || glm::length(here - state_.position) > kJump) velocityFilter_.restart();
     forgetPlace();
-    window_.add(now, here);
+    velocityFilter_.add(now, here);
     state_.position = here;
-    state_.velocity = window_.velocity();
+    state_.velocity = velocityFilter_.velocity();
     placed_         = now;
     hasPlace_       = true;
     return true;

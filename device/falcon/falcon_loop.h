@@ -10,7 +10,7 @@
 #include "device/falcon/falcon_link.h"
 #include "device/falcon/falcon_motors.h"
 #include "device/haptic_device.h"
-#include "device/velocity_window.h"
+#include "device/velocity_filter.h"
 
 namespace palp {
 
@@ -23,9 +23,11 @@ struct FalconLoopSettings {
     bool           showsState      = true;   ///< by falconLight()
 };
 
-/// The light of a Falcon that shows its state, FalconLoopSettings::showsState: red: to be homed; blue: no force flows;
-/// green: forces flow.
+/// The light of a Falcon that shows its state, see FalconLoopSettings::showsState.
 [[nodiscard]] DeviceLight falconLight(const HapticState& state) noexcept;
+
+/// What that light tells the user: "green  forces flow".
+[[nodiscard]] const char* meaningOf(DeviceLight light) noexcept;
 
 /// What the host wants of one exchange.
 struct FalconRequest {
@@ -73,7 +75,7 @@ private:
     [[nodiscard]] FalconDrive drive(const FalconRequest& request, double now) noexcept;
     bool                      collect(double timeout);
     bool                      accept(const FalconReply& reply) noexcept;
-    bool                      place(const FalconReply& reply, double now) noexcept;
+    bool                      placeGrip(const FalconReply& reply, double now) noexcept;
     [[nodiscard]] bool        isCredible(const glm::dvec3& here, double now) noexcept;
     void                      forgetPlace() noexcept;
     void                      miss() noexcept;
@@ -85,7 +87,7 @@ private:
     FalconKinematics            kinematics_;
     FalconMotors                motors_;
     FalconParser                parser_;
-    VelocityWindow              window_;
+    VelocityFilter              velocityFilter_;
     HapticState                 state_{};
     FalconCommand               command_{};
     DeviceFault                 line_      = DeviceFault::none; ///< what is wrong with the line or the arm
@@ -98,10 +100,10 @@ private:
     bool                        inDoubt_   = false;             ///< it jumped, and where it is now is not settled
     glm::dvec3                  elsewhere_{};                   ///< [m] where it was then, by the last answer
     double                      seen_     = 0;                  ///< [s] when that answer came
-    int                         agreed_   = 0; ///< [1] answers in a row that agree with each other then
+    int                         agreed_   = 0;                  ///< answers in a row that agree with each other then
     Loss                        loss_     = Loss::none;
-    int                         good_     = 0; ///< [1] answers with a position in a row
-    int                         unsolved_ = 0; ///< [1] without one in a row
+    int                         good_     = 0; ///< answers with a position in a row
+    int                         unsolved_ = 0; ///< without one in a row
     std::uint64_t               skipped_  = 0; ///< [byte] by the parser at the last answer
 };
 

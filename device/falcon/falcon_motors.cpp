@@ -3,18 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <string>
 
-#include "engine/core/contract.h"
+#include "device/setting_range.h"
 
 namespace palp {
 
 FalconMotors::FalconMotors(const FalconKinematics& kinematics, double countsPerTorque)
     : kinematics_(kinematics), countsPerTorque_(countsPerTorque)
 {
-    if (!(countsPerTorque >= 100 && countsPerTorque <= 1e5))
-        throw Error("motors of the Falcon: countsPerTorque must be from 100 to 100000, found " +
-                    std::to_string(countsPerTorque) + "; " + std::to_string(kCountsPerTorque) + " is a careful value");
+    demandCountsPerTorque(countsPerTorque);
+}
+
+void FalconMotors::demandCountsPerTorque(double countsPerTorque)
+{
+    demandRange("motors of the Falcon", "countsPerTorque", countsPerTorque, kLeastCountsPerTorque,
+                kMostCountsPerTorque);
 }
 
 FalconDrive FalconMotors::drive(const glm::dvec3& position, const glm::dvec3& force) const noexcept

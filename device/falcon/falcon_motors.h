@@ -19,8 +19,8 @@ struct FalconDrive {
 /// From forces to what the motors are told, and back.
 ///
 /// A motor pushes inwards where its number is positive, against the angles of the kinematics: count = -G torque. Where
-/// a number would exceed the range, all three shrink by one factor: a weaker force, in the same direction. \thread
-/// const and pure; no allocation
+/// a number would exceed the range, all three shrink by one factor: a weaker force, in the same direction.
+/// \thread const and pure; it allocates nothing
 class FalconMotors {
 public:
     /// [counts] most that a motor takes. Beyond it the vendor's driver scales as above; beyond an int16 the packet
@@ -33,8 +33,18 @@ public:
     /// N in the middle, whichever way.
     static constexpr double kCountsPerTorque = 4200;
 
+    /// [counts/(N m)] the bounds of G, the same for every option, setting and calibration. They are for safety: a G that
+    /// is k times too large makes every force and every stiffness k times larger than the governor has let through. With
+    /// the 1000 N/m that it lets through, a Falcon that needs 4200 gets 2400 N/m at the upper bound, somewhat more than
+    /// the 2137 N/m up to which its released arm is stable at 1 kHz; beyond that the loop swings. It is also the largest G that a public driver uses. Below the lower bound less than half of a force is rendered, and a
+    /// calibration no longer holds its mass.
+    static constexpr double kLeastCountsPerTorque = 2000, kMostCountsPerTorque = 10000;
+
+    /// \throws Error if a value of G is out of its bounds or no number
+    static void demandCountsPerTorque(double countsPerTorque);
+
     /// \param countsPerTorque  [counts/(N m)] G
-    /// \throws Error if it is not from 100 to 100 000
+    /// \throws Error as demandCountsPerTorque() does
     explicit FalconMotors(const FalconKinematics& kinematics      = FalconKinematics{},
                           double                  countsPerTorque = kCountsPerTorque);
 

@@ -12,7 +12,8 @@ struct UsbRefusal {
     std::string why, help; ///< as FalconListing's
 };
 
-/// Why a device cannot be opened, and what to do. \param error  of the call that opens or claims it
+/// Why a device cannot be opened, and what to do.
+/// \param error  of the call that opens or claims it
 [[nodiscard]] UsbRefusal refusal(int error);
 
 } // namespace palp

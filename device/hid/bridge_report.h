@@ -55,7 +55,7 @@ struct BridgeAnswer {
     double   maximumForce     = 0; ///< [N] in steps of 1e-3; 0: input only
     double   maximumStiffness = 0; ///< [N/m] in steps of 1
     double   maximumDamping   = 0; ///< [N s/m] in steps of 1e-3
-    unsigned buttonCount      = 0; ///< [1] at most 32
+    unsigned buttonCount      = 0; ///< at most 32
 
     [[nodiscard]] bool has(BridgeFlag flag) const noexcept { return (flags & std::uint16_t(flag)) != 0; }
 };

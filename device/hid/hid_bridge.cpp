@@ -139,7 +139,7 @@ void HidBridgeDevice::receive(double wait)
         const BridgeVerdict verdict = decode(std::span(report).first(size), answer);
         wrongVersion_               = wrongVersion_ || verdict == BridgeVerdict::otherVersion;
         if (verdict == BridgeVerdict::good)
-            take(answer);
+            takeAnswer(answer);
         else
             ++seen_.garbled;
     }
@@ -147,7 +147,7 @@ void HidBridgeDevice::receive(double wait)
 
 /// Only what is newer than the last one, by numbers that wrap around; but a device that goes on counting from an old
 /// number has started anew.
-void HidBridgeDevice::take(const BridgeAnswer& answer) noexcept
+void HidBridgeDevice::takeAnswer(const BridgeAnswer& answer) noexcept
 {
     const auto ahead = std::int16_t(answer.sequence - seen_.answer.sequence);
     if (seen_.good > 0 && ahead <= 0) {
@@ -200,7 +200,7 @@ void HidBridgeDevice::letFall()
 }
 
 /// Reads, then writes. \return false: the device is gone
-bool HidBridgeDevice::pass(double wait) noexcept
+bool HidBridgeDevice::readAndWrite(double wait) noexcept
 {
     try {
         receive(wait);
@@ -218,7 +218,7 @@ void HidBridgeDevice::run(const std::stop_token& stop) noexcept
 {
     // Refusal is no news to the user: the servo asked before and said so.
     if (settings_.asksForRealTime) static_cast<void>(askForRealTime());
-    while (!stop.stop_requested() && pass(settings_.readWait)) {
+    while (!stop.stop_requested() && readAndWrite(settings_.readWait)) {
     }
     sayZero();
 }
@@ -238,9 +238,9 @@ HapticState HidBridgeDevice::exchange(const GovernedForce& force, double now) no
 {
     if (!open_ || state_.fault == DeviceFault::unplugged) return state_;
     const bool own = settings_.pace == HidPace::caller;
-    if (own) pass(0);
-    follow(now);
-    note(now);
+    if (own) readAndWrite(0);
+    followClock(now);
+    readInbox(now);
     state_.fault = faultAt(force, now);
 
     BridgeCommand& command = outbox_.draft().command;
@@ -263,7 +263,7 @@ HapticState HidBridgeDevice::exchange(const GovernedForce& force, double now) no
 }
 
 /// The servo's clock may start anew: all times go back with it.
-void HidBridgeDevice::follow(double now) noexcept
+void HidBridgeDevice::followClock(double now) noexcept
 {
     if (!started_ || !(now < lastExchange_)) return;
     const double back = lastExchange_ - now;
@@ -273,7 +273,7 @@ void HidBridgeDevice::follow(double now) noexcept
 }
 
 /// Takes over the newest answer, if there is one.
-void HidBridgeDevice::note(double now) noexcept
+void HidBridgeDevice::readInbox(double now) noexcept
 {
     inbox_.take();
     const Inbox& inbox = *inbox_.held(); // open() has filled it

@@ -53,30 +53,30 @@ private:
 
     struct Inbox {
         BridgeAnswer  answer;      ///< the last good one
-        std::uint64_t good    = 0; ///< [1] with a new sequence number
-        std::uint64_t garbled = 0; ///< [1] that make no sense
+        std::uint64_t good    = 0; ///< with a new sequence number
+        std::uint64_t garbled = 0; ///< that make no sense
         bool          lost    = false;
     };
 
-    struct Asked {
+    struct TimedCommand {
         BridgeCommand     command;
         Clock::time_point time;
     };
 
     // Of the thread, or of exchange() where that sets the pace.
     void receive(double wait);
-    void take(const BridgeAnswer& answer) noexcept;
+    void takeAnswer(const BridgeAnswer& answer) noexcept;
     void send(BridgeCommand command);
     void sendNewest();
     void letFall();
     void sendShare(double most);
-    bool pass(double wait) noexcept;
+    bool readAndWrite(double wait) noexcept;
     void run(const std::stop_token& stop) noexcept;
     void sayZero() noexcept;
 
     // Of exchange().
-    void                      follow(double now) noexcept;
-    void                      note(double now) noexcept;
+    void                      followClock(double now) noexcept;
+    void                      readInbox(double now) noexcept;
     [[nodiscard]] DeviceFault faultAt(const GovernedForce& force, double now) const noexcept;
     [[nodiscard]] glm::dvec3  renderable(const glm::dvec3& force) const noexcept;
 
@@ -88,7 +88,7 @@ private:
     HapticDeviceInfo          info_;
     std::atomic<bool>         homing_{false};
     std::atomic<std::uint8_t> lights_{0};
-    Latest<Asked>             outbox_;
+    Latest<TimedCommand>      outbox_;
     Latest<Inbox>             inbox_;
 
     // Of the thread, or of exchange() where that sets the pace.
@@ -96,7 +96,7 @@ private:
     Inbox                    seen_;
     bool                     wrongVersion_ = false;
     std::uint16_t            lastRefused_  = 0;     ///< sequence of an answer that was too old
-    int                      goesOn_       = 0;     ///< [1] old answers that follow one another
+    int                      goesOn_       = 0;     ///< old answers that follow one another
     std::uint16_t            sent_         = 0;     ///< sequence of the last command
     bool                     hot_          = false; ///< the last command may have had the motors on
     double                   share_        = 1;     ///< [1] of the force asked for that goes out

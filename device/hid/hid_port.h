@@ -36,7 +36,8 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// An open HID device; closed by its destructor. \thread one at a time
+/// An open HID device; its destructor closes it.
+/// \thread one at a time
 class HidPort {
 public:
     HidPort()                          = default;
@@ -45,10 +46,12 @@ public:
     virtual ~HidPort()                 = default;
 
     /// One input report with its number in front; waits up to `timeout` [s].
-    /// \return bytes filled; 0: none came in time. \throws HidLost
+    /// \return bytes filled; 0: none came in time
+    /// \throws HidLost
     virtual std::size_t read(std::span<std::uint8_t> report, double timeout) = 0;
 
-    /// One output report with its number in front. \throws HidLost
+    /// Writes one output report with its number in front.
+    /// \throws HidLost
     virtual void write(std::span<const std::uint8_t> report) = 0;
 };
 

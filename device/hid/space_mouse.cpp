@@ -70,7 +70,7 @@ void SpaceMouse::open()
     inbox_.publish();
     if (settings_.pace == HidPace::thread)
         thread_ = std::jthread([this](const std::stop_token& stop) {
-            while (!stop.stop_requested() && pass(kWait)) {
+            while (!stop.stop_requested() && readAndWrite(kWait)) {
             }
         });
 }
@@ -83,7 +83,7 @@ void SpaceMouse::close() noexcept
     }
     if (port_ && !seen_.lost) {
         lit_ = false;
-        pass(0);
+        readAndWrite(0);
     }
     port_.reset();
     state_.fault    = DeviceFault::closed;
@@ -91,7 +91,7 @@ void SpaceMouse::close() noexcept
 }
 
 /// Lights, then every report there is. \return false: the device is gone
-bool SpaceMouse::pass(double wait) noexcept
+bool SpaceMouse::readAndWrite(double wait) noexcept
 {
     if (const bool lit = lit_; lit != isLit_) {
         isLit_ = lit;
@@ -118,10 +118,10 @@ bool SpaceMouse::pass(double wait) noexcept
 HapticState SpaceMouse::exchange(const GovernedForce& /*force*/, double now) noexcept
 {
     if (!port_ || state_.fault == DeviceFault::unplugged) return state_;
-    if (settings_.pace == HidPace::caller) pass(0);
+    if (settings_.pace == HidPace::caller) readAndWrite(0);
     if (state_.sequence > 0 && now < state_.time) lastReport_ += now - state_.time; // the servo's clock starts anew
     inbox_.take();
-    const Seen seen = inbox_.held() ? *inbox_.held() : Seen{};
+    const Reported seen = inbox_.held() ? *inbox_.held() : Reported{};
     if (seen.reports != lastReports_) {
         lastReports_ = seen.reports;
         lastReport_  = now;

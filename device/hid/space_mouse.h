@@ -29,7 +29,8 @@ struct SpaceMouseAxes {
 };
 
 /// A SpaceMouse as a hand without force: the deflection of its cap is the speed of a point. It senses no place, so it
-/// is always homed and in its box. Its six axes serve a camera too. \thread see HapticDevice; axes() on one more
+/// is always homed and in its box. Its six axes serve a camera too.
+/// \thread see HapticDevice; axes() on one more
 class SpaceMouse : public HapticDevice {
 public:
     /// \param system   outlives it
@@ -49,13 +50,13 @@ public:
     [[nodiscard]] SpaceMouseAxes axes() noexcept;
 
 private:
-    struct Seen {
+    struct Reported {
         SpaceMouseCounts counts;
-        std::uint64_t    reports = 0; ///< [1] that were understood
+        std::uint64_t    reports = 0; ///< that were understood
         bool             lost    = false;
     };
 
-    bool pass(double wait) noexcept;
+    bool readAndWrite(double wait) noexcept;
     void move(const SpaceMouseAxes& axes, double now) noexcept;
 
     HidSystem&               system_;
@@ -63,10 +64,10 @@ private:
     SpaceMouseSettings       settings_;
     HapticDeviceInfo         info_;
     std::unique_ptr<HidPort> port_;          ///< the thread's while there is one
-    Seen                     seen_;          ///< likewise
+    Reported                 seen_;          ///< likewise
     bool                     isLit_ = false; ///< likewise: what was last written
     std::atomic<bool>        lit_{false};
-    Latest<Seen>             inbox_;
+    Latest<Reported>         inbox_;
     Latest<SpaceMouseAxes>   camera_;
     HapticState              state_;
     std::uint64_t            lastReports_ = 0;

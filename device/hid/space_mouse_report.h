@@ -11,7 +11,7 @@ namespace palp {
 struct SpaceMouseModel {
     std::uint16_t vendor, product;
     const char*   name;
-    unsigned      buttons; ///< [1] bits of the button report; not every bit need have a button
+    unsigned      buttons; ///< bits of the button report; not every bit need have a button
 };
 
 /// The model that a listing is, or null: keyboards and mice of the same maker, and the other collections of a cap.

@@ -15,7 +15,7 @@ namespace palp {
 struct Sample {
     std::string_view          name;        ///< as users type it, "ear-lobe"
     std::string_view          description; ///< one line
-    std::size_t               points;      ///< default number of points [1]
+    std::size_t               points;      ///< default number of points
     Material                  material;
     double                    foundation;      ///< elastic foundation k [Pa/m]
     double                    window;          ///< edge of the chart window [m]

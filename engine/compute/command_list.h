@@ -24,7 +24,7 @@ struct Binding {
     }
 
     const Buffer* buffer;
-    std::size_t   offset = 0;     ///< [byte] a multiple of 256 suits every device
+    std::size_t   offset = 0;     ///< [byte] a multiple of 256 suits every processor
     std::size_t   bytes  = kRest; ///< [byte]
 };
 
@@ -46,7 +46,7 @@ struct Push : std::span<const std::byte> {
 };
 
 /// Commands that are recorded once and run any number of times, one after the other: each sees everything that those
-/// before it wrote. Kernels and buffers that it names must live until it has run for the last time.
+/// before it wrote. Kernels and buffers that a list names must live until it has run for the last time.
 class CommandList {
 public:
     explicit CommandList(Context& context);
@@ -56,12 +56,13 @@ public:
 
     void dispatch(const Kernel& kernel, const Bindings& bindings, const Push& push, Groups groups);
 
-    /// As above with the groups, three 32-bit words, read from a buffer when the list runs: a kernel may have written
-    /// them, and zeroes make the dispatch do nothing at next to no cost. \param offset [byte] multiple of 4
+    /// Dispatches with the groups, three 32-bit words, that a buffer holds when the list runs. A kernel may have written
+    /// them, and zeroes make the dispatch do nothing at next to no cost.
+    /// \param offset  of the words [byte], a multiple of 4
     void dispatchIndirect(const Kernel& kernel, const Bindings& bindings, const Push& push, const Buffer& groups,
                           std::size_t offset = 0);
 
-    /// Offsets and size [byte]; the ranges lie within the buffers and do not overlap.
+    /// Copies a range of bytes. The ranges lie within the buffers and do not overlap.
     void copy(const Buffer& from, std::size_t fromOffset, const Buffer& to, std::size_t toOffset, std::size_t bytes);
 
     /// Copies the whole of a buffer into one of at least its size.
@@ -73,13 +74,14 @@ public:
     /// Notes the time when everything before it is done.
     void timestamp();
 
-    /// Nothing can be recorded after this, and nothing run before it.
+    /// Ends the recording: nothing can be recorded after this, and the list cannot run before it.
     void end();
 
-    /// Times of the last run, one for each timestamp(), since the first of them [ms]; empty if the device has no clock.
+    /// Returns the times of the last run, one for each timestamp(), since the first of them [ms]; nothing if the
+    /// processor has no clock.
     [[nodiscard]] std::vector<double> timestampsMilliseconds() const;
 
-    [[nodiscard]] int  dispatches() const noexcept; ///< so many were recorded, indirect ones included
+    [[nodiscard]] int  dispatches() const noexcept; ///< how many were recorded, indirect ones included
     [[nodiscard]] bool ended() const noexcept;
 
     /// For the files of engine/compute.

@@ -31,12 +31,12 @@ Handles openWanted(const ContextSettings& settings)
 {
     auto                         instance = std::make_unique<Instance>(settings.validation);
     const std::vector<Candidate> found    = candidates(*instance);
-    if (const auto place = chooseProcessor(descriptionsOf(found), settings.device))
+    if (const auto place = chooseProcessor(descriptionsOf(found), settings.processor))
         return std::make_unique<VulkanContext>(instance, found[*place], settings.patience);
     return openHost(settings);
 }
 
-/// What is broken keeps nobody from what works: the next best GPU, and in the end the host.
+/// Passes over what is broken, for the next best GPU and in the end for the host.
 Handles openBest(const ContextSettings& settings)
 {
     Handles     opened;
@@ -54,7 +54,7 @@ Handles openBest(const ContextSettings& settings)
                 note += (note.empty() ? "" : "; ") + std::string(error.what());
             }
         }
-    } catch (const ProcessorError& error) { // no device can even be listed
+    } catch (const ProcessorError& error) { // nothing can even be listed
         note = error.what();
     }
     if (!opened) opened = openHost(settings);
@@ -62,7 +62,7 @@ Handles openBest(const ContextSettings& settings)
     return opened;
 }
 
-/// The first usable one of these kinds, in their order.
+/// Finds the first usable one of these kinds, in their order.
 std::optional<std::size_t> bestToDraw(const std::vector<Processor>& list)
 {
     for (const char* kind : {"discrete", "integrated", "virtual", "software"})
@@ -76,15 +76,15 @@ std::optional<std::size_t> bestToDraw(const std::vector<Processor>& list)
     std::string sentence = "no Vulkan device can draw";
     if (list.empty())
         sentence += ", for none was found: install the vendor's driver, or mesa-vulkan-drivers for one in software";
-    for (const Processor& device : list)
-        sentence += "\n  " + std::to_string(device.index) + "  " + device.name + ": " +
-                    (device.refusals.empty() ? "of a kind that is not taken by itself" : device.refusals.front());
+    for (const Processor& one : list)
+        sentence += "\n  " + std::to_string(one.index) + "  " + one.name + ": " +
+                    (one.refusals.empty() ? "of a kind that is not taken by itself" : one.refusals.front());
     throw ProcessorError(sentence);
 }
 
 Handles openToDraw(const ContextSettings& settings)
 {
-    if (isProcessorWord(settings.device, kHostProcessor))
+    if (isProcessorWord(settings.processor, kHostProcessor))
         throw ProcessorError("the host computes and cannot draw; name a Vulkan device, such as lavapipe");
     auto                         instance = std::make_unique<Instance>(settings.validation, settings.windowExtensions);
     const std::vector<Candidate> found    = candidates(*instance);
@@ -94,7 +94,8 @@ Handles openToDraw(const ContextSettings& settings)
     const auto open = [&](std::size_t n) {
         return std::make_unique<VulkanContext>(instance, found[n], settings.patience, settings.purpose);
     };
-    if (!isProcessorWord(settings.device, kAutoProcessor)) return open(chooseProcessor(list, settings.device).value());
+    if (!isProcessorWord(settings.processor, kAutoProcessor))
+        return open(chooseProcessor(list, settings.processor).value());
     std::string note;
     while (const auto place = bestToDraw(list)) try {
             Handles opened = open(*place);
@@ -110,8 +111,8 @@ Handles openToDraw(const ContextSettings& settings)
 Handles open(const ContextSettings& settings)
 {
     if (settings.purpose != Purpose::compute) return openToDraw(settings);
-    if (isProcessorWord(settings.device, kHostProcessor)) return openHost(settings); // loads no driver
-    const bool best = isProcessorWord(settings.device, kAutoProcessor) && settings.validation == Validation::off;
+    if (isProcessorWord(settings.processor, kHostProcessor)) return openHost(settings); // loads no driver
+    const bool best = isProcessorWord(settings.processor, kAutoProcessor) && settings.validation == Validation::off;
     return best ? openBest(settings) : openWanted(settings);
 }
 
@@ -143,7 +144,7 @@ std::vector<std::string> Context::takeMessages()
     return handles_->takeMessages();
 }
 
-const Processor& Context::device() const noexcept
+const Processor& Context::processor() const noexcept
 {
     return handles_->description;
 }

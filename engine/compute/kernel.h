@@ -4,32 +4,11 @@
 #include <span>
 
 #include "engine/compute/context.h"
+#include "engine/compute/host_dispatch.h"
 
 namespace palp::compute {
 
-/// Invocations per workgroup; a multiple of 8 along x serves every device known.
-struct Workgroup {
-    std::uint32_t x = 64, y = 1, z = 1;
-};
-
-/// Workgroups per dispatch.
-struct Groups {
-    std::uint32_t x = 1, y = 1, z = 1;
-};
-
-/// One dispatch as a kernel on the host sees it.
-struct HostDispatch {
-    void* const*         buffers;   ///< what is bound, in order
-    const void*          push;      ///< constants, as laid out in the shader
-    const std::uint32_t* constants; ///< specialization constants 3, 4, ...
-    Workgroup            workgroup;
-    Groups               groups; ///< none is 0
-};
-
-/// A kernel for the host: does what all invocations of the dispatch do.
-using HostKernel = void (*)(const HostDispatch&);
-
-/// A compiled shader and what it expects. The arrays live as long as the program: see palp_shader() in
+/// A compiled shader and what it expects. Its arrays live as long as the program: see palp_shader() in
 /// compute_shaders/CMakeLists.txt.
 struct KernelCode {
     const char*                    name = "";
@@ -39,20 +18,20 @@ struct KernelCode {
     HostKernel                     host      = nullptr; ///< the same for the host, if there is one
 };
 
-/// A shader with its constants fixed, ready to be dispatched. Drivers compile it at construction or, lavapipe, at its
-/// first dispatch (20 to 150 ms, less than 3 ms when the driver remembers it), so run it once before timing it.
+/// A shader with its constants fixed, ready to be dispatched. Drivers compile it at construction, lavapipe at its first
+/// dispatch (20 to 150 ms, less than 3 ms when the driver remembers it), so a kernel should run once before it is timed.
 class Kernel {
 public:
     /// \param workgroup  becomes specialization constants 0, 1 and 2: layout(local_size_x_id = 0, ...) in the shader
     /// \param constants  specialization constants 3, 4, ... as 32-bit words; floats by std::bit_cast
-    /// \throws Error if the device does not allow what the kernel needs
+    /// \throws Error if the processor does not allow what the kernel needs
     Kernel(Context& context, const KernelCode& code, Workgroup workgroup,
            std::span<const std::uint32_t> constants = {});
     ~Kernel();
     Kernel(Kernel&&) noexcept;
     Kernel& operator=(Kernel&&) noexcept;
 
-    /// The groups that cover so many invocations, rounded up.
+    /// Returns the groups that cover this number of invocations, rounded up.
     [[nodiscard]] Groups groupsOver(std::uint32_t nx, std::uint32_t ny = 1, std::uint32_t nz = 1) const noexcept;
 
     [[nodiscard]] const KernelCode& code() const noexcept;

@@ -9,7 +9,7 @@
 namespace palp::compute {
 namespace {
 
-using Devices = std::vector<Processor>;
+using Processors = std::vector<Processor>;
 
 /// What "auto" takes, best first. Not what drivers call "other", of which nothing is known, nor software.
 constexpr std::array<std::string_view, 3> kGpus{"discrete", "integrated", "virtual"};
@@ -30,63 +30,63 @@ std::string joined(const std::vector<std::string>& reasons)
     return text;
 }
 
-std::string withDevices(const std::string& sentence, const Devices& devices)
+std::string withProcessors(const std::string& sentence, const Processors& processors)
 {
     std::string text = sentence;
-    if (devices.empty())
+    if (processors.empty())
         text += "; no Vulkan device was found: install the vendor's driver, or mesa-vulkan-drivers for one in software";
-    for (const Processor& device : devices)
-        text += "\n  " + std::to_string(device.index) + "  " + device.name + " (" + device.kind +
-                "): " + (device.refusals.empty() ? "usable" : joined(device.refusals));
+    for (const Processor& one : processors)
+        text += "\n  " + std::to_string(one.index) + "  " + one.name + " (" + one.kind +
+                "): " + (one.refusals.empty() ? "usable" : joined(one.refusals));
     return text + "\n  host  (this machine's processor): usable";
 }
 
-[[noreturn]] void refuse(const Devices& devices, const std::string& sentence)
+[[noreturn]] void refuse(const Processors& processors, const std::string& sentence)
 {
-    throw ProcessorError(withDevices(sentence, devices));
+    throw ProcessorError(withProcessors(sentence, processors));
 }
 
-/// Where no GPU can be used, the machine is to blame and not the word.
-[[noreturn]] void refuseWord(const Devices& devices, const std::string& sentence)
+/// Refuses a word; where no GPU can be used, the machine is to blame and not the word.
+[[noreturn]] void refuseWord(const Processors& processors, const std::string& sentence)
 {
-    if (std::ranges::none_of(devices, [](const Processor& device) { return device.refusals.empty(); }))
-        refuse(devices, sentence);
-    throw UnknownProcessor(withDevices(sentence, devices));
+    if (std::ranges::none_of(processors, [](const Processor& one) { return one.refusals.empty(); }))
+        refuse(processors, sentence);
+    throw UnknownProcessor(withProcessors(sentence, processors));
 }
 
-/// The first usable device of a kind.
-std::optional<std::size_t> firstOf(const Devices& devices, std::string_view kind)
+/// Finds the first usable processor of a kind.
+std::optional<std::size_t> firstOf(const Processors& processors, std::string_view kind)
 {
-    for (std::size_t n = 0; n < devices.size(); ++n)
-        if (devices[n].kind == kind && devices[n].refusals.empty()) return n;
+    for (std::size_t n = 0; n < processors.size(); ++n)
+        if (processors[n].kind == kind && processors[n].refusals.empty()) return n;
     return std::nullopt;
 }
 
-std::optional<std::size_t> withIndex(const Devices& devices, std::string_view wanted)
+std::optional<std::size_t> withIndex(const Processors& processors, std::string_view wanted)
 {
     int         index     = -1;
     const char* end       = wanted.data() + wanted.size();
     const auto [stop, ok] = std::from_chars(wanted.data(), end, index);
     if (ok != std::errc() || stop != end) return std::nullopt;
-    for (std::size_t n = 0; n < devices.size(); ++n)
-        if (devices[n].index == index) return n;
+    for (std::size_t n = 0; n < processors.size(); ++n)
+        if (processors[n].index == index) return n;
     constexpr int kMostIndex = 99; // a larger number may be part of a name, such as 4090
-    if (index <= kMostIndex) refuseWord(devices, "there is no GPU " + std::string(wanted) + "; " + kExpected);
+    if (index <= kMostIndex) refuseWord(processors, "there is no GPU " + std::string(wanted) + "; " + kExpected);
     return std::nullopt;
 }
 
-std::size_t withName(const Devices& devices, std::string_view wanted)
+std::size_t withName(const Processors& processors, std::string_view wanted)
 {
     const std::string        part = lower(wanted);
     std::vector<std::size_t> usable, refused;
-    for (std::size_t n = 0; n < devices.size(); ++n)
-        if (lower(devices[n].name).find(part) != std::string::npos)
-            (devices[n].refusals.empty() ? usable : refused).push_back(n);
+    for (std::size_t n = 0; n < processors.size(); ++n)
+        if (lower(processors[n].name).find(part) != std::string::npos)
+            (processors[n].refusals.empty() ? usable : refused).push_back(n);
     const std::string quoted = std::string("'").append(wanted).append("'");
-    if (usable.size() > 1) refuseWord(devices, "several GPUs are called " + quoted + "; say which by its index");
+    if (usable.size() > 1) refuseWord(processors, "several GPUs are called " + quoted + "; say which by its index");
     if (usable.size() == 1) return usable.front();
-    if (!refused.empty()) refuse(devices, "the GPU " + quoted + " cannot be used");
-    refuseWord(devices, "no GPU is called " + quoted + "; " + kExpected);
+    if (!refused.empty()) refuse(processors, "the GPU " + quoted + " cannot be used");
+    refuseWord(processors, "no GPU is called " + quoted + "; " + kExpected);
 }
 
 } // namespace
@@ -96,28 +96,28 @@ bool isProcessorWord(std::string_view given, std::string_view word)
     return lower(given) == word;
 }
 
-std::optional<std::size_t> chooseProcessor(const Devices& devices, std::string_view wanted)
+std::optional<std::size_t> chooseProcessor(const Processors& processors, std::string_view wanted)
 {
     if (isProcessorWord(wanted, kHostProcessor)) return std::nullopt;
     if (isProcessorWord(wanted, kAutoProcessor)) {
         for (const std::string_view kind : kGpus)
-            if (const auto found = firstOf(devices, kind)) return found;
+            if (const auto found = firstOf(processors, kind)) return found;
         return std::nullopt;
     }
     if (isProcessorWord(wanted, kLavapipeProcessor)) {
-        if (const auto found = firstOf(devices, "software")) return found;
-        refuse(devices, "no GPU in software can be used (package mesa-vulkan-drivers)");
+        if (const auto found = firstOf(processors, "software")) return found;
+        refuse(processors, "no GPU in software can be used (package mesa-vulkan-drivers)");
     }
-    if (wanted.empty()) refuseWord(devices, std::string("an empty word names no device; ") + kExpected);
+    if (wanted.empty()) refuseWord(processors, std::string("an empty word names no processor; ") + kExpected);
     constexpr std::size_t kShortest = 2; // part of a name: a full stop or a space is in most of them
     const bool            hasLetter = std::ranges::any_of(wanted, [](unsigned char c) { return std::isalnum(c) != 0; });
     if (!hasLetter || (wanted.size() < kShortest && !std::isdigit(static_cast<unsigned char>(wanted.front()))))
-        refuseWord(devices, "'" + std::string(wanted) + "' names no device; " + kExpected);
-    if (const auto found = withIndex(devices, wanted)) {
-        if (!devices[*found].refusals.empty()) refuse(devices, "GPU " + std::string(wanted) + " cannot be used");
+        refuseWord(processors, "'" + std::string(wanted) + "' names no processor; " + kExpected);
+    if (const auto found = withIndex(processors, wanted)) {
+        if (!processors[*found].refusals.empty()) refuse(processors, "GPU " + std::string(wanted) + " cannot be used");
         return *found;
     }
-    return withName(devices, wanted);
+    return withName(processors, wanted);
 }
 
 } // namespace palp::compute

@@ -3,22 +3,22 @@
 
 namespace palp::compute {
 
-/// There is no device with what is needed. The message has one line per device and says why it was refused; programs
+/// Says that no processor has what is needed. The message has one line per processor with why it was refused; programs
 /// print it and exit with 4.
 class ProcessorError : public Error {
 public:
     using Error::Error;
 };
 
-/// Nothing fits the word that names a device, or too much does, and other devices could be used: bad usage. The
-/// message has one line per device; programs print it and exit with 2.
+/// Says that no processor fits the word that names one, or that several do, while others could be used: bad usage. The
+/// message has one line per processor; programs print it and exit with 2.
 class UnknownProcessor : public Error {
 public:
     using Error::Error;
 };
 
-/// The device went away, hangs or has no memory left while it was in use. What lived on it is gone; a new Context may
-/// work, a smaller problem as well.
+/// Says that the processor went away, hangs or has no memory left while it was in use. What lived on it is gone; a new
+/// Context or a smaller problem may work.
 class ProcessorLost : public Error {
 public:
     using Error::Error;

@@ -65,7 +65,7 @@ void findQueue(Candidate& candidate)
     candidate.timestampBits = families[*best].timestampValidBits;
 }
 
-/// What only devices from Vulkan 1.2 on can be asked.
+/// Asks what only devices from Vulkan 1.2 on can answer.
 void describeModern(Candidate& candidate)
 {
     auto driver = typed<VkPhysicalDeviceDriverProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
@@ -86,7 +86,7 @@ void describeModern(Candidate& candidate)
         candidate.description.refusals.push_back("it does not lay structs out as C++ does (scalarBlockLayout)");
 }
 
-/// What the kernels of this project need at most; the smallest devices that Vulkan allows have less.
+/// Refuses what is too small for the kernels of this project; the smallest devices that Vulkan allows are.
 void refuseSmall(Candidate& candidate)
 {
     constexpr std::uint32_t kBuffers = 9, kInvocations = 256, kPushBytes = 128, kSharedBytes = 16 << 10;

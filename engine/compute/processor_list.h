@@ -10,14 +10,14 @@
 
 namespace palp::compute {
 
-/// Words for devices, in any case. The host is the processor of this machine: it needs no driver and is not in the
+/// Words for processors, in any case. The host is the processor of this machine: it needs no driver and is not in the
 /// list.
 inline constexpr std::string_view kAutoProcessor = "auto", kHostProcessor = "host", kLavapipeProcessor = "lavapipe";
 
 /// Whether `given` is the word, in any case.
 [[nodiscard]] bool isProcessorWord(std::string_view given, std::string_view word);
 
-/// One device as the drivers describe it, or the host.
+/// One processor: a device as the drivers of Vulkan describe it, or the host.
 struct Processor {
     int                      index = 0;       ///< place in the list of this machine; of the host: -1
     std::string              name;            ///< as the driver spells it, or kHostProcessor
@@ -29,22 +29,23 @@ struct Processor {
     std::vector<std::string> refusals;        ///< why it cannot be used; empty: it can
 };
 
-/// Every Vulkan device of this machine; empty if there is no driver. Takes tens of milliseconds: it loads every driver.
+/// Lists every Vulkan device of this machine, or nothing if there is no driver. It loads every driver, which takes tens
+/// of milliseconds.
 /// \throws ProcessorError if Vulkan does not start, or cannot tell
 [[nodiscard]] std::vector<Processor> listProcessors();
 
 [[nodiscard]] Processor describeHost();
 
-/// The place in the list of the device that is wanted; empty: the host.
+/// Finds the place in the list of the processor that is wanted; empty stands for the host.
 ///
 /// \param wanted  "auto": the first usable GPU, discrete before integrated before virtual; without one the host, whose
 ///                native code is 15 to 30 times faster than shaders in software and gives the same bits;
-///                "host"; "lavapipe": a software device; an INDEX of the list; or part of a NAME, whatever the case,
-///                that fits one usable device only. The words in any case
-/// \throws UnknownProcessor if the word is wrong and another GPU could be used; ProcessorError if what it names cannot be
-///         used, or no GPU can. Both with one line per device
+///                "host"; "lavapipe": Vulkan in software; an INDEX of the list; or part of a NAME that fits one usable
+///                processor only. Words and names may be in any case.
+/// \throws UnknownProcessor if the word is wrong and another GPU could be used, with one line per processor
+/// \throws ProcessorError if the processor that it names cannot be used, or if no GPU can, with one line per processor
 /// \thread pure
-[[nodiscard]] std::optional<std::size_t> chooseProcessor(const std::vector<Processor>& devices,
+[[nodiscard]] std::optional<std::size_t> chooseProcessor(const std::vector<Processor>& processors,
                                                          std::string_view              wanted);
 
 } // namespace palp::compute

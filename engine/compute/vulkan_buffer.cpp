@@ -16,7 +16,7 @@ std::vector<VkMemoryPropertyFlags> wishes(Intent intent)
     case Intent::device:
         return {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0};
     case Intent::upload:
-        return {kVisible | kCoherent}; // every device has it
+        return {kVisible | kCoherent}; // every driver has it
     case Intent::readback:
         return {kVisible | kCached | kCoherent, kVisible | kCached, kVisible | kCoherent};
     }

@@ -32,10 +32,12 @@ public:
     void                                  run(std::span<CommandList* const> lists) override;
     std::vector<std::string>              takeMessages() override;
 
-    /// Submits what was recorded and waits, as Context::run() does. \throws ProcessorLost
+    /// Submits what was recorded and waits, as Context::run() does.
+    /// \throws ProcessorLost as there
     void submit(std::span<const VkCommandBuffer> commands);
 
-    /// The two halves of submit(); in between the host is free. \pre what was started has been finished
+    /// The two halves of submit(); in between the host is free.
+    /// \pre what was started has been finished
     void start(std::span<const VkCommandBuffer> commands);
     void finish();
 

@@ -26,8 +26,8 @@ template <class Structure>
 /// The entrance to the drivers, with the validation layer if it is asked for.
 class Instance {
 public:
-    /// \throws ProcessorError if validation is asked for and not installed, or if a driver fails; no driver at all is fine
     /// \param more  extensions beside our own
+    /// \throws ProcessorError if validation is asked for and not installed, or if a driver fails; no driver at all is fine
     explicit Instance(Validation validation, const std::vector<std::string>& more = {});
     ~Instance();
     Instance(const Instance&)            = delete;
@@ -36,7 +36,8 @@ public:
     [[nodiscard]] VkInstance get() const noexcept { return instance_; } ///< null: there is no driver
     [[nodiscard]] bool       hasDebugUtils() const noexcept { return debugUtils_; }
 
-    /// Messages since the last call. \thread any
+    /// Returns the messages since the last call.
+    /// \thread any
     [[nodiscard]] std::vector<std::string> takeMessages();
 
 private:
@@ -64,7 +65,8 @@ struct Candidate {
     VkDeviceSize                 maxBufferBytes = 0; ///< [byte]
 };
 
-/// Every device, in the order of the drivers. \throws ProcessorError if they cannot be listed
+/// Describes every device, in the order of the drivers.
+/// \throws ProcessorError if they cannot be listed
 [[nodiscard]] std::vector<Candidate> candidates(const Instance& instance);
 
 } // namespace palp::compute

@@ -11,18 +11,18 @@ void refuseWhatDoesNotFit(const VulkanContext& gpu, const KernelCode& code, Work
 {
     const VkPhysicalDeviceLimits& limits = gpu.native;
     const std::string             who    = std::string("the kernel ") + code.name + " ";
-    const std::string             device = " than the GPU " + gpu.description.name + " allows (";
+    const std::string             limit  = " than the GPU " + gpu.description.name + " allows (";
     const std::uint64_t           all    = std::uint64_t(workgroup.x) * workgroup.y * workgroup.z;
     if (workgroup.x > limits.maxComputeWorkGroupSize[0] || workgroup.y > limits.maxComputeWorkGroupSize[1] ||
         workgroup.z > limits.maxComputeWorkGroupSize[2] || all > limits.maxComputeWorkGroupInvocations)
         throw Error(who + "wants a workgroup of " + std::to_string(workgroup.x) + "x" + std::to_string(workgroup.y) +
-                    "x" + std::to_string(workgroup.z) + ", more" + device +
+                    "x" + std::to_string(workgroup.z) + ", more" + limit +
                     std::to_string(limits.maxComputeWorkGroupInvocations) + " in all)");
     if (std::uint32_t(code.buffers) > limits.maxPerStageDescriptorStorageBuffers)
-        throw Error(who + "wants " + std::to_string(code.buffers) + " buffers, more" + device +
+        throw Error(who + "wants " + std::to_string(code.buffers) + " buffers, more" + limit +
                     std::to_string(limits.maxPerStageDescriptorStorageBuffers) + ")");
     if (std::uint32_t(code.pushBytes) > limits.maxPushConstantsSize)
-        throw Error(who + "wants " + std::to_string(code.pushBytes) + " bytes of push constants, more" + device +
+        throw Error(who + "wants " + std::to_string(code.pushBytes) + " bytes of push constants, more" + limit +
                     std::to_string(limits.maxPushConstantsSize) + ")");
 }
 

@@ -7,7 +7,7 @@
 
 namespace palp {
 
-/// What the later stages need to know of a touch.
+/// A touch, as the later stages need it.
 struct Contact {
     glm::dvec3 point{};          ///< [m] a place on the cloud
     glm::dvec3 outward{0, 0, 1}; ///< [1] unit vector roughly from the surface to the hand; only its side counts
@@ -15,12 +15,11 @@ struct Contact {
     bool outwardKnown = true;
 };
 
-/// The touch of a scripted finger: the point of the cloud nearest to `place`.
+/// Finds the touch of a scripted finger: the point of the object nearest to `place`.
 ///
 /// \param place  [m] where the finger goes; at most `reach` from the nearest point
-/// \param from   [1] from which side the finger comes; empty: away from the middle of the cloud's bounds, a guess that
-/// is
-///               right for closed objects and for flat ones
+/// \param from   [1] the side that the finger comes from; empty: away from the middle of the cloud's bounds, a guess
+///               that is right for closed objects and for flat ones
 /// \param reach  [m]
 /// \throws Error naming the place, the distance and the nearest point, if it is farther than `reach`
 [[nodiscard]] Contact touchAt(const SoftObject& object, const glm::dvec3& place, const std::optional<glm::dvec3>& from,

@@ -66,14 +66,14 @@ private:
         double     sinceLook = -1; ///< [m] travelled since the last look for new surfaces; negative: look now
     };
 
-    void                 fly(const glm::dvec3& hip) noexcept;
-    void                 settle(const glm::dvec3& hip) noexcept;
+    void                 travelFreely(const glm::dvec3& hip) noexcept;
+    void                 followSurfaces(const glm::dvec3& hip) noexcept;
     bool                 iterate(const glm::dvec3& hip, Descent& descent, bool& decided) noexcept;
-    double               look(const glm::dvec3& hip, Descent& descent) noexcept;
+    double               updateSurfaces(const glm::dvec3& hip, Descent& descent) noexcept;
     bool                 takeStep(Descent& descent, const glm::dvec3& way, double corrected) noexcept;
-    void                 fade() noexcept;
-    void                 pull(const glm::dvec3& hip) noexcept;
-    void                 forget(const glm::dvec3& hip) noexcept;
+    void                 fadeForce() noexcept;
+    void                 updatePull(const glm::dvec3& hip) noexcept;
+    void                 forgetSurfaces(const glm::dvec3& hip) noexcept;
     [[nodiscard]] double spacing() const noexcept { return surfaces_.spacing; }
 
     NearPoints     points_;
@@ -81,7 +81,7 @@ private:
     FreeTravel     travel_;
     Friction       friction_;
     Surfaces       surfaces_;
-    Rest           rest_;
+    RestPoint      rest_;
     glm::dvec3     lastHip_{}; ///< [m]
 };
 
@@ -89,10 +89,10 @@ void HybridProxy::reset(const glm::dvec3& hip) noexcept
 {
     state    = {};
     lastHip_ = hip;
-    forget(hip);
+    forgetSurfaces(hip);
 }
 
-void HybridProxy::forget(const glm::dvec3& hip) noexcept
+void HybridProxy::forgetSurfaces(const glm::dvec3& hip) noexcept
 {
     surfaces_          = {};
     rest_              = {};
@@ -107,17 +107,17 @@ void HybridProxy::forget(const glm::dvec3& hip) noexcept
 void HybridProxy::step(const glm::dvec3& hip) noexcept
 {
     state.limited = false;
-    if (!state.touching) fly(hip);
-    if (state.touching) settle(hip);
-    if (state.touching) fade();
-    if (state.touching && state.fade <= 0) forget(hip);
+    if (!state.touching) travelFreely(hip);
+    if (state.touching) followSurfaces(hip);
+    if (state.touching) fadeForce();
+    if (state.touching && state.fade <= 0) forgetSurfaces(hip);
     state.slipping = friction_.slipping;
-    pull(hip);
+    updatePull(hip);
     lastHip_ = hip;
 }
 
 /// Goes on to the HIP, or to the first surface on the way.
-void HybridProxy::fly(const glm::dvec3& hip) noexcept
+void HybridProxy::travelFreely(const glm::dvec3& hip) noexcept
 {
     const Arrival end  = travel_.go(state.position, hip, surfaces_);
     state.position     = end.position;
@@ -129,7 +129,7 @@ void HybridProxy::fly(const glm::dvec3& hip) noexcept
     if (surfaces_.spacing > 0) state.spacing = surfaces_.spacing;
 }
 
-void HybridProxy::settle(const glm::dvec3& hip) noexcept
+void HybridProxy::followSurfaces(const glm::dvec3& hip) noexcept
 {
     const double depth = glm::length(hip - state.position);
     Descent      descent;
@@ -141,7 +141,7 @@ void HybridProxy::settle(const glm::dvec3& hip) noexcept
         state.limited = state.touching && k == kIterations;
     }
     if (!state.touching) return;
-    if (state.limited) rest_ = restOn(surfaces_.all(), hip);
+    if (state.limited) rest_ = restPointOn(surfaces_.all(), hip);
     const auto most = std::max_element(rest_.load.begin(), rest_.load.end()) - rest_.load.begin();
     if (rest_.touching()) state.normal = surfaces_.planes[std::size_t(most)].normal;
     state.spacing = spacing();
@@ -149,7 +149,7 @@ void HybridProxy::settle(const glm::dvec3& hip) noexcept
 
 /// Looks for surfaces where that is due and fits the known ones.
 /// \return  [m] the furthest that a surface was moved
-double HybridProxy::look(const glm::dvec3& hip, Descent& descent) noexcept
+double HybridProxy::updateSurfaces(const glm::dvec3& hip, Descent& descent) noexcept
 {
     if (descent.sinceLook < 0 || descent.sinceLook > kLookAfter * spacing()) {
         tracker_.discover(surfaces_, state.position, hip);
@@ -166,11 +166,11 @@ double HybridProxy::look(const glm::dvec3& hip, Descent& descent) noexcept
 /// \return whether the tick is done
 bool HybridProxy::iterate(const glm::dvec3& hip, Descent& descent, bool& decided) noexcept
 {
-    double corrected = look(hip, descent);
-    rest_            = restOn(surfaces_.all(), hip);
+    double corrected = updateSurfaces(hip, descent);
+    rest_            = restPointOn(surfaces_.all(), hip);
     if (!rest_.touching()) {
         // From here, never by a jump to the HIP: another wall may be between.
-        fly(hip);
+        travelFreely(hip);
         descent.stepped   = false;
         descent.sinceLook = -1;
         return !state.touching;
@@ -218,7 +218,7 @@ bool HybridProxy::takeStep(Descent& descent, const glm::dvec3& way, double corre
 }
 
 /// Past a border the force goes within a few ticks, while the proxy slides on along the last plane.
-void HybridProxy::fade() noexcept
+void HybridProxy::fadeForce() noexcept
 {
     double support = 0;
     for (int j = 0; j < surfaces_.count; ++j)
@@ -228,7 +228,7 @@ void HybridProxy::fade() noexcept
 }
 
 /// A press, a slide, a curve or a stop of the HIP change the pull by no more than the HIP moves; the rest is a jump.
-void HybridProxy::pull(const glm::dvec3& hip) noexcept
+void HybridProxy::updatePull(const glm::dvec3& hip) noexcept
 {
     const glm::dvec3 jump  = state.fade * (state.position - hip) - state.pull;
     const double     least = kLeastPull * state.spacing;

@@ -89,9 +89,9 @@ void Surfaces::remove(int which) noexcept
     --count;
 }
 
-Rest restOn(std::span<const SurfacePlane> planes, const glm::dvec3& hip) noexcept
+RestPoint restPointOn(std::span<const SurfacePlane> planes, const glm::dvec3& hip) noexcept
 {
-    Rest         best{hip, {}};
+    RestPoint    best{hip, {}};
     double       behind = deepest(planes, hip); // of the best, [m]
     const double scale  = behind;
     if (!(behind > 0)) return best;
@@ -117,7 +117,7 @@ Rest restOn(std::span<const SurfacePlane> planes, const glm::dvec3& hip) noexcep
     return best;
 }
 
-glm::dvec3 ontoLoaded(std::span<const SurfacePlane> planes, const Rest& rest, const glm::dvec3& place) noexcept
+glm::dvec3 ontoLoaded(std::span<const SurfacePlane> planes, const RestPoint& rest, const glm::dvec3& place) noexcept
 {
     unsigned set = 0;
     for (std::size_t j = 0; j < planes.size(); ++j) set |= rest.load[j] > 0 ? 1U << j : 0;
@@ -125,61 +125,61 @@ glm::dvec3 ontoLoaded(std::span<const SurfacePlane> planes, const Rest& rest, co
     return multipliers(planes, set, place, lambda) ? moved(planes, lambda, place) : place;
 }
 
-SurfaceTracker::Sight SurfaceTracker::look(const Surfaces& surfaces, const glm::dvec3& place)
+SurfaceTracker::VisiblePoints SurfaceTracker::findVisible(const Surfaces& surfaces, const glm::dvec3& place)
 {
-    const auto visible = [&](const NearPoint& point) {
+    const auto isVisible = [&](const NearPoint& point) {
         const bool   sparse = point.spacing > kSparser * surfaces.spacing;
         const double hidden = kFullHeight * (sparse ? point.spacing : surfaces.spacing);
         for (const SurfacePlane& plane : surfaces.all())
             if (plane.height(point.position) <= hidden) return false;
         return true;
     };
-    Sight  sight;
-    double best = kBall; // [1] distance over the point's spacing
+    VisiblePoints visible;
+    double        best = kBall; // [1] distance over the point's spacing
     points_.holding(place, [&](const NearPoint& point, double d2) {
         const double distance = std::sqrt(d2) / point.spacing;
-        sight.sparsest        = std::max(sight.sparsest, point.spacing);
-        if (!(distance < best) || !visible(point)) return;
-        best          = distance;
-        sight.nearest = point;
-        sight.any     = true;
+        visible.sparsest      = std::max(visible.sparsest, point.spacing);
+        if (!(distance < best) || !isVisible(point)) return;
+        best            = distance;
+        visible.nearest = point;
+        visible.any     = true;
     });
-    if (!sight.any) return sight;
-    const double s = sight.nearest.spacing;
+    if (!visible.any) return visible;
+    const double s = visible.nearest.spacing;
     const double r = s * std::sqrt(best * best + kView * kView);
     points_.inside(place, r, s, [&](const NearPoint& point, double d2) {
         const double distance = std::sqrt(d2);
-        if (distance > 0 && visible(point)) sight.outward += (r / distance - 1) * (place - point.position);
+        if (distance > 0 && isVisible(point)) visible.outward += (r / distance - 1) * (place - point.position);
     });
-    return sight;
+    return visible;
 }
 
-/// Whose own balls the place of a guess lies in, of the points near its plane.
-SurfaceTracker::Around SurfaceTracker::around(const Guess& guess) const noexcept
+/// Whose own balls the place of a trial lies in, of the points near its plane.
+SurfaceTracker::NearbyPoints SurfaceTracker::pointsNear(const TrialPlane& trial) const noexcept
 {
-    Around around;
-    double best = kBall; // [1] distance over the point's spacing
-    points_.holding(guess.place, [&](const NearPoint& point, double d2) {
-        if (std::abs(glm::dot(guess.normal, point.position - guess.place)) > kFullHeight * point.spacing) return;
-        const bool   sparser  = point.spacing > kSparser * guess.spacing;
+    NearbyPoints near;
+    double       best = kBall; // [1] distance over the point's spacing
+    points_.holding(trial.place, [&](const NearPoint& point, double d2) {
+        if (std::abs(glm::dot(trial.normal, point.position - trial.place)) > kFullHeight * point.spacing) return;
+        const bool   sparser  = point.spacing > kSparser * trial.spacing;
         const double distance = std::sqrt(d2) / point.spacing;
-        around.alike          = around.alike || !sparser;
+        near.alike            = near.alike || !sparser;
         if (!sparser || distance >= best) return;
-        best           = distance;
-        around.sparser = point.spacing;
+        best         = distance;
+        near.sparser = point.spacing;
     });
-    return around;
+    return near;
 }
 
 /// A fit, with a larger spacing where the surface goes on with sparser points: what looks like a border is none then.
 /// Of all tried, the one with the most support.
-std::optional<PlaneFit> SurfaceTracker::fit(const Guess& guess, std::span<const SurfacePlane> others) noexcept
+std::optional<PlaneFit> SurfaceTracker::fitPlane(const TrialPlane& trial, std::span<const SurfacePlane> others) noexcept
 {
-    if (!points_.mixed()) return fitter_.fit(guess.place, guess.normal, guess.spacing, others);
+    if (!points_.mixed()) return fitter_.fit(trial.place, trial.normal, trial.spacing, others);
     std::optional<PlaneFit> best;
-    Guess                   wider = guess;
+    TrialPlane              wider = trial;
     for (bool last = false; !last;) { // at most once per doubling of the spacing
-        const Around near = around(wider);
+        const NearbyPoints near = pointsNear(wider);
         if (near.alike || !(near.sparser > 0)) {
             const auto found = fitter_.fit(wider.place, wider.normal, wider.spacing, others);
             if (found && (!best || found->plane.support > best->plane.support)) best = found;
@@ -190,19 +190,19 @@ std::optional<PlaneFit> SurfaceTracker::fit(const Guess& guess, std::span<const 
     return best;
 }
 
-bool SurfaceTracker::accept(Surfaces& surfaces, const Sight& sight, const glm::dvec3& place,
-                            const glm::dvec3& seed) noexcept
+bool SurfaceTracker::addSurface(Surfaces& surfaces, const VisiblePoints& visible, const glm::dvec3& place,
+                                const glm::dvec3& seed) noexcept
 {
-    const NearPoint& nearest = sight.nearest;
+    const NearPoint& nearest = visible.nearest;
     const double     length  = glm::length(seed);
     if (!(length > 0)) return false;
     SurfacePlane plane{seed / length, nearest.position, 0};
     double       spacing = surfaces.spacing;
     // Noise of sparse points is no ceiling over a floor of dense ones.
-    const double coarse = points_.mixed() ? std::max(spacing, sight.sparsest) : spacing;
+    const double coarse = points_.mixed() ? std::max(spacing, visible.sparsest) : spacing;
     for (int k = 0; k <= kFitsAtPoint; ++k) {
-        const glm::dvec3 at    = k < kFitsAtPoint ? nearest.position : place;
-        const auto       found = fit({at - plane.height(at) * plane.normal, plane.normal, spacing}, surfaces.all());
+        const glm::dvec3 at = k < kFitsAtPoint ? nearest.position : place;
+        const auto found    = fitPlane({at - plane.height(at) * plane.normal, plane.normal, spacing}, surfaces.all());
         if (!found) return false;
         plane = found->plane;
     }
@@ -223,20 +223,20 @@ bool SurfaceTracker::accept(Surfaces& surfaces, const Sight& sight, const glm::d
 bool SurfaceTracker::discover(Surfaces& surfaces, const glm::dvec3& place, const glm::dvec3& towards) noexcept
 {
     if (surfaces.count == Surfaces::kMost) return false;
-    const Sight sight = look(surfaces, place);
-    if (!sight.any) {
+    const VisiblePoints visible = findVisible(surfaces, place);
+    if (!visible.any) {
         if (surfaces.count == 0) surfaces.seen = {};
         return false;
     }
-    if (surfaces.count == 0) surfaces.spacing = sight.nearest.spacing;
+    if (surfaces.count == 0) surfaces.spacing = visible.nearest.spacing;
     // What was seen from further away was seen better: near a hole the nearest points are all on one side.
     const Surfaces before = surfaces;
-    if (surfaces.count == 0 && accept(surfaces, sight, place, surfaces.seen)) {
+    if (surfaces.count == 0 && addSurface(surfaces, visible, place, surfaces.seen)) {
         if (surfaces.planes[0].support >= kSureSupport) return true;
         surfaces = before;
     }
-    for (const glm::dvec3& seed : {sight.outward, place - towards, place - sight.nearest.position})
-        if (accept(surfaces, sight, place, seed)) break;
+    for (const glm::dvec3& seed : {visible.outward, place - towards, place - visible.nearest.position})
+        if (addSurface(surfaces, visible, place, seed)) break;
     return true;
 }
 
@@ -265,8 +265,8 @@ double SurfaceTracker::refresh(Surfaces& surfaces, const glm::dvec3& place) noex
         std::size_t                               count = 0;
         for (int k = 0; k < surfaces.count; ++k)
             if (k != j) others[count++] = surfaces.planes[std::size_t(k)];
-        const auto found =
-            fit({place - plane.height(place) * plane.normal, plane.normal, surfaces.spacing}, {others.data(), count});
+        const auto found = fitPlane({place - plane.height(place) * plane.normal, plane.normal, surfaces.spacing},
+                                    {others.data(), count});
         if (!found || !(found->plane.support > 0)) {
             plane.support = 0;
             continue;

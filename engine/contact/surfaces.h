@@ -24,7 +24,7 @@ struct Surfaces {
 };
 
 /// Where a tool pulled to the HIP comes to rest on some planes.
-struct Rest {
+struct RestPoint {
     glm::dvec3                          point{}; ///< [m] nearest to the HIP that is behind no plane
     std::array<double, Surfaces::kMost> load{};  ///< [m] how hard each plane holds, along its normal; 0: not touched
 
@@ -33,11 +33,11 @@ struct Rest {
 
 /// The point nearest to `hip` that lies behind none of the planes, by trying every set of them.
 /// \thread pure; no allocation
-[[nodiscard]] Rest restOn(std::span<const SurfacePlane> planes, const glm::dvec3& hip) noexcept;
+[[nodiscard]] RestPoint restPointOn(std::span<const SurfacePlane> planes, const glm::dvec3& hip) noexcept;
 
 /// The point nearest to `place` on all the planes that carry load in `rest`.
 /// \thread pure; no allocation
-[[nodiscard]] glm::dvec3 ontoLoaded(std::span<const SurfacePlane> planes, const Rest& rest,
+[[nodiscard]] glm::dvec3 ontoLoaded(std::span<const SurfacePlane> planes, const RestPoint& rest,
                                     const glm::dvec3& place) noexcept;
 
 /// Finds surfaces and follows them as the proxy moves.
@@ -62,32 +62,34 @@ public:
     double refresh(Surfaces& surfaces, const glm::dvec3& place) noexcept;
 
 private:
-    struct Sight {
+    /// The points in sight of a place.
+    struct VisiblePoints {
         bool       any = false;
         NearPoint  nearest{};
         double     sparsest = 0; ///< [m] largest spacing of all points in whose own balls the place is
         glm::dvec3 outward{};    ///< [m^2] sum of overshoots, away from the points
     };
 
-    /// A plane through points, fitted with a spacing.
-    struct Guess {
+    /// A plane to be fitted to the points around it, with a spacing.
+    struct TrialPlane {
         glm::dvec3 place{};     ///< [m] near the surface
         glm::dvec3 normal{};    ///< [1] unit
         double     spacing = 0; ///< [m]
     };
 
     /// Which points' own balls a place lies in.
-    struct Around {
-        bool   alike   = false; ///< points about as close as the guess, or closer
+    struct NearbyPoints {
+        bool   alike   = false; ///< points about as close as the trial, or closer
         double sparser = 0;     ///< [m] spacing of the nearest of those much sparser; 0: none
     };
 
-    [[nodiscard]] Sight                   look(const Surfaces& surfaces, const glm::dvec3& place);
-    [[nodiscard]] Around                  around(const Guess& guess) const noexcept;
-    [[nodiscard]] std::optional<PlaneFit> fit(const Guess& guess, std::span<const SurfacePlane> others) noexcept;
-    [[nodiscard]] bool                    accept(Surfaces& surfaces, const Sight& sight, const glm::dvec3& place,
-                                                 const glm::dvec3& seed) noexcept;
-    static void                           dropContradicting(Surfaces& surfaces) noexcept;
+    [[nodiscard]] VisiblePoints           findVisible(const Surfaces& surfaces, const glm::dvec3& place);
+    [[nodiscard]] NearbyPoints            pointsNear(const TrialPlane& trial) const noexcept;
+    [[nodiscard]] std::optional<PlaneFit> fitPlane(const TrialPlane&             trial,
+                                                   std::span<const SurfacePlane> others) noexcept;
+    [[nodiscard]] bool addSurface(Surfaces& surfaces, const VisiblePoints& visible, const glm::dvec3& place,
+                                  const glm::dvec3& seed) noexcept;
+    static void        dropContradicting(Surfaces& surfaces) noexcept;
 
     NearPoints& points_;
     PlaneFitter fitter_;

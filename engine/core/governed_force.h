@@ -5,7 +5,7 @@
 namespace palp {
 
 /// A force that a device may render: none, or what a ForceGovernor has let through. Nothing else can make one, so that
-/// no force leaves without the governor.
+/// no force leaves without the governor. It lies in core/ because device/ includes nothing else of the engine.
 class GovernedForce {
 public:
     GovernedForce() = default; ///< none

@@ -75,17 +75,17 @@ bool finite(const ComplianceTable::Entry& entry) noexcept
 
 } // namespace
 
-ComplianceTable::Look ComplianceTable::middle() const noexcept
+ComplianceTable::Values ComplianceTable::middle() const noexcept
 {
     const auto n = std::size_t(side * side / 2);
     return {compliance[n].value, contactStiffness[n].value, false};
 }
 
-ComplianceTable::Look ComplianceTable::at(const ChartPoint& place) const noexcept
+ComplianceTable::Values ComplianceTable::at(const ChartPoint& place) const noexcept
 {
     const double     most = reach();
     const ChartPoint inside{std::clamp(place.x, -most, most), std::clamp(place.z, -most, most)};
-    Look             look = middle();
+    Values           look = middle();
     if (side > 1) {
         const Place px = placeOf(inside.x, *this), pz = placeOf(inside.z, *this);
         look.lnCompliance       = Lattice{compliance, side, spacing}.at(px, pz);

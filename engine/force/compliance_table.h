@@ -29,8 +29,8 @@ struct ComplianceTable {
     };
     using Entries = std::array<Entry, kMostEntries>;
 
-    /// What is found at a place.
-    struct Look {
+    /// Compliance and contact stiffness at one place.
+    struct Values {
         double lnCompliance       = 0;     ///< of c [m/N]
         double lnContactStiffness = 0;     ///< of k_c [N/m]
         bool   clamped            = false; ///< beyond the reach: the nearest place within it answers
@@ -39,7 +39,7 @@ struct ComplianceTable {
     std::uint64_t sequence = 0;       ///< of the contact that it was solved for; 0: none
     double        time     = 0;       ///< [s] of that contact, on the servo's clock
     Chart         chart;              ///< whose origin is the centre of the window
-    int           side    = 1;        ///< entries along each axis, odd [1]
+    int           side    = 1;        ///< entries along each axis, an odd number
     double        spacing = 0;        ///< of the entries [m]
     Entries       compliance{};       ///< ln c
     Entries       contactStiffness{}; ///< ln k_c, of the rigidity's geometric mean over the footprint
@@ -52,9 +52,9 @@ struct ComplianceTable {
     /// A lattice as coarse as the footprint's radius then loses 0.1 % of c at a wart of contrast 100 and 0.3 to 0.4 %
     /// at steps of 10 and 100. Slopes from differences of the values (Catmull-Rom's) lose 1.3 to 1.6 % (measured, 5 x
     /// 5), and a natural spline is straight at the rim, where a wart is not.
-    [[nodiscard]] Look at(const ChartPoint& place) const noexcept;
+    [[nodiscard]] Values at(const ChartPoint& place) const noexcept;
 
-    [[nodiscard]] Look middle() const noexcept;
+    [[nodiscard]] Values middle() const noexcept;
 
     /// False if the shape is none or an entry is not finite: nothing may then be felt of it.
     [[nodiscard]] bool usable() const noexcept;

@@ -5,7 +5,7 @@
 
 namespace palp {
 
-ComplianceTable::Look ComplianceTracker::look(const glm::dvec3& contact) const noexcept
+ComplianceTable::Values ComplianceTracker::lookUp(const glm::dvec3& contact) const noexcept
 {
     if (law_ != ComplianceLaw::table) return table_.middle();
     if (const auto place = table_.chart.project(contact)) return table_.at(*place);
@@ -28,13 +28,13 @@ void ComplianceTracker::adopt(const ComplianceTick& now) noexcept
     constexpr double kShortest = 1e-3, kLongest = 0.1; // [s] one tick; longer is a thread that stalled, not a period
     constexpr double kWeight = 0.25;                   // of the newest interval [1]: late and early threads even out
 
-    const ComplianceTable::Look before = look(now.contact);
+    const ComplianceTable::Values before = lookUp(now.contact);
     if (hasTable_) period_ += kWeight * (std::clamp(now.time - adopted_, kShortest, kLongest) - period_);
     table_    = *now.newest;
     hasTable_ = true;
     adopted_  = now.time;
 
-    const ComplianceTable::Look after = look(now.contact);
+    const ComplianceTable::Values after = lookUp(now.contact);
     carry(compliance_, before.lnCompliance, after.lnCompliance);
     carry(contact_, before.lnContactStiffness, after.lnContactStiffness);
 }
@@ -62,8 +62,8 @@ std::optional<LocalCompliance> ComplianceTracker::tick(const ComplianceTick& now
     }
     if (!hasTable_) return {};
 
-    const ComplianceTable::Look here = look(now.contact);
-    inContact_                       = true;
+    const ComplianceTable::Values here = lookUp(now.contact);
+    inContact_                         = true;
     clampedTicks_ += here.clamped;
     return LocalCompliance{hand(compliance_, here.lnCompliance, now.time),
                            hand(contact_, here.lnContactStiffness, now.time), here.clamped, now.time - table_.time};

@@ -73,10 +73,10 @@ private:
         double from   = 0; // where a blend began [1]
     };
 
-    [[nodiscard]] ComplianceTable::Look look(const glm::dvec3& contact) const noexcept;
-    void                                adopt(const ComplianceTick& now) noexcept;
-    void                                carry(Carried& carried, double before, double after) const noexcept;
-    [[nodiscard]] double                hand(Carried& carried, double wanted, double time) const noexcept;
+    [[nodiscard]] ComplianceTable::Values lookUp(const glm::dvec3& contact) const noexcept;
+    void                                  adopt(const ComplianceTick& now) noexcept;
+    void                                  carry(Carried& carried, double before, double after) const noexcept;
+    [[nodiscard]] double                  hand(Carried& carried, double wanted, double time) const noexcept;
 
     ComplianceLaw   law_;
     ComplianceTable table_{};

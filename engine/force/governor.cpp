@@ -69,7 +69,7 @@ GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
     const Elapsed  passed = elapsed(in.dt);
     cap_                  = capFor(in.loopPeriod);
 
-    believe(in); // 1
+    checkInput(in); // 1
     glm::dvec3 force = fault_ == GovernorFault::none ? in.force : glm::dvec3(0);
 
     if (!in.homed) mark(out, GovernorAction::notHomed); // 2
@@ -82,11 +82,11 @@ GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
     force *= fresh;
     if (engagement_ == Engagement::releasing || !in.homed || !in.inBox) force = glm::dvec3(0);
 
-    observe(in, passed.fall); // 4
-    force = passive(force, in, passed.fall, out);
+    observeEnergy(in, passed.fall); // 4
+    force = passiveForce(force, in, passed.fall, out);
 
-    force = clamped(force, out); // 5
-    slewTo(force, passed, out);  // 6
+    force = clampedForce(force, out); // 5
+    slewTo(force, passed, out);       // 6
 
     const bool slow = glm::length(in.velocity) <= settings_.maximumSpeed; // 7; a wait sees to it itself
     if (!slow && engagement_ != Engagement::waiting) latch(GovernorFault::tooFast, in.time);
@@ -146,7 +146,7 @@ void ForceGovernor::release() noexcept
     if (engagement_ == Engagement::engaging || engagement_ == Engagement::engaged) engagement_ = Engagement::releasing;
 }
 
-void ForceGovernor::believe(const GovernorInput& in) noexcept
+void ForceGovernor::checkInput(const GovernorInput& in) noexcept
 {
     if (!finite(in.force) || !std::isfinite(in.admittedEnergy) || std::isnan(in.storedEnergy))
         latch(GovernorFault::forceNotFinite, in.time);
@@ -166,7 +166,7 @@ double ForceGovernor::freshness(double age) const noexcept
     return 1 - (age - settings_.staleAfter) / settings_.staleRamp;
 }
 
-void ForceGovernor::observe(const GovernorInput& in, double dt) noexcept
+void ForceGovernor::observeEnergy(const GovernorInput& in, double dt) noexcept
 {
     const bool known = in.homed && finite(in.position);
     if (engagement_ == Engagement::waiting) {
@@ -185,8 +185,8 @@ void ForceGovernor::observe(const GovernorInput& in, double dt) noexcept
     if (known) lastPosition_ = in.position;
 }
 
-glm::dvec3 ForceGovernor::passive(glm::dvec3 force, const GovernorInput& in, double dt,
-                                  GovernorOutput& out) const noexcept
+glm::dvec3 ForceGovernor::passiveForce(glm::dvec3 force, const GovernorInput& in, double dt,
+                                       GovernorOutput& out) const noexcept
 {
     if (energy_ < -settings_.energyTolerance) mark(out, GovernorAction::active);
     const double speed = glm::length(in.velocity);
@@ -200,7 +200,7 @@ glm::dvec3 ForceGovernor::passive(glm::dvec3 force, const GovernorInput& in, dou
     return force - out.damping * in.velocity;
 }
 
-glm::dvec3 ForceGovernor::clamped(glm::dvec3 force, GovernorOutput& out) const noexcept
+glm::dvec3 ForceGovernor::clampedForce(glm::dvec3 force, GovernorOutput& out) const noexcept
 {
     const double size = glm::length(force);
     if (size <= settings_.maximumForce) return force;

@@ -178,12 +178,12 @@ private:
     [[nodiscard]] double     capFor(double period) const noexcept;
     void                     latch(GovernorFault fault, double time) noexcept;
     void                     release() noexcept;
-    void                     believe(const GovernorInput& in) noexcept;
+    void                     checkInput(const GovernorInput& in) noexcept;
     [[nodiscard]] double     freshness(double age) const noexcept;
-    void                     observe(const GovernorInput& in, double dt) noexcept;
-    [[nodiscard]] glm::dvec3 passive(glm::dvec3 force, const GovernorInput& in, double dt,
-                                     GovernorOutput& out) const noexcept;
-    [[nodiscard]] glm::dvec3 clamped(glm::dvec3 force, GovernorOutput& out) const noexcept;
+    void                     observeEnergy(const GovernorInput& in, double dt) noexcept;
+    [[nodiscard]] glm::dvec3 passiveForce(glm::dvec3 force, const GovernorInput& in, double dt,
+                                          GovernorOutput& out) const noexcept;
+    [[nodiscard]] glm::dvec3 clampedForce(glm::dvec3 force, GovernorOutput& out) const noexcept;
     void                     slewTo(glm::dvec3 force, Elapsed passed, GovernorOutput& out) noexcept;
     void                     engage(const GovernorInput& in, double rise, GovernorOutput& out) noexcept;
 

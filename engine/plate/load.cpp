@@ -132,8 +132,8 @@ NodeField footprintLoad(const PlateGrid& grid, double force, double x, double z,
 
     // Sub-cells are laid out from the contact, not from the grid: their pattern then slides with the contact, so that
     // the load changes smoothly, and a contact on a node gets a symmetric one.
-    constexpr double kSubcellsPerSpacing = 4;  // [1] chosen: a finer pattern moves no node's share by more than 1 %
-    constexpr double kFewestPerRadius    = 16; // [1] chosen: the same for a footprint of one spacing
+    constexpr double kSubcellsPerSpacing = 4;  // chosen: a finer pattern moves no node's share by more than 1 %
+    constexpr double kFewestPerRadius    = 16; // chosen: the same for a footprint of one spacing
     const int        halfCount = int(std::ceil(std::max(kFewestPerRadius, kSubcellsPerSpacing * radius / spacing)));
     const double     step      = 1.0 / halfCount; // sub-cell edge over radius [1]
 
@@ -149,6 +149,13 @@ NodeField footprintLoad(const PlateGrid& grid, double force, double x, double z,
         }
     for (double& share : forces.values()) share *= force / total;
     return forces;
+}
+
+double dot(const NodeField& a, const NodeField& b)
+{
+    double sum = 0;
+    for (std::size_t n = 0; n < a.values().size(); ++n) sum += a.values()[n] * b.values()[n];
+    return sum;
 }
 
 double interpolate(const PlateGrid& grid, const NodeField& field, double x, double z)

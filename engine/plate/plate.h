@@ -32,7 +32,7 @@ struct PlateEdges {
 /// Reads "free", or "x0=free,z1=supported" with the other sides clamped.
 /// \throws Error naming `what`, the part that is wrong and what is known
 [[nodiscard]] PlateEdges parseEdges(std::string_view text, const std::string& what);
-/// The same the other way: one name if all sides are alike.
+/// Writes what parseEdges() reads: one name if all sides are alike.
 [[nodiscard]] std::string edgesText(const PlateEdges& edges);
 
 /// A Kirchhoff plate of varying flexural rigidity on an elastic foundation: everything but the load.
@@ -53,33 +53,33 @@ struct Plate {
     NodeField  rigidity;           ///< D [N m] at the nodes, > 0
 };
 
-/// Fewest cells a side [1]: with fewer, the conditions of two opposite edges meet in one second difference.
+/// Fewest cells a side: with fewer, the conditions of two opposite edges meet in one second difference.
 inline constexpr int kFewestPlateCells = 4;
 
-/// Whether nu [1] can be Poisson's ratio of a plate: beyond these bounds the energy is not positive, or the material
+/// Whether nu [1] can be a plate's Poisson's ratio: beyond these bounds the energy is not positive, or the material
 /// grows when it is pressed.
 [[nodiscard]] constexpr bool isPoissonRatio(double nu) noexcept
 {
     return nu > -1 && nu <= 0.5; // false for NaN
 }
 
-/// Why a plate cannot be solved, in one sentence: wrong shape, rigidity not positive, Poisson's ratio out of range,
-/// or edges that leave it free to move as a rigid body, but for a foundation that doubles cannot tell from none. Empty
-/// if it can.
+/// Says in one sentence why a plate cannot be solved; empty if it can. The shape may be wrong, the rigidity not positive
+/// or Poisson's ratio out of range, or the edges leave the plate free to move as a rigid body on a foundation that
+/// doubles cannot tell from none.
 [[nodiscard]] std::optional<std::string> whyUnsolvable(const Plate& plate);
-/// The same of the plate with this rigidity [N m] instead of its own.
+/// Says the same of the plate with this rigidity [N m] in place of its own.
 [[nodiscard]] std::optional<std::string> whyUnsolvable(const Plate& plate, const NodeField& rigidity);
 
-/// What a solver says about one answer; a number that a solver does not have is empty.
+/// What a solver says about one answer. A number that a solver does not have is empty.
 struct SolveReport {
-    std::string           device;           ///< "reference", ...
-    std::optional<int>    iterations;       ///< [1]
-    std::optional<double> errorEstimate;    ///< [1] relative, in the norm the solver documents
-    std::optional<double> workUnits;        ///< [1] applications of the operator on the finest grid
+    std::string           solver; ///< "reference", or the processor: "host" or the name of a GPU
+    std::optional<int>    iterations;
+    std::optional<double> errorEstimate;    ///< [1] relative, in the norm that the solver documents
+    std::optional<double> workUnits;        ///< applications of the operator on the finest grid
     bool                  converged = true; ///< false: the estimate exceeds what was asked for, or may be too low
     double setUpMilliseconds = 0; ///< wall time from the rigidity to a ready solver: a factorisation, coarser grids
     double milliseconds      = 0; ///< wall time of this solve
-    std::optional<double> deviceMilliseconds; ///< of it, what the device was busy; empty if it has no clock
+    std::optional<double> processorMilliseconds; ///< of it, how long the processor was busy; empty if it has no clock
 };
 
 struct PlateSolution {

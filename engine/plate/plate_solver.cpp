@@ -16,7 +16,7 @@
 namespace palp {
 namespace {
 
-/// Beyond, factorising takes a minute and gigabytes; an answer that is not good, and says so, is better then.
+/// Beyond this size, factorising takes a minute and gigabytes: an answer that says that it is not good is better then.
 bool fitsReference(const PlateGrid& grid)
 {
     return grid.nodes() <= 513 * 513;
@@ -31,7 +31,7 @@ bool sameButRigidity(const Plate& a, const Plate& b)
 
 struct PlateSolver::Multigrid {
     compute::Context                    context;
-    bool                                likeTheHost; ///< smooths as it, and takes one load after the other
+    bool                                likeTheHost; ///< smooths as the host does, and takes one load after the other
     PlateKernels                        kernels;
     std::optional<MultigridPlateSolver> solver;
     Plate                               plate; ///< of the solver
@@ -39,16 +39,16 @@ struct PlateSolver::Multigrid {
     std::size_t                         loads     = 0; ///< that the solver takes together
 
     Multigrid(const compute::ContextSettings& settings, SoftwareBits bits)
-        : context(settings), likeTheHost(context.device().kind == compute::kHostProcessor ||
-                                         (bits == SoftwareBits::ofTheHost && context.device().kind == "software")),
+        : context(settings), likeTheHost(context.processor().kind == compute::kHostProcessor ||
+                                         (bits == SoftwareBits::ofTheHost && context.processor().kind == "software")),
           kernels(context, Schedule::automatic, Precision::best,
                   likeTheHost ? Smoother::chebyshev : Smoother::automatic)
     {
     }
 
-    /// How many loads go together. A device has lanes to fill; on the host the fields of one load fit its cache and
+    /// How many loads are solved together. A GPU has lanes to fill; on the host the fields of one load fit its cache and
     /// those of 49 do not: one after the other they take two thirds of the time (65 nodes: 15 in place of 24 ms).
-    [[nodiscard]] std::size_t together(std::size_t all) const { return likeTheHost ? 1 : all; }
+    [[nodiscard]] std::size_t batchOf(std::size_t all) const { return likeTheHost ? 1 : all; }
 
     /// \return milliseconds that it took
     double prepare(const Plate& wanted, std::size_t wantedLoads, double wantedTolerance)
@@ -70,7 +70,7 @@ struct PlateSolver::Multigrid {
     [[nodiscard]] std::vector<PlateSolution> solve(const Plate& wanted, std::span<const NodeField> nodalForces,
                                                    double wantedTolerance)
     {
-        const std::size_t          batch = together(nodalForces.size());
+        const std::size_t          batch = batchOf(nodalForces.size());
         const double               setUp = prepare(wanted, batch, wantedTolerance);
         std::vector<PlateSolution> solutions;
         for (; !nodalForces.empty(); nodalForces = nodalForces.subspan(batch))
@@ -86,18 +86,18 @@ PlateSolver::PlateSolver(std::string_view wanted, double patience, SoftwareBits 
 {
     if (compute::isProcessorWord(wanted, kReference)) return;
     compute::ContextSettings settings;
-    settings.device   = std::string(wanted);
-    settings.patience = patience;
+    settings.processor = std::string(wanted);
+    settings.patience  = patience;
     try {
         multigrid_ = std::make_unique<Multigrid>(settings, bits);
         note_      = multigrid_->context.note();
-    } catch (const std::exception& error) { // the kernels do not compile, or the device that is asked for is refused
+    } catch (const std::exception& error) { // the kernels do not compile, or the processor that is asked for is refused
         if (!compute::isProcessorWord(wanted, compute::kAutoProcessor)) throw;
-        note_           = error.what();
-        settings.device = compute::kHostProcessor;
-        multigrid_      = std::make_unique<Multigrid>(settings, bits);
+        note_              = error.what();
+        settings.processor = compute::kHostProcessor;
+        multigrid_         = std::make_unique<Multigrid>(settings, bits);
     }
-    name_ = multigrid_->context.device().name;
+    name_ = multigrid_->context.processor().name;
 }
 
 PlateSolver::~PlateSolver()                                 = default;
@@ -142,7 +142,7 @@ std::vector<PlateSolution> PlateSolver::solveAll(const Plate& plate, std::span<c
         solutions.push_back(solver.solve(load));
         SolveReport& report      = solutions.back().report;
         report.setUpMilliseconds = solver.factoriseMilliseconds();
-        // The estimate is of the error before the step of refinement, which takes off as large a share again.
+        // The estimate is of the error before the step of refinement, which removes as large a share again.
         const double before = report.errorEstimate.value_or(0);
         report.converged    = before * before <= tolerance;
     }

@@ -16,7 +16,7 @@
 namespace palp {
 namespace {
 
-constexpr int kMostCells = 4096; // [1] a side: one field of nodes is then 134 MB
+constexpr int kMostCells = 4096; // a side: one field of nodes is then 134 MB
 
 /// The largest problem file that is read [bytes]: some 400 000 probes.
 constexpr std::size_t kLargestFile = std::size_t(16) << 20;
@@ -64,7 +64,7 @@ PlateEdges readEdges(const JsonObject& problem)
     return {readEdge(edges, "x0"), readEdge(edges, "x1"), readEdge(edges, "z0"), readEdge(edges, "z1")};
 }
 
-/// What laws of a file need to become values at nodes.
+/// What the laws of a file need to become values at nodes.
 struct Setting {
     std::filesystem::path folder;    ///< where paths in the file start
     PlateGrid             fileGrid;  ///< of the grids the file names
@@ -106,7 +106,7 @@ NodeField resampled(const NodeField& given, const Setting& setting)
     return field;
 }
 
-/// Before interpolation, which could hide a bad node.
+/// Checks values before interpolation, which could hide a bad node.
 void expectPositive(const NodeField& rigidity, const std::string& where)
 {
     for (int i = 0; i < rigidity.nodesX(); ++i)
@@ -119,7 +119,7 @@ void expectPositive(const NodeField& rigidity, const std::string& where)
             }
 }
 
-/// Between nodes a law or a load is not seen.
+/// The larger distance between nodes: a smaller law or load between them is not seen.
 double spacingOf(const PlateGrid& grid)
 {
     return std::max(grid.spacingX, grid.spacingZ);
@@ -132,7 +132,7 @@ std::string metres(double length)
     return text.str();
 }
 
-/// A law that its nodes do not show.
+/// Warns of a law that the nodes do not show.
 std::optional<std::string> lostLaw(const JsonObject& law, const SpatialLaw& rule, const NodeField& rigidity,
                                    const PlateGrid& grid)
 {
@@ -172,7 +172,7 @@ std::string sizeText(const PlateGrid& grid)
     return text.str();
 }
 
-/// A place on the plate.
+/// Reads a place on the plate.
 std::vector<double> readPlace(const JsonObject& object, std::string_view key, const PlateGrid& grid)
 {
     std::vector<double> place = object.numbers(key, 2);

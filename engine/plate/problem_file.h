@@ -19,7 +19,7 @@ struct PlateProblem {
     Plate                    plate;
     NodeField                nodalForce; ///< [N], see load.h
     std::vector<Probe>       probes;
-    std::vector<std::string> warnings{}; ///< what is legal and hardly meant, a sentence each
+    std::vector<std::string> warnings{}; ///< one sentence for each thing that is legal and hardly meant
 };
 
 /// Reads a problem file: JSON, in SI units, with comments allowed.
@@ -36,8 +36,7 @@ struct PlateProblem {
 /// | key | laws |
 /// |-----|------|
 /// | rigidity | those of parseSpatialLaw across the plate, or {"law": "grid", "file": "D.npy"}: node values [N m] |
-/// | load | point (force, at), uniform (pressure [Pa]), gaussian (force, centre, sigma), grid (file: node pressures
-/// [Pa]) |
+/// | load | point (force, at), uniform (pressure [Pa]), gaussian (force, centre, sigma), grid (file: pressures [Pa]) |
 ///
 /// A grid is a .npy array of shape (cells_x + 1, cells_z + 1) for the file's own "cells"; its path starts at the
 /// problem file's folder.

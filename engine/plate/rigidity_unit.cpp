@@ -5,20 +5,23 @@
 
 namespace palp {
 
-float inRigidityUnits(double rigidity, double unit)
+namespace {
+
+void checkFits(double rigidity, double unit)
 {
-    constexpr double kLeast = 1e-15, kMost = 1e15;
+    constexpr double kLeast = 1e-15, kMost = 1e15; // relative to the unit [1]
     const double     relative = rigidity / unit;
     if (!(relative > kLeast && relative < kMost))
         throw Error("plate: the rigidity spans too many orders of magnitude for 32-bit arithmetic: there is " +
                     formatQuantity(rigidity, "N m") + ", the largest being about " + formatQuantity(unit, "N m"));
-    return float(relative);
 }
+
+} // namespace
 
 Extremes inRigidityUnits(std::span<const double> rigidities, double unit, std::span<float> relative)
 {
     const Extremes of = extremesOf(rigidities);
-    for (const double end : {of.least, of.most}) static_cast<void>(inRigidityUnits(end, unit));
+    for (const double end : {of.least, of.most}) checkFits(end, unit);
     for (std::size_t n = 0; n < rigidities.size(); ++n) relative[n] = float(rigidities[n] / unit);
     return of;
 }

@@ -5,11 +5,10 @@
 
 namespace palp {
 
-/// A rigidity as the shaders are given it: relative to a unit, in 32 bits.
-/// \param rigidity, unit  [N m], > 0
+/// Writes rigidities as the shaders are given them: relative to a unit, in 32 bits.
+/// \param rigidities, unit  [N m], > 0
+/// \return the least and the largest rigidity [N m]
 /// \throws Error if products of three of them and more would not stay finite
-[[nodiscard]] float inRigidityUnits(double rigidity, double unit);
-/// Many of them. \return the least and the largest [N m]
 Extremes inRigidityUnits(std::span<const double> rigidities, double unit, std::span<float> relative);
 
 } // namespace palp

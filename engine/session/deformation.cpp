@@ -9,9 +9,9 @@ namespace palp {
 namespace {
 
 /// The table that the scene asks for; without a wish, the largest that its rate has a use for and its window room.
-FootprintLattice latticeOf(const Scene& scene, const SoftObject& object, PlateSolver& device)
+FootprintLattice latticeOf(const Scene& scene, const SoftObject& object, PlateSolver& solver)
 {
-    const auto of = [&](int side) { return footprintLattice(object, scene.patch, side, device); };
+    const auto of = [&](int side) { return footprintLattice(object, scene.patch, side, solver); };
     if (scene.complianceLaw != ComplianceLaw::table) return of(1);
     if (scene.tableSize > 0) return of(scene.tableSize);
     for (int side = tableSide(scene.complianceLaw, 1 / scene.deformationRate, scene.patch.footprintRadius); side > 3;
@@ -28,8 +28,8 @@ FootprintLattice latticeOf(const Scene& scene, const SoftObject& object, PlateSo
 } // namespace
 
 Deformation::Deformation(const SoftObject& object, const Scene& scene)
-    : object_(&object), law_(scene.complianceLaw), settings_(scene.patch),
-      device_(scene.solver, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, object, device_))
+    : object_(&object), law_(scene.complianceLaw), settings_(scene.patch), solver_(scene.solver, 0, SoftwareBits::ofTheHost),
+      lattice_(latticeOf(scene, object, solver_))
 {
 }
 
@@ -52,7 +52,7 @@ DeformationAnswer Deformation::solve(const Touch& touch, double period)
 DeformationAnswer Deformation::solveAt(const glm::dvec3& place, const Touch& touch)
 {
     try {
-        PatchWithTable solved = deformWithTable(*object_, {place, touch.outward}, settings_, lattice_, device_, frame_);
+        PatchWithTable solved = deformWithTable(*object_, {place, touch.outward}, settings_, lattice_, solver_, frame_);
         if (!solved.table) return {{}, {}, "the points around the contact determine no surface"};
         Patch& patch = solved.patch;
         frame_       = patch.chart.frame;

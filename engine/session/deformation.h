@@ -3,31 +3,32 @@
 #include <optional>
 #include <string>
 
+#include "engine/pipeline/deform.h"
 #include "engine/session/servo.h"
 
 namespace palp {
 
-/// What the slow half of a session has found out about a touch.
+/// Answers a touch: what the slow half of a session found there.
 struct DeformationAnswer {
     std::optional<PatchUpdate> update; ///< for the servo; empty: nothing could be solved there
-    std::optional<Patch>       patch;  ///< for who looks on; together with `update`
-    std::string                why;    ///< of a failure, also of one that a second try mended; may be empty
+    std::optional<Patch>       patch;  ///< for an observer; there whenever `update` is
+    std::string                why;    ///< a failure, also one that a second try mended; may be empty
 };
 
-/// From a touch, and the measured period of the deformation [s], to an answer. May take its time and throw.
+/// Turns a touch and the measured period of the deformation [s] into an answer. It may take long, and throw.
 using PatchSolver = std::function<DeformationAnswer(const Touch&, double period)>;
 
-/// The slow half of a session: from a touch to the patch and the table of compliances for where it will be.
-/// \thread one at a time, together with its device
+/// The slow half of a session: solves the patch and the table of compliances for where a touch will be.
+/// \thread one at a time, together with its plate solver
 class Deformation {
 public:
-    /// Opens the scene's device and solves the homogeneous window, some tenths of a second.
-    /// \param object  outlives it
+    /// Opens the plate solver of the scene and solves the homogeneous window, some tenths of a second.
+    /// \param object  outlives this
     /// \throws Error as PlateSolver and footprintLattice() do
     Deformation(const SoftObject& object, const Scene& scene);
 
-    /// Solves for the touch, 1.5 periods ahead of its motion. Off the object, or where the points determine no surface,
-    /// for the touch itself; if that fails too there is no update, and the answer says why.
+    /// Solves for where the touch will be 1.5 periods later. If that is off the object, or the points determine no
+    /// surface there, it solves for the touch itself; if that fails too there is no update, and the answer says why.
     /// \param period  of the deformation, as measured [s]
     [[nodiscard]] DeformationAnswer solve(const Touch& touch, double period);
 
@@ -37,12 +38,12 @@ public:
         return [this](const Touch& touch, double period) { return solve(touch, period); };
     }
 
-    /// The same points with other stiffnesses from now on. The table's lattice stays that of the first cloud: it depends
+    /// Goes on with other stiffnesses of the same points. The table's lattice stays that of the first object: it depends
     /// on the mean of the rigidity alone, and through that on how far a foundation lets a dent spread.
     /// \param object  repainted() or as it was; outlives this
     void repaint(const SoftObject& object);
 
-    [[nodiscard]] const PlateSolver& device() const noexcept { return device_; }
+    [[nodiscard]] const PlateSolver& plateSolver() const noexcept { return solver_; }
 
 private:
     [[nodiscard]] DeformationAnswer solveAt(const glm::dvec3& place, const Touch& touch);
@@ -50,7 +51,7 @@ private:
     const SoftObject*    object_; ///< never null
     ComplianceLaw        law_;
     PatchSettings        settings_;
-    PlateSolver          device_;
+    PlateSolver          solver_;
     FootprintLattice     lattice_;
     std::optional<Frame> frame_; ///< of the last patch, carried to the next
 };

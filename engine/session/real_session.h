@@ -10,7 +10,7 @@
 
 namespace palp {
 
-/// What one may look at while a session runs; valid during the call that shows it.
+/// Shows a session while it runs. It is valid during the call that hands it over.
 struct SessionView {
     TickRecord       sample;          ///< the newest
     double           loopPeriod = 0;  ///< of the servo, a mean over 0.1 s [s]
@@ -30,7 +30,7 @@ struct RealSessionSettings {
     const std::atomic<bool>*                stop       = nullptr; ///< ends the session once it is true; may be null
 };
 
-/// A whole session in real time: the servo and the deformation on threads of their own, the caller looks on.
+/// Runs a whole session in real time: servo and deformation have threads of their own, and the caller looks on.
 ///
 ///     servo 1 ms --Touch--> deformation 1/rate --PatchUpdate--> servo     each a three-slot hand-off, newest wins
 ///       \--TickRecord--> caller <--Patch--/                          read in place, nothing is copied out
@@ -38,12 +38,11 @@ struct RealSessionSettings {
 ///     paper:  force 1 ms --Hand--> proxy 1 ms --Touch--> deformation; the force takes the proxy's last word, a tick
 ///     old
 ///
-/// A deformation that fails or stalls leaves the servo with its last patch, flagged as stale. In the end, also by an
-/// exception of onView, the device is given zero force.
+/// A deformation that fails or stalls leaves the servo with its last patch, flagged as stale. A solver that throws has
+/// failed to solve one patch, and SessionSummary::why says so. A device that is unplugged ends the session. Whatever
+/// ends it, an exception of onView included, the device is given zero force.
 /// \param warning  what the system refused of real-time rights; empty if nothing
-/// A device that is unplugged ends the session.
-/// A solver that throws has failed to solve one patch: SessionSummary::why tells.
-/// \throws what onView threw, once all threads have ended; so for onTick, which should not
+/// \throws whatever onView or onTick threw, once all threads have ended
 /// \differs the paper has a thread each for proxy and force, which makes the force a tick or two late; here one thread
 ///          does both, and SessionThreads::paper keeps two
 SessionSummary runReal(const SessionParts& parts, const RealSessionSettings& settings, std::string& warning);

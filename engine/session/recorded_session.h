@@ -28,11 +28,11 @@ struct RecordedSession {
 /// readSession() translates them.
 inline constexpr int kSessionFormat = 2;
 
-/// Reads what Recording wrote, also of a session that was killed: then the samples that all columns have.
+/// Reads what Recording wrote. Of a session that was killed it reads the ticks that all columns have.
 /// \throws Error naming the file, what was expected and found
 [[nodiscard]] RecordedSession readSession(const std::filesystem::path& folder);
 
-/// The scene as it was run.
+/// Reads the scene as it was run.
 /// \param toolKeys  see SceneOverrides
 /// \throws Error, also if its cloud is not where it was
 [[nodiscard]] Scene sceneOf(const RecordedSession& session, const std::vector<SceneKey>* toolKeys = nullptr);
@@ -47,8 +47,8 @@ struct SessionDifference {
     std::string second;
 };
 
-/// Compares sample by sample and, within one, column by column, bit for bit: NaN equals the same NaN, and 0 is not -0.
-/// What the wall clock measured (SessionColumn::measured) is left out. Empty if nothing differs.
+/// Compares tick by tick and, within one, column by column, bit for bit: NaN equals the same NaN, and 0 is not -0.
+/// What the wall clock measured (SessionColumn::measured) is omitted. Empty if nothing differs.
 [[nodiscard]] std::optional<SessionDifference> compareSessions(const RecordedSession& a, const RecordedSession& b);
 
 /// One sentence: "sample 412 (0.412 s): force z is 0.8312 in run1 and 0.8313 in run2".

@@ -7,11 +7,12 @@
 
 namespace palp {
 
-/// The device of a recorded session: each exchange gives what the next sample had, to the bit, in the scene's frame,
-/// whatever the force and the time. After the last sample it is lost. \thread as HapticDevice
+/// Plays the device of a recorded session: each exchange returns the hand of the next record, to the bit and in the
+/// scene's frame, whatever the force and the time are. After the last record the device counts as lost.
+/// \thread as HapticDevice
 class ReplayDevice : public HapticDevice {
 public:
-    /// \param samples  of RecordedSession; outlive it
+    /// \param samples  of RecordedSession; outlive this
     /// \param limits   of the device that was held then
     explicit ReplayDevice(const std::vector<TickRecord>& samples, const HapticDeviceInfo& limits = {});
 

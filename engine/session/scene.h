@@ -17,7 +17,8 @@
 #include "engine/contact/proxy.h"
 #include "engine/core/enum_names.h"
 #include "engine/force/compliance_tracker.h"
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/patch.h"
+#include "engine/pipeline/presets.h"
 
 namespace palp {
 

@@ -31,7 +31,7 @@ double lower(double wanted, double possible)
     return possible > 0 ? std::min(wanted, possible) : wanted;
 }
 
-/// The longer the delay, the lower the cap at a period of 1 ms: the spring then spends what it does with one sample.
+/// The longer the delay, the lower the cap at a period of 1 ms: the spring then spends what it does with one record.
 GovernorSettings governorOf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads)
 {
     GovernorSettings settings;
@@ -79,7 +79,8 @@ ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, Session
 {
 }
 
-ForceHalf::Wanted ForceHalf::wanted(double stiffness, double dt, const Hand& hand, const ProxyContact& held) noexcept
+ForceHalf::WantedForce ForceHalf::wantedForce(double stiffness, double dt, const Hand& hand,
+                                              const ProxyContact& held) noexcept
 {
     const glm::dvec3& pull  = held.pull;
     const double      depth = glm::length(pull);
@@ -89,7 +90,7 @@ ForceHalf::Wanted ForceHalf::wanted(double stiffness, double dt, const Hand& han
     const glm::dvec3 sliding = hand.velocity - along * outward;
     const double     speed   = glm::length(sliding);
 
-    Wanted result;
+    WantedForce result;
     result.tank  = tank_.step({.stiffness       = std::min(stiffness, governor_.stiffnessCap()),
                                .depth           = depth,
                                .normalSpeed     = along,
@@ -111,8 +112,8 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     if (!touch.touching) compliance_.restart();
     const auto handed =
         compliance_.tick({touch.point, now.time, now.dt, newest ? &newest->table : nullptr}); // also beyond the surface
-    const double stiffness = handed ? feltStiffness(law_, handed->contactStiffness, handed->compliance) : 0;
-    const Wanted want      = wanted(stiffness, now.dt, hand, held);
+    const double      stiffness = handed ? feltStiffness(law_, handed->contactStiffness, handed->compliance) : 0;
+    const WantedForce want      = wantedForce(stiffness, now.dt, hand, held);
 
     GovernorInput in;
     in.force                 = want.force;
@@ -129,34 +130,34 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     in.storedEnergy          = want.tank.stored;
     const GovernorOutput out = governor_.step(in);
 
-    TickRecord sample;
-    sample.time        = now.time;
-    sample.hip         = hand.position;
-    sample.hipVelocity = hand.velocity;
-    sample.device      = hand.bits();
-    sample.missed      = hand.missed;
-    sample.proxy       = touch.point;
-    sample.force       = out.force;
-    sample.normal      = touch.touching ? touch.outward : glm::dvec3(0);
+    TickRecord record;
+    record.time        = now.time;
+    record.hip         = hand.position;
+    record.hipVelocity = hand.velocity;
+    record.device      = hand.bits();
+    record.missed      = hand.missed;
+    record.proxy       = touch.point;
+    record.force       = out.force;
+    record.normal      = touch.touching ? touch.outward : glm::dvec3(0);
     if (newest && touch.touching) {
-        sample.rigidity      = newest->rigidity;
-        sample.maxDeflection = newest->mostResponse * std::max(0.0, glm::dot(out.force, touch.outward));
-        sample.errorEstimate = newest->errorEstimate;
-        sample.iterations    = newest->iterations;
+        record.rigidity      = newest->rigidity;
+        record.maxDeflection = newest->mostResponse * std::max(0.0, glm::dot(out.force, touch.outward));
+        record.errorEstimate = newest->errorEstimate;
+        record.iterations    = newest->iterations;
     }
     if (handed && touch.touching) {
-        sample.compliance = handed->compliance;
-        sample.patchAge   = handed->age;
+        record.compliance = handed->compliance;
+        record.patchAge   = handed->age;
     }
     constexpr double kStalePeriods = 3; // two are ordinary: one to solve, one in use [1]
-    sample.faults                  = static_cast<std::uint32_t>(out.fault) |
-                    flag(SessionFlag::stalePatch, sample.patchAge > kStalePeriods * patchPeriod_) |
+    record.faults                  = static_cast<std::uint32_t>(out.fault) |
+                    flag(SessionFlag::stalePatch, record.patchAge > kStalePeriods * patchPeriod_) |
                     flag(SessionFlag::beyondTable, touch.touching && handed && handed->clamped) |
                     flag(SessionFlag::noPatch, touch.touching && !handed) |
                     flag(SessionFlag::proxyLimited, held.limited) |
-                    flag(SessionFlag::beyondTheory, sample.maxDeflection > thickness_ / 2) |
+                    flag(SessionFlag::beyondTheory, record.maxDeflection > thickness_ / 2) |
                     flag(SessionFlag::governed, touch.touching && out.actions != 0);
-    return sample;
+    return record;
 }
 
 } // namespace palp

@@ -23,12 +23,12 @@ struct PatchUpdate {
     double          rigidity      = 0; ///< D in the middle [N m]
     double          mostResponse  = 0; ///< largest deflection per force [m/N]
     double          errorEstimate = 0; ///< of the plate's solution, relative [1]
-    std::int32_t    iterations    = 0; ///< of the plate's solver [1]
+    std::int32_t    iterations    = 0; ///< of the plate's solver
 };
 
 /// What the servo tells the deformation about the touch.
 struct Touch {
-    std::uint64_t sequence = 0; ///< counts ticks [1]; 0: none yet
+    std::uint64_t sequence = 0; ///< counts ticks; 0: none yet
     double        time     = 0; ///< [s]
     bool          touching = false;
     glm::dvec3    point{};    ///< [m] of the proxy
@@ -46,17 +46,17 @@ enum class SessionFlag : std::uint32_t {
     governed     = 1U << 13  ///< the governor held the force back: damped, clamped, slewed, waiting or coming on
 };
 
-/// Where the hand is, as a device tells.
+/// Where a device says the hand is.
 struct Hand {
     glm::dvec3    position{};     ///< of the HIP [m]
     glm::dvec3    velocity{};     ///< filtered [m/s]
     bool          homed   = true; ///< see GovernorInput
     bool          inBox   = true;
-    int           missed  = 0; ///< [1] exchanges with the device without an answer, in a row
+    int           missed  = 0; ///< exchanges with the device without an answer, in a row
     DeviceFault   device  = DeviceFault::none;
     std::uint32_t buttons = 0; ///< of the device, the lower 16
 
-    /// As TickRecord::device has it, and back.
+    /// Packs all but position, velocity and missed into TickRecord::device; setBits() reads it back.
     [[nodiscard]] std::uint32_t bits() const noexcept
     {
         return static_cast<std::uint32_t>(device) | (homed ? kHomed : 0U) | (inBox ? kInBox : 0U) | buttons << 16U;
@@ -95,10 +95,11 @@ struct ProxyContact {
 /// \thread one; tick() allocates, locks, throws and prints nothing, and the same input gives the same bits
 class ContactHalf {
 public:
-    /// \param object  outlives it
+    /// \param object  outlives this
     ContactHalf(const SoftObject& object, const Scene& scene);
 
-    /// \param time  [s] of the session's clock  \param hip  [m]
+    /// \param time  [s] of the session's clock
+    /// \param hip   [m]
     const ProxyContact& tick(double time, const glm::dvec3& hip) noexcept;
 
     [[nodiscard]] const Touch& touch() const noexcept { return held_.touch; }
@@ -109,11 +110,12 @@ private:
     ProxyContact held_;
 };
 
-/// The second half of a tick: pull -> compliance -> stiffness -> tank -> governor -> force. \thread as ContactHalf
+/// The second half of a tick: pull -> compliance -> stiffness -> tank -> governor -> force.
+/// \thread as ContactHalf
 class ForceHalf {
 public:
-    /// ProxyContact down for 20 ms, it resets the governor's fault: whoever holds the device is its operator. The first button,
-    /// and not for an instant: packets may be corrupt.
+    /// The device's first button. Held down for 20 ms it resets the governor's fault, because whoever holds the device is
+    /// its operator; a shorter press does not count, because packets may be corrupt.
     static constexpr std::uint32_t kOperatorsButton = 1;
     static constexpr int           kPressTicks      = 20;
 
@@ -128,8 +130,8 @@ public:
         double loopPeriod; ///< [s] measured, as a mean over some 0.1 s
     };
 
-    /// \param newest  the deformation's last word; null: none yet
-    /// \return everything but tickTime
+    /// \param newest  the deformation's last update; null: none yet
+    /// \return the record of the tick, complete but for tickTime
     TickRecord tick(const TickTime& now, const Hand& hand, const ProxyContact& held,
                     const PatchUpdate* newest) noexcept;
 
@@ -137,11 +139,12 @@ public:
 
 private:
     /// The wanted force and what was paid for it.
-    struct Wanted {
+    struct WantedForce {
         glm::dvec3       force{};
         EnergyTankOutput tank{};
     };
-    [[nodiscard]] Wanted wanted(double stiffness, double dt, const Hand& hand, const ProxyContact& held) noexcept;
+    [[nodiscard]] WantedForce wantedForce(double stiffness, double dt, const Hand& hand,
+                                          const ProxyContact& held) noexcept;
 
     ForceLaw          law_;
     double            thickness_;   ///< [m]
@@ -149,7 +152,7 @@ private:
     ComplianceTracker compliance_;
     EnergyTank        tank_;
     ForceGovernor     governor_;
-    int               pressed_ = 0; ///< [1] ticks that the operator's button has been down
+    int               pressed_ = 0; ///< ticks that the operator's button has been down
 };
 
 /// One tick of touch, both halves.

@@ -11,7 +11,7 @@ struct DeviceFrame {
     glm::dvec3 origin{};                    ///< [m] of the scene: where the middle of the workspace is
     glm::dquat sceneFromDevice{1, 0, 0, 0}; ///< rotation, a unit quaternion
 
-    /// The hand of this state, in the scene.
+    /// Converts the hand of this state into the scene.
     [[nodiscard]] Hand handOf(const HapticState& state) const noexcept
     {
         return {origin + sceneFromDevice * state.position,
@@ -23,24 +23,24 @@ struct DeviceFrame {
                 state.buttons & 0xFFFFU};
     }
 
-    /// A place of the scene, in the device's frame [m].
+    /// Converts a place of the scene into the device's frame [m].
     [[nodiscard]] glm::dvec3 toDevice(const glm::dvec3& place) const noexcept
     {
         return glm::conjugate(sceneFromDevice) * (place - origin);
     }
 
-    /// A force of the scene, as the device takes it.
+    /// Turns a force of the scene into the device's frame.
     [[nodiscard]] GovernedForce toDevice(const GovernedForce& force) const noexcept
     {
         return force.rotated(glm::conjugate(sceneFromDevice));
     }
 };
 
-/// A device on a table before the object: its origin at `origin`, its y along `outward`, its x along the scene's x as
-/// far as the surface lets it.
+/// Puts a device on a table before the object: its origin at `origin`, its y along `outward`, its x along the scene's x
+/// as far as the surface lets it.
 [[nodiscard]] DeviceFrame deviceFrame(const glm::dvec3& origin, const glm::dvec3& outward);
 
-/// What every session is made of, on whichever clock. All of it outlives the session.
+/// Everything that a session needs, on either clock. All of it outlives the session.
 struct SessionParts {
     const Scene&      scene;
     const SoftObject& object; ///< of the scene

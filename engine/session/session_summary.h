@@ -12,10 +12,10 @@ namespace palp {
 
 /// What a session did, for a report.
 struct SessionSummary {
-    std::uint64_t     ticks = 0, contactTicks = 0;             ///< [1]
-    std::uint64_t     patches = 0, failedPatches = 0;          ///< [1]
-    std::uint64_t     staleTicks = 0, beyondTable = 0;         ///< [1]
-    std::uint64_t     beyondTheory = 0, patchless = 0;         ///< [1] see SessionFlag
+    std::uint64_t     ticks = 0, contactTicks = 0;
+    std::uint64_t     patches = 0, failedPatches = 0;
+    std::uint64_t     staleTicks = 0, beyondTable = 0;
+    std::uint64_t     beyondTheory = 0, patchless = 0;         ///< see SessionFlag
     double            mostForce       = 0;                     ///< [N]
     double            mostDepth       = 0;                     ///< [m] of the hand below the proxy, along the normal
     double            leastCompliance = 0, mostCompliance = 0; ///< in use [m/N]; 0: never in contact

@@ -23,15 +23,15 @@ struct TickRecord {
     double        errorEstimate = 0; ///< of the plate's solution, relative [1]
     double        patchAge      = 0; ///< of the plate's answer in use [s]
     double        tickTime      = 0; ///< processor time of the tick [s]
-    std::int32_t  iterations    = 0; ///< of the plate's solver [1]
+    std::int32_t  iterations    = 0; ///< of the plate's solver
     std::uint32_t faults        = 0; ///< one bit each, see SessionFlag; the low eight are the GovernorFault
     std::uint32_t device        = 0; ///< bits 0 to 7 the DeviceFault, 8 homed, 9 in its box, 16 to 31 buttons
-    std::int32_t  missed        = 0; ///< exchanges with the device without an answer, in a row [1]
+    std::int32_t  missed        = 0; ///< exchanges with the device without an answer, in a row
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
-static_assert(sizeof(TickRecord) == 22 * 8 + 16, "no padding: samples are compared byte for byte");
+static_assert(sizeof(TickRecord) == 22 * 8 + 16, "no padding: records are compared byte for byte");
 
-/// One field of a sample as a file: NAME.npy of shape (n,) or (n, components), and as columns of samples.csv.
+/// One field of a record as a file: NAME.npy of shape (n,) or (n, components), and as columns of samples.csv.
 struct SessionColumn {
     enum class Type { float64, int32, uint32 };
 
@@ -51,7 +51,7 @@ struct SessionColumn {
     }
 };
 
-/// All columns; together they are all of a sample.
+/// Lists all columns; together they are all of a record.
 [[nodiscard]] std::span<const SessionColumn> sessionColumns() noexcept;
 
 } // namespace palp

@@ -18,7 +18,7 @@ namespace palp {
 template <class T>
 class TickRing {
 public:
-    /// \param atLeast  [1] rounded up to a power of two; allocated and touched here
+    /// \param atLeast  rounded up to a power of two; allocated and touched here
     explicit TickRing(std::size_t atLeast) : slots_(std::bit_ceil(atLeast)), mask_(slots_.size() - 1) {}
 
     [[nodiscard]] std::size_t capacity() const noexcept { return slots_.size(); }

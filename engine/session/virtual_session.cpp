@@ -65,11 +65,11 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
         }
         const double began  = threadSeconds();
         const Hand   hand   = parts.frame.handOf(parts.device.exchange(force, time));
-        TickRecord   sample = servo.tick({time, kTick, kTick}, hand, inUse ? &*inUse : nullptr);
+        TickRecord   record = servo.tick({time, kTick, kTick}, hand, inUse ? &*inUse : nullptr);
         force               = parts.frame.toDevice(servo.governor().force());
-        sample.tickTime     = threadSeconds() - began;
-        summary.add(sample);
-        if (onTick) onTick(sample);
+        record.tickTime     = threadSeconds() - began;
+        summary.add(record);
+        if (onTick) onTick(record);
     }
     summary.fault = servo.governor().fault();
     return summary;

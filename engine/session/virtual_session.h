@@ -6,15 +6,15 @@
 
 namespace palp {
 
-/// A whole session on one thread and its own clock: a tick a millisecond, a patch every 1/rate seconds that is in use
-/// one period after the touch it was solved for, as a thread of its own would have it. The same scene, hand and device
-/// give the same samples, bit for bit, but for tickTime.
+/// Runs a whole session on one thread and its own clock, with a tick each millisecond. A patch is solved every 1/rate
+/// seconds and used one period after its touch, as if the deformation had a thread of its own. The same scene, hand and
+/// device give the same records, bit for bit, but for tickTime.
 ///
 /// \param seconds   how long [s]
-/// \param onTick  sees every sample; may be empty
+/// \param onTick  sees every tick; may be empty
 /// \param stop      ends the session once it is true; may be null
 /// \throws what the solver throws
-SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTick& onTick,
+SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTick& onTick = {},
                           const std::atomic<bool>* stop = nullptr);
 
 } // namespace palp

@@ -6,6 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include "engine/cloud/samples.h"
+#include "engine/pipeline/deform.h"
 #include "engine/tools/render/surface_renderer.h"
 #include "engine/tools/render/touch_view.h"
 

@@ -38,7 +38,7 @@ TEST_F(BufferTest, OneThatIsTooLargeIsRefusedWithItsSize)
     const std::string sentence = refusalOf(
         [&] { const compute::Buffer monster(context(), "monster", (most / 4 + 1) * 4, compute::Intent::device); });
 
-    EXPECT_TRUE(holds(sentence, {"'monster'", "MiB", context().device().name, "fewer cells"})) << sentence;
+    EXPECT_TRUE(holds(sentence, {"'monster'", "MiB", context().processor().name, "fewer cells"})) << sentence;
 }
 
 TEST_F(BufferTest, TheDevicesOwnMemoryIsNotMapped)

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kSide  = 13;
 constexpr std::size_t   kBytes = kSide * kSide * sizeof(float);
 
-/// Two planes on the device, and what the second holds after a run.
+/// Two planes on the processor, and what the second holds after a run.
 class CommandListTest : public ShaderTest {
 protected:
     void SetUp() override
@@ -155,7 +155,7 @@ TEST_F(CommandListTest, TimestampsRiseAndStartAtZero)
     for (int repeat = 0; repeat < 2; ++repeat) {
         context().run(list);
         const std::vector<double> times = list.timestampsMilliseconds();
-        if (times.empty()) GTEST_SKIP() << "this device has no clock";
+        if (times.empty()) GTEST_SKIP() << "this processor has no clock";
         ASSERT_EQ(times.size(), 71u);
         EXPECT_EQ(times.front(), 0);
         EXPECT_TRUE(std::ranges::is_sorted(times));

@@ -15,10 +15,10 @@ TEST_F(ContextTest, TheOpenedDeviceIsOneOfTheList)
 {
     const std::vector<compute::Processor> list = compute::listProcessors();
 
-    ASSERT_LT(std::size_t(context().device().index), list.size());
-    EXPECT_EQ(list[std::size_t(context().device().index)].name, context().device().name);
-    EXPECT_TRUE(context().device().refusals.empty());
-    EXPECT_GT(context().device().memory, 0u);
+    ASSERT_LT(std::size_t(context().processor().index), list.size());
+    EXPECT_EQ(list[std::size_t(context().processor().index)].name, context().processor().name);
+    EXPECT_TRUE(context().processor().refusals.empty());
+    EXPECT_GT(context().processor().memory, 0u);
     EXPECT_GT(context().limits().buffer, std::size_t(1) << 26);
     EXPECT_GE(context().limits().invocations, 128u);
 }
@@ -26,7 +26,7 @@ TEST_F(ContextTest, TheOpenedDeviceIsOneOfTheList)
 TEST_F(ContextTest, ShadersAreTestedInSoftwareUnlessAnotherDeviceIsNamed)
 {
     EXPECT_TRUE(!compute::isProcessorWord(deviceOfTests(), compute::kLavapipeProcessor) ||
-                context().device().kind == "software");
+                context().processor().kind == "software");
     EXPECT_FALSE(compute::isProcessorWord(deviceOfTests(), compute::kAutoProcessor)) << "which may be the host";
     EXPECT_EQ(onHost(), compute::isProcessorWord(deviceOfTests(), compute::kHostProcessor));
 }
@@ -34,19 +34,19 @@ TEST_F(ContextTest, ShadersAreTestedInSoftwareUnlessAnotherDeviceIsNamed)
 TEST_F(ContextTest, ADeviceThatIsNotThereIsRefusedAndEachDeviceNamed)
 {
     compute::ContextSettings settings;
-    settings.device = "no such device";
+    settings.processor = "no such processor";
 
     EXPECT_THROW(compute::Context{settings}, compute::UnknownProcessor);
     const std::string sentence = refusalOf([&] { compute::Context{settings}; });
-    EXPECT_TRUE(holds(sentence, {"'no such device'"})) << sentence;
-    for (const compute::Processor& device : compute::listProcessors())
-        EXPECT_TRUE(holds(sentence, {device.name})) << sentence;
+    EXPECT_TRUE(holds(sentence, {"'no such processor'"})) << sentence;
+    for (const compute::Processor& one : compute::listProcessors())
+        EXPECT_TRUE(holds(sentence, {one.name})) << sentence;
 }
 
 TEST_F(ContextTest, AMovedContextStillServesWhatWasMadeFromIt)
 {
     compute::ContextSettings settings;
-    settings.device = std::to_string(context().device().index);
+    settings.processor = std::to_string(context().processor().index);
     std::optional<compute::Context> second; // goes last
     compute::Context                first(settings);
     compute::Buffer                 buffer(first, "moved", 64, compute::Intent::readback);
@@ -63,10 +63,10 @@ TEST_F(ContextTest, AMovedContextStillServesWhatWasMadeFromIt)
 
 TEST_F(ContextTest, ASubmissionThatOutlastsThePatienceIsALostDevice)
 {
-    if (context().device().kind != "software") GTEST_SKIP() << "a device in software is slow enough";
+    if (context().processor().kind != "software") GTEST_SKIP() << "Vulkan in software is slow enough";
     compute::ContextSettings settings;
-    settings.device   = std::to_string(context().device().index);
-    settings.patience = 1e-9;
+    settings.processor = std::to_string(context().processor().index);
+    settings.patience  = 1e-9;
     compute::Context        hasty(settings);
     const compute::Kernel   smooth(hasty, kSmooth, {64, 1, 1});
     constexpr std::uint32_t kSide = 512;

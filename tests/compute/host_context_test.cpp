@@ -7,7 +7,7 @@
 #include "engine/compute/context.h"
 #include "engine/core/contract.h"
 
-// The host as a device: what lists do with kernels that are functions.
+// The host as a processor: what lists do with kernels that are functions.
 
 namespace palp::compute {
 namespace {
@@ -28,7 +28,7 @@ constexpr std::array<std::uint32_t, 1> kNoShader{0};
 
 class HostDeviceTest : public ::testing::Test {
 protected:
-    Context       context{{.device = std::string(kHostProcessor)}};
+    Context       context{{.processor = std::string(kHostProcessor)}};
     std::uint32_t factor = 10;
     Kernel        add{context, {"add", kNoShader, 1, int(sizeof(AddPush)), &addTo}, {1, 1, 1}, {&factor, 1}};
     Buffer        words{context, "words", 32, Intent::readback};

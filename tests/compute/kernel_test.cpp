@@ -94,7 +94,7 @@ TEST_F(KernelTest, WhatTheDeviceDoesNotAllowIsRefusedBeforeTheDriverSeesIt)
     compute::KernelCode greedy = kSmooth;
     greedy.pushBytes           = 1 << 20;
 
-    EXPECT_TRUE(holds(refusal(greedy, {8, 8, 1}), {"plane_smooth", "push constants", context().device().name}));
+    EXPECT_TRUE(holds(refusal(greedy, {8, 8, 1}), {"plane_smooth", "push constants", context().processor().name}));
     EXPECT_TRUE(holds(refusal(kSmooth, {1 << 20, 1, 1}), {"plane_smooth", "workgroup of 1048576x1x1"}));
     greedy         = kSmooth;
     greedy.buffers = 1 << 30;

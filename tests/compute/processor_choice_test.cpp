@@ -6,11 +6,11 @@
 namespace palp::compute {
 namespace {
 
-using Devices = std::vector<Processor>;
+using Processors = std::vector<Processor>;
 
 constexpr std::optional<std::size_t> kHost{};
 
-Processor device(int index, std::string name, std::string kind, std::vector<std::string> refusals = {})
+Processor processor(int index, std::string name, std::string kind, std::vector<std::string> refusals = {})
 {
     Processor description;
     description.index    = index;
@@ -20,38 +20,38 @@ Processor device(int index, std::string name, std::string kind, std::vector<std:
     return description;
 }
 
-Devices desk()
+Processors desk()
 {
-    return {device(0, "llvmpipe (LLVM 15)", "software"), device(1, "Intel UHD 770", "integrated"),
-            device(2, "Intel Arc A770", "discrete", {"it speaks Vulkan 1.1.0, and 1.2 is needed"}),
-            device(3, "GeForce RTX 4090", "discrete"), device(4, "Virtio", "virtual")};
+    return {processor(0, "llvmpipe (LLVM 15)", "software"), processor(1, "Intel UHD 770", "integrated"),
+            processor(2, "Intel Arc A770", "discrete", {"it speaks Vulkan 1.1.0, and 1.2 is needed"}),
+            processor(3, "GeForce RTX 4090", "discrete"), processor(4, "Virtio", "virtual")};
 }
 
-std::string refusal(const Devices& devices, std::string_view wanted)
+std::string refusal(const Processors& processors, std::string_view wanted)
 {
-    return refusalOf([&] { (void)chooseProcessor(devices, wanted); });
+    return refusalOf([&] { (void)chooseProcessor(processors, wanted); });
 }
 
 TEST(DeviceChoice, AutoTakesTheFirstUsableGpuOfTheBestKind)
 {
-    Devices devices = desk();
-    EXPECT_EQ(chooseProcessor(devices, "auto"), 3u);
-    devices.erase(devices.begin() + 3);
-    EXPECT_EQ(chooseProcessor(devices, "auto"), 1u);
-    devices.erase(devices.begin() + 1);
-    EXPECT_EQ(chooseProcessor(devices, "auto"), 2u) << "virtual is left";
-    devices.pop_back();
-    EXPECT_EQ(chooseProcessor(devices, "auto"), kHost) << "what is left is in software, or cannot be used";
+    Processors processors = desk();
+    EXPECT_EQ(chooseProcessor(processors, "auto"), 3u);
+    processors.erase(processors.begin() + 3);
+    EXPECT_EQ(chooseProcessor(processors, "auto"), 1u);
+    processors.erase(processors.begin() + 1);
+    EXPECT_EQ(chooseProcessor(processors, "auto"), 2u) << "virtual is left";
+    processors.pop_back();
+    EXPECT_EQ(chooseProcessor(processors, "auto"), kHost) << "what is left is in software, or cannot be used";
 }
 
 TEST(DeviceChoice, AutoTakesTheHostWhereThereIsNoGpu)
 {
-    const Processor software = device(0, "llvmpipe", "software");
+    const Processor software = processor(0, "llvmpipe", "software");
     EXPECT_EQ(chooseProcessor({}, "auto"), kHost);
     EXPECT_EQ(chooseProcessor({software}, "auto"), kHost);
-    EXPECT_EQ(chooseProcessor({device(0, "Venus", "other")}, "auto"), kHost) << "only when asked for";
-    EXPECT_EQ(chooseProcessor({software, device(1, "Old", "discrete", {"it is too old"})}, "auto"), kHost);
-    EXPECT_EQ(chooseProcessor({software, device(1, "Intel UHD 770", "integrated")}, "auto"), 1u);
+    EXPECT_EQ(chooseProcessor({processor(0, "Venus", "other")}, "auto"), kHost) << "only when asked for";
+    EXPECT_EQ(chooseProcessor({software, processor(1, "Old", "discrete", {"it is too old"})}, "auto"), kHost);
+    EXPECT_EQ(chooseProcessor({software, processor(1, "Intel UHD 770", "integrated")}, "auto"), 1u);
 }
 
 TEST(DeviceChoice, TheHostAndSoftwareAreThereWhenAskedFor)
@@ -64,7 +64,7 @@ TEST(DeviceChoice, TheHostAndSoftwareAreThereWhenAskedFor)
 TEST(DeviceChoice, LavapipeIsTheDeviceInSoftware)
 {
     EXPECT_EQ(chooseProcessor(desk(), "lavapipe"), 0u);
-    EXPECT_TRUE(holds(refusal({device(0, "GeForce", "discrete")}, "lavapipe"), {"mesa-vulkan-drivers", "GeForce"}));
+    EXPECT_TRUE(holds(refusal({processor(0, "GeForce", "discrete")}, "lavapipe"), {"mesa-vulkan-drivers", "GeForce"}));
 }
 
 TEST(DeviceChoice, WordsAreKnownInAnyCase)
@@ -76,7 +76,7 @@ TEST(DeviceChoice, WordsAreKnownInAnyCase)
 
 TEST(DeviceChoice, AWrongWordIsBadUsageUnlessNoOtherWouldDo)
 {
-    const Devices useless{device(0, "Old", "discrete", {"it speaks Vulkan 1.1.0, and 1.2 is needed"})};
+    const Processors useless{processor(0, "Old", "discrete", {"it speaks Vulkan 1.1.0, and 1.2 is needed"})};
 
     for (const char* wrong : {"voodoo", "99", "", "e"}) { // the last one is part of several names
         EXPECT_THROW((void)chooseProcessor(desk(), wrong), UnknownProcessor) << wrong;
@@ -89,10 +89,10 @@ TEST(DeviceChoice, AWrongWordIsBadUsageUnlessNoOtherWouldDo)
 
 TEST(DeviceChoice, AnIndexIsThatOfTheListNotThePlaceInIt)
 {
-    Devices devices = desk();
-    EXPECT_EQ(chooseProcessor(devices, "1"), 1u);
-    devices.erase(devices.begin());
-    EXPECT_EQ(chooseProcessor(devices, "1"), 0u);
+    Processors processors = desk();
+    EXPECT_EQ(chooseProcessor(processors, "1"), 1u);
+    processors.erase(processors.begin());
+    EXPECT_EQ(chooseProcessor(processors, "1"), 0u);
 }
 
 TEST(DeviceChoice, PartOfANameFitsWhateverItsCase)
@@ -105,7 +105,7 @@ TEST(DeviceChoice, PartOfANameFitsWhateverItsCase)
 
 TEST(DeviceChoice, SeveralFittingNamesAreRefused)
 {
-    const Devices two{device(0, "RTX 4090", "discrete"), device(1, "RTX 4090", "discrete")};
+    const Processors two{processor(0, "RTX 4090", "discrete"), processor(1, "RTX 4090", "discrete")};
     EXPECT_TRUE(holds(refusal(two, "rtx"), {"several", "'rtx'", "index", "\n  0  RTX", "\n  1  RTX"}));
 }
 

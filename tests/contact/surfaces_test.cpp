@@ -16,20 +16,20 @@ SurfacePlane plane(const glm::dvec3& normal, const glm::dvec3& foot)
 TEST(RestOn, AHandInFrontOfAllPlanesRestsOnNone)
 {
     const SurfacePlane planes[] = {plane({0, 0, 1}, {0, 0, 0}), plane({1, 0, 0}, {0, 0, 0})};
-    const Rest         rest     = restOn(planes, {1, 2, 3});
+    const RestPoint    rest     = restPointOn(planes, {1, 2, 3});
     EXPECT_FALSE(rest.touching());
     EXPECT_EQ(rest.point, glm::dvec3(1, 2, 3));
-    EXPECT_FALSE(restOn({}, {1, 2, 3}).touching());
+    EXPECT_FALSE(restPointOn({}, {1, 2, 3}).touching());
 }
 
 TEST(RestOn, OnePlaneTwoPlanesThreePlanes)
 {
     const SurfacePlane planes[] = {plane({0, 0, 1}, {0, 0, 0}), plane({1, 0, 0}, {0, 0, 0}),
                                    plane({0, 1, 0}, {0, 0, 0})};
-    EXPECT_EQ(restOn(planes, {1, 2, -3}).point, glm::dvec3(1, 2, 0));
-    EXPECT_EQ(restOn(planes, {-1, 2, -3}).point, glm::dvec3(0, 2, 0));
-    EXPECT_EQ(restOn(planes, {-1, -2, -3}).point, glm::dvec3(0, 0, 0));
-    EXPECT_EQ(restOn(planes, {-1, -2, -3}).load[0], 3) << "how deep the hand is behind it";
+    EXPECT_EQ(restPointOn(planes, {1, 2, -3}).point, glm::dvec3(1, 2, 0));
+    EXPECT_EQ(restPointOn(planes, {-1, 2, -3}).point, glm::dvec3(0, 2, 0));
+    EXPECT_EQ(restPointOn(planes, {-1, -2, -3}).point, glm::dvec3(0, 0, 0));
+    EXPECT_EQ(restPointOn(planes, {-1, -2, -3}).load[0], 3) << "how deep the hand is behind it";
 }
 
 TEST(RestOn, IsTheNearestPlaceThatIsBehindNothing)
@@ -40,7 +40,7 @@ TEST(RestOn, IsTheNearestPlaceThatIsBehindNothing)
     for (int run = 0; run < 300; ++run) {
         const SurfacePlane planes[] = {plane(any(), 0.2 * any()), plane(any(), 0.2 * any()), plane(any(), 0.2 * any())};
         const glm::dvec3   hip      = any();
-        const Rest         rest     = restOn(planes, hip);
+        const RestPoint    rest     = restPointOn(planes, hip);
         for (const SurfacePlane& p : planes) EXPECT_GT(p.height(rest.point), -1e-9);
         for (int trial = 0; trial < 300; ++trial) {
             const glm::dvec3 other = rest.point + 0.3 * any();
@@ -53,7 +53,7 @@ TEST(RestOn, IsTheNearestPlaceThatIsBehindNothing)
 TEST(RestOn, PlanesThatContradictEachOtherGiveAnAnswerAllTheSame)
 {
     const SurfacePlane planes[] = {plane({0, 0, 1}, {0, 0, 0}), plane({0, 0, -1}, {0, 0, -1})};
-    const Rest         rest     = restOn(planes, {0, 0, -0.2});
+    const RestPoint    rest     = restPointOn(planes, {0, 0, -0.2});
     EXPECT_TRUE(std::isfinite(rest.point.z));
 }
 

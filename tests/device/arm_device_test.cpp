@@ -18,9 +18,9 @@ TEST(ArmDevice, IsTheSimulatedArmTickForTick)
     const SimulatedHand hand{.stiffness = 150, .damping = 1, .target = {0.01, 0, 0}, .targetVelocity = {0, 0.02, 0}};
     const GovernedForce push = governed({1, -2, 0.5});
     SimulatedArm        arm;
-    arm.hold(hand);
+    arm.holdBy(hand);
     ArmDevice device;
-    device.hold(hand);
+    device.holdBy(hand);
     device.open();
     device.exchange({}, 0);
 

@@ -88,7 +88,7 @@ struct Loop {
     /// Held above the surface until the force is on.
     void engage(const glm::dvec3& above)
     {
-        arm.hold({.stiffness = 500, .damping = 20, .target = above});
+        arm.holdBy({.stiffness = 500, .damping = 20, .target = above});
         for (int n = 0; n < 1600; ++n) tick();
         if (governed) {
             ASSERT_EQ(out.gain, 1);
@@ -115,7 +115,7 @@ TEST(ArmLoop, ReleasedIntoAStiffWartAtTheCapItSettles)
             loop.engage({1e-3, 0, 5e-3});
 
             // Let go: an undamped hand pulls it down from 5 mm above, with 2 N at the surface.
-            loop.arm.hold({.stiffness = hand, .target = {1e-3, 0, -2 / hand}});
+            loop.arm.holdBy({.stiffness = hand, .target = {1e-3, 0, -2 / hand}});
             // What the arm, the hand's spring and the contact hold must never exceed what it was let go with.
             Swing        swing;
             const double down   = -2 / hand; // [m]
@@ -148,9 +148,9 @@ TEST(ArmLoop, SlidToAndFroOverAWartItsEnergyStaysAboveTheTolerance)
 
     for (int n = 0; n < 30000; ++n) { // 15 mm each way with 1 Hz, 10 mm below the surface at 150 N/m
         const double w = 2 * std::numbers::pi, t = n * kDt;
-        loop.arm.hold({.stiffness      = 150,
-                       .target         = {-15e-3 * std::cos(w * t), 0, -10e-3},
-                       .targetVelocity = {15e-3 * w * std::sin(w * t), 0, 0}});
+        loop.arm.holdBy({.stiffness      = 150,
+                         .target         = {-15e-3 * std::cos(w * t), 0, -10e-3},
+                         .targetVelocity = {15e-3 * w * std::sin(w * t), 0, 0}});
         loop.tick();
     }
 
@@ -174,7 +174,7 @@ double workPerCycle(Loop loop, double depth, double speed)
             const glm::dvec3 way   = corners[side + 1] - corners[side];
             const double     pace  = side % 2 == 0 ? 0.05 : speed;
             const int        ticks = int(std::lround(glm::length(way) / pace / kDt));
-            loop.arm.hold({1e5, 200, corners[side], way / (ticks * kDt)});
+            loop.arm.holdBy({1e5, 200, corners[side], way / (ticks * kDt)});
             for (int n = 0; n < ticks; ++n) {
                 const glm::dvec3 acts = loop.governed ? loop.out.force : loop.in.force, from = loop.arm.position();
                 loop.tick();
@@ -214,7 +214,7 @@ double crossedOnce()
 {
     Loop loop(step, {}, {0, 0, 5e-3});
     loop.tanked = loop.governed = false;
-    loop.arm.hold(kReaching);
+    loop.arm.holdBy(kReaching);
     Swing swing;
     for (int n = 0; n < 15000; ++n) {
         loop.touch(loop.arm.sample(), n / 5000 == 1 ? 100 : 1000, loop.arm.sample().velocity);
@@ -246,7 +246,7 @@ double shaken(Loop& loop, double frequency, int late, Sideways sideways)
             hand.target.x         = x;
             hand.targetVelocity.x = v;
         }
-        loop.arm.hold(hand);
+        loop.arm.holdBy(hand);
         past[std::size_t(n) % past.size()] = sample.position.x;
         const double known                 = past[std::size_t(std::max(0, n - late)) % past.size()];
         loop.touch(sample, step({known, 0, 0}), sample.velocity);
@@ -287,7 +287,7 @@ double onTooStiffAWall(Loop loop)
 {
     loop.tanked = false;
     loop.engage({0, 0, 5e-3});
-    loop.arm.hold({.stiffness = 150, .target = {0, 0, -10e-3}});
+    loop.arm.holdBy({.stiffness = 150, .target = {0, 0, -10e-3}});
     Swing swing;
     for (int n = 0; n < 10000; ++n) {
         loop.tick();
@@ -341,7 +341,7 @@ TEST(ArmLoop, RunsForTenMillionTicksWithoutAFaultOrANonFiniteNumber)
         const double     damping = 3 * unit(random);
         const int        count   = 1 + int(glm::length(goal - target) / speed / kDt);
         const glm::dvec3 rate    = (goal - target) / (count * kDt);
-        loop.arm.hold({stiffness, damping, target, rate});
+        loop.arm.holdBy({stiffness, damping, target, rate});
         for (int m = 0; m < count && n < ticks; ++m, ++n) {
             loop.tick();
             const glm::dvec3 f = loop.out.force;
@@ -369,7 +369,7 @@ TEST(ArmLoop, TheSameRunGivesTheSameBits)
     const auto run = [] {
         Loop loop(wart, {}, {1e-3, 0, 5e-3});
         loop.engage({1e-3, 0, 5e-3});
-        loop.arm.hold({.stiffness = 150, .target = {8e-3, 0, -10e-3}});
+        loop.arm.holdBy({.stiffness = 150, .target = {8e-3, 0, -10e-3}});
         for (int n = 0; n < 3000; ++n) loop.tick();
         return std::pair{loop.arm.position(), loop.out.energy};
     };

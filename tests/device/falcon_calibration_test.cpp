@@ -78,8 +78,8 @@ struct Weighing {
         double gain = 0, asked = -1; // s
         bench.tick();
         for (const double until = bench.now + 60; bench.now < until;) {
-            arm.hold(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = {0, 0.004, -0.006}}
-                              : SimulatedHand{});
+            arm.holdBy(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = {0, 0.004, -0.006}}
+                                : SimulatedHand{});
             tick(gain);
             const auto stage = calibration.stage();
             if (stage == FalconCalibrationStage::done || stage == FalconCalibrationStage::failed) return;
@@ -119,6 +119,20 @@ TEST(FalconCalibration, WithoutTheMassItFails)
     EXPECT_EQ(weighing.calibration.stage(), FalconCalibrationStage::failed);
     EXPECT_NE(std::string(weighing.calibration.failure()).find("no mass"), std::string::npos);
     EXPECT_FALSE(weighing.calibration.countsPerTorque());
+}
+
+/// Such a number would be refused wherever it is used, so it is no result: the mass is another one than was named.
+TEST(FalconCalibration, CountsOutOfTheBoundsAreNoResult)
+{
+    for (const double named : {0.05, 0.5}) { // [kg]; 0.2 hang: 16 800 and 1680 counts
+        Weighing weighing(4200, 0.05, {.mass = named});
+
+        weighing.run(0.2);
+
+        EXPECT_EQ(weighing.calibration.stage(), FalconCalibrationStage::failed) << named;
+        EXPECT_NE(std::string(weighing.calibration.failure()).find("check the mass"), std::string::npos) << named;
+        EXPECT_FALSE(weighing.calibration.countsPerTorque()) << named;
+    }
 }
 
 TEST(FalconCalibration, TouchedItFails)

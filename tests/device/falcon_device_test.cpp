@@ -544,7 +544,7 @@ TEST(FalconDevice, AWallIsFeltThroughTheWholeChain)
     SimulatedArmSettings of;
     of.encoderStep = 0, of.delaySamples = 0;
     SimulatedArm arm(of, {0, 0, 0.01});
-    arm.hold({.stiffness = 150, .damping = 3, .target = {0, 0, 0.01}});
+    arm.holdBy({.stiffness = 150, .damping = 3, .target = {0, 0, 0.01}});
     FalconBench   bench(runningFalcon(), [&](const glm::dvec3& force, double dt) {
         arm.step(force, dt);
         return arm.position();
@@ -564,7 +564,7 @@ TEST(FalconDevice, AWallIsFeltThroughTheWholeChain)
         bench.force = governor.force();
     };
     bench.run(2, touch);
-    arm.hold({.stiffness = 150, .damping = 3, .target = {0, 0, -0.005}});
+    arm.holdBy({.stiffness = 150, .damping = 3, .target = {0, 0, -0.005}});
     bench.run(3, touch);
 
     EXPECT_EQ(governor.fault(), GovernorFault::none);

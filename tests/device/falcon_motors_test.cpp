@@ -139,7 +139,7 @@ TEST(FalconMotors, RenderNoForceWhereTheArmCannotBe)
 
 TEST(FalconMotors, AScaleThatCannotBeIsRefused)
 {
-    for (double bad : {0.0, -4200.0, 1e6, std::numeric_limits<double>::quiet_NaN()})
+    for (double bad : {0.0, -4200.0, 1999.0, 10'001.0, 1e6, std::numeric_limits<double>::quiet_NaN()})
         EXPECT_THROW(FalconMotors(kFalcon, bad), Error) << bad;
     EXPECT_EQ(FalconMotors(kFalcon, 10'000).drive(FalconKinematics::kMiddle, {0, 0, 1}).motors[0], -252);
 }

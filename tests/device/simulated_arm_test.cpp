@@ -46,7 +46,7 @@ TEST(SimulatedArm, SwingsOnTheHandsSpringAsTheExactSolutionSays)
         SimulatedArmSettings settings = frictionless();
         settings.damping              = 0;
         SimulatedArm arm(settings, {0.01, 0, 0});
-        arm.hold({.stiffness = 500});
+        arm.holdBy({.stiffness = 500});
 
         const int ticks = int(std::lround(2 / period));
         for (int n = 0; n < ticks; ++n) static_cast<void>(arm.step({}, period));
@@ -59,7 +59,7 @@ TEST(SimulatedArm, SwingsOnTheHandsSpringAsTheExactSolutionSays)
 TEST(SimulatedArm, FollowsAHandThatMovesEvenly)
 {
     SimulatedArm arm(frictionless());
-    arm.hold({.stiffness = 500, .damping = 5, .targetVelocity = {0.02, 0, 0}});
+    arm.holdBy({.stiffness = 500, .damping = 5, .targetVelocity = {0.02, 0, 0}});
 
     for (int n = 0; n < 4000; ++n) static_cast<void>(arm.step({}, 1e-3));
 

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Fuzzes every file reader for a short while. Arguments: a build folder of its own, and the seconds for each (5).
+# Fuzzes every file reader for a short while. Arguments: the folder fuzz of a build of Palpate, and the seconds for each
+# reader (5).
 # Exits with 77, which CTest shows as skipped, where clang++ with libFuzzer is missing.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -21,10 +22,12 @@ if [ -z "$clang" ]; then
     exit 77
 fi
 
-cmake -S "$here/../.." -B "$build" -DCMAKE_CXX_COMPILER="$clang" -DCMAKE_BUILD_TYPE=Release \
-    -DCMAKE_CXX_FLAGS=-fno-sanitize-recover=all -DPALPATE_SANITIZE=fuzzer-no-link,address,undefined \
-    -DPALPATE_FUZZERS=ON -DPALPATE_BENCHMARKS=OFF >"$build/configure.log" 2>&1 || { cat "$build/configure.log"; exit 1; }
-cmake --build "$build" --target fuzzers --parallel 2 >"$build/build.log" 2>&1 || { cat "$build/build.log"; exit 1; }
+if [ ! -f "$build/archives.cmake" ]; then
+    echo "$build holds no archives.cmake: build Palpate with its tests first; its folder has a folder fuzz then"
+    exit 1
+fi
+cmake -S "$here/instrumented" -B "$build" -DCMAKE_CXX_COMPILER="$clang" >"$build/configure.log" 2>&1 || { cat "$build/configure.log"; exit 1; }
+cmake --build "$build" --parallel 2 >"$build/build.log" 2>&1 || { cat "$build/build.log"; exit 1; }
 
 sh "$here/make_seeds.sh" "$build/seeds"
 failed=0

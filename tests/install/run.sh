@@ -12,9 +12,10 @@ mv "$place/first" "$place/moved" # a package must not remember where it was inst
 flags=
 [ -z "$sanitizers" ] || flags="-fsanitize=$sanitizers"
 cmake -G "$generator" -S "$source/outside" -B "$place/outside" -DCMAKE_PREFIX_PATH="$place/moved" -DCMAKE_CXX_COMPILER="$compiler" \
-    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="$flags" >"$place/configure.log" 2>&1 || { cat "$place/configure.log"; exit 1; }
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="$flags" -DSAMPLES="$source/../../samples" >"$place/configure.log" 2>&1 || { cat "$place/configure.log"; exit 1; }
 cmake --build "$place/outside" >"$place/build.log" 2>&1 || { cat "$place/build.log"; exit 1; }
-"$place/outside/outside"
+"$place/outside/hello_touch"
+"$place/outside/hello_session"
 "$place/moved/bin/palpate" --version
 "$place/moved/bin/falcon_demo" --list | grep -q palm_wart # it finds the scenes that moved with it
 

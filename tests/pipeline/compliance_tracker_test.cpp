@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/cloud/samples.h"
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/deform.h"
 #include "tests/pipeline/crossing.h"
 
 namespace palp {
@@ -93,7 +93,7 @@ TEST(ComplianceTracker, OnARoundObjectOfRandomPointsTheForceFollowsTheObject)
     constexpr double     kSpeed = 0.2, kTick = 1e-3, kRadius = 50e-3;
     const Sample&        sample = sampleNamed("hemisphere");
     const SoftObject     object(makeSample(sample, 40'000, 1), sample.material);
-    PlateSolver          device("host");
+    PlateSolver          solver("host");
     std::optional<Frame> carried;
     const PatchSettings  settings{.foundation      = 1.5e7, // the window is 10 l
                                   .window          = sample.window,
@@ -103,13 +103,13 @@ TEST(ComplianceTracker, OnARoundObjectOfRandomPointsTheForceFollowsTheObject)
         return kRadius * glm::dvec3(std::sin(arc / kRadius), 0, std::cos(arc / kRadius));
     };
     const auto patchAt = [&](const glm::dvec3& place, const FootprintLattice& lattice) {
-        return deformWithTable(object, {place, glm::normalize(place), true}, settings, lattice, device, carried);
+        return deformWithTable(object, {place, glm::normalize(place), true}, settings, lattice, solver, carried);
     };
     const auto felt = [](double c, double contact) { return feltStiffness(ForceLaw::series, contact, c); };
 
     // What the object itself gives: a patch about every half millimetre of the path.
     constexpr double    kReach = 24e-3, kEvery = 0.5e-3; // [m]
-    const auto          single = footprintLattice(object, settings, 1, device);
+    const auto          single = footprintLattice(object, settings, 1, solver);
     std::vector<double> truth; // ln K
     for (double arc = -kReach; arc < kReach + 2 * kEvery; arc += kEvery) {
         const auto middle = patchAt(onSurface(arc), single).table->middle();
@@ -120,7 +120,7 @@ TEST(ComplianceTracker, OnARoundObjectOfRandomPointsTheForceFollowsTheObject)
 
     for (double rate : {30.0, 60.0}) {
         const auto lattice = footprintLattice(
-            object, settings, tableSide(ComplianceLaw::table, 1 / rate, settings.footprintRadius), device);
+            object, settings, tableSide(ComplianceLaw::table, 1 / rate, settings.footprintRadius), solver);
         ComplianceTracker              handOver;
         RecentMotion                   motion;
         std::optional<ComplianceTable> coming, published;

@@ -19,8 +19,8 @@ constexpr double kTick       = 1e-3;    // [s]
 
 PlateSolver& host()
 {
-    static PlateSolver device("host");
-    return device;
+    static PlateSolver solver("host");
+    return solver;
 }
 
 double relative(double logarithm)
@@ -66,7 +66,7 @@ const FootprintLattice& Sheet::latticeOf(int side)
     static std::array<std::optional<FootprintLattice>, ComplianceTable::kMostSide + 1> known;
     auto& lattice = known[std::size_t(side)];
     if (!lattice) {
-        lattice = footprintLattice(homogeneous(), {kRadius, side, kContact}, host(), kTolerance);
+        lattice = solveLattice(homogeneous(), {kRadius, side, kContact}, host(), kTolerance);
     }
     return *lattice;
 }
@@ -78,7 +78,7 @@ ComplianceTable Sheet::tableAt(double x, int side) const
     return table;
 }
 
-ComplianceTable::Look Sheet::truth(double x) const
+ComplianceTable::Values Sheet::truth(double x) const
 {
     const double along = (x + kReach) / kEvery;
     const auto   n     = std::min(std::size_t(std::max(0.0, along)), truth_.size() - 2);
@@ -130,13 +130,13 @@ Crossed crossed(const Sheet& sheet, const Crossing& crossing, ComplianceLaw law,
     const double period = 1 / rate;
     const int    side   = tableSide(law, period, Sheet::kRadius);
 
-    Crossed               result;
-    ComplianceTracker     handOver(law);
-    RecentMotion          motion;
-    ComplianceTable       coming, published; // what is being solved for, and what the servo sees
-    std::uint64_t         sequence   = 0;
-    double                lastHanded = 0;
-    ComplianceTable::Look lastTrue;
+    Crossed                 result;
+    ComplianceTracker       handOver(law);
+    RecentMotion            motion;
+    ComplianceTable         coming, published; // what is being solved for, and what the servo sees
+    std::uint64_t           sequence   = 0;
+    double                  lastHanded = 0;
+    ComplianceTable::Values lastTrue;
     for (int n = 0; n * kTick < crossing.until; ++n) {
         const double     time = n * kTick;
         const glm::dvec3 contact{crossing.along(time), 0, 0};
@@ -150,8 +150,8 @@ Crossed crossed(const Sheet& sheet, const Crossing& crossing, ComplianceLaw law,
         const auto handed = handOver.tick({contact, time, kTick, &published});
         if (!handed || time < crossing.from) continue;
 
-        const double                logarithm = std::log(handed->compliance);
-        const ComplianceTable::Look expected  = sheet.truth(contact.x);
+        const double                  logarithm = std::log(handed->compliance);
+        const ComplianceTable::Values expected  = sheet.truth(contact.x);
         if (time >= crossing.from + kTick) {
             const double felt = feltStiffness(ForceLaw::series, handed->contactStiffness, handed->compliance);
             const double own =

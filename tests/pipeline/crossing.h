@@ -5,7 +5,7 @@
 
 #include "engine/force/ahead.h"
 #include "engine/force/compliance_tracker.h"
-#include "engine/pipeline/table_solve.h"
+#include "engine/pipeline/compliance_table_solve.h"
 
 namespace palp {
 
@@ -24,15 +24,15 @@ public:
     [[nodiscard]] static Plate                   homogeneous();           ///< without any feature
     [[nodiscard]] static Chart                   chartAt(double x);
     [[nodiscard]] ComplianceTable                tableAt(double x, int side) const;
-    [[nodiscard]] ComplianceTable::Look          truth(double x) const; ///< from windows about the place; |x| <= kReach
+    [[nodiscard]] ComplianceTable::Values        truth(double x) const; ///< from windows about the place; |x| <= kReach
     [[nodiscard]] double                         range() const;         ///< largest over smallest compliance [1]
     [[nodiscard]] static const FootprintLattice& latticeOf(int side);
 
     static constexpr double kReach = 24e-3; ///< [m]
 
 private:
-    Factor                             factor_;
-    std::vector<ComplianceTable::Look> truth_;
+    Factor                               factor_;
+    std::vector<ComplianceTable::Values> truth_;
 };
 
 /// sd 4 mm, in the middle.

@@ -1,4 +1,6 @@
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/patch_warnings.h"
+#include "engine/pipeline/presets.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/contract.h"
+#include "engine/plate/load.h"
 #include "tests/plate/plates.h"
 #include "tests/support/temporary_folder.h"
 
@@ -25,13 +26,6 @@ constexpr double kRichardson = 2e-3; ///< [1] allowed of the extrapolated value;
 NodeField deflection(const Plate& plate, const NodeField& force)
 {
     return ReferencePlateSolver(plate).solve(force).deflection;
-}
-
-double dot(const NodeField& a, const NodeField& b)
-{
-    double sum = 0;
-    for (std::size_t k = 0; k < a.values().size(); ++k) sum += a.values()[k] * b.values()[k];
-    return sum;
 }
 
 double largest(const NodeField& field)
@@ -445,7 +439,7 @@ TEST(ReferenceSolver, ReportsWhatItKnowsAndNothingElse)
     const Plate         plate    = unitSquare(64);
     const PlateSolution solution = ReferencePlateSolver(plate).solve(uniformLoad(plate.grid, 1));
 
-    EXPECT_EQ(solution.report.device, "reference");
+    EXPECT_EQ(solution.report.solver, "reference");
     EXPECT_FALSE(solution.report.iterations);
     EXPECT_FALSE(solution.report.workUnits);
     ASSERT_TRUE(solution.report.errorEstimate);

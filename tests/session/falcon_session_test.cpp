@@ -1,6 +1,6 @@
 // The whole of it in virtual time: scene, plate, proxy, governor, the Falcon's driver, its wire, its motors, the arm
 // and the hand that holds it.
-#include "engine/session/held_falcon.h"
+#include "engine/session/gripped_falcon.h"
 
 #include <gtest/gtest.h>
 
@@ -36,13 +36,13 @@ HandPath resting()
 }
 
 struct Session {
-    SheetSession session;
-    HandPath     path;
-    HoldingHand  hand{path, {.stiffness = 2000, .damping = 5}, deviceFrame({0, 0, 6e-3}, {0, 0, 1})};
-    HeldFalcon   falcon;
+    SheetSession  session;
+    HandPath      path;
+    GrippingHand  hand{path, {.stiffness = 2000, .damping = 5}, deviceFrame({0, 0, 6e-3}, {0, 0, 1})};
+    GrippedFalcon falcon;
 
     Session(const char* stiffness, HandPath way, double rate,
-            const Ft232EmulatorSettings& settings = HeldFalcon::ready())
+            const Ft232EmulatorSettings& settings = GrippedFalcon::ready())
         : session(sheetScene(stiffness)), path(std::move(way)), falcon(hand, settings)
     {
         session.scene.deformationRate = rate;
@@ -56,30 +56,37 @@ struct Session {
     }
 };
 
-/// Led out and in the arm is homed; then the hand goes along its path, whatever time that took.
-TEST(FalconSession, ALedHandHomesTheFalconAndThenFollowsItsPath)
+/// Moved out and in the arm is homed; then the hand goes along its path, whatever time that took.
+TEST(FalconSession, AHandHomesTheFalconAndThenFollowsItsPath)
 {
-    const HandPath    path({{0, {0, 0, 6e-3}}, {1, {10e-3, 0, 6e-3}}});
-    const HoldingHand hand{path, {.stiffness = 500, .damping = 20}, deviceFrame({0, 0, 6e-3}, {0, 0, 1})};
-    auto              settings = HeldFalcon::ready();
-    settings.falcon.homed      = false;
-    HeldFalcon falcon(hand, settings);
+    const HandPath     path({{0, {0, 0, 6e-3}}, {1, {10e-3, 0, 6e-3}}});
+    const GrippingHand hand{path, {.stiffness = 500, .damping = 20}, deviceFrame({0, 0, 6e-3}, {0, 0, 1})};
+    auto               settings = GrippedFalcon::ready();
+    settings.falcon.homed       = false;
+    GrippedFalcon falcon(hand, settings);
+    EXPECT_TRUE(falcon.info().needsHoming);
     falcon.open();
+    falcon.home();
     HapticState state;
-    double      now  = 0; // [s]
-    const auto  hold = [&](double z, double seconds) {
-        falcon.lead({0, 0, z});
-        for (const double until = now + seconds; now < until; now += 1.5e-3) state = falcon.exchange({}, now);
+    double      now = 0; // [s]
+    const auto  run = [&](double until) {
+        for (; now < until; now += 1.5e-3) state = falcon.exchange({}, now);
     };
-    hold(0.048, 0.5);
+    run(0.7);
+    EXPECT_GT(state.position.z, 0.04) << "m";
     EXPECT_FALSE(state.homed) << "out is not enough";
-    hold(-0.052, 0.5);
+    run(2);
     EXPECT_TRUE(state.homed);
-    hold(0, 0.5);
+    EXPECT_TRUE(falcon.isBeingHomed()) << "the hand is still on its way back";
+    run(2.8);
+    EXPECT_NEAR(state.position.z, 0, 1e-3) << "back in the middle";
     EXPECT_NEAR(state.position.x, 0, 1e-3) << "the path waits";
+    run(4);
+    EXPECT_FALSE(falcon.isBeingHomed());
+    EXPECT_NEAR(state.position.x, 10e-3, 1e-3) << "the path begins by itself";
 
-    falcon.follow();
-    for (now = 0; now < 0.5; now += 1.5e-3) state = falcon.exchange({}, now);
+    now = 0; // the session's clock, which starts anew
+    run(0.5);
     EXPECT_NEAR(state.position.x, 5e-3, 1e-3) << "half way; the arm trails behind the hand";
     EXPECT_NEAR(state.time, now, 4e-3);
 }
@@ -158,7 +165,7 @@ TEST(FalconSession, EveryTroubleOfTheWireEndsAtZeroForceWithAReasonOrIsBorne)
                                    Trouble{"merged", LinkTroubleKind::merged, 1, Ends::notAtAll},
                                    Trouble{"repeated", LinkTroubleKind::repeat, 1, Ends::notAtAll},
                                    Trouble{"garbage", LinkTroubleKind::garbage, 1, Ends::notAtAll}}) {
-        Ft232EmulatorSettings settings = HeldFalcon::ready();
+        Ft232EmulatorSettings settings = GrippedFalcon::ready();
         if (trouble.ends == Ends::byTheDriver) settings.falcon.holdTime = 1e6;
         Session      s(kWart, resting(), 60, settings);
         const double from = s.falcon.emulator().now() + 3.3; // [s] at rest in contact

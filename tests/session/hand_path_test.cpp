@@ -13,7 +13,7 @@
 
 #include "engine/cloud/samples.h"
 #include "engine/core/npy.h"
-#include "engine/session/hand_device.h"
+#include "engine/session/scripted_hand.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palp {
@@ -69,7 +69,7 @@ TEST(HandPath, AColumnOfButtonsIsPressedFromItsSampleOn)
     EXPECT_EQ(hand.buttons(1), 2u);
     EXPECT_EQ(hand.buttons(1.999), 2u);
     EXPECT_EQ(hand.buttons(3), 0u);
-    HandDevice device(hand);
+    ScriptedHand device(hand);
     EXPECT_EQ(device.exchange({}, 0.5).buttons, 0u);
     EXPECT_EQ(device.exchange({}, 1.5).buttons, 2u);
     for (const char* wrong : {"-1", "65536", "left", "1.5"})

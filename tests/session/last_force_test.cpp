@@ -5,8 +5,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/session/hand_device.h"
 #include "engine/session/real_session.h"
+#include "engine/session/scripted_hand.h"
 #include "tests/session/sheet_session.h"
 
 // However a session ends, the last that its device hears is zero force.
@@ -15,15 +15,15 @@ namespace palp {
 namespace {
 
 /// A scripted hand that keeps what it is given.
-class Listening : public HandDevice {
+class Listening : public ScriptedHand {
 public:
-    using HandDevice::HandDevice;
+    using ScriptedHand::ScriptedHand;
 
     HapticState exchange(const GovernedForce& force, double now) noexcept override
     {
         last = glm::length(force.newtons());
         if (last > 0) ++pushed;
-        return HandDevice::exchange(force, now);
+        return ScriptedHand::exchange(force, now);
     }
 
     double last   = 0; ///< [N]

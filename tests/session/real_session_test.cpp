@@ -12,7 +12,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/session/hand_device.h"
+#include "engine/session/scripted_hand.h"
 #include "tests/session/sheet_session.h"
 #include "tests/support/allocations.h"
 #include "tests/support/locks.h"
@@ -25,7 +25,7 @@ class RealSessions : public ::testing::TestWithParam<SessionThreads> {
 protected:
     SessionSummary run(const SheetSession& session, const PatchSolver& solver, const RealSessionSettings& settings)
     {
-        HandDevice device(session.hand);
+        ScriptedHand device(session.hand);
         return runReal({session.scene, session.object, solver, device, {}}, settings, warning_);
     }
     std::string warning_; ///< of run()
@@ -149,7 +149,7 @@ TEST_P(RealSessions, AStalledDeformationLeavesAFiniteSmoothForceAndAFlag)
 {
     const SheetSession  session(sheetScene(kWart));
     const HandPath      rests({{0, {0, 0, 2e-3}}, {0.1, {0, 0, -1.5e-3}}, {20, {0, 0, -1.5e-3}}}); // and stays there
-    HandDevice          device(rests);
+    ScriptedHand          device(rests);
     Deformation         deformation(session.object, session.scene);
     RealSessionSettings settings;
     bool                stalled = false;

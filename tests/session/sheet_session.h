@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "engine/session/deformation.h"
-#include "engine/session/hand_device.h"
+#include "engine/session/scripted_hand.h"
 #include "engine/session/virtual_session.h"
 
 namespace palp {
@@ -40,7 +40,7 @@ struct SheetSession {
     {
         std::vector<TickRecord> samples;
         Deformation             deformation(object, scene);
-        HandDevice              device(hand);
+        ScriptedHand              device(hand);
         runVirtual({scene, object, deformation.solver(), device, {}}, seconds,
                    [&](const TickRecord& s) { samples.push_back(s); });
         return samples;

@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 
 #include "engine/session/deformation.h"
-#include "engine/session/hand_device.h"
 #include "engine/session/recorded_session.h"
+#include "engine/session/scripted_hand.h"
 #include "tests/session/sheet_session.h"
 #include "tests/support/allocations.h"
 
@@ -187,9 +187,9 @@ TEST(Servo, TheFirstButtonHeldDownResetsAFault)
 /// A device that renders little is never asked for more, whatever the scene allows.
 TEST(VirtualSession, TheDevicesLimitsBoundTheForce)
 {
-    class Weak : public HandDevice {
+    class Weak : public ScriptedHand {
     public:
-        explicit Weak(const HandPath& hand) : HandDevice(hand), weak_(HandDevice::info())
+        explicit Weak(const HandPath& hand) : ScriptedHand(hand), weak_(ScriptedHand::info())
         {
             weak_.maximumForce     = 0.4;
             weak_.maximumStiffness = 300;

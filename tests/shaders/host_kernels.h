@@ -5,7 +5,6 @@
 
 #include "compute_shaders/shared/cg_state.h"
 #include "compute_shaders/shared/plate_level.h"
-#include "compute_shaders/shared/point_layout.h"
 #include "compute_shaders/shared/transfer_layout.h"
 
 /// The shaders' arithmetic as C++: the same headers, with arrays in place of bound buffers. The build compiles this
@@ -97,34 +96,6 @@ struct Restrict {
 #define PALPATE_RESTRICTS
 #include "compute_shaders/shared/plate_transfer.h"
 #undef PALPATE_RESTRICTS
-};
-
-/// From points to nodes.
-struct Sample {
-    const uint*           starts;
-    const ScatteredPoint* points;
-
-    int   bucketStart(int n) const { return int(starts[n]); }
-    float pointX(int n) const { return points[n].x; }
-    float pointZ(int n) const { return points[n].z; }
-    float pointLogarithm(int n) const { return points[n].logarithm; }
-    uint  pointNumber(int n) const { return points[n].number; }
-
-#include "compute_shaders/shared/nearest_point.h"
-
-#include "compute_shaders/shared/log_mean.h"
-};
-
-/// And back.
-template <class Real>
-struct Lift {
-    using real = Real;
-    const Real* w;
-    int         stride;
-
-    real deflection(int i, int j) const { return w[i * stride + j]; }
-
-#include "compute_shaders/shared/plate_lift.h"
 };
 
 template <class Real>

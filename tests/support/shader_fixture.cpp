@@ -47,7 +47,7 @@ public:
     {
         if (!context_) {
             compute::ContextSettings settings;
-            settings.device     = deviceOfTests();
+            settings.processor  = deviceOfTests();
             settings.validation = wantedValidation();
             context_            = std::make_unique<compute::Context>(settings);
         }

@@ -71,7 +71,7 @@ protected:
     static compute::Context& context();
 
     /// Whether the device is the host, which has functions for the plate's kernels only.
-    static bool onHost() { return context().device().kind == compute::kHostProcessor; }
+    static bool onHost() { return context().processor().kind == compute::kHostProcessor; }
 
     /// What PALPATE_VALIDATION asks for.
     static compute::Validation validation();

@@ -1,5 +1,4 @@
 #include "engine/plate/host/frame.h"
-#include "engine/plate/host/kernels.h"
 
 // The coarsest level: coarse_factor.comp and coarse_solve.comp.
 //
@@ -17,7 +16,7 @@ struct Sides {
 #include "compute_shaders/shared/plate_grid.h"
 };
 
-// Of a register [bytes]. A compiler makes slow code of longer vectors, and columns of at most 35 entries gain nothing
+// The size of a register [bytes]. A compiler makes slow code of longer vectors, and columns of at most 35 entries gain nothing
 // by registers of 64.
 #if defined(__AVX__)
 constexpr int kRegister = 32;
@@ -25,7 +24,7 @@ constexpr int kRegister = 32;
 constexpr int kRegister = 16;
 #endif
 
-/// Some numbers side by side, a register full.
+/// A register full of numbers.
 template <class Real>
 struct Lanes {
     static constexpr int kLanes = kRegister / int(sizeof(Real));
@@ -103,7 +102,7 @@ void factorOf(const HostDispatch& d)
     *bound<uint>(d, 2) = lost;
 }
 
-/// Unknowns n to n + kLanes - 1 of L y = f, given those before them; reach must be at least kLanes.
+/// Solves for the unknowns n to n + kLanes - 1 of L y = f, given those before them; reach must be at least kLanes.
 template <class Real>
 void forwardTogether(const Real* factor, int reach, int n, Real* y)
 {
@@ -137,7 +136,8 @@ void forward(const Real* factor, int reach, int unknowns, Real* y)
     }
 }
 
-/// Unknowns of L' w = y, from the last. \param w  y, then the result; zeros behind
+/// Solves L' w = y, from the last unknown on.
+/// \param w  y, then the result; zeros behind
 template <class Real>
 void backward(const Real* factor, int reach, int unknowns, Real* w)
 {

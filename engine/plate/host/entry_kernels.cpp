@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "engine/plate/host/frame.h"
-#include "engine/plate/host/kernels.h"
 
 // Entries of the operator's matrix: plate_divisor.comp and coarse_assemble.comp. They are the operator's answers to
 // unit deflections, so that there is no second list of them.

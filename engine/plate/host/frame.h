@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <new>
 
 #include "compute_shaders/shared/cg_state.h"
@@ -9,14 +10,14 @@
 #include "compute_shaders/shared/plate_push.h"
 #include "compute_shaders/shared/tile_layout.h"
 #include "compute_shaders/shared/transfer_layout.h"
-#include "engine/compute/kernel.h"
+#include "engine/compute/host_dispatch.h"
 
 // What the kernels of the host have in common. Their files are compiled once per instruction set, each time in another
 // namespace: whatever they define must be in it, or a linker might give a processor code that it does not have.
 //
 // The arithmetic is that of the shaders' headers, node by node and in the same order; contraction is off. So the
-// results are those of the shaders, to the bit (but for the sign of a zero), on every instruction set. Only the loops are ours: along rows, without
-// branches, so that compilers make vector instructions of them.
+// results are those of the shaders, to the bit (but for the sign of a zero), on every instruction set. Only the loops
+// are different: they run along rows and have no branches, so that compilers make vector instructions of them.
 
 #ifndef PALPATE_ISA
 #error "set PALPATE_ISA, the namespace of an instruction set"
@@ -100,8 +101,8 @@ inline std::ptrdiff_t nodesOf(const PlateLevel& g)
         name##Of<double>(d);                                                                                           \
     }
 
-/// Numbers of one kind that a kernel needs while it runs, kept from run to run; zeros where they are new. \thread each
-/// has its own
+/// Keeps the numbers of one kind that a kernel needs while it runs, from run to run; new ones are zeros.
+/// \thread each has its own
 template <class T>
 class Scratch {
 public:

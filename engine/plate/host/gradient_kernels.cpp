@@ -1,5 +1,4 @@
 #include "engine/plate/host/frame.h"
-#include "engine/plate/host/kernels.h"
 
 // Conjugate gradients: cg_dot.comp, cg_scalars.comp, cg_direction.comp, cg_update.comp and plate_result.comp.
 

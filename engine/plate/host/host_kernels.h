@@ -2,16 +2,16 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/compute/kernel.h"
-#include "engine/plate/host/kernel_names.h"
+#include "engine/compute/host_dispatch.h"
 
 namespace palp {
 
-/// The plate's kernels as functions for the processor of this machine.
+/// The kernels of compute_shaders/shared/plate_kernels.def as functions for the processor of this machine.
 struct HostKernels {
-#define PALPATE_FIELD(name) compute::HostKernel name;
-    PALPATE_HOST_KERNELS(PALPATE_FIELD)
-#undef PALPATE_FIELD
+#define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape) compute::HostKernel name;
+#define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape) compute::HostKernel name##_f32, name##_f64;
+#define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
+#include "compute_shaders/shared/plate_kernels.def"
 };
 
 /// The same kernels compiled for instruction sets; all give the same bits.
@@ -20,10 +20,11 @@ struct HostVariant {
     const HostKernels* kernels;
 };
 
-/// The variants that this processor can run, best last. \thread any
+/// Lists the variants that this processor can run, best last.
+/// \thread any
 [[nodiscard]] const std::vector<HostVariant>& hostVariants();
 
-/// The best of them, but none better than the one that the environment variable PALPATE_HOST_ISA names.
+/// Returns the best of them, but none better than the one that the environment variable PALPATE_HOST_ISA names.
 /// \throws Error if there is no instruction set of that name
 [[nodiscard]] const HostVariant& hostVariant();
 

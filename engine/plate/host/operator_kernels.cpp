@@ -1,4 +1,3 @@
-#include "engine/plate/host/kernels.h"
 #include "engine/plate/host/operator_rows.h"
 
 // plate_apply.comp, plate_residual.comp and plate_relax.comp.

@@ -23,7 +23,7 @@ inline PlateLevel middleOfZ(PlateLevel g)
     return g;
 }
 
-/// The shared headers for one precision; what they ask of fields is not used here.
+/// The shared headers for one precision. The fields that they ask for are not used here.
 template <class Real>
 struct Rules {
     using real = Real;
@@ -37,16 +37,15 @@ struct Rules {
 #include "compute_shaders/shared/plate_relax.h"
 };
 
-/// Nodes of a row, from the first to the last of them.
+/// The nodes of a row from `first` to `last`.
 struct ColumnRange {
     int first, last;
 };
 
-/// Rows of A w in a window of the grid, one after the other. Call next() once per row.
+/// Computes rows of A w in a part of the grid, one after the other: each call of next() gives a row.
 ///
-/// \tparam Field  gives row i of the deflection as `const Real* row(int i)`, valid while rows up to i + 2 are asked
-/// for; the
-///                number before its first may be looked at
+/// \tparam Field  has `const Real* row(int i)`: row i of the deflection, valid while rows up to i + 2 are asked for. The
+///                number before its first one may be read.
 template <class Real, class Field>
 class OperatorRows {
 public:
@@ -208,9 +207,9 @@ private:
 
     const PlateLevel g, middle;
     Field&           field_;
-    int              nodes_; ///< of a row of the grid [1]
+    int              nodes_; ///< of a row of the grid
     ColumnRange      wanted_;
-    int              first_, count_; ///< columns that are looked at: those wanted and one to either side
+    int              first_, count_; ///< columns that are read: those wanted and one to either side
     const float*     D_;
     Real*            slope_[2]; ///< change of w from a row to the next, of two rows
     Real*            mz_[2];

@@ -1,7 +1,6 @@
 #include "engine/plate/host/frame.h"
-#include "engine/plate/host/kernels.h"
 
-// What a rigidity is prepared by: rigidity_coarsen.comp, jump_mark.comp and jump_list.comp.
+// The kernels that prepare a rigidity: rigidity_coarsen.comp, jump_mark.comp and jump_list.comp.
 
 namespace palp::PALPATE_ISA {
 namespace {
@@ -70,7 +69,7 @@ struct MeansAlongZ {
         }
     }
 
-    void take(const float* fine, float* __restrict row)
+    void computeRow(const float* fine, float* __restrict row)
     {
         // Every second node is the usual case, and needs no list of places but at the ends.
         const int  plain  = nodes - 1; // the first and the last may have a mirror image beside them
@@ -107,7 +106,7 @@ void coarsen(const HostDispatch& d)
         made[i % 4]       = i;
         const float* fine = rules.fine + std::ptrdiff_t(i) * rules.stride;
         if (alongZ)
-            means.take(fine, row);
+            means.computeRow(fine, row);
         else
             for (int j = 0; j < nodes; ++j) row[j] = fine[means.at[j]];
         return row;

@@ -1,4 +1,3 @@
-#include "engine/plate/host/kernels.h"
 #include "engine/plate/host/operator_rows.h"
 
 // Extra sweeps where the rigidity jumps: plate_relax_tile.comp and plate_copy_tile.comp. Listed tiles that are

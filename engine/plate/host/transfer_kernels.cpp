@@ -1,8 +1,7 @@
 #include "engine/plate/host/frame.h"
-#include "engine/plate/host/kernels.h"
 
 // plate_restrict.comp and plate_prolong.comp. The shaders nest sums along x and z node by node; each inner sum is made
-// once here, a row at a time. Weights of 0 are left out, and away from the sides all entries of a table are alike.
+// once here, a row at a time. Weights of 0 are omitted, and away from the sides all entries of a table are alike.
 
 namespace palp::PALPATE_ISA {
 namespace {
@@ -110,7 +109,8 @@ private:
     }
 };
 
-/// A coarse row interpolated at the fine nodes of table z. \param halves  room for as many numbers, and two
+/// Interpolates a coarse row at the fine nodes of table z.
+/// \param halves  room for as many numbers, and two
 template <class Real, class Coarse>
 void prolongRow(const Table& z, const Run& run, const Coarse* from, Real* halves, Real* to)
 {
@@ -179,7 +179,8 @@ void interpolateFrom(const HostDispatch& d)
                       });
 }
 
-/// A row of column sums gathered at the coarse nodes of table z. \param halves  room for as many numbers
+/// Gathers a row of column sums at the coarse nodes of table z.
+/// \param halves  room for as many numbers
 void restrictRow(const Table& z, const Run& run, const float* column, int fineNodes, float* halves, float* to)
 {
     const auto one = [&](int j) {
@@ -192,7 +193,7 @@ void restrictRow(const Table& z, const Run& run, const float* column, int fineNo
     for (int j = run.end; j < z.count; ++j) one(j);
     if (run.end <= run.begin) return;
 
-    // Of every second number a row, so that what coarse nodes take lies side by side.
+    // Every second number has a row of its own, so that what coarse nodes take lies side by side.
     const float* from = column + z.first(run.begin);
     const int    each = (fineNodes - z.first(run.begin)) / 2, uneven = (fineNodes - z.first(run.begin)) % 2;
     float *      even = halves, *odd = halves + each + 1;

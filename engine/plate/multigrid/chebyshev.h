@@ -9,10 +9,12 @@ struct ChebyshevStep {
     float step;  ///< [1]
 };
 
-/// Chebyshev's iteration of so many steps, for a symmetric matrix: what remains of an error along an eigenvector is at
-/// most 1/T((largest + smallest)/(largest - smallest)) for eigenvalues, relative to the divisor, from `smallest` to
-/// `largest`, T Chebyshev's polynomial of that degree; below `smallest` it falls towards 1 at 0, and beyond `largest`
-/// it grows without bound. A polynomial of the matrix: before and after a correction it makes a symmetric cycle.
+/// Returns the steps of Chebyshev's iteration for a symmetric matrix.
+///
+/// For eigenvalues, relative to the divisor, from `smallest` to `largest`, at most 1/T((largest + smallest)/(largest -
+/// smallest)) of an error along an eigenvector remains, T being Chebyshev's polynomial of degree `count`. Below
+/// `smallest` this share rises towards 1 at the eigenvalue 0; beyond `largest` it grows without bound. The iteration is
+/// a polynomial of the matrix, so before and after a correction it makes a symmetric cycle.
 /// \source Golub & Varga 1961; as a smoother, Adams, Brezina, Hu & Tuminaro 2003
 [[nodiscard]] std::vector<ChebyshevStep> chebyshevSteps(int count, double smallest, double largest);
 

@@ -40,7 +40,7 @@ shared::PlateLevel levelOf(const PlateGrid& grid, const Plate& plate, double bed
 
 PlateGrid coarser(const PlateGrid& grid)
 {
-    constexpr int    kFewestCells = 8;   // an axis with fewer is not halved: interpolation needs four coarse nodes [1]
+    constexpr int    kFewestCells = 8;   // an axis with fewer is not halved: interpolation needs four coarse nodes
     constexpr double kUneven      = 1.5; // ratio of spacings [1]
     const bool       mayX = grid.cellsX >= kFewestCells, mayZ = grid.cellsZ >= kFewestCells;
     bool             x = mayX && grid.spacingX < kUneven * grid.spacingZ;

@@ -7,13 +7,13 @@
 
 namespace palp {
 
-/// [1] of one load
+/// Counts the nodes of one load.
 [[nodiscard]] inline std::size_t nodesOf(const shared::PlateLevel& g) noexcept
 {
     return std::size_t(g.cellsX + 1) * std::size_t(g.cellsZ + 1);
 }
 
-/// A grid and ever coarser ones over the same rectangle, with what the multigrid shaders need to know of each.
+/// A grid and ever coarser ones over the same rectangle, with what the multigrid kernels need to know of each.
 ///
 /// A step halves the cells along both axes (rounding up), until no side has more than kMostCoarseCells. An axis whose
 /// spacing is 1.5 times the other's or more waits, because point relaxation does not smooth along it; so does one that
@@ -26,12 +26,12 @@ struct GridHierarchy {
     std::vector<Level> levels; ///< finest first
 
     /// Energy unit of the finest level per squared deflection: a deflection is force/stiffness times the number that
-    /// the shaders compute from rigidity/unitRigidity and force 1 [N/m].
+    /// the kernels compute from rigidity/unitRigidity and force 1 [N/m].
     double stiffness = 0;
 };
 
-/// \param plate         its rigidity is not looked at
-/// \param unitRigidity  D0 [N m] that the shaders' rigidity is relative to, > 0
+/// \param plate         its rigidity is not read
+/// \param unitRigidity  D0 [N m] that the kernels' rigidity is relative to, > 0
 [[nodiscard]] GridHierarchy gridHierarchy(const Plate& plate, double unitRigidity);
 
 } // namespace palp

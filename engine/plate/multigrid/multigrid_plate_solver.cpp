@@ -21,21 +21,17 @@
 #include "engine/plate/multigrid/grid_hierarchy.h"
 #include "engine/plate/multigrid/plate_passes.h"
 #include "engine/plate/rigidity_unit.h"
-#include "engine/plate/scattered_points.h"
 
-// One submission is a list of passes, recorded once:
+// Each command list is recorded once:
 //
 //   prepare   rigidity -> coarser rigidities -> divisors, tiles where it jumps -> factor of the coarsest level
-//   cold      loads -> coarser loads; coarsest answer; level by level upwards: interpolate, a step or two of conjugate
+//   begin     loads -> coarser loads; coarsest answer; level by level upwards: interpolate, a step or two of conjugate
 //             gradients; then kStepsPerList steps on the finest level
-//   warm      the residual of the last answer, then kStepsPerList steps
-//   more      kStepsPerList further steps
-//   sample    rigidity from scattered points, then prepare
-//   lift      the answer to those points
+//   resume    kStepsPerList further steps
 //
-// Lists are recorded once with, or without, extra sweeps of the tiles in which the rigidity jumps. The steps on the
-// finest level are dispatched indirectly: when the estimate is small enough a kernel sets all their sizes to zero, and
-// the rest of the list runs empty. The host looks only between lists.
+// The last two are recorded with, or without, extra sweeps of the tiles in which the rigidity jumps. The steps on the
+// finest level are dispatched indirectly: when the estimate is small enough, a kernel sets all their sizes to zero, and
+// the rest of the list runs empty. The host reads the estimate only between lists.
 
 namespace palp {
 namespace {
@@ -48,10 +44,8 @@ using compute::Intent;
 using compute::Kernel;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kSlots        = 3; ///< results in mapped memory: one is written, one is read, one is in between [1]
-constexpr int kStepsPerList = 4; ///< [1]
-
-constexpr int kMostGroups = 65535; ///< along x of a dispatch, on every device [1]
+constexpr int kStepsPerList = 4;
+constexpr int kMostGroups   = 65535; ///< along x of a dispatch, on every processor
 
 constexpr double kRounding      = 1e-7; ///< of rigidities and answer to floats, twice 6e-8 rounded [1]
 constexpr double kFloatRounding = 5e-5; ///< of conjugate gradients in floats, at contrast 1000 and free sides [1]
@@ -63,7 +57,7 @@ std::string shortest(double value)
     return text;
 }
 
-/// What the host writes for a buffer of the device: into it where it can, or else into memory that a list copies.
+/// Memory that the host writes for a buffer: the buffer itself where it is mapped, or else memory that a list copies.
 class Staging {
 public:
     Staging(compute::Context& context, const Buffer& target) : target_(&target)
@@ -95,68 +89,45 @@ struct MultigridPlateSolver::Impl {
     double                   stiffness; ///< see GridHierarchy [N/m]
     PlatePasses              passes;
 
-    Buffer              units; ///< metres per unit of the shaders' deflection, per load
-    Staging             hostRigidity, hostLoads, hostUnits;
-    Buffer              hostState;
-    std::vector<Buffer> results;
+    Buffer  units; ///< metres per unit of the shaders' deflection, per load
+    Staging hostRigidity, hostLoads, hostUnits;
+    Buffer  hostState, result;
 
-    /// What scattered points need, once there are some.
-    struct FromPoints {
-        ScatteredPoints                           points;
-        Buffer                                    rigidity; ///< at the nodes, for the host
-        std::array<std::optional<CommandList>, 2> sample;   ///< by Resampling
-        std::optional<CommandList>                lift;
-        CommandList*                              pending   = nullptr; ///< to run before the next solve
-        bool                                      knowJumps = false;   ///< of the points before
-
-        explicit FromPoints(const Impl& of)
-            : points(of.context, of.k, of.plate.grid, of.loads),
-              rigidity(of.context, "sampled rigidity", 4 * of.plate.grid.nodes(), Intent::readback)
-        {
-        }
-    };
-    std::optional<FromPoints> fromPoints; ///< empty while the rigidity is the host's
-
-    /// Recorded when first needed.
+    /// The lists of a solve, recorded when they are first needed.
     struct Lists {
-        std::array<std::optional<CommandList>, kSlots> cold, warm, more;
-        int                                            dispatchesPerCycle = 0;
-        PlateWork coldWork, warmWork, stepsWork; ///< before the steps on the finest level; kStepsPerList of these
+        std::optional<CommandList> begin, resume;
+        int                        dispatchesPerCycle = 0;
+        PlateWork                  nestedWork, stepsWork; ///< before the steps on the finest level; kStepsPerList steps
     };
     std::optional<CommandList> prepareList;
-    std::array<Lists, 3>       lists;                   ///< by how the rigidity jumps
-    Jumps                      jumps     = Jumps::none; ///< which of them are used
-    int                        slot      = 0;
-    bool                       hasAnswer = false;
-    std::vector<double>        forceUnits; ///< of the last answers, per load [N]
+    std::array<Lists, 3>       lists;               ///< by how the rigidity jumps
+    Jumps                      jumps = Jumps::none; ///< chooses among them
 
-    Impl(compute::Context& device, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted)
-        : Impl(device, kernels, given, wanted, gridHierarchy(given, largest(given.rigidity)))
+    Impl(compute::Context& processor, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted)
+        : Impl(processor, kernels, given, wanted, gridHierarchy(given, largest(given.rigidity)))
     {
     }
 
-    Impl(compute::Context& device, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted,
+    Impl(compute::Context& processor, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted,
          GridHierarchy grids)
-        : context(device), k(kernels), plate(withoutRigidity(given)), settings(rounded(wanted)),
+        : context(processor), k(kernels), plate(withoutRigidity(given)), settings(rounded(wanted)),
           unitRigidity(largest(given.rigidity)), loads(std::uint32_t(wanted.loads)), stiffness(grids.stiffness),
-          passes(device, kernels, std::move(grids), loads),
+          passes(processor, kernels, std::move(grids), loads),
           units(context, "metres per unit", 4 * std::size_t(loads), Intent::device),
           hostRigidity(context, passes.levels[0].rigidity), hostLoads(context, passes.levels[0].load),
-          hostUnits(context, units), hostState(context, "state for the host", passes.state.bytes(), Intent::readback)
+          hostUnits(context, units), hostState(context, "state for the host", passes.state.bytes(), Intent::readback),
+          result(context, "deflection", 4 * plate.grid.nodes() * loads, Intent::readback)
     {
-        for (int s = 0; s < kSlots; ++s)
-            results.emplace_back(context, "deflection " + std::to_string(s), 4 * plate.grid.nodes() * loads,
-                                 Intent::readback);
     }
 
-    /// The device compares in floats, and host and device must agree on when a solve is finished.
+    /// The kernels compare in floats, and host and kernels must agree on when a solve is finished.
     static Settings rounded(Settings wanted)
     {
         wanted.tolerance = double(float(wanted.tolerance));
         return wanted;
     }
 
-    /// The device has it.
+    /// The processor keeps the rigidity.
     static Plate withoutRigidity(const Plate& given)
     {
         return {given.grid, given.edges, given.poissonRatio, given.foundation, {}};
@@ -166,11 +137,11 @@ struct MultigridPlateSolver::Impl {
 
     // --- lists
 
-    void finestSteps(CommandList& list, std::uint32_t begins)
+    void recordFinestSteps(CommandList& list, std::uint32_t begins)
     {
         PlatePasses::Recorder pass{passes, list, true};
-        passes.steps(pass, 0, kStepsPerList, k.smoothing.finest, begins, settings.tolerance);
-        list.dispatch(k.result, {passes.levels[0].answer, units, results[std::size_t(slot)]},
+        passes.takeGradientSteps(pass, 0, kStepsPerList, k.smoothing.finest, begins, settings.tolerance);
+        list.dispatch(k.result, {passes.levels[0].answer, units, result},
                       shared::VectorPush{std::uint32_t(passes.nodes()), passes.partials(), 0},
                       passes.inOrder(k.result, 0));
         list.copy(passes.state, hostState);
@@ -178,104 +149,55 @@ struct MultigridPlateSolver::Impl {
         list.end();
     }
 
-    void beginSolve(CommandList& list)
-    {
-        list.timestamp();
-        hostLoads.record(list);
-        hostUnits.record(list);
-        passes.allow(list);
-    }
-
     void recordPrepare()
     {
         CommandList           list(context);
         PlatePasses::Recorder pass{passes, list};
         hostRigidity.record(list);
-        passes.prepare(pass);
+        passes.prepareRigidity(pass);
         list.end();
         prepareList.emplace(std::move(list));
     }
 
-    CommandList recordCold()
+    CommandList recordBegin()
     {
         Lists&                now = lists[std::size_t(jumps)];
         CommandList           list(context);
         PlatePasses::Recorder pass{passes, list};
-        beginSolve(list);
+        list.timestamp();
+        hostLoads.record(list);
+        hostUnits.record(list);
+        passes.enableSteps(list);
         passes.work = {};
         if (passes.levels.size() == 1) {
             list.fill(passes.levels[0].answer, 0);
-            passes.start(pass, 0);
+            passes.computeResidual(pass, 0);
         } else {
-            passes.nest(pass);
+            passes.iterateNested(pass);
         }
-        now.coldWork = std::exchange(passes.work, {});
-        finestSteps(list, 2);
+        now.nestedWork = std::exchange(passes.work, {});
+        recordFinestSteps(list, 2);
         now.stepsWork          = passes.work;
         now.dispatchesPerCycle = passes.dispatchesPerCycle();
         return list;
     }
 
-    CommandList recordWarm()
-    {
-        Lists&                now = lists[std::size_t(jumps)];
-        CommandList           list(context);
-        PlatePasses::Recorder pass{passes, list};
-        beginSolve(list);
-        passes.work = {};
-        passes.start(pass, 0);
-        now.warmWork = std::exchange(passes.work, {});
-        finestSteps(list, 2);
-        now.stepsWork          = passes.work;
-        now.dispatchesPerCycle = passes.dispatchesPerCycle();
-        return list;
-    }
-
-    CommandList recordMore()
+    CommandList recordResume()
     {
         CommandList list(context);
         list.timestamp();
-        finestSteps(list, 1);
+        recordFinestSteps(list, 1);
         return list;
     }
 
-    CommandList recordSample(Resampling sampling)
+    /// Runs a list for the present jumps, recording it if need be.
+    CommandList& run(std::optional<CommandList> Lists::*which, CommandList (Impl::*record)())
     {
-        CommandList           list(context);
-        PlatePasses::Recorder pass{passes, list};
-        const Buffer&         rigidity = passes.levels[0].rigidity;
-        if (sampling == Resampling::nearest)
-            fromPoints->points.recordNearest(list, rigidity);
-        else
-            fromPoints->points.recordLogMean(list, rigidity);
-        list.copy(rigidity, fromPoints->rigidity);
-        passes.prepare(pass);
-        list.end();
-        return list;
-    }
-
-    CommandList recordLift()
-    {
-        CommandList list(context);
-        fromPoints->points.recordLift(list, passes.levels[0].answer, units);
-        list.end();
-        return list;
-    }
-
-    /// Runs the list of this slot, recording it if need be; what points need goes with it.
-    CommandList& run(std::array<std::optional<CommandList>, kSlots> Lists::*which, CommandList (Impl::*record)())
-    {
-        auto& mine = (lists[std::size_t(jumps)].*which)[std::size_t(slot)];
-        if (!mine) mine.emplace((this->*record)());
-        std::vector<CommandList*> all{&*mine};
-        if (fromPoints) {
-            if (!fromPoints->lift) fromPoints->lift.emplace(recordLift());
-            if (fromPoints->pending) all.insert(all.begin(), std::exchange(fromPoints->pending, nullptr));
-            all.push_back(&*fromPoints->lift);
-        }
-        context.run(all);
+        auto& list = lists[std::size_t(jumps)].*which;
+        if (!list) list.emplace((this->*record)());
+        context.run(*list);
         hostState.makeVisibleToHost();
-        return *mine;
+        return *list;
     }
 
     // --- a solve
@@ -296,12 +218,6 @@ struct MultigridPlateSolver::Impl {
         return most;
     }
 
-    [[nodiscard]] const FromPoints& sampled() const
-    {
-        PALP_EXPECT(fromPoints && !fromPoints->pending, "no solve has run with a rigidity from points");
-        return *fromPoints;
-    }
-
     /// Largest force of each load [N].
     [[nodiscard]] std::vector<double> largestForces(std::span<const NodeField> nodalForces) const
     {
@@ -317,19 +233,11 @@ struct MultigridPlateSolver::Impl {
         return all;
     }
 
-    /// Whether forces like these can be counted in the units of the last answers.
-    [[nodiscard]] bool fitUnits(const std::vector<double>& largest) const
+    /// Forces in units of each load's largest one.
+    void upload(std::span<const NodeField> nodalForces)
     {
-        constexpr double kMost = 1e3; // keeps seven digits of the smaller forces far from the ends of floats
-        for (std::size_t n = 0; n < largest.size(); ++n)
-            if (!(largest[n] <= kMost * forceUnits[n] && kMost * largest[n] >= forceUnits[n])) return false;
-        return true;
-    }
-
-    /// Forces in units of each load's largest one; but a start from the last answers keeps their units.
-    void upload(std::span<const NodeField> nodalForces, const std::vector<double>& scales)
-    {
-        const std::size_t nodes = plate.grid.nodes();
+        const std::vector<double> scales = largestForces(nodalForces);
+        const std::size_t         nodes  = plate.grid.nodes();
         for (std::size_t n = 0; n < nodalForces.size(); ++n) {
             const double scale  = scales[n] > 0 ? 1 / scales[n] : 0;
             const double metres = scales[n] / stiffness;
@@ -342,51 +250,21 @@ struct MultigridPlateSolver::Impl {
             for (std::size_t m = 0; m < nodes; ++m) to[m] = float(from[m] * scale);
             hostUnits.floats()[n] = float(metres);
         }
-        forceUnits = scales;
     }
 
     void uploadRigidity(const NodeField& rigidity)
     {
         if (const auto why = whyUnsolvable(plate, rigidity)) throw Error("plate: " + *why);
         const Extremes of = inRigidityUnits(rigidity.values(), unitRigidity, hostRigidity.floats());
-        fromPoints.reset();
         if (!prepareList) recordPrepare();
         context.run(*prepareList);
         expectJumps(passes.foundJumps() ? jumpsOf(of.most / of.least) : Jumps::none);
     }
 
-    void samplePoints(PlatePoints given, Resampling sampling)
-    {
-        const bool first = !fromPoints;
-        if (first) fromPoints.emplace(*this);
-        given.unit = unitRigidity;
-        bool grew  = false;
-        try {
-            grew = fromPoints->points.set(given);
-        } catch (...) {
-            if (first) fromPoints.reset(); // the rigidity stays the host's
-            throw;
-        }
-        if (grew) {
-            fromPoints->pending = nullptr;
-            for (auto& list : fromPoints->sample) list.reset();
-            fromPoints->lift.reset();
-        }
-        auto& list = fromPoints->sample[std::size_t(sampling)];
-        if (!list) list.emplace(recordSample(sampling));
-        fromPoints->pending      = &*list;
-        const auto [least, most] = std::minmax_element(given.rigidities.begin(), given.rigidities.end());
-        const bool mayJump       = *most > double(shared::kJump) * *least;
-        const bool jump          = mayJump && (!fromPoints->knowJumps || passes.foundJumps());
-        expectJumps(jump ? jumpsOf(*most / *least) : Jumps::none);
-        fromPoints->knowJumps = true;
-    }
-
     /// \param contrast  largest over least rigidity [1]
     static Jumps jumpsOf(double contrast)
     {
-        constexpr double kStrong =
-            3000; // from where on more sweeps of the tiles cost less time than the steps they save
+        constexpr double kStrong = 3000; // beyond it, more sweeps of the tiles cost less time than the steps they save
         return contrast > kStrong ? Jumps::strong : Jumps::some;
     }
 
@@ -396,46 +274,38 @@ struct MultigridPlateSolver::Impl {
         passes.expectJumps(expected);
     }
 
-    [[nodiscard]] std::vector<PlateSolution> solve(std::span<const NodeField> nodalForces, Start how)
+    [[nodiscard]] std::vector<PlateSolution> solve(std::span<const NodeField> nodalForces)
     {
-        const auto                began   = Clock::now();
-        const std::vector<double> largest = largestForces(nodalForces);
-        const bool                warm    = how == Start::warm && hasAnswer && fitUnits(largest);
-        upload(nodalForces, warm ? forceUnits : largest);
-        slot              = (slot + 1) % kSlots;
-        hasAnswer         = false; // whatever happens below
-        CommandList* list = warm ? &run(&Lists::warm, &Impl::recordWarm) : &run(&Lists::cold, &Impl::recordCold);
-        int          done = int(worst(shared::kStateSteps));
-        std::optional<double> deviceMilliseconds = 0;
+        const auto began = Clock::now();
+        upload(nodalForces);
+        CommandList*          list                  = &run(&Lists::begin, &Impl::recordBegin);
+        int                   done                  = int(worst(shared::kStateSteps));
+        std::optional<double> processorMilliseconds = 0;
         for (;;) {
             const auto times = list->timestampsMilliseconds();
-            deviceMilliseconds =
-                times.empty() ? std::nullopt : std::optional(deviceMilliseconds.value_or(0) + times.back());
+            processorMilliseconds =
+                times.empty() ? std::nullopt : std::optional(processorMilliseconds.value_or(0) + times.back());
             const double estimate = worst(shared::kStateEstimate);
             if (std::isnan(estimate))
                 throw Error("plate: the solver broke down; the rigidity or the load is out of range");
             if (!(estimate > settings.tolerance) || done >= settings.maxIterations) break;
-            list = &run(&Lists::more, &Impl::recordMore);
+            list = &run(&Lists::resume, &Impl::recordResume);
             done += int(worst(shared::kStateSteps));
         }
         SolveReport report;
-        report.device        = context.device().name;
+        report.solver        = context.processor().name;
         report.iterations    = done;
         report.errorEstimate = std::hypot(worst(shared::kStateEstimate), k.doubles ? kRounding : kFloatRounding);
         report.converged     = worst(shared::kStateEstimate) <= settings.tolerance && !passes.isTooSoft();
         const Lists& used    = lists[std::size_t(jumps)];
-        report.workUnits     = passes.workUnits(warm ? used.warmWork : used.coldWork) +
-                           done * passes.workUnits(used.stepsWork) / kStepsPerList;
-        report.deviceMilliseconds          = deviceMilliseconds;
-        report.milliseconds                = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
-        std::vector<PlateSolution> answers = read(report);
-        hasAnswer                          = true;
-        return answers;
+        report.workUnits = passes.workUnits(used.nestedWork) + done * passes.workUnits(used.stepsWork) / kStepsPerList;
+        report.processorMilliseconds = processorMilliseconds;
+        report.milliseconds          = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+        return readAnswers(report);
     }
 
-    [[nodiscard]] std::vector<PlateSolution> read(const SolveReport& report) const
+    [[nodiscard]] std::vector<PlateSolution> readAnswers(const SolveReport& report) const
     {
-        const Buffer& result = results[std::size_t(slot)];
         result.makeVisibleToHost();
         std::vector<PlateSolution> answers;
         const std::size_t          nodes = plate.grid.nodes();
@@ -476,46 +346,14 @@ void MultigridPlateSolver::setRigidity(const NodeField& rigidity)
     impl_->uploadRigidity(rigidity);
 }
 
-void MultigridPlateSolver::setRigidity(const PlatePoints& points, Resampling sampling)
+std::vector<PlateSolution> MultigridPlateSolver::solve(std::span<const NodeField> nodalForces)
 {
-    impl_->samplePoints(points, sampling);
+    return impl_->solve(nodalForces);
 }
 
-std::span<const float> MultigridPlateSolver::mappedDeflections() const
+PlateSolution MultigridPlateSolver::solve(const NodeField& nodalForce)
 {
-    const Buffer& result = impl_->results[std::size_t(impl_->slot)];
-    result.makeVisibleToHost();
-    return result.as<const float>();
-}
-
-std::span<const float> MultigridPlateSolver::pointDeflections(int load) const
-{
-    return impl_->sampled().points.deflection(std::uint32_t(load));
-}
-
-std::size_t MultigridPlateSolver::nodesWithoutPoint() const
-{
-    return impl_->sampled().points.nodesWithoutPoint();
-}
-
-NodeField MultigridPlateSolver::sampledRigidity() const
-{
-    const Buffer& rigidity = impl_->sampled().rigidity;
-    rigidity.makeVisibleToHost();
-    NodeField D(impl_->plate.grid);
-    for (std::size_t n = 0; n < D.values().size(); ++n)
-        D.values()[n] = double(rigidity.as<const float>()[n]) * impl_->unitRigidity;
-    return D;
-}
-
-std::vector<PlateSolution> MultigridPlateSolver::solve(std::span<const NodeField> nodalForces, Start start)
-{
-    return impl_->solve(nodalForces, start);
-}
-
-PlateSolution MultigridPlateSolver::solve(const NodeField& nodalForce, Start start)
-{
-    return std::move(impl_->solve({&nodalForce, 1}, start).front());
+    return std::move(impl_->solve({&nodalForce, 1}).front());
 }
 
 int MultigridPlateSolver::dispatchesPerCycle() const noexcept

@@ -7,8 +7,7 @@
 
 namespace palp {
 
-/// How much is smoothed before and after each correction: sweeps in red and black, or steps of Chebyshev's iteration
-/// [1].
+/// How much is smoothed before and after each correction: sweeps in red and black, or steps of Chebyshev's iteration.
 struct Smoothing {
     Smoother by;          ///< not automatic
     int      nested;      ///< on the coarser levels of the nested iteration
@@ -17,24 +16,29 @@ struct Smoothing {
     int      strongTiles; ///< the same where it varies by more than 3000
 };
 
-/// One kernel per shader and variant; `real` ones compute in doubles where the device has them.
+/// The kernels of compute_shaders/shared/plate_kernels.def by name, for one processor; those in two precisions compute in
+/// doubles where the processor has them.
 struct PlateKernels::All {
     /// The cycle in fewer and larger passes; [n] has n + 1 sweeps before and after the correction.
     struct Fused {
-        std::array<compute::Kernel, 2> down, up, tail;
+#define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape)
+#define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)
+#define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape) std::array<compute::Kernel, 2> name;
+#include "compute_shaders/shared/plate_kernels.def"
     };
 
-    bool            doubles = false;
-    Smoothing       smoothing;
-    compute::Kernel coarsen, divisor, jumpMark, jumpList, assemble, factor; // once per rigidity
-    compute::Kernel relaxFirst, relax, smoothFirst, smooth, relaxTile, copyTile, residual, restrict, correct,
-        coarseSolve; // the cycle, in floats, pass by pass
-    compute::Kernel start, interpolate, interpolateFirst, dots, beta, direction, apply, stepDots, step, update,
-        result;                                                  // real
-    compute::Kernel      rigidityNearest, rigidityLogMean, lift; // between points and nodes; the lift is real
-    std::optional<Fused> fused{};                                ///< if the schedule is Schedule::fused
+    bool      doubles = false;
+    Smoothing smoothing;
+#define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
+#define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
+#define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
+#include "compute_shaders/shared/plate_kernels.def"
+    std::optional<Fused> fused{}; ///< if the schedule is Schedule::fused
 
-    [[nodiscard]] std::size_t realBytes() const noexcept { return doubles ? sizeof(double) : sizeof(float); }
+    [[nodiscard]] std::size_t realBytes() const noexcept
+    {
+        return doubles ? sizeof(double) : sizeof(float);
+    }
 };
 
 } // namespace palp

@@ -21,12 +21,12 @@ using compute::Groups;
 using compute::Intent;
 using compute::Kernel;
 
-constexpr int           kNestedSteps  = 1;     ///< on each coarser level of the nested iteration but the last [1]
-constexpr int           kLastSteps    = 2;     ///< on that: two further up change the answer by less than its error [1]
-constexpr std::uint32_t kMostPartials = 16384; ///< sums that a dot product is split into [1]
-constexpr std::uint32_t kTermsPerSum  = 64;    ///< that a sum has at least, unless there are too few partials [1]
+constexpr int           kNestedSteps  = 1;     ///< on each coarser level of the nested iteration but the last
+constexpr int           kLastSteps    = 2;     ///< on that: two further up change the answer by less than its error
+constexpr std::uint32_t kMostPartials = 16384; ///< sums that a dot product is split into
+constexpr std::uint32_t kTermsPerSum  = 64;    ///< that a sum has at least, unless there are too few partials
 
-/// Eigenvalues that Chebyshev's iteration sees to, relative to the divisor: none is larger (see plate_relax.h), and on
+/// Eigenvalues that Chebyshev's iteration damps, relative to the divisor: none is larger (see plate_relax.h), and on
 /// equal spacings those below a sixteenth of the largest a coarser grid represents: (1 - cos(pi/2))^2 to (2 (1 -
 /// cos(pi)))^2. On unequal ones the range is up to 38 wide, and no two steps cover it: made wider the interval gives
 /// one step more, not fewer.
@@ -58,7 +58,7 @@ PlatePasses::PlatePasses(compute::Context& context, const PlateKernels::All& ker
     if (k.smoothing.by == Smoother::redBlack) zeroes_.emplace(floats("zeroes", fieldSize(0)));
     std::memset(hostArguments_.mapped(), 0, argumentBytes());
     for (std::size_t l = 0; l < grids_.levels.size(); ++l)
-        setGroups(tileArgument(l), {0, 1, loads_}); // how many tiles, allow() takes from where prepare() counts them
+        setGroups(tileArgument(l), {0, 1, loads_}); // enableSteps() copies the number of tiles here
     if (k.fused) tail_.emplace(context, kernels, grids_, loads);
     uploadTables();
 }
@@ -169,8 +169,8 @@ void PlatePasses::countWork(std::size_t l, double applications)
     work.nodes += applications * double(nodesOf(level(l)));
 }
 
-// Sweeps from w[at], both colours, the one of `first` first; what is valid afterwards is returned.
-int PlatePasses::sweep(Recorder& pass, std::size_t l, int at, std::uint32_t first, bool fromZero)
+// Sweeps from w[at] in both colours, beginning with `first`; returns which w holds the result.
+int PlatePasses::sweepBothColours(Recorder& pass, std::size_t l, int at, std::uint32_t first, bool fromZero)
 {
     const LevelBuffers& b = levels[l];
     for (std::uint32_t n = 0; n < 2; ++n) {
@@ -186,34 +186,35 @@ int PlatePasses::sweep(Recorder& pass, std::size_t l, int at, std::uint32_t firs
     return 1 - at;
 }
 
-// `sweeps` sweeps in red and black or steps of Chebyshev's iteration, from zero; returns which w holds the result.
-int PlatePasses::smooth(Recorder& pass, std::size_t l, int sweeps)
+// Makes `sweeps` sweeps in red and black or steps of Chebyshev's iteration from zero; returns which w holds the result.
+int PlatePasses::smoothFromZero(Recorder& pass, std::size_t l, int sweeps)
 {
     const LevelBuffers& b  = levels[l];
     int                 at = 0;
     if (k.smoothing.by == Smoother::redBlack) {
-        for (int n = 0; n < sweeps; ++n) at = sweep(pass, l, at, 0, n == 0);
+        for (int n = 0; n < sweeps; ++n) at = sweepBothColours(pass, l, at, 0, n == 0);
         return at;
     }
     const auto steps = chebyshevSteps(sweeps, kSmallest, kLargest);
     pass(k.smoothFirst, {b.divisor, b.force, b.w[0], b.w[1]}, shared::SmoothPush{level(l), 0, steps.front().step},
          everyNode(k.smoothFirst, l));
-    for (std::size_t n = 1; n < steps.size(); ++n) at = step(pass, l, int(n) % 2, steps[n]);
+    for (std::size_t n = 1; n < steps.size(); ++n) at = takeChebyshevStep(pass, l, int(n) % 2, steps[n]);
     return at;
 }
 
-// From w[at], in the reverse order.
-int PlatePasses::smoothAgain(Recorder& pass, std::size_t l, int at, int sweeps)
+// Makes the same sweeps from w[at] in the reverse order.
+int PlatePasses::smoothInReverse(Recorder& pass, std::size_t l, int at, int sweeps)
 {
     if (k.smoothing.by == Smoother::redBlack)
-        for (int n = 0; n < sweeps; ++n) at = sweep(pass, l, at, 1, false);
+        for (int n = 0; n < sweeps; ++n) at = sweepBothColours(pass, l, at, 1, false);
     else
-        for (const ChebyshevStep& one : chebyshevSteps(sweeps, kSmallest, kLargest)) at = step(pass, l, at, one);
+        for (const ChebyshevStep& one : chebyshevSteps(sweeps, kSmallest, kLargest))
+            at = takeChebyshevStep(pass, l, at, one);
     return at;
 }
 
-// A step of Chebyshev's iteration from w[at]; returns which w holds the result.
-int PlatePasses::step(Recorder& pass, std::size_t l, int at, const ChebyshevStep& how)
+// Takes a step of Chebyshev's iteration from w[at]; returns which w holds the result.
+int PlatePasses::takeChebyshevStep(Recorder& pass, std::size_t l, int at, const ChebyshevStep& how)
 {
     const LevelBuffers& b = levels[l];
     pass(k.smooth, {b.rigidity, b.divisor, b.force, b.w[at], b.w[1 - at]},
@@ -222,7 +223,7 @@ int PlatePasses::step(Recorder& pass, std::size_t l, int at, const ChebyshevStep
     return 1 - at;
 }
 
-// Extra sweeps of w[at] in the tiles where the rigidity jumps. The residual's memory is free while they run.
+// Makes extra sweeps of w[at] in the tiles where the rigidity jumps. The residual's memory is free while they run.
 void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first)
 {
     const int sweeps = jumps_ == Jumps::none ? 0 : jumps_ == Jumps::some ? k.smoothing.tiles : k.smoothing.strongTiles;
@@ -239,16 +240,16 @@ void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_
     work.tileSweeps[l] += sweeps;
 }
 
-// One symmetric cycle for the forces of level l; returns which of its w holds the answer.
-int PlatePasses::cycle(Recorder& pass, std::size_t l, int sweeps)
+// Runs one symmetric cycle for the forces of level l; returns which of its w holds the answer.
+int PlatePasses::runCycle(Recorder& pass, std::size_t l, int sweeps)
 {
-    if (isFused()) return fusedCycle(pass, l, sweeps);
+    if (isFused()) return runFusedCycle(pass, l, sweeps);
     const LevelBuffers& b = levels[l];
     if (l + 1 == levels.size()) {
         solveCoarsest(pass, b.force);
         return 0;
     }
-    int at = smooth(pass, l, sweeps);
+    int at = smoothFromZero(pass, l, sweeps);
     sweepTiles(pass, l, at, 0);
     const LevelBuffers&        below = levels[l + 1];
     const shared::TransferPush transfer{level(l), level(l + 1)};
@@ -256,15 +257,15 @@ int PlatePasses::cycle(Recorder& pass, std::size_t l, int sweeps)
          everyNode(k.residual, l));
     countWork(l, 1);
     pass(k.restrict, {b.tableX, b.tableZ, b.residual(), below.force}, transfer, everyNode(k.restrict, l + 1));
-    const int from = cycle(pass, l + 1, sweeps);
+    const int from = runCycle(pass, l + 1, sweeps);
     pass(k.correct, {b.tableX, b.tableZ, below.w[from], b.w[1 - at], b.w[at]}, transfer, everyNode(k.correct, l));
     at = 1 - at;
     sweepTiles(pass, l, at, 1);
-    return smoothAgain(pass, l, at, sweeps);
+    return smoothInReverse(pass, l, at, sweeps);
 }
 
-// The same cycle in fewer dispatches.
-int PlatePasses::fusedCycle(Recorder& pass, std::size_t l, int sweeps)
+// Runs the same cycle in fewer dispatches.
+int PlatePasses::runFusedCycle(Recorder& pass, std::size_t l, int sweeps)
 {
     const LevelBuffers& b = levels[l];
     if (tail_->holds(l)) {
@@ -280,14 +281,14 @@ int PlatePasses::fusedCycle(Recorder& pass, std::size_t l, int sweeps)
     pass(k.fused->down[kernel], {b.rigidity, b.divisor, b.force, b.w[0], b.residual()}, shared::LevelPush{level(l)},
          groups);
     pass(k.restrict, {b.tableX, b.tableZ, b.residual(), below.force}, transfer, everyNode(k.restrict, l + 1));
-    const int from = fusedCycle(pass, l + 1, sweeps);
+    const int from = runFusedCycle(pass, l + 1, sweeps);
     pass(k.fused->up[kernel], {b.rigidity, b.divisor, b.force, b.tableX, b.tableZ, below.w[from], b.w[0], b.w[1]},
          transfer, groups);
     countWork(l, 2 * sweeps + 1);
     return 1;
 }
 
-// A cycle from level l down, the answer to w[0].
+// Runs a cycle from level l down in one workgroup, the answer to w[0].
 void PlatePasses::solveTail(Recorder& pass, std::size_t l, int sweeps, const Buffer& force)
 {
     pass(k.fused->tail[std::size_t(sweeps - 1)], tail_->bindings(force, levels[l].w[0]), tail_->pushFrom(l),
@@ -304,14 +305,15 @@ void PlatePasses::solveCoarsest(Recorder& pass, const Buffer& force)
         pass(k.coarseSolve, {factor_, force, levels[last].w[0]}, shared::LevelPush{level(last)}, {1, 1, loads_});
 }
 
-void PlatePasses::start(Recorder& pass, std::size_t l)
+void PlatePasses::computeResidual(Recorder& pass, std::size_t l)
 {
     const LevelBuffers& b = levels[l];
     pass(k.start, {b.rigidity, b.load, b.answer, b.left, b.force}, shared::LevelPush{level(l)}, everyNode(k.start, l));
     countWork(l, 1);
 }
 
-void PlatePasses::steps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins, double tolerance)
+void PlatePasses::takeGradientSteps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins,
+                                    double tolerance)
 {
     const LevelBuffers& b = levels[l];
     for (int n = 1; n <= count; ++n) {
@@ -320,7 +322,7 @@ void PlatePasses::steps(Recorder& pass, std::size_t l, int count, int sweeps, st
         const shared::ScalarsPush scalars{loads_, partials_, n == 1 ? begins : 0, std::uint32_t(argumentBytes() / 4),
                                           float(tolerance)};
         const int                 before = pass.list.dispatches();
-        const Buffer&             z      = b.w[cycle(pass, l, sweeps)];
+        const Buffer&             z      = b.w[runCycle(pass, l, sweeps)];
         if (l == 0) dispatchesPerCycle_ = pass.list.dispatches() - before;
         pass(k.dots, {b.left, z, b.answer, b.load, sums_}, vector, k.dots.groupsOver(partials_, 1, loads_));
         pass(k.beta, {sums_, state}, scalars, {1, 1, 1});
@@ -329,13 +331,13 @@ void PlatePasses::steps(Recorder& pass, std::size_t l, int count, int sweeps, st
         countWork(l, 1);
         pass(k.stepDots, {b.direction, b.forces, sums_}, vector, k.stepDots.groupsOver(partials_, 1, loads_));
         pass(k.step, {sums_, state, arguments_}, scalars, {1, 1, 1});
-        // Not stoppable: the step that finds the estimate small enough must still be taken. It looks at the count.
+        // Not stoppable: the step that finds the estimate small enough must still be taken. The kernel reads the count.
         pass.list.dispatch(k.update, {state, b.direction, b.forces, b.answer, b.left, b.force}, vector,
                            inOrder(k.update, l));
     }
 }
 
-void PlatePasses::prepare(Recorder& pass)
+void PlatePasses::prepareRigidity(Recorder& pass)
 {
     for (std::size_t l = 0; l + 1 < levels.size(); ++l)
         pass(k.coarsen, {levels[l].rigidity, levels[l + 1].rigidity}, shared::TransferPush{level(l), level(l + 1)},
@@ -359,18 +361,18 @@ void PlatePasses::prepare(Recorder& pass)
     pass.list.copy(lost_, 0, hostTiles_, 4 * (levels.size() - 1), 4); // the coarsest level has no tiles
     if (!tail_) return;
     for (std::size_t l = tail_->first(); l + 1 < levels.size(); ++l)
-        tail_->take(pass.list, l, levels[l].rigidity, levels[l].divisor);
-    tail_->invert(pass.list, factor_);
+        tail_->copyLevel(pass.list, l, levels[l].rigidity, levels[l].divisor);
+    tail_->invertFactor(pass.list, factor_);
 }
 
-void PlatePasses::allow(CommandList& list) const
+void PlatePasses::enableSteps(CommandList& list) const
 {
     list.copy(hostArguments_, arguments_);
     if (jumps_ == Jumps::none) return;
     for (std::size_t l = 0; l + 1 < levels.size(); ++l) list.copy(levels[l].tiles, 0, arguments_, tileArgument(l), 4);
 }
 
-void PlatePasses::nest(Recorder& pass)
+void PlatePasses::iterateNested(Recorder& pass)
 {
     const std::size_t last = levels.size() - 1;
     for (std::size_t l = 0; l < last; ++l)
@@ -385,8 +387,8 @@ void PlatePasses::nest(Recorder& pass)
                  everyNode(k.interpolateFirst, l));
         else
             pass(k.interpolate, {b.tableX, b.tableZ, below.answer, b.answer}, transfer, everyNode(k.interpolate, l));
-        start(pass, l);
-        if (l > 0) steps(pass, l, l == 1 ? kLastSteps : kNestedSteps, k.smoothing.nested, 2, 0);
+        computeResidual(pass, l);
+        if (l > 0) takeGradientSteps(pass, l, l == 1 ? kLastSteps : kNestedSteps, k.smoothing.nested, 2, 0);
     }
 }
 

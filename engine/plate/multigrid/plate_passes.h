@@ -15,7 +15,7 @@
 
 namespace palp {
 
-/// Everything a level keeps on the device. `real` arrays are doubles where the device has them.
+/// Everything that a level keeps on the processor. `real` arrays are doubles where the processor has them.
 struct LevelBuffers {
     compute::Buffer rigidity, divisor, tableX, tableZ;
     compute::Buffer force, w[2];  ///< of the cycle, floats
@@ -29,23 +29,23 @@ struct LevelBuffers {
 
 /// What recorded passes cost.
 struct PlateWork {
-    double           nodes = 0;  ///< the operator was applied to so many [1]
-    std::vector<int> tileSweeps; ///< per level, sweeps of the tiles where the rigidity jumps [1]
+    double           nodes = 0;  ///< to how many the operator was applied
+    std::vector<int> tileSweeps; ///< per level, sweeps of the tiles where the rigidity jumps
 };
 
 /// How sharply the rigidity varies from node to node.
 enum class Jumps { none, some, strong };
 
-/// The multigrid method as passes over the levels' memory, which the solver puts together to command lists.
+/// Records the multigrid method as passes over the levels' memory, which the solver joins to command lists.
 ///
-/// Recording changes nothing but `work` and the table of sizes; the memory changes when a list runs. With or without
-/// extra sweeps where the rigidity jumps is decided when a list is recorded; in which tiles, by the device when it
-/// runs. \thread as its context
+/// Recording changes nothing but `work` and the table of sizes; the memory changes when a list runs. Whether there are
+/// extra sweeps where the rigidity jumps is decided when a list is recorded; in which tiles, when it runs.
+/// \thread as its context
 class PlatePasses {
 public:
     PlatePasses(compute::Context& context, const PlateKernels::All& kernels, GridHierarchy grids, std::uint32_t loads);
 
-    /// Adds passes to a list; `stoppable` ones become empty once the solve is finished.
+    /// Adds passes to a list. `stoppable` ones become empty once the solve is finished.
     struct Recorder {
         PlatePasses&          passes;
         compute::CommandList& list;
@@ -55,31 +55,35 @@ public:
                         compute::Groups groups);
     };
 
-    /// Coarser rigidities, divisors, tiles with a jump (their numbers to hostTiles), factor of the coarsest level.
-    void prepare(Recorder& pass);
-    /// Nested iteration: an answer on the finest level from those on the coarser ones, and its residual.
-    void nest(Recorder& pass);
-    /// The residual of the answer of level l.
-    void start(Recorder& pass, std::size_t l);
-    /// Conjugate gradients on level l. \param begins  as in shared::ScalarsPush
-    void steps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins, double tolerance);
-    /// To be first in a list with steps: they are not stopped yet, and sweep the tiles that prepare() found.
-    void allow(compute::CommandList& list) const;
+    /// Computes coarser rigidities, divisors, the tiles with a jump and the factor of the coarsest level.
+    void prepareRigidity(Recorder& pass);
+    /// Computes an answer on the finest level from those on the coarser ones, and its residual: nested iteration.
+    void iterateNested(Recorder& pass);
+    /// Computes the residual of the answer of level l.
+    void computeResidual(Recorder& pass, std::size_t l);
+    /// Takes steps of conjugate gradients on level l.
+    /// \param begins  as in shared::ScalarsPush
+    void takeGradientSteps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins,
+                           double tolerance);
+    /// Enables the steps of a list, and must come before them: none is stopped yet, and they sweep the tiles that
+    /// prepareRigidity() found.
+    void enableSteps(compute::CommandList& list) const;
 
-    /// How many extra sweeps lists recorded from now on have where the rigidity jumps; with fewer, jumps take more
-    /// steps.
+    /// Sets how many extra sweeps the lists recorded from now on have where the rigidity jumps; with fewer, jumps take
+    /// more steps.
     void expectJumps(Jumps expected) noexcept { jumps_ = expected; }
-    /// Whether the last prepare() that ran found jumps on the finest level.
+    /// Whether the last prepareRigidity() that ran found jumps on the finest level.
     [[nodiscard]] bool foundJumps() const;
-    /// Whether the last prepare() that ran found a part of the plate so loosely held that rounding hides it.
+    /// Whether the last prepareRigidity() that ran found a part of the plate so loosely held that rounding hides it.
     [[nodiscard]] bool isTooSoft() const;
-    /// In applications of the operator on the finest grid, with the tiles of the last prepare() [1].
+    /// Counts the work in applications of the operator on the finest grid, with the tiles of the last
+    /// prepareRigidity().
     [[nodiscard]] double workUnits(const PlateWork& of) const;
-    [[nodiscard]] int    dispatchesPerCycle() const noexcept { return dispatchesPerCycle_; } ///< as last recorded [1]
+    [[nodiscard]] int    dispatchesPerCycle() const noexcept { return dispatchesPerCycle_; } ///< as last recorded
 
     [[nodiscard]] const shared::PlateLevel& level(std::size_t l) const { return grids_.levels[l].plate; }
-    [[nodiscard]] std::size_t               nodes() const; ///< of the finest level, of one load [1]
-    [[nodiscard]] std::uint32_t             partials() const noexcept { return partials_; } ///< per dot product [1]
+    [[nodiscard]] std::size_t               nodes() const; ///< of the finest level, of one load
+    [[nodiscard]] std::uint32_t             partials() const noexcept { return partials_; } ///< per dot product
     [[nodiscard]] compute::Groups           inOrder(const compute::Kernel& kernel, std::size_t l) const;
 
     std::vector<LevelBuffers> levels; ///< finest first
@@ -87,7 +91,7 @@ public:
     PlateWork                 work;   ///< of what was recorded since it was last set to {}
 
 private:
-    static constexpr std::size_t kSizes     = 256; ///< of dispatches, in the table; a list has about 60 [1]
+    static constexpr std::size_t kSizes     = 256; ///< of dispatches, in the table; a list has about 60
     static constexpr std::size_t kSizeBytes = 12;  ///< three words
 
     [[nodiscard]] std::size_t               fieldSize(std::size_t l) const;
@@ -106,13 +110,13 @@ private:
     [[nodiscard]] std::size_t     tileArgument(std::size_t l) const { return kSizeBytes * (kSizes + l); }
     [[nodiscard]] bool            isFused() const noexcept { return tail_ && jumps_ == Jumps::none; }
 
-    [[nodiscard]] int smooth(Recorder& pass, std::size_t l, int sweeps);
-    [[nodiscard]] int smoothAgain(Recorder& pass, std::size_t l, int at, int sweeps);
-    [[nodiscard]] int sweep(Recorder& pass, std::size_t l, int at, std::uint32_t first, bool fromZero);
-    [[nodiscard]] int step(Recorder& pass, std::size_t l, int at, const ChebyshevStep& how);
+    [[nodiscard]] int smoothFromZero(Recorder& pass, std::size_t l, int sweeps);
+    [[nodiscard]] int smoothInReverse(Recorder& pass, std::size_t l, int at, int sweeps);
+    [[nodiscard]] int sweepBothColours(Recorder& pass, std::size_t l, int at, std::uint32_t first, bool fromZero);
+    [[nodiscard]] int takeChebyshevStep(Recorder& pass, std::size_t l, int at, const ChebyshevStep& how);
     void              sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first);
-    [[nodiscard]] int cycle(Recorder& pass, std::size_t l, int sweeps);
-    [[nodiscard]] int fusedCycle(Recorder& pass, std::size_t l, int sweeps);
+    [[nodiscard]] int runCycle(Recorder& pass, std::size_t l, int sweeps);
+    [[nodiscard]] int runFusedCycle(Recorder& pass, std::size_t l, int sweeps);
     void              solveTail(Recorder& pass, std::size_t l, int sweeps, const compute::Buffer& force);
     void              solveCoarsest(Recorder& pass, const compute::Buffer& force);
 

@@ -18,7 +18,7 @@ bool fitsLoops(const shared::PlateLevel& g)
     return nodesOf(g) <= std::size_t(shared::kTailNodes) && (g.cellsX + 1) * (g.cellsZ / 2 + 1) <= shared::kTailHalf;
 }
 
-/// Of the levels from `first` on: deflections of all, forces of all but the first [1].
+/// Counts the numbers of the levels from `first` on: deflections of all, forces of all but the first.
 std::size_t poolOf(const GridHierarchy& grids, std::size_t first)
 {
     std::size_t numbers = nodesOf(grids.levels[first].plate);
@@ -95,14 +95,14 @@ PlateTail::PlateTail(compute::Context& context, const PlateKernels::All& kernels
     context.run(list);
 }
 
-void PlateTail::take(CommandList& list, std::size_t level, const Buffer& rigidity, const Buffer& divisor) const
+void PlateTail::copyLevel(CommandList& list, std::size_t level, const Buffer& rigidity, const Buffer& divisor) const
 {
     const std::size_t offset = 4 * std::size_t(at(level).field);
     list.copy(rigidity, 0, rigidity_, offset, rigidity.bytes());
     list.copy(divisor, 0, divisor_, offset, divisor.bytes());
 }
 
-void PlateTail::invert(CommandList& list, const Buffer& factor) const
+void PlateTail::invertFactor(CommandList& list, const Buffer& factor) const
 {
     list.dispatch(k.coarseSolve, {factor, units_, inverse_}, shared::LevelPush{layout_.levels.back().plate},
                   {1, 1, coarsestNodes_});

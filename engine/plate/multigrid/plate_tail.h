@@ -10,18 +10,19 @@
 
 namespace palp {
 
-/// The coarse levels as plate_tail.comp wants them: next to each other, for one workgroup that does a cycle alone.
+/// The coarse levels as plate_tail.comp reads them: next to each other, for one workgroup that runs a cycle alone.
 struct TailLayout {
     std::size_t                    first = 0;        ///< level of the hierarchy that the tail begins with
     std::vector<shared::TailLevel> levels;           ///< from there to the coarsest
-    std::uint32_t                  nodes = 0;        ///< of all of them [1]
+    std::uint32_t                  nodes = 0;        ///< of all of them
     std::vector<float>             tablesX, tablesZ; ///< transfer tables, level after level
 };
 
-/// As many of the coarsest levels as the kernel's shared memory and loops can take, at least the coarsest.
+/// Takes as many of the coarsest levels as the kernel's shared memory and loops can hold, at least the coarsest.
 [[nodiscard]] TailLayout tailLayout(const GridHierarchy& grids);
 
-/// The memory of the tail. \thread as its context
+/// The memory of the tail.
+/// \thread as its context
 class PlateTail {
 public:
     PlateTail(compute::Context& context, const PlateKernels::All& kernels, const GridHierarchy& grids,
@@ -30,11 +31,11 @@ public:
     [[nodiscard]] std::size_t first() const noexcept { return layout_.first; } ///< level of the hierarchy
     [[nodiscard]] bool        holds(std::size_t level) const noexcept { return level >= layout_.first; }
 
-    /// Takes over rigidity and divisor of one of its levels but the coarsest, which earlier commands of the list made.
-    void take(compute::CommandList& list, std::size_t level, const compute::Buffer& rigidity,
-              const compute::Buffer& divisor) const;
+    /// Copies the rigidity and divisor of one of its levels but the coarsest, which earlier commands of the list made.
+    void copyLevel(compute::CommandList& list, std::size_t level, const compute::Buffer& rigidity,
+                   const compute::Buffer& divisor) const;
     /// Inverts the coarsest level's matrix, of which `factor` holds the Cholesky factor.
-    void invert(compute::CommandList& list, const compute::Buffer& factor) const;
+    void invertFactor(compute::CommandList& list, const compute::Buffer& factor) const;
 
     [[nodiscard]] shared::TailPush pushFrom(std::size_t level) const;
     [[nodiscard]] compute::Groups  groups() const noexcept { return {1, 1, loads_}; }

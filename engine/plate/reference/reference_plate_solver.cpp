@@ -17,7 +17,7 @@ namespace palp {
 namespace {
 
 /// Beyond this a factor takes minutes and gigabytes: measured 1025 x 1025 nodes, 127 s and 2.4 GB.
-constexpr std::size_t kMostNodes = 1025 * 1025; // [1]
+constexpr std::size_t kMostNodes = 1025 * 1025;
 
 using Matrix  = Eigen::SparseMatrix<double>;
 using Factors = Eigen::SimplicialLLT<Matrix, Eigen::Lower, Eigen::AMDOrdering<int>>;
@@ -105,7 +105,7 @@ PlateSolution ReferencePlateSolver::solve(const NodeField& nodalForce) const
             "the deflection is not finite: loads or rigidities are too large or too small for double precision; "
             "check their units");
     const double size             = largest(solution.deflection);
-    solution.report.device        = "reference";
+    solution.report.solver        = "reference";
     solution.report.errorEstimate = size > 0 ? largest(correction) / size : 0;
     solution.report.converged     = *solution.report.errorEstimate < 1e-2; // that step leaves about the square of it
     solution.report.milliseconds  = millisecondsSince(start);

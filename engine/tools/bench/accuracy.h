@@ -3,10 +3,12 @@
 
 namespace palp::bench {
 
-/// Largest difference over the largest deflection of the truth [1]. NaN and infinity in `found` make it infinite.
+/// Returns the largest difference over the largest deflection of the truth [1]. NaN and infinity in `found` make it
+/// infinite.
 [[nodiscard]] double errorOf(const NodeField& found, const NodeField& truth);
 
-/// 2-norm of the nodal forces that are left on nodes that can move, over that of the load [1]; in doubles, moment form.
+/// Returns the 2-norm of the nodal forces that remain on nodes that can move, over that of the load [1], computed in
+/// doubles and moment form.
 [[nodiscard]] double residualOf(const Plate& plate, const NodeField& force, const NodeField& w);
 
 /// What algebraic errors on a grid are measured against.
@@ -15,12 +17,12 @@ struct Truth {
     double    correction; ///< the last step of refinement, over w [1]: errors near it are not to be trusted
 };
 
-/// The answer of the grid's equations, by a direct solver and iterative refinement until it stagnates. Its residuals
-/// are in moment form, of the energy and not of the assembled matrix, so that it does not matter whose factors they
-/// are. Factorises anew.
+/// Finds the answer of the grid's equations by a direct solver and iterative refinement until that stagnates. The
+/// residuals are those of the energy, in moment form, and not of the assembled matrix, so that it does not matter whose
+/// factors are used. Factorises anew.
 [[nodiscard]] Truth refinedTruth(Direct& direct, const Plate& plate, const NodeField& force);
 
-/// The grid's own error, by Richardson: the method is of second order for smooth rigidities and loads, so
+/// Returns the grid's own error, by Richardson: the method is of second order for smooth rigidities and loads, so
 ///
 ///     w_2h - w_h = 3 C h^2 + ..., hence  w_h - w = (w_2h - w_h) / 3
 ///

@@ -29,7 +29,7 @@ struct Map {
     bool             smooth; ///< only there is the discretisation of second order
 };
 
-/// All that `palpate bench plate` knows.
+/// All maps that `palpate bench` knows.
 [[nodiscard]] const std::vector<Map>& maps();
 [[nodiscard]] const Map&              mapNamed(std::string_view name);
 [[nodiscard]] Plate                   plateOf(const Map& map, int nodes);

@@ -68,6 +68,10 @@ Json jsonOf(const BenchRow& r)
             {"extrapolated", orNull(r.extrapolated)},
             {"points", orNull(r.points)},
             {"neighbours", orNull(r.neighbours)},
+            {"loads", orNull(r.loads)},
+            {"dispatches_per_cycle", orNull(r.dispatchesPerCycle)},
+            {"moved_gb_per_s", orNull(r.movedGigabytes)},
+            {"copy_gb_per_s", orNull(r.copyGigabytes)},
             {"note", textOrNull(r.note)}};
 }
 
@@ -120,6 +124,11 @@ void printText(std::ostream& out, const BenchReport& report)
     for (const BenchRow& row : report.rows) {
         out << lineOf(row) << "\n";
         if (!row.note.empty()) out << "          " << row.note << "\n";
+        if (row.loads)
+            out << "          " << *row.loads << (*row.loads == 1 ? " load, " : " loads, ")
+                << cell(row.palpateMs->median / *row.loads, "%.3g") << " ms each; " << *row.dispatchesPerCycle
+                << " dispatches per cycle; " << cell(row.movedGigabytes, "%.1f") << " GB/s where a copy has "
+                << cell(row.copyGigabytes, "%.1f") << "\n";
     }
     out.flush();
 }

@@ -7,11 +7,11 @@
 
 namespace palp::bench {
 
-/// One comparison: Palpate and a peer do the same work. What is not known is empty, and null in JSON.
+/// One comparison: Palpate and a peer do the same work. A number that is not known is empty, and null in JSON.
 struct BenchRow {
-    std::string           kind;     ///< new_map, new_load, contrast, jacobi, update, gather, grid_map, memory
+    std::string           kind;     ///< new_map, new_load, contrast, jacobi, update, gather, grid_map, memory, batch
     std::string           map;      ///< of the rigidity; empty where there is none
-    std::optional<int>    nodes;    ///< a side [1]
+    std::optional<int>    nodes;    ///< a side
     std::string           accuracy; ///< discretisation, 1e-6, exact
     std::optional<double> target;   ///< the error that this accuracy allows [1]
     std::string           peer;
@@ -25,14 +25,16 @@ struct BenchRow {
     std::optional<double>    error, peerError; ///< see accuracy.h; of point queries the share of wrong answers [1]
     std::optional<double>    residual, peerResidual; ///< [1]
     std::optional<double>    tolerance;              ///< that Palpate was given [1]
-    std::optional<int>       iterations;             ///< [1]
-    std::optional<double>    workUnits;              ///< [1]
-    std::optional<double>    peerSweeps;             ///< of Jacobi [1]
-    std::optional<bool>      extrapolated;           ///< Jacobi: the time is sweeps that were not all made
-    std::optional<double>    points, neighbours;     ///< [1]
+    std::optional<int>       iterations;
+    std::optional<double>    workUnits;
+    std::optional<double>    peerSweeps;   ///< of Jacobi
+    std::optional<bool>      extrapolated; ///< Jacobi: the time is sweeps that were not all made
+    std::optional<double>    points, neighbours;
+    std::optional<int>       loads, dispatchesPerCycle;     ///< of a batch: solved together; that wait for each other
+    std::optional<double>    movedGigabytes, copyGigabytes; ///< what a batch moves at least, and a plain copy [GB/s]
     std::string              note;
 
-    /// Peer over Palpate, of times or bytes; empty without the error of what was measured here.
+    /// The peer's time or bytes over Palpate's; empty without the error of what was measured here.
     [[nodiscard]] std::optional<double> ratio() const
     {
         if (!error || (target && *error > *target)) return {};

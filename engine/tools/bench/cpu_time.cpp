@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "engine/compute/context.h"
 #include "engine/core/contract.h"
 
 namespace palp::bench {
@@ -49,6 +50,12 @@ Quartiles quartiles(std::vector<double> values)
         return values[below] + share * (values[std::min(below + 1, values.size() - 1)] - values[below]);
     };
     return {at(0.25), at(0.5), at(0.75)};
+}
+
+Clock clockOf(const compute::Context& context)
+{
+    const std::string& kind = context.processor().kind;
+    return kind == "software" || kind == compute::kHostProcessor ? Clock::processor : Clock::wall;
 }
 
 std::vector<Timing> takeTurns(const std::vector<Contestant>& contestants, int runs)

@@ -3,13 +3,17 @@
 #include <string>
 #include <vector>
 
+namespace palp::compute {
+class Context;
+}
+
 namespace palp::bench {
 
 /// Processor time of the calling thread [ms], CLOCK_THREAD_CPUTIME_ID: other work on the machine does not count.
 [[nodiscard]] double threadMilliseconds();
 
-/// Processor time of all threads of this process together [ms], CLOCK_PROCESS_CPUTIME_ID. Where one thread works it
-/// grows as fast as the one above; where a library has threads of its own, such as lavapipe's queue, it does not hide
+/// Processor time of all threads of this process together [ms], CLOCK_PROCESS_CPUTIME_ID. Where one thread works, it
+/// grows as fast as threadMilliseconds(); where a library has threads of its own, such as lavapipe's queue, it shows
 /// them.
 [[nodiscard]] double processMilliseconds();
 
@@ -23,12 +27,13 @@ struct Quartiles {
 
 enum class Clock {
     processor, ///< of all threads, for whatever computes on this machine's processors; one works at a time
-    wall       ///< for a device that computes elsewhere: hardware
+    wall       ///< for hardware, which computes elsewhere
 };
 
 [[nodiscard]] double now(Clock clock); ///< [ms]
+[[nodiscard]] Clock  clockOf(const compute::Context& context);
 
-/// One of those who do the same work; its parts are timed apart.
+/// A solver that does the same work as its rivals; its parts are timed apart.
 struct Contestant {
     std::string                        name;
     std::vector<std::function<void()>> parts;
@@ -41,8 +46,8 @@ struct Timing {
     double                 hidden; ///< share of the processor time that was spent by other threads than the caller [1]
 };
 
-/// Times the contestants in turns, first, second, ..., first, second, ..., so that what else goes on hits them alike,
-/// after one turn each that does not count.
+/// Times the contestants in turns, first, second, ..., first, second, ..., after one turn each that does not count.
+/// Whatever else happens on the machine then disturbs them alike.
 /// \param runs  turns that count, each
 [[nodiscard]] std::vector<Timing> takeTurns(const std::vector<Contestant>& contestants, int runs);
 

@@ -8,21 +8,23 @@
 
 namespace palp::bench {
 
-/// A sparse direct solver as its users would use it in a loop: the symbolic analysis is made once, for a grid, by
-/// whoever makes the object; then there are numbers to factorise and loads to solve for. \thread one
+/// A sparse direct solver as one would use it in a loop. Its constructor makes the symbolic analysis, once for a grid;
+/// then it factorises numbers and solves for loads.
+/// \thread one
 class DirectSolver {
 public:
     virtual ~DirectSolver() = default;
 
     [[nodiscard]] virtual std::string name() const = 0;
 
-    /// Numerical factorisation of a matrix of the same pattern. \throws Error if it is not positive definite
+    /// Factorises a matrix of the same pattern.
+    /// \throws Error if it is not positive definite
     virtual void factorise(const PlateMatrix& matrix) = 0;
 
-    /// With the last factors: right side [N] to deflection [m], by unknown.
+    /// Solves with the last factors: right side [N] to deflection [m], by unknown.
     virtual void solve(std::span<const double> right, std::span<double> answer) = 0;
 
-    /// Most that it has held at once [byte]; empty if it does not say.
+    /// The most memory that it has held at once [byte]; empty if it does not say.
     [[nodiscard]] virtual std::optional<std::size_t> peakBytes() const = 0;
 };
 
@@ -31,7 +33,7 @@ public:
 
 [[nodiscard]] std::string eigenVersion(); ///< "Eigen 3.4.0"
 
-/// A matrix and the best direct solver that there is.
+/// A matrix and the best direct solver that was found.
 struct Direct {
     PlateMatrix                   matrix;
     std::unique_ptr<DirectSolver> solver;

@@ -3,10 +3,11 @@
 
 namespace palp::bench {
 
-/// nanoflann in floats, answers unsorted: its fastest way. \param leaf  most points of a leaf [1]
+/// Makes a tree of nanoflann in floats with unsorted answers, which is its fastest form.
+/// \param leaf  most points of a leaf
 [[nodiscard]] std::unique_ptr<RadiusSearch> nanoflannSearch(std::span<const glm::dvec3> points, std::size_t leaf);
 
-/// For every node the nearest point, tree included.
+/// Finds the nearest point of every node; the tree is part of the work.
 [[nodiscard]] std::vector<std::uint32_t> nanoflannMap(const PlateGrid& grid, const ChartPoint& origin,
                                                       std::span<const ChartPoint> points, std::size_t leaf);
 

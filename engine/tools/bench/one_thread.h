@@ -5,8 +5,8 @@
 
 namespace palp::bench {
 
-/// NAME=value of what keeps libraries to one thread: OpenMP (in CHOLMOD), OpenBLAS, lavapipe. They read it when they
-/// are loaded, before main(), so it has to be in the environment in which a program starts.
+/// Lists, as NAME=value, what keeps libraries to one thread: OpenMP (in CHOLMOD), OpenBLAS, lavapipe. They read it when
+/// they are loaded, before main(), so it has to be in the environment in which a program starts.
 [[nodiscard]] const std::vector<std::string>& oneThreadEnvironment();
 
 /// The program that is running; empty where /proc does not say.

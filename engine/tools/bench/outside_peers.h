@@ -26,8 +26,8 @@ public:
     virtual void nearest(const glm::dvec3& centre, std::span<std::uint32_t> found) const = 0;
 };
 
-/// Libraries that others would use instead and that Palpate itself does not need. What was not found is an empty
-/// function, and `...Note` says what to install.
+/// Libraries that people would use instead and that Palpate itself does not need. A library that was not found is an
+/// empty function, and `...Note` says what to install.
 ///
 /// There are two definitions of outsidePeers(): the one that `palpate` is linked with knows none; the one of
 /// `palpate_peers`, which is never installed, has what CMake found. See third_party_notes.md on licences.
@@ -36,7 +36,7 @@ struct OutsidePeers {
     std::string                                                      cholmodNote; ///< or its version and its BLAS
 
     std::function<std::unique_ptr<RadiusSearch>(std::span<const glm::dvec3>, std::size_t leaf)> radiusSearch;
-    /// As palp::nearestPoint(), from the bare points, by a tree in the plane.
+    /// Does what palp::nearestPoint() does, from the bare points, by a tree in the plane.
     std::function<std::vector<std::uint32_t>(const PlateGrid&, const ChartPoint& origin, std::span<const ChartPoint>,
                                              std::size_t leaf)>
                 nearestMap;

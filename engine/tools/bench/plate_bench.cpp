@@ -8,6 +8,7 @@
 #include "engine/compute/context.h"
 #include "engine/plate/multigrid/multigrid_plate_solver.h"
 #include "engine/tools/bench/accuracy.h"
+#include "engine/tools/bench/batch_bench.h"
 #include "engine/tools/bench/bench_plates.h"
 #include "engine/tools/bench/damped_jacobi.h"
 #include "engine/tools/bench/outside_peers.h"
@@ -18,7 +19,7 @@ namespace {
 constexpr double kTight = 1e-6; // the second accuracy, of the largest deflection [1]
 
 /// Grids beyond this need CHOLMOD for the truth: Eigen would take minutes and gigabytes.
-constexpr int kMostNodesWithoutCholmod = 513; // [1] a side
+constexpr int kMostNodesWithoutCholmod = 513; // a side
 
 /// Palpate at the loosest tolerance that gives an accuracy.
 ///
@@ -37,9 +38,7 @@ class PlateBench {
 public:
     PlateBench(compute::Context& context, const PlateKernels& kernels, const PlateBenchOptions& options,
                const OnStep& onStep)
-        : context_(context), kernels_(kernels), o_(options), onStep_(onStep),
-          clock_(context.device().kind == "software" || context.device().kind == "host" ? Clock::processor
-                                                                                        : Clock::wall)
+        : context_(context), kernels_(kernels), o_(options), onStep_(onStep), clock_(clockOf(context))
     {
     }
 
@@ -60,6 +59,11 @@ public:
                     steps.push_back({map.smooth ? "new_map" : "contrast", nodes,
                                      [this, &map, nodes] { compareDirect(map, nodes); }});
             }
+            if (has("batch") && nodes <= kMostNodesForBatch)
+                steps.push_back({"batch", nodes, [this, nodes] {
+                                     for (BenchRow& row : measureBatches(context_, kernels_, nodes, o_.runs))
+                                         rows_.push_back(std::move(row));
+                                 }});
             if (has("jacobi") && nodes <= kMostNodesForJacobi)
                 steps.push_back({"jacobi", nodes, [this, nodes] { compareJacobi(nodes); }});
             steps.push_back(
@@ -70,7 +74,7 @@ public:
             onStep_(n, steps.size());
             if (steps[n].kind && wallMilliseconds() - start > 1e3 * o_.patience) {
                 rows_.push_back(rowOf(steps[n].kind, {}, steps[n].nodes, "", ""));
-                rows_.back().note = "left out: time is up";
+                rows_.back().note = "omitted: the time is up";
             } else {
                 steps[n].work();
             }
@@ -81,6 +85,7 @@ public:
 private:
     static constexpr int kFewestNodes        = 65;
     static constexpr int kMostNodesForJacobi = 65;
+    static constexpr int kMostNodesForBatch  = 257; ///< 49 loads beyond take gigabytes
 
     [[nodiscard]] bool has(const char* kind) const { return std::ranges::find(o_.cases, kind) != o_.cases.end(); }
 
@@ -92,7 +97,7 @@ private:
 
     [[nodiscard]] bool isFor(const Map& map, int nodes) const
     {
-        constexpr int kMostNodesForAll = 129; // of --quick [1] a side
+        constexpr int kMostNodesForAll = 129; // a side, of --quick
         if (!o_.maps.empty()) return std::ranges::find(o_.maps, map.name) != o_.maps.end();
         if (!o_.quick) return true;
         if (nodes <= kMostNodesForAll) return map.name != "discs";
@@ -490,7 +495,7 @@ private:
 
 const std::vector<std::string>& plateCases()
 {
-    static const std::vector<std::string> names{"new_map", "new_load", "contrast", "jacobi", "memory"};
+    static const std::vector<std::string> names{"new_map", "new_load", "contrast", "jacobi", "memory", "batch"};
     return names;
 }
 

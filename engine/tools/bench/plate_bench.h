@@ -16,17 +16,17 @@ namespace palp::bench {
 
 struct PlateBenchOptions {
     std::vector<std::string> cases; ///< of those that plateCases() lists
-    std::vector<int>         nodes; ///< a side, odd [1]
+    std::vector<int>         nodes; ///< a side, odd
     std::vector<std::string> maps;  ///< by name, see bench_plates.h; empty: all
     int                      runs          = 11;
-    int                      mostEigen     = 257;   ///< nodes a side beyond which Eigen takes seconds [1]
+    int                      mostEigen     = 257;   ///< nodes a side beyond which Eigen takes seconds
     bool                     quick         = false; ///< one load, and beyond 129 nodes fewer maps
     double                   patience      = 1e9;   ///< no new comparison begins after this time [s]
     double                   jacobiSeconds = 150;   ///< per grid; then what is left is extrapolated [s]
-    int                      mostMemory    = 1025;  ///< nodes a side of the largest grid of the case memory [1]
+    int                      mostMemory    = 1025;  ///< nodes a side of the largest grid of the case memory
 };
 
-/// new_map, new_load, contrast, jacobi, memory
+/// new_map, new_load, contrast, jacobi, memory, batch
 [[nodiscard]] const std::vector<std::string>& plateCases();
 
 /// A row has been measured, or (done, total) steps are.

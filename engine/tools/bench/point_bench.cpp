@@ -11,7 +11,7 @@
 #include "engine/chart/nearest_map.h"
 #include "engine/cloud/neighbour_index.h"
 #include "engine/cloud/samples.h"
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/deform.h"
 #include "engine/plate/load.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "engine/tools/bench/accuracy.h"
@@ -21,7 +21,7 @@
 namespace palp::bench {
 namespace {
 
-/// nanoflann's fastest leaf depends on the work: the best of these is its time [1].
+/// nanoflann's fastest leaf depends on the work: the best of these is its time.
 constexpr std::array<std::size_t, 3> kLeaves{10, 20, 50};
 
 Quartiles scaled(const Quartiles& q, double by)
@@ -165,7 +165,7 @@ BenchRow measureGridMap(int nodes, int runs)
 
 /// The paper's object: an ellipsoid of 40 000 points, and a window that gathers some 3000 of them.
 /// \param tolerance  of the solver; "coarse" in the table, unless it is the default one
-BenchRow measureUpdate(int nodes, double tolerance, int runs, PlateSolver& device)
+BenchRow measureUpdate(int nodes, double tolerance, int runs, PlateSolver& solver)
 {
     constexpr std::size_t kPoints   = 40'000;
     constexpr double      kGathered = 3000;
@@ -181,14 +181,14 @@ BenchRow measureUpdate(int nodes, double tolerance, int runs, PlateSolver& devic
 
     Patch patch;
     for (int n = 0; n < 4; ++n) { // points gathered grow with the square of the window
-        patch = deform(object, contact, settings, device);
+        patch = deform(object, contact, settings, solver);
         settings.window *= std::sqrt(kGathered / double(patch.gathered.size()));
         settings.footprintRadius = std::min(settings.footprintRadius, settings.window / 4);
     }
 
     std::vector<StageTimes> times;
     const auto              timing = takeTurns({{"Palpate", {[&] {
-                                        patch = deform(object, contact, settings, device);
+                                        patch = deform(object, contact, settings, solver);
                                         times.push_back(patch.times);
                                     }}}},
                                                runs);
@@ -237,7 +237,7 @@ const std::vector<std::string>& pointCases()
     return names;
 }
 
-std::vector<BenchRow> measurePoints(const std::vector<std::string>& cases, const std::string& device,
+std::vector<BenchRow> measurePoints(const std::vector<std::string>& cases, const std::string& solver,
                                     const std::vector<int>& nodes, int runs, const OnStep& onStep)
 {
     const auto            has = [&](const char* kind) { return std::ranges::find(cases, kind) != cases.end(); };
@@ -245,7 +245,7 @@ std::vector<BenchRow> measurePoints(const std::vector<std::string>& cases, const
     const std::size_t     total = 3;
     onStep(0, total);
     if (has("update")) {
-        PlateSolver opened(device);
+        PlateSolver opened(solver);
         for (const int n : nodes)
             for (const double tolerance : {1e-2, 1e-4}) // just below the grid's own error; the default
                 if (n >= 65 && n <= 129) rows.push_back(measureUpdate(n, tolerance, runs, opened));

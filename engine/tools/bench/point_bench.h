@@ -11,9 +11,9 @@ namespace palp::bench {
 [[nodiscard]] const std::vector<std::string>& pointCases();
 
 /// The cases that begin with points: what a radius search gathers, the nearest point of every node, and a whole update.
-/// \param device  of update, as PlateSolver has it
-/// \param nodes   a side of the grids, odd [1]
-[[nodiscard]] std::vector<BenchRow> measurePoints(const std::vector<std::string>& cases, const std::string& device,
+/// \param solver  of update, as PlateSolver takes it
+/// \param nodes   a side of the grids, odd
+[[nodiscard]] std::vector<BenchRow> measurePoints(const std::vector<std::string>& cases, const std::string& solver,
                                                   const std::vector<int>& nodes, int runs, const OnStep& onStep);
 
 } // namespace palp::bench

@@ -1,402 +1,224 @@
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
-#include <optional>
 
-#include <nlohmann/json.hpp>
-
-#include "engine/compute/command_list.h"
 #include "engine/compute/context.h"
-#include "engine/compute/processor_error.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
+#include "engine/core/processor.h"
 #include "engine/core/progress.h"
-#include "engine/plate/load.h"
 #include "engine/plate/multigrid/multigrid_plate_solver.h"
-#include "engine/plate/reference/reference_plate_solver.h"
-#include "engine/tools/bench/accuracy.h"
 #include "engine/tools/bench/bench_plates.h"
+#include "engine/tools/bench/bench_report.h"
+#include "engine/tools/bench/one_thread.h"
+#include "engine/tools/bench/outside_peers.h"
+#include "engine/tools/bench/plate_bench.h"
+#include "engine/tools/bench/point_bench.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/solver_choice.h"
-#include "engine/tools/plot/line_plot.h"
 
 namespace palp {
 namespace {
 
+using namespace bench;
+
 struct BenchOptions {
-    std::vector<std::string> devices  = {"auto", "reference"};
-    std::vector<int>         nodes    = {65, 129, 257};
-    std::vector<int>         loads    = {1};
-    std::string              schedule = "automatic";
-    std::string              law      = "linear";
-    double                   contrast = 10, tolerance = 1e-4;
-    int                      repeats = 21;
-    std::string              out;
-    bool                     json = false;
+    bool                     quick = false, json = false;
+    std::string              solver = "auto", schedule = "automatic", out;
+    std::vector<std::string> cases, maps;
+    std::vector<int>         nodes;
+    int                      runs = 11;
 };
 
-/// One line of the table; times are wall times, of preparation once and of solves at two quantiles.
-struct Row {
-    std::string           device;
-    int                   nodes = 0, loads = 0;
-    double                prepare = 0, coldMedian = 0, coldTail = 0; ///< [ms] 50th and 99th percentile
-    std::optional<double> warmMedian, deviceMedian;                  ///< [ms]
-    std::optional<double> updateMedian;                              ///< [ms] see update()
-    SolveReport           report;                                    ///< of the last cold solve
-    std::optional<double> error;                                     ///< largest, over the largest deflection [1]
-    std::optional<double> traffic, copy;                             ///< [GB/s] see kBytesPerNode
-    std::optional<int>    dispatchesPerCycle;                        ///< [1]
-};
+constexpr int kFewestNodes = 33, kMostNodes = 1025; // a side
+constexpr int kFewestRuns = 11;                     // quartiles of fewer say little
 
-/// What an application of the operator must move at least: deflection, rigidity, force and divisor in, deflection out.
-constexpr double kBytesPerNode = 5 * sizeof(float); // [byte]
-
-/// Beyond this the reference takes seconds for the true error.
-constexpr int kMostNodesForError = 257; // [1] a side
-
-double quantile(std::vector<double> values, double q)
+std::vector<std::string> allCases()
 {
-    std::sort(values.begin(), values.end());
-    return values[std::min(values.size() - 1, std::size_t(q * double(values.size())))];
+    std::vector<std::string> names = plateCases();
+    names.insert(names.end(), pointCases().begin(), pointCases().end());
+    return names;
 }
 
-double rigidityAt(const BenchOptions& o, double x, double z)
+std::vector<std::string> allMaps()
 {
-    return bench::rigidityAt(o.law, o.contrast, x, z);
+    std::vector<std::string> names;
+    for (const Map& map : maps()) names.emplace_back(map.name);
+    return names;
+}
+
+void checkNames(const char* option, const std::vector<std::string>& names, const std::vector<std::string>& known)
+{
+    std::string list;
+    for (const auto& name : known) list += (list.empty() ? "" : ", ") + name;
+    for (const auto& name : names)
+        if (std::ranges::find(known, name) == known.end())
+            throw Error(std::string(option) + ": unknown name \"" + name + "\"; known: " + list);
 }
 
 Schedule scheduleNamed(const std::string& name)
 {
-    const std::string word = CLI::ignore_case(name);
-    if (word == "automatic") return Schedule::automatic;
-    if (word == "pass-by-pass") return Schedule::passByPass;
-    if (word == "fused") return Schedule::fused;
+    if (name == "automatic") return Schedule::automatic;
+    if (name == "pass-by-pass") return Schedule::passByPass;
+    if (name == "fused") return Schedule::fused;
     throw Error("--schedule: expected automatic, pass-by-pass or fused, found \"" + name + "\"");
-}
-
-Plate plateOf(const BenchOptions& o, int nodes)
-{
-    return bench::plateOf(o.law, o.contrast, nodes);
-}
-
-/// Fingertips of 4 mm, or 1.5 spacings on a very coarse grid, each a little beside the last, as a batch for the force
-/// between two updates has.
-std::vector<NodeField> fingertips(const PlateGrid& grid, int count)
-{
-    const int              side   = int(std::ceil(std::sqrt(count)));
-    const double           radius = std::max(4e-3, 1.5 * grid.spacingX);
-    std::vector<NodeField> loads;
-    for (int n = 0; n < count; ++n) {
-        const double x = 1e-3 * (n / side - (side - 1) / 2.0), z = 1e-3 * (n % side - (side - 1) / 2.0);
-        loads.push_back(footprintLoad(grid, 1, grid.sizeX() / 2 + x, grid.sizeZ() / 2 + z, radius));
-    }
-    return loads;
-}
-
-/// How fast the device copies its own memory, reading and writing counted [GB/s]; empty without a clock.
-std::optional<double> copyBandwidth(compute::Context& context)
-{
-    constexpr std::size_t kBytes  = 64 << 20; // beyond most caches
-    constexpr int         kCopies = 8;
-    const compute::Buffer from(context, "copied", kBytes, compute::Intent::device),
-        to(context, "copy", kBytes, compute::Intent::device);
-    compute::CommandList list(context);
-    list.fill(from, 1);
-    list.copy(from, to);
-    list.timestamp();
-    for (int n = 0; n < kCopies; ++n) list.copy(from, to);
-    list.timestamp();
-    list.end();
-    context.run(list);
-    const auto times = list.timestampsMilliseconds();
-    if (times.empty() || !(times.back() > 0)) return {};
-    return 2.0 * kCopies * double(kBytes) / times.back() / 1e6;
-}
-
-class Stopwatch {
-public:
-    [[nodiscard]] double milliseconds() const
-    {
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-Row measureReference(const BenchOptions& o, int nodes)
-{
-    const Plate                plate = plateOf(o, nodes);
-    const NodeField            load  = fingertips(plate.grid, 1).front();
-    const ReferencePlateSolver solver(plate);
-    std::vector<double>        times;
-    Row                        row;
-    row.device  = "reference";
-    row.nodes   = nodes;
-    row.loads   = 1;
-    row.prepare = solver.factoriseMilliseconds();
-    for (int n = 0; n < o.repeats; ++n) {
-        const Stopwatch watch;
-        row.report = solver.solve(load).report;
-        times.push_back(watch.milliseconds());
-    }
-    row.coldMedian = quantile(times, 0.5);
-    row.coldTail   = quantile(times, 0.99);
-    return row;
-}
-
-/// Points as a contact gathers them, some 3000, with their rigidities.
-struct GatheredPoints {
-    std::vector<ChartPoint> positions;
-    std::vector<double>     rigidities;
-    double                  spacing; ///< [m]
-
-    GatheredPoints(const BenchOptions& o, const Plate& plate)
-    {
-        constexpr int kSide = 55;
-        spacing             = plate.grid.sizeX() / kSide;
-        for (int n = 0; n < kSide * kSide; ++n) {
-            const double u = (n / kSide + 0.5 + 0.4 * std::sin(12.9 * n)) / kSide; // jitter that repeats
-            const double v = (n % kSide + 0.5 + 0.4 * std::sin(78.2 * n)) / kSide;
-            positions.push_back({u * plate.grid.sizeX(), v * plate.grid.sizeZ()});
-            rigidities.push_back(bench::kSoftest * rigidityAt(o, u, v));
-        }
-    }
-};
-
-/// What a contact that moves on costs: points in, rigidity, solve from the last answer, deflection of the points out.
-double update(MultigridPlateSolver& solver, const GatheredPoints& points, const std::vector<NodeField>& forces)
-{
-    const Stopwatch watch;
-    solver.setRigidity({points.positions, points.rigidities, {0, 0}, points.spacing}, Resampling::logMean);
-    (void)solver.solve(forces, MultigridPlateSolver::Start::warm);
-    return watch.milliseconds();
-}
-
-Row measureMultigrid(const BenchOptions& o, compute::Context& context, const PlateKernels& kernels, int nodes,
-                     int loads, std::optional<double> copy)
-{
-    const Plate                  plate  = plateOf(o, nodes);
-    const std::vector<NodeField> forces = fingertips(plate.grid, loads);
-    MultigridPlateSolver         solver(context, kernels, plate, {.tolerance = o.tolerance, .loads = loads});
-    (void)solver.solve(forces); // drivers compile at the first dispatch
-    (void)solver.solve(forces, MultigridPlateSolver::Start::warm);
-
-    Row row;
-    row.device = context.device().name;
-    row.nodes  = nodes;
-    row.loads  = loads;
-    const Stopwatch preparation;
-    solver.setRigidity(plate.rigidity);
-    row.prepare = preparation.milliseconds();
-    std::vector<double> cold, warm, device;
-    NodeField           answer;
-    for (int n = 0; n < o.repeats; ++n) {
-        const Stopwatch watch;
-        auto            solutions = solver.solve(forces);
-        cold.push_back(watch.milliseconds());
-        row.report = solutions.front().report;
-        if (row.report.deviceMilliseconds) device.push_back(*row.report.deviceMilliseconds);
-        answer = std::move(solutions.front().deflection);
-        const Stopwatch again;
-        (void)solver.solve(forces, MultigridPlateSolver::Start::warm);
-        warm.push_back(again.milliseconds());
-    }
-    const GatheredPoints points(o, plate);
-    std::vector<double>  updates;
-    (void)update(solver, points, forces);
-    for (int n = 0; n < o.repeats; ++n) updates.push_back(update(solver, points, forces));
-    row.coldMedian   = quantile(cold, 0.5);
-    row.coldTail     = quantile(cold, 0.99);
-    row.warmMedian   = quantile(warm, 0.5);
-    row.updateMedian = quantile(updates, 0.5);
-    if (!device.empty()) {
-        row.deviceMedian = quantile(device, 0.5);
-        row.traffic =
-            *row.report.workUnits * double(plate.grid.nodes()) * loads * kBytesPerNode / *row.deviceMedian / 1e6;
-    }
-    row.copy               = copy;
-    row.dispatchesPerCycle = solver.dispatchesPerCycle();
-    if (nodes <= kMostNodesForError)
-        row.error = bench::errorOf(answer, ReferencePlateSolver(plate).solve(forces.front()).deflection);
-    return row;
-}
-
-std::vector<Row> measure(const BenchOptions& o)
-{
-    std::vector<Row> rows;
-    Progress         progress("measuring");
-    for (const std::string& name : o.devices) {
-        if (compute::isProcessorWord(name, PlateSolver::kReference)) {
-            for (int nodes : o.nodes) rows.push_back(measureReference(o, nodes));
-            continue;
-        }
-        compute::Context context =
-            orTheReference([&] { return compute::Context(compute::ContextSettings{.device = name}); });
-        sayPassedOver(context.device().name, context.note());
-        const PlateKernels kernels(context, scheduleNamed(o.schedule));
-        const auto         copy = copyBandwidth(context);
-        for (int nodes : o.nodes)
-            for (int loads : o.loads) rows.push_back(measureMultigrid(o, context, kernels, nodes, loads, copy));
-    }
-    return rows;
-}
-
-template <class T>
-nlohmann::ordered_json orNull(const std::optional<T>& value)
-{
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json jsonOf(const BenchOptions& o, const std::vector<Row>& rows)
-{
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const Row& r : rows)
-        list.push_back({{"device", r.device},
-                        {"nodes", r.nodes},
-                        {"loads", r.loads},
-                        {"prepare_ms", r.prepare},
-                        {"cold_p50_ms", r.coldMedian},
-                        {"cold_p99_ms", r.coldTail},
-                        {"cold_p50_ms_per_load", r.coldMedian / r.loads},
-                        {"warm_p50_ms", orNull(r.warmMedian)},
-                        {"update_p50_ms", orNull(r.updateMedian)},
-                        {"device_p50_ms", orNull(r.deviceMedian)},
-                        {"iterations", orNull(r.report.iterations)},
-                        {"work_units", orNull(r.report.workUnits)},
-                        {"error_estimate", orNull(r.report.errorEstimate)},
-                        {"error", orNull(r.error)},
-                        {"least_traffic_gb_per_s", orNull(r.traffic)},
-                        {"copy_gb_per_s", orNull(r.copy)},
-                        {"dispatches_per_cycle", orNull(r.dispatchesPerCycle)}});
-    return {
-        {"law", o.law}, {"contrast", o.contrast}, {"tolerance", o.tolerance}, {"repeats", o.repeats}, {"rows", list}};
-}
-
-/// "-" where there is no number.
-std::string cell(const std::optional<double>& value, const char* format)
-{
-    if (!value) return "-";
-    char text[32];
-    std::snprintf(text, sizeof text, format, *value);
-    return text;
-}
-
-void printTable(const BenchOptions& o, const std::vector<Row>& rows)
-{
-    std::printf("clamped plate, %s rigidity of contrast %g, tolerance %g, %d repeats; times in ms\n", o.law.c_str(),
-                o.contrast, o.tolerance, o.repeats);
-    std::printf("%-20s %5s %5s %8s %8s %8s %8s %8s %8s %5s %10s %5s %8s %8s %13s\n", "device", "nodes", "loads",
-                "prepare", "cold p50", "cold p99", "per load", "warm p50", "update", "steps", "dispatches", "work",
-                "estimate", "error", "GB/s of copy");
-    for (const Row& r : rows)
-        std::printf("%-20.20s %5d %5d %8.2f %8.2f %8.2f %8.2f %8s %8s %5s %10s %5s %8s %8s %6s/%6s\n", r.device.c_str(),
-                    r.nodes, r.loads, r.prepare, r.coldMedian, r.coldTail, r.coldMedian / r.loads,
-                    cell(r.warmMedian, "%.2f").c_str(), cell(r.updateMedian, "%.2f").c_str(),
-                    r.report.iterations ? std::to_string(*r.report.iterations).c_str() : "-",
-                    r.dispatchesPerCycle ? std::to_string(*r.dispatchesPerCycle).c_str() : "-",
-                    cell(r.report.workUnits, "%.0f").c_str(), cell(r.report.errorEstimate, "%.1e").c_str(),
-                    cell(r.error, "%.1e").c_str(), cell(r.traffic, "%.2f").c_str(), cell(r.copy, "%.1f").c_str());
-}
-
-/// Time of preparation and cold solve against the size of the grid, a line per device and number of loads.
-std::string plotOf(const BenchOptions& o, const std::vector<Row>& rows)
-{
-    std::vector<PlotSeries> series;
-    for (const Row& r : rows) {
-        const std::string name = r.device + (r.loads > 1 ? ", " + std::to_string(r.loads) + " loads" : "");
-        auto at = std::find_if(series.begin(), series.end(), [&](const PlotSeries& s) { return s.name == name; });
-        if (at == series.end()) at = series.insert(series.end(), PlotSeries{name, {}, {}, SeriesStyle::lineAndMarkers});
-        at->x.push_back(r.nodes);
-        at->y.push_back((r.prepare + r.coldMedian) / 1e3);
-    }
-    LinePlotSettings plot;
-    plot.title = "From a rigidity to its deflection, " + o.law + " rigidity";
-    plot.x     = {"nodes a side", "", Scale::logarithmic, {}};
-    plot.y     = {"median time", "s", Scale::logarithmic, {}};
-    return linePlotSvg(series, plot);
 }
 
 void check(const BenchOptions& o)
 {
-    for (int nodes : o.nodes)
-        if (nodes < 9 || nodes > 2049)
-            throw Error("--nodes: expected 9 to 2049 nodes a side, found " + std::to_string(nodes));
-    for (int loads : o.loads)
-        if (loads < 1 || loads > 256) throw Error("--loads: expected 1 to 256, found " + std::to_string(loads));
-    if (o.repeats < 1 || o.repeats > 10000)
-        throw Error("--repeats: expected 1 to 10000, found " + std::to_string(o.repeats));
-    if (!(o.contrast >= 1 && o.contrast <= 1e6))
-        throw Error("--contrast: expected 1 to 1e6, found " + cell(o.contrast, "%g"));
-    checkTolerance(o.tolerance);
+    checkNames("--cases", o.cases, allCases());
+    checkNames("--maps", o.maps, allMaps());
     (void)scheduleNamed(o.schedule);
-    (void)rigidityAt(o, 0, 0); // the name of the law
+    for (const int nodes : o.nodes)
+        if (nodes < kFewestNodes || nodes > kMostNodes || nodes % 4 != 1)
+            throw Error("--nodes: expected " + std::to_string(kFewestNodes) + " to " + std::to_string(kMostNodes) +
+                        " nodes a side and a multiple of 4 and 1 (the error of the grid is found from one twice as "
+                        "coarse), found " +
+                        std::to_string(nodes));
+    constexpr int kMostQuick = 257;
+    for (const int nodes : o.nodes)
+        if (o.quick && nodes > kMostQuick)
+            throw Error("--nodes: with --quick at most " + std::to_string(kMostQuick) + ", found " +
+                        std::to_string(nodes));
+    if (o.runs < kFewestRuns || o.runs > 1000)
+        throw Error("--runs: expected " + std::to_string(kFewestRuns) + " to 1000, found " + std::to_string(o.runs));
+    if (compute::isProcessorWord(o.solver, PlateSolver::kReference))
+        throw Error(
+            "--solver: the reference is a direct solver like its peers; expected auto, host, lavapipe, an index "
+            "or part of a name");
 }
 
-void benchSolve(const BenchOptions& o)
+/// Starts again as the program that has the peers, if it stands beside this one, with one thread for each library.
+void becomeBenchmark()
+{
+    const std::filesystem::path self  = runningProgram();
+    const std::filesystem::path peers = self.parent_path() / "palpate_peers";
+    std::error_code             error;
+    becomeOneThread(!self.empty() && std::filesystem::exists(peers, error) ? peers : self);
+}
+
+// --- the command
+
+BenchReport measure(const BenchOptions& o)
+{
+    BenchReport report;
+    report.runs        = o.runs;
+    report.quick       = o.quick;
+    report.processor   = processorName();
+    report.cholmod     = outsidePeers().cholmodNote;
+    report.eigen       = eigenVersion();
+    report.nanoflann   = outsidePeers().nanoflannNote;
+    report.environment = oneThreadEnvironment();
+
+    std::vector<std::string> cases = o.cases;
+    if (cases.empty()) cases = o.quick ? plateCases() : allCases();
+    if (o.quick && o.cases.empty()) std::erase(cases, "batch"); // it takes as long as all others
+    const auto wants = [&](const std::vector<std::string>& some) {
+        return std::ranges::any_of(some,
+                                   [&](const auto& name) { return std::ranges::find(cases, name) != cases.end(); });
+    };
+
+    Progress          progress("measuring");
+    const OnStep      onStep = [&](std::size_t done, std::size_t total) { progress.at(done, total); };
+    PlateBenchOptions plates{.cases = cases, .nodes = o.nodes, .maps = o.maps, .runs = o.runs};
+    if (plates.nodes.empty())
+        plates.nodes = o.quick ? std::vector<int>{33, 65, 129, 257} : std::vector<int>{33, 65, 129, 257, 513, 1025};
+    if (o.quick) {
+        plates.quick         = true;
+        plates.patience      = 40; // what has begun then is done before 50 s are over
+        plates.mostEigen     = 129;
+        plates.jacobiSeconds = 3;
+        plates.mostMemory    = 257;
+    }
+    {
+        compute::Context context(compute::ContextSettings{.processor = o.solver});
+        sayPassedOver(context.processor().name, context.note());
+        report.device = context.processor().name;
+        if (wants(plateCases())) {
+            const PlateKernels kernels(context, scheduleNamed(o.schedule));
+            report.rows = measurePlates(context, kernels, plates, onStep);
+        }
+    }
+    if (wants(pointCases())) {
+        const std::vector<int> nodes = o.nodes.empty() ? std::vector<int>{65, 129, 257} : o.nodes;
+        for (BenchRow& row : measurePoints(cases, o.solver, nodes, o.runs, onStep))
+            report.rows.push_back(std::move(row));
+    }
+    return report;
+}
+
+void runBench(const BenchOptions& o)
 {
     check(o);
-    const std::vector<Row> rows = measure(o);
+    becomeBenchmark();
+    const BenchReport report = measure(o);
+    if (report.rows.empty())
+        throw Error(
+            "--nodes: nothing to measure: new_map, new_load and contrast begin at 65 nodes, update is for 65 to 129");
     if (!o.out.empty()) {
         makeFolder(o.out);
         const std::filesystem::path folder = o.out;
-        writeFileWhole(folder / "solve.json", [&](std::ostream& file) { file << jsonText(jsonOf(o, rows)); });
-        writeFileWhole(folder / "solve.svg", [&](std::ostream& file) { file << plotOf(o, rows); });
+        const auto                  write  = [&](const char* name, const std::string& text) {
+            writeFileWhole(folder / name, [&](std::ostream& file) { file << text; });
+        };
+        write("plate.json", jsonOf(report));
+        writeFileWhole(folder / "plate.txt", [&](std::ostream& file) { printText(file, report); });
+        for (const auto& [kind, map] :
+             {std::pair("new_map", "linear"), {"new_load", "linear"}, {"contrast", "disc_100"}})
+            if (std::ranges::any_of(report.rows,
+                                    [&](const BenchRow& row) { return row.kind == kind && row.map == map; }))
+                write((std::string(kind) + ".svg").c_str(), plotOf(report, kind, map));
     }
     if (o.json)
-        std::cout << jsonText(jsonOf(o, rows));
+        std::cout << jsonOf(report);
     else
-        printTable(o, rows);
+        printText(std::cout, report);
 }
 
 } // namespace
 
 void addBenchCommand(CLI::App& app)
 {
-    CLI::App* bench = app.add_subcommand("bench", "how fast this machine is");
-    bench->require_subcommand(1);
-    addBenchPlateCommand(*bench);
-    CLI::App*  solve = bench->add_subcommand("solve", "time, iterations and error of the plate solvers, size by size");
-    const auto o     = std::make_shared<BenchOptions>();
-    solve->add_option("--device", o->devices, "devices to measure, as for the command solve; several by commas")
-        ->delimiter(',')
-        ->capture_default_str();
-    solve->add_option("--nodes", o->nodes, "nodes a side of the square grids, 9 to 2049")
-        ->delimiter(',')
-        ->capture_default_str();
-    solve->add_option("--loads", o->loads, "solved together in one batch (not by the reference)")
-        ->delimiter(',')
-        ->capture_default_str();
-    solve
+    CLI::App* bench =
+        app.add_subcommand("bench", "how fast the plate's solver is, beside what people would use instead");
+    const auto o = std::make_shared<BenchOptions>();
+    bench->add_flag("--quick", o->quick, "only plates of up to 257 nodes, in less than a minute");
+    bench->add_option("--solver", o->solver, "where Palpate computes, as for the command solve")->capture_default_str();
+    bench
+        ->add_option(
+            "--cases", o->cases,
+            "what to measure: new_map, new_load, contrast, jacobi, memory, batch, update, gather, grid_map; several "
+            "by commas; all if absent")
+        ->delimiter(',');
+    bench
+        ->add_option("--nodes", o->nodes, "nodes a side of the square grids, 33 to 1025, one more than a multiple of 4")
+        ->delimiter(',');
+    bench
+        ->add_option("--maps", o->maps,
+                     "rigidities of new_map, new_load and contrast: linear, hyperbolic, wart, disc_100, disc_0.1, "
+                     "discs; several by commas; all if absent")
+        ->delimiter(',');
+    bench
         ->add_option("--schedule", o->schedule,
-                     "of the cycle's dispatches: automatic (fused on hardware), pass-by-pass or fused")
+                     "how a cycle is cut into dispatches: automatic (fused on hardware), pass-by-pass or fused")
         ->capture_default_str();
-    solve->add_option("--law", o->law, "of the rigidity: linear, hyperbolic, wart, disc or discs")
-        ->capture_default_str();
-    solve->add_option("--contrast", o->contrast, "stiffest over softest")->capture_default_str();
-    solve->add_option("--tolerance", o->tolerance, "relative, in the energy norm")->capture_default_str();
-    solve->add_option("--repeats", o->repeats, "solves per line")->capture_default_str();
-    solve->add_option("--out", o->out, "folder for solve.json and solve.svg");
-    solve->add_flag("--json", o->json, "machine-readable");
-    bench->footer("Examples:\n"
-                  "  palpate bench solve --help\n"
-                  "  palpate bench solve --out bench");
-    solve->footer(
-        "\"dispatches\" are those of one cycle, which wait for each other; \"update\" is\n"
-        "3000 points in, their rigidity at the nodes, a warm solve, and the points' deflections out, in one "
-        "submission;\n"
-        "\"error\" is against the reference solver on the same grid, up to 257 nodes a side; \"GB/s\" is what the\n"
-        "counted work must move at least (20 bytes per node and work unit), beside the device's copies.\n"
+    bench->add_option("--runs", o->runs, "timed turns of each, at least 11")->capture_default_str();
+    bench->add_option("--out", o->out, "folder for plate.json, plate.txt and pictures of the curves");
+    bench->add_flag("--json", o->json, "machine-readable");
+    bench->footer(
+        "Times are processor time of one thread, medians and quartiles of turns: peer, Palpate, peer, Palpate, ...\n"
+        "\"error\" is the largest error over the largest deflection, against a refined solution on the same grid;\n"
+        "\"discretisation\" asks for an error below the grid's own. Peers are found when they are there:\n"
+        "CHOLMOD (libsuitesparse-dev) and nanoflann (libnanoflann-dev), by the program palpate_peers, which is built\n"
+        "beside this one with -DPALPATE_BENCH_PEERS=ON. What it all means: engine/performance.md.\n"
         "Examples:\n"
-        "  palpate bench solve --out bench\n"
-        "  palpate bench solve --device host,lavapipe --nodes 65,129 --loads 1,9,25,49\n"
-        "  palpate bench solve --law disc --contrast 1000 --tolerance 1e-6 --json");
-    solve->callback([solve, o] {
-        refuseEmptyValues(*solve);
-        benchSolve(*o);
+        "  palpate bench --quick\n"
+        "  palpate bench --out bench\n"
+        "  palpate bench --cases new_map,new_load --nodes 129,257 --json");
+    bench->callback([bench, o] {
+        refuseEmptyValues(*bench);
+        runBench(*o);
     });
 }
 

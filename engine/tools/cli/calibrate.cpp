@@ -1,5 +1,6 @@
 // palpate calibrate: a Falcon weighs a known mass, and so finds out what its motors make of a torque.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -11,16 +12,17 @@
 #include <nlohmann/json.hpp>
 
 #include "device/falcon/falcon_calibration.h"
-#include "device/falcon/falcon_device.h"
+#include "device/falcon/falcon_record.h"
 #include "device/falcon/ft232_emulator.h"
+#include "device/hid/hidapi_system.h"
 #include "device/simulated_arm.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/core/real_time.h"
 #include "engine/force/governor.h"
+#include "engine/session/interrupt.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/hand_source.h"
-#include "engine/tools/cli/interrupt.h"
 
 namespace palp {
 namespace {
@@ -28,13 +30,17 @@ namespace {
 using Stage = FalconCalibrationStage;
 
 struct CalibrateOptions {
-    std::string   mass = "200 g";
-    FalconOptions falcon;
-    bool          emulator = false, json = false;
-
-    /// That it runs with [1/(N m)].
-    [[nodiscard]] double countsPerTorque() const { return falcon.settings().loop.countsPerTorque; }
+    std::string        mass = "200 g";
+    DeviceOptionValues falcon;
+    bool               emulator = false, json = false;
 };
+
+/// The counts per torque that the Falcon runs with while it is weighed [1/(N m)].
+double countsBefore(const CalibrateOptions& o)
+{
+    const std::string counts = textOf(o.falcon, kFalconCounts);
+    return counts.empty() ? FalconMotors::kCountsPerTorque : numberOf(kFalconCounts, counts);
+}
 
 /// "200 g" or "0.2".
 double kilograms(std::string text)
@@ -54,11 +60,11 @@ double kilograms(std::string text)
 /// A Falcon, a clock, and somebody with a mass.
 struct Bench {
     HapticDevice&                           device;
-    std::function<double()>                 wait; ///< until the next tick \return [s] when that is
+    std::function<double()>                 wait; ///< waits for the next tick and returns when it is [s]
     std::function<void(double gain, Stage)> act;  ///< what the user does, each tick; may be empty
 };
 
-/// Whether a mass has come onto the grip and hangs still.
+/// Tells whether a mass has come onto the grip and hangs still.
 class HangsStill {
 public:
     bool operator()(double upwards, double speed, double dt) noexcept
@@ -101,7 +107,7 @@ void demandWell(const HapticState& state, double ill, GovernorFault fault)
         giveUp(std::string("the governor stopped the force: ") + name(fault) + "; start again, move the grip slowly");
 }
 
-/// Through all stages. On whatever way out, the device's last force is none: it closes.
+/// Goes through all stages. Whichever way it ends, the device closes, and so its last force is zero.
 void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibration)
 {
     constexpr double         kPatience = 300; // [s] for all of it
@@ -144,7 +150,8 @@ void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrati
 
 void weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
 {
-    const auto falcon = falconFor(o.falcon);
+    HidapiSystem hid; // which a Falcon does not use
+    const auto   falcon = kFalconRecord.make({.hid = hid, .options = o.falcon});
     falcon->open();
     waitForHoming(*falcon, catchInterrupts());
     if (const std::string refused = askForRealTime(); !refused.empty())
@@ -155,7 +162,7 @@ void weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
     weigh(o, bench, calibration);
 }
 
-/// What the emulated Falcon is in truth, and its driver does not know.
+/// What is true of the emulated Falcon, and unknown to its driver.
 constexpr double kEmulatedCounts = 5000; ///< [counts/(N m)]
 constexpr double kEmulatedArm    = 0.21; ///< [kg] of it weighs on the grip
 
@@ -195,7 +202,7 @@ struct EmulatedBench {
         return settings;
     }
 
-    /// The mass's inertia is left out: means do not see it.
+    /// The mass's inertia is omitted, because means do not see it.
     glm::dvec3 moved(const glm::dvec3& force, double dt)
     {
         arm.step(force - glm::dvec3(0, (kEmulatedArm + hanging) * 9.81, 0), dt);
@@ -205,7 +212,7 @@ struct EmulatedBench {
     /// Holds the grip until force comes on, and hangs `mass` [kg] on it two seconds after being asked to.
     void act(double gain, Stage stage, double mass)
     {
-        arm.hold(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = kHeld} : SimulatedHand{});
+        arm.holdBy(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = kHeld} : SimulatedHand{});
         if (stage == Stage::hang) asked += 1e-3;
         if (asked > 2) hanging = mass;
     }
@@ -214,7 +221,7 @@ struct EmulatedBench {
 void weighEmulated(const CalibrateOptions& o, double mass, FalconCalibration& calibration)
 {
     std::cerr << "palpate: this Falcon is emulated, and so is the hand that does what follows, faster than real time\n";
-    EmulatedBench emulated(o.countsPerTorque());
+    EmulatedBench emulated(countsBefore(o));
     Bench bench{emulated.falcon, [&] { return emulated.now = std::max(emulated.now + 1e-3, emulated.emulator.now()); },
                 [&](double gain, Stage stage) { emulated.act(gain, stage, mass); }};
     weigh(o, bench, calibration);
@@ -225,7 +232,7 @@ void print(const CalibrateOptions& o, double mass, const FalconCalibration& cali
     const double counts = calibration.countsPerTorque().value(), arm = calibration.armMass().value();
     if (o.json) {
         nlohmann::ordered_json report{{"counts_per_torque", counts},
-                                      {"counts_per_torque_before", o.countsPerTorque()},
+                                      {"counts_per_torque_before", countsBefore(o)},
                                       {"arm_kg", arm},
                                       {"mass_kg", mass},
                                       {"emulated", nullptr}};
@@ -234,7 +241,7 @@ void print(const CalibrateOptions& o, double mass, const FalconCalibration& cali
         return;
     }
     std::printf("counts per N m   %.0f   (%.0f until now: its forces were %.2f times what was asked for)\n", counts,
-                o.countsPerTorque(), o.countsPerTorque() / counts);
+                countsBefore(o), countsBefore(o) / counts);
     std::printf("the arm          %.0f g weigh on the grip\n", 1000 * arm);
     if (o.emulator)
         std::printf(
@@ -246,7 +253,7 @@ void print(const CalibrateOptions& o, double mass, const FalconCalibration& cali
 void calibrate(const CalibrateOptions& o)
 {
     const double      mass = kilograms(o.mass);
-    FalconCalibration calibration({.mass = mass, .countsPerTorque = o.countsPerTorque()});
+    FalconCalibration calibration({.mass = mass, .countsPerTorque = countsBefore(o)});
     if (o.emulator)
         weighEmulated(o, mass, calibration);
     else
@@ -261,7 +268,7 @@ void addCalibrateCommand(CLI::App& app)
     auto* command = app.add_subcommand("calibrate", "a Falcon weighs a known mass, so that its newtons are true");
     auto  o       = std::make_shared<CalibrateOptions>();
     command->add_option("--mass", o->mass, "what you will hang on the grip, 50 g to 500 g")->capture_default_str();
-    addFalconOptions(*command, o->falcon);
+    addDeviceOptions(*command, o->falcon, std::array{&kFalconRecord});
     command->add_flag("--emulator", o->emulator, "an emulated Falcon and hand, in virtual time: to see how it goes");
     command->add_flag("--json", o->json, "machine-readable; what to do is said on standard error all the same");
     command->footer(

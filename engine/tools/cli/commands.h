@@ -23,7 +23,6 @@ void addPerceiveCommand(CLI::App& app);
 void addPaperCommand(CLI::App& app);
 void addCalibrateCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
-void addBenchPlateCommand(CLI::App& bench);
 
 /// A check that was asked for says no: exit code 1. What was found has been printed.
 struct CheckFailed : std::runtime_error {

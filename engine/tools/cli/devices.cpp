@@ -15,15 +15,16 @@ namespace palp {
 namespace {
 
 struct DevicesOptions {
-    bool gpu    = false;
-    bool haptic = false;
-    bool json   = false;
+    bool haptic     = false;
+    bool processors = false;
+    bool gpus       = false;
+    bool json       = false;
 };
 
-/// What there is to compute on.
+/// What this machine can solve plates on.
 struct Machine {
     std::vector<compute::Processor>   gpus;
-    std::optional<compute::Processor> host{compute::describeHost()};
+    std::optional<compute::Processor> host{compute::describeHost()}; ///< empty: only GPUs are asked for
     std::string                       processor{processorName()}, instructionSet{hostVariant().isa}; ///< of the host
     int                               taken = host->index; ///< index of the one that "auto" takes
 };
@@ -40,44 +41,44 @@ nlohmann::ordered_json orNull(const std::string& text)
     return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
 }
 
-nlohmann::ordered_json jsonOf(const compute::Processor& device, const Machine& machine)
+nlohmann::ordered_json jsonOf(const compute::Processor& unit, const Machine& machine)
 {
-    const bool isHost = device.kind == compute::kHostProcessor;
-    return {{"index", isHost ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(device.index)},
-            {"name", device.name},
-            {"kind", device.kind},
-            {"driver", orNull(device.driver)},
-            {"api", orNull(device.api)},
+    const bool isHost = unit.kind == compute::kHostProcessor;
+    return {{"index", isHost ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(unit.index)},
+            {"name", unit.name},
+            {"kind", unit.kind},
+            {"driver", orNull(unit.driver)},
+            {"api", orNull(unit.api)},
             {"processor", orNull(isHost ? machine.processor : "")},
             {"instruction_set", orNull(isHost ? machine.instructionSet : "")},
-            {"memory", device.memory},
-            {"float64", device.float64},
-            {"usable", device.refusals.empty()},
-            {"refusals", device.refusals},
-            {"auto", device.index == machine.taken}};
+            {"memory", unit.memory},
+            {"float64", unit.float64},
+            {"usable", unit.refusals.empty()},
+            {"refusals", unit.refusals},
+            {"auto", unit.index == machine.taken}};
 }
 
 nlohmann::ordered_json jsonOf(const Machine& machine)
 {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const compute::Processor& device : machine.gpus) list.push_back(jsonOf(device, machine));
+    for (const compute::Processor& unit : machine.gpus) list.push_back(jsonOf(unit, machine));
     if (machine.host) list.push_back(jsonOf(*machine.host, machine));
     return list;
 }
 
-void printText(const compute::Processor& device, const Machine& machine)
+void printText(const compute::Processor& unit, const Machine& machine)
 {
-    const bool isHost = device.kind == compute::kHostProcessor;
-    std::cout << (isHost ? device.name + "  " + machine.processor : std::to_string(device.index) + "  " + device.name)
-              << "\n   kind     " << device.kind << "\n   "
+    const bool isHost = unit.kind == compute::kHostProcessor;
+    std::cout << (isHost ? unit.name + "  " + machine.processor : std::to_string(unit.index) + "  " + unit.name)
+              << "\n   kind     " << unit.kind << "\n   "
               << (isHost ? "code     native, for " + machine.instructionSet
-                         : "driver   " + device.driver + ", Vulkan " + device.api);
-    std::cout << "\n   memory   " << (device.memory >> 20) << " MiB\n   float64  " << (device.float64 ? "yes" : "no")
-              << "\n   usable   " << (device.refusals.empty() ? "yes" : "no: " + joined(device.refusals))
-              << (device.index == machine.taken ? "; auto takes it" : "") << "\n";
+                         : "driver   " + unit.driver + ", Vulkan " + unit.api);
+    std::cout << "\n   memory   " << (unit.memory >> 20) << " MiB\n   float64  " << (unit.float64 ? "yes" : "no")
+              << "\n   usable   " << (unit.refusals.empty() ? "yes" : "no: " + joined(unit.refusals))
+              << (unit.index == machine.taken ? "; auto takes it" : "") << "\n";
 }
 
-void printText(const HapticList& haptics)
+void printText(const DeviceList& haptics)
 {
     for (const DeviceListing& device : haptics.devices) {
         std::cout << device.name << "  " << device.model << "\n";
@@ -92,7 +93,7 @@ void printText(const HapticList& haptics)
     std::cout << "looked for with " << hapticSupport() << "\n";
 }
 
-/// Vulkan may be broken: the host is there all the same.
+/// Vulkan may be broken; the host is there all the same.
 /// \throws compute::ProcessorError if Vulkan does not start and only GPUs are asked for
 Machine lookAtMachine(const DevicesOptions& options)
 {
@@ -100,84 +101,87 @@ Machine lookAtMachine(const DevicesOptions& options)
     try {
         machine.gpus = compute::listProcessors();
     } catch (const compute::ProcessorError& error) {
-        if (options.gpu) throw;
-        std::cerr << "palpate: the host only: " << error.what() << "\n";
+        if (options.gpus) throw;
+        std::cerr << "palpate: only the host can compute: " << error.what() << "\n";
     }
     if (const auto best = compute::chooseProcessor(machine.gpus, compute::kAutoProcessor))
         machine.taken = machine.gpus[*best].index;
-    if (options.gpu) machine.host.reset();
+    if (options.gpus) machine.host.reset();
     return machine;
 }
 
 /// \throws compute::ProcessorError, after printing, if only GPUs are asked for and none can be used
-void printComputing(const DevicesOptions& options)
+void printProcessors(const DevicesOptions& options)
 {
     const Machine machine = lookAtMachine(options);
     if (options.json) {
         std::cout << jsonText(jsonOf(machine));
     } else {
-        if (!options.gpu) std::cout << "to compute on\n";
-        for (const compute::Processor& device : machine.gpus) printText(device, machine);
+        for (const compute::Processor& unit : machine.gpus) printText(unit, machine);
         if (machine.host) printText(*machine.host, machine);
     }
     std::cout.flush();
-    if (options.gpu && std::ranges::none_of(machine.gpus, [](const auto& device) { return device.refusals.empty(); }))
+    if (options.gpus && std::ranges::none_of(machine.gpus, [](const auto& unit) { return unit.refusals.empty(); }))
         throw compute::ProcessorError(
             "no GPU can be used: install the vendor's driver, or mesa-vulkan-drivers for one in software");
 }
 
-HapticList lookForHaptics()
+DeviceList lookForHaptics()
 {
-    HapticList haptics = listHaptics();
+    DeviceList haptics = listHaptics();
     for (const std::string& trouble : haptics.troubles) std::cerr << "palpate: " << trouble << "\n";
     return haptics;
 }
 
+void printHaptics(const DevicesOptions& options)
+{
+    const DeviceList haptics = lookForHaptics();
+    if (options.json)
+        std::cout << jsonText(jsonOf(haptics.devices));
+    else
+        printText(haptics);
+}
+
 void printDevices(const DevicesOptions& options)
 {
-    if (options.gpu) return printComputing(options);
-    if (options.haptic) {
-        const HapticList haptics = lookForHaptics();
-        if (options.json)
-            std::cout << jsonText(jsonOf(haptics.devices));
-        else
-            printText(haptics);
-        return;
-    }
+    if (options.haptic) return printHaptics(options);
+    if (options.processors || options.gpus) return printProcessors(options);
     if (options.json) {
-        const Machine machine = lookAtMachine(options);
+        const auto haptics = jsonOf(lookForHaptics().devices);
         std::cout << jsonText(
-            nlohmann::ordered_json{{"compute", jsonOf(machine)}, {"haptic", jsonOf(lookForHaptics().devices)}});
+            nlohmann::ordered_json{{"haptic", haptics}, {"processors", jsonOf(lookAtMachine(options))}});
         return;
     }
-    printComputing(options);
-    std::cout << "\nas a hand\n";
-    printText(lookForHaptics());
+    std::cout << "haptic devices\n";
+    printHaptics(options);
+    std::cout << "\nprocessors that solve plates\n";
+    printProcessors(options);
 }
 
 } // namespace
 
 void addDevicesCommand(CLI::App& app)
 {
-    CLI::App* command = app.add_subcommand("devices", "what this machine can compute on, and what can serve as a hand");
+    CLI::App*    command = app.add_subcommand("devices", "lists haptic devices, and the processors that solve plates");
     const auto   options = std::make_shared<DevicesOptions>();
-    CLI::Option* gpu =
-        command->add_flag("--gpu", options->gpu, "only GPUs, as Vulkan sees them; exit code 4: none can be used");
-    command->add_flag("--haptic", options->haptic, "only haptic devices, and what stands in for one")->excludes(gpu);
-    command->add_flag(
-        "--json", options->json,
-        "machine-readable: a list with --gpu or --haptic, else an object with both, \"compute\" and \"haptic\"; "
-        "\"auto\" is true for the one that --device auto takes");
+    CLI::Option* haptic  = command->add_flag("--haptic", options->haptic, "lists only haptic devices");
+    CLI::Option* all     = command->add_flag("--processors", options->processors,
+                                             "lists only processors: GPUs, as Vulkan sees them, and the host");
+    command->add_flag("--gpus", options->gpus, "lists only GPUs; exit code 4: none can be used")->excludes(haptic, all);
+    all->excludes(haptic);
+    command->add_flag("--json", options->json,
+                      "machine-readable: a list where only one sort is asked for, else an object with \"haptic\" and "
+                      "\"processors\"; \"auto\" is true for the processor that auto takes");
     command->footer(
-        "A GPU is named by its index or part of its name; \"host\" is this processor, with native code for the\n"
-        "best instruction set that it has; the environment variable PALPATE_HOST_ISA sets a limit (portable,\n"
-        "avx2 or avx512). --device auto takes a GPU, discrete before integrated before virtual, else the host;\n"
-        "a device in software only if it is named, by \"lavapipe\" too.\n"
         "A haptic device is opened and let go again to see whether that works; one that cannot be used comes with\n"
-        "the reason, and with what helps. \"palpate doctor\" looks at the rest of the machine.\n"
+        "the reason and with what helps. \"palpate doctor\" looks at the rest of the machine.\n"
+        "A GPU is named by its index or by a part of its name; \"host\" is this processor, with native code for the\n"
+        "best instruction set that it has; the environment variable PALPATE_HOST_ISA sets a limit (portable,\n"
+        "avx2 or avx512). auto takes a GPU, discrete before integrated before virtual, else the host. It takes no\n"
+        "GPU in software; such a one is taken by its name, or by \"lavapipe\".\n"
         "Examples:\n"
         "  palpate devices\n"
-        "  palpate devices --gpu --json\n"
+        "  palpate devices --processors --json\n"
         "  palpate devices --haptic");
     command->callback([options] { printDevices(*options); });
 }

@@ -6,11 +6,12 @@
 
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/doctor_checks.h"
+#include "engine/tools/cli/haptic_list.h"
 
 namespace palp {
 namespace {
 
-void printJson(const Make& made, const std::vector<Finding>& findings, const HapticList& haptics)
+void printJson(const Make& made, const std::vector<Finding>& findings, const DeviceList& haptics)
 {
     nlohmann::ordered_json report{{"palpate", made.palpate},
                                   {"compiler", made.compiler},
@@ -40,7 +41,7 @@ void printText(const Make& made, const std::vector<Finding>& findings)
 
 void examineAndPrint(bool asJson)
 {
-    const HapticList           haptics  = listHaptics();
+    const DeviceList           haptics  = listHaptics();
     const std::vector<Finding> findings = examine(haptics);
     if (asJson)
         printJson(make(), findings, haptics);

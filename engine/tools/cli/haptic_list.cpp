@@ -2,9 +2,8 @@
 
 #include <cstdlib>
 
-#include "device/falcon/libusb_link.h"
 #include "device/hid/hidapi_system.h"
-#include "engine/core/contract.h"
+#include "engine/session/device_registry.h"
 
 namespace palp {
 namespace {
@@ -15,42 +14,15 @@ bool isSet(const char* variable)
     return value && *value;
 }
 
-std::vector<DeviceListing> falcons()
-{
-    std::vector<DeviceListing> list;
-    for (const FalconListing& falcon : listFalcons())
-        list.push_back({.name   = "falcon",
-                        .model  = "Novint Falcon",
-                        .path   = falcon.path,
-                        .usable = falcon.usable,
-                        .why    = falcon.why,
-                        .help   = falcon.help});
-    return list;
-}
-
-/// What `look` finds; a trouble if it fails.
-template <class Look>
-std::vector<DeviceListing> tried(Look look, std::vector<std::string>& troubles)
-{
-    try {
-        return look();
-    } catch (const Error& error) {
-        troubles.emplace_back(error.what());
-        return {};
-    }
-}
-
 } // namespace
 
-HapticList listHaptics()
+DeviceList listHaptics()
 {
-    HapticList   list;
     HidapiSystem hid;
-    const auto   usb = tried(falcons, list.troubles);
-    list.devices     = tried([&] { return listDevices(hid, usb); }, list.troubles);
-    if (list.devices.empty()) list.devices = usb; // HID could not be listed
+    DeviceList   list = listDevices(deviceRecords(), hid);
     for (DeviceListing& device : list.devices) {
-        if (device.name != "mouse" || !displayName().empty()) continue;
+        const DeviceRecord* record = deviceNamed(device.name);
+        if (!record || record->holder != DeviceHolder::pointer || !displayName().empty()) continue;
         device.usable = false; // it lives in a window
         device.why    = "there is no display";
         device.help   = "run it on a desktop, or with DISPLAY or WAYLAND_DISPLAY set";
@@ -60,7 +32,13 @@ HapticList listHaptics()
 
 std::string hapticSupport()
 {
-    return falconSupport() + ", " + hidSupport();
+    std::string libraries;
+    for (const DeviceRecord* record : deviceRecords()) {
+        if (!record->support) continue;
+        const std::string library = record->support().library;
+        if (libraries.find(library) == std::string::npos) libraries += (libraries.empty() ? "" : ", ") + library;
+    }
+    return libraries;
 }
 
 std::string displayName()

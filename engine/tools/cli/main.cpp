@@ -104,8 +104,7 @@ int main(int argumentCount, char** arguments)
                "  palpate devices                                what this machine can compute on, and feel with\n"
                "  palpate doctor                                 what it lacks, and what helps\n"
                "  palpate calibrate --mass '200 g'               a Falcon weighs a mass, so that its newtons are true\n"
-               "  palpate bench solve                            how fast its solvers are\n"
-               "  palpate bench plate --quick                    and how fast those of others\n"
+               "  palpate bench --quick                          how fast its solver is, and those of others\n"
                "Each command explains itself with --help.");
     palp::addTouchCommand(app);
     palp::addSolveCommand(app);

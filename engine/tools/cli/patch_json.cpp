@@ -4,6 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/patch_warnings.h"
+#include "engine/pipeline/presets.h"
 #include "engine/plate/load.h"
 
 namespace palp {
@@ -102,7 +105,7 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
         force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
     report["error"]        = {{"discretisation", orNull(discretisationError(patch, settings, device))},
                               {"solver", orNull(patch.report.errorEstimate)}};
-    report["solver"]       = {{"device", patch.report.device},
+    report["solver"]       = {{"device", patch.report.solver},
                               {"note", device.note().empty() ? Json(nullptr) : Json(device.note())},
                               {"converged", patch.report.converged},
                               {"iterations", orNull(patch.report.iterations)},

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/patch.h"
 
 namespace palp {
 

@@ -13,6 +13,8 @@
 #include "engine/core/file.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/patch_warnings.h"
 #include "engine/session/virtual_session.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
@@ -76,7 +78,7 @@ TouchLook lookOf(const RenderOptions& o)
 /// Everything that is touched and drawn, made once.
 struct Stage {
     explicit Stage(const RenderOptions& o)
-        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.device = o.drawOn}),
+        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.processor = o.drawOn}),
           loaded(o.scene.loadObject(scene)), solver(openSolver(scene.solver)), view(loaded.object, scene.patch)
     {
         sayPassedOver(renderer.device().name, renderer.note());
@@ -169,8 +171,8 @@ std::vector<TickRecord> samplesOf(const RenderOptions& o, Stage& stage, int fram
     HandOptions hand;
     hand.hand         = o.hand;
     hand.seconds      = o.seconds;
-    HandSource source = handFor(hand, stage.scene, stage.loaded.object);
-    if (source.isHeld()) throw Error("--hand " + o.hand + ": somebody holds it; pictures are made of scripted hands");
+    SessionHand source = handFor(hand, stage.scene, stage.loaded.object);
+    if (source.isHeldByPerson()) throw Error("--hand " + o.hand + ": somebody holds it; pictures are made of scripted hands");
     Deformation             deformation(stage.loaded.object, stage.scene);
     const SessionParts      parts{stage.scene, stage.loaded.object, deformation.solver(), *source.device, source.frame};
     std::vector<TickRecord> all;

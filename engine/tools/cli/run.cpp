@@ -73,7 +73,7 @@ void replay(const ReplayOptions& o)
                                                [&](const TickRecord& sample) { again.samples.push_back(sample); });
     if (!o.compare) {
         o.json ? void(std::cout << jsonText(jsonOf(summary)))
-               : printText(summary, deformation.device().name(), hand.info().model);
+               : printText(summary, deformation.plateSolver().name(), hand.info().model);
         return;
     }
     const auto difference = compareSessions(session, again);

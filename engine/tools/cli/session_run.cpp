@@ -2,24 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
-#include <glm/geometric.hpp>
 #include <unistd.h>
 
 #include "engine/core/contract.h"
 #include "engine/core/nearest_name.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/patch_warnings.h"
+#include "engine/session/interrupt.h"
 #include "engine/session/real_session.h"
+#include "engine/session/session_line.h"
 #include "engine/session/tick_ring.h"
 #include "engine/session/virtual_session.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
-#include "engine/tools/cli/interrupt.h"
+#include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/session_report.h"
 #include "engine/tools/study/hunt_scene.h"
 
@@ -53,20 +54,6 @@ std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object
     } catch (const Error& error) { // a hand from a file may work elsewhere
         return {std::string("at the scene's place nothing can be felt: ") + error.what()};
     }
-}
-
-/// One line that is written over and over: what the hand feels, and how fast.
-void showLine(const SessionView& view)
-{
-    const TickRecord& s     = view.sample;
-    const auto        fault = static_cast<GovernorFault>(s.faults & 0xFFU);
-    const bool        stale = (s.faults & static_cast<std::uint32_t>(SessionFlag::stalePatch)) != 0;
-    std::fprintf(stderr, "\r%6.1f s  %8s  %8s deep  a tick every %8s  a patch in %8s%s%s%s\033[K", s.time,
-                 formatQuantity(glm::length(s.force), "N").c_str(),
-                 formatQuantity(glm::length(s.proxy - s.hip), "m").c_str(),
-                 formatQuantity(view.loopPeriod, "s").c_str(), formatQuantity(view.solveTime, "s").c_str(),
-                 stale ? "  stale" : "", fault == GovernorFault::none ? "" : "  no force, button 0 resets: ",
-                 fault == GovernorFault::none ? "" : name(fault));
 }
 
 /// On a terminal, while the participant is told nothing else: how much of the time is over.
@@ -104,7 +91,7 @@ SessionSummary playLive(const SessionOptions& o, double seconds, const SessionPa
     std::string          warning;
     const SessionSummary summary = runReal(parts, settings, warning);
     if (also) drain();
-    if (line) std::fprintf(stderr, "\r\033[K");
+    if (line) clearLine();
     if (!warning.empty() && !o.blind) warn({warning});
     return summary;
 }
@@ -182,12 +169,12 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     demandGood(o);
     const SessionClock clock = clockNamed(o.clock);
     Deformation        deformation(loaded.object, scene); // what can fail fails before a folder is made
-    HandSource         hand = handFor(o.hand, scene, loaded.object);
-    if (hand.isHeld() && clock != SessionClock::real)
+    SessionHand         hand = handFor(o.hand, scene, loaded.object);
+    if (hand.isHeldByPerson() && clock != SessionClock::real)
         throw Error("--hand " + o.hand.hand + ": somebody holds it, in real time; leave out --clock virtual");
 
     SessionRun run;
-    run.solver   = deformation.device().name();
+    run.solver   = deformation.plateSolver().name();
     run.folder   = o.record;
     run.warnings = assumptions(scene, loaded.report);
     for (const auto& more : {strangeVariables(), warningsOf(scene, loaded.object), hand.warnings})
@@ -226,10 +213,10 @@ void addSessionOptions(CLI::App& command, SessionOptions& options)
 {
     command
         .add_option("--hand", options.hand.hand,
-                    "press, circle or scan about the scene's place; a file of time [s], x, y, z [m], perhaps buttons; "
-                    "or a device: "
-                    "falcon, bridge, spacemouse, arm, falcon-emulator (palpate devices tells which are there; of "
-                    "several, falcon@PATH)")
+                    generatedHands() +
+                        ": a generated hand about the scene's place; a file of time [s], x, y, z [m], "
+                        "perhaps buttons; or a device: " +
+                        deviceHands() + " (palpate devices lists which are there; of several, NAME@PATH)")
         ->capture_default_str();
     command.add_option("--seconds", options.hand.seconds, "how long [5 s; a file's own length]");
     command.add_option("--speed", options.hand.speed, "of press, circle and scan, at most")->capture_default_str();
@@ -239,9 +226,9 @@ void addSessionOptions(CLI::App& command, SessionOptions& options)
         ->capture_default_str();
     command.add_option(
         "--arm", options.hand.grip,
-        "the hand holds a simulated arm with a grip of this stiffness (relaxed '150 N/m', firm '500 N/m'), "
-        "so that forces move it");
-    addFalconOptions(command, options.hand.falcon);
+        "the hand grips a simulated device with this stiffness (relaxed '150 N/m', firm '500 N/m'), so that "
+        "forces move it");
+    addDeviceOptions(command, options.hand.device, deviceRecords());
     command
         .add_option("--clock", options.clock,
                     "real: a tick a millisecond; virtual: as fast as it goes, the same every time")

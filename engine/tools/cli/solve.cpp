@@ -35,7 +35,7 @@ struct Solved {
     PlateSolution       solution;
     std::vector<double> probeDeflections; ///< [m] one per probe
     std::size_t         largestNode = 0;  ///< of the deflection of largest magnitude
-    std::string         note{};           ///< of the device
+    std::string         note{};           ///< of the solver
 
     [[nodiscard]] double largest() const { return solution.deflection.values()[largestNode]; } ///< [m] with its sign
     [[nodiscard]] Probe  largestPlace() const
@@ -46,29 +46,29 @@ struct Solved {
     }
 };
 
-/// The reference solver draws a line of its own.
-PlateSolution solvedWithProgress(PlateSolver& device, const PlateProblem& problem, double tolerance)
+/// Solves with a line of progress; the reference solver draws its own.
+PlateSolution solvedWithProgress(PlateSolver& solver, const PlateProblem& problem, double tolerance)
 {
-    Progress progress("solving " + std::to_string(problem.plate.grid.nodes()) + " nodes on " + device.name());
-    if (device.name() != PlateSolver::kReference) progress.mayLast();
-    return device.solve(problem.plate, problem.nodalForce, tolerance);
+    Progress progress("solving " + std::to_string(problem.plate.grid.nodes()) + " nodes on " + solver.name());
+    if (solver.name() != PlateSolver::kReference) progress.mayLast();
+    return solver.solve(problem.plate, problem.nodalForce, tolerance);
 }
 
 Solved solved(const SolveOptions& options)
 {
     Solved s{readProblem(options.problem, options.cells), {}, {}};
 
-    PlateSolver device = options.solver.open();
-    const auto  told   = device.note();
-    s.solution         = solvedWithProgress(device, s.problem, options.solver.tolerance);
-    s.note             = device.note();
+    PlateSolver solver = options.solver.open();
+    const auto  told   = solver.note();
+    s.solution         = solvedWithProgress(solver, s.problem, options.solver.tolerance);
+    s.note             = solver.note();
     if (s.note != told) std::cerr << "palpate: the reference solver took over: " << s.note << "\n";
     if (const SolveReport& report = s.solution.report; !report.converged)
         s.problem.warnings.push_back("the answer is not as good as asked for: its error is about " +
                                      formatNumber(*report.errorEstimate) +
                                      " or more, relative; try fewer cells, less contrast or --solver reference");
     for (const std::string& warning : s.problem.warnings) std::cerr << "palpate: warning: " << warning << "\n";
-    // One plate, one load: whoever asks for the time of the answer waits for the preparation too.
+    // With one plate and one load, the time of the answer includes the preparation.
     s.solution.report.milliseconds += s.solution.report.setUpMilliseconds;
 
     for (const Probe& probe : s.problem.probes)
@@ -91,7 +91,7 @@ bool hasSquareCells(const PlateGrid& grid)
     return std::abs(grid.spacingX - grid.spacingZ) <= kRounding * grid.spacingX;
 }
 
-/// [N] in all.
+/// The sum of all forces [N].
 double totalForce(const PlateProblem& problem)
 {
     return std::accumulate(problem.nodalForce.values().begin(), problem.nodalForce.values().end(), 0.0);
@@ -128,14 +128,14 @@ void printJson(const Solved& s)
         {"max_deflection", s.largest()},
         {"max_deflection_at", {place.x, place.z}},
         {"report",
-         {{"device", report.device},
+         {{"device", report.solver},
           {"note", s.note.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(s.note)},
           {"iterations", orNull(report.iterations)},
           {"error_estimate", orNull(report.errorEstimate)},
           {"converged", report.converged},
           {"work_units", orNull(report.workUnits)},
           {"milliseconds", report.milliseconds},
-          {"device_milliseconds", orNull(report.deviceMilliseconds)}}},
+          {"processor_milliseconds", orNull(report.processorMilliseconds)}}},
         {"warnings", s.problem.warnings}};
     std::cout << jsonText(answer);
 }
@@ -161,7 +161,7 @@ void printText(const Solved& s, const std::string& name)
     std::printf("  load        %s in all\n", formatQuantity(totalForce(s.problem), "N").c_str());
     std::printf("  deflection  largest %s, at x %s, z %s\n", formatQuantity(s.largest(), "m").c_str(),
                 formatQuantity(place.x, "m").c_str(), formatQuantity(place.z, "m").c_str());
-    std::printf("  solver      %s, %.0f ms", s.solution.report.device.c_str(), s.solution.report.milliseconds);
+    std::printf("  solver      %s, %.0f ms", s.solution.report.solver.c_str(), s.solution.report.milliseconds);
     if (s.solution.report.errorEstimate) std::printf(", error about %.1e", *s.solution.report.errorEstimate);
     if (s.solution.report.iterations)
         std::printf(", %d steps, %.0f work units", *s.solution.report.iterations,
@@ -172,7 +172,7 @@ void printText(const Solved& s, const std::string& name)
         std::printf("  %12.6g %12.6g %16.8e\n", s.problem.probes[k].x, s.problem.probes[k].z, s.probeDeflections[k]);
 }
 
-/// The user's problem must not be replaced by its answer.
+/// Refuses an answer that would replace its own problem.
 void checkTarget(const SolveOptions& options)
 {
     if (options.out.empty()) return;
@@ -217,7 +217,7 @@ void addSolveCommand(CLI::App& app)
         "   \"rigidity\": {\"law\": \"linear\", \"from\": 1, \"to\": 10, \"axis\": \"z\"},\n"
         "   \"load\": {\"law\": \"point\", \"force\": 1, \"at\": [0.5, 0.75]},\n"
         "   \"probes\": [[0.25, 0.25]]}\n"
-        "Edges that are not named are clamped; no foundation [Pa/m] is 0; no probes are none.\n"
+        "Edges that are not named are clamped; foundation [Pa/m] and probes may be omitted.\n"
         "Rigidity laws and their keys (points are [x, z]):\n"
         "  constant                         value\n"
         "  linear, hyperbolic, exponential  from, to, and axis (x or z; x if absent) or start, end\n"

@@ -16,9 +16,9 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
+#include "engine/session/interrupt.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/commit.h"
-#include "engine/tools/cli/interrupt.h"
 #include "engine/tools/study/trial_table.h"
 
 namespace palp {

@@ -10,6 +10,8 @@
 #include "engine/core/file.h"
 #include "engine/core/npy.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/presets.h"
 #include "engine/session/hand_path.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
@@ -17,6 +19,7 @@
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/solver_choice.h"
 #include "engine/tools/plot/patch_pictures.h"
+#include "engine/tools/render/cloud_figure.h"
 
 namespace palp {
 namespace {
@@ -64,7 +67,7 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
     std::printf("  length unit        %s\n", r["cloud"]["length_unit_source"].get<std::string>().c_str());
     std::printf("  stiffness          %s\n", r["cloud"]["stiffness_source"].get<std::string>().c_str());
     std::printf("  scene              thickness %s, poisson %.3g, foundation %s, footprint radius %s\n",
-                formatQuantity(material.thickness, "m").c_str(), material.poissonRatio,
+                formatQuantity(scene.material.thickness, "m").c_str(), scene.material.poissonRatio,
                 formatQuantity(settings.foundation, "Pa/m").c_str(),
                 formatQuantity(settings.footprintRadius, "m").c_str());
     std::printf("  sphere             %s, radius %s, misfit %s\n", r["sphere"]["outcome"].get<std::string>().c_str(),

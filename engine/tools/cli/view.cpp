@@ -6,14 +6,17 @@
 
 #include <nlohmann/json.hpp>
 
+#include "device/hid/hid_records.h"
 #include "device/hid/hidapi_system.h"
+#include "device/homing.h"
+#include "device/mouse_device.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
+#include "engine/session/interrupt.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/hand_source.h"
 #include "engine/tools/cli/hunt_report.h"
-#include "engine/tools/cli/interrupt.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/gui/glfw_window.h"
 #include "engine/tools/gui/panel_frame.h"
@@ -95,7 +98,7 @@ SessionInfo infoOf(const ViewOptions& o, const Stage& stage, const HapticDevice&
 /// A SpaceMouse that is not the hand moves the camera.
 std::unique_ptr<SpaceMouse> capFor(const ViewOptions& o, HidSystem& system)
 {
-    if (o.hand.hand.starts_with("spacemouse")) return nullptr;
+    if (deviceNamed(o.hand.hand) == &kSpaceMouseRecord) return nullptr;
     try {
         for (const HidListing& listing : system.list())
             if (spaceMouseModel(listing)) {
@@ -127,13 +130,13 @@ void view(const ViewOptions& o)
     settings.toolKeys = &study::huntKeys();
     settings.open     = sceneFrom;
     settings.recorded = [&o](const Stage& stage, const HapticDevice& device) { return infoOf(o, stage, device); };
-    HandSource source;
-    if (o.hand.hand != "mouse")
+    SessionHand source;
+    if (deviceNamed(o.hand.hand) != &kMouseRecord)
         settings.hand = [&](const Stage& stage, const HandWait& wait) -> WorkbenchHand {
             source = {}; // a device is opened once at a time
             source = handFor(o.hand, stage.scene(), stage.object());
             waitForHoming(*source.device, wait.givenUp, wait.tell);
-            return {source.device.get(), source.frame, source.isHeld() ? 1e9 : source.seconds};
+            return {source.device.get(), source.frame, source.isHeldByPerson() ? 1e9 : source.seconds};
         };
     settings.assumed    = assumptions;
     settings.complained = [](const std::string& sentence) { std::cerr << "palpate: " << sentence << "\n"; };
@@ -151,20 +154,12 @@ void view(const ViewOptions& o)
     const auto   cap = capFor(o, hid);
     settings.camera  = cap.get();
 
-#ifdef PALPATE_PANELS
     std::optional<PanelFrame> panels; // outlives what draws it and what feeds it
-#endif
     GlfwWindow               window("Palpate", sizeOf(o.size));
-    compute::ContextSettings gpu{.device = o.drawOn};
+    compute::ContextSettings gpu{.processor = o.drawOn};
     if (o.validate) gpu.validation = compute::Validation::synchronization;
     SurfaceRenderer renderer(gpu, window.link());
-    PanelFrame*     shown = nullptr;
-#ifdef PALPATE_PANELS
-    if (!o.noPanels) {
-        panels.emplace(window.scale());
-        shown = &*panels;
-    }
-#endif
+    if (!o.noPanels && PanelFrame::available()) panels.emplace(window.scale());
     glm::ivec2 last{};
     settings.titled = [&window](const std::string& name) { window.setTitle(name + " - Palpate"); };
     WindowScreen screen(renderer);
@@ -175,7 +170,7 @@ void view(const ViewOptions& o)
             if (input.size.x > 0) last = input.size;
             return input;
         },
-        shown);
+        panels ? &*panels : nullptr);
     if (o.size.empty()) rememberSize(last);
     if (!report.said.empty()) std::cerr << "palpate: " << report.said << "\n";
     const auto score = scorer ? std::optional(scorer->score()) : std::nullopt;
@@ -202,13 +197,14 @@ void addViewCommand(CLI::App& app)
 {
     CLI::App*  command = app.add_subcommand("view", "an object in a window, touched with the mouse");
     const auto o       = std::make_shared<ViewOptions>();
-    o->hand.hand       = "mouse";
+    o->hand.hand       = kMouseRecord.name;
     o->scene.addTo(*command, SceneKey::Group::session);
     command->get_option("SCENE")->description(command->get_option("SCENE")->get_description() +
                                               ", or the folder of a recorded session");
     command
         ->add_option("--hand", o->hand.hand,
-                     "mouse; or any hand of palpate run: press, circle, scan, a file, falcon, ...")
+                     std::string(kMouseRecord.name) + "; or any hand of palpate run: " + generatedHands() +
+                         ", a file, " + deviceHands())
         ->capture_default_str();
     command->add_option("--seconds", o->hand.seconds, "closes by itself after so long [until it is closed]");
     command->add_option("--colour,--color", o->colour, "deflection, stiffness or plain")->capture_default_str();
@@ -221,7 +217,7 @@ void addViewCommand(CLI::App& app)
         ->capture_default_str();
     command->add_flag("--validate", o->validate, "under Vulkan's validation layer; any message is exit code 1");
     command->add_flag("--json", o->json, "machine-readable, SI units");
-    addFalconOptions(*command, o->hand.falcon);
+    addDeviceOptions(*command, o->hand.device, deviceRecords());
     command->footer("Hold Space over the object and move: that touches it, the wheel is depth. F1 shows all keys.\n"
                     "Examples:\n"
                     "  palpate view\n"

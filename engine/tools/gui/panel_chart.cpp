@@ -9,7 +9,7 @@
 #include "engine/core/quantity.h"
 #include "engine/tools/gui/chart_samples.h"
 #include "engine/tools/gui/panel_parts.h"
-#include "engine/tools/plot/cloud_shading.h"
+#include "engine/tools/plot/colour_map.h"
 
 namespace palp {
 namespace {

@@ -8,6 +8,12 @@
 #include "engine/tools/render/text.h"
 
 namespace palp {
+
+bool PanelFrame::available() noexcept
+{
+    return true;
+}
+
 PanelFrame::PanelFrame(double scale)
 {
     IMGUI_CHECKVERSION();

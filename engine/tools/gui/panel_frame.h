@@ -16,6 +16,9 @@ struct PanelPointer {
 /// The one ImGui context of a program: its font, its style, the beginning and the end of its frames. \thread one
 class PanelFrame {
 public:
+    /// Returns whether this build has panels; without them nothing here does anything.
+    [[nodiscard]] static bool available() noexcept;
+
     /// \param scale  of a display with many pixels per inch [1]
     explicit PanelFrame(double scale = 1);
     ~PanelFrame();

@@ -23,7 +23,7 @@ Stage::Stage(const Scene& scene)
     : scene_(scene), loaded_(loadObject(scene)), view_(loaded_.object, scene.patch), painting_(loaded_.object),
       place_(startPlace(scene, loaded_.object)), painted_(std::make_shared<const SoftObject>(loaded_.object)),
       solved_(painted_), deformation_(std::make_unique<Deformation>(*solved_, scene_)),
-      solvedOn_(deformation_->device().name())
+      solvedOn_(deformation_->plateSolver().name())
 {
 }
 
@@ -37,8 +37,14 @@ void Stage::change(const Scene& scene)
     fresh_.take(); // older than that
     scene_    = scene;
     place_    = startPlace(scene, loaded_.object);
-    solvedOn_ = deformation_->device().name();
+    solvedOn_ = deformation_->plateSolver().name();
     view_.use(scene.patch);
+}
+
+std::optional<Hit> Stage::hitAt(const Camera& camera, const glm::dvec2& at, const glm::dvec2& size) const
+{
+    const double blur = std::max(0.5 * scene_.patch.footprintRadius, 1e-9); // [m]
+    return pick(rayThrough(camera, at, size), painted_->positions(), view_.restNormals(), view_.radii(), blur);
 }
 
 void Stage::takePaint()

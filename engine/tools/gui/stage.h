@@ -6,6 +6,7 @@
 #include "engine/core/latest.h"
 #include "engine/session/deformation.h"
 #include "engine/session/hand_path.h"
+#include "engine/tools/gui/pick.h"
 #include "engine/tools/render/touch_view.h"
 
 namespace palp {
@@ -33,6 +34,9 @@ public:
 
     [[nodiscard]] const StiffnessPainting& painting() const noexcept { return painting_; }
     [[nodiscard]] const SoftObject&        painted() const noexcept { return *painted_; } ///< as it is now
+
+    /// Returns where the object lies under a pointer. \param at  in a picture of that size [px]
+    [[nodiscard]] std::optional<Hit> hitAt(const Camera& camera, const glm::dvec2& at, const glm::dvec2& size) const;
 
     /// A dab of a brush, or whatever else changes the stiffness: shown at once and felt with the next patch.
     template <class Change>

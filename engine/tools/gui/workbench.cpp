@@ -2,23 +2,21 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
-#include "engine/tools/gui/panel_frame.h"
+#include "engine/tools/gui/background_work.h"
+#include "engine/tools/gui/key_bindings.h"
 #include "engine/tools/gui/panel_layout.h"
 
 namespace palp {
 namespace {
 
+using Clock   = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
-
-constexpr double kFramePeriod = 1.0 / 60; ///< no display shows more [s]
-constexpr double kLong        = 1e9;      ///< of a session that ends when somebody says so [s]
 
 bool inContact(const SessionView* view)
 {
@@ -28,359 +26,316 @@ bool inContact(const SessionView* view)
 } // namespace
 
 Workbench::Workbench(WorkbenchSettings settings, Screen& screen)
-    : settings_(std::move(settings)), screen_(screen), state_(settings_.state), values_(settings_.values)
+    : settings_(std::move(settings)), screen_(screen), state_(settings_.state), notices_(settings_.complained),
+      object_(settings_), session_(settings_, notices_), paint_(notices_), camera_(state_.camera, settings_.camera),
+      pictures_(screen), controls_({state_, notices_, object_, session_, paint_, camera_, pictures_, texts_})
 {
 }
-
-Workbench::~Workbench() = default;
 
 WorkbenchReport Workbench::run(const Poll& poll, PanelFrame* panels)
 {
     poll_    = poll;
-    panels_  = panels;
-    started_ = lastFrame_ = lastChange_ = Clock::now();
+    panels_  = PanelLayer(panels);
+    started_ = Clock::now();
+    controls_.setPanels(panels_.exist());
     openFirst();
     while (!closing_) {
-        stop_ = false;
-        takeChanges();
-        if (failed_)
+        session_.rearm();
+        takeRequests();
+        if (session_.halted())
             frame(nullptr);
         else
-            session();
+            touch();
     }
-    endRecording();
-    if (stage_ && stage_->painting().changed() && !paintSaved_) { // nothing is lost
-        savePaint();
-        report_.said = message_;
+    session_.endRecording();
+    WorkbenchReport& report = pictures_.report();
+    if (object_.hasStage() && paint_.unsaved(object_.stage())) {
+        paint_.save(object_.stage());
+        report.said = notices_.message();
     }
-    return std::move(report_);
+    report.realTime = session_.realTime();
+    return std::move(report);
+}
+
+/// Does the work on a thread of its own; the window goes on, shows what it showed and says what is done.
+/// \return what the work returns
+/// \throws what the work throws
+template <class Work>
+auto Workbench::meanwhile(const std::string& activity, Work work)
+{
+    struct Activity { // ends whatever happens
+        Notices& notices;
+        ~Activity() { notices.setActivity(""); }
+    } const ends{notices_};
+    bool begun = false;
+    return inBackground(std::move(work), [&] {
+        if (!std::exchange(begun, true)) notices_.setActivity(activity);
+        if (handAdvice_.take()) notices_.setActivity(*handAdvice_.held());
+        frame(nullptr);
+        return !closing_;
+    });
+}
+
+/// Opens the first object; there is nothing to show yet but words.
+void Workbench::openFirst()
+{
+    OpenedObject opened = inBackground(object_.opener(settings_.what, settings_.values), [this] {
+        drawWords();
+        return !closing_;
+    });
+    if (closing_) return;
+    adopt(std::move(opened));
+    controls_.resetView();
+}
+
+/// Shows the name of what is being opened.
+void Workbench::drawWords()
+{
+    input_ = poll_(0);
+    if (input_.closing || (settings_.stop && *settings_.stop)) closing_ = true;
+    ViewScene scene;
+    scene.ground = state_.look.ground;
+    scene.title  = fileNameOf(settings_.what);
+    scene.note   = "opening it ...";
+    pictures_.showWords(scene, state_.camera, input_.size, input_.scale);
+}
+
+/// Does what the user has asked for since the last session began.
+void Workbench::takeRequests()
+{
+    const auto mayDiscard = [this] { return paint_.mayDiscard(object_.stage()); };
+    if (const std::string what = object_.takeRequestedObject(); !what.empty() && mayDiscard()) openOther(what);
+    if (const SceneValues wanted = object_.takeRequestedValues(); !wanted.empty()) takeValues(wanted);
+}
+
+void Workbench::openOther(const std::string& what)
+{
+    try {
+        OpenedObject opened = meanwhile("opening " + fileNameOf(what) + " ...", object_.opener(what, {}));
+        notices_.clearFaults();
+        adopt(std::move(opened));
+        object_.setValues({}); // they were for another object
+        controls_.resetView();
+    } catch (const Error& error) {
+        notices_.complain(error.what());
+    }
+}
+
+void Workbench::takeValues(const SceneValues& wanted)
+{
+    SceneValues values = object_.values();
+    for (const auto& [key, value] : wanted) values[key] = value;
+    try {
+        const Scene scene = object_.sceneWith(values);
+        if (haveSameCloud(scene, object_.stage().scene())) {
+            object_.stage().change(scene);
+        } else if (paint_.mayDiscard(object_.stage())) {
+            object_.adopt(meanwhile("reading " + fileNameOf(scene.cloud) + " once more ...",
+                                    [scene] { return std::make_unique<Stage>(scene); }));
+            useObject();
+        } else {
+            return;
+        }
+        if (session_.replaying()) notices_.say("the replay has ended: the scene is another one");
+        session_.stopReplay();
+        object_.setValues(std::move(values));
+        notices_.clearFaults();
+    } catch (const Error& error) {
+        notices_.complain(error.what());
+    }
+}
+
+void Workbench::adopt(OpenedObject opened)
+{
+    session_.stopReplay();
+    object_.adopt(std::move(opened));
+    if (settings_.titled) settings_.titled(object_.fileName());
+    useObject();
+    if (!object_.recorded()) return tellAssumptions();
+    const RecordedSession& recorded = *object_.recorded();
+    session_.startReplay(recorded);
+    if (!recorded.cloud.empty() && recorded.cloud != fingerprint(object_.stage().object().cloud()))
+        notices_.complain("the cloud is not the one that was recorded: " + object_.stage().scene().cloud +
+                          " has changed");
+}
+
+/// Tells what nobody has said of the cloud: no fault, but good to know.
+void Workbench::tellAssumptions()
+{
+    if (!settings_.assumed) return;
+    std::string all;
+    for (const std::string& sentence : settings_.assumed(object_.stage().scene(), object_.stage().report())) {
+        all += (all.empty() ? "" : "; ") + sentence;
+        if (settings_.complained) settings_.complained(sentence);
+    }
+    if (!all.empty()) notices_.say(all);
+}
+
+/// Begins anew with the object on the stage: the hand over it, the brush, and what may be shown of it. The ends of the
+/// scales of colours and arrows stay as they are from here on, so that deeper and stronger always looks so.
+void Workbench::useObject()
+{
+    Stage&       stage = object_.stage();
+    const Scene& scene = stage.scene();
+    session_.setStage(stage);
+    paint_.startAnew();
+    state_.pressDepth     = 0.4 * scene.material.thickness;
+    state_.brush.radius   = scene.patch.footprintRadius;
+    state_.brush.value    = *std::ranges::max_element(stage.painted().cloud().stiffness());
+    state_.look.deepest   = 0.5 * scene.material.thickness; // as far as theory goes
+    state_.look.strongest = 0.5 * scene.maxForce;
+    state_.blind          = scene.overlay != nullptr;
+    if (!state_.blind) return;
+    state_.look.paint              = ViewPaint::plain; // what is hidden stays hidden
+    state_.look.overlays.projected = false;
+    state_.tool                    = Tool::touch;
 }
 
 /// Touches until something asks for another session.
-void Workbench::session()
+void Workbench::touch()
 {
     try {
-        history_.clear();
-        // A session begins outside of the object: which side a hand is on is known from where it comes.
-        pointer_->begin(std::exchange(beginAt_, std::nullopt).value_or(pointer_->at()));
-        WorkbenchHand hand{&pointer_->device(), pointer_->frame(), kLong};
-        if (replay_)
-            hand = {replay_.get(), {}, double(replayed_->samples.size()) * 1e-3};
-        else if (settings_.hand) {
-            const auto ready = readyHand();
-            if (!ready) return;
-            hand = *ready;
-        }
-        hand_  = hand;
-        begun_ = true;
-        startRecording();
-        const SessionParts  parts{stage_->scene(), stage_->object(), solver(), *hand.device, hand.frame};
-        RealSessionSettings real;
-        real.seconds    = hand.seconds;
-        real.viewPeriod = 1e-4; // as soon as a picture is done the next begins
-        real.stop       = &stop_;
-        real.onView     = [this](const SessionView& view) { frame(&view); };
-        real.onTick     = [this, recording = recording_.get()](const TickRecord& sample) {
-            static_cast<void>(ring_.push(sample)); // curves may have gaps
-            if (recording) recording->push(sample);
-        };
-        const SessionSummary summary = runReal(parts, real, report_.realTime);
-        ended(summary);
+        session_.run([this] { return readyHand(); }, [this](const SessionView& view) { frame(&view); });
     } catch (const Error& error) {
-        if (!begun_) throw; // nothing works yet: that is for whoever started the program
-        endRecording();
-        complain(error.what());
-        failed_ = true;
+        if (session_.neverRan()) throw; // nothing works yet: that is for whoever started the program
+        notices_.complain(error.what());
+        session_.halt();
     }
 }
 
-/// A session has come to its end.
-void Workbench::ended(const SessionSummary& summary)
+/// Returns the hand that the program gives; nothing if the user lets go or closes the window meanwhile.
+std::optional<WorkbenchHand> Workbench::readyHand()
 {
-    endRecording(); // one session, one recording
-    if (stop_ || closing_) return;
-    if (replay_) {
-        replay_.reset();
-        say("the replay is over");
-    } else if (summary.deviceFault != DeviceFault::none) {
-        complain(std::string("the device is ") + name(summary.deviceFault) + ": plug it in again and press R to go on");
-        failed_ = true;
-    } else if (settings_.hand) {
-        failed_ = true;
-        say("the hand has come to its end: R starts it again");
+    const HandWait wait{session_.givenUp(), [this](const std::string& advice) {
+                            handAdvice_.draft() = advice;
+                            handAdvice_.publish();
+                        }};
+    try {
+        return meanwhile("getting the hand ready; Esc gives up", [&] { return settings_.hand(object_.stage(), wait); });
+    } catch (const Error&) {
+        if (session_.givenUp()) return std::nullopt;
+        throw;
     }
 }
 
 /// One picture: what happened, what is felt, what is seen.
 void Workbench::frame(const SessionView* view)
 {
-    input_ = poll_(patience());
-    aim();
-    beginPanels();
-    handle(input_);
-    unsolved_.take();
-    const auto now = Clock::now();
-    if (settings_.seconds > 0 && Seconds(now - started_).count() > settings_.seconds) closing_ = true;
+    input_ = poll_(pictures_.patience(input_.size));
+    input_ = panels_.begin(std::move(input_), state_.look.ground == Ground::dark, pictures_.resized(input_.size));
+    handle();
+    settleCamera();
+    session_.collect(object_.isFirst() ? settings_.onTick : OnTick{});
+    if (view) session_.noteRealTime(view->warning);
+    if (settings_.seconds > 0 && Seconds(Clock::now() - started_).count() > settings_.seconds) closing_ = true;
     if (settings_.stop && *settings_.stop) closing_ = true;
-    if (closing_) restart();
-    for (auto samples = ring_.front(); !samples.empty(); samples = ring_.front()) {
-        for (const TickRecord& sample : samples) {
-            history_.add(sample);
-            if (settings_.onTick && what_ == settings_.what) settings_.onTick(sample);
-        }
-        ring_.pop(samples.size());
-    }
-    const bool active = input_.any() || input_.panelsTakePointer || inContact(view) || replay_ || recording_;
-    if (view && report_.realTime.empty()) report_.realTime = view->warning;
-    if (active || input_.size != drawnSize_) lastChange_ = now;
-    const bool changed = lastChange_ > lastBegin_;
-    if (closing_ || input_.size.x < 1 || input_.size.y < 1 || (stillFine_ && !changed)) return rest();
-    drawFrame(view);
+    if (closing_) session_.end();
+    const bool active = input_.any() || input_.panelsTakePointer || inContact(view) || session_.replaying() ||
+                        session_.recorder().recording() || pictures_.resized(input_.size);
+    if (active || std::exchange(noticesDrawn_, notices_.changes()) != notices_.changes()) pictures_.changed();
+    if (!closing_ && pictures_.due(input_.size)) return draw(view);
+    panels_.skip();
+    pictures_.rest();
+}
+
+/// Does what the user wants. A session that must end for it ends in zero force first.
+void Workbench::handle()
+{
+    if (input_.closing) closing_ = true;
+    if (!input_.keys.empty() || input_.leftPressed) notices_.clearMessage();
+    if (!input_.panelsTakeKeys)
+        for (const KeyPress& press : input_.keys) handleKey(press, controls_);
+    for (const auto& path : input_.dropped) controls_.open(path);
+    controls_.followPointer(input_);
+    if (camera_.followSpaceMouse()) pictures_.changed();
 }
 
 /// Puts the object into what the panels leave free, and brings it there gently when they come and go.
-void Workbench::aim()
+void Workbench::settleCamera()
 {
-    constexpr double kGlide = 0.08, kLongest = 0.05; // [s] in which a third of the way is left; of a step
-    constexpr double kThere = 1e-3;                  // of half the height: no step is seen [1]
-    if (input_.size.x < 1 || input_.size.y < 1) return;
     const PictureArea area =
-        panels_ ? freeArea(state_, input_.size, input_.scale) : PictureArea{{0, 0}, glm::dvec2(input_.size)};
-    const glm::dvec2 wanted = centreOf(area, input_.size), left = wanted - state_.camera.centre;
-    if (left != glm::dvec2(0)) lastChange_ = Clock::now();
-    const double since   = std::min(kLongest, Seconds(Clock::now() - lastBegin_).count()); // [s]
-    const bool   jumps   = input_.size != drawnSize_ || glm::length(left) < kThere;
-    state_.camera.centre = jumps ? wanted : state_.camera.centre + (1 - std::exp(-since / kGlide)) * left;
-    if (std::exchange(toFrame_, false)) frameAll();
+        panels_.exist() ? freeArea(state_, input_.size, input_.scale) : PictureArea{{0, 0}, glm::dvec2(input_.size)};
+    if (camera_.settle(object_.stage().painted().cloud().bounds(), area, input_.size, pictures_.sinceBegin(),
+                       pictures_.resized(input_.size)))
+        pictures_.changed();
 }
 
-/// A frame of ImGui, if one is due: at once where the user is at the panels, and a few times a second else, because
-/// drawing them takes as long as drawing the object.
-void Workbench::beginPanels()
+void Workbench::draw(const SessionView* view)
 {
-#ifdef PALPATE_PANELS
-    constexpr double kSeldom = 0.2; // [s]
-    const auto       now     = Clock::now();
-    const bool       glides  = input_.moved != glm::dvec2(0) && !input_.touch;
-    const bool       presses = input_.left || input_.leftPressed || leftBefore_ || !input_.keys.empty();
-    const bool       orbits  = presses && !panelsTakePointer_ && input_.left;
-    const bool       resized = input_.size != drawnSize_;
-    panelsDue_  = panels_ && ((glides && !orbits) || (presses && !orbits) || !input_.typed.empty() || resized ||
-                             Seconds(now - panelsAt_).count() > kSeldom);
-    leftBefore_ = input_.left;
-    if (!panelsDue_) {
-        input_.panelsTakePointer = panelsTakePointer_;
-        input_.panelsTakeKeys    = panelsTakeKeys_;
-        return;
-    }
-    panelsAt_ = now;
-    panels_->setDark(state_.look.ground == Ground::dark);
-    input_             = panels_->begin(std::move(input_));
-    panelsTakePointer_ = input_.panelsTakePointer;
-    panelsTakeKeys_    = input_.panelsTakeKeys;
-#endif
-}
-
-/// No new picture: the last one stays.
-void Workbench::rest()
-{
-#ifdef PALPATE_PANELS
-    if (panelsDue_) panels_->end();
-#endif
-    screen_.present();
-}
-
-double Workbench::patience() const
-{
-    constexpr double kIdle = 0.1; // between looks at a window in which nothing happens [s]
-    if (stillFine_ || input_.size.x < 1 || input_.size.y < 1) return kIdle;
-    return std::max(0.0, kFramePeriod - Seconds(Clock::now() - lastBegin_).count());
-}
-
-void Workbench::drawFrame(const SessionView* view)
-{
-    constexpr double kQuick = 12e-3,
-                     kRest  = 0.8; // [s] of a fine picture that is as good as a fast one; until one is due
-    const auto begin        = Clock::now();
-    lastBegin_              = begin;
-    const bool        rests = Seconds(begin - lastChange_).count() > kRest;
-    const bool        fine  = rests || (fineTime_ > 0 && fineTime_ < kQuick);
-    const PictureSize size{input_.size.x, input_.size.y, 1, fine ? Detail::fine : Detail::fast};
+    pictures_.begin(input_.size);
     showTouch(view);
-    PanelWishes wishes;
-#ifdef PALPATE_PANELS
-    if (panelsDue_) {
-        wishes = drawPanels(state_, content(view), input_.scale);
-        panels_->end();
-        screen_.takePanels();
-    }
-#endif
-    writeTexts(view);
-    const bool shown = screen_.show(stage_->view().scene(), state_.camera, size, textsFor(size));
-    const auto end   = Clock::now();
-    drawnSize_       = input_.size;
-    drawTime_        = Seconds(end - begin).count();
-    if (fine) fineTime_ = drawTime_;
-    stillFine_ = shown && rests && fineTime_ >= kQuick;
-    frameTime_ += 0.1 * (Seconds(end - lastFrame_).count() - frameTime_);
-    if (shown) count(inContact(view), Seconds(end - lastFrame_).count());
-    lastFrame_ = end;
-    perform(wishes);
+    const PanelWishes wishes =
+        panels_.due() ? panels_.draw(state_, content(view), input_.scale, screen_) : PanelWishes{};
+    if (state_.texts) writeTexts(view);
+    pictures_.show(object_.stage().view().scene(), state_.camera, state_.texts ? texts_.of(input_.size) : nullptr,
+                   inContact(view));
+    controls_.perform(wishes);
 }
 
-void Workbench::count(bool touching, double period)
-{
-    constexpr std::size_t kMost = 1'000'000; // five hours [1]
-    ++report_.frames;
-    if (!touching || report_.frameTimes.size() >= kMost) return;
-    report_.frameTimes.push_back(period);
-    report_.drawTimes.push_back(drawTime_);
-}
-
-/// The scene as the session has it now.
+/// Makes the scene to draw from the object as the session has it now.
 void Workbench::showTouch(const SessionView* view)
 {
-    TouchLook look  = state_.look;
-    double    force = 0;
+    Stage& stage = object_.stage();
     if (view) {
-        force = glm::length(view->sample.force);
+        const double force = glm::length(view->sample.force);
+        stage.view().show(inContact(view) || force > 0 ? view->patch : nullptr, force, state_.look,
+                          TouchHand{view->sample.hip, view->sample.force, view->sample.proxy});
+    } else {
+        stage.view().show(nullptr, 0, state_.look);
     }
-    look.deepest   = deepest_;
-    look.strongest = strongest_;
-    if (view)
-        stage_->view().show(inContact(view) || force > 0 ? view->patch : nullptr, force, look,
-                            TouchHand{view->sample.hip, view->sample.force, view->sample.proxy});
-    else
-        stage_->view().show(nullptr, 0, look);
-    if (state_.tool == Tool::paint) addBrush();
+    if (state_.tool != Tool::paint || input_.panelsTakePointer) return;
+    if (const auto hit = stage.hitAt(state_.camera, input_.pointer, input_.size))
+        std::ranges::copy(brushOutline(*hit, state_.brush.radius), std::back_inserter(stage.view().scene().outline));
 }
 
-/// The brush as a ring on the surface.
-void Workbench::addBrush()
-{
-    constexpr int kSides = 48;
-    const auto    hit    = hitAt(input_);
-    if (!hit || input_.panelsTakePointer) return;
-    const Frame frame = Frame::about(hit->outward);
-    const auto  at    = [&](int n) {
-        const double angle = 2 * 3.14159265358979 * n / kSides;
-        return hit->point + state_.brush.radius * (std::cos(angle) * frame.east + std::sin(angle) * frame.north);
-    };
-    for (int n = 0; n < kSides; ++n) stage_->view().scene().outline.push_back({at(n), at(n + 1)});
-}
-
-/// The texts over the picture, written anew when they change, but not with every frame.
+/// Writes the texts over the picture. Panels say themselves what title and note say.
 void Workbench::writeTexts(const SessionView* view)
 {
-    constexpr double kSeldom = 0.25; // [s]
-    if (!state_.texts) return;
-    ViewScene& scene = stage_->view().scene();
-    if (!panelsShown()) { // which say all this themselves
-        const double force = view ? glm::length(view->sample.force) : 0;
-        scene.title        = std::filesystem::path(what_).stem().string();
-        scene.note         = !saying().empty()  ? saying()
-                             : !faults_.empty() ? faults_.back()
-                             : force > 0        ? formatQuantity(force, "N")
-                             : state_.blind     ? "hold Space and move: touch.  M: there is a nodule here"
-                                                : "hold Space and move: touch.  F1: keys";
+    ViewScene& scene = object_.stage().view().scene();
+    if (!panels_.exist() || !state_.panels || state_.blind) {
+        scene.title = object_.stem();
+        scene.note  = note(view);
     }
-    std::string says = scene.title + "|" + scene.note + "|" + scene.colours.quantity + "|" + name(state_.look.map) +
-                       "|" + std::to_string(scene.colours.range.low) + "|" +
-                       std::to_string(scene.colours.range.high * 1e6) + "|" +
-                       std::to_string(state_.camera.halfHeight()) + "|" + std::to_string(input_.size.x) + "x" +
-                       std::to_string(input_.size.y) + (state_.look.ground == Ground::dark ? "d" : "l") +
-                       std::to_string(input_.scale) + (scene.proxy ? "p" : "") + (scene.force ? "f" : "") +
-                       (scene.outline.empty() ? "" : "o") + (scene.sphere.empty() ? "" : "s") +
-                       std::to_string(int(state_.look.overlays.ghost) + 2 * int(state_.look.overlays.projected));
-    const auto now  = Clock::now();
-    const bool fits = texts_.width == input_.size.x && texts_.height == input_.size.y;
-    if (fits && (says == textsOf_ || Seconds(now - textsAt_).count() < kSeldom)) return;
-    texts_   = annotations(scene, state_.camera, input_.size.x, input_.size.y, input_.scale);
-    textsOf_ = std::move(says);
-    textsAt_ = now;
+    texts_.update(scene, state_.look.overlays, state_.camera, input_.size, input_.scale);
+}
+
+std::string Workbench::note(const SessionView* view) const
+{
+    if (!notices_.current().empty()) return notices_.current();
+    if (!notices_.faults().empty()) return notices_.faults().back();
+    if (const double force = view ? glm::length(view->sample.force) : 0; force > 0) return formatQuantity(force, "N");
+    return state_.blind ? "hold Space and move: touch.  M: there is a nodule here"
+                        : "hold Space and move: touch.  F1: keys";
 }
 
 PanelContent Workbench::content(const SessionView* view) const
 {
-    PanelContent now{stage_->scene(), stage_->painted().cloud(), history_};
+    const Stage& stage = object_.stage();
+    PanelContent now{stage.scene(), stage.painted().cloud(), session_.history()};
+    now.faults = notices_.faults();
     if (view) {
         now.patch      = view->patch;
         now.force      = glm::length(view->sample.force);
         now.loopPeriod = view->loopPeriod;
         now.solveTime  = view->solveTime;
         now.touching   = inContact(view);
-        now.hand       = hand_.device->info().model;
+        now.hand       = session_.handModel();
+        if (const std::string why = session_.unsolved(); !why.empty())
+            now.faults.push_back("the plate cannot be solved here: " + why);
     }
-    now.frameTime       = frameTime_;
-    now.solvedOn        = stage_->solvedOn();
+    now.frameTime       = pictures_.frameTime();
+    now.solvedOn        = stage.solvedOn();
     now.drawnOn         = screen_.device().name;
     now.drawnInSoftware = screen_.device().kind == "software";
-    now.replaying       = replay_ != nullptr;
-    now.recording       = recording_ ? recordFolder_ : "";
-    now.title           = std::filesystem::path(what_).filename().string();
-    now.painted         = stage_->painting().changed() && !paintSaved_;
-    now.canUndo         = stage_->painting().canUndo();
-    now.canRedo         = stage_->painting().canRedo();
-    now.faults          = faults_;
-    if (const std::string* const why = unsolved_.held(); view && why && !why->empty())
-        now.faults.push_back("the plate cannot be solved here: " + *why);
-    now.message  = saying();
-    now.realTime = report_.realTime;
+    now.replaying       = session_.replaying();
+    now.recording       = session_.recorder().recording() ? session_.recorder().folder() : "";
+    now.title           = object_.fileName();
+    now.painted         = paint_.unsaved(stage);
+    now.canUndo         = stage.painting().canUndo();
+    now.canRedo         = stage.painting().canRedo();
+    now.message         = notices_.current();
+    now.realTime        = session_.realTime();
     return now;
-}
-
-void Workbench::perform(const PanelWishes& wishes)
-{
-    if (wishes.frame) frameAll();
-    if (wishes.reset) resetCamera();
-    if (wishes.screenshot) screenshot(false);
-    if (wishes.record) toggleRecording();
-    if (wishes.undo) undo();
-    if (wishes.redo) redo();
-    if (wishes.save) savePaint();
-    if (wishes.resetFault) goOn();
-    if (!wishes.values.empty()) change(wishes.values);
-}
-
-void Workbench::goOn()
-{
-    faults_.clear();
-    failed_ = false;
-    restart();
-}
-
-/// The stage's, with an ear for what it cannot solve.
-PatchSolver Workbench::solver()
-{
-    return [this, solve = stage_->solver()](const Touch& touch, double period) {
-        const auto note = [this](const std::string& why) {
-            unsolved_.draft() = why;
-            unsolved_.publish();
-        };
-        try {
-            DeformationAnswer answer = solve(touch, period);
-            note(answer.update ? "" : answer.why);
-            return answer;
-        } catch (const std::exception& error) {
-            note(error.what());
-            throw;
-        }
-    };
-}
-
-const Overlay* Workbench::textsFor(const PictureSize& size) const
-{
-    return state_.texts && texts_.width == size.width && texts_.height == size.height ? &texts_ : nullptr;
-}
-
-void Workbench::complain(const std::string& sentence)
-{
-    constexpr std::size_t kMost = 5;
-    if (!faults_.empty() && faults_.back() == sentence) return;
-    if (settings_.complained) settings_.complained(sentence);
-    faults_.push_back(sentence);
-    if (faults_.size() > kMost) faults_.erase(faults_.begin());
-    lastChange_ = Clock::now();
 }
 
 } // namespace palp

@@ -10,9 +10,9 @@
 #include "engine/contact/contact.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/deform.h"
 #include "engine/tools/paper/parts.h"
-#include "engine/tools/plot/patch_pictures.h"
+#include "engine/tools/render/cloud_figure.h"
 
 namespace palp::report {
 namespace {

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/deform.h"
 
 namespace palp::report {
 

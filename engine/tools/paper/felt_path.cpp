@@ -8,7 +8,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/session/deformation.h"
-#include "engine/session/hand_device.h"
+#include "engine/session/scripted_hand.h"
 #include "engine/session/virtual_session.h"
 #include "engine/tools/paper/perception.h"
 
@@ -107,7 +107,7 @@ std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, 
 
     const HandPath        hand = strokingHand(line, script, object);
     Deformation           deformation(object, scene);
-    HandDevice            device(hand);
+    ScriptedHand            device(hand);
     std::vector<FeltTick> ticks;
     double                met = std::numeric_limits<double>::infinity(); // [s]
     runVirtual({scene, object, deformation.solver(), device, {}}, script.duration, [&](const TickRecord& s) {

@@ -3,7 +3,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/deform.h"
 #include "engine/session/hand_path.h"
 #include "engine/session/scene.h"
 

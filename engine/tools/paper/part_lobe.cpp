@@ -5,10 +5,11 @@
 #include "engine/cloud/samples.h"
 #include "engine/contact/contact.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/deform.h"
 #include "engine/tools/paper/cantilever.h"
 #include "engine/tools/paper/parts.h"
 #include "engine/tools/plot/line_plot.h"
-#include "engine/tools/plot/patch_pictures.h"
+#include "engine/tools/render/cloud_figure.h"
 
 namespace palp::report {
 namespace {

@@ -7,7 +7,7 @@
 #include "engine/cloud/samples.h"
 #include "engine/contact/contact.h"
 #include "engine/core/quantity.h"
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/deform.h"
 #include "engine/plate/load.h"
 #include "engine/tools/paper/dent_shape.h"
 #include "engine/tools/paper/parts.h"

@@ -62,7 +62,7 @@ void solve(Trial& trial, PlateSolver& device)
     const auto&         w     = found.deflection.values();
     trial.finite              = std::all_of(w.begin(), w.end(), [](double value) { return std::isfinite(value); });
     trial.converged           = found.report.converged;
-    trial.takenOver           = found.report.device != device.name();
+    trial.takenOver           = found.report.solver != device.name();
     trial.iterations          = found.report.iterations.value_or(0);
     trial.error               = bench::errorOf(found.deflection, truth);
     trial.plate               = {}; // a thousand of them would be some hundred megabytes

@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 
 #include "engine/chart/chart.h"
-#include "engine/tools/plot/cloud_view.h"
 #include "engine/tools/plot/line_plot.h"
+#include "engine/tools/render/cloud_figure.h"
 
 namespace palp::report {
 namespace {
@@ -43,15 +43,15 @@ std::string pathSvg(const ScenePerception& perception, ForceLaw law, const std::
 std::string mapSvg(const PointCloud& cloud, const FeltMap& map, double weber, const glm::dvec3& outward,
                    const std::string& title)
 {
-    const Frame       frame = Frame::about(outward);
-    CloudViewSettings settings;
+    const Frame frame = Frame::about(outward);
+    CloudFigure settings;
     settings.title     = title;
     settings.quantity  = "right answers against the typical place";
     settings.unit      = "";
     settings.range     = ValueRange{0.5, 1};
     settings.direction = -glm::normalize(0.85 * frame.normal + 0.10 * frame.east - 0.52 * frame.north);
     settings.up        = frame.north;
-    return cloudViewSvg(cloud.positions(), detectability(map, weber), settings);
+    return cloudFigureSvg(cloud.positions(), cloud.positions(), detectability(map, weber), settings);
 }
 
 } // namespace palp::report

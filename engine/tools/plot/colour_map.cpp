@@ -82,6 +82,14 @@ Rgb8 colourAt(double position, ColourMap map)
     return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue)};
 }
 
+Rgb8 surfaceColour(double position, ColourMap map)
+{
+    constexpr double kWhite = 0.35; // share of white: the dark end of the map would swallow the shading [1]
+    const Rgb8       colour = colourAt(position, map);
+    const auto lightened    = [](std::uint8_t c) { return std::uint8_t(std::lround((1 - kWhite) * c + kWhite * 255)); };
+    return {lightened(colour.red), lightened(colour.green), lightened(colour.blue)};
+}
+
 std::string hexColour(Rgb8 colour)
 {
     char text[8];

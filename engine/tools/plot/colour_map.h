@@ -32,6 +32,10 @@ constexpr auto namesOf(ColourMap)
 /// \param position  [1], not NaN
 [[nodiscard]] Rgb8 colourAt(double position, ColourMap map = ColourMap::viridis);
 
+/// Returns the colour of a value on a lit surface: that of the map, lightened so that shading shows on it.
+/// \param position  along the map, 0 to 1 [1]
+[[nodiscard]] Rgb8 surfaceColour(double position, ColourMap map = ColourMap::viridis);
+
 /// "#rrggbb"
 [[nodiscard]] std::string hexColour(Rgb8 colour);
 

@@ -1,13 +1,6 @@
 #include "engine/tools/plot/patch_pictures.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-
-#include <glm/geometric.hpp>
-
 #include "engine/core/quantity.h"
-#include "engine/tools/plot/cloud_view.h"
 #include "engine/tools/plot/heat_map.h"
 #include "engine/tools/plot/line_plot.h"
 
@@ -57,12 +50,6 @@ LinePlotSettings profileAxes(const std::string& title)
     return plot;
 }
 
-/// Looks at the contact from outside, 55 degrees off its normal, so that a dent shows its depth.
-glm::dvec3 obliquely(const Frame& frame)
-{
-    return -glm::normalize(0.57 * frame.normal + 0.30 * frame.east - 0.76 * frame.north);
-}
-
 } // namespace
 
 std::string rigidityChartSvg(const Patch& patch, const PatchSettings& settings, const std::string& title)
@@ -99,44 +86,6 @@ std::string profilesSvg(std::span<const PressedPatch> patches, const std::string
     std::vector<PlotSeries> series;
     for (const PressedPatch& p : patches) series.push_back(profileOf(*p.patch, p.force, Along::east, p.label));
     return linePlotSvg(series, profileAxes(title));
-}
-
-std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> patches, const SurfaceView& view)
-{
-    std::vector<glm::dvec3> positions(cloud.positions().begin(), cloud.positions().end());
-    std::vector<double>     depth(cloud.size(), 0.0);
-    CloudViewSettings       settings;
-    for (const PressedPatch& p : patches) {
-        for (std::size_t n = 0; n < p.patch->points.size(); ++n) {
-            const double w = p.force * p.patch->pointResponse[n];
-            depth[p.patch->points[n]] += w;
-            positions[p.patch->points[n]] += view.exaggeration * w * p.patch->forceDirection();
-        }
-        const int        middle = p.patch->window.grid.cellsX / 2;
-        const glm::dvec3 bottom = p.patch->contact.point + view.exaggeration * p.force *
-                                                               p.patch->response(middle, middle) *
-                                                               p.patch->forceDirection();
-        settings.markers.push_back({bottom, p.label, Symbol::circle, {}});
-    }
-    const Chart& chart = patches.front().patch->chart;
-    settings.title     = view.title;
-    settings.quantity  = "deflection";
-    const bool given   = glm::length(view.direction) > 0;
-    settings.up        = given ? glm::dvec3(0, 0, 1) : chart.frame.normal;
-    settings.direction = given ? view.direction : obliquely(chart.frame);
-    if (view.closeUp)
-        settings.window =
-            CloudWindow{patches.front().patch->contact.point, 0.75 * patches.front().patch->window.grid.sizeX()};
-    return cloudViewSvg(positions, depth, settings);
-}
-
-double roundExaggeration(double deepest, double size)
-{
-    constexpr double kVisible = 1.0 / 30; // of the object: plain to see, and still clearly a dent
-    if (!(deepest > 0)) return 1;
-    for (double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0})
-        if (factor * deepest > 0.6 * kVisible * size) return factor;
-    return 200;
 }
 
 } // namespace palp

@@ -2,7 +2,7 @@
 #include <span>
 #include <string>
 
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/patch.h"
 
 namespace palp {
 
@@ -26,21 +26,5 @@ struct PressedPatch {
 
 /// Deflection from west to east through the contact, for several patches.
 [[nodiscard]] std::string profilesSvg(std::span<const PressedPatch> patches, const std::string& title);
-
-/// Where a view of pressed patches looks from.
-struct SurfaceView {
-    std::string title;
-    double      exaggeration = 1;   ///< factor on every displacement [1]
-    glm::dvec3  direction{0, 0, 0}; ///< in which the eye looks; zero: obliquely onto the first contact
-    bool        closeUp = false;    ///< only the first contact's neighbourhood
-};
-
-/// The object, dented by each of the patches at once (they are solved one by one: where they overlap, displacements
-/// add), coloured by deflection.
-[[nodiscard]] std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> patches,
-                                     const SurfaceView& view);
-
-/// A round factor that makes the deepest displacement about a thirtieth of the object, at least 1.
-[[nodiscard]] double roundExaggeration(double deepest, double size);
 
 } // namespace palp

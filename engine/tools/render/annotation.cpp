@@ -11,7 +11,7 @@
 
 #include "compute_shaders/shared/view_layout.h"
 #include "engine/core/quantity.h"
-#include "engine/tools/plot/cloud_shading.h"
+#include "engine/tools/plot/colour_map.h"
 #include "engine/tools/render/text.h"
 
 namespace palp {

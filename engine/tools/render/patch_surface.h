@@ -4,7 +4,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/patch.h"
 
 namespace palp {
 

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
-#include "engine/tools/plot/cloud_shading.h"
+#include "engine/tools/plot/colour_map.h"
 #include "engine/tools/render/picture_change.h"
 #include "engine/tools/render/view_shapes.h"
 #include "engine/tools/render/vulkan_surface.h"
@@ -276,7 +276,7 @@ void SurfaceRenderer::takePanels()
 
 const compute::Processor& SurfaceRenderer::device() const noexcept
 {
-    return impl_->context.device();
+    return impl_->context.processor();
 }
 
 const std::string& SurfaceRenderer::note() const noexcept

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "engine/core/enum_names.h"
-#include "engine/pipeline/pipeline.h"
+#include "engine/pipeline/patch.h"
 #include "engine/tools/render/camera.h"
 #include "engine/tools/render/cloud_skin.h"
 #include "engine/tools/render/patch_surface.h"

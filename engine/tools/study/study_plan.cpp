@@ -10,6 +10,7 @@
 #include "engine/core/json_object.h"
 #include "engine/core/nearest_name.h"
 #include "engine/force/governor.h"
+#include "engine/pipeline/presets.h"
 #include "engine/tools/study/hunt_scene.h"
 
 namespace palp::study {

@@ -8,7 +8,7 @@
 namespace palp {
 namespace {
 
-/// Bands and answers where a device may fuse: the tests against Eigen say whether they are right.
+/// Bands and answers where a processor may fuse: the tests against Eigen say whether they are right.
 constexpr Rounding kFactorRounding{1e4,
                                    "rounding grows in up to 289 steps of elimination by the condition of the matrix"};
 
@@ -209,7 +209,7 @@ TEST_F(CoarseLevelTest, AFactorIsFiniteWhateverRoundingLeavesOfThePivots)
 
 TEST_F(CoarseLevelTest, DoublesKeepThePivotsThatFloatsLose)
 {
-    if (!context().device().float64) GTEST_SKIP() << "no doubles";
+    if (!context().processor().float64) GTEST_SKIP() << "no doubles";
     const compute::Kernel factor(context(), kernels::factor<double>(), {64, 1, 1});
     for (const Edge edge : {Edge::supported, Edge::free}) {
         const RoughLevel level(loosePlate(edge));

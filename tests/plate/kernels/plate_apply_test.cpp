@@ -61,7 +61,7 @@ TEST_F(PlateApplyTest, RepeatsAreEqualToTheBit)
     });
 }
 
-// The tolerance of devices that are not bit-exact, tried where there is none: floats against doubles round in every
+// The tolerance of processors that are not bit-exact, tried where there is none: floats against doubles round in every
 // operation, which is more than fusing some of them changes.
 TEST_F(PlateApplyTest, FloatsAreWithinTheRoundingOfDoubles)
 {

@@ -4,10 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "compute_shaders/shared/point_layout.h"
 #include "compute_shaders/shared/tail_level.h"
 #include "tests/plate/kernels/push_echo_level.spv.h"
-#include "tests/plate/kernels/push_echo_points.spv.h"
 #include "tests/plate/kernels/push_echo_relax.spv.h"
 #include "tests/plate/kernels/push_echo_scalars.spv.h"
 #include "tests/plate/kernels/push_echo_smooth.spv.h"
@@ -21,7 +19,7 @@ namespace {
 
 using namespace shared;
 
-constexpr std::size_t kMostPushBytes = 128; ///< that every device allows
+constexpr std::size_t kMostPushBytes = 128; ///< that every processor allows
 static_assert(sizeof(PlateLevel) == 44);
 static_assert(sizeof(LevelPush) == 44 && sizeof(LevelPush) <= kMostPushBytes);
 static_assert(sizeof(RelaxPush) == 48 && sizeof(RelaxPush) <= kMostPushBytes);
@@ -88,27 +86,15 @@ TEST_F(PlatePushTest, EveryFieldArrivesInItsPlace)
 TEST_F(PlatePushTest, EveryFieldOfAnArrayArrivesInItsPlace)
 {
     if (onHost()) GTEST_SKIP() << "the host has no such kernel";
-    const TailPush                 tail{1U, 3U, 5603U};
-    const std::vector<TailLevel>   levels{{}, {kCoarse, 11, -12, 13, 14, -15}};
-    const std::vector<PointLayout> grid{
-        {33, -17, 3000U, 12, -13, 14, -15, 0.5F, 2.0F, 1.5F, -1.25F, 4.5F, 8.25F, -0.125F, 6.25F}};
-    const std::vector<ScatteredPoint> points{{}, {1.5F, -2.5F, 3.5F, -4.5F, 7U}};
-    std::vector<std::uint32_t>        words((sizeof(TailPush) + sizeof(TailLevel)) / 4);
-    const compute::Kernel echoTail(context(), {"push_echo_tail", push_echo_tail_spv, 2, int(sizeof(TailPush))},
-                                   {8, 8, 1});
+    const TailPush               tail{1U, 3U, 5603U};
+    const std::vector<TailLevel> levels{{}, {kCoarse, 11, -12, 13, 14, -15}};
+    std::vector<std::uint32_t>   words((sizeof(TailPush) + sizeof(TailLevel)) / 4);
+    const compute::Kernel        echoTail(context(), {"push_echo_tail", push_echo_tail_spv, 2, int(sizeof(TailPush))},
+                                          {8, 8, 1});
     dispatchOnce(echoTail, {out(words), in(levels)}, tail, {1, 1, 1});
     const TailLevel& level = levels[1];
     EXPECT_EQ(words, Words(tail.first, tail.levels, tail.nodes, level.plate, level.field, level.tableX, level.tableZ,
                            level.w, level.force));
-
-    words.resize((sizeof(PointLayout) + sizeof(ScatteredPoint)) / 4);
-    const compute::Kernel echoPoints(context(), {"push_echo_points", push_echo_points_spv, 3, 0}, {8, 8, 1});
-    dispatchOnce(echoPoints, {out(words), in(grid), in(points)}, {}, {1, 1, 1});
-    const PointLayout&    g = grid[0];
-    const ScatteredPoint& p = points[1];
-    EXPECT_EQ(words, Words(g.cellsX, g.cellsZ, g.points, g.bucketsX, g.bucketsZ, g.firstX, g.firstZ, g.side, g.perSide,
-                           g.scaleX, g.scaleZ, g.reachX, g.reachZ, g.falloff, g.nearby2, p.x, p.z, p.rigidity,
-                           p.logarithm, p.number));
 }
 
 } // namespace

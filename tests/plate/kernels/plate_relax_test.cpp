@@ -216,7 +216,7 @@ TEST_F(PlateRelaxTest, MistakesAreFound)
             EXPECT_EQ(!agree(after, expected, sizesOf(level, fields), kOperatorRounding), mistake.isOne)
                 << mistake.what;
             EXPECT_EQ(!isWithin(after, expected, sizesOf(level, fields), kOperatorRounding), mistake.isOne)
-                << mistake.what << ", on a device that is not bit-exact";
+                << mistake.what << ", on a processor that is not bit-exact";
         }
     }
 }

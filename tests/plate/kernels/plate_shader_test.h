@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "engine/compute/context.h"
+#include "engine/plate/host/kernel_codes.h"
 #include "tests/plate/kernels/host_passes.h"
-#include "tests/plate/kernels/kernels.h"
 #include "tests/support/shader_fixture.h"
 
 namespace palp {
 
-/// How far a device that fuses or re-associates may be from C++, relative to the magnitudes that were added up: where
+/// How far a processor that fuses or re-associates may be from C++, relative to the magnitudes that were added up: where
 /// terms cancel, units in the last place of the result say nothing.
 struct Rounding {
     double      units;   ///< of half the spacing of floating-point numbers at 1
@@ -114,7 +114,7 @@ protected:
         EXPECT_EQ(first, contents()) << kernel.code().name << ": a repeat differs";
     }
 
-    /// Calls check(0.0F), and check(0.0) where the device has doubles; the argument's type is what matters.
+    /// Calls check(0.0F), and check(0.0) where the processor has doubles; the argument's type is what matters.
     template <class Check>
     static void inEachPrecision(const Check& check)
     {
@@ -122,12 +122,12 @@ protected:
             SCOPED_TRACE("in floats");
             check(0.0F);
         }
-        if (!context().device().float64) return;
+        if (!context().processor().float64) return;
         SCOPED_TRACE("in doubles");
         check(0.0);
     }
 
-    /// Whether a kernel computed what C++ does: to the bit where the device is bitExact(), else within the rounding.
+    /// Whether a kernel computed what C++ does: to the bit where the processor is bitExact(), else within the rounding.
     /// The sign of a zero does not count: drivers leave out the addition of 0, which turns -0 into 0. \param sizes  for
     /// each number the magnitudes that were added up to it, at least its own
     template <class Real>

@@ -2,12 +2,11 @@
 // Domain     one invocation
 // Reads      push
 // Writes     bits of the fields
-// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_SMOOTH, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS; ECHO_TAIL and ECHO_POINTS with arrays of structs
+// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_SMOOTH, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS; ECHO_TAIL with an array of structs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #include "compute_shaders/shared/plate_push.h"
-#include "compute_shaders/shared/point_layout.h"
 #include "compute_shaders/shared/tail_level.h"
 
 layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
@@ -26,9 +25,6 @@ layout(push_constant) uniform Constants { VectorPush push; };
 #elif defined(ECHO_TAIL)
 layout(push_constant) uniform Constants { TailPush push; };
 layout(std430, binding = 1) readonly buffer Levels { TailLevel levels[]; };
-#elif defined(ECHO_POINTS)
-layout(std430, binding = 1) readonly buffer Layout { PointLayout grid; };
-layout(std430, binding = 2) readonly buffer Points { ScatteredPoint points[]; };
 #else // ECHO_SCALARS
 layout(push_constant) uniform Constants { ScalarsPush push; };
 #endif
@@ -82,27 +78,6 @@ void main()
     echo(levels[1].tableZ);
     echo(levels[1].w);
     echo(levels[1].force);
-#elif defined(ECHO_POINTS)
-    echo(grid.cellsX);
-    echo(grid.cellsZ);
-    echo(grid.points);
-    echo(grid.bucketsX);
-    echo(grid.bucketsZ);
-    echo(grid.firstX);
-    echo(grid.firstZ);
-    echo(grid.side);
-    echo(grid.perSide);
-    echo(grid.scaleX);
-    echo(grid.scaleZ);
-    echo(grid.reachX);
-    echo(grid.reachZ);
-    echo(grid.falloff);
-    echo(grid.nearby2);
-    echo(points[1].x);
-    echo(points[1].z);
-    echo(points[1].rigidity);
-    echo(points[1].logarithm);
-    echo(points[1].number);
 #else
     echo(push.loads);
     echo(push.partials);

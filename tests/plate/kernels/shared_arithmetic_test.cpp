@@ -9,7 +9,7 @@
 #include "tests/plate/kernels/host_passes.h"
 
 // Whether the arithmetic that shaders and C++ share is right: against the reference solver, which has no stencil, and
-// against what theory asks of it. No device is needed.
+// against what theory asks of it. No processor has to be opened.
 
 namespace palp {
 namespace {

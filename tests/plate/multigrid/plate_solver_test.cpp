@@ -36,14 +36,14 @@ double difference(const NodeField& a, const NodeField& b)
 
 TEST(PlateSolver, SolvesOnTheDeviceOneGridAfterTheOther)
 {
-    PlateSolver device(deviceOfTests());
-    EXPECT_EQ(device.note(), "");
+    PlateSolver solver(deviceOfTests());
+    EXPECT_EQ(solver.note(), "");
     for (const int cells : {20, 30, 20}) {
         const Plate         plate = plateOf(cells, 10);
         const NodeField     load  = pointLoad(plate.grid, 1, 0.5, 0.5);
-        const PlateSolution found = device.solve(plate, load);
-        EXPECT_EQ(found.report.device, device.name());
-        EXPECT_NE(found.report.device, "reference");
+        const PlateSolution found = solver.solve(plate, load);
+        EXPECT_EQ(found.report.solver, solver.name());
+        EXPECT_NE(found.report.solver, "reference");
         EXPECT_LT(difference(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-4);
     }
 }
@@ -51,51 +51,51 @@ TEST(PlateSolver, SolvesOnTheDeviceOneGridAfterTheOther)
 TEST(PlateSolver, ADeviceThatIsLostIsReplacedByTheReference)
 {
     if (deviceOfTests() == compute::kHostProcessor) GTEST_SKIP() << "the host is not lost";
-    PlateSolver         device(deviceOfTests(), 1e-9); // [s] of patience: every submission counts as a hang
+    PlateSolver         solver(deviceOfTests(), 1e-9); // [s] of patience: every submission counts as a hang
     const Plate         plate = plateOf(64, 10);
     const NodeField     load  = pointLoad(plate.grid, 1, 0.5, 0.5);
-    const PlateSolution found = device.solve(plate, load);
-    EXPECT_EQ(found.report.device, "reference");
-    EXPECT_EQ(device.name(), "reference");
-    EXPECT_NE(device.note(), "");
+    const PlateSolution found = solver.solve(plate, load);
+    EXPECT_EQ(found.report.solver, "reference");
+    EXPECT_EQ(solver.name(), "reference");
+    EXPECT_NE(solver.note(), "");
     EXPECT_LT(difference(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-12);
-    EXPECT_EQ(device.solve(plate, load).report.device, "reference"); // from now on
+    EXPECT_EQ(solver.solve(plate, load).report.solver, "reference"); // from now on
 }
 
 TEST(PlateSolver, WhatTheDeviceCannotConvergeTheReferenceSolves)
 {
-    PlateSolver         device(deviceOfTests());
+    PlateSolver         solver(deviceOfTests());
     const Plate         plate = plateOf(64, 1e9);
     const NodeField     load  = pointLoad(plate.grid, 1, 0.5, 0.5);
-    const PlateSolution found = device.solve(plate, load);
-    EXPECT_EQ(found.report.device, "reference");
+    const PlateSolution found = solver.solve(plate, load);
+    EXPECT_EQ(found.report.solver, "reference");
     EXPECT_TRUE(found.report.converged);
-    EXPECT_NE(device.note().find("stopped at an error of about"), std::string::npos) << device.note();
-    EXPECT_NE(device.solve(plateOf(64, 10), load).report.device, "reference") << "for that plate only";
+    EXPECT_NE(solver.note().find("stopped at an error of about"), std::string::npos) << solver.note();
+    EXPECT_NE(solver.solve(plateOf(64, 10), load).report.solver, "reference") << "for that plate only";
 }
 
-/// As many as the table of a moving contact has, on every device and by the reference alone.
+/// As many as the table of a moving contact has, on every processor and by the reference alone.
 TEST(PlateSolver, SeveralLoadsOfOnePlateAreThoseOfEachAlone)
 {
     for (const std::string& name : {deviceOfTests(), std::string(PlateSolver::kReference)}) {
-        PlateSolver            device(name);
+        PlateSolver            solver(name);
         const Plate            plate = plateOf(20, 10);
         std::vector<NodeField> loads;
         for (double x : {0.3, 0.5, 0.7})
             for (double z : {0.3, 0.5, 0.7}) loads.push_back(footprintLoad(plate.grid, 1, x, z, 0.1));
         const ReferencePlateSolver reference(plate);
 
-        const auto together = device.solveAll(plate, loads);
+        const auto together = solver.solveAll(plate, loads);
         ASSERT_EQ(together.size(), loads.size());
         for (std::size_t n = 0; n < loads.size(); ++n)
             EXPECT_LT(difference(together[n].deflection, reference.solve(loads[n]).deflection), 1e-4) << n;
-        EXPECT_LT(difference(device.solve(plate, loads[2]).deflection, together[2].deflection), 2e-4) << "one after";
+        EXPECT_LT(difference(solver.solve(plate, loads[2]).deflection, together[2].deflection), 2e-4) << "one after";
     }
 }
 
 TEST(PlateSolver, OneThatIsNotThereIsRefusedByName)
 {
-    EXPECT_THROW(PlateSolver("no such device"), Error);
+    EXPECT_THROW(PlateSolver("no such processor"), Error);
 }
 
 TEST(PlateSolver, WordsAreKnownInAnyCase)
@@ -108,9 +108,9 @@ TEST(PlateSolver, AutoNeverTakesSoftware)
 {
     const std::vector<compute::Processor> list  = compute::listProcessors();
     const auto                            place = compute::chooseProcessor(list, "auto");
-    const PlateSolver                     device("auto");
-    EXPECT_EQ(device.name(), place ? list[*place].name : "host");
-    EXPECT_EQ(device.note(), "");
+    const PlateSolver                     solver("auto");
+    EXPECT_EQ(solver.name(), place ? list[*place].name : "host");
+    EXPECT_EQ(solver.note(), "");
 }
 
 } // namespace

@@ -66,6 +66,10 @@ TEST(BenchReport, EveryRowHasEveryField)
                                   "extrapolated",
                                   "peer_bytes",
                                   "palpate_bytes",
+                                  "loads",
+                                  "dispatches_per_cycle",
+                                  "moved_gb_per_s",
+                                  "copy_gb_per_s",
                                   "note"})
             EXPECT_TRUE(json.at("rows").at(0).contains(field)) << field;
     }

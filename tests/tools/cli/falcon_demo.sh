@@ -26,7 +26,7 @@ run 0 "$demo" --emulator --seconds 2 --scenes "$checkout/samples/scenes"
 holds '^scene   palm_wart'
 holds '^device  an emulated Falcon'
 holds '^upload  8000 of 8000 bytes, each came back'
-holds '^homing  pull the grip all the way out'
+holds '^homing  home the emulated Falcon: pull the grip all the way out'
 holds '^homing  done'
 holds '^felt    [0-9.]+ s, in contact [1-9][0-9]* % of it; force at most [0-9.]+ m?N, depth at most [0-9.]+ [mu]m$'
 holds '^wire    [0-9]{4,} packets; the last one asked for no force$'
@@ -62,8 +62,9 @@ printf '{"cloud": "sample:sheet", "thicknes": 0.004}' >wrong.json
 bad 'did you mean' wrong.json --emulator
 bad '--seconds' --seconds -1
 bad 'frobnicate' --frobnicate
+for counts in 1 1999 10001 50000 nan; do bad '--falcon-counts' --emulator --falcon-counts $counts; done
 printf 'short' >image.bin
-run 2 "$demo" --emulator --firmware image.bin --scenes "$checkout/samples/scenes"
+run 2 "$demo" --emulator --falcon-firmware image.bin --scenes "$checkout/samples/scenes"
 grep -qF '5 bytes long; expected' err.txt || complain "a firmware that is none: $(cat err.txt)"
 grep -q '^upload' out.txt && complain "a firmware that is none was uploaded: $(cat out.txt)"
 

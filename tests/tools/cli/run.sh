@@ -32,7 +32,7 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert paint render view hunt study perceive paper devices doctor calibrate 'bench solve'; do
+for command in touch solve info convert paint render view hunt study perceive paper devices doctor calibrate bench; do
     # shellcheck disable=SC2086  # a command, or one within another
     good "help of $command" $command --help; holds 'Examples:'
     mv out.txt help.txt
@@ -41,7 +41,7 @@ for command in touch solve info convert paint render view hunt study perceive pa
     cmp -s out.txt help.txt && passed=$((passed + 1)) || complain "'help $command' is not '$command --help'"
 done
 good 'help of bench' bench --help
-holds 'bench solve --out bench'
+holds 'palpate bench --out bench'
 grep -qF 'palpate touch' out.txt && complain 'the help of bench has the examples of touch' || passed=$((passed + 1))
 good 'list of samples' info --samples
 for sample in ellipsoid sheet pad hemisphere saddle skin palm ear-lobe; do holds "sample:$sample"; done
@@ -114,25 +114,24 @@ good 'solve tightly' solve plate.json --solver Lavapipe --tolerance 1e-7 --json
 holds '"work_units"'
 good 'touch by the reference' touch sample:skin --points 5000 --cells 32 --solver reference
 holds '(reference)'
-good 'benchmark' bench solve --device lavapipe,REFERENCE --schedule Pass-by-pass --nodes 17,33 --loads 1,4 --repeats 2 --out bench --json
-for key in '"cold_p50_ms"' '"cold_p99_ms"' '"warm_p50_ms"' '"iterations"' '"work_units"' '"error"' '"copy_gb_per_s"' '"dispatches_per_cycle"'; do holds "$key"; done
-[ -s bench/solve.json ] && [ -s bench/solve.svg ] && passed=$((passed + 1)) || complain 'bench --out wrote nothing'
+good 'batches of loads' bench --solver lavapipe --schedule pass-by-pass --nodes 33 --cases batch --json
+for key in '"case": "batch"' '"loads": 49' '"palpate_parts_ms"' '"iterations"' '"work_units"' '"moved_gb_per_s"' '"copy_gb_per_s"' '"dispatches_per_cycle": 12'; do holds "$key"; done
 
-good 'peers' bench plate --device lavapipe --nodes 33,65 --maps linear,disc_0.1 --cases new_map,contrast,memory --out peers --json
+good 'peers' bench --solver lavapipe --nodes 33,65 --maps linear,disc_0.1 --cases new_map,contrast,memory --out peers --json
 for key in '"case": "new_map"' '"case": "contrast"' '"case": "memory"' '"peer": "CHOLMOD"' '"peer": "Eigen SimplicialLDLT"' '"accuracy": "discretisation"' '"accuracy": "1e-6"' \
     '"peer_ms"' '"palpate_ms"' '"ratio"' '"error"' '"peer_error"' '"work_units"' '"iterations"' 'OPENBLAS_NUM_THREADS=1'; do holds "$key"; done
 for file in plate.json plate.txt new_map.svg; do
-    [ -s "peers/$file" ] && passed=$((passed + 1)) || complain "bench plate --out did not write $file"
+    [ -s "peers/$file" ] && passed=$((passed + 1)) || complain "bench --out did not write $file"
 done
-[ ! -e peers/new_load.svg ] && passed=$((passed + 1)) || complain 'bench plate --out wrote a picture of nothing'
-bad 'nothing to measure' 'begin at 65 nodes' bench plate --device host --nodes 33 --cases new_map
-bad 'quick and large' 'with --quick at most 257' bench plate --quick --nodes 513
+[ ! -e peers/new_load.svg ] && passed=$((passed + 1)) || complain 'bench --out wrote a picture of nothing'
+bad 'nothing to measure' 'begin at 65 nodes' bench --solver host --nodes 33 --cases new_map
+bad 'quick and large' 'with --quick at most 257' bench --quick --nodes 513
 "$palpate" solve plate.json --solver 77 >out.txt 2>err.txt
 [ $? -eq 2 ] && grep -qF 'there is no GPU 77' err.txt && passed=$((passed + 1)) || complain "no such index: $(cat err.txt)"
-good 'the paper'\''s iteration' bench plate --device lavapipe --nodes 33 --cases jacobi
+good 'the paper'\''s iteration' bench --solver lavapipe --nodes 33 --cases jacobi
 holds 'Jacobi 0.6, same error'
 mkdir alone && cp "$palpate" alone/palpate
-alone/palpate bench plate --device lavapipe --nodes 33 --cases memory >out.txt 2>err.txt || complain "bench plate without peers: exit $? $(cat err.txt)"
+alone/palpate bench --solver lavapipe --nodes 33 --cases memory >out.txt 2>err.txt || complain "bench without peers: exit $? $(cat err.txt)"
 holds 'install libsuitesparse-dev'
 
 good 'list of devices' devices
@@ -150,7 +149,12 @@ grep -q Vulkan out.txt && complain "a hand computes nothing: $(cat out.txt)" || 
 DISPLAY=:0 "$palpate" devices --haptic --json >out.txt 2>err.txt || complain "devices --haptic --json: exit $?"
 for key in '"name": "mouse"' '"name": "arm"' '"model"' '"path": null' '"usable": true' '"why": null' '"help": null'; do holds "$key"; done
 [ "$(head -c 1 out.txt)" = '[' ] && passed=$((passed + 1)) || complain "devices --haptic --json is no list: $(cat out.txt)"
-bad 'two sorts alone at once' 'excludes' devices --gpu --haptic
+bad 'two sorts alone at once' 'excludes' devices --gpus --haptic
+bad 'two other sorts alone at once' 'excludes' devices --processors --haptic
+good 'list of processors' devices --processors
+holds 'host  '
+holds 'usable   yes; auto takes it'
+grep -q 'a simulated arm' out.txt && complain "an arm solves nothing: $(cat out.txt)" || passed=$((passed + 1))
 
 # doctor [VARIABLE=VALUE...] -- WORDS of one line of its output, runs of blanks as one
 doctor() {
@@ -161,7 +165,7 @@ doctor() {
     env -u DISPLAY -u WAYLAND_DISPLAY -u FALCON_FIRMWARE $variables "$palpate" doctor >out.txt 2>err.txt && [ ! -s err.txt ] || complain "doctor: exit $? $(cat err.txt)"
     tr -s ' ' <out.txt | grep -qF -- "$*" && passed=$((passed + 1)) || complain "doctor$variables lacks '$*': $(cat out.txt)"
 }
-for part in vulkan host display 'real time' usb 'udev rule' falcon 'falcon firmware' hid; do doctor -- " $part "; done
+for part in vulkan host display 'real time' usb 'udev rule' falcon 'falcon firmware' bridge spacemouse; do doctor -- " $part "; done
 doctor -- 'Embree '
 doctor -- 'missing display neither DISPLAY nor WAYLAND_DISPLAY'
 doctor DISPLAY=:0 -- 'ok display X11'
@@ -178,14 +182,14 @@ doctor VK_DRIVER_FILES=none.json VK_ICD_FILENAMES=none.json -- 'warning vulkan n
 doctor -- 'warning vulkan only in software: '
 good 'doctor, for scripts' doctor --json
 for key in '"palpate": "0.' '"compiler"' '"libraries"' '"system"' '"part": "real time"' '"verdict": "' '"found"' '"help"' '"name": "arm"'; do holds "$key"; done
-good 'list of GPUs' devices --gpu
+good 'list of GPUs' devices --gpus
 holds 'usable   yes'
 grep -q host out.txt && complain "the host is no GPU: $(cat out.txt)" || passed=$((passed + 1))
 good 'list of devices, for scripts' devices --json
 for key in '"index": 0' '"index": null' '"name": "host"' '"kind": "software"' '"kind": "host"' '"driver"' '"api"' '"memory"' '"float64"' '"usable": true' '"refusals": []' '"processor": "' \
     '"instruction_set": "' '"auto": false'; do holds "$key"; done
-tr -d ' \n' <out.txt | grep -q '^{"compute":.*"auto":true}\],"haptic":\[' && passed=$((passed + 1)) || complain "auto is not the host, the last of: $(cat out.txt)"
-without "$palpate" devices --gpu --json
+tr -d ' \n' <out.txt | grep -q '^{"haptic":\[.*\],"processors":\[.*"auto":true}\]}$' && passed=$((passed + 1)) || complain "auto is not the host, the last of: $(cat out.txt)"
+without "$palpate" devices --gpus --json
 code=$?
 [ $code -eq 4 ] && grep -qF 'mesa-vulkan-drivers' err.txt && [ "$(cat out.txt)" = '[]' ] && passed=$((passed + 1)) ||
     complain "a machine without a GPU: exit $code, expected 4: $(cat out.txt err.txt)"
@@ -198,7 +202,7 @@ code=$?
 [ $code -eq 4 ] && [ ! -s out.txt ] && passed=$((passed + 1)) ||
     complain "a GPU that is asked for and is not there: exit $code, expected 4: $(cat out.txt err.txt)"
 for where in start list open; do
-    for command in 'solve plate.json' 'touch sample:sheet --points 5000 --cells 16' 'bench solve --device auto --nodes 17 --repeats 1' 'bench plate --nodes 33 --cases memory'; do
+    for command in 'solve plate.json' 'touch sample:sheet --points 5000 --cells 16' 'bench --nodes 33 --cases memory'; do
         # shellcheck disable=SC2086  # a command and its arguments
         failing $where "$palpate" $command --json && grep -qF '"device": "host"' out.txt && [ "$(wc -l <err.txt)" -eq 1 ] &&
             grep -qF 'palpate: auto takes host: ' err.txt && passed=$((passed + 1)) || complain "$command, Vulkan broken at $where: $(cat out.txt err.txt)"
@@ -238,7 +242,11 @@ bad 'a grip in a wrong unit' '"N/mm"' run scene.json --arm '150 N/mm'
 bad 'a speed that no hand has' 'up to 100 m/s' run scene.json --speed 1e300
 bad 'a time without end' 'up to 86400 s' run scene.json --seconds 1e9
 bad 'threads without a clock' 'virtual clock has no threads' run scene.json --threads paper --clock virtual
-bad 'counts of no motor' 'expected 2000 to 10000' run scene.json --hand falcon-emulator --falcon-counts 50000
+for counts in 1 1999 50000; do
+    bad 'counts of no motor' 'expected 2000 to 10000' run scene.json --hand falcon-emulator --falcon-counts $counts
+    bad 'counts of no motor' 'expected 2000 to 10000' calibrate --emulator --falcon-counts $counts
+done
+bad 'a firmware that is not needed' 'with --falcon-cold only' run scene.json --hand falcon-emulator --falcon-firmware scene.json
 bad 'counts that are no number' 'nan' run scene.json --hand falcon-emulator --falcon-counts nan
 bad 'counts without a Falcon' 'of --hand falcon' run scene.json --falcon-counts 4300
 bad 'a slip' 'did you mean falcon?' run scene.json --hand falcom
@@ -318,18 +326,16 @@ tr -d ' \n' <out.txt >flat.txt
 grep -q '"point":\[-*0.00[0-9]*,-*0.00[0-9]*,0.001[0-9]*\]' flat.txt && passed=$((passed + 1)) || complain "not the top of the wart: $(grep -A4 '"point"' out.txt)"
 bad 'tolerance that 32 bits cannot give' '--tolerance' solve plate.json --tolerance 1e-12
 bad 'tolerance that is no number' '--tolerance' touch sample:skin --tolerance nan
-bad 'benchmark of a giant' '--nodes' bench solve --nodes 4097
-bad 'benchmark of an unknown law' 'hyperbolic' bench solve --law cubic
-bad 'peers on an even grid' 'multiple of 4' bench plate --nodes 64
-bad 'peers on a giant' '--nodes' bench plate --nodes 2049
-bad 'peers in an unknown case' 'new_map' bench plate --cases speed
-bad 'peers on an unknown map' 'disc_100' bench plate --maps cubic
-bad 'too few runs for quartiles' '--runs' bench plate --runs 5
-bad 'the reference as its own peer' 'reference' bench plate --device reference
-bad 'peers with an empty device' '--device' bench plate --device ''
+bad 'peers on an even grid' 'multiple of 4' bench --nodes 64
+bad 'peers on a giant' '--nodes' bench --nodes 2049
+bad 'peers in an unknown case' 'new_map' bench --cases speed
+bad 'peers on an unknown map' 'disc_100' bench --maps cubic
+bad 'too few runs for quartiles' '--runs' bench --runs 5
+bad 'the reference as its own peer' 'reference' bench --solver reference
+bad 'peers with an empty solver' '--solver' bench --solver ''
 bad 'devices take no argument' 'voodoo' devices voodoo
 bad 'nor does the doctor' 'voodoo' doctor voodoo
-for command in 'solve plate.json --solver' 'bench solve --device'; do
+for command in 'solve plate.json --solver' 'bench --solver'; do
     # shellcheck disable=SC2086  # a command and its arguments
     "$palpate" $command gpu9000 >out.txt 2>err.txt
     code=$?
@@ -337,11 +343,11 @@ for command in 'solve plate.json --solver' 'bench solve --device'; do
         complain "unknown device: exit $code, expected 2 and the list of devices: $(cat err.txt)"
 done
 for tolerance in 0 1e-12 nan 1; do
-    bad "benchmark with a tolerance of $tolerance" '--tolerance: expected a number from 1e-7 to 0.1' bench solve --tolerance $tolerance
-    grep -qE "found (1e-12|0|nan|1)$" err.txt && passed=$((passed + 1)) || complain "the tolerance's bounds: $(cat err.txt)"
+    bad "a tolerance of $tolerance" '--tolerance: expected at least 1e-07' solve plate.json --tolerance $tolerance
+    grep -qF "below 1, found $tolerance" err.txt && passed=$((passed + 1)) || complain "the tolerance's bounds: $(cat err.txt)"
 done
 for schedule in nosuch 0; do
-    bad 'unknown schedule' "--schedule: expected automatic, pass-by-pass or fused, found \"$schedule\"" bench solve --schedule $schedule
+    bad 'unknown schedule' "--schedule: expected automatic, pass-by-pass or fused, found \"$schedule\"" bench --schedule $schedule
 done
 
 # --- bad files

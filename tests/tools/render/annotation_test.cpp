@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/tools/plot/cloud_shading.h"
+#include "engine/tools/plot/colour_map.h"
 
 namespace palp {
 namespace {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/cloud/samples.h"
+#include "engine/pipeline/deform.h"
 #include "engine/tools/render/annotation.h"
 #include "engine/tools/render/surface_renderer.h"
 #include "engine/tools/render/touch_view.h"
@@ -58,7 +59,7 @@ Image pictureOf(const GoldenCase& one, SurfaceRenderer& renderer)
 
 TEST_P(GoldenTest, ThePictureIsTheOneThatWasLookedAt)
 {
-    SurfaceRenderer renderer({.device = deviceOfTests(), .validation = validation()});
+    SurfaceRenderer renderer({.processor = deviceOfTests(), .validation = validation()});
     expectGolden(PALPATE_GOLDEN, GetParam().file(), pictureOf(GetParam(), renderer), renderer);
 }
 

@@ -191,7 +191,7 @@ TEST(Hunt, AScriptedHandIsScoredEndToEnd)
     const Scene                 scene  = readScene(folder / "nodule_hunt.json", {.toolKeys = &huntKeys()});
     const SoftObject            object = loadObject(scene).object;
     const HandPath              path   = readHand(folder / "nodule_hunt_hand.csv");
-    HandDevice                  hand(path);
+    ScriptedHand                  hand(path);
     Deformation                 deformation(object, scene);
     HuntScorer                  scorer(scene, object.cloud());
 

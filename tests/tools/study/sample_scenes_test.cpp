@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/contact/contact.h"
+#include "engine/pipeline/deform.h"
 #include "engine/session/hand_path.h"
 #include "engine/tools/study/hunt_scene.h"
 #include "tests/support/temporary_folder.h"

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/pipeline/presets.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palp::study {

@@ -1,0 +1,29 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "engine/core/enum_names.h"
+
+namespace palp {
+
+/// How a part of the machine is.
+enum class Verdict : std::uint8_t {
+    ok,
+    warning, ///< it works, but worse than it could
+    missing  ///< what needs it does not work
+};
+constexpr auto namesOf(Verdict)
+{
+    using enum Verdict;
+    return std::to_array<NamedValue<Verdict>>({{ok, "ok"}, {warning, "warning"}, {missing, "missing"}});
+}
+
+/// One finding about the machine. It names no people, files or serial numbers, because reports quote it.
+struct Finding {
+    std::string part; ///< "vulkan"
+    Verdict     verdict = Verdict::ok;
+    std::string found;  ///< what there is
+    std::string help{}; ///< the one line that helps; empty: nothing is to be done
+};
+
+} // namespace palp

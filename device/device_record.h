@@ -1,0 +1,108 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "device/device_check.h"
+#include "device/haptic_device.h"
+#include "device/hid/hid_port.h"
+
+// One record per kind of haptic device. The commands, their help and falcon_demo know devices by their records alone:
+// the list of them is engine/session/device_registry.cpp.
+namespace palp {
+
+struct GrippingHand; // engine/session/gripped_arm.h; here it is only passed on
+
+/// Who moves a device.
+enum class DeviceHolder : std::uint8_t {
+    person,       ///< somebody does, so that it runs in real time only
+    pointer,      ///< the pointer of a window does
+    scriptedHand, ///< a scripted hand grips it, see DeviceRequest::hand
+    nobody        ///< it moves or rests by itself
+};
+
+/// A device that is there.
+struct DeviceListing {
+    std::string name{};         ///< of its record; listDevices() fills it in
+    std::string model{};        ///< "SpaceMouse Compact"; empty: as the record says
+    std::string path{};         ///< where it is plugged in; empty for what is not
+    bool        usable = false; ///< it can be opened now
+    std::string why{};          ///< why it is not usable, or what it still needs; empty if it is ready
+    std::string help{};         ///< the one line that helps; may be empty
+};
+
+/// An option of a device on the command line.
+struct DeviceOption {
+    enum class Kind : std::uint8_t { number, text, flag };
+
+    std::string_view flag; ///< "--falcon-counts"
+    std::string_view help;
+    Kind             kind  = Kind::text;
+    double           least = 0, most = 0; ///< bounds of a number
+};
+
+/// The texts of options by their flags; that of a Kind::flag is "true", and an empty text was not given.
+using DeviceOptionValues = std::map<std::string, std::string, std::less<>>;
+
+/// \throws Error naming the option, its bounds and what was found
+[[nodiscard]] double numberOf(const DeviceOption& option, const std::string& text);
+
+/// The text of an option; empty if it was not given.
+[[nodiscard]] std::string textOf(const DeviceOptionValues& values, const DeviceOption& option);
+
+/// What this build can do about a kind of device.
+struct DeviceSupport {
+    bool        isBuilt = true;
+    std::string library; ///< "libusb-1.0 1.0.26", or "compiled without libusb-1.0"
+    std::string help;    ///< how to build with it
+};
+
+/// What a device is made from.
+struct DeviceRequest {
+    HidSystem&                                    hid;            ///< of the HID devices; outlives the device
+    DeviceOptionValues                            options{};      ///< those of the record alone
+    std::string                                   path{};         ///< of a listing; empty: the first one that is usable
+    const GrippingHand*                           hand = nullptr; ///< of DeviceHolder::scriptedHand; outlives make()
+    std::function<void(std::size_t, std::size_t)> onUpload{};     ///< bytes of firmware sent so far, bytes in all
+};
+
+/// Everything that a program must know of one kind of device.
+struct DeviceRecord {
+    std::string_view name;  ///< what `--hand` takes: "falcon"
+    std::string_view model; ///< what it is, for people: "Novint Falcon"
+    DeviceHolder     holder = DeviceHolder::person;
+
+    bool simulated      = false; ///< no hardware is behind it
+    bool keepsSceneAxes = false; ///< its frame is not turned to face the surface, as that of a device on a table is
+
+    std::span<const DeviceOption> options{};
+
+    /// The devices of this kind that are plugged in, each opened and let go again to see whether that works.
+    /// \throws Error if they cannot be looked for
+    /// Null: there is always one.
+    std::vector<DeviceListing> (*list)(HidSystem& hid) = nullptr;
+
+    /// A device of this kind; HapticDevice::open() then opens it.
+    /// \throws Error naming what is missing, or an option out of its bounds
+    std::unique_ptr<HapticDevice> (*make)(const DeviceRequest& request) = nullptr;
+
+    DeviceSupport (*support)()         = nullptr; ///< null: every build supports it
+    std::vector<Finding> (*findings)() = nullptr; ///< what else it needs on this machine; may be null
+};
+
+/// What listDevices() has found.
+struct DeviceList {
+    std::vector<DeviceListing> devices;
+    std::vector<std::string>   troubles; ///< why some could not be looked for; one sentence each
+};
+
+/// Looks for the devices of these records, in their order.
+[[nodiscard]] DeviceList listDevices(std::span<const DeviceRecord* const> records, HidSystem& hid);
+
+} // namespace palp

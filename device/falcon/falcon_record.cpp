@@ -1,0 +1,116 @@
+#include "device/falcon/falcon_record.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+
+#include "device/falcon/falcon_firmware.h"
+#include "device/falcon/libusb_link.h"
+
+namespace palp {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kOptions{kFalconFirmware, kFalconCounts, kFalconEventCharacter};
+
+std::vector<DeviceListing> list(HidSystem& /*hid*/)
+{
+    std::vector<DeviceListing> devices;
+    for (const FalconListing& falcon : listFalcons())
+        devices.push_back({.path = falcon.path, .usable = falcon.usable, .why = falcon.why, .help = falcon.help});
+    return devices;
+}
+
+std::unique_ptr<HapticDevice> make(const DeviceRequest& request)
+{
+    FalconDeviceSettings settings = falconSettings(request);
+    settings.firmware             = falconFirmware(request);
+    return std::make_unique<FalconDevice>([path = request.path] { return openFalcon(path); }, settings);
+}
+
+DeviceSupport support()
+{
+    return {hasFalconSupport(), falconSupport(), "install libusb-1.0-0-dev and build Palpate anew"};
+}
+
+/// Whether some rule names the product, given in lower case; rules may spell it in any.
+bool hasUdevRule(const std::string& product)
+{
+    for (const char* folder :
+         {"/etc/udev/rules.d", "/run/udev/rules.d", "/usr/lib/udev/rules.d", "/lib/udev/rules.d"}) {
+        std::error_code failed;
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+            if (entry.path().extension() != ".rules") continue;
+            std::ifstream file(entry.path());
+            for (std::string line; std::getline(file, line);) {
+                std::ranges::transform(line, line.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+                if (line.find(product) < line.find('#')) return true;
+            }
+        }
+    }
+    return false;
+}
+
+Finding udevRule()
+{
+    if (hasUdevRule("cb48")) return {"udev rule", Verdict::ok, "one for the Falcon is installed"};
+    return {"udev rule", Verdict::warning, "there is none for the Falcon; only an administrator can open one",
+            std::string("put this line into /etc/udev/rules.d/70-palpate-falcon.rules: ") + kFalconUdevLine};
+}
+
+Finding firmware()
+{
+    const char*    part = "falcon firmware";
+    const fs::path path = falconFirmwarePath(""); // as the environment says
+    if (path.empty())
+        return {part, Verdict::warning, "FALCON_FIRMWARE is not set; a Falcon that was just plugged in needs it",
+                "export FALCON_FIRMWARE=FILE, the image that came with the device's own driver"};
+    std::error_code      failed;
+    const std::uintmax_t size = fs::file_size(path, failed);
+    if (failed || !std::ifstream(path))
+        return {part, Verdict::missing, "FALCON_FIRMWARE names a file that cannot be read",
+                "export FALCON_FIRMWARE=FILE, one that you may read"};
+    const std::string bytes = std::to_string(size) + " byte";
+    if (size < kLeastFalconFirmware || size > kMostFalconFirmware)
+        return {part, Verdict::missing, "FALCON_FIRMWARE names a file of " + bytes + ", which is no image",
+                "images have " + std::to_string(kLeastFalconFirmware) + " to " + std::to_string(kMostFalconFirmware) +
+                    " byte"};
+    return {part, Verdict::ok, bytes};
+}
+
+std::vector<Finding> findings()
+{
+    return {udevRule(), firmware()};
+}
+
+} // namespace
+
+const DeviceRecord kFalconRecord{.name     = "falcon",
+                                 .model    = "Novint Falcon",
+                                 .options  = kOptions,
+                                 .list     = list,
+                                 .make     = make,
+                                 .support  = support,
+                                 .findings = findings};
+
+FalconDeviceSettings falconSettings(const DeviceRequest& request)
+{
+    FalconDeviceSettings settings;
+    settings.path = request.path;
+    if (const std::string counts = textOf(request.options, kFalconCounts); !counts.empty())
+        settings.loop.countsPerTorque = numberOf(kFalconCounts, counts);
+    settings.start.eventCharacter = !textOf(request.options, kFalconEventCharacter).empty();
+    settings.start.onUpload       = request.onUpload;
+    return settings;
+}
+
+std::vector<std::uint8_t> falconFirmware(const DeviceRequest& request)
+{
+    const fs::path image = falconFirmwarePath(textOf(request.options, kFalconFirmware));
+    return image.empty() ? std::vector<std::uint8_t>() : readFirmware(image);
+}
+
+} // namespace palp

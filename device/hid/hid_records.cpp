@@ -1,0 +1,83 @@
+#include "device/hid/hid_records.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "device/hid/hid_bridge.h"
+#include "device/hid/hidapi_system.h"
+#include "device/hid/space_mouse.h"
+#include "device/hid/space_mouse_report.h"
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+/// Each device that `modelOf` gives a model; one that lists itself twice appears once.
+template <class ModelOf>
+std::vector<DeviceListing> listHid(HidSystem& hid, ModelOf modelOf)
+{
+    std::vector<DeviceListing> devices;
+    for (const HidListing& listing : hid.list()) {
+        const auto model = modelOf(listing);
+        if (!model || std::ranges::find(devices, listing.path, &DeviceListing::path) != devices.end()) continue;
+        DeviceListing device{.model = *model, .path = listing.path};
+        try {
+            static_cast<void>(hid.open(device.path));
+            device.usable = true;
+        } catch (const HidRefused& refused) {
+            device.why  = refused.why;
+            device.help = refused.help;
+        }
+        devices.push_back(std::move(device));
+    }
+    return devices;
+}
+
+/// The first device that `modelOf` gives a model, or the one at the path that is asked for.
+template <class ModelOf>
+HidListing listingFor(const DeviceRequest& request, ModelOf modelOf, const char* what)
+{
+    for (HidListing& listing : request.hid.list())
+        if ((request.path.empty() || listing.path == request.path) && modelOf(listing)) return std::move(listing);
+    throw Error(std::string("no ") + what + " is plugged in" + (request.path.empty() ? "" : " at " + request.path) +
+                "; palpate devices lists what there is");
+}
+
+std::optional<std::string> modelOfBridge(const HidListing& listing)
+{
+    return isBridge(listing) ? std::optional(listing.model) : std::nullopt;
+}
+
+std::optional<std::string> modelOfSpaceMouse(const HidListing& listing)
+{
+    const SpaceMouseModel* model = spaceMouseModel(listing);
+    return model ? std::optional<std::string>(model->name) : std::nullopt;
+}
+
+DeviceSupport support()
+{
+    return {hasHidSupport(), hidSupport(), "install libhidapi-dev and build Palpate anew"};
+}
+
+} // namespace
+
+const DeviceRecord kBridgeRecord{.name  = "bridge",
+                                 .model = "a device that speaks the bridge's report",
+                                 .list  = [](HidSystem& hid) { return listHid(hid, modelOfBridge); },
+                                 .make  = [](const DeviceRequest& request) -> std::unique_ptr<HapticDevice> {
+                                     return std::make_unique<HidBridgeDevice>(
+                                         request.hid, listingFor(request, modelOfBridge, "bridge"));
+                                 },
+                                 .support = support};
+
+const DeviceRecord kSpaceMouseRecord{.name  = "spacemouse",
+                                     .model = "a cap with six axes, without force",
+                                     .list  = [](HidSystem& hid) { return listHid(hid, modelOfSpaceMouse); },
+                                     .make  = [](const DeviceRequest& request) -> std::unique_ptr<HapticDevice> {
+                                         return std::make_unique<SpaceMouse>(
+                                             request.hid, listingFor(request, modelOfSpaceMouse, "SpaceMouse"));
+                                     },
+                                     .support = support};
+
+} // namespace palp

@@ -1,0 +1,9 @@
+#pragma once
+#include "device/device_record.h"
+
+namespace palp {
+
+extern const DeviceRecord kBridgeRecord;     ///< whatever speaks the bridge's report
+extern const DeviceRecord kSpaceMouseRecord; ///< 3Dconnexion's caps with six axes
+
+} // namespace palp

@@ -1,0 +1,144 @@
+#include "engine/pipeline/compliance_table_solve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "engine/core/contract.h"
+#include "engine/core/quantity.h"
+#include "engine/plate/load.h"
+
+namespace palp {
+namespace {
+
+/// Rungs to either side of the middle one, and how far apart [1]: rigidities from a hundredth to a hundred times as
+/// large, with 1e-3 of c lost between two of them at the corner of a table; 17 tables to solve, once per scene.
+constexpr int kRungs = 8, kRungsPerDecade = 4;
+
+/// Central difference of the load of a footprint that moves.
+NodeField slopeOf(const NodeField& ahead, const NodeField& behind, double distance)
+{
+    NodeField slope = ahead;
+    for (std::size_t n = 0; n < slope.values().size(); ++n)
+        slope.values()[n] = (slope.values()[n] - behind.values()[n]) / distance;
+    return slope;
+}
+
+/// ln c of a footprint, with its slopes.
+ComplianceTable::Entry complianceOf(const FootprintLattice& lattice, std::size_t n, const NodeField& response)
+{
+    const double compliance = dot(lattice.loads[n], response);
+    return {std::log(compliance), 2 * dot(lattice.slopesX[n], response) / compliance,
+            2 * dot(lattice.slopesZ[n], response) / compliance};
+}
+
+/// ln k_c of a footprint, with its slopes.  \param over  ln D over that of some node
+ComplianceTable::Entry contactOf(const FootprintLattice& lattice, std::size_t n, const NodeField& over, double node)
+{
+    return {std::log(lattice.shape.contactPerRigidity * node) + dot(lattice.loads[n], over),
+            dot(lattice.slopesX[n], over), dot(lattice.slopesZ[n], over)};
+}
+
+} // namespace
+
+FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings& settings, int side,
+                                  PlateSolver& solver)
+{
+    double logarithm = 0;
+    for (std::size_t point = 0; point < object.size(); ++point) logarithm += std::log(object.rigidity(point));
+    const PlateGrid grid = PatchWindow::square(settings.window, settings.cells).grid;
+    const Plate     homogeneous{grid, settings.edges, object.material().poissonRatio, settings.foundation,
+                            NodeField(grid, std::exp(logarithm / double(object.size())))};
+    const double    perRigidity =
+        contactStiffness(object.material().modulus(1), settings.footprintRadius, object.material().thickness);
+    return solveLattice(homogeneous, {settings.footprintRadius, side, perRigidity}, solver, settings.tolerance);
+}
+
+FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& shape, PlateSolver& solver,
+                              double tolerance)
+{
+    PALP_EXPECT(shape.side >= 1 && shape.side <= ComplianceTable::kMostSide && shape.side % 2 == 1,
+                "a table of " + std::to_string(shape.side) + " entries a side");
+    PALP_EXPECT(shape.contactPerRigidity > 0, "no contact stiffness");
+    const PlateGrid& grid    = homogeneous.grid;
+    const double     spacing = std::max(grid.spacingX, grid.spacingZ); // a slope is measured over one; see below
+    const double     wanted  = 2 * (shape.side / 2 + 1) * shape.radius + spacing,
+                 found       = std::min(grid.sizeX(), grid.sizeZ());
+    if (found < wanted)
+        throw Error("the window of " + formatQuantity(found, "m") + " does not hold a table of " +
+                    std::to_string(shape.side) + " x " + std::to_string(shape.side) + " footprints of radius " +
+                    formatQuantity(shape.radius, "m") + "; expected at least " + formatQuantity(wanted, "m"));
+
+    FootprintLattice lattice{.shape = shape};
+    const auto       loadAt = [&](double x, double z) {
+        return footprintLoad(grid, 1, grid.sizeX() / 2 + x, grid.sizeZ() / 2 + z, shape.radius);
+    };
+    // Half a spacing to either side: the sub-cells of a footprint then cross as many nodes wherever it lies.
+    const double dx = grid.spacingX / 2, dz = grid.spacingZ / 2;
+    for (int i = 0; i < shape.side; ++i)
+        for (int j = 0; j < shape.side; ++j) {
+            const double x = (i - shape.side / 2) * shape.radius, z = (j - shape.side / 2) * shape.radius;
+            lattice.loads.push_back(loadAt(x, z));
+            lattice.slopesX.push_back(slopeOf(loadAt(x + dx, z), loadAt(x - dx, z), 2 * dx));
+            lattice.slopesZ.push_back(slopeOf(loadAt(x, z + dz), loadAt(x, z - dz), 2 * dz));
+        }
+    // The middle rung comes first: a solver counts rigidities in units of the first, and it must be exactly one.
+    const int reach  = homogeneous.foundation > 0 ? kRungs : 0;
+    lattice.rigidity = homogeneous.rigidity(0, 0);
+    std::vector<ComplianceTable::Entries> rungs(std::size_t(2 * reach + 1));
+    for (int n = 0; n <= 2 * reach; ++n) {
+        const int rung              = (n + 1) / 2 * (n % 2 == 0 ? 1 : -1); // 0, -1, 1, -2, ...
+        Plate     plate             = homogeneous;
+        plate.rigidity              = NodeField(grid, lattice.rigidity * std::pow(10, double(rung) / kRungsPerDecade));
+        const TableSolution own     = solveTable(plate, lattice, solver, tolerance);
+        const double        middle  = own.table.middle().lnCompliance;
+        auto&               entries = rungs[std::size_t(rung + reach)] = own.table.compliance;
+        for (ComplianceTable::Entry& entry : entries) entry.value -= middle;
+    }
+    lattice.rungs = std::move(rungs);
+    return lattice;
+}
+
+ComplianceTable::Entries FootprintLattice::homogeneous(double meanRigidity) const
+{
+    if (rungs.empty()) return {}; // while they are being made
+    const double last  = double(rungs.size() - 1);
+    const double along = std::clamp(last / 2 + kRungsPerDecade * std::log10(meanRigidity / rigidity), 0.0, last);
+    const auto   lower = std::min(std::size_t(along), rungs.size() - 1), upper = std::min(lower + 1, rungs.size() - 1);
+    const double t = along - double(lower);
+
+    ComplianceTable::Entries entries;
+    for (std::size_t n = 0; n < entries.size(); ++n) {
+        const ComplianceTable::Entry &a = rungs[lower][n], &b = rungs[upper][n];
+        entries[n] = {std::lerp(a.value, b.value, t), std::lerp(a.slopeX, b.slopeX, t),
+                      std::lerp(a.slopeZ, b.slopeZ, t)};
+    }
+    return entries;
+}
+
+TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver, double tolerance)
+{
+    std::vector<PlateSolution> solutions = solver.solveAll(plate, lattice.loads, tolerance);
+    TableSolution              result;
+    result.table.side    = lattice.shape.side;
+    result.table.spacing = lattice.shape.radius;
+
+    const double node = plate.rigidity.values().front(); // logarithms are of ratios to it: exactly 0 if all are alike
+    NodeField    over(plate.grid);
+    double       sum = 0;
+    for (std::size_t n = 0; n < over.values().size(); ++n)
+        sum += over.values()[n] = std::log(plate.rigidity.values()[n] / node);
+    const auto homogeneous = lattice.homogeneous(node * std::exp(sum / double(over.values().size())));
+    for (std::size_t n = 0; n < solutions.size(); ++n) {
+        const ComplianceTable::Entry felt = complianceOf(lattice, n, solutions[n].deflection);
+        const ComplianceTable::Entry own  = homogeneous[n];
+        result.table.compliance[n]       = {felt.value - own.value, felt.slopeX - own.slopeX, felt.slopeZ - own.slopeZ};
+        result.table.contactStiffness[n] = contactOf(lattice, n, over, node);
+    }
+    result.middle     = std::move(solutions[solutions.size() / 2]);
+    result.compliance = dot(lattice.loads[solutions.size() / 2], result.middle.deflection);
+    return result;
+}
+
+} // namespace palp

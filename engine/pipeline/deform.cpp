@@ -1,0 +1,277 @@
+#include "engine/pipeline/deform.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/quantity.h"
+#include "engine/plate/load.h"
+
+// The paper's section 2. Each step fills in its part of the patch; deform() below is their order.
+
+namespace palp {
+namespace {
+
+/// Adds the time until its scope ends to a stage.
+class StageClock {
+public:
+    explicit StageClock(double& milliseconds) : milliseconds_(milliseconds) {}
+    StageClock(const StageClock&)            = delete;
+    StageClock& operator=(const StageClock&) = delete;
+    ~StageClock() { milliseconds_ += std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    double&           milliseconds_;
+    Clock::time_point start_ = Clock::now();
+};
+
+// --- 2.1: the neighbourhood
+
+/// Radius of the ball that holds every point which can matter to the window [m].
+///
+/// Chord and chart distance agree in the azimuthal map. In the cylindrical ones
+/// chord^2 = 2 r^2 (1 - cos a cos b) <= r^2 (a^2 + 2 sin^2 b), which is x^2 + 2 z^2 (Lambert) or 2 x^2 + z^2
+/// (Gall-Peters).
+double gatherRadius(const PatchSettings& settings, double spacing)
+{
+    const double half  = settings.window / 2;
+    const double chord = settings.map == Map::lambertAzimuthal ? std::sqrt(2.0) * half : std::sqrt(3.0) * half;
+    return chord + kernelReach(spacing, settings.window / settings.cells);
+}
+
+void gatherPoints(Patch& patch, const SoftObject& object, const Contact& contact, const PatchSettings& settings)
+{
+    const StageClock clock(patch.times.gather);
+    patch.contact   = contact;
+    patch.spacing   = object.spacing();
+    patch.thickness = object.material().thickness;
+    object.index().gather(contact.point, gatherRadius(settings, patch.spacing), patch.gathered);
+}
+
+// --- 2.2, equations 1 to 3: the sphere near the contact
+
+void fitSphereTo(Patch& patch, const SoftObject& object)
+{
+    const StageClock        clock(patch.times.fit);
+    std::vector<glm::dvec3> points;
+    points.reserve(patch.gathered.size());
+    for (std::uint32_t point : patch.gathered) points.push_back(object.positions()[point]);
+    patch.sphere = fitSphere(points);
+}
+
+// --- 2.3, equation 4: an equal-area map, flat about the contact
+
+std::string degrees(double cosine)
+{
+    return std::to_string(std::lround(std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi)) + " degrees";
+}
+
+/// Whether the cloud has another side behind the contact: points in a tube inwards, beyond the surface itself.
+bool isClosedBehind(const SoftObject& object, const glm::dvec3& contact, const glm::dvec3& outward)
+{
+    const double reach = 3 * object.spacing(); // radius of the tube, and where it begins: some ten points across [m]
+    return std::any_of(object.positions().begin(), object.positions().end(), [&](const glm::dvec3& p) {
+        const double depth = glm::dot(contact - p, outward);
+        return depth > reach && glm::length(p + depth * outward - contact) < reach;
+    });
+}
+
+/// The chart on the hand's side of the surface; sets patch.sideUnsure.
+///
+/// A known direction decides unless it runs along the surface. A guessed one decides only where it is within 60 degrees
+/// of the normal; elsewhere the surface is an open sheet, which has no outside: there it is touched from the positive
+/// side of the world axis nearest to its normal, so that all of a sheet is touched from one side.
+Chart chartAt(Patch& patch, const SoftObject& object, const PatchSettings& settings,
+              const std::optional<Frame>& carried)
+{
+    constexpr double kSteep = 0.17, kClear = 0.5; // cosines of 80 and 60 degrees [1]
+    const Contact    contact = patch.contact;
+    const auto       around  = [&](const glm::dvec3& side) {
+        return Chart::around(patch.sphere.fit, contact.point, side, settings.map, carried);
+    };
+    const Chart  chart  = around(contact.outward);
+    const auto&  normal = chart.frame.normal;
+    const double cosine = glm::dot(normal, contact.outward);
+    if (contact.outwardKnown && cosine < kSteep)
+        throw Error("contact: the direction from which the finger comes is " + degrees(cosine) +
+                    " from the surface's normal (" + directionText(normal) +
+                    "), expected at most 80, or the side is not clear; try that normal or its opposite");
+    if (contact.outwardKnown) return chart;
+    patch.sideUnsure = !isClosedBehind(object, contact.point, normal);
+    if (!patch.sideUnsure || cosine >= kClear) return chart;
+    int axis = 0;
+    for (int k = 1; k < 3; ++k)
+        if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
+    patch.contact.outward = {axis == 0, axis == 1, axis == 2};
+    return around(patch.contact.outward);
+}
+
+/// The chart, and the places in it of the points on the near side.
+void layFlat(Patch& patch, const SoftObject& object, const PatchSettings& settings, const std::optional<Frame>& carried)
+{
+    const StageClock clock(patch.times.project);
+    patch.chart = chartAt(patch, object, settings, carried);
+    for (std::uint32_t point : patch.gathered)
+        if (const auto position = patch.chart.project(object.positions()[point])) {
+            patch.points.push_back(point);
+            patch.positions.push_back(*position);
+        }
+}
+
+// --- 2.4: a grid takes over the rigidity of the points
+
+/// A window that holds next to nothing of the cloud would still give an answer, and a wrong unit is the usual reason.
+void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
+{
+    constexpr std::ptrdiff_t kFewestPoints  = 9;   // 3 by 3: less is no field of rigidity
+    constexpr double         kMostUncovered = 0.9; // of the nodes: a corner of a sheet leaves three quarters [1]
+    const auto               held           = std::count_if(patch.positions.begin(), patch.positions.end(),
+                                                            [&](const ChartPoint& p) { return patch.window.holds(p); });
+    const std::string        what           = "touch: the window of " + formatQuantity(settings.window, "m");
+    const char* const        hint           = "; check --unit and --window";
+    if (held < kFewestPoints)
+        throw Error(what + " holds " + std::to_string(held) + " points of the cloud, which are " +
+                    formatQuantity(patch.spacing, "m") + " apart; expected at least " + std::to_string(kFewestPoints) +
+                    hint);
+    if (double(patch.nodesWithoutPoint) > kMostUncovered * double(patch.plate.grid.nodes()))
+        throw Error(what + " is almost empty: " + std::to_string(patch.nodesWithoutPoint) + " of its " +
+                    std::to_string(patch.plate.grid.nodes()) + " grid nodes have no point of the cloud nearby" + hint);
+}
+
+void sampleRigidity(Patch& patch, const SoftObject& object, const PatchSettings& settings)
+{
+    const StageClock    clock(patch.times.resample);
+    std::vector<double> rigidities;
+    rigidities.reserve(patch.points.size());
+    for (std::uint32_t point : patch.points) rigidities.push_back(object.rigidity(point));
+    patch.window        = PatchWindow::square(settings.window, settings.cells);
+    Resampled resampled = resampleRigidity(patch.window, patch.positions, rigidities, settings.sampling, patch.spacing);
+    patch.nodesWithoutPoint = resampled.nodesWithoutPoint;
+    patch.plate             = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
+                               std::move(resampled.rigidity)};
+    refuseIfEmpty(patch, settings);
+}
+
+// --- 2.5, equations 6 to 8: the plate bends under a unit force
+
+/// Force of 1 N on the footprint about the middle node.
+NodeField unitLoad(const PlateGrid& grid, const PatchSettings& settings)
+{
+    return footprintLoad(grid, 1, grid.sizeX() / 2, grid.sizeZ() / 2, settings.footprintRadius);
+}
+
+void keep(Patch& patch, PlateSolution solution, double compliance)
+{
+    patch.response      = std::move(solution.deflection);
+    patch.report        = std::move(solution.report);
+    patch.compliance    = compliance;
+    patch.times.prepare = patch.report.setUpMilliseconds;
+    patch.times.solve -= patch.times.prepare; // which the clock of this stage counts too
+}
+
+void bendPlate(Patch& patch, const PatchSettings& settings, PlateSolver& solver)
+{
+    const StageClock clock(patch.times.solve);
+    const NodeField  load     = unitLoad(patch.plate.grid, settings);
+    PlateSolution    solution = solver.solve(patch.plate, load, settings.tolerance);
+    const double     softness = dot(load, solution.deflection);
+    keep(patch, std::move(solution), softness);
+}
+
+/// The same under each footprint of a lattice.
+ComplianceTable bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLattice& lattice,
+                          PlateSolver& solver)
+{
+    const StageClock clock(patch.times.solve);
+    TableSolution    solved = solveTable(patch.plate, lattice, solver, settings.tolerance);
+    solved.table.chart      = patch.chart;
+    keep(patch, std::move(solved.middle), solved.compliance);
+    return solved.table;
+}
+
+// --- 2.6, equation 9: the plate moves the points, and in series with the contact it is what the hand feels
+
+/// Response of the points by bilinear interpolation; outside the window nothing moves.
+void movePoints(Patch& patch)
+{
+    const StageClock clock(patch.times.lift);
+    patch.pointResponse.reserve(patch.positions.size());
+    for (const ChartPoint& p : patch.positions)
+        patch.pointResponse.push_back(patch.window.holds(p)
+                                          ? interpolate(patch.window.grid, patch.response, p.x - patch.window.corner.x,
+                                                        p.z - patch.window.corner.z)
+                                          : 0.0);
+}
+
+void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& settings)
+{
+    const int    middle    = settings.cells / 2;
+    const double modulus   = object.material().modulus(patch.plate.rigidity(middle, middle));
+    patch.contactStiffness = contactStiffness(modulus, settings.footprintRadius, object.material().thickness);
+    patch.feltStiffness    = feltStiffness(settings.forceLaw, patch.contactStiffness, patch.compliance);
+}
+
+} // namespace
+
+Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings, PlateSolver& solver,
+             const std::optional<Frame>& carried)
+{
+    Patch patch;
+    gatherPoints(patch, object, contact, settings); // 2.1: the points near the contact
+    fitSphereTo(patch, object);                     // 2.2: lie close to a sphere,
+    if (!patch.deformed()) return patch;
+    layFlat(patch, object, settings, carried); // 2.3: which an equal-area map lays flat,
+    sampleRigidity(patch, object, settings);   // 2.4: where a grid takes over their rigidity
+    bendPlate(patch, settings, solver);        // 2.5: and bends as a plate under a unit force;
+    movePoints(patch);                         // 2.6: the plate moves the points,
+    findStiffness(patch, object, settings);    //      and with the contact it is what the hand feels.
+    return patch;
+}
+
+Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings)
+{
+    PlateSolver reference("reference");
+    return deform(object, contact, settings, reference);
+}
+
+PatchWithTable deformWithTable(const SoftObject& object, const Contact& contact, const PatchSettings& settings,
+                               const FootprintLattice& lattice, PlateSolver& solver,
+                               const std::optional<Frame>& carried)
+{
+    PatchWithTable result;
+    Patch&         patch = result.patch;
+    gatherPoints(patch, object, contact, settings);
+    fitSphereTo(patch, object);
+    if (!patch.deformed()) return result;
+    layFlat(patch, object, settings, carried);
+    sampleRigidity(patch, object, settings);
+    result.table = bendPlate(patch, settings, lattice, solver);
+    movePoints(patch);
+    findStiffness(patch, object, settings);
+    return result;
+}
+
+std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
+{
+    const PlateGrid& fine = patch.plate.grid;
+    if (!patch.deformed() || settings.cells % 4 != 0 || settings.footprintRadius < 2 * fine.spacingX) return {};
+    Plate coarse    = patch.plate;
+    coarse.grid     = {fine.cellsX / 2, fine.cellsZ / 2, 2 * fine.spacingX, 2 * fine.spacingZ};
+    coarse.rigidity = NodeField(coarse.grid);
+    for (int i = 0; i < coarse.grid.nodesX(); ++i)
+        for (int j = 0; j < coarse.grid.nodesZ(); ++j) coarse.rigidity(i, j) = patch.plate.rigidity(2 * i, 2 * j);
+    if (whyUnsolvable(coarse)) return {};
+    const NodeField load       = unitLoad(coarse.grid, settings);
+    const double    compliance = dot(load, solver.solve(coarse, load, settings.tolerance).deflection);
+    return std::abs(compliance - patch.compliance) / 3 / patch.compliance;
+}
+
+} // namespace palp

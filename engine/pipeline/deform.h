@@ -1,0 +1,46 @@
+#pragma once
+#include <optional>
+
+#include "engine/pipeline/compliance_table_solve.h"
+#include "engine/pipeline/patch.h"
+
+namespace palp {
+
+/// Section 2 of the paper on one clock: contact, neighbourhood, sphere, chart, rigidity, plate, points.
+///
+/// Solves for a force of 1 N on a smooth footprint about the contact; the plate is linear, so any force follows.
+/// \param carried  chart axes of a neighbouring contact; empty: the chart's own
+/// \throws Error if the plate cannot be solved (for example free on all sides), if the window holds next to nothing of
+///         the cloud, or if the hand's direction runs along the surface
+/// \thread that of the solver; announces factorisations of many seconds on a terminal
+/// \source Kumari & Chaudhuri 2016, sections 2.1 to 2.6
+/// \differs as differencesFromPaper() says of the settings; engine/method.md has every difference and why
+[[nodiscard]] Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings,
+                           PlateSolver& solver, const std::optional<Frame>& carried = {});
+
+/// As above, with the plate solved by the reference solver.
+[[nodiscard]] Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings);
+
+struct PatchWithTable {
+    Patch                          patch;
+    std::optional<ComplianceTable> table; ///< about the patch's chart; empty if it is not deformed()
+};
+
+/// deform() for a hand that moves: solves for a lattice of footprints in the same window, so that the servo can look
+/// up the compliance of wherever the contact is until the next patch comes; see ComplianceTracker.
+///
+/// The caller sets the table's sequence number and time.
+/// \param contact  where the hand will be, see aheadOf()
+/// \param lattice  of these settings
+/// \param carried  chart axes of the patch before: tables then turn only as the surface does
+/// \throws Error as deform()
+[[nodiscard]] PatchWithTable deformWithTable(const SoftObject& object, const Contact& contact,
+                                             const PatchSettings& settings, const FootprintLattice& lattice,
+                                             PlateSolver& solver, const std::optional<Frame>& carried = {});
+
+/// How far the compliance is from its limit of fine grids, relative [1]: the change of c from a grid twice as coarse,
+/// divided by 3 (Richardson, second order). Empty if the cells are not a multiple of 4 or the footprint is too small.
+[[nodiscard]] std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings,
+                                                        PlateSolver& solver);
+
+} // namespace palp

@@ -1,0 +1,82 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/chart/chart.h"
+#include "engine/chart/resample.h"
+#include "engine/chart/sphere_fit.h"
+#include "engine/cloud/soft_object.h"
+#include "engine/contact/contact.h"
+#include "engine/force/force_law.h"
+#include "engine/plate/plate.h"
+#include "engine/plate/plate_solver.h"
+
+namespace palp {
+
+/// Scene constants: everything that decides what a touch feels like, apart from the object itself.
+///
+/// Window, footprint and area of contact are lengths that are never derived from the points at the contact. So the
+/// compliance of a homogeneous object is exactly constant, and whatever the hand feels is in the object.
+struct PatchSettings {
+    double     foundation      = 0;     ///< k [Pa/m] of what lies below; 0: nothing (the paper)
+    double     window          = 40e-3; ///< edge of the square of chart that bends [m]
+    int        cells           = 64;    ///< of the grid along that edge, an even number
+    double     footprintRadius = 4e-3;  ///< of the fingertip [m]
+    Map        map             = Map::lambertAzimuthal;
+    Resampling sampling        = Resampling::logMean;
+    PlateEdges edges{}; ///< of the window
+    ForceLaw   forceLaw  = ForceLaw::series;
+    double     tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
+};
+
+/// Milliseconds that each stage of deform() took.
+struct StageTimes {
+    double gather = 0, fit = 0, project = 0, resample = 0, prepare = 0, solve = 0, lift = 0;
+
+    [[nodiscard]] double total() const noexcept { return gather + fit + project + resample + prepare + solve + lift; }
+};
+
+/// What a unit force at the contact does to the neighbourhood.
+struct Patch {
+    Contact         contact;
+    SphereFitResult sphere;
+    Chart           chart;
+    bool            sideUnsure = false; ///< the finger's side was guessed, and the cloud is open there
+    PatchWindow     window;
+    Plate           plate;                 ///< rigidity at the nodes, edges, foundation
+    double          spacing           = 0; ///< typical distance of neighbouring points of the cloud [m]
+    double          thickness         = 0; ///< of the object at the contact [m]
+    std::size_t     nodesWithoutPoint = 0; ///< see Resampled
+    NodeField       response;              ///< deflection per force at the nodes [m/N]
+    double          compliance       = 0;  ///< c: response averaged over the footprint, work-conjugate [m/N]
+    double          contactStiffness = 0;  ///< k_c [N/m]
+    double          feltStiffness    = 0;  ///< [N/m]
+
+    std::vector<std::uint32_t> gathered;      ///< points of the cloud around the contact
+    std::vector<std::uint32_t> points;        ///< those on the near side, in the same order as the next two
+    std::vector<ChartPoint>    positions;     ///< of `points` in the chart [m]
+    std::vector<double>        pointResponse; ///< deflection per force of `points` [m/N]; 0 outside the window
+
+    SolveReport report;
+    StageTimes  times; ///< [ms]
+
+    /// False if the points do not determine a surface; then nothing below `sphere` is filled in.
+    [[nodiscard]] bool deformed() const noexcept { return sphere.usable(); }
+
+    /// Unit vector along which a force presses: into the surface.
+    [[nodiscard]] glm::dvec3 forceDirection() const noexcept { return -chart.frame.normal; }
+};
+
+/// A unit vector as complaints and warnings show it: "0.00,0.60,0.80".
+[[nodiscard]] std::string directionText(const glm::dvec3& direction);
+
+/// The whole cloud under `force` [N] at the patch's contact: p_i + force * response_i * forceDirection.
+/// \source Kumari & Chaudhuri 2016, eq. 9
+/// \differs that equation is empty in print: what moves, how far and along what is ours
+[[nodiscard]] std::vector<glm::dvec3> displaced(const PointCloud& cloud, const Patch& patch, double force);
+
+/// Deflection of every point of the cloud under `force` [N], positive into the surface [m].
+[[nodiscard]] std::vector<double> deflections(const PointCloud& cloud, const Patch& patch, double force);
+
+} // namespace palp

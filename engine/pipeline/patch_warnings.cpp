@@ -1,0 +1,88 @@
+#include "engine/pipeline/patch_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "engine/core/quantity.h"
+
+namespace palp {
+namespace {
+
+/// Width beyond which the edges of a window on a foundation are not felt [m]; empty without a foundation.
+///
+/// 10 characteristic lengths l = (D/k)^(1/4) hold the compliance to 0.1 %, and 12 where D varies by more than 10;
+/// measured against windows of 24 l for warts. D is the geometric mean over the window.
+std::optional<double> windowWanted(const Plate& plate)
+{
+    if (plate.foundation <= 0) return {};
+    double logarithm = 0;
+    for (double d : plate.rigidity.values()) logarithm += std::log(d);
+    const double mean        = std::exp(logarithm / double(plate.rigidity.values().size()));
+    const auto [least, most] = std::minmax_element(plate.rigidity.values().begin(), plate.rigidity.values().end());
+    return (*most > 10 * *least ? 12 : 10) * std::pow(mean / plate.foundation, 0.25);
+}
+
+double largest(const NodeField& field)
+{
+    return *std::max_element(field.values().begin(), field.values().end());
+}
+
+/// Largest value on the sides of the grid.
+double edgeDeflection(const NodeField& field)
+{
+    double    most  = 0;
+    const int lastI = field.nodesX() - 1, lastJ = field.nodesZ() - 1;
+    for (int i = 0; i <= lastI; ++i) most = std::max({most, field(i, 0), field(i, lastJ)});
+    for (int j = 0; j <= lastJ; ++j) most = std::max({most, field(0, j), field(lastI, j)});
+    return most;
+}
+
+} // namespace
+
+std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force)
+{
+    std::vector<std::string> result;
+    if (!patch.deformed()) return result;
+    if (!patch.report.converged)
+        result.push_back("the plate's solution is not as good as asked for: its error is about " +
+                         formatNumber(patch.report.errorEstimate.value_or(1)) +
+                         " or more, relative; try fewer cells or less contrast");
+    const double deepest = std::abs(force) * largest(patch.response);
+    const double half    = patch.thickness / 2;
+    if (deepest > half)
+        result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
+                         formatQuantity(half, "m") +
+                         "): Kirchhoff plate theory does not hold here; press with less than " +
+                         formatQuantity(std::abs(force) * half / deepest, "N"));
+    if (patch.nodesWithoutPoint > 0)
+        result.push_back(
+            std::to_string(patch.nodesWithoutPoint) + " of " + std::to_string(patch.plate.grid.nodes()) +
+            " grid nodes have no point nearby (a hole, a border or the far side): they carry the rigidity of "
+            "the nearest point");
+    if (settings.footprintRadius < 2 * patch.spacing)
+        result.push_back("the points are " + formatQuantity(patch.spacing, "m") +
+                         " apart and the footprint's radius is " + formatQuantity(settings.footprintRadius, "m") +
+                         ": rigidity between the points is interpolated, finer detail is not in the data");
+    if (patch.sideUnsure)
+        result.push_back("the cloud has no other side behind this place, so the finger's side is a guess (" +
+                         directionText(patch.chart.frame.normal) + "); set --from");
+    constexpr double kFarOffSphere =
+        0.05; // of the window: surfaces then slope by a tenth and more against the sphere [1]
+    if (patch.sphere.fit.misfit > kFarOffSphere * settings.window)
+        result.push_back("the points lie " + formatQuantity(patch.sphere.fit.misfit, "m") +
+                         " (rms) off the fitted sphere, more than 5 % of the window: a smaller window follows the "
+                         "surface better");
+    if (const double moving = edgeDeflection(patch.response) / largest(patch.response); moving > 0.02)
+        result.push_back("the window's edge moves by " + std::to_string(std::lround(100 * moving)) +
+                         " % of the largest deflection and nothing moves beyond it: the deformed cloud is torn there");
+    if (settings.foundation == 0)
+        result.push_back("there is no foundation, so the size of the window decides: compliance grows with its area");
+    if (const auto width = windowWanted(patch.plate); width && settings.window < *width)
+        result.push_back("the window of " + formatQuantity(settings.window, "m") + " is narrower than the " +
+                         formatQuantity(*width, "m") +
+                         " that this rigidity and foundation ask for: its edges are felt");
+    return result;
+}
+
+} // namespace palp

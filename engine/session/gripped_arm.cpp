@@ -1,0 +1,52 @@
+#include "engine/session/gripped_arm.h"
+
+#include <glm/geometric.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/quantity.h"
+
+namespace palp {
+
+const DeviceRecord kArmRecord{.name           = "arm",
+                              .model          = "a simulated arm like the Falcon's",
+                              .holder         = DeviceHolder::scriptedHand,
+                              .simulated      = true,
+                              .keepsSceneAxes = true,
+                              .make           = [](const DeviceRequest& request) -> std::unique_ptr<HapticDevice> {
+                                  return std::make_unique<GrippedArm>(*request.hand);
+                              }};
+
+SimulatedHand GrippingHand::at(double time) const noexcept
+{
+    constexpr double kStep = 1e-3; // [s] over which the target's velocity is taken
+    const double     there = path.begin() + time;
+    SimulatedHand    hand  = grip;
+    hand.target            = frame.toDevice(path.position(there));
+    hand.targetVelocity    = (frame.toDevice(path.position(there + kStep)) - hand.target) / kStep;
+    return hand;
+}
+
+void GrippingHand::demandWithin(double radius) const
+{
+    for (const HandPose& s : path.samples())
+        if (const double away = glm::length(s.position - frame.origin); away > radius)
+            throw Error("the hand: at " + formatQuantity(s.time, "s") + " it is " + formatQuantity(away, "m") +
+                        " from the middle of the arm's workspace, whose radius is " + formatQuantity(radius, "m") +
+                        "; try a smaller --reach, or a scene whose start_height is lower");
+}
+
+GrippedArm::GrippedArm(const GrippingHand& hand, const SimulatedArmSettings& arm)
+    : hand_(hand), arm_(arm, hand.at(0).target)
+{
+    hand.demandWithin(arm.boxRadius);
+}
+
+HapticState GrippedArm::exchange(const GovernedForce& force, double now) noexcept
+{
+    HapticState state = arm_.exchange(force, now); // on to now, by the hand of the last tick
+    state.buttons     = hand_.path.buttons(hand_.path.begin() + now);
+    arm_.holdBy(hand_.at(now));
+    return state;
+}
+
+} // namespace palp

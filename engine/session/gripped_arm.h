@@ -1,0 +1,44 @@
+#pragma once
+#include "device/arm_device.h"
+#include "device/device_record.h"
+#include "engine/session/hand_path.h"
+#include "engine/session/session_parts.h"
+
+namespace palp {
+
+/// A simulated arm, gripped by a scripted hand.
+extern const DeviceRecord kArmRecord;
+
+/// A scripted hand that grips a simulated device by a spring and a damper while it goes along a path: forces move the
+/// grip, as they would with a person.
+struct GrippingHand {
+    const HandPath& path; ///< [m] of the scene, its first sample is where the hand is at time 0; outlives the device
+    SimulatedHand   grip; ///< how firmly: 150 N/m is relaxed, 500 firm; its target is ignored
+    DeviceFrame     frame{};
+
+    /// The hand at a time [s] of the session, in the device's frame.
+    [[nodiscard]] SimulatedHand at(double time) const noexcept;
+
+    /// \throws Error naming the first time at which the path is farther than `radius` [m] from the frame's origin
+    void demandWithin(double radius) const;
+};
+
+/// A simulated arm in a scripted hand.
+/// \thread as HapticDevice
+class GrippedArm : public HapticDevice {
+public:
+    /// \throws Error naming a setting out of its range, or where the path leaves the arm's workspace
+    explicit GrippedArm(const GrippingHand& hand, const SimulatedArmSettings& arm = {});
+
+    [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return arm_.info(); }
+
+    void        open() override { arm_.open(); }
+    void        close() noexcept override { arm_.close(); }
+    HapticState exchange(const GovernedForce& force, double now) noexcept override;
+
+private:
+    GrippingHand hand_;
+    ArmDevice    arm_;
+};
+
+} // namespace palp

@@ -1,0 +1,125 @@
+#include "engine/session/gripped_falcon.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "device/falcon/falcon_record.h"
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+constexpr std::array kOptions{kFalconFirmware, kFalconCounts, kFalconEventCharacter, kFalconCold};
+
+constexpr std::size_t kStandInFirmware = 8000; ///< [byte] of zeros, which the emulator takes as well as any
+
+std::unique_ptr<HapticDevice> make(const DeviceRequest& request)
+{
+    FalconDeviceSettings settings = falconSettings(request);
+    if (textOf(request.options, kFalconCold).empty()) {
+        if (!textOf(request.options, kFalconFirmware).empty())
+            throw Error(std::string(kFalconFirmware.flag) + ": an emulated Falcon needs it with " +
+                        std::string(kFalconCold.flag) + " only");
+        return std::make_unique<GrippedFalcon>(*request.hand, GrippedFalcon::ready(), settings);
+    }
+    settings.firmware = falconFirmware(request);
+    if (settings.firmware.empty()) settings.firmware.assign(kStandInFirmware, 0);
+    return std::make_unique<GrippedFalcon>(*request.hand, Ft232EmulatorSettings{}, settings);
+}
+
+/// Where the hand that homes it has the grip along the device's z [m], by the time [s] since then: out, in as far as it
+/// goes, and back to the middle. Empty once it has been there for a moment.
+std::optional<double> homingPlace(double time)
+{
+    constexpr double kOut = 0.048, kIn = -0.052, kSpeed = 0.1, kRest = 0.3; // [m], [m/s], [s]
+    constexpr double kTurn = kOut / kSpeed + kRest, kBack = kTurn + (kOut - kIn) / kSpeed + kRest;
+    if (time < kTurn) return std::min(kOut, kSpeed * time);
+    if (time < kBack) return std::max(kIn, kOut - kSpeed * (time - kTurn));
+    if (time < kBack - kIn / kSpeed + kRest) return std::min(0.0, kIn + kSpeed * (time - kBack));
+    return {};
+}
+
+/// The emulator has the encoders, the delays and the stops.
+SimulatedArmSettings bareArm()
+{
+    SimulatedArmSettings arm;
+    arm.encoderStep  = 0;
+    arm.delaySamples = 0;
+    return arm;
+}
+
+FalconDeviceSettings stepped(FalconDeviceSettings settings)
+{
+    settings.pace = FalconPace::stepped;
+    return settings;
+}
+
+} // namespace
+
+const DeviceRecord kFalconEmulatorRecord{.name      = "falcon-emulator",
+                                         .model     = "a Falcon emulated down to its wire, in a scripted hand",
+                                         .holder    = DeviceHolder::scriptedHand,
+                                         .simulated = true,
+                                         .options   = kOptions,
+                                         .make      = make};
+
+Ft232EmulatorSettings GrippedFalcon::ready()
+{
+    Ft232EmulatorSettings settings;
+    settings.falcon.running = settings.falcon.homed = true;
+    return settings;
+}
+
+GrippedFalcon::GrippedFalcon(const GrippingHand& hand, const Ft232EmulatorSettings& falcon,
+                             const FalconDeviceSettings& device)
+    : hand_(hand), arm_(bareArm(), hand.at(0).target),
+      emulator_(falcon, [this](const glm::dvec3& force, double dt) { return moved(force, dt); }),
+      device_([this] { return emulator_.connect(); }, stepped(device)), info_(device_.info())
+{
+    hand.demandWithin(info_.workspaceRadius);
+    info_.model        = "emulated Falcon";
+    info_.isSimulation = true;
+    info_.needsHoming  = !falcon.falcon.homed;
+}
+
+HapticState GrippedFalcon::exchange(const GovernedForce& force, double now) noexcept
+{
+    if (!running_ || now < last_) { // the servo's clock starts, or starts anew
+        begun_  = emulator_.now() - now;
+        waited_ = 0;
+    }
+    running_ = true;
+    last_    = now;
+    if (const std::uint32_t wanted = hand_.path.buttons(hand_.path.begin() + now - waited_); wanted != pressed_) {
+        emulator_.falcon().press(std::uint8_t(wanted));
+        pressed_ = wanted;
+    }
+    return device_.exchange(force, now);
+}
+
+/// On its path, or off it to home the Falcon.
+SimulatedHand GrippedFalcon::handNow()
+{
+    if (homingSince_) {
+        if (const auto place = homingPlace(emulated_ - *homingSince_)) {
+            SimulatedHand hand  = hand_.at(0);
+            hand.target         = {0, 0, *place};
+            hand.targetVelocity = {};
+            return hand;
+        }
+        homingSince_.reset();
+        waited_ = emulated_ - begun_;
+    }
+    return hand_.at(running_ ? std::max(0.0, emulated_ - begun_ - waited_) : 0);
+}
+
+glm::dvec3 GrippedFalcon::moved(const glm::dvec3& force, double dt)
+{
+    arm_.holdBy(handNow());
+    emulated_ += dt;
+    arm_.step(force, dt);
+    return arm_.position();
+}
+
+} // namespace palp

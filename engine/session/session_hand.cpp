@@ -1,0 +1,137 @@
+#include "engine/session/session_hand.h"
+
+#include <filesystem>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "device/hid/hidapi_system.h"
+#include "engine/core/contract.h"
+#include "engine/core/nearest_name.h"
+#include "engine/core/quantity.h"
+#include "engine/session/gripped_arm.h"
+#include "engine/session/scripted_hand.h"
+
+namespace palp {
+namespace {
+
+/// Of the thickness: the deflection is at most some tenths more than the hand's depth, so that theory holds [1].
+constexpr double kDepth = 0.4;
+
+/// The grip of a hand that was asked for none, on a device that only moves when it is gripped.
+constexpr SimulatedHand kGrip{.stiffness = 300, .damping = 2};
+
+/// A hand hardly goes farther than so many sizes of the object [1].
+constexpr double kWide = 5;
+
+/// Diagonal of the box that the hand stays in [m].
+double widthOf(const HandPath& path)
+{
+    glm::dvec3 low = path.samples().front().position, high = low;
+    for (const HandPose& s : path.samples()) {
+        low  = glm::min(low, s.position);
+        high = glm::max(high, s.position);
+    }
+    return glm::length(high - low);
+}
+
+HandPath generated(HandMotion motion, const HandChoice& choice, double seconds, const Scene& scene,
+                   const SoftObject& object)
+{
+    const HandPlace place = handPlace(scene, object);
+    HandScript      script;
+    script.motion   = motion;
+    script.speed    = choice.speed;
+    script.depth    = choice.depth.value_or(kDepth * scene.material.thickness);
+    script.radius   = choice.radius;
+    script.height   = scene.startHeight;
+    script.duration = seconds;
+    return draped(makeHand(script, place), place, object);
+}
+
+/// A file is as long as it is, unless the user says how long.
+void readPath(SessionHand& hand, const HandChoice& choice, const SoftObject& object)
+{
+    hand.path = std::make_unique<const HandPath>(readHand(choice.hand));
+    if (!choice.seconds) hand.seconds = hand.path->duration();
+    if (const double wide = widthOf(*hand.path), size = object.cloud().bounds().diagonal(); wide > kWide * size)
+        hand.warnings.push_back("the hand goes over " + formatQuantity(wide, "m") + " and the object measures " +
+                                formatQuantity(size, "m") + ": are its positions metres?");
+}
+
+/// What a scripted hand grips begins where the hand does; any other device has its middle before the scene's place.
+DeviceFrame frameOf(const SessionHand& hand, const Scene& scene, const SoftObject& object)
+{
+    const glm::dvec3 start = hand.path ? hand.path->position(hand.path->begin()) : glm::dvec3(0);
+    if (hand.path && hand.record->keepsSceneAxes) return {start};
+    const HandPlace place = handPlace(scene, object);
+    return deviceFrame(hand.path ? start : place.point + scene.startHeight * place.outward, place.outward);
+}
+
+void makeDevice(SessionHand& hand, const HandChoice& choice, const Scene& scene, const SoftObject& object)
+{
+    const DeviceRecord& record = *hand.record;
+    if (record.support && !record.support().isBuilt)
+        throw Error("--hand " + choice.hand + ": this build of Palpate is " + record.support().library + "; " +
+                    record.support().help);
+    hand.hid   = std::make_unique<HidapiSystem>();
+    hand.frame = frameOf(hand, scene, object);
+    DeviceRequest request{
+        .hid = *hand.hid, .options = choice.options, .path = devicePath(choice.hand), .onUpload = choice.onUpload};
+    if (!hand.path) {
+        hand.device = record.make(request);
+        return;
+    }
+    const GrippingHand gripping{*hand.path, choice.grip.value_or(kGrip), hand.frame};
+    request.hand = &gripping;
+    hand.device  = record.make(request);
+}
+
+/// A word that is neither a hand nor a file was meant for a hand that sounds like it.
+void refuseSlips(const std::string& word)
+{
+    if (std::filesystem::exists(word)) return;
+    std::vector<std::string_view> known;
+    for (const auto& motion : namesOf(HandMotion{})) known.emplace_back(motion.name);
+    for (const DeviceRecord* record : deviceRecords()) known.push_back(record->name);
+    if (const auto meant = nearestName(word, known))
+        throw Error("--hand " + word + ": there is no such hand or file; did you mean " + std::string(*meant) + "?");
+}
+
+} // namespace
+
+void demandGood(const HandChoice& choice)
+{
+    const DeviceRecord* record = deviceNamed(choice.hand);
+    if (record && record->holder == DeviceHolder::pointer)
+        throw Error("--hand " + choice.hand + ": it needs a window, which this command does not open; try scan, or " +
+                    "--hand " + std::string(kArmRecord.name));
+    if (!record && !valueNamed<HandMotion>(choice.hand)) refuseSlips(choice.hand);
+    demandOptionsOf(choice.hand, choice.options);
+    if (record && record->holder != DeviceHolder::scriptedHand && choice.grip)
+        throw Error("--arm: no scripted hand grips the " + choice.hand + "; omit one of the two");
+}
+
+SessionHand openHand(const HandChoice& choice, const Scene& scene, const SoftObject& object)
+{
+    demandGood(choice);
+    SessionHand hand;
+    hand.record  = deviceNamed(choice.hand);
+    hand.seconds = choice.seconds.value_or(hand.seconds);
+    if (!hand.record || hand.record->holder == DeviceHolder::scriptedHand) {
+        const auto motion = hand.record ? HandMotion::scan : valueNamed<HandMotion>(choice.hand);
+        if (motion)
+            hand.path = std::make_unique<const HandPath>(generated(*motion, choice, hand.seconds, scene, object));
+        else
+            readPath(hand, choice, object);
+    }
+    if (!hand.record && choice.grip) hand.record = &kArmRecord;
+    if (hand.record)
+        makeDevice(hand, choice, scene, object);
+    else
+        hand.device = std::make_unique<ScriptedHand>(*hand.path);
+    hand.device->open();
+    return hand;
+}
+
+} // namespace palp

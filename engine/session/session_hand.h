@@ -1,0 +1,53 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "device/device_record.h"
+#include "device/simulated_arm.h"
+#include "engine/session/device_registry.h"
+#include "engine/session/hand_path.h"
+#include "engine/session/session_parts.h"
+
+namespace palp {
+
+/// Which hand a session is to have.
+struct HandChoice {
+    std::string                  hand   = "scan"; ///< press, circle, scan, a device of deviceRecords(), or a file
+    double                       speed  = 0.05;   ///< [m/s] of a generated hand, at most
+    double                       radius = 0.01;   ///< [m] of a circle; half the length of a scan
+    std::optional<double>        depth{};         ///< [m] below the surface; empty: 40 % of the thickness
+    std::optional<SimulatedHand> grip{};          ///< a generated hand or a file grips a simulated device so firmly
+    DeviceOptionValues           options{};       ///< of the device
+    std::optional<double>        seconds{};       ///< empty: 5 s, or a file's own length
+
+    std::function<void(std::size_t, std::size_t)> onUpload{}; ///< see DeviceRequest
+};
+
+/// The hand of a session, with its device open.
+struct SessionHand {
+    std::unique_ptr<HidSystem>      hid;              ///< of the device; may be null
+    std::unique_ptr<const HandPath> path;             ///< of a generated hand or a file; may be null
+    const DeviceRecord*             record = nullptr; ///< null: the path moves by itself, whatever the force
+    std::unique_ptr<HapticDevice>   device;
+    DeviceFrame                     frame;
+    double                          seconds = 5; ///< [s] how long
+    std::vector<std::string>        warnings;    ///< what is odd about it, in sentences
+
+    /// A person holds it, so that it runs in real time only.
+    [[nodiscard]] bool isHeldByPerson() const noexcept { return record && record->holder == DeviceHolder::person; }
+};
+
+/// Checks what the words alone tell: the hand's name and the options of its device. Whether the device is plugged in
+/// shows when it is opened.
+/// \throws Error naming `--hand` or the option
+void demandGood(const HandChoice& choice);
+
+/// Makes the hand and opens its device.
+/// \throws Error naming the option, the file, or why the device cannot be used
+[[nodiscard]] SessionHand openHand(const HandChoice& choice, const Scene& scene, const SoftObject& object);
+
+} // namespace palp

@@ -1,0 +1,127 @@
+#include "engine/tools/gui/controls.h"
+
+#include "engine/core/contract.h"
+#include "engine/core/quantity.h"
+#include "engine/tools/gui/key_bindings.h"
+
+namespace palp {
+
+void Controls::resetView()
+{
+    parts_.camera.resetView(parts_.object.stage().place());
+}
+
+void Controls::exaggerateMore()
+{
+    double& factor = parts_.state.look.exaggeration;
+    factor         = factor >= 8 ? 1 : 2 * factor;
+    say("displacement \u00d7 " + std::to_string(int(factor)));
+}
+
+void Controls::switchTool()
+{
+    ViewState& state  = parts_.state;
+    const bool paints = state.tool == Tool::touch;
+    state.tool        = paints ? Tool::paint : Tool::touch;
+    if (paints) paintBefore_ = state.look.paint;
+    state.look.paint = paints ? ViewPaint::stiffness : paintBefore_; // what is painted is seen
+    say(paints ? "brush: left button paints, [ and ] size, Ctrl+Z takes back" : "hold Space and move: touch");
+}
+
+void Controls::resizeBrush(double factor)
+{
+    parts_.state.brush.radius *= factor;
+    say("brush of " + formatQuantity(parts_.state.brush.radius, "m"));
+}
+
+/// Lets go of the object, whatever the hand is; never quits.
+void Controls::letGo()
+{
+    parts_.state.keys = false;
+    parts_.session.letGo();
+}
+
+void Controls::replayLast()
+{
+    const std::string& last = parts_.session.recorder().lastFolder();
+    last.empty() ? say("nothing has been recorded yet: F5 records") : open(last);
+}
+
+void Controls::goOn()
+{
+    parts_.notices.clearFaults();
+    parts_.session.resume();
+    parts_.session.end();
+}
+
+void Controls::savePicture(Shot shot)
+{
+    try {
+        ViewScene&    scene  = parts_.object.stage().view().scene();
+        const Camera& camera = parts_.state.camera;
+        const auto*   texts  = parts_.state.texts ? parts_.texts.of(parts_.pictures.size()) : nullptr;
+        say("saved " + (shot == Shot::window ? parts_.pictures.saveWindow(scene, camera, texts)
+                                             : parts_.pictures.saveStill(scene, camera, parts_.object.stem())));
+    } catch (const Error& error) {
+        parts_.notices.complain(error.what());
+    }
+}
+
+void Controls::toggleKeySheet()
+{
+    ViewState& state = parts_.state;
+    state.keys       = !state.keys;
+    if (state.blind || !panelsExist_) say(state.keys ? keyLine(state.blind) : "");
+}
+
+void Controls::open(const std::filesystem::path& what)
+{
+    parts_.object.request(what);
+    parts_.session.resume();
+    parts_.session.end();
+}
+
+void Controls::change(const SceneValues& values)
+{
+    parts_.object.request(values);
+    parts_.session.resume();
+    parts_.session.end();
+}
+
+void Controls::perform(const PanelWishes& wishes)
+{
+    if (wishes.frame) frameObject();
+    if (wishes.reset) resetView();
+    if (wishes.screenshot) savePicture(Shot::still);
+    if (wishes.record) toggleRecording();
+    if (wishes.undo) undo();
+    if (wishes.redo) redo();
+    if (wishes.save) savePaint();
+    if (wishes.resetFault) goOn();
+    if (!wishes.values.empty()) change(wishes.values);
+}
+
+void Controls::followPointer(const WindowInput& input)
+{
+    std::optional<Hit> hit;
+    if (input.touch || input.doubleClick || parts_.state.tool == Tool::paint) // it looks at every point
+        hit = parts_.object.stage().hitAt(parts_.state.camera, input.pointer, input.size);
+    parts_.session.followPointer(input, hit, parts_.state.pressDepth);
+    if (input.panelsTakePointer) return parts_.paint.endStroke(parts_.object.stage());
+    paintWith(input, hit);
+    parts_.camera.followPointer(input, parts_.state.tool == Tool::paint && !input.shift, hit);
+}
+
+void Controls::paintWith(const WindowInput& input, const std::optional<Hit>& hit)
+{
+    Stage&     stage  = parts_.object.stage();
+    const bool paints = parts_.state.tool == Tool::paint && input.left && !input.shift && !parts_.notices.busy();
+    if (!paints) return parts_.paint.endStroke(stage);
+    if (!hit || (parts_.paint.inStroke() && input.moved == glm::dvec2(0))) return;
+    parts_.paint.stroke(stage, parts_.state.brush, hit->point);
+    if (!parts_.session.recorder().recording()) return;
+    parts_.session.end();
+    say("the recording has ended: what it was of is being painted");
+}
+
+} // namespace palp

@@ -1,0 +1,76 @@
+#pragma once
+#include "engine/tools/gui/camera_control.h"
+#include "engine/tools/gui/object_source.h"
+#include "engine/tools/gui/paint_tool.h"
+#include "engine/tools/gui/panels.h"
+#include "engine/tools/gui/picture_loop.h"
+#include "engine/tools/gui/touch_session.h"
+
+namespace palp {
+
+/// The parts of a workbench, which outlive who acts on them.
+struct WorkbenchParts {
+    ViewState&     state;
+    Notices&       notices;
+    ObjectSource&  object;
+    TouchSession&  session;
+    PaintTool&     paint;
+    CameraControl& camera;
+    PictureLoop&   pictures;
+    PictureTexts&  texts;
+};
+
+/// Does what a user asks for by a key, in a panel or with the pointer. Invariant: nothing that takes long happens
+/// here; it is requested, and the session ends for it. \thread the window's
+class Controls {
+public:
+    explicit Controls(const WorkbenchParts& parts) : parts_(parts) {}
+
+    [[nodiscard]] ViewState& state() { return parts_.state; }
+
+    void frameObject() { parts_.camera.frameObject(); }
+    void resetView();
+    void lookFrom(const glm::dvec3& toEye) { parts_.camera.lookFrom(toEye); }
+    void exaggerateMore();
+
+    void switchTool();
+    void resizeBrush(double factor);
+    void undo() { parts_.paint.undo(parts_.object.stage()); }
+    void redo() { parts_.paint.redo(parts_.object.stage()); }
+    void savePaint() { parts_.paint.save(parts_.object.stage()); }
+
+    void letGo();
+    void declare() { parts_.session.declare(); }
+    void toggleRecording() { parts_.session.toggleRecording(); }
+    void replayLast();
+    /// Takes the object again after a fault or letting go.
+    void goOn();
+    void goOnIfHalted()
+    {
+        if (parts_.session.halted()) goOn();
+    }
+
+    enum class Shot { still, window };
+    void savePicture(Shot shot);
+    /// Shows or hides the sheet of keys; where there are no panels, they are told in a line.
+    void toggleKeySheet();
+    void setPanels(bool exist) { panelsExist_ = exist; }
+
+    void open(const std::filesystem::path& what);
+    void change(const SceneValues& values);
+    void perform(const PanelWishes& wishes);
+
+    /// Moves camera and hand, and paints.
+    void followPointer(const WindowInput& input);
+
+    void say(const std::string& message) { parts_.notices.say(message); }
+
+private:
+    void paintWith(const WindowInput& input, const std::optional<Hit>& hit);
+
+    WorkbenchParts parts_;
+    ViewPaint      paintBefore_ = ViewPaint::stiffness; ///< colours that were shown when the brush was taken
+    bool           panelsExist_ = false;
+};
+
+} // namespace palp

@@ -1,0 +1,50 @@
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/tools/gui/input.h"
+
+namespace palp {
+
+class Controls;
+
+enum class KeyModifier { none, control, shift };
+
+/// The parts of the sheet of keys.
+enum class KeyGroup { view, show, touch, program };
+
+/// When a binding applies: in a hunt something is hidden in the object, and nothing may tell where.
+enum class KeyScope { always, nothingHidden, somethingHidden };
+
+/// A key, or something done with the mouse, and what it does.
+struct KeyBinding {
+    int         key; ///< as KeyPress::key; 0: explained here, and handled by the pointer's input
+    KeyModifier modifier;
+    KeyScope    scope;
+    KeyGroup    group;
+    const char* label; ///< "Ctrl+Z"
+    const char* help;  ///< what it does; null: the binding before explains this one too
+    void (*act)(Controls&);
+    const char* brief = nullptr; ///< in the line of keys of a window without panels; null: omitted there
+};
+
+/// All bindings. They handle keys, the sheet of keys (F1) shows them, and a test holds the README's table against them.
+[[nodiscard]] std::span<const KeyBinding> keyBindings();
+
+/// Does what a key is bound to. One that does not apply now says so.
+void handleKey(const KeyPress& press, Controls& controls);
+
+/// A line of the sheet of keys.
+struct KeyLine {
+    KeyGroup    group;
+    std::string keys; ///< "P  Shift+P"
+    std::string help;
+};
+/// Returns the lines for what applies. \param hidden  something is hidden in the object
+[[nodiscard]] std::vector<KeyLine> keyLines(bool hidden);
+
+/// Returns the keys that apply as one line of text, for windows without panels.
+[[nodiscard]] std::string keyLine(bool hidden);
+
+} // namespace palp

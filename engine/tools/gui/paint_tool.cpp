@@ -1,0 +1,107 @@
+#include "engine/tools/gui/paint_tool.h"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "engine/cloud/ply_repaint.h"
+#include "engine/core/contract.h"
+#include "engine/tools/gui/numbered_file.h"
+
+namespace palp {
+
+void PaintTool::startAnew()
+{
+    lastDab_.reset();
+    kept_ = Kept::saved;
+}
+
+void PaintTool::stroke(Stage& stage, const BrushChoice& brush, const glm::dvec3& place)
+{
+    std::vector<glm::dvec3> path{place};
+    if (lastDab_) path.insert(path.begin(), *lastDab_);
+    stage.paint([&](StiffnessPainting& painting) {
+        if (!lastDab_) painting.beginStroke();
+        for (const glm::dvec3& at : dabsAlong(path, brush.radius, stage.painted())) {
+            const Brush dab{at, brush.radius, brush.strength};
+            if (brush.smooths)
+                painting.smooth(dab);
+            else
+                painting.paint(dab, brush.value);
+        }
+    });
+    lastDab_ = place;
+    kept_    = Kept::unsaved;
+}
+
+void PaintTool::endStroke(Stage& stage)
+{
+    if (!std::exchange(lastDab_, std::nullopt)) return;
+    stage.paint([](StiffnessPainting& painting) { painting.endStroke(); });
+}
+
+void PaintTool::undo(Stage& stage)
+{
+    if (notices_.busy()) return;
+    kept_ = Kept::unsaved;
+    stage.paint([](StiffnessPainting& painting) { painting.undo(); });
+}
+
+void PaintTool::redo(Stage& stage)
+{
+    if (notices_.busy()) return;
+    kept_ = Kept::unsaved;
+    stage.paint([](StiffnessPainting& painting) { painting.redo(); });
+}
+
+void PaintTool::save(const Stage& stage)
+{
+    if (!stage.painting().changed()) return notices_.say("nothing is painted; B takes the brush");
+    try {
+        const std::string           cloud = stage.scene().cloud;
+        const std::filesystem::path source(cloud);
+        const bool                  isPly    = source.extension() == ".ply" && !cloud.starts_with("sample:");
+        const std::string           stem     = cloud.starts_with("sample:") ? cloud.substr(7) : source.stem().string();
+        const auto                  target   = unusedPath(stem + "-painted", ".ply");
+        std::string                 property = "stiffness";
+        if (isPly) {
+            property = repaintPly(source, stage.scene().reading, stage.painted().cloud(), target).property;
+        } else {
+            writeCloud(target, stage.painted().cloud(), {}, {});
+        }
+        kept_ = Kept::saved;
+        notices_.say("saved " + target.string() + ", property " + property);
+    } catch (const Error& error) {
+        notices_.complain(error.what());
+    }
+}
+
+bool PaintTool::unsaved(const Stage& stage) const
+{
+    return stage.painting().changed() && kept_ != Kept::saved;
+}
+
+bool PaintTool::mayDiscard(const Stage& stage)
+{
+    if (!unsaved(stage)) return true;
+    const bool warned = kept_ == Kept::warned;
+    kept_             = warned ? Kept::unsaved : Kept::warned; // what discards it may fail
+    if (warned) return true;
+    notices_.complain("what is painted is not saved: Ctrl+S saves it, asking for the same again discards it");
+    return false;
+}
+
+std::vector<ViewSegment> brushOutline(const Hit& hit, double radius)
+{
+    constexpr int kSides = 48;
+    const Frame   frame  = Frame::about(hit.outward);
+    const auto    at     = [&](int n) {
+        const double angle = 2 * std::numbers::pi * n / kSides;
+        return hit.point + radius * (std::cos(angle) * frame.east + std::sin(angle) * frame.north);
+    };
+    std::vector<ViewSegment> rim;
+    for (int n = 0; n < kSides; ++n) rim.push_back({at(n), at(n + 1)});
+    return rim;
+}
+
+} // namespace palp

@@ -1,0 +1,46 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "engine/tools/gui/notices.h"
+#include "engine/tools/gui/pick.h"
+#include "engine/tools/gui/stage.h"
+#include "engine/tools/gui/view_state.h"
+
+namespace palp {
+
+/// Paints stiffness on the object on the stage, takes it back, and saves it.
+/// Invariant: paint that is on the object and not in a file is never discarded without a warning. \thread the window's
+class PaintTool {
+public:
+    explicit PaintTool(Notices& notices) : notices_(notices) {}
+
+    /// Forgets the last object. \pre its paint may be discarded
+    void startAnew();
+
+    /// Dabs from where the stroke was to here; the first call begins a stroke.
+    void               stroke(Stage& stage, const BrushChoice& brush, const glm::dvec3& place);
+    void               endStroke(Stage& stage);
+    [[nodiscard]] bool inStroke() const { return lastDab_.has_value(); }
+
+    void undo(Stage& stage);
+    void redo(Stage& stage);
+
+    /// Writes the painted cloud as a new PLY file and says so, or why it could not.
+    void               save(const Stage& stage);
+    [[nodiscard]] bool unsaved(const Stage& stage) const;
+    /// Returns true if the paint is saved or the user has asked twice; warns at the first time.
+    [[nodiscard]] bool mayDiscard(const Stage& stage);
+
+private:
+    enum class Kept { saved, unsaved, warned };
+
+    Notices&                  notices_;
+    std::optional<glm::dvec3> lastDab_; ///< of the stroke that has begun [m]
+    Kept                      kept_ = Kept::saved;
+};
+
+/// Returns the brush's rim as lines on the surface.
+[[nodiscard]] std::vector<ViewSegment> brushOutline(const Hit& hit, double radius);
+
+} // namespace palp

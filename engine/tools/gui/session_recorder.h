@@ -1,0 +1,40 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "engine/session/recording.h"
+#include "engine/tools/gui/notices.h"
+
+namespace palp {
+
+/// Records sessions on demand. Invariant: one session has one recording at most, which ends with it, and folders are
+/// never overwritten. \thread the window's
+class SessionRecorder {
+public:
+    explicit SessionRecorder(Notices& notices) : notices_(notices) {}
+    ~SessionRecorder() { end(); }
+    SessionRecorder(const SessionRecorder&)            = delete;
+    SessionRecorder& operator=(const SessionRecorder&) = delete;
+
+    /// The next session is to be recorded.
+    void request() { requested_ = true; }
+    /// Starts the recording that was requested; says so, or why it could not. \pre no session runs
+    void begin(const std::function<SessionInfo()>& info);
+    /// Ends the recording, if there is one, and complains of what was lost. \pre no session runs
+    void end();
+
+    /// Is null while nothing is recorded. Only the servo's thread may push while a session runs.
+    [[nodiscard]] Recording*         recording() const noexcept { return recording_.get(); }
+    [[nodiscard]] const std::string& folder() const noexcept { return folder_; } ///< of the newest recording, or empty
+    /// Is empty until a recording has ended.
+    [[nodiscard]] const std::string& lastFolder() const noexcept { return lastFolder_; }
+
+private:
+    Notices&                   notices_;
+    bool                       requested_ = false;
+    std::unique_ptr<Recording> recording_;
+    std::string                folder_, lastFolder_;
+};
+
+} // namespace palp

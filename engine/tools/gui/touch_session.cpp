@@ -1,0 +1,175 @@
+#include "engine/tools/gui/touch_session.h"
+
+#include <utility>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+constexpr double kUntilEnded = 1e9; // [s]
+
+} // namespace
+
+TouchSession::TouchSession(const WorkbenchSettings& settings, Notices& notices)
+    : settings_(settings), notices_(notices), recorder_(notices)
+{
+}
+
+void TouchSession::setStage(Stage& stage)
+{
+    stage_ = &stage;
+    pointer_.emplace(stage, notices_);
+    resume();
+}
+
+void TouchSession::run(const ReadyHand& readyHand, const OnView& onView)
+{
+    try {
+        history_.clear();
+        pointer_->begin();
+        if (replay_)
+            runWith({replay_.get(), {}, replaySeconds_}, onView);
+        else if (!settings_.hand)
+            runWith({&pointer_->hand().device(), pointer_->hand().frame(), kUntilEnded}, onView);
+        else if (const auto hand = readyHand())
+            runWith(*hand, onView);
+    } catch (const Error&) {
+        recorder_.end();
+        throw;
+    }
+}
+
+void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
+{
+    hand_  = hand;
+    state_ = State::ready;
+    recorder_.begin([this] { return settings_.recorded(*stage_, *hand_.device); });
+    const SessionParts  parts{stage_->scene(), stage_->object(),
+                             solver(),        *hand.device,           hand.frame};
+    RealSessionSettings real;
+    real.seconds    = hand.seconds;
+    real.viewPeriod = 1e-4; // as soon as a picture is done the next begins
+    real.stop       = &ended_;
+    real.onView     = onView;
+    real.onTick     = [this, recording = recorder_.recording()](const TickRecord& record) {
+        static_cast<void>(ring_.push(record)); // curves may have gaps
+        if (recording) recording->push(record);
+    };
+    conclude(runReal(parts, real, realTime_));
+}
+
+/// Says why a session has come to its end by itself.
+void TouchSession::conclude(const SessionSummary& summary)
+{
+    recorder_.end();
+    if (ended_) return;
+    if (replay_) {
+        replay_.reset();
+        notices_.say("the replay is over");
+    } else if (summary.deviceFault != DeviceFault::none) {
+        notices_.complain(std::string("the device is ") + name(summary.deviceFault) +
+                          ": plug it in again and press R to go on");
+        state_ = State::halted;
+    } else if (settings_.hand) {
+        state_ = State::halted;
+        notices_.say("the hand has come to its end: R starts it again");
+    }
+}
+
+void TouchSession::halt()
+{
+    state_ = State::halted;
+    end();
+}
+
+void TouchSession::resume()
+{
+    if (state_ == State::halted) state_ = State::ready;
+}
+
+void TouchSession::startReplay(const RecordedSession& session)
+{
+    replay_        = std::make_unique<ReplayDevice>(session.samples, session.hand);
+    replaySeconds_ = double(session.samples.size()) * 1e-3;
+}
+
+void TouchSession::toggleRecording()
+{
+    if (recorder_.recording()) { // it ends with its session
+        notices_.say("recorded " + recorder_.folder());
+    } else if (stage_->painting().changed()) {
+        return notices_.say("save the paint first and open it: recordings are of files");
+    } else if (!settings_.recorded || replay_ || halted()) {
+        return notices_.say("nothing can be recorded now");
+    } else {
+        recorder_.request();
+    }
+    end();
+}
+
+void TouchSession::followPointer(const WindowInput& input, const std::optional<Hit>& hit, double& depth)
+{
+    if (!byPointer() || !pointer_) return;
+    if (pointer_->follow(input, hit, depth) == PointerTouch::Outcome::touched) return;
+    if (recorder_.recording()) notices_.say("the recording has ended: the hand went round the object");
+    end();
+}
+
+void TouchSession::letGo()
+{
+    if (pointer_) pointer_->letGo();
+    if (!settings_.hand || halted()) return notices_.say("let go; close the window to quit");
+    halt(); // the session ends, and its last force is none
+    notices_.say("let go: no force; R takes the object again, closing the window quits");
+}
+
+void TouchSession::declare()
+{
+    if (!byPointer() || !pointer_) return notices_.say("the hand's own button declares");
+    pointer_->declare();
+}
+
+void TouchSession::collect(const OnTick& onTick)
+{
+    unsolved_.take();
+    for (auto records = ring_.front(); !records.empty(); records = ring_.front()) {
+        for (const TickRecord& record : records) {
+            history_.add(record);
+            if (onTick) onTick(record);
+        }
+        ring_.pop(records.size());
+    }
+}
+
+std::string TouchSession::unsolved() const
+{
+    const std::string* const why = unsolved_.held();
+    return why ? *why : "";
+}
+
+void TouchSession::noteRealTime(std::string_view warning)
+{
+    if (realTime_.empty()) realTime_ = warning;
+}
+
+/// Returns the stage's solver; what it cannot solve is told to the window's thread.
+PatchSolver TouchSession::solver()
+{
+    return [this, solve = stage_->solver()](const Touch& touch, double period) {
+        const auto note = [this](const std::string& why) {
+            unsolved_.draft() = why;
+            unsolved_.publish();
+        };
+        try {
+            DeformationAnswer answer = solve(touch, period);
+            note(answer.update ? "" : answer.why);
+            return answer;
+        } catch (const std::exception& error) {
+            note(error.what());
+            throw;
+        }
+    };
+}
+
+} // namespace palp

@@ -1,0 +1,100 @@
+#pragma once
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "engine/session/real_session.h"
+#include "engine/session/recorded_session.h"
+#include "engine/session/replay_device.h"
+#include "engine/session/tick_ring.h"
+#include "engine/tools/gui/notices.h"
+#include "engine/tools/gui/pointer_touch.h"
+#include "engine/tools/gui/session_recorder.h"
+#include "engine/tools/gui/touch_history.h"
+#include "engine/tools/gui/workbench_settings.h"
+
+namespace palp {
+
+/// Runs one session after the other on the stage, with the pointer, a device or a replay as the hand.
+/// Invariant: a session that was halted leaves no force, and none runs until resume(). \thread the window's, but for
+/// givenUp()
+class TouchSession {
+public:
+    /// \param settings  outlive this
+    TouchSession(const WorkbenchSettings& settings, Notices& notices);
+
+    /// Another object, or other values of its scene: the pointer's hand begins anew over it.
+    void setStage(Stage& stage);
+
+    using ReadyHand = std::function<std::optional<WorkbenchHand>()>;
+    using OnView    = std::function<void(const SessionView&)>;
+    /// Runs a session in real time until it ends: the replay if there is one, or else the hand's.
+    /// \pre there is a stage
+    /// \param readyHand  makes the settings' hand ready, if they have one; empty: no session is wanted any more
+    /// \param onView     is called between two looks at the session
+    /// \throws Error as readyHand and runReal() do; the recording has ended then
+    void run(const ReadyHand& readyHand, const OnView& onView);
+
+    /// Ends the session that runs; the next one begins unless this is halted.
+    void end() { ended_ = true; }
+    /// Ends the session that runs; the next one begins after resume().
+    void halt();
+    void resume();
+    /// To be called before each session.
+    void                                   rearm() { ended_ = false; }
+    [[nodiscard]] bool                     halted() const { return state_ == State::halted; }
+    [[nodiscard]] bool                     neverRan() const { return state_ == State::neverRan; }
+    [[nodiscard]] const std::atomic<bool>& givenUp() const { return ended_; } ///< \thread any
+
+    /// \param session  outlives its replay
+    void               startReplay(const RecordedSession& session);
+    void               stopReplay() { replay_.reset(); }
+    [[nodiscard]] bool replaying() const { return replay_ != nullptr; }
+    [[nodiscard]] bool byPointer() const { return !settings_.hand && !replay_; }
+
+    /// Begins a recording with a new session, or ends the one that runs.
+    void                                 toggleRecording();
+    [[nodiscard]] const SessionRecorder& recorder() const { return recorder_; }
+    void                                 endRecording() { recorder_.end(); }
+
+    /// Follows the pointer, and begins another session where the hand cannot move in a straight line.
+    void followPointer(const WindowInput& input, const std::optional<Hit>& hit, double& depth);
+    /// Lets go of the object, whatever the hand is.
+    void letGo();
+    /// Declares the place that the pointer's hand is on.
+    void declare();
+
+    /// Takes over what the session's threads have handed on since the last call.
+    void                              collect(const OnTick& onTick);
+    [[nodiscard]] const TouchHistory& history() const { return history_; }
+    [[nodiscard]] std::string         unsolved() const; ///< why the last patch could not be solved; empty: it was
+    [[nodiscard]] std::string         handModel() const { return hand_.device->info().model; }
+    [[nodiscard]] const std::string&  realTime() const { return realTime_; } ///< as WorkbenchReport::realTime
+    void                              noteRealTime(std::string_view warning);
+
+private:
+    enum class State { neverRan, ready, halted };
+
+    [[nodiscard]] PatchSolver solver();
+    void                      runWith(const WorkbenchHand& hand, const OnView& onView);
+    void                      conclude(const SessionSummary& summary);
+
+    const WorkbenchSettings&      settings_;
+    Notices&                      notices_;
+    Stage*                        stage_ = nullptr;
+    std::optional<PointerTouch>   pointer_;
+    SessionRecorder               recorder_;
+    std::unique_ptr<ReplayDevice> replay_;
+    double                        replaySeconds_ = 0; ///< [s]
+    WorkbenchHand                 hand_;              ///< of the session that runs, or ran last
+    State                         state_ = State::neverRan;
+    std::atomic<bool>             ended_ = false;
+    std::string                   realTime_;
+    TickRing<TickRecord>          ring_{4096}; ///< from the servo: four seconds
+    TouchHistory                  history_;
+    Latest<std::string>           unsolved_; ///< from the deformation
+};
+
+} // namespace palp

@@ -1,0 +1,167 @@
+#include "engine/tools/render/cloud_figure.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/tools/plot/colour_bar.h"
+#include "engine/tools/plot/svg.h"
+#include "engine/tools/render/cloud_skin.h"
+#include "engine/tools/render/surface_renderer.h"
+
+namespace palp {
+namespace {
+
+constexpr PictureSize kSize{900, 700, 2, Detail::fine};
+
+Camera cameraOf(std::span<const glm::dvec3> points, const CloudFigure& figure)
+{
+    constexpr double kFilled = 0.88; // share of the picture that the points take: their discs reach beyond [1]
+    const double     aspect  = double(kSize.width) / kSize.height;
+    Camera           camera;
+    camera.projection = Projection::orthographic;
+    camera.toEye      = -glm::normalize(figure.direction);
+    camera.up         = glm::normalize(figure.up);
+    double half       = 0; // of the figure's height [m]
+    if (figure.window) {
+        camera.target = figure.window->centre;
+        half          = figure.window->halfWidth / aspect;
+    } else {
+        const glm::dvec3 right = camera.right(), up = camera.upwards();
+        glm::dvec3       low(INFINITY), high(-INFINITY);
+        for (const glm::dvec3& p : points) {
+            const glm::dvec3 place(glm::dot(p, right), glm::dot(p, up), glm::dot(p, camera.toEye));
+            low  = glm::min(low, place);
+            high = glm::max(high, place);
+        }
+        const glm::dvec3 middle = 0.5 * (low + high), extent = 0.5 * (high - low);
+        camera.target = middle.x * right + middle.y * up + middle.z * camera.toEye;
+        half          = std::max(extent.x / aspect, extent.y) / kFilled;
+    }
+    camera.distance *= half / camera.halfHeight();
+    return camera;
+}
+
+ValueRange rangeOf(std::span<const double> values, const CloudFigure& figure)
+{
+    if (figure.range) return *figure.range;
+    return rangeOf(values, Scale::linear).value_or(ValueRange{0, 1});
+}
+
+/// Draws the cloud alone.
+/// \throws Error if it has no surface, compute::ProcessorError if no device can draw
+Image imageOf(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now, std::span<const double> values,
+              const CloudFigure& figure, const Camera& camera)
+{
+    constexpr double kCue = 0.05, kMark = 0.012; // of the picture's height [1]
+    if (rest.empty()) throw Error("there are no points");
+    const NeighbourIndex            index(rest);
+    const CloudSkin                 skin(rest, index);
+    std::vector<glm::dvec3>         restNormals = skin.normals(rest), normals = skin.normals(now);
+    const std::vector<std::uint8_t> oneSided = skin.turnOutwards(rest, restNormals);
+    for (std::size_t n = 0; n < normals.size(); ++n)
+        if (glm::dot(normals[n], restNormals[n]) < 0) normals[n] = -normals[n];
+    const double height = 2 * camera.halfHeight(); // of the picture [m]
+
+    ViewScene scene;
+    scene.positions = now;
+    scene.normals   = normals;
+    scene.radii     = skin.radii();
+    scene.cores     = skin.cores();
+    scene.values    = values;
+    scene.oneSided  = oneSided;
+    scene.colours   = {ColourMap::viridis, Scale::linear, rangeOf(values, figure), figure.quantity, figure.unit};
+    scene.cueRadius = kCue * height;
+    for (const glm::dvec3& place : figure.marks) scene.dots.push_back({place, kMark * height, kForceColour});
+    return SurfaceRenderer().draw(scene, camera, kSize);
+}
+
+void drawScaleBar(SvgDrawing& svg, double pixelsPerMetre, glm::dvec2 rightEnd)
+{
+    constexpr double kLongest = 160; // [px]
+    const ValueRange range{0, kLongest / pixelsPerMetre};
+    Axis             axis(range, Scale::linear, "m", 2);
+    if (axis.ticks().size() < 2) axis = Axis(range, Scale::linear, "m", 3); // 4 to 5: steps of 5 leave only zero
+    const Tick&      last    = axis.ticks().back();
+    const glm::dvec2 leftEnd = rightEnd - glm::dvec2(last.value * pixelsPerMetre, 0);
+    svg.line(leftEnd, rightEnd, {"#1a1a1a", 2.5});
+    for (const glm::dvec2 end : {leftEnd, rightEnd})
+        svg.line(end - glm::dvec2(0, 4), end + glm::dvec2(0, 4), {"#1a1a1a", 1.5});
+    svg.text(0.5 * (leftEnd + rightEnd) - glm::dvec2(0, 8), last.label + " " + axis.unit(),
+             {.anchor = Anchor::middle, .halo = true});
+}
+
+/// Looks at the contact from outside, 55 degrees off its normal, so that a dent shows its depth.
+glm::dvec3 obliquely(const Frame& frame)
+{
+    return -glm::normalize(0.57 * frame.normal + 0.30 * frame.east - 0.76 * frame.north);
+}
+
+} // namespace
+
+std::string cloudFigureSvg(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now,
+                           std::span<const double> values, const CloudFigure& figure)
+{
+    PALP_EXPECT(rest.size() == now.size() && now.size() == values.size(),
+                "a figure has a value and two positions for each point");
+    const glm::dvec2 corner(18, 42), size(kSize.width, kSize.height); // [px]
+    SvgDrawing       svg;
+    svg.text({corner.x, 25}, figure.title, {.size = 15, .bold = true});
+    try {
+        const Camera camera = cameraOf(now, figure);
+        svg.image(corner, size, imageOf(rest, now, values, figure, camera));
+        drawScaleBar(svg, 0.5 * size.y / camera.halfHeight(), corner + size - glm::dvec2(14, 14));
+    } catch (const Error& error) {
+        const std::string sentence = std::string("this picture could not be drawn: ") + error.what();
+        svg.text({corner.x, 48}, sentence);
+        return svg.finish({2 * corner.x + textWidth(sentence, 12), 64}, figure.title);
+    }
+    constexpr double kBarHeight = 420; // [px]
+    const Axis       axis(rangeOf(values, figure), Scale::linear, figure.unit, 9);
+    drawColourBar(svg,
+                  {&axis, [](double position) { return surfaceColour(position); }, figure.quantity,
+                   rangeOf(values, Scale::linear)},
+                  corner + glm::dvec2(size.x + 10, 0.5 * (size.y - kBarHeight)), kBarHeight);
+    double     bottom   = corner.y + size.y + 12;
+    const auto unvalued = std::ranges::count_if(values, [](double value) { return !std::isfinite(value); });
+    if (unvalued > 0)
+        svg.text({corner.x, bottom += 8}, std::to_string(unvalued) + " points without a value are grey.",
+                 {.colour = "#595959"});
+    return svg.finish({corner.x + size.x + 10 + kColourBarWidth, bottom + 8}, figure.title);
+}
+
+std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> patches, const SurfaceView& view)
+{
+    std::vector<glm::dvec3> positions(cloud.positions().begin(), cloud.positions().end());
+    std::vector<double>     depth(cloud.size(), 0.0);
+    CloudFigure             figure;
+    for (const PressedPatch& p : patches) {
+        const glm::dvec3 along = view.exaggeration * p.force * p.patch->forceDirection();
+        for (std::size_t n = 0; n < p.patch->points.size(); ++n) {
+            depth[p.patch->points[n]] += p.force * p.patch->pointResponse[n];
+            positions[p.patch->points[n]] += p.patch->pointResponse[n] * along;
+        }
+        const int middle = p.patch->window.grid.cellsX / 2;
+        figure.marks.push_back(p.patch->contact.point + p.patch->response(middle, middle) * along);
+    }
+    const Patch& first = *patches.front().patch;
+    const bool   given = glm::length(view.direction) > 0;
+    figure.title       = view.title;
+    figure.up          = given ? glm::dvec3(0, 0, 1) : first.chart.frame.normal;
+    figure.direction   = given ? view.direction : obliquely(first.chart.frame);
+    if (view.closeUp) figure.window = FigureWindow{first.contact.point, 0.75 * first.window.grid.sizeX()};
+    return cloudFigureSvg(cloud.positions(), positions, depth, figure);
+}
+
+double roundExaggeration(double deepest, double size)
+{
+    constexpr double kVisible = 1.0 / 30; // of the object: plain to see, and still clearly a dent [1]
+    if (!(deepest > 0)) return 1;
+    for (double factor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0})
+        if (factor * deepest > 0.6 * kVisible * size) return factor;
+    return 200;
+}
+
+} // namespace palp

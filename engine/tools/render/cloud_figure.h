@@ -1,0 +1,56 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+
+#include "engine/tools/plot/axis.h"
+#include "engine/tools/plot/patch_pictures.h"
+
+namespace palp {
+
+/// The part of the world that a figure shows.
+struct FigureWindow {
+    glm::dvec3 centre{};      ///< in the middle of the figure [m]
+    double     halfWidth = 1; ///< from the middle to the left edge [m], > 0
+};
+
+/// What a figure of a cloud shows, and from where.
+struct CloudFigure {
+    std::string                 title;
+    std::string                 quantity = "deflection";  ///< of the values
+    std::string                 unit     = "m";           ///< SI unit of the values; the legend chooses the prefix
+    std::optional<ValueRange>   range{};                  ///< ends of the colours [unit]; empty: those of the values
+    glm::dvec3                  direction{-0.5, 0.6, -1}; ///< in which the eye looks, of any length
+    glm::dvec3                  up{0, 1, 0};              ///< upwards in the figure, not parallel to the direction
+    std::optional<FigureWindow> window{};                 ///< empty: the whole cloud
+    std::vector<glm::dvec3>     marks{};                  ///< places with a dot on them [m]
+};
+
+/// Draws a cloud as a lit, closed surface in the colours of a value per point, by parallel projection: a self-contained
+/// SVG file around a picture of SurfaceRenderer, with title, colour bar and scale bar.
+///
+/// Points without a value (NaN) are grey and counted. Without a Vulkan device that can draw, and for a cloud that has
+/// no surface (see CloudSkin), the figure is a sentence that says so: whatever else a command writes is worth having.
+/// \param rest    positions at rest, from which neighbours are found [m]
+/// \param now     as many positions, which are drawn [m]
+/// \param values  as many [figure.unit]
+[[nodiscard]] std::string cloudFigureSvg(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now,
+                                         std::span<const double> values, const CloudFigure& figure);
+
+/// Where a figure of pressed patches looks from.
+struct SurfaceView {
+    std::string title;
+    double      exaggeration = 1;   ///< factor on every displacement [1]
+    glm::dvec3  direction{0, 0, 0}; ///< in which the eye looks; zero: obliquely onto the first contact
+    bool        closeUp = false;    ///< only the first contact's neighbourhood
+};
+
+/// Draws the object, dented by each of the patches at once (they are solved one by one: where they overlap,
+/// displacements add), coloured by deflection.
+[[nodiscard]] std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> patches,
+                                     const SurfaceView& view);
+
+/// Returns a round factor that makes the deepest displacement about a thirtieth of the object, at least 1.
+[[nodiscard]] double roundExaggeration(double deepest, double size);
+
+} // namespace palp

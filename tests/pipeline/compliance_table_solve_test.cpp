@@ -1,0 +1,297 @@
+#include "engine/pipeline/compliance_table_solve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "engine/cloud/samples.h"
+#include "engine/core/contract.h"
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/patch_warnings.h"
+#include "engine/plate/load.h"
+#include "tests/pipeline/crossing.h"
+
+namespace palp {
+namespace {
+
+constexpr double kMillimetre = 1e-3; // [m]
+
+SoftObject homogeneous(const char* name, unsigned seed)
+{
+    const SpatialLaw law{.kind = SpatialLaw::Kind::constant, .from = 1e6};
+    return SoftObject(makeSample(sampleNamed(name), 20'000, seed, law));
+}
+
+const PatchSettings kSkin{.foundation = 1e6, .window = 40e-3, .cells = 40, .footprintRadius = 3e-3};
+
+/// ln c of one footprint anywhere in a window, over what a homogeneous plate has there: what a table interpolates.
+double lnCompliance(const Plate& plate, const Plate& homogeneous, double x, double z)
+{
+    static PlateSolver solver("host");
+    const double       middle = plate.grid.sizeX() / 2;
+    const auto         c      = [&](const Plate& of, double atX, double atZ) {
+        const NodeField load = footprintLoad(of.grid, 1, middle + atX, middle + atZ, Sheet::kRadius);
+        return std::log(dot(load, solver.solve(of, load, 1e-5).deflection));
+    };
+    return c(plate, x, z) - c(homogeneous, x, z) + c(homogeneous, 0, 0);
+}
+
+/// Of the same geometric mean throughout.
+Plate evened(Plate plate)
+{
+    double sum = 0;
+    for (double d : plate.rigidity.values()) sum += std::log(d);
+    plate.rigidity = NodeField(plate.grid, std::exp(sum / double(plate.grid.nodes())));
+    return plate;
+}
+
+/// The same values with slopes from their own differences, as Catmull and Rom have it; one-sided at the rim.
+ComplianceTable withSlopesOfValues(ComplianceTable table)
+{
+    const auto given = table.compliance;
+    const int  last  = table.side - 1;
+    const auto slope = [&](int n, auto value) {
+        if (n == 0) return (-3 * value(0) + 4 * value(1) - value(2)) / (2 * table.spacing);
+        if (n == last) return (3 * value(last) - 4 * value(last - 1) + value(last - 2)) / (2 * table.spacing);
+        return (value(n + 1) - value(n - 1)) / (2 * table.spacing);
+    };
+    const auto at = [&](int i, int j) { return given[std::size_t(i * table.side + j)].value; };
+    for (int i = 0; i <= last; ++i)
+        for (int j = 0; j <= last; ++j) {
+            auto& entry  = table.compliance[std::size_t(i * table.side + j)];
+            entry.slopeX = slope(i, [&](int n) { return at(n, j); });
+            entry.slopeZ = slope(j, [&](int n) { return at(i, n); });
+        }
+    return table;
+}
+
+TEST(TableSolve, InterpolationLosesLittleBetweenFootprintsAndSlopesAreWhatMakesItSo)
+{
+    struct Case {
+        const char*   name;
+        Sheet::Factor factor;
+        double        allowed; ///< of c [1]
+    };
+    for (const Case& c : {Case{"wart of 100", wart(100), 0.003}, Case{"step of 10", step(10), 0.01},
+                          Case{"step of 100", step(100), 0.03}}) {
+        const Sheet sheet(c.factor);
+        double      worst = 0, catmullRom = 0;
+        for (double centre : {0.0, 1.3e-3, 2.7e-3}) {
+            const Plate           plate = sheet.plateAt(centre), flat = evened(plate);
+            const ComplianceTable table = sheet.tableAt(centre, 5), values = withSlopesOfValues(table);
+            for (double x = -7e-3; x <= 7e-3; x += 2e-3)
+                for (double z : {-5e-3, -2e-3, 1e-3, 6e-3}) {
+                    const double truth = lnCompliance(plate, flat, x, z);
+                    worst              = std::max(worst, std::abs(table.at({x, z}).lnCompliance - truth));
+                    catmullRom         = std::max(catmullRom, std::abs(values.at({x, z}).lnCompliance - truth));
+                }
+        }
+        RecordProperty(c.name,
+                       std::to_string(100 * worst) + " %, by differences " + std::to_string(100 * catmullRom) + " %");
+        EXPECT_LT(worst, c.allowed) << c.name;
+        EXPECT_GT(catmullRom, 2 * worst) << c.name;
+    }
+}
+
+TEST(TableSolve, SlopesAreThoseOfTheCompliance)
+{
+    const Sheet           sheet(wart(10));
+    const double          centre = 3e-3;
+    const Plate           plate = sheet.plateAt(centre), flat = Sheet::homogeneous();
+    const ComplianceTable table = sheet.tableAt(centre, 3);
+    const double          step  = kMillimetre / 2;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            const double x = (i - 1) * Sheet::kRadius, z = (j - 1) * Sheet::kRadius;
+            const auto   entry = table.compliance[std::size_t(3 * i + j)];
+            const double slopeX =
+                (lnCompliance(plate, flat, x + step, z) - lnCompliance(plate, flat, x - step, z)) / (2 * step);
+            const double slopeZ =
+                (lnCompliance(plate, flat, x, z + step) - lnCompliance(plate, flat, x, z - step)) / (2 * step);
+            EXPECT_NEAR(entry.slopeX, slopeX, 0.5) << "per metre, of up to 60: what a difference over 1 mm leaves";
+            EXPECT_NEAR(entry.slopeZ, slopeZ, 0.5);
+        }
+}
+
+/// The floor of every measurement of perception, J = (largest - smallest stiffness within 5 mm) / 7 %, the plate part.
+TEST(TableSolve, TablesOfHomogeneousPlatesAreFlatWhateverTheWindow)
+{
+    PlateSolver solver("host");
+    for (double foundation : {0.0, 1e6})
+        for (const PlateEdges& edges : {PlateEdges{}, PlateEdges{.x1 = Edge::supported, .z0 = Edge::supported}}) {
+            const PlateGrid grid{40, 40, kMillimetre, kMillimetre};
+            const Plate     plate{grid, edges, 0.45, foundation, NodeField(grid, 2e-3)};
+            const auto      lattice = solveLattice(plate, {3e-3, 7, 1e6}, solver, 1e-4);
+            const auto      table   = solveTable(plate, lattice, solver, 1e-4).table;
+            double          least = 1e9, most = -1e9;
+            for (double x = -9e-3; x <= 9e-3; x += 0.7e-3)
+                for (double z = -9e-3; z <= 9e-3; z += 0.7e-3) {
+                    least = std::min(least, table.at({x, z}).lnCompliance);
+                    most  = std::max(most, table.at({x, z}).lnCompliance);
+                    EXPECT_NEAR(table.at({x, z}).lnContactStiffness, std::log(1e6 * 2e-3), 1e-9);
+                }
+            EXPECT_LT((most - least) / 0.07, 1e-6) << "the same bits twice, and cubics that sum to 1";
+            if (foundation == 0) {
+                EXPECT_LT(lattice.rungs.front()[0].value, -0.1) << "what the ratios take away: the window's edge";
+            }
+        }
+}
+
+/// Far from a feature an object is homogeneous, but of another rigidity than the cloud's mean.
+TEST(TableSolve, TablesOfSofterAndStifferPlatesThanTheMeanAreFlatToAThousandth)
+{
+    PlateSolver    solver("host");
+    const Plate    plate   = Sheet::homogeneous();
+    constexpr auto kShape  = FootprintTable{Sheet::kRadius, 7, 1e6};
+    const auto     lattice = solveLattice(plate, kShape, solver, 1e-4);
+    for (double factor : {0.05, 0.4, 1.7, 10.0}) {
+        Plate other      = plate;
+        other.rigidity   = NodeField(plate.grid, factor * plate.rigidity(0, 0));
+        const auto table = solveTable(other, lattice, solver, 1e-4).table;
+        for (std::size_t n = 0; n < 49; ++n)
+            EXPECT_NEAR(table.compliance[n].value, table.middle().lnCompliance, 2e-3)
+                << "between two rungs; with one for all it is 0.16 at 10: factor " << factor;
+    }
+}
+
+TEST(TableSolve, ATableThatDoesNotFitItsWindowIsRefused)
+{
+    PlateSolver     solver("reference");
+    const PlateGrid grid{20, 20, kMillimetre, kMillimetre};
+    const Plate     plate{grid, {}, 0.45, 0, NodeField(grid, 2e-3)};
+    EXPECT_NO_THROW((void)solveLattice(plate, {3e-3, 5, 1e6}, solver, 1e-4)) << "2 (6 + 3) + 1 mm";
+    EXPECT_THROW((void)solveLattice(plate, {3e-3, 7, 1e6}, solver, 1e-4), Error);
+    EXPECT_THROW((void)solveLattice(plate, {3e-3, 4, 1e6}, solver, 1e-4), ContractViolation);
+    EXPECT_THROW((void)solveLattice(plate, {3e-3, 9, 1e6}, solver, 1e-4), ContractViolation);
+}
+
+TEST(TableSolve, TheReferenceAgreesWithTheMultigrid)
+{
+    const Plate plate = Sheet(step(10)).plateAt(1e-3);
+    PlateSolver reference("reference"), host("host");
+    Plate       flat = plate;
+    flat.rigidity    = NodeField(plate.grid, plate.rigidity(0, 0));
+    const FootprintTable shape{Sheet::kRadius, 3, 1e6};
+    const auto           slow = solveTable(plate, solveLattice(flat, shape, reference, 1e-4), reference, 1e-4);
+    const auto           fast = solveTable(plate, solveLattice(flat, shape, host, 1e-4), host, 1e-4);
+    EXPECT_EQ(slow.middle.report.solver, "reference");
+    EXPECT_EQ(fast.middle.report.solver, "host");
+    for (std::size_t n = 0; n < 9; ++n) {
+        EXPECT_NEAR(fast.table.compliance[n].value, slow.table.compliance[n].value, 1e-4) << "the tolerance";
+        EXPECT_NEAR(fast.table.compliance[n].slopeX, slow.table.compliance[n].slopeX, 0.1) << "per metre, of up to 100";
+    }
+}
+
+TEST(DeformWithTable, ThePatchIsThatOfDeformAndTheTablesMiddleIsItsCompliance)
+{
+    const SoftObject     object(makeSample(sampleNamed("ellipsoid"), 20'000, 1));
+    PlateSolver          solver("host");
+    const Contact        contact = touchAt(object, {0, 0, 35e-3}, glm::dvec3(0, 0, 1), 10e-3);
+    const auto           lattice = footprintLattice(object, kSkin, 3, solver);
+    const PatchWithTable both    = deformWithTable(object, contact, kSkin, lattice, solver);
+    const Patch          alone   = deform(object, contact, kSkin, solver);
+
+    ASSERT_TRUE(both.table.has_value());
+    EXPECT_NEAR(both.patch.compliance / alone.compliance, 1, 1e-6);
+    EXPECT_NEAR(std::exp(both.table->middle().lnCompliance) / alone.compliance, 1, 1e-6);
+    EXPECT_NEAR(std::exp(both.table->middle().lnContactStiffness) / alone.contactStiffness, 1, 0.02)
+        << "over the footprint, where rigidity changes slowly";
+    ASSERT_EQ(both.patch.pointResponse.size(), alone.pointResponse.size());
+    EXPECT_EQ(both.table->chart.origin, alone.chart.origin);
+    EXPECT_EQ(both.table->sequence, 0u) << "the caller's";
+}
+
+TEST(DeformWithTable, WhatIsNoSurfaceHasNoTable)
+{
+    std::vector<glm::dvec3> line;
+    for (int n = 0; n < 100; ++n) line.push_back({n * 1e-4, 0, 0});
+    const SoftObject wire(PointCloud(line, std::vector<double>(100, 1e6), StiffnessKind::modulus));
+    PlateSolver      solver("host");
+    const auto       lattice = footprintLattice(wire, kSkin, 1, solver);
+    EXPECT_FALSE(deformWithTable(wire, {{5e-3, 0, 0}, {0, 0, 1}, true}, kSkin, lattice, solver).table);
+}
+
+/// All of it: random points, sphere fits, charts carried along a path, tables ahead of the hand, the servo's hand-over.
+TEST(DeformWithTable, AHandThatSlidesOverAHomogeneousEllipsoidFeelsNothing)
+{
+    constexpr double     kSpeed = 0.2, kPeriod = 1.0 / 60, kTick = 1e-3;
+    const SoftObject     object = homogeneous("ellipsoid", 3);
+    PlateSolver          solver("host");
+    const PatchSettings  settings = kSkin;
+    std::optional<Frame> carried;
+    const auto           lattice =
+        footprintLattice(object, settings, tableSide(ComplianceLaw::table, kPeriod, settings.footprintRadius), solver);
+    const auto onSurface = [](double x) {
+        return glm::dvec3(x, 3e-3, 35e-3 * std::sqrt(1 - std::pow(x / 60e-3, 2) - std::pow(3.0 / 45, 2)));
+    };
+
+    ComplianceTracker              handOver;
+    RecentMotion                   motion;
+    std::optional<ComplianceTable> coming, published;
+    std::uint64_t                  sequence = 0;
+    for (int n = -10; n < 0; ++n) motion.add(n * kTick, onSurface(-20e-3 + kSpeed * n * kTick)); // already moving
+    std::vector<double> stiffness; // ln of what the hand feels, per tick
+    for (int n = 0; n < 200; ++n) {
+        const double     time = n * kTick;
+        const glm::dvec3 hand = onSurface(-20e-3 + kSpeed * time);
+        motion.add(time, hand);
+        if (time >= double(sequence) * kPeriod) {
+            published          = coming;
+            const Contact next = {aheadOf(handOver.law(), hand, motion.velocity(), kPeriod), {0, 0, 1}, true};
+            const auto    both = deformWithTable(object, next, settings, lattice, solver, carried);
+            ASSERT_TRUE(both.table.has_value());
+            carried          = both.patch.chart.frame;
+            coming           = both.table;
+            coming->sequence = ++sequence;
+            coming->time     = time;
+        }
+        const auto handed = handOver.tick({hand, time, kTick, published ? &*published : nullptr});
+        if (handed)
+            stiffness.push_back(
+                std::log(feltStiffness(ForceLaw::series, handed->contactStiffness, handed->compliance)));
+    }
+
+    ASSERT_GT(stiffness.size(), 150u);
+    EXPECT_EQ(handOver.clampedTicks(), 0u);
+    double     worst  = 0; // range within 5 mm
+    const auto window = std::size_t(5e-3 / (kSpeed * kTick));
+    for (std::size_t n = 0; n + window <= stiffness.size(); ++n) {
+        const auto [least, most] =
+            std::minmax_element(stiffness.begin() + long(n), stiffness.begin() + long(n + window));
+        worst = std::max(worst, *most - *least);
+    }
+    EXPECT_LT(worst / 0.07, 1e-6) << "0.5 is what fingers allow, but nothing that sets the force comes from the points";
+}
+
+/// 10 l, or 12 l where rigidity varies by more than 10.
+TEST(Warnings, AskForTheWindowThatTheFoundationNeeds)
+{
+    const auto warnedAt = [](const SoftObject& object, double lengths, double mean) {
+        PatchSettings settings = kSkin;
+        settings.foundation    = mean / std::pow(settings.window / lengths, 4);
+        PlateSolver   solver("host");
+        const Contact contact = touchAt(object, {0, 0, 0}, glm::dvec3(0, 0, 1), 10e-3);
+        const Patch   patch   = deform(object, contact, settings, solver);
+        const auto    all     = warnings(patch, settings, 0.01);
+        return std::any_of(all.begin(), all.end(),
+                           [](const std::string& s) { return s.find("its edges are felt") != std::string::npos; });
+    };
+    const SoftObject even = homogeneous("sheet", 4);
+    const double     mean = even.material().rigidity(1e6);
+    EXPECT_TRUE(warnedAt(even, 9.9, mean));
+    EXPECT_FALSE(warnedAt(even, 10.1, mean));
+
+    // From 0.1 to 10 MPa across the window: a contrast of 100 whose geometric mean is 1 MPa.
+    std::vector<double> moduli;
+    for (const glm::dvec3& p : even.positions())
+        moduli.push_back(1e6 * std::pow(10, std::clamp(p.x / 20e-3, -1.0, 1.0)));
+    const SoftObject varied = even.repainted(moduli);
+    EXPECT_TRUE(warnedAt(varied, 11.5, mean));
+    EXPECT_FALSE(warnedAt(varied, 12.5, mean));
+}
+
+} // namespace
+} // namespace palp

@@ -1,0 +1,116 @@
+#include "engine/tools/render/cloud_figure.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/shader_fixture.h"
+#include "tests/tools/plot/svg_reader.h"
+
+namespace palp {
+namespace {
+
+class CloudFigureTest : public ShaderTest {
+protected:
+    void SetUp() override
+    {
+        if (onHost()) GTEST_SKIP() << "the host does not draw";
+        ShaderTest::SetUp();
+    }
+};
+
+/// A square sheet, 100 mm wide, whose points have their x as a value [m].
+struct Sheet {
+    explicit Sheet(int side = 60)
+    {
+        for (int i = 0; i < side; ++i)
+            for (int j = 0; j < side; ++j) {
+                positions.emplace_back(0.1 * (i + 0.5) / side - 0.05, 0.1 * (j + 0.5) / side - 0.05, 0);
+                values.push_back(positions.back().x);
+            }
+    }
+    [[nodiscard]] Image drawn(const CloudFigure& figure) const
+    {
+        return test::embeddedImage(cloudFigureSvg(positions, positions, values, figure));
+    }
+    std::vector<glm::dvec3> positions; // [m]
+    std::vector<double>     values;    // [m]
+};
+
+CloudFigure fromAbove()
+{
+    CloudFigure figure;
+    figure.direction = {0, 0, -1};
+    return figure;
+}
+
+bool grey(Rgb8 colour)
+{
+    return std::abs(int(colour.red) - int(colour.green)) < 12 && std::abs(int(colour.green) - int(colour.blue)) < 12;
+}
+
+TEST_F(CloudFigureTest, TheWholeCloudFitsAndFillsTheFigure)
+{
+    const Image image  = Sheet().drawn(fromAbove());
+    const int   middle = image.width / 2;
+
+    ASSERT_EQ(image.width, 900);
+    ASSERT_EQ(image.height, 700);
+    EXPECT_TRUE(grey(image.at(middle, 8))) << "the ground";
+    EXPECT_TRUE(grey(image.at(middle, image.height - 8)));
+    EXPECT_FALSE(grey(image.at(middle, 60))) << "the sheet takes most of the height";
+    EXPECT_FALSE(grey(image.at(middle, image.height - 60)));
+}
+
+TEST_F(CloudFigureTest, AWindowShowsItsCentreInTheMiddle)
+{
+    const Sheet sheet;
+    CloudFigure figure = fromAbove();
+    figure.window      = FigureWindow{{0.03, 0, 0}, 0.01};
+    const Image right  = sheet.drawn(figure);
+    figure.window      = FigureWindow{{-0.03, 0, 0}, 0.01};
+    const Image left   = sheet.drawn(figure);
+
+    const Rgb8 high = right.at(450, 350), low = left.at(450, 350);
+    EXPECT_GT(int(high.green), int(low.green) + 40) << "viridis goes from violet to yellow";
+    EXPECT_FALSE(grey(right.at(20, 350))) << "nothing but the sheet is in the window";
+}
+
+TEST_F(CloudFigureTest, PointsWithoutAValueAreGrey)
+{
+    Sheet sheet;
+    for (double& value : sheet.values)
+        if (value > 0) value = NAN;
+    const Image image = sheet.drawn(fromAbove());
+
+    EXPECT_TRUE(grey(image.at(550, 350)));
+    EXPECT_FALSE(grey(image.at(350, 350)));
+    EXPECT_TRUE(test::hasText(cloudFigureSvg(sheet.positions, sheet.positions, sheet.values, fromAbove()),
+                              "1800 points without a value are grey."));
+}
+
+TEST_F(CloudFigureTest, WhatHasNoSurfaceIsASentence)
+{
+    const std::vector<glm::dvec3> same(20, glm::dvec3(1, 2, 3));
+    const std::vector<double>     values(20, 1.0);
+    CloudFigure                   figure;
+    figure.title = "A speck";
+
+    for (const std::size_t count : {std::size_t(0), std::size_t(3), same.size()}) {
+        const std::span<const glm::dvec3> points(same.data(), count);
+        const std::string                 svg = cloudFigureSvg(points, points, std::span(values).first(count), figure);
+        EXPECT_TRUE(test::elementsOf(svg, "image").empty());
+        EXPECT_NE(svg.find("this picture could not be drawn"), std::string::npos) << svg;
+        EXPECT_TRUE(test::hasText(svg, "A speck"));
+    }
+}
+
+TEST_F(CloudFigureTest, TheSameFigureTwiceIsTheSameToTheByte)
+{
+    const Sheet sheet(20);
+    const auto  drawn = [&] { return cloudFigureSvg(sheet.positions, sheet.positions, sheet.values, fromAbove()); };
+    EXPECT_EQ(drawn(), drawn());
+}
+
+} // namespace
+} // namespace palp
