@@ -40,7 +40,7 @@ Contact touchAt(const SoftObject& object, const glm::dvec3& place, const std::op
     if (!(nearest.distance <= reach))
         throw Error("contact: the place " + inMetres(place) + " is " + formatQuantity(nearest.distance, "m") +
                     " from the cloud, expected at most " + formatQuantity(reach, "m") +
-                    "; is --unit right? The nearest point is " + inMetres(point) + "; the cloud spans " +
+                    "; is --length-unit right? The nearest point is " + inMetres(point) + "; the cloud spans " +
                     inMetres(bounds.low) + " to " + inMetres(bounds.high));
     if (from && !(glm::length(*from) > 0)) throw Error("contact: expected a direction, found the zero vector");
     return {point, from ? glm::normalize(*from) : awayFromMiddle(bounds, point), from.has_value()};

@@ -136,7 +136,7 @@ void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
     const auto               held           = std::count_if(patch.positions.begin(), patch.positions.end(),
                                                             [&](const ChartPoint& p) { return patch.window.holds(p); });
     const std::string        what           = "touch: the window of " + formatQuantity(settings.window, "m");
-    const char* const        hint           = "; check --unit and --window";
+    const char* const        hint           = "; check --length-unit and --window";
     if (held < kFewestPoints)
         throw Error(what + " holds " + std::to_string(held) + " points of the cloud, which are " +
                     formatQuantity(patch.spacing, "m") + " apart; expected at least " + std::to_string(kFewestPoints) +

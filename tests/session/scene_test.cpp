@@ -337,7 +337,10 @@ TEST(Scene, EveryKeyForReadingAFileIsRead)
     EXPECT_FALSE(scene.place);
     EXPECT_EQ(sceneJson(parseScene(sceneJson(scene), "again", "/elsewhere")), sceneJson(scene));
 
-    const PointCloud cloud = loadCloud(scene).cloud;
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(loadCloud(scene)); }), {"columns are for text files"}));
+    Scene binary = scene;
+    binary.reading.columns.clear();
+    const PointCloud cloud = loadCloud(binary).cloud;
     EXPECT_EQ(cloud.kind(), StiffnessKind::rigidity);
     EXPECT_NEAR(cloud.bounds().high.x, 9e-3, 1e-12);
     EXPECT_NEAR(cloud.stiffness()[0], 1e-3, 1e-15);

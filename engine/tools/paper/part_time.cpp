@@ -238,7 +238,7 @@ Section timePart(const ReportRun& run)
             "iteration, damped by 0.6 so that it converges at all, followed until its largest error is "
             "1 %: in double precision, one thread, processor time, without any of the other stages.",
         "Times are those of this machine and of what else it did; they are kept apart from the numbers. Timed are all "
-        "GPUs and the host; Vulkan in software serves tests, and --device lavapipe times it."};
+        "GPUs and the host; Vulkan in software serves tests, and --solver lavapipe times it."};
     section.claims.push_back(claimOf(all));
     section.figures.push_back(
         {"Both axes are logarithmic. Below the dashed line is faster than published.", curves(all, jacobis)});

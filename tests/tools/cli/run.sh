@@ -354,7 +354,9 @@ done
 bad 'missing file' 'No such file' info nowhere.ply
 mkdir folder.ply
 bad 'a folder' 'folder' info folder.ply
-bad 'unknown extension' '.ply' info plate.json
+cp plate.json plate.stl
+bad 'unknown extension' '.ply' info plate.stl
+bad 'a plate is no scene' 'unknown key "load"' info plate.json
 printf 'ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\nabc' >huge.ply
 bad 'a header that lies' 'huge.ply' info huge.ply
 head -c 900 skin.ply >short.ply

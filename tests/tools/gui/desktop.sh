@@ -54,7 +54,7 @@ ended() {
 # starts it with these arguments more, and waits for the window
 start() {
     : >err
-    "$palpate" view "$@" --size 640x480 --validate --json --device host >out 2>>err &
+    "$palpate" view "$@" --size 640x480 --validate --json --solver host >out 2>>err &
     program=$!
     until_ 'a window' 60 shows || exit 1
     window=$(xdotool search --onlyvisible --name Palpate | head -1)

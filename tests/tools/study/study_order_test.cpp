@@ -147,7 +147,7 @@ TEST(StudyPlan, APresetAndValuesLieOverTheScene)
     static_cast<void>(folder.write("s.json", R"({"cloud": "sample:sheet", "foundation": 1e6, "max_force": 3})"));
     const StudyPlan study = parsePlan(
         R"({"title": "t", "conditions": [{"name": "p", "scene": "s.json", "preset": "paper", "values":
-            {"sampling": "log-mean", "from": [0, 0, 2], "stiffness": {"law": "constant", "value": 5e4}, "points": 5000}}],
+            {"resampling": "log-mean", "from": [0, 0, 2], "stiffness": {"law": "constant", "value": 5e4}, "points": 5000}}],
             "tasks": [{"name": "n", "kind": "yes-no", "question": "?", "yes_for": ["p"]}]})",
         "plan.json", folder.path());
 
