@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "device/setting_range.h"
+#include "device/detail/setting_range.h"
 
 namespace palp {
 namespace {

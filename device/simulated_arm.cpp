@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "device/setting_range.h"
+#include "device/detail/setting_range.h"
 
 namespace palp {
 namespace {

@@ -61,22 +61,22 @@ wall() {
     found=$(grep -rlE "^ *# *include *[<\"]$2" engine device --include='*.h' --include='*.cpp' | grep -vE "^(engine|device)/($3)$")
     [ -z "$found" ] || complain "$1 is included outside its wall: $found"
 }
-wall Embree 'embree[34]/' 'cloud/(embree\.h|neighbour_index\.cpp)'
-wall Eigen 'Eigen/' '(chart|plate|plate/reference|plate/multigrid)/[a-z_]*\.cpp|tools/bench/eigen_solver\.cpp'
+wall Embree 'embree[34]/' 'cloud/(detail/embree\.h|neighbour_index\.cpp)'
+wall Eigen 'Eigen/' '(chart|chart/detail|plate/reference|plate/multigrid|plate/multigrid/detail)/[a-z_]*\.cpp|tools/bench/eigen_solver\.cpp'
 wall nlohmann-json 'nlohmann/' '[a-z/]*/[a-z_]*\.cpp|tools/cli/[a-z_]*\.h'
 wall CLI11 'CLI/' 'tools/cli/[a-z_]*\.(h|cpp)'
-wall Vulkan 'vulkan/' '(compute|tools/render)/vulkan_[a-z]*\.(h|cpp)|tools/gui/glfw_window\.cpp'
+wall Vulkan 'vulkan/' '(compute/detail|tools/render)/vulkan_[a-z_]*\.(h|cpp)|tools/gui/glfw_window\.cpp'
 wall GLFW 'GLFW/' 'tools/gui/glfw_[a-z]*\.cpp'
 wall ImGui '(imgui|backends/imgui)' 'tools/(render/vulkan_panels|gui/(panel[a-z_]*|glfw_[a-z]*))\.cpp'
 wall CHOLMOD '(suitesparse/)?cholmod' 'tools/bench/cholmod_solver\.cpp'
 wall nanoflann 'nanoflann' 'tools/bench/nanoflann_search\.cpp'
 wall stb 'stb' 'tools/(plot/png|render/text)\.cpp'
-wall libusb 'libusb' 'falcon/libusb_[a-z]*\.cpp'
+wall libusb 'libusb' 'falcon/detail/libusb_[a-z]*\.cpp'
 wall hidapi 'hidapi' 'hid/hidapi_[a-z]*\.cpp'
 
 # Public headers name no type of a wrapped library.
 grep -rnE 'RTC[A-Z]|Eigen::|nlohmann::|stbi_|Vk[A-Z]|VK_|libusb_[a-z]|hid_[a-z]*\(' engine device --include='*.h' |
-    grep -vE '^engine/(cloud/embree\.h|(compute|tools/render)/vulkan_[a-z]*\.h|tools/cli/)' | grep -vE ':[0-9]+: *//' &&
+    grep -vE '^engine/(cloud/detail/embree\.h|(compute/detail|tools/render)/vulkan_[a-z]*\.h|tools/cli/)' | grep -vE ':[0-9]+: *//' &&
     complain 'a header names a type of a wrapped library'
 
 [ $bad -eq 0 ] && echo 'every include points downward'

@@ -5,7 +5,7 @@
 #include <functional>
 #include <utility>
 
-#include "device/held_force.h"
+#include "device/detail/held_force.h"
 #include "engine/core/real_time.h"
 
 namespace palp {

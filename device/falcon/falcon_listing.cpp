@@ -1,6 +1,6 @@
 // What the Falcons that are plugged in need before they can be used; knows no libusb.
+#include "device/falcon/detail/libusb_link.h"
 #include "device/falcon/falcon_driver.h"
-#include "device/falcon/libusb_link.h"
 #include "engine/core/contract.h"
 
 namespace palp {

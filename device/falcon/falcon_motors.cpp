@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "device/setting_range.h"
+#include "device/detail/setting_range.h"
 
 namespace palp {
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "device/falcon/detail/libusb_link.h"
 #include "device/falcon/falcon_firmware.h"
-#include "device/falcon/libusb_link.h"
 
 namespace palp {
 namespace {

@@ -1,5 +1,5 @@
 // The links to Falcons of a build without libusb-1.0.
-#include "device/falcon/libusb_link.h"
+#include "device/falcon/detail/libusb_link.h"
 
 #include "engine/core/contract.h"
 

@@ -6,8 +6,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "device/held_force.h"
-#include "device/setting_range.h"
+#include "device/detail/held_force.h"
+#include "device/detail/setting_range.h"
 #include "engine/core/contract.h"
 #include "engine/core/real_time.h"
 

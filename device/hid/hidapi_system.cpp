@@ -8,7 +8,7 @@
 
 #include <hidapi/hidapi.h>
 
-#include "device/hid/udev_line.h"
+#include "device/hid/detail/udev_line.h"
 
 namespace palp {
 namespace {

@@ -7,7 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "device/setting_range.h"
+#include "device/detail/setting_range.h"
 #include "engine/core/contract.h"
 
 namespace palp {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/chart/log_mean.h"
+#include "engine/chart/detail/log_mean.h"
 #include "engine/chart/nearest_map.h"
 
 namespace palp {

@@ -9,9 +9,9 @@
 #include <numeric>
 #include <string>
 
-#include "engine/cloud/embree.h"
+#include "engine/cloud/detail/embree.h"
+#include "engine/cloud/detail/point_block.h"
 #include "engine/cloud/morton.h"
-#include "engine/cloud/point_block.h"
 #include "engine/core/contract.h"
 
 // How floats give the answers of doubles

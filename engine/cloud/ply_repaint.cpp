@@ -7,9 +7,9 @@
 #include <string_view>
 #include <utility>
 
-#include "engine/cloud/block_writer.h"
-#include "engine/cloud/ply_file.h"
-#include "engine/cloud/ply_header.h"
+#include "engine/cloud/detail/block_writer.h"
+#include "engine/cloud/detail/ply_file.h"
+#include "engine/cloud/detail/ply_header.h"
 #include "engine/cloud/tokens.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"

@@ -4,9 +4,9 @@
 #include <new>
 #include <ostream>
 
-#include "engine/cloud/pcd_file.h"
-#include "engine/cloud/ply_file.h"
-#include "engine/cloud/text_file.h"
+#include "engine/cloud/detail/pcd_file.h"
+#include "engine/cloud/detail/ply_file.h"
+#include "engine/cloud/detail/text_file.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 

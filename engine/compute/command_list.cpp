@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "engine/compute/backend.h"
+#include "engine/compute/detail/backend.h"
 
 namespace palp::compute {
 namespace {

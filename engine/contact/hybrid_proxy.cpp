@@ -13,11 +13,11 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/contact/free_travel.h"
-#include "engine/contact/friction.h"
-#include "engine/contact/near_points.h"
-#include "engine/contact/proxy_form.h"
-#include "engine/contact/surfaces.h"
+#include "engine/contact/detail/free_travel.h"
+#include "engine/contact/detail/friction.h"
+#include "engine/contact/detail/near_points.h"
+#include "engine/contact/detail/proxy_form.h"
+#include "engine/contact/detail/surfaces.h"
 
 namespace palp {
 namespace {

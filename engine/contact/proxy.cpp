@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/contact/proxy_form.h"
+#include "engine/contact/detail/proxy_form.h"
 #include "engine/core/contract.h"
 
 namespace palp {

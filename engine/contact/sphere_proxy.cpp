@@ -5,9 +5,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "engine/contact/friction.h"
-#include "engine/contact/near_points.h"
-#include "engine/contact/proxy_form.h"
+#include "engine/contact/detail/friction.h"
+#include "engine/contact/detail/near_points.h"
+#include "engine/contact/detail/proxy_form.h"
 
 namespace palp {
 namespace {

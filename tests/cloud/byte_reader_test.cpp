@@ -1,4 +1,4 @@
-#include "engine/cloud/byte_reader.h"
+#include "engine/cloud/detail/byte_reader.h"
 
 #include <sstream>
 

@@ -1,4 +1,4 @@
-#include "engine/cloud/face_rows.h"
+#include "engine/cloud/detail/face_rows.h"
 
 #include <limits>
 

@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "engine/cloud/point_block.h"
+#include "engine/cloud/detail/point_block.h"
 #include "engine/core/contract.h"
 
 namespace palp {

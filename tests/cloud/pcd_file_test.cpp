@@ -1,4 +1,4 @@
-#include "engine/cloud/pcd_file.h"
+#include "engine/cloud/detail/pcd_file.h"
 
 #include "tests/cloud/cloud_parsing.h"
 

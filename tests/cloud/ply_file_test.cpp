@@ -1,4 +1,4 @@
-#include "engine/cloud/ply_file.h"
+#include "engine/cloud/detail/ply_file.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "engine/cloud/text_file.h"
+#include "engine/cloud/detail/text_file.h"
 
 #include "tests/cloud/cloud_parsing.h"
 

@@ -1,4 +1,4 @@
-#include "engine/contact/point_tree.h"
+#include "engine/contact/detail/point_tree.h"
 
 #include <algorithm>
 #include <array>

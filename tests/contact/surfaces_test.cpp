@@ -1,4 +1,4 @@
-#include "engine/contact/surfaces.h"
+#include "engine/contact/detail/surfaces.h"
 
 #include <random>
 

@@ -1,5 +1,5 @@
 // This machine's own USB, with the real libusb or without any; no Falcon need be plugged in.
-#include "device/falcon/libusb_link.h"
+#include "device/falcon/detail/libusb_link.h"
 
 #include <string>
 

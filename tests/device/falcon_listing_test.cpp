@@ -2,7 +2,7 @@
 #include <chrono>
 #include <string>
 
-#include "device/falcon/libusb_link.h"
+#include "device/falcon/detail/libusb_link.h"
 #include "tests/device/falcon_usb_fixture.h"
 #include "tests/support/temporary_folder.h"
 

@@ -14,8 +14,8 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "device/detail/held_force.h"
 #include "device/falcon/falcon_driver.h"
-#include "device/held_force.h"
 #include "tests/device/falcon_bench.h"
 
 namespace palp {

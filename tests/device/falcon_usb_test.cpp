@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "device/falcon/libusb_link.h"
+#include "device/falcon/detail/libusb_link.h"
 #include "tests/device/falcon_usb_fixture.h"
 #include "tests/support/temporary_folder.h"
 

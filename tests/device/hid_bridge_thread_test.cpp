@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "device/held_force.h"
+#include "device/detail/held_force.h"
 #include "tests/device/fake_bridge.h"
 #include "tests/device/fake_hid.h"
 #include "tests/device/governed.h"

@@ -9,13 +9,19 @@ trap 'rm -rf "$place"' EXIT
 cmake --install "$build" --prefix "$place/first" >"$place/install.log" || { cat "$place/install.log"; exit 1; }
 mv "$place/first" "$place/moved" # a package must not remember where it was installed
 
+# The lines of C++ on the front page are a program as they stand there.
+sed -n '/^```cpp$/,/^```$/p' "$source/../../README.md" | sed '1d;$d' >"$place/readme.cpp"
+grep -q 'int main' "$place/readme.cpp" || { echo 'README.md has no lines of C++'; exit 1; }
+
 flags=
 [ -z "$sanitizers" ] || flags="-fsanitize=$sanitizers"
 cmake -G "$generator" -S "$source/outside" -B "$place/outside" -DCMAKE_PREFIX_PATH="$place/moved" -DCMAKE_CXX_COMPILER="$compiler" \
-    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="$flags" -DSAMPLES="$source/../../samples" >"$place/configure.log" 2>&1 || { cat "$place/configure.log"; exit 1; }
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="$flags" -DSAMPLES="$source/../../samples" -DREADME="$place/readme.cpp" >"$place/configure.log" 2>&1 || { cat "$place/configure.log"; exit 1; }
 cmake --build "$place/outside" >"$place/build.log" 2>&1 || { cat "$place/build.log"; exit 1; }
 "$place/outside/hello_touch"
 "$place/outside/hello_session"
+"$place/moved/bin/palpate" convert sample:ellipsoid "$place/scan.ply" --points 5000 >/dev/null
+"$place/outside/readme" "$place/scan.ply" | grep -E '^[0-9]+ N/m$' # a number that is finite
 "$place/moved/bin/palpate" --version
 "$place/moved/bin/falcon_demo" --list | grep -q palm_wart # it finds the scenes that moved with it
 
@@ -24,6 +30,7 @@ cmake --build "$place/outside" >"$place/build.log" 2>&1 || { cat "$place/build.l
 if ldd "$place/moved/bin/palpate" | grep -E 'cholmod|openblas'; then echo 'palpate is linked with it'; exit 1; fi
 
 # Every header that was installed finds what it includes.
-(cd "$place/moved/include/palpate" && find engine -name '*.h' | sed 's/.*/#include "&"/') >"$place/all.cpp"
-grep -q plate_solver_vulkan "$place/all.cpp"
+(cd "$place/moved/include/palpate" && find engine device -name '*.h' | sed 's/.*/#include "&"/') >"$place/all.cpp"
+grep -q multigrid_plate_solver "$place/all.cpp"
+if grep -E '/(detail|tools|host)/' "$place/all.cpp"; then echo 'a header that is not for users was installed'; exit 1; fi
 "$compiler" -std=c++20 -fsyntax-only -I "$place/moved/include/palpate" "$place/all.cpp"

@@ -1,4 +1,4 @@
-#include "engine/plate/multigrid/chebyshev.h"
+#include "engine/plate/multigrid/detail/chebyshev.h"
 
 #include <gtest/gtest.h>
 

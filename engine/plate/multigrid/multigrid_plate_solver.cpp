@@ -18,9 +18,9 @@
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
-#include "engine/plate/multigrid/grid_hierarchy.h"
-#include "engine/plate/multigrid/plate_passes.h"
-#include "engine/plate/rigidity_unit.h"
+#include "engine/plate/detail/rigidity_unit.h"
+#include "engine/plate/multigrid/detail/grid_hierarchy.h"
+#include "engine/plate/multigrid/detail/plate_passes.h"
 
 // Each command list is recorded once:
 //

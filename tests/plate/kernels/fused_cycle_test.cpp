@@ -1,5 +1,5 @@
 #include "compute_shaders/shared/region_layout.h"
-#include "engine/plate/multigrid/plate_tail.h"
+#include "engine/plate/multigrid/detail/plate_tail.h"
 #include "tests/plate/kernels/plate_shader_test.h"
 
 // The cycle in few dispatches: plate_down.comp, plate_up.comp and plate_tail.comp, against pass after pass in C++.

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/plate/multigrid/grid_hierarchy.h"
-#include "engine/plate/multigrid/transfer_table.h"
+#include "engine/plate/multigrid/detail/grid_hierarchy.h"
+#include "engine/plate/multigrid/detail/transfer_table.h"
 #include "engine/plate/plate.h"
 
 // Plates and fields that look random and are the same everywhere.

@@ -1,0 +1,348 @@
+#include "engine/cloud/detail/cloud_rows.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+#include <glm/common.hpp>
+
+#include "engine/cloud/tokens.h"
+#include "engine/core/contract.h"
+#include "engine/core/quantity.h"
+
+namespace palp {
+namespace {
+
+/// Points are indexed by 32-bit numbers, of which the last means "none".
+constexpr std::uint64_t kMostPoints = 0xFFFF'FFFEu;
+
+/// Larger objects are not felt by hand, and distances squared in 32-bit floats overflow from 1e19 m on [m].
+constexpr double kLargestCoordinate = 1e9;
+
+/// Rows between two looks at the clock: about a millisecond.
+constexpr std::uint64_t kRowsPerProgress = 1u << 14;
+
+/// Names that a message lists before it says how many are left.
+constexpr std::size_t kLongestList = 40;
+
+constexpr std::array<const char*, kSlots> kSlotNames = {"x", "y", "z", "stiffness"};
+
+std::string listed(const std::vector<std::string>& names)
+{
+    std::string text;
+    for (std::size_t i = 0; i < std::min(names.size(), kLongestList); ++i)
+        text += (i ? ", " : "") + printable(names[i]);
+    if (names.size() > kLongestList) text += " and " + std::to_string(names.size() - kLongestList) + " more";
+    return text.empty() ? "none" : text;
+}
+
+std::string lookUpList()
+{
+    std::string text;
+    for (const std::string_view name : kStiffnessProperties) text += (text.empty() ? "" : ", ") + std::string(name);
+    return text;
+}
+
+std::optional<StiffnessKind> kindOfUnit(std::string_view unit)
+{
+    for (const StiffnessKind kind : {StiffnessKind::modulus, StiffnessKind::rigidity})
+        if (unit == unitOf(kind)) return kind;
+    return std::nullopt;
+}
+
+const char* nameOf(StiffnessKind kind)
+{
+    return kind == StiffnessKind::modulus ? "modulus [Pa]" : "flexural rigidity [N_m]";
+}
+
+/// The place of the only property of that name.
+std::optional<std::size_t> find(const ByteReader& reader, const std::vector<std::string>& properties,
+                                std::string_view name)
+{
+    const auto first = std::find(properties.begin(), properties.end(), name);
+    if (first == properties.end()) return std::nullopt;
+    if (std::find(first + 1, properties.end(), name) != properties.end())
+        reader.fail("expected one property " + inQuotes(name) + ", found several among: " + listed(properties));
+    return std::size_t(first - properties.begin());
+}
+
+/// A well-mixed 64-bit number of a position's bits.
+std::uint64_t hashOf(const glm::dvec3& p)
+{
+    std::uint64_t hash = 0;
+    for (int k = 0; k < 3; ++k) {
+        hash ^= std::bit_cast<std::uint64_t>(p[k] + 0.0); // adding zero makes -0 and 0 the same
+        hash *= 0x9E3779B97F4A7C15u;                      // 2^64 / golden ratio, an odd number without pattern
+        hash ^= hash >> 32;
+    }
+    return hash;
+}
+
+/// Points whose position an earlier point already has. Sorting, unlike a hash table, stays fast for a hostile file.
+std::size_t countDuplicates(const std::vector<glm::dvec3>& positions)
+{
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) order[i] = {hashOf(positions[i]), std::uint32_t(i)};
+    std::sort(order.begin(), order.end());
+
+    const auto coordinates = [&](const auto& entry) {
+        const glm::dvec3& p = positions[entry.second];
+        return std::make_tuple(p.x, p.y, p.z);
+    };
+    std::size_t duplicates = 0;
+    for (auto first = order.begin(); first != order.end();) {
+        const auto last = std::find_if(first, order.end(), [&](const auto& e) { return e.first != first->first; });
+        if (last - first > 1) { // different positions may share a hash
+            std::sort(first, last, [&](const auto& a, const auto& b) { return coordinates(a) < coordinates(b); });
+            for (auto entry = first + 1; entry != last; ++entry)
+                duplicates += coordinates(*entry) == coordinates(*(entry - 1)) ? 1 : 0;
+        }
+        first = last;
+    }
+    return duplicates;
+}
+
+void checkPositive(const ByteReader& reader, double value, const char* what)
+{
+    if (!(value > 0) || !std::isfinite(value))
+        reader.fail(std::string("expected a finite ") + what + " above zero, found " + shown(value));
+}
+
+} // namespace
+
+StiffnessKind kindByName(std::string_view property) noexcept
+{
+    return property == "D" || property.ends_with("flexural_rigidity") ? StiffnessKind::rigidity
+                                                                      : StiffnessKind::modulus;
+}
+
+void CloudHeader::readComment(std::string_view comment, const ByteReader& reader)
+{
+    const std::string_view key  = nextWord(comment);
+    const std::string_view unit = trimmed(comment);
+    if (key != "length_unit" && key != "stiffness_unit") return;
+    std::optional<std::string>& known = key == "length_unit" ? lengthUnit : stiffnessUnit;
+    if (known && *known != unit)
+        reader.failAtLine("a comment says " + std::string(key) + " " + inQuotes(unit) + ", an earlier one " +
+                          inQuotes(*known));
+    known = std::string(unit);
+}
+
+CloudRows::CloudRows(const ByteReader& reader, CloudHeader header, const CloudReadSettings& settings)
+    : reader_(reader), header_(std::move(header)), settings_(settings), progress_("reading " + reader.name())
+{
+    for (const std::size_t slot : {kSlotX, kSlotY, kSlotZ}) {
+        columns_[slot] = find(reader_, header_.properties, kSlotNames[slot]);
+        if (!columns_[slot])
+            reader_.fail(std::string("expected a number ") + kSlotNames[slot] +
+                         " for each point, found only: " + listed(header_.properties) +
+                         (header_.format == "text" ? "; name the columns, such as --columns x,y,z,-,stiffness" : ""));
+    }
+    chooseLengthUnit();
+    chooseStiffness();
+}
+
+void CloudRows::chooseLengthUnit()
+{
+    const bool        chosen = !settings_.lengthUnit.empty();
+    const std::string unit   = printable(chosen ? settings_.lengthUnit : header_.lengthUnit.value_or("m"));
+    const std::string source = chosen               ? "from the setting"
+                               : header_.lengthUnit ? "from the file's comment"
+                                                    : "because neither the file nor a setting names a unit";
+    try {
+        metresPerUnit_ = metresPer(unit);
+    } catch (const Error& unknown) {
+        reader_.fail("length unit " + source + ": " + unknown.what());
+    }
+    report_.lengthUnitSource  = unit + ", " + source;
+    report_.lengthUnitAssumed = !chosen && !header_.lengthUnit;
+}
+
+void CloudRows::chooseKind(std::string_view property)
+{
+    std::string why;
+    if (settings_.stiffnessKind) {
+        kind_ = *settings_.stiffnessKind;
+        why   = "by the setting";
+    } else if (header_.stiffnessUnit) {
+        const auto kind = kindOfUnit(*header_.stiffnessUnit);
+        if (!kind)
+            reader_.fail("expected a comment stiffness_unit Pa or N_m, found " + inQuotes(*header_.stiffnessUnit) +
+                         "; name the kind of stiffness to overrule it");
+        kind_ = *kind;
+        why   = "by the file's comment";
+    } else {
+        kind_ = kindByName(property);
+        why   = kind_ == StiffnessKind::rigidity ? "by its name"
+                                                 : "because neither a setting, the file nor the name says otherwise";
+    }
+    if (header_.stiffnessUnit) report_.statedKind = kindOfUnit(*header_.stiffnessUnit);
+    report_.stiffnessSource = "property " + inQuotes(property) + " as " + nameOf(kind_) + " " + why;
+}
+
+void CloudRows::chooseStiffness()
+{
+    const std::string&         wanted = settings_.stiffnessProperty;
+    std::optional<std::size_t> column;
+    if (!wanted.empty()) {
+        column = find(reader_, header_.properties, wanted);
+        if (!column)
+            reader_.fail("expected a stiffness property " + inQuotes(wanted) +
+                         ", found only these numbers for each point: " + listed(header_.properties));
+    }
+    for (std::size_t i = 0; wanted.empty() && !column && i < kStiffnessProperties.size(); ++i)
+        column = find(reader_, header_.properties, kStiffnessProperties[i]);
+
+    columns_[kSlotStiffness] = column;
+    if (settings_.range) {
+        checkPositive(reader_, settings_.range->from, "lower end of the stiffness range");
+        checkPositive(reader_, settings_.range->to, "upper end of the stiffness range");
+    }
+    if (column) return chooseKind(header_.properties[*column]);
+
+    const std::string none = "the file has no property " + lookUpList() + " but only: " + listed(header_.properties);
+    if (settings_.range) reader_.fail("a stiffness range needs a property to map, but " + none + "; name one of these");
+    kind_ = settings_.stiffnessKind.value_or(StiffnessKind::modulus);
+    if (!settings_.uniformStiffness && kind_ == StiffnessKind::rigidity)
+        reader_.fail(none + "; name one of these, or a uniform flexural rigidity");
+    uniform_ = settings_.uniformStiffness.value_or(kDefaultModulus);
+    checkPositive(reader_, uniform_, "uniform stiffness");
+    report_.stiffnessAssumed = !settings_.uniformStiffness;
+    report_.stiffnessSource  = "uniform " + std::string(nameOf(kind_)) + " " + shown(uniform_) +
+                              (settings_.uniformStiffness ? " by the setting" : " by default") + ", because " + none;
+}
+
+std::size_t CloudRows::slotOf(std::size_t property) const noexcept
+{
+    // The first match, so that a coordinate which is the stiffness too stays a coordinate; add() copies it.
+    return std::size_t(std::find(columns_.begin(), columns_.end(), property) - columns_.begin());
+}
+
+void CloudRows::expect(std::uint64_t points, std::uint64_t leastBytes, Place place)
+{
+    if (points == 0) reader_.fail("the cloud is empty: expected at least one point, found a header that promises none");
+    const std::uint64_t missingLineEnd = place == Place::line ? 1 : 0; // the last line may lack its end
+    if (points > (reader_.remaining() + missingLineEnd) / leastBytes)
+        reader_.failAtByte("the header promises " + std::to_string(points) + " points of at least " +
+                           std::to_string(leastBytes) + " bytes each, but only " + std::to_string(reader_.remaining()) +
+                           " bytes follow; the file may have been cut short while it was copied");
+    if (points > kMostPoints)
+        reader_.fail("expected at most " + std::to_string(kMostPoints) + " points, found " + std::to_string(points));
+    positions_.reserve(points);
+    if (columns_[kSlotStiffness]) stiffness_.reserve(points);
+}
+
+bool CloudRows::usable(const CloudRow& row) const noexcept
+{
+    // NaN fails every comparison.
+    const double limit = kLargestCoordinate / metresPerUnit_;
+    return std::abs(row[kSlotX]) <= limit && std::abs(row[kSlotY]) <= limit && std::abs(row[kSlotZ]) <= limit &&
+           std::isfinite(row[kSlotStiffness]) && (settings_.range || row[kSlotStiffness] > 0);
+}
+
+void CloudRows::add(const CloudRow& row, Place place)
+{
+    if (rowsRead_ % kRowsPerProgress == 0) progress_.at(reader_.offset(), reader_.size());
+    CloudRow used = row;
+    // A coordinate can be the stiffness too; then the format delivers it only once.
+    const auto& stiffness = columns_[kSlotStiffness];
+    for (const std::size_t slot : {kSlotX, kSlotY, kSlotZ})
+        if (stiffness && stiffness == columns_[slot]) used[kSlotStiffness] = row[slot];
+    if (!stiffness) used[kSlotStiffness] = uniform_;
+
+    if (!usable(used)) {
+        const bool finite = std::all_of(used.begin(), used.end(), [](double v) { return std::isfinite(v); });
+        if (finite || !settings_.dropInvalid) refuseRow(used, place);
+        ++report_.droppedPoints;
+        droppedRows_.push_back(std::uint32_t(rowsRead_));
+        ++rowsRead_;
+        return;
+    }
+    if (positions_.size() == kMostPoints)
+        failAtRow(place, "expected at most " + std::to_string(kMostPoints) + " points, found more");
+    positions_.push_back(metresPerUnit_ * glm::dvec3(used[kSlotX], used[kSlotY], used[kSlotZ]));
+    if (stiffness) {
+        const double value = used[kSlotStiffness];
+        const bool   first = stiffness_.empty();
+        found_ = {first ? value : std::min(found_.smallest, value), first ? value : std::max(found_.largest, value)};
+        stiffness_.push_back(value);
+    }
+    ++rowsRead_;
+}
+
+void CloudRows::refuseRow(const CloudRow& row, Place place) const
+{
+    for (std::size_t slot = 0; slot < kSlots; ++slot) {
+        const auto& column = columns_[slot];
+        if (!column) continue;
+        const std::string found = ", found " + inQuotes(header_.properties[*column]) + " " + shown(row[slot]);
+        if (!std::isfinite(row[slot]))
+            failAtRow(place, "expected a finite number" + found + "; such points can be dropped with --drop-invalid");
+        if (slot != kSlotStiffness && std::abs(row[slot]) > kLargestCoordinate / metresPerUnit_)
+            failAtRow(place, "expected a coordinate below " + shown(kLargestCoordinate) + " m" + found +
+                                 "; is the length unit right?");
+        if (slot == kSlotStiffness && !settings_.range && !(row[slot] > 0))
+            failAtRow(place, "expected a stiffness above zero" + found + "; map the property with --range FROM,TO");
+    }
+    PALP_EXPECT(false, "a usable row is refused");
+}
+
+void CloudRows::failAtRow(Place place, const std::string& message) const
+{
+    const std::string at = "point " + std::to_string(rowsRead_) + ": " + message;
+    if (place == Place::line) reader_.failAtLine(at);
+    reader_.fail("before byte " + std::to_string(reader_.offset()) + ": " + at);
+}
+
+void CloudRows::mapRange()
+{
+    const auto [from, to, scale] = *settings_.range;
+    report_.stiffnessSource += ", " + shown(found_.smallest) + " to " + shown(found_.largest) + " mapped " +
+                               (scale == RangeScale::linear ? "linearly" : "logarithmically") + " onto " + shown(from) +
+                               " to " + shown(to) + " " + unitOf(kind_);
+    if (from == to) return void(std::fill(stiffness_.begin(), stiffness_.end(), from));
+    if (found_.smallest == found_.largest)
+        reader_.fail("property " + inQuotes(header_.properties[*columns_[kSlotStiffness]]) + " is " +
+                     shown(found_.smallest) + " at every point, which a range from " + shown(from) + " to " +
+                     shown(to) + " cannot spread; leave the range away or make its ends equal");
+    // Quarters, because the difference of two doubles can overflow; shifted up first if it could underflow.
+    const double up    = std::max(std::abs(found_.smallest), std::abs(found_.largest)) < 1 ? 1e200 : 0.25;
+    const double width = up * found_.largest - up * found_.smallest;
+    for (double& value : stiffness_) {
+        const double t = std::clamp((up * value - up * found_.smallest) / width, 0.0, 1.0);
+        if (t == 0 || t == 1) // exactly the ends, whatever the logarithm rounds to
+            value = t == 0 ? from : to;
+        else
+            value = std::clamp(scale == RangeScale::linear ? std::lerp(from, to, t)
+                                                           : std::exp(std::lerp(std::log(from), std::log(to), t)),
+                               std::min(from, to), std::max(from, to));
+    }
+}
+
+LoadedCloud CloudRows::finish()
+{
+    if (positions_.empty())
+        reader_.fail(report_.droppedPoints ? "the cloud is empty: all " + std::to_string(report_.droppedPoints) +
+                                                 " points have NaN or infinity in a used property and were dropped"
+                                           : "the cloud is empty: expected at least one point, found none");
+    const glm::dvec3& first = positions_.front();
+    if (std::all_of(positions_.begin(), positions_.end(), [&](const glm::dvec3& p) { return p == first; }))
+        reader_.fail("all " + std::to_string(positions_.size()) + " points coincide at (" + shown(first.x) + ", " +
+                     shown(first.y) + ", " + shown(first.z) + ") m: expected an object with an extent");
+    if (columns_[kSlotStiffness]) {
+        report_.stiffnessProperty = found_;
+        if (settings_.range) mapRange();
+    } else {
+        stiffness_.assign(positions_.size(), uniform_);
+    }
+    report_.format             = header_.format;
+    report_.points             = positions_.size();
+    report_.duplicatePositions = countDuplicates(positions_);
+    for (const std::string& property : header_.properties) report_.properties.push_back(printable(property));
+    return {PointCloud(std::move(positions_), std::move(stiffness_), kind_), std::move(report_)};
+}
+
+} // namespace palp

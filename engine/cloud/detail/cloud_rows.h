@@ -1,0 +1,101 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/cloud/detail/byte_reader.h"
+#include "engine/cloud/point_cloud_io.h"
+#include "engine/core/progress.h"
+
+namespace palp {
+
+/// What the head of a file says, in the words common to all formats.
+struct CloudHeader {
+    std::string                format;        ///< such as "PLY, ascii"
+    std::vector<std::string>   properties;    ///< single numbers of a point, in file order
+    std::optional<std::string> lengthUnit;    ///< of a comment "length_unit m"
+    std::optional<std::string> stiffnessUnit; ///< of a comment "stiffness_unit Pa"
+
+    /// Takes note of a comment that states a unit; all others are ignored.
+    /// \throws Error if an earlier comment says something else
+    void readComment(std::string_view comment, const ByteReader& reader);
+};
+
+/// What a number of a row is for.
+enum RowSlot : std::size_t { kSlotX, kSlotY, kSlotZ, kSlotStiffness, kSlots };
+
+/// The numbers of one point that matter, in the file's units, indexed by RowSlot.
+using CloudRow = std::array<double, kSlots>;
+
+/// The names under which stiffness is looked for, the first that is there wins. Programs for point clouds put
+/// "scalar_" before the names of their own properties. Quality, confidence and intensity mean too many things.
+inline constexpr std::array<std::string_view, 6> kStiffnessProperties = {
+    "stiffness", "scalar_stiffness", "flexural_rigidity", "scalar_flexural_rigidity", "D", "E"};
+
+/// The kind of a stiffness of which only the property's name is known.
+[[nodiscard]] StiffnessKind kindByName(std::string_view property) noexcept;
+
+/// Gives meaning to the numbers of a file: the one place that knows units, ranges and which property is stiffness.
+/// Use: ask `slotOf` which properties to deliver, `add` each row, `finish`.
+/// \thread one
+class CloudRows {
+public:
+    /// \throws Error if x, y, z or the wanted stiffness are missing or ambiguous, or a unit is unknown
+    CloudRows(const ByteReader& reader, CloudHeader header, const CloudReadSettings& settings);
+
+    /// The slot that a property (an index in CloudHeader::properties) fills; kSlots: none.
+    [[nodiscard]] std::size_t slotOf(std::size_t property) const noexcept;
+
+    /// Where a row stands: on a line of its own, or at a byte.
+    enum class Place { line, byte };
+
+    /// Checks a promised number of points against the bytes that are left, and only then makes room for them.
+    /// \param leastBytes  that one point takes in the file, > 0
+    void expect(std::uint64_t points, std::uint64_t leastBytes, Place place);
+
+    /// Takes the next row of the file, which is the reader's last line or ends at the reader's offset.
+    /// \throws Error naming the row if a number is not finite or the stiffness not above zero
+    void add(const CloudRow& row, Place place);
+
+    [[nodiscard]] std::uint64_t rowsRead() const noexcept { return rowsRead_; } ///< dropped ones included
+
+    /// The rows that were left out, rising.
+    [[nodiscard]] std::span<const std::uint32_t> droppedRows() const noexcept { return droppedRows_; }
+
+    /// Maps ranges and builds the cloud.
+    [[nodiscard]] LoadedCloud finish();
+
+private:
+    void               chooseStiffness();
+    void               chooseKind(std::string_view property);
+    void               chooseLengthUnit();
+    void               refuseRow(const CloudRow& row, Place place) const;
+    [[noreturn]] void  failAtRow(Place place, const std::string& message) const;
+    [[nodiscard]] bool usable(const CloudRow& row) const noexcept;
+    void               mapRange();
+
+    const ByteReader&        reader_;
+    CloudHeader              header_;
+    const CloudReadSettings& settings_;
+    CloudFileReport          report_;
+    Progress                 progress_;
+
+    std::array<std::optional<std::size_t>, kSlots> columns_; ///< index in CloudHeader::properties; empty: uniform
+
+    std::vector<std::uint32_t> droppedRows_;
+
+    std::vector<glm::dvec3> positions_; ///< [m]
+    std::vector<double>     stiffness_; ///< [Pa] or [N m], or in the property's unit until mapRange
+    StiffnessKind           kind_          = StiffnessKind::modulus;
+    double                  metresPerUnit_ = 1; ///< [m]
+    double                  uniform_       = 0; ///< [Pa] or [N m]
+    PropertyRange           found_;             ///< of the property, in its unit
+    std::uint64_t           rowsRead_ = 0;
+};
+
+} // namespace palp

@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/compute/command_list.h"
+#include "engine/compute/detail/vulkan_handles.h"
+#include "engine/core/contract.h"
+
+namespace palp::compute {
+namespace {
+
+// Hardware: the kernel drivers of AMD, Intel and NVIDIA reset a device that makes no progress for 2 to 10 s; waiting
+// longer only hides that. Software has no such watchdog and is legitimately slow: a validated multigrid cycle on a
+// large grid lasts tens of seconds.
+constexpr double kPatienceHardware = 10;  // [s]
+constexpr double kPatienceSoftware = 300; // [s]
+
+const char* nameOf(VkResult result)
+{
+    switch (result) {
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+        return "no host memory left";
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+        return "no device memory left";
+    case VK_ERROR_DEVICE_LOST:
+        return "the device is lost";
+    case VK_ERROR_INITIALIZATION_FAILED:
+        return "initialization failed";
+    case VK_ERROR_MEMORY_MAP_FAILED:
+        return "mapping failed";
+    case VK_ERROR_FEATURE_NOT_PRESENT:
+        return "a feature is not present";
+    case VK_ERROR_TOO_MANY_OBJECTS:
+        return "too many objects";
+    default:
+        return "unexpected result";
+    }
+}
+
+} // namespace
+
+void check(VkResult result, const char* what)
+{
+    if (result == VK_SUCCESS) return;
+    const std::string sentence =
+        std::string("the GPU cannot ") + what + ": " + nameOf(result) + " (" + std::to_string(result) + ")";
+    switch (result) {
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+        throw ProcessorLost(sentence + "; try fewer cells");
+    case VK_ERROR_DEVICE_LOST:
+        throw ProcessorLost(sentence);
+    default:
+        throw Error(sentence);
+    }
+}
+
+VulkanContext::VulkanContext(std::unique_ptr<Instance>& entrance, const Candidate& candidate, double wantedPatience,
+                             Purpose purpose)
+{
+    describe(candidate, purpose);
+    const double usual = description.kind == "software" ? kPatienceSoftware : kPatienceHardware;
+    patience           = wantedPatience > 0 ? wantedPatience : usual;
+    open(*entrance, purpose);
+    instance = std::move(entrance);
+}
+
+VulkanContext::~VulkanContext()
+{
+    if (atWork()) {
+        (void)instance.release();
+        return;
+    }
+    if (fence) vkDestroyFence(device, fence, nullptr);
+    if (device) vkDestroyDevice(device, nullptr);
+}
+
+void VulkanContext::describe(const Candidate& candidate, Purpose purpose)
+{
+    description         = candidate.description;
+    physical            = candidate.physical;
+    native              = candidate.limits;
+    family              = purpose != Purpose::compute ? candidate.drawFamily.value() : candidate.family;
+    timestampBits       = candidate.timestampBits;
+    bitExact            = candidate.driver == VK_DRIVER_ID_MESA_LLVMPIPE;
+    limits.buffer       = std::size_t(std::min<VkDeviceSize>(native.maxStorageBufferRange, candidate.maxBufferBytes));
+    limits.invocations  = native.maxComputeWorkGroupInvocations;
+    limits.sharedMemory = native.maxComputeSharedMemorySize;
+    vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+}
+
+void VulkanContext::open(const Instance& entrance, Purpose purpose)
+{
+    const float priority       = 1;
+    auto        queueInfo      = typed<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
+    queueInfo.queueFamilyIndex = family;
+    queueInfo.queueCount       = 1;
+    queueInfo.pQueuePriorities = &priority;
+
+    auto layout = typed<VkPhysicalDeviceScalarBlockLayoutFeatures>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES);
+    layout.scalarBlockLayout = VK_TRUE;
+    auto features            = typed<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &layout);
+    features.features.shaderFloat64 = description.float64;
+    auto info                       = typed<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features);
+    info.queueCreateInfoCount       = 1;
+    info.pQueueCreateInfos          = &queueInfo;
+    const char* const swapchain     = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    if (purpose == Purpose::show) {
+        info.enabledExtensionCount   = 1;
+        info.ppEnabledExtensionNames = &swapchain;
+    }
+    if (const VkResult result = vkCreateDevice(physical, &info, nullptr, &device); result != VK_SUCCESS) {
+        device = VK_NULL_HANDLE;
+        throw ProcessorError("the GPU " + description.name + " cannot be opened: " + nameOf(result) + " (" +
+                             std::to_string(result) + ")");
+    }
+    vkGetDeviceQueue(device, family, 0, &queue);
+    if (entrance.hasDebugUtils())
+        setObjectName = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
+            vkGetInstanceProcAddr(entrance.get(), "vkSetDebugUtilsObjectNameEXT"));
+    const auto fenceInfo = typed<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+    if (const VkResult result = vkCreateFence(device, &fenceInfo, nullptr, &fence); result != VK_SUCCESS) {
+        vkDestroyDevice(device, nullptr); // no destructor runs for what was never built
+        check(result, "make a fence");
+    }
+}
+
+void VulkanContext::setName(VkObjectType type, std::uint64_t handle, const std::string& name) const
+{
+    if (!setObjectName) return;
+    auto info         = typed<VkDebugUtilsObjectNameInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT);
+    info.objectType   = type;
+    info.objectHandle = handle;
+    info.pObjectName  = name.c_str();
+    setObjectName(device, &info); // a name that is not kept does no harm
+}
+
+void VulkanContext::run(std::span<CommandList* const> lists)
+{
+    std::vector<VkCommandBuffer> commands;
+    for (const CommandList* list : lists) commands.push_back(static_cast<const VulkanList&>(list->handles()).commands);
+    submit(commands);
+}
+
+void VulkanContext::submit(std::span<const VkCommandBuffer> commands)
+{
+    start(commands);
+    finish();
+}
+
+void VulkanContext::start(std::span<const VkCommandBuffer> commands)
+{
+    if (abandoned) throw ProcessorLost("the GPU " + description.name + " hung before and is not used any more");
+
+    check(vkResetFences(device, 1, &fence), "reset a fence");
+    auto submit               = typed<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+    submit.commandBufferCount = std::uint32_t(commands.size());
+    submit.pCommandBuffers    = commands.data();
+    check(vkQueueSubmit(queue, 1, &submit, fence), "take a command list");
+}
+
+void VulkanContext::finish()
+{
+    const auto     nanoseconds = std::uint64_t(std::ceil(patience * 1e9));
+    const VkResult result      = vkWaitForFences(device, 1, &fence, VK_TRUE, nanoseconds);
+    if (result == VK_TIMEOUT || result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY)
+        abandoned = true;
+    if (result == VK_TIMEOUT)
+        throw ProcessorLost("the GPU " + description.name + " did not finish within " + std::to_string(patience) +
+                            " s; try fewer cells");
+    check(result, "finish a command list");
+}
+
+std::vector<std::string> VulkanContext::takeMessages()
+{
+    return instance->takeMessages();
+}
+
+} // namespace palp::compute

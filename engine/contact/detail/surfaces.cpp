@@ -1,0 +1,285 @@
+#include "engine/contact/detail/surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace palp {
+namespace {
+
+/// Beyond the nearest point, the ball of the outward direction reaches this wide over a flat sheet [spacings].
+constexpr double kView = 2;
+
+/// Fits at the point that was seen, before one at the foot of the proxy [1].
+constexpr int kFitsAtPoint = 3;
+
+/// Points this much sparser than here say where the surface is by their own spacing only [1]. In a random cloud hardly
+/// any are.
+constexpr double kSparser = 2;
+
+/// A plane that opposes a known one as much, and passes through it here, is the known one from below [1]: cosine.
+constexpr double kFromBelow = -0.5;
+
+/// What was seen from afar must have points all around, or it is the past of a border or an edge [1]: support.
+constexpr double kSureSupport = 0.9;
+
+/// Planes nearer to parallel than this do not define an edge or a corner [1]: determinant of their Gram matrix.
+constexpr double kParallel = 1e-6;
+
+/// Multipliers of the planes in a set: sum of multiplier x normal moves `place` onto all of them.
+/// \return false if the set is empty or nearly parallel
+bool multipliers(std::span<const SurfacePlane> planes, unsigned set, const glm::dvec3& place,
+                 std::array<double, Surfaces::kMost>& lambda) noexcept
+{
+    int    member[Surfaces::kMost];
+    double missing[Surfaces::kMost];
+    int    count = 0;
+    for (int j = 0; j < int(planes.size()); ++j) {
+        if (!(set >> j & 1U)) continue;
+        missing[count]  = -planes[std::size_t(j)].height(place);
+        member[count++] = j;
+    }
+    const auto gram = [&](int i, int j) {
+        return glm::dot(planes[std::size_t(member[i])].normal, planes[std::size_t(member[j])].normal);
+    };
+    lambda = {};
+    if (count == 1) {
+        lambda[std::size_t(member[0])] = missing[0];
+        return true;
+    }
+    if (count == 2) {
+        const double c = gram(0, 1), determinant = 1 - c * c;
+        if (determinant < kParallel) return false;
+        lambda[std::size_t(member[0])] = (missing[0] - c * missing[1]) / determinant;
+        lambda[std::size_t(member[1])] = (missing[1] - c * missing[0]) / determinant;
+        return true;
+    }
+    if (count != 3) return false;
+    // Unit diagonal; a, b, c the cosines. Cramer's rule.
+    const double a = gram(0, 1), b = gram(0, 2), c = gram(1, 2);
+    const double determinant = 1 + 2 * a * b * c - a * a - b * b - c * c;
+    if (determinant < kParallel) return false;
+    const double x = missing[0], y = missing[1], z = missing[2];
+    lambda[0] = (x * (1 - c * c) + y * (b * c - a) + z * (a * c - b)) / determinant;
+    lambda[1] = (x * (b * c - a) + y * (1 - b * b) + z * (a * b - c)) / determinant;
+    lambda[2] = (x * (a * c - b) + y * (a * b - c) + z * (1 - a * a)) / determinant;
+    return true;
+}
+
+glm::dvec3 moved(std::span<const SurfacePlane> planes, const std::array<double, Surfaces::kMost>& lambda,
+                 glm::dvec3 place) noexcept
+{
+    for (std::size_t j = 0; j < planes.size(); ++j) place += lambda[j] * planes[j].normal;
+    return place;
+}
+
+double deepest(std::span<const SurfacePlane> planes, const glm::dvec3& place) noexcept
+{
+    double height = 0;
+    for (const SurfacePlane& plane : planes) height = std::min(height, plane.height(place));
+    return -height;
+}
+
+} // namespace
+
+void Surfaces::remove(int which) noexcept
+{
+    std::copy(planes.begin() + which + 1, planes.begin() + count, planes.begin() + which);
+    --count;
+}
+
+RestPoint restPointOn(std::span<const SurfacePlane> planes, const glm::dvec3& hip) noexcept
+{
+    RestPoint    best{hip, {}};
+    double       behind = deepest(planes, hip); // of the best, [m]
+    const double scale  = behind;
+    if (!(behind > 0)) return best;
+    constexpr double kRounding = 1e-12; // [1] of the depth
+    double           reach     = 0;     // [m] of the best that is behind nothing
+    bool             found     = false;
+    for (unsigned set = 1; set < 1U << planes.size(); ++set) {
+        std::array<double, Surfaces::kMost> lambda{};
+        if (!multipliers(planes, set, hip, lambda)) continue;
+        if (*std::min_element(lambda.begin(), lambda.end()) < 0) continue;
+        const glm::dvec3 point  = moved(planes, lambda, hip);
+        const double     depth  = deepest(planes, point);
+        const double     length = glm::length(point - hip);
+        const bool       free   = depth <= kRounding * scale;
+        // If the planes contradict each other the least wrong set is taken.
+        if (found ? free && length < reach : free || depth < behind) {
+            best   = {point, lambda};
+            behind = depth;
+            reach  = length;
+            found  = free;
+        }
+    }
+    return best;
+}
+
+glm::dvec3 ontoLoaded(std::span<const SurfacePlane> planes, const RestPoint& rest, const glm::dvec3& place) noexcept
+{
+    unsigned set = 0;
+    for (std::size_t j = 0; j < planes.size(); ++j) set |= rest.load[j] > 0 ? 1U << j : 0;
+    std::array<double, Surfaces::kMost> lambda{};
+    return multipliers(planes, set, place, lambda) ? moved(planes, lambda, place) : place;
+}
+
+SurfaceTracker::VisiblePoints SurfaceTracker::findVisible(const Surfaces& surfaces, const glm::dvec3& place)
+{
+    const auto isVisible = [&](const NearPoint& point) {
+        const bool   sparse = point.spacing > kSparser * surfaces.spacing;
+        const double hidden = kFullHeight * (sparse ? point.spacing : surfaces.spacing);
+        for (const SurfacePlane& plane : surfaces.all())
+            if (plane.height(point.position) <= hidden) return false;
+        return true;
+    };
+    VisiblePoints visible;
+    double        best = kBall; // [1] distance over the point's spacing
+    points_.holding(place, [&](const NearPoint& point, double d2) {
+        const double distance = std::sqrt(d2) / point.spacing;
+        visible.sparsest      = std::max(visible.sparsest, point.spacing);
+        if (!(distance < best) || !isVisible(point)) return;
+        best            = distance;
+        visible.nearest = point;
+        visible.any     = true;
+    });
+    if (!visible.any) return visible;
+    const double s = visible.nearest.spacing;
+    const double r = s * std::sqrt(best * best + kView * kView);
+    points_.inside(place, r, s, [&](const NearPoint& point, double d2) {
+        const double distance = std::sqrt(d2);
+        if (distance > 0 && isVisible(point)) visible.outward += (r / distance - 1) * (place - point.position);
+    });
+    return visible;
+}
+
+/// Whose own balls the place of a trial lies in, of the points near its plane.
+SurfaceTracker::NearbyPoints SurfaceTracker::pointsNear(const TrialPlane& trial) const noexcept
+{
+    NearbyPoints near;
+    double       best = kBall; // [1] distance over the point's spacing
+    points_.holding(trial.place, [&](const NearPoint& point, double d2) {
+        if (std::abs(glm::dot(trial.normal, point.position - trial.place)) > kFullHeight * point.spacing) return;
+        const bool   sparser  = point.spacing > kSparser * trial.spacing;
+        const double distance = std::sqrt(d2) / point.spacing;
+        near.alike            = near.alike || !sparser;
+        if (!sparser || distance >= best) return;
+        best         = distance;
+        near.sparser = point.spacing;
+    });
+    return near;
+}
+
+/// A fit, with a larger spacing where the surface goes on with sparser points: what looks like a border is none then.
+/// Of all tried, the one with the most support.
+std::optional<PlaneFit> SurfaceTracker::fitPlane(const TrialPlane& trial, std::span<const SurfacePlane> others) noexcept
+{
+    if (!points_.mixed()) return fitter_.fit(trial.place, trial.normal, trial.spacing, others);
+    std::optional<PlaneFit> best;
+    TrialPlane              wider = trial;
+    for (bool last = false; !last;) { // at most once per doubling of the spacing
+        const NearbyPoints near = pointsNear(wider);
+        if (near.alike || !(near.sparser > 0)) {
+            const auto found = fitter_.fit(wider.place, wider.normal, wider.spacing, others);
+            if (found && (!best || found->plane.support > best->plane.support)) best = found;
+        }
+        last          = !(near.sparser > 0) || (best && best->plane.support >= 1);
+        wider.spacing = near.sparser;
+    }
+    return best;
+}
+
+bool SurfaceTracker::addSurface(Surfaces& surfaces, const VisiblePoints& visible, const glm::dvec3& place,
+                                const glm::dvec3& seed) noexcept
+{
+    const NearPoint& nearest = visible.nearest;
+    const double     length  = glm::length(seed);
+    if (!(length > 0)) return false;
+    SurfacePlane plane{seed / length, nearest.position, 0};
+    double       spacing = surfaces.spacing;
+    // Noise of sparse points is no ceiling over a floor of dense ones.
+    const double coarse = points_.mixed() ? std::max(spacing, visible.sparsest) : spacing;
+    for (int k = 0; k <= kFitsAtPoint; ++k) {
+        const glm::dvec3 at = k < kFitsAtPoint ? nearest.position : place;
+        const auto found    = fitPlane({at - plane.height(at) * plane.normal, plane.normal, spacing}, surfaces.all());
+        if (!found) return false;
+        plane = found->plane;
+    }
+    // A plane that misses the point that was seen is another's: of a sheet hidden behind it, or the floor from below.
+    if (!(plane.support > 0 && std::abs(plane.height(nearest.position)) < kFullHeight * spacing &&
+          plane.height(place) > -kFullHeight * spacing))
+        return false;
+    for (const SurfacePlane& known : surfaces.all()) {
+        const double c = glm::dot(known.normal, plane.normal);
+        if (c > kSameSurface) return false;
+        if (c < kFromBelow && known.height(plane.foot) < kFullHeight * coarse) return false;
+    }
+    if (surfaces.count == 0) surfaces.seen = plane.normal;
+    surfaces.planes[std::size_t(surfaces.count++)] = plane;
+    return true;
+}
+
+bool SurfaceTracker::discover(Surfaces& surfaces, const glm::dvec3& place, const glm::dvec3& towards) noexcept
+{
+    if (surfaces.count == Surfaces::kMost) return false;
+    const VisiblePoints visible = findVisible(surfaces, place);
+    if (!visible.any) {
+        if (surfaces.count == 0) surfaces.seen = {};
+        return false;
+    }
+    if (surfaces.count == 0) surfaces.spacing = visible.nearest.spacing;
+    // What was seen from further away was seen better: near a hole the nearest points are all on one side.
+    const Surfaces before = surfaces;
+    if (surfaces.count == 0 && addSurface(surfaces, visible, place, surfaces.seen)) {
+        if (surfaces.planes[0].support >= kSureSupport) return true;
+        surfaces = before;
+    }
+    for (const glm::dvec3& seed : {visible.outward, place - towards, place - visible.nearest.position})
+        if (addSurface(surfaces, visible, place, seed)) break;
+    return true;
+}
+
+/// Beside a step in density the noise of sparse points can look like a ceiling. One that has come down to a known floor
+/// is none: drops the later of two.
+void SurfaceTracker::dropContradicting(Surfaces& surfaces) noexcept
+{
+    for (int j = surfaces.count - 1; j > 0; --j)
+        for (int k = 0; k < j; ++k) {
+            const SurfacePlane &floor = surfaces.planes[std::size_t(k)], &ceiling = surfaces.planes[std::size_t(j)];
+            if (glm::dot(floor.normal, ceiling.normal) >= kFromBelow) continue;
+            if (floor.height(ceiling.foot) >= kFullHeight * surfaces.spacing) continue;
+            surfaces.remove(j);
+            break;
+        }
+}
+
+double SurfaceTracker::refresh(Surfaces& surfaces, const glm::dvec3& place) noexcept
+{
+    double furthest = 0;
+    double spacing  = 0;
+    int    fitted   = 0;
+    for (int j = 0; j < surfaces.count; ++j) {
+        SurfacePlane&                             plane = surfaces.planes[std::size_t(j)];
+        std::array<SurfacePlane, Surfaces::kMost> others;
+        std::size_t                               count = 0;
+        for (int k = 0; k < surfaces.count; ++k)
+            if (k != j) others[count++] = surfaces.planes[std::size_t(k)];
+        const auto found = fitPlane({place - plane.height(place) * plane.normal, plane.normal, surfaces.spacing},
+                                    {others.data(), count});
+        if (!found || !(found->plane.support > 0)) {
+            plane.support = 0;
+            continue;
+        }
+        plane    = found->plane;
+        furthest = std::max(furthest, std::abs(found->raised));
+        spacing += found->spacing;
+        ++fitted;
+    }
+    if (points_.mixed()) dropContradicting(surfaces);
+    constexpr double kFollow = 0.5; // [1] share of the way per fit: a step in density must not jump
+    if (fitted > 0) surfaces.spacing += kFollow * (spacing / fitted - surfaces.spacing);
+    return furthest;
+}
+
+} // namespace palp

@@ -1,0 +1,102 @@
+#include "engine/plate/multigrid/detail/plate_kernels.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "compute_shaders/shared/tile_layout.h"
+#include "engine/compute/context.h"
+#include "engine/core/contract.h"
+#include "engine/plate/host/kernel_codes.h"
+
+namespace palp {
+namespace {
+
+/// Shapes of workgroups, by their names in plate_kernels.def. Vulkan in software runs 8 invocations side by side, pays
+/// for each more and for idle ones in small levels; hardware wants wide rows for its memory, and hides the waits of
+/// serial kernels behind more invocations.
+struct Shapes {
+    compute::Workgroup tile;   ///< nodes of a grid
+    compute::Workgroup line;   ///< nodes one after the other; 65535 of them hold 2049 x 2049 nodes
+    compute::Workgroup alone;  ///< the one workgroup of a serial kernel; kMostHalfBand invocations find work
+    compute::Workgroup reduce; ///< at most kMostInvocations of cg_scalars.comp
+    compute::Workgroup tail;   ///< the one workgroup of plate_tail.comp
+    compute::Workgroup jumpTile{shared::kTile, shared::kTile, 1};
+    compute::Workgroup region{256, 1, 1}; ///< of plate_region.glsl
+};
+
+bool isHardware(const compute::Context& context)
+{
+    return context.processor().kind != "software" && context.processor().kind != compute::kHostProcessor;
+}
+
+Shapes shapesFor(const compute::Context& context)
+{
+    const compute::Workgroup tail{std::min(context.limits().invocations, 1024U), 1, 1};
+    if (isHardware(context)) return {{32, 4, 1}, {128, 1, 1}, {64, 1, 1}, {256, 1, 1}, tail};
+    return {{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}, tail};
+}
+
+/// Where an operator row by row costs the same for all nodes as for half of them, half sweeps are dear.
+Smoothing smoothingBy(Smoother smoother, Schedule schedule, const compute::Context& context)
+{
+    if (smoother == Smoother::automatic) {
+        const bool byRows = context.processor().kind == compute::kHostProcessor && schedule != Schedule::fused;
+        smoother          = byRows ? Smoother::chebyshev : Smoother::redBlack;
+    }
+    return smoother == Smoother::redBlack ? Smoothing{smoother, 1, 2, 6, 16} : Smoothing{smoother, 2, 2, 2, 16};
+}
+
+/// Fused passes compute the rims of regions several times: they pay where waiting for a dispatch costs more.
+bool isFused(const compute::Context& context, Schedule schedule, Smoother smoother)
+{
+    PALP_EXPECT(smoother == Smoother::redBlack || schedule != Schedule::fused, "fused passes smooth in red and black");
+    if (schedule == Schedule::fused && context.processor().kind == compute::kHostProcessor)
+        throw Error("the host has no fused passes: they spare dispatches, of which it has none");
+    const bool fits = context.limits().sharedMemory >= sizeof(float) * shared::kTailPool &&
+                      context.limits().invocations >= Shapes{}.region.x;
+    PALP_EXPECT(fits || schedule != Schedule::fused, "the processor's workgroups are too small for fused passes");
+    return schedule == Schedule::fused ||
+           (schedule == Schedule::automatic && fits && isHardware(context) && smoother == Smoother::redBlack);
+}
+
+PlateKernels::All::Fused fusedKernels(compute::Context& context, const Shapes& shapes)
+{
+    const auto bySweeps = [&](const compute::KernelCode& code, compute::Workgroup shape) {
+        const std::uint32_t one = 1, two = 2;
+        return std::array{compute::Kernel(context, code, shape, {&one, 1}),
+                          compute::Kernel(context, code, shape, {&two, 1})};
+    };
+    return {
+#define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape)
+#define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)
+#define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)                                               \
+    .name = bySweeps(kernels::name(), shapes.shape),
+#include "compute_shaders/shared/plate_kernels.def"
+    };
+}
+
+} // namespace
+
+PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precision precision, Smoother smoother)
+{
+    const Shapes shapes = shapesFor(context);
+    const bool   f64    = context.processor().float64 && precision == Precision::best;
+    all_.reset(new All{
+        .doubles   = f64,
+        .smoothing = smoothingBy(smoother, schedule, context),
+#define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape)                                              \
+    .name = compute::Kernel(context, kernels::name(), shapes.shape),
+#define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)                                               \
+    .name = compute::Kernel(context, f64 ? kernels::name<double>() : kernels::name<float>(), shapes.shape),
+#define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
+#include "compute_shaders/shared/plate_kernels.def"
+    });
+    if (isFused(context, schedule, all_->smoothing.by)) all_->fused.emplace(fusedKernels(context, shapes));
+}
+
+PlateKernels::~PlateKernels()                                  = default;
+PlateKernels::PlateKernels(PlateKernels&&) noexcept            = default;
+PlateKernels& PlateKernels::operator=(PlateKernels&&) noexcept = default;
+
+} // namespace palp

@@ -1,0 +1,425 @@
+#include "engine/plate/multigrid/detail/plate_passes.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "compute_shaders/shared/cg_state.h"
+#include "compute_shaders/shared/coarse_band.h"
+#include "compute_shaders/shared/plate_push.h"
+#include "compute_shaders/shared/region_layout.h"
+#include "compute_shaders/shared/tile_layout.h"
+#include "engine/compute/context.h"
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+using compute::Buffer;
+using compute::CommandList;
+using compute::Groups;
+using compute::Intent;
+using compute::Kernel;
+
+constexpr int           kNestedSteps  = 1;     ///< on each coarser level of the nested iteration but the last
+constexpr int           kLastSteps    = 2;     ///< on that: two further up change the answer by less than its error
+constexpr std::uint32_t kMostPartials = 16384; ///< sums that a dot product is split into
+constexpr std::uint32_t kTermsPerSum  = 64;    ///< that a sum has at least, unless there are too few partials
+
+/// Eigenvalues that Chebyshev's iteration damps, relative to the divisor: none is larger (see plate_relax.h), and on
+/// equal spacings those below a sixteenth of the largest a coarser grid represents: (1 - cos(pi/2))^2 to (2 (1 -
+/// cos(pi)))^2. On unequal ones the range is up to 38 wide, and no two steps cover it: made wider the interval gives
+/// one step more, not fewer.
+constexpr double kLargest = 2 / 0.51, kSmallest = kLargest / 16;
+
+std::size_t tilesOf(const shared::PlateLevel& g)
+{
+    return std::size_t(shared::tilesX(g)) * std::size_t(shared::tilesZ(g));
+}
+
+std::uint32_t partialsFor(std::size_t nodes)
+{
+    return std::uint32_t(std::clamp<std::size_t>(nodes / kTermsPerSum, kTermsPerSum, kMostPartials));
+}
+
+} // namespace
+
+PlatePasses::PlatePasses(compute::Context& context, const PlateKernels::All& kernels, GridHierarchy grids,
+                         std::uint32_t loads)
+    : state(context, "state", kernels.realBytes() * shared::kStateWords * loads, Intent::device), context_(context),
+      k(kernels), grids_(std::move(grids)), loads_(loads), partials_(partialsFor(nodesOf(level(0)))),
+      band_(reals("band", bandSize())), factor_(reals("factor", bandSize())), lost_(floats("lost pivots", 1)),
+      sums_(reals("partial sums", 2 * std::size_t(loads_) * partials_)),
+      arguments_(context, "groups of dispatches", argumentBytes(), Intent::device),
+      hostArguments_(context, "groups from the host", argumentBytes(), Intent::upload),
+      hostTiles_(context, "numbers of tiles for the host", 4 * grids_.levels.size(), Intent::readback)
+{
+    levels = makeLevels();
+    if (k.smoothing.by == Smoother::redBlack) zeroes_.emplace(floats("zeroes", fieldSize(0)));
+    std::memset(hostArguments_.mapped(), 0, argumentBytes());
+    for (std::size_t l = 0; l < grids_.levels.size(); ++l)
+        setGroups(tileArgument(l), {0, 1, loads_}); // enableSteps() copies the number of tiles here
+    if (k.fused) tail_.emplace(context, kernels, grids_, loads);
+    uploadTables();
+}
+
+std::size_t PlatePasses::nodes() const
+{
+    return nodesOf(level(0));
+}
+
+std::size_t PlatePasses::fieldSize(std::size_t l) const
+{
+    return nodesOf(level(l)) * loads_;
+}
+
+std::size_t PlatePasses::bandSize() const
+{
+    const auto& coarsest = grids_.levels.back().plate;
+    return nodesOf(coarsest) * std::size_t(shared::halfBand(coarsest) + 1);
+}
+
+Buffer PlatePasses::floats(const std::string& name, std::size_t count) const
+{
+    return {context_, name, 4 * count, Intent::device};
+}
+
+Buffer PlatePasses::reals(const std::string& name, std::size_t count) const
+{
+    return {context_, name, k.realBytes() * count, Intent::device};
+}
+
+std::vector<LevelBuffers> PlatePasses::makeLevels() const
+{
+    std::vector<LevelBuffers> made;
+    for (std::size_t l = 0; l < grids_.levels.size(); ++l) {
+        const std::string of    = " of level " + std::to_string(l);
+        const std::size_t nodes = nodesOf(level(l)), field = fieldSize(l);
+        const auto&       tables = grids_.levels[l];
+        made.push_back({floats("rigidity" + of, nodes),
+                        floats("divisor" + of, nodes),
+                        floats("table x" + of, std::max<std::size_t>(1, tables.tableX.size())),
+                        floats("table z" + of, std::max<std::size_t>(1, tables.tableZ.size())),
+                        floats("force" + of, field),
+                        {floats("w0" + of, field), floats("w1" + of, field)},
+                        floats("marks" + of, tilesOf(level(l))),
+                        floats("tiles" + of, 1 + tilesOf(level(l))),
+                        floats("load" + of, field),
+                        reals("answer" + of, field),
+                        reals("left" + of, field),
+                        reals("direction" + of, field),
+                        reals("forces" + of, field)});
+    }
+    return made;
+}
+
+void PlatePasses::uploadTables()
+{
+    std::vector<Buffer> staging;
+    CommandList         list(context_);
+    const auto          upload = [&](const std::vector<float>& from, const Buffer& to) {
+        if (from.empty()) return;
+        staging.emplace_back(context_, "table from the host", 4 * from.size(), Intent::upload);
+        std::memcpy(staging.back().mapped(), from.data(), 4 * from.size());
+        list.copy(staging.back(), to);
+    };
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+        upload(grids_.levels[l].tableX, levels[l].tableX);
+        upload(grids_.levels[l].tableZ, levels[l].tableZ);
+    }
+    if (zeroes_) list.fill(*zeroes_, 0);
+    for (const LevelBuffers& b : levels)
+        for (const Buffer* w : {&b.w[0], &b.w[1]}) list.fill(*w, 0); // held nodes stay at 0
+    list.end();
+    context_.run(list);
+}
+
+std::size_t PlatePasses::argumentsFor(Groups groups)
+{
+    const auto [found, isNew] =
+        argumentAt_.try_emplace({groups.x, groups.y, groups.z}, kSizeBytes * argumentAt_.size());
+    PALP_EXPECT(found->second < kSizeBytes * kSizes, "more sizes of dispatches than were foreseen");
+    if (isNew) setGroups(found->second, groups);
+    return found->second;
+}
+
+void PlatePasses::setGroups(std::size_t offset, Groups groups)
+{
+    const std::array words{groups.x, groups.y, groups.z};
+    std::memcpy(static_cast<char*>(hostArguments_.mapped()) + offset, words.data(), kSizeBytes);
+}
+
+Groups PlatePasses::everyNode(const Kernel& kernel, std::size_t l) const
+{
+    return kernel.groupsOver(std::uint32_t(level(l).cellsZ + 1), std::uint32_t(level(l).cellsX + 1), loads_);
+}
+
+Groups PlatePasses::everySecondNode(const Kernel& kernel, std::size_t l) const
+{
+    return kernel.groupsOver(std::uint32_t(level(l).cellsZ / 2 + 1), std::uint32_t(level(l).cellsX + 1), loads_);
+}
+
+Groups PlatePasses::inOrder(const Kernel& kernel, std::size_t l) const
+{
+    return kernel.groupsOver(std::uint32_t(nodesOf(level(l))), 1, loads_);
+}
+
+void PlatePasses::countWork(std::size_t l, double applications)
+{
+    work.nodes += applications * double(nodesOf(level(l)));
+}
+
+// Sweeps from w[at] in both colours, beginning with `first`; returns which w holds the result.
+int PlatePasses::sweepBothColours(Recorder& pass, std::size_t l, int at, std::uint32_t first, bool fromZero)
+{
+    const LevelBuffers& b = levels[l];
+    for (std::uint32_t n = 0; n < 2; ++n) {
+        const shared::RelaxPush push{level(l), n == 0 ? first : 1 - first};
+        const Buffer&           old = fromZero ? *zeroes_ : b.w[at];
+        if (fromZero && n == 0)
+            pass(k.relaxFirst, {b.divisor, b.force, b.w[1 - at]}, push, everySecondNode(k.relaxFirst, l));
+        else
+            pass(k.relax, {b.rigidity, b.divisor, b.force, old, n == 0 ? old : b.w[1 - at], b.w[1 - at]}, push,
+                 everySecondNode(k.relax, l));
+        if (!fromZero || n > 0) countWork(l, 0.5);
+    }
+    return 1 - at;
+}
+
+// Makes `sweeps` sweeps in red and black or steps of Chebyshev's iteration from zero; returns which w holds the result.
+int PlatePasses::smoothFromZero(Recorder& pass, std::size_t l, int sweeps)
+{
+    const LevelBuffers& b  = levels[l];
+    int                 at = 0;
+    if (k.smoothing.by == Smoother::redBlack) {
+        for (int n = 0; n < sweeps; ++n) at = sweepBothColours(pass, l, at, 0, n == 0);
+        return at;
+    }
+    const auto steps = chebyshevSteps(sweeps, kSmallest, kLargest);
+    pass(k.smoothFirst, {b.divisor, b.force, b.w[0], b.w[1]}, shared::SmoothPush{level(l), 0, steps.front().step},
+         everyNode(k.smoothFirst, l));
+    for (std::size_t n = 1; n < steps.size(); ++n) at = takeChebyshevStep(pass, l, int(n) % 2, steps[n]);
+    return at;
+}
+
+// Makes the same sweeps from w[at] in the reverse order.
+int PlatePasses::smoothInReverse(Recorder& pass, std::size_t l, int at, int sweeps)
+{
+    if (k.smoothing.by == Smoother::redBlack)
+        for (int n = 0; n < sweeps; ++n) at = sweepBothColours(pass, l, at, 1, false);
+    else
+        for (const ChebyshevStep& one : chebyshevSteps(sweeps, kSmallest, kLargest))
+            at = takeChebyshevStep(pass, l, at, one);
+    return at;
+}
+
+// Takes a step of Chebyshev's iteration from w[at]; returns which w holds the result.
+int PlatePasses::takeChebyshevStep(Recorder& pass, std::size_t l, int at, const ChebyshevStep& how)
+{
+    const LevelBuffers& b = levels[l];
+    pass(k.smooth, {b.rigidity, b.divisor, b.force, b.w[at], b.w[1 - at]},
+         shared::SmoothPush{level(l), how.ahead, how.step}, everyNode(k.smooth, l));
+    countWork(l, 1);
+    return 1 - at;
+}
+
+// Makes extra sweeps of w[at] in the tiles where the rigidity jumps. The residual's memory is free while they run.
+void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first)
+{
+    const int sweeps = jumps_ == Jumps::none ? 0 : jumps_ == Jumps::some ? k.smoothing.tiles : k.smoothing.strongTiles;
+    if (sweeps == 0) return;
+    const LevelBuffers& b = levels[l];
+    for (int n = 0; n < sweeps; ++n)
+        for (std::uint32_t colour : {first, 1 - first}) {
+            const shared::RelaxPush push{level(l), colour};
+            pass.list.dispatchIndirect(k.relaxTile, {b.rigidity, b.divisor, b.force, b.w[at], b.tiles, b.residual()},
+                                       push, arguments_, tileArgument(l));
+            pass.list.dispatchIndirect(k.copyTile, {b.tiles, b.residual(), b.w[at]}, push, arguments_, tileArgument(l));
+        }
+    work.tileSweeps.resize(levels.size());
+    work.tileSweeps[l] += sweeps;
+}
+
+// Runs one symmetric cycle for the forces of level l; returns which of its w holds the answer.
+int PlatePasses::runCycle(Recorder& pass, std::size_t l, int sweeps)
+{
+    if (isFused()) return runFusedCycle(pass, l, sweeps);
+    const LevelBuffers& b = levels[l];
+    if (l + 1 == levels.size()) {
+        solveCoarsest(pass, b.force);
+        return 0;
+    }
+    int at = smoothFromZero(pass, l, sweeps);
+    sweepTiles(pass, l, at, 0);
+    const LevelBuffers&        below = levels[l + 1];
+    const shared::TransferPush transfer{level(l), level(l + 1)};
+    pass(k.residual, {b.rigidity, b.force, b.w[at], b.residual()}, shared::LevelPush{level(l)},
+         everyNode(k.residual, l));
+    countWork(l, 1);
+    pass(k.restrict, {b.tableX, b.tableZ, b.residual(), below.force}, transfer, everyNode(k.restrict, l + 1));
+    const int from = runCycle(pass, l + 1, sweeps);
+    pass(k.correct, {b.tableX, b.tableZ, below.w[from], b.w[1 - at], b.w[at]}, transfer, everyNode(k.correct, l));
+    at = 1 - at;
+    sweepTiles(pass, l, at, 1);
+    return smoothInReverse(pass, l, at, sweeps);
+}
+
+// Runs the same cycle in fewer dispatches.
+int PlatePasses::runFusedCycle(Recorder& pass, std::size_t l, int sweeps)
+{
+    const LevelBuffers& b = levels[l];
+    if (tail_->holds(l)) {
+        solveTail(pass, l, sweeps, b.force);
+        return 0;
+    }
+    const LevelBuffers&        below = levels[l + 1];
+    const shared::TransferPush transfer{level(l), level(l + 1)};
+    const auto                 kernel  = std::size_t(sweeps - 1);
+    const auto                 owned   = std::uint32_t(shared::kRegion - 2 * shared::kRimPerSweep * sweeps);
+    const auto                 regions = [&](int cells) { return (std::uint32_t(cells) + owned) / owned; };
+    const Groups               groups{regions(level(l).cellsZ), regions(level(l).cellsX), loads_};
+    pass(k.fused->down[kernel], {b.rigidity, b.divisor, b.force, b.w[0], b.residual()}, shared::LevelPush{level(l)},
+         groups);
+    pass(k.restrict, {b.tableX, b.tableZ, b.residual(), below.force}, transfer, everyNode(k.restrict, l + 1));
+    const int from = runFusedCycle(pass, l + 1, sweeps);
+    pass(k.fused->up[kernel], {b.rigidity, b.divisor, b.force, b.tableX, b.tableZ, below.w[from], b.w[0], b.w[1]},
+         transfer, groups);
+    countWork(l, 2 * sweeps + 1);
+    return 1;
+}
+
+// Runs a cycle from level l down in one workgroup, the answer to w[0].
+void PlatePasses::solveTail(Recorder& pass, std::size_t l, int sweeps, const Buffer& force)
+{
+    pass(k.fused->tail[std::size_t(sweeps - 1)], tail_->bindings(force, levels[l].w[0]), tail_->pushFrom(l),
+         tail_->groups());
+    for (std::size_t n = l; n + 1 < levels.size(); ++n) countWork(n, 2 * sweeps + 1);
+}
+
+void PlatePasses::solveCoarsest(Recorder& pass, const Buffer& force)
+{
+    const std::size_t last = levels.size() - 1;
+    if (isFused())
+        solveTail(pass, last, 1, force);
+    else
+        pass(k.coarseSolve, {factor_, force, levels[last].w[0]}, shared::LevelPush{level(last)}, {1, 1, loads_});
+}
+
+void PlatePasses::computeResidual(Recorder& pass, std::size_t l)
+{
+    const LevelBuffers& b = levels[l];
+    pass(k.start, {b.rigidity, b.load, b.answer, b.left, b.force}, shared::LevelPush{level(l)}, everyNode(k.start, l));
+    countWork(l, 1);
+}
+
+void PlatePasses::takeGradientSteps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins,
+                                    double tolerance)
+{
+    const LevelBuffers& b = levels[l];
+    for (int n = 1; n <= count; ++n) {
+        const auto                nodes = std::uint32_t(nodesOf(level(l)));
+        const shared::VectorPush  vector{nodes, partials_, std::uint32_t(n)};
+        const shared::ScalarsPush scalars{loads_, partials_, n == 1 ? begins : 0, std::uint32_t(argumentBytes() / 4),
+                                          float(tolerance)};
+        const int                 before = pass.list.dispatches();
+        const Buffer&             z      = b.w[runCycle(pass, l, sweeps)];
+        if (l == 0) dispatchesPerCycle_ = pass.list.dispatches() - before;
+        pass(k.dots, {b.left, z, b.answer, b.load, sums_}, vector, k.dots.groupsOver(partials_, 1, loads_));
+        pass(k.beta, {sums_, state}, scalars, {1, 1, 1});
+        pass(k.direction, {state, z, b.direction}, vector, inOrder(k.direction, l));
+        pass(k.apply, {b.rigidity, b.direction, b.forces}, shared::LevelPush{level(l)}, everyNode(k.apply, l));
+        countWork(l, 1);
+        pass(k.stepDots, {b.direction, b.forces, sums_}, vector, k.stepDots.groupsOver(partials_, 1, loads_));
+        pass(k.step, {sums_, state, arguments_}, scalars, {1, 1, 1});
+        // Not stoppable: the step that finds the estimate small enough must still be taken. The kernel reads the count.
+        pass.list.dispatch(k.update, {state, b.direction, b.forces, b.answer, b.left, b.force}, vector,
+                           inOrder(k.update, l));
+    }
+}
+
+void PlatePasses::prepareRigidity(Recorder& pass)
+{
+    for (std::size_t l = 0; l + 1 < levels.size(); ++l)
+        pass(k.coarsen, {levels[l].rigidity, levels[l + 1].rigidity}, shared::TransferPush{level(l), level(l + 1)},
+             k.coarsen.groupsOver(std::uint32_t(level(l + 1).cellsZ + 1), std::uint32_t(level(l + 1).cellsX + 1)));
+    for (std::size_t l = 0; l + 1 < levels.size(); ++l)
+        pass(k.divisor, {levels[l].rigidity, levels[l].divisor}, shared::LevelPush{level(l)},
+             k.divisor.groupsOver(std::uint32_t(level(l).cellsZ + 1), std::uint32_t(level(l).cellsX + 1)));
+    for (std::size_t l = 0; l + 1 < levels.size(); ++l) {
+        const LevelBuffers&     b = levels[l];
+        const shared::LevelPush push{level(l)};
+        pass(k.jumpMark, {b.rigidity, b.marks}, push,
+             k.jumpMark.groupsOver(std::uint32_t(shared::tilesZ(level(l))), std::uint32_t(shared::tilesX(level(l)))));
+        pass(k.jumpList, {b.marks, b.tiles}, push, {1, 1, 1});
+        pass.list.copy(b.tiles, 0, hostTiles_, 4 * l, 4);
+    }
+    const shared::LevelPush coarsest{level(levels.size() - 1)};
+    pass(k.assemble, {levels.back().rigidity, band_}, coarsest,
+         k.assemble.groupsOver(std::uint32_t(shared::halfBand(coarsest.level) + 1),
+                               std::uint32_t(nodesOf(coarsest.level))));
+    pass(k.factor, {band_, factor_, lost_}, coarsest, {1, 1, 1});
+    pass.list.copy(lost_, 0, hostTiles_, 4 * (levels.size() - 1), 4); // the coarsest level has no tiles
+    if (!tail_) return;
+    for (std::size_t l = tail_->first(); l + 1 < levels.size(); ++l)
+        tail_->copyLevel(pass.list, l, levels[l].rigidity, levels[l].divisor);
+    tail_->invertFactor(pass.list, factor_);
+}
+
+void PlatePasses::enableSteps(CommandList& list) const
+{
+    list.copy(hostArguments_, arguments_);
+    if (jumps_ == Jumps::none) return;
+    for (std::size_t l = 0; l + 1 < levels.size(); ++l) list.copy(levels[l].tiles, 0, arguments_, tileArgument(l), 4);
+}
+
+void PlatePasses::iterateNested(Recorder& pass)
+{
+    const std::size_t last = levels.size() - 1;
+    for (std::size_t l = 0; l < last; ++l)
+        pass(k.restrict, {levels[l].tableX, levels[l].tableZ, levels[l].load, levels[l + 1].load},
+             shared::TransferPush{level(l), level(l + 1)}, everyNode(k.restrict, l + 1));
+    solveCoarsest(pass, levels[last].load);
+    for (std::size_t l = last; l-- > 0;) {
+        const shared::TransferPush transfer{level(l), level(l + 1)};
+        const LevelBuffers &       b = levels[l], &below = levels[l + 1];
+        if (l + 1 == last)
+            pass(k.interpolateFirst, {b.tableX, b.tableZ, below.w[0], b.answer}, transfer,
+                 everyNode(k.interpolateFirst, l));
+        else
+            pass(k.interpolate, {b.tableX, b.tableZ, below.answer, b.answer}, transfer, everyNode(k.interpolate, l));
+        computeResidual(pass, l);
+        if (l > 0) takeGradientSteps(pass, l, l == 1 ? kLastSteps : kNestedSteps, k.smoothing.nested, 2, 0);
+    }
+}
+
+void PlatePasses::Recorder::operator()(const Kernel& kernel, const compute::Bindings& bindings,
+                                       const compute::Push& push, Groups groups)
+{
+    if (stoppable)
+        list.dispatchIndirect(kernel, bindings, push, passes.arguments_, passes.argumentsFor(groups));
+    else
+        list.dispatch(kernel, bindings, push, groups);
+}
+
+bool PlatePasses::foundJumps() const
+{
+    hostTiles_.makeVisibleToHost();
+    return levels.size() > 1 && hostTiles_.as<std::uint32_t>()[0] > 0;
+}
+
+bool PlatePasses::isTooSoft() const
+{
+    hostTiles_.makeVisibleToHost();
+    return hostTiles_.as<std::uint32_t>()[levels.size() - 1] > 0;
+}
+
+double PlatePasses::workUnits(const PlateWork& of) const
+{
+    double nodes = of.nodes;
+    hostTiles_.makeVisibleToHost();
+    for (std::size_t l = 0; l + 1 < of.tileSweeps.size(); ++l)
+        nodes += double(of.tileSweeps[l]) * hostTiles_.as<std::uint32_t>()[l] * shared::kTile * shared::kTile;
+    return nodes / double(nodesOf(level(0)));
+}
+
+} // namespace palp

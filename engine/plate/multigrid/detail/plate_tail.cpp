@@ -1,0 +1,121 @@
+#include "engine/plate/multigrid/detail/plate_tail.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "compute_shaders/shared/plate_push.h"
+#include "engine/compute/context.h"
+
+namespace palp {
+namespace {
+
+using compute::Buffer;
+using compute::CommandList;
+using compute::Intent;
+
+bool fitsLoops(const shared::PlateLevel& g)
+{
+    return nodesOf(g) <= std::size_t(shared::kTailNodes) && (g.cellsX + 1) * (g.cellsZ / 2 + 1) <= shared::kTailHalf;
+}
+
+/// Counts the numbers of the levels from `first` on: deflections of all, forces of all but the first.
+std::size_t poolOf(const GridHierarchy& grids, std::size_t first)
+{
+    std::size_t numbers = nodesOf(grids.levels[first].plate);
+    for (std::size_t l = first + 1; l < grids.levels.size(); ++l) numbers += 2 * nodesOf(grids.levels[l].plate);
+    return numbers;
+}
+
+template <class T>
+std::size_t bytesOf(const std::vector<T>& values)
+{
+    return sizeof(T) * values.size();
+}
+
+std::vector<float> identity(std::size_t size)
+{
+    std::vector<float> unit(size * size, 0.0F);
+    for (std::size_t n = 0; n < size; ++n) unit[n * size + n] = 1;
+    return unit;
+}
+
+} // namespace
+
+TailLayout tailLayout(const GridHierarchy& grids)
+{
+    TailLayout layout;
+    layout.first = grids.levels.size() - 1;
+    while (layout.first > 0 && grids.levels.size() - layout.first < std::size_t(shared::kTailLevels) &&
+           fitsLoops(grids.levels[layout.first - 1].plate) &&
+           poolOf(grids, layout.first - 1) <= std::size_t(shared::kTailPool))
+        --layout.first;
+    int field = 0, pool = 0;
+    for (std::size_t l = layout.first; l < grids.levels.size(); ++l) {
+        const auto& level = grids.levels[l];
+        const int   nodes = int(nodesOf(level.plate));
+        const int   force = l == layout.first ? 0 : pool + nodes;
+        layout.levels.push_back(
+            {level.plate, field, int(layout.tablesX.size()), int(layout.tablesZ.size()), pool, force});
+        field += nodes;
+        layout.tablesX.insert(layout.tablesX.end(), level.tableX.begin(), level.tableX.end());
+        layout.tablesZ.insert(layout.tablesZ.end(), level.tableZ.begin(), level.tableZ.end());
+        pool += l == layout.first ? nodes : 2 * nodes;
+    }
+    layout.nodes = std::uint32_t(field);
+    for (auto* tables : {&layout.tablesX, &layout.tablesZ})
+        if (tables->empty()) tables->push_back(0); // a buffer holds something
+    return layout;
+}
+
+PlateTail::PlateTail(compute::Context& context, const PlateKernels::All& kernels, const GridHierarchy& grids,
+                     std::uint32_t loads)
+    : k(kernels), layout_(tailLayout(grids)), loads_(loads),
+      coarsestNodes_(std::uint32_t(nodesOf(grids.levels.back().plate))),
+      levels_(context, "levels of the tail", sizeof(shared::TailLevel) * layout_.levels.size(), Intent::device),
+      rigidity_(context, "rigidity of the tail", 4 * std::size_t(layout_.nodes), Intent::device),
+      divisor_(context, "divisor of the tail", 4 * std::size_t(layout_.nodes), Intent::device),
+      tableX_(context, "tables x of the tail", bytesOf(layout_.tablesX), Intent::device),
+      tableZ_(context, "tables z of the tail", bytesOf(layout_.tablesZ), Intent::device),
+      units_(context, "unit forces", 4 * std::size_t(coarsestNodes_) * coarsestNodes_, Intent::device),
+      inverse_(context, "inverse of the coarsest level", units_.bytes(), Intent::device),
+      aside_(context, "deflections put aside", 4 * std::size_t(layout_.nodes) * loads, Intent::device)
+{
+    std::vector<Buffer> staging;
+    CommandList         list(context);
+    const auto          upload = [&](const auto& from, const Buffer& to) {
+        staging.emplace_back(context, "tail from the host", bytesOf(from), Intent::upload);
+        std::memcpy(staging.back().mapped(), from.data(), bytesOf(from));
+        list.copy(staging.back(), to);
+    };
+    upload(layout_.levels, levels_);
+    upload(layout_.tablesX, tableX_);
+    upload(layout_.tablesZ, tableZ_);
+    upload(identity(coarsestNodes_), units_);
+    list.end();
+    context.run(list);
+}
+
+void PlateTail::copyLevel(CommandList& list, std::size_t level, const Buffer& rigidity, const Buffer& divisor) const
+{
+    const std::size_t offset = 4 * std::size_t(at(level).field);
+    list.copy(rigidity, 0, rigidity_, offset, rigidity.bytes());
+    list.copy(divisor, 0, divisor_, offset, divisor.bytes());
+}
+
+void PlateTail::invertFactor(CommandList& list, const Buffer& factor) const
+{
+    list.dispatch(k.coarseSolve, {factor, units_, inverse_}, shared::LevelPush{layout_.levels.back().plate},
+                  {1, 1, coarsestNodes_});
+}
+
+shared::TailPush PlateTail::pushFrom(std::size_t level) const
+{
+    return {std::uint32_t(level - layout_.first), std::uint32_t(layout_.levels.size()), layout_.nodes};
+}
+
+std::vector<compute::Binding> PlateTail::bindings(const Buffer& force, const Buffer& deflection) const
+{
+    return {levels_, rigidity_, divisor_, tableX_, tableZ_, inverse_, force, aside_, deflection};
+}
+
+} // namespace palp

@@ -1,0 +1,56 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "compute_shaders/shared/tail_level.h"
+#include "engine/compute/buffer.h"
+#include "engine/compute/command_list.h"
+#include "engine/plate/multigrid/detail/grid_hierarchy.h"
+#include "engine/plate/multigrid/detail/plate_kernels.h"
+
+namespace palp {
+
+/// The coarse levels as plate_tail.comp reads them: next to each other, for one workgroup that runs a cycle alone.
+struct TailLayout {
+    std::size_t                    first = 0;        ///< level of the hierarchy that the tail begins with
+    std::vector<shared::TailLevel> levels;           ///< from there to the coarsest
+    std::uint32_t                  nodes = 0;        ///< of all of them
+    std::vector<float>             tablesX, tablesZ; ///< transfer tables, level after level
+};
+
+/// Takes as many of the coarsest levels as the kernel's shared memory and loops can hold, at least the coarsest.
+[[nodiscard]] TailLayout tailLayout(const GridHierarchy& grids);
+
+/// The memory of the tail.
+/// \thread as its context
+class PlateTail {
+public:
+    PlateTail(compute::Context& context, const PlateKernels::All& kernels, const GridHierarchy& grids,
+              std::uint32_t loads);
+
+    [[nodiscard]] std::size_t first() const noexcept { return layout_.first; } ///< level of the hierarchy
+    [[nodiscard]] bool        holds(std::size_t level) const noexcept { return level >= layout_.first; }
+
+    /// Copies the rigidity and divisor of one of its levels but the coarsest, which earlier commands of the list made.
+    void copyLevel(compute::CommandList& list, std::size_t level, const compute::Buffer& rigidity,
+                   const compute::Buffer& divisor) const;
+    /// Inverts the coarsest level's matrix, of which `factor` holds the Cholesky factor.
+    void invertFactor(compute::CommandList& list, const compute::Buffer& factor) const;
+
+    [[nodiscard]] shared::TailPush pushFrom(std::size_t level) const;
+    [[nodiscard]] compute::Groups  groups() const noexcept { return {1, 1, loads_}; }
+
+    /// Bindings of plate_tail.comp.
+    [[nodiscard]] std::vector<compute::Binding> bindings(const compute::Buffer& force,
+                                                         const compute::Buffer& deflection) const;
+
+private:
+    [[nodiscard]] const shared::TailLevel& at(std::size_t level) const { return layout_.levels[level - layout_.first]; }
+
+    const PlateKernels::All& k;
+    TailLayout               layout_;
+    std::uint32_t            loads_, coarsestNodes_;
+    compute::Buffer          levels_, rigidity_, divisor_, tableX_, tableZ_, units_, inverse_, aside_;
+};
+
+} // namespace palp
