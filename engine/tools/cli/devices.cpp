@@ -111,9 +111,8 @@ Machine lookAtMachine(const DevicesOptions& options)
 }
 
 /// \throws compute::ProcessorError, after printing, if only GPUs are asked for and none can be used
-void printProcessors(const DevicesOptions& options)
+void printProcessors(const DevicesOptions& options, const Machine& machine)
 {
-    const Machine machine = lookAtMachine(options);
     if (options.json) {
         std::cout << jsonText(jsonOf(machine));
     } else {
@@ -145,17 +144,17 @@ void printHaptics(const DevicesOptions& options)
 void printDevices(const DevicesOptions& options)
 {
     if (options.haptic) return printHaptics(options);
-    if (options.processors || options.gpus) return printProcessors(options);
+    const Machine machine = lookAtMachine(options); // first: where it throws, nothing has been printed
+    if (options.processors || options.gpus) return printProcessors(options, machine);
     if (options.json) {
         const auto haptics = jsonOf(lookForHaptics().devices);
-        std::cout << jsonText(
-            nlohmann::ordered_json{{"haptic", haptics}, {"processors", jsonOf(lookAtMachine(options))}});
+        std::cout << jsonText(nlohmann::ordered_json{{"haptic", haptics}, {"processors", jsonOf(machine)}});
         return;
     }
     std::cout << "haptic devices\n";
     printHaptics(options);
     std::cout << "\nprocessors that solve plates\n";
-    printProcessors(options);
+    printProcessors(options, machine);
 }
 
 } // namespace
