@@ -52,6 +52,7 @@ events() {
         block = substr($0, 4)
         if (block == "json" && last == "") { emit("unknown", "line " NR ": a JSON block without a command before it that names a .json file"); block = "none" }
         else if (block == "json") printf "" >last
+        else if (block == "cpp") block = "none" # install/run.sh builds and runs it
         else if (block != "sh") { emit("unknown", "line " NR ": a block of kind \"" block "\": teach the test what its reader does with it"); block = "none" }
         next
     }

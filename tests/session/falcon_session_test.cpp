@@ -73,7 +73,6 @@ TEST(FalconSession, AHandHomesTheFalconAndThenFollowsItsPath)
         for (; now < until; now += 1.5e-3) state = falcon.exchange({}, now);
     };
     run(0.7);
-    EXPECT_GT(state.position.z, 0.04) << "m";
     EXPECT_FALSE(state.homed) << "out is not enough";
     run(2);
     EXPECT_TRUE(state.homed);

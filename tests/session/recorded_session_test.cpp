@@ -226,7 +226,7 @@ TEST_F(SessionFolder, BrokenFilesAreNamed)
     put("time.npy", time);
 
     std::string later = json;
-    later.replace(later.find("\"format\": 1"), 11, "\"format\": 2");
+    later.replace(later.find("\"format\": 2"), 11, "\"format\": 3");
     put("session.json", later);
     EXPECT_TRUE(holds(refusal(), {"session.json", "format", "later palpate"})) << refusal();
     put("session.json", json.substr(0, 50));
