@@ -19,9 +19,9 @@ enum class Map {
 constexpr auto namesOf(Map)
 {
     using enum Map;
-    return std::to_array<NamedValue<Map>>({{gallPeters, "gall-peters"},
+    return std::to_array<NamedValue<Map>>({{lambertAzimuthal, "lambert-azimuthal"},
                                            {lambertCylindrical, "lambert-cylindrical"},
-                                           {lambertAzimuthal, "lambert-azimuthal"}});
+                                           {gallPeters, "gall-peters"}});
 }
 
 /// Right-handed axes at the contact: east x north = normal.
