@@ -47,6 +47,6 @@ function(palp_precompile target name)
     if(PALPATE_PRECOMPILE)
         target_precompile_headers(${target} REUSE_FROM palp_precompiled_${name})
         # GCC 12 forgets that what it precompiled are the system's headers, and warns of their insides.
-        target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-restrict -Wno-stringop-overflow>)
+        target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread>)
     endif()
 endfunction()
