@@ -8,7 +8,7 @@
 
 namespace palp {
 
-/// How the proxy finds the surface in the points.
+/// The methods by which the proxy finds the surface in the points.
 enum class ProxyForm {
     hybrid,     ///< a ball finds planes, planes carry the contact
     sphere,     ///< the paper's radial overshoot, pushed out to a fixed small overlap
@@ -27,7 +27,7 @@ struct ProxySettings {
     double    dynamicFriction = 0; ///< [1] the same while slipping, at most `staticFriction`
 };
 
-/// Where the proxy is after a tick.
+/// The state of the proxy after a tick.
 struct ProxyState {
     glm::dvec3 position{};       ///< [m] on the surface in contact, at the HIP in free space
     glm::dvec3 normal{0, 0, 1};  ///< [1] unit, towards the hand, of the surface that carries most

@@ -171,7 +171,7 @@ SurfaceTracker::NearbyPoints SurfaceTracker::pointsNear(const TrialPlane& trial)
     return near;
 }
 
-/// Fits a plane, with a larger spacing where the surface goes on with sparser points: what looks like a border is none
+/// Fits a plane, with a larger spacing where the surface goes on with sparser points: an apparent border is none
 /// then. Returns the fit with the most support.
 std::optional<PlaneFit> SurfaceTracker::fitPlane(const TrialPlane& trial, std::span<const SurfacePlane> others) noexcept
 {
