@@ -8,7 +8,7 @@
 
 namespace palp {
 
-/// How the servo uses the tables that the deformation thread publishes.
+/// The laws by which the servo uses the tables that the deformation thread publishes.
 enum class ComplianceLaw {
     table, ///< by the contact's position in the newest table; the jump between tables dies away
     hold,  ///< the middle of the newest table, until the next: a step with every patch
@@ -46,7 +46,7 @@ struct LocalCompliance {
 /// Where a new table disagrees with the old one at the contact, the difference is carried as an offset of ln c, and of
 /// ln k_c, which dies at 1 % per millisecond, or within one period if that is faster.
 /// \thread the servo's; no allocation, lock or throw
-/// \source our own prototype, with slopes in place of twice as many footprints; README.md here has what was measured
+/// \source our own prototype, with slopes in place of twice as many footprints; README.md here has the measurements
 class ComplianceTracker {
 public:
     explicit ComplianceTracker(ComplianceLaw law = ComplianceLaw::table) noexcept : law_(law) {}
@@ -68,7 +68,7 @@ private:
     /// One of the two logarithms on its way to the hand.
     struct Carried {
         double handed = 0; // in the last tick [1]
-        double offset = 0; // to what the table says [1]
+        double offset = 0; // from the table's value [1]
         double rate   = 0; // at which the offset dies [1/s]
         double from   = 0; // where a blend began [1]
     };

@@ -6,7 +6,7 @@
 
 namespace palp {
 
-/// How the depth of the hand in the surface becomes a force.
+/// The laws that turn the depth of the hand in the surface into a force.
 enum class ForceLaw {
     series, ///< contact and plate are springs in series: F = depth / (1/k_c + c)
     paper   ///< F = k_c depth: the plate bends on the screen, but is not felt

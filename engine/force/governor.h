@@ -172,8 +172,8 @@ private:
     enum class Engagement : std::uint8_t { waiting, engaging, engaged, releasing };
 
     struct Elapsed {
-        double rise; ///< [s] for what lets a force grow
-        double fall; ///< [s] for what takes it down
+        double rise; ///< [s] by which a force may grow
+        double fall; ///< [s] by which it may fall
     };
 
     [[nodiscard]] Elapsed    elapsed(double dt) const noexcept;
