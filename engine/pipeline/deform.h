@@ -14,7 +14,7 @@ namespace palp {
 ///         the cloud, or if the hand's direction runs along the surface
 /// \thread that of the solver; announces factorisations of many seconds on a terminal
 /// \source Kumari & Chaudhuri 2016, sections 2.1 to 2.6
-/// \differs as differencesFromPaper() says of the settings; engine/method.md has every difference and why
+/// \differs as differencesFromPaper() lists for the settings; engine/method.md has every difference and its reason
 [[nodiscard]] Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings,
                            PlateSolver& solver, const std::optional<Frame>& carried = {});
 

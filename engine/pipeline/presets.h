@@ -10,7 +10,7 @@ namespace palp {
 
 /// The two ways to run the pipeline; engine/method.md says how they differ.
 enum class Preset {
-    palpate, ///< what we hold to be right
+    palpate, ///< the method that we hold to be right
     paper    ///< as Kumari & Chaudhuri published it
 };
 constexpr auto namesOf(Preset)
