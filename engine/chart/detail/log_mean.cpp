@@ -30,7 +30,7 @@ PALPATE_PART double exponential(double x)
     constexpr double kRound = 0x1.8p52; // adding it leaves the nearest whole number in the lowest bits
     constexpr double kHigh = 0x1.62e42fefa3800p-1, kLow = 0x1.ef35793c76730p-45; // ln 2
     const double     whole = x * std::numbers::log2e + kRound, n = whole - kRound;
-    const double     r      = (x - n * kHigh) - n * kLow; // |r| <= ln 2 / 2: the first term left out is 4e-18
+    const double     r      = (x - n * kHigh) - n * kLow; // |r| <= ln 2 / 2: the first term omitted is 4e-18
     double           series = 1.0 / 6227020800; // the sum of r^k / k!, unrolled: a loop would not become vectors
     series                  = series * r + 1.0 / 479001600;
     series                  = series * r + 1.0 / 39916800;
