@@ -75,6 +75,7 @@ private:
         return d.x * d.x + d.y * d.y + d.z * d.z;
     }
 
+    /// Visits the cubes around a place.
     /// \param grid  this one, const or not, as its cubes are for `visit`
     template <class Grid, class Visit>
     static void eachCube(Grid& grid, const glm::dvec3& place, double radius, const Visit& visit)

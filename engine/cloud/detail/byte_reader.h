@@ -62,10 +62,13 @@ public:
     [[nodiscard]] std::uint64_t      remaining() const noexcept { return size_ - offset(); }   ///< [bytes]
     [[nodiscard]] std::uint64_t      lineNumber() const noexcept { return lineNumber_; } ///< of the last line, from 1
 
+    /// Refuses the line read last.
     /// \throws Error "NAME: line N: MESSAGE" about the line read last
     [[noreturn]] void failAtLine(const std::string& message) const;
+    /// Refuses the next byte.
     /// \throws Error "NAME: byte N: MESSAGE" about the next byte
     [[noreturn]] void failAtByte(const std::string& message) const;
+    /// Refuses the file.
     /// \throws Error "NAME: MESSAGE"
     [[noreturn]] void fail(const std::string& message) const;
 
