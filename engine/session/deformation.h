@@ -8,7 +8,7 @@
 
 namespace palp {
 
-/// Answers a touch: what the slow half of a session found there.
+/// The answer to a touch: the result of the slow half of a session.
 struct DeformationAnswer {
     std::optional<PatchUpdate> update; ///< for the servo; empty: nothing could be solved there
     std::optional<Patch>       patch;  ///< for an observer; there whenever `update` is
@@ -32,14 +32,14 @@ public:
     /// \param period  of the deformation, as measured [s]
     [[nodiscard]] DeformationAnswer solve(const Touch& touch, double period);
 
-    /// solve() of this object, which must outlive it.
+    /// Returns solve() of this object, which must outlive it.
     [[nodiscard]] PatchSolver solver()
     {
         return [this](const Touch& touch, double period) { return solve(touch, period); };
     }
 
-    /// Goes on with other stiffnesses of the same points. The table's lattice stays that of the first object: it depends
-    /// on the mean of the rigidity alone, and through that on how far a foundation lets a dent spread.
+    /// Goes on with other stiffnesses of the same points. The table's lattice stays that of the first object: it
+    /// depends on the mean of the rigidity alone, and through that on how far a foundation lets a dent spread.
     /// \param object  repainted() or as it was; outlives this
     void repaint(const SoftObject& object);
 
