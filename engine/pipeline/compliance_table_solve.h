@@ -14,7 +14,7 @@ struct FootprintTable {
     double contactPerRigidity = 0;    ///< k_c over D: 12 (1 - nu^2) pi R^2 / h^4 [1/m^2]
 };
 
-/// The footprints of a table in one window: a constant of the scene, made once.
+/// The footprints of a table in one patch window: a constant of the scene, made once.
 ///
 /// A footprint off the middle feels the window's edge (2 % at a twentieth of the width without foundation), and the
 /// phase of the grid under it. The effect of a plate of constant rigidity on each is kept here and taken out of every
@@ -37,11 +37,11 @@ struct FootprintLattice {
 
 /// Solves the lattice of the settings' window on a homogeneous object of the geometric mean of this one's rigidity.
 /// \param side  1, 3, 5 or 7, see tableSide()
-/// \throws Error if the window is too small for the table
+/// \throws Error if the patch window is too small for the table
 [[nodiscard]] FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings& settings, int side,
                                                 PlateSolver& solver);
 
-/// Solves the lattice of one window.
+/// Solves the lattice of one patch window.
 /// \param homogeneous  the window: grid, edges, foundation, and one rigidity throughout, in the middle of what is to
 ///                     come
 /// \param tolerance    as for the tables themselves: the error that iteration leaves is then taken out too

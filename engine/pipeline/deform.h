@@ -10,8 +10,8 @@ namespace palp {
 ///
 /// The plate is solved for a force of 1 N on a smooth footprint about the contact; it is linear, so any force follows.
 /// \param carried  chart axes of a neighbouring contact; empty: the chart's own
-/// \throws Error if the plate cannot be solved (for example free on all sides), if the window holds next to nothing of
-///         the cloud, or if the hand's direction runs along the surface
+/// \throws Error if the plate cannot be solved (for example free on all sides), if the patch window holds next to
+///         nothing of the cloud, or if the hand's direction runs along the surface
 /// \thread that of the solver; announces factorisations of many seconds on a terminal
 /// \source Kumari & Chaudhuri 2016, sections 2.1 to 2.6
 /// \differs as differencesFromPaper() lists for the settings; engine/method.md has every difference and its reason
