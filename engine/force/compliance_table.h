@@ -38,7 +38,7 @@ struct ComplianceTable {
 
     std::uint64_t sequence = 0;       ///< of the contact that it was solved for; 0: none
     double        time     = 0;       ///< [s] of that contact, on the servo's clock
-    Chart         chart;              ///< its origin is the centre of the window
+    Chart         chart;              ///< its origin is the centre of the patch window
     int           side    = 1;        ///< entries along each axis, an odd number
     double        spacing = 0;        ///< of the entries [m]
     Entries       compliance{};       ///< ln c
