@@ -22,7 +22,7 @@ using PatchSolver = std::function<DeformationAnswer(const Touch&, double period)
 /// \thread one at a time, together with its plate solver
 class Deformation {
 public:
-    /// Opens the plate solver of the scene and solves the homogeneous window, some tenths of a second.
+    /// Opens the plate solver of the scene and solves the homogeneous patch window, some tenths of a second.
     /// \param object  outlives this
     /// \throws Error as PlateSolver and footprintLattice() do
     Deformation(const SoftObject& object, const Scene& scene);

@@ -80,7 +80,7 @@ struct HandPlace {
 
 /// Returns where the scene is touched: the cloud's point nearest to placeOf(), and the side Scene::from; where the
 /// scene names no place, the viewer's side.
-/// \throws Error if the place is farther than a quarter of the window from the cloud
+/// \throws Error if the place is farther than a quarter of the patch window from the cloud
 [[nodiscard]] Contact contactOf(const Scene& scene, const SoftObject& object);
 
 /// Returns where the scene's hand works: contactOf() without the knowledge about its side.

@@ -41,8 +41,8 @@ struct SessionHand {
     [[nodiscard]] bool isHeldByPerson() const noexcept { return record && record->holder == DeviceHolder::person; }
 };
 
-/// Checks what the arguments alone show: the hand's name and the options of its device. Opening a device shows if it is
-/// plugged in.
+/// Checks what the arguments alone show: the hand's name and the options of its device. Opening a device shows if it
+/// is plugged in.
 /// \throws Error naming `--hand` or the option
 void demandGood(const HandChoice& choice);
 
