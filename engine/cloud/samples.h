@@ -18,7 +18,7 @@ struct Sample {
     std::size_t               points;      ///< default number of points
     Material                  material;
     double                    foundation;      ///< elastic foundation k [Pa/m]
-    double                    window;          ///< edge of the chart window [m]
+    double                    window;          ///< edge of the patch window [m]
     double                    footprintRadius; ///< of the fingertip [m]
     glm::dvec3                place;           ///< where a first touch is interesting [m]
     std::optional<glm::dvec3> from;            ///< the finger's side of an open shell [1]; empty: closed, from outside
