@@ -7,7 +7,7 @@
 
 namespace palp {
 
-/// The place where the next patch window is centred, and the reach of its table, so that it fits the hand when it arrives.
+/// The centre of the next patch window and the reach of its table, so that it fits the hand when it arrives.
 
 /// The velocity of a moving point over its last 10 ms: long enough to average an encoder's steps (a step of 60 µm in
 /// 10 ms is 6 mm/s), short enough to follow a stroking hand.
@@ -34,8 +34,9 @@ private:
     std::size_t                  count_  = 0;
 };
 
-/// Returns the centre of the next patch window [m]: contact + 1.5 period velocity, the middle of the time during which its
-/// table will be in use (from one period after the contact to two). For the laws that hold one number: the contact.
+/// Returns the centre of the next patch window [m]: contact + 1.5 period velocity, the middle of the time during
+/// which its table will be in use (from one period after the contact to two). For the laws that hold one number: the
+/// contact.
 /// \param period  of the deformation thread, as measured [s]
 [[nodiscard]] glm::dvec3 aheadOf(ComplianceLaw law, const glm::dvec3& contact, const glm::dvec3& velocity,
                                  double period) noexcept;

@@ -16,8 +16,8 @@ namespace palp {
 
 /// The constants of a scene that decide what a touch feels like, apart from the object itself.
 ///
-/// Patch window, footprint and area of contact are lengths that are never derived from the points at the contact. So the
-/// compliance of a homogeneous object is exactly constant, and everything that the hand feels is in the object.
+/// Patch window, footprint and area of contact are lengths that are never derived from the points at the contact. So
+/// the compliance of a homogeneous object is exactly constant, and everything that the hand feels is in the object.
 struct PatchSettings {
     double     foundation      = 0;     ///< k [Pa/m] of what lies below; 0: nothing (the paper)
     double     window          = 40e-3; ///< edge of the square of chart that bends [m]
