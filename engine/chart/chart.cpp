@@ -14,11 +14,11 @@
 namespace palp {
 namespace {
 
-// How far beyond the rim of the hemisphere a point may lie by rounding [rad]: keeps the rim itself in the chart, and
+// Largest angle beyond the rim of the hemisphere that counts as rounding [rad]: keeps the rim itself in the chart, and
 // lift(project(rim)) too. The maps go on smoothly there, so nothing depends on its size.
 constexpr double kRim = 1e-12;
 
-// Below this argument [rad] the series are exact to rounding: the first term left out is t^6/7 = 1.4e-19.
+// Below this argument [rad] the series are exact to rounding: the first term omitted is t^6/7 = 1.4e-19.
 constexpr double kSeries = 1e-3;
 
 // Between normals whose sum is shorter than this [1] (turned by all but 1e-6 rad of a half turn) the shortest arc is a
@@ -30,7 +30,7 @@ double sinc(double t)
     return std::abs(t) < kSeries ? 1 - t * t / 6 * (1 - t * t / 20) : std::sin(t) / t;
 }
 
-/// atan2(curvature y, x) / curvature for x >= 0, also when the curvature is 0.
+/// Returns atan2(curvature y, x) / curvature for x >= 0, also when the curvature is 0.
 double arcOf(double curvature, double y, double x)
 {
     const double angle = curvature * y;
@@ -64,7 +64,7 @@ Frame Frame::carriedTo(const glm::dvec3& newNormal) const
     Frame carried;
     carried.normal           = glm::normalize(newNormal);
     const glm::dvec3 newEast = east - 2 * glm::dot(across, east) * across;
-    // Square again, so that rounding does not build up over many steps.
+    // Made square again, so that rounding does not build up over many steps.
     carried.east  = glm::normalize(newEast - glm::dot(carried.normal, newEast) * carried.normal);
     carried.north = glm::cross(carried.normal, carried.east);
     return carried;

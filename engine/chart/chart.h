@@ -30,12 +30,13 @@ struct Frame {
     glm::dvec3 east{1, 0, 0};   ///< [1] direction of chart x
     glm::dvec3 north{0, 1, 0};  ///< [1] direction of chart z
 
-    /// The world's axes carried from its z to a unit normal. Continuous except at the world's -z.
+    /// Returns the world's axes carried from its z to a unit normal. Continuous except at the world's -z.
     [[nodiscard]] static Frame about(const glm::dvec3& normal);
-    /// This frame carried to another unit normal without twisting (parallel transport along the shortest arc).
-    /// To the opposite normal, where every arc is shortest, by the half turn about east.
+    /// Returns this frame carried to another unit normal without twisting (parallel transport along the shortest arc).
+    /// To the opposite normal, where every arc is shortest, it turns by the half turn about east.
     [[nodiscard]] Frame carriedTo(const glm::dvec3& newNormal) const;
-    /// This frame turned about its normal.  \param angle [rad]
+    /// Returns this frame turned about its normal.
+    /// \param angle  [rad]
     [[nodiscard]] Frame turned(double angle) const;
 };
 
@@ -55,15 +56,15 @@ struct Chart {
     Frame      frame;
     double     curvature = 0; ///< [1/m] signed, see above
 
-    /// Chart about the foot of `contact` on the fitted surface.
+    /// Returns the chart about the foot of `contact` on the fitted surface.
     /// \param outward  roughly towards the hand; chooses the side of the surface (any non-zero vector)
     /// \param frame    axes to carry over from the neighbouring contact; empty: Frame::about
     [[nodiscard]] static Chart around(const SphereFit& fit, const glm::dvec3& contact, const glm::dvec3& outward,
                                       Map map, const std::optional<Frame>& frame = {});
 
-    /// Chart position of the radial projection of a point; empty beyond the hemisphere around the contact.
+    /// Returns the chart position of the radial projection of a point; empty beyond the hemisphere around the contact.
     [[nodiscard]] std::optional<ChartPoint> project(const glm::dvec3& point) const;
-    /// The point of the sphere at a chart position [m]; empty outside the image of the hemisphere.
+    /// Returns the point of the sphere at a chart position [m]; empty outside the image of the hemisphere.
     [[nodiscard]] std::optional<glm::dvec3> lift(const ChartPoint& position) const;
 };
 

@@ -9,10 +9,10 @@
 
 #include "engine/core/contract.h"
 
-// Two steps. First every point offers itself to the few nodes around it, whole rows of nodes at a time with vector
-// instructions; where points are about as dense as nodes, this settles nearly all nodes without any search structure.
-// Nodes whose best offer might be beaten from outside that neighbourhood, beside holes and beyond the edge of the
-// cloud, then search in buckets of points, outward from the node.
+// There are two steps. First every point offers itself to the few nodes around it, whole rows of nodes at a time with
+// vector instructions; where points are about as dense as nodes, this settles nearly all nodes without any search
+// structure. Nodes whose best offer might be beaten from outside that neighbourhood, beside holes and beyond the edge
+// of the cloud, then search in buckets of points, outward from the node.
 
 namespace palp {
 namespace {
@@ -23,7 +23,7 @@ constexpr int kMostRows  = 4;
 
 using Numbers = double __attribute__((vector_size(kLanes * sizeof(double))));
 
-/// The best offers so far, with a margin of nodes that nobody reads, so that points near the edge need no special care.
+/// The best offers so far, with a margin of nodes never read, so that points near the edge need no special care.
 struct Offers {
     static constexpr int kMargin = 4; ///< [nodes] on each side
     static_assert(kMargin >= kLanes && kMargin >= kMostRows);
@@ -52,9 +52,9 @@ struct Offers {
     [[nodiscard]] const double* points(int i) const noexcept { return distances2(i) + z.size(); }
 };
 
-/// Every point offers itself to the kRows x kLanes nodes around it, in the order of their numbers: so the lowest number
-/// wins among equals.
-/// \return whether all points are finite
+/// Offers every point to the kRows x kLanes nodes around it, in the order of their numbers: the lowest number wins
+/// among equals.
+/// \return  true if all points are finite
 template <int kRows>
 [[gnu::always_inline]] inline bool offerAll(std::span<const ChartPoint> points, Offers& offers)
 {
@@ -125,7 +125,8 @@ __attribute__((target("avx2"))) bool offerAvx2(std::span<const ChartPoint> point
 }
 #endif
 
-/// \return whether all points are finite
+/// Offers every point by the best instructions that the processor has.
+/// \return  true if all points are finite
 bool offer(std::span<const ChartPoint> points, int rows, Offers& offers)
 {
 #if defined(__x86_64__)
@@ -145,7 +146,7 @@ struct Bands {
     {
         return int(std::min(std::max((x - low) / width, 0.0), double(count - 1)));
     }
-    /// Square [m^2] of a lower bound for the distance from x, in band `home`, to every point in a band.
+    /// Returns the square [m^2] of a lower bound for the distance from x, in band `home`, to every point in a band.
     [[nodiscard]] double gap2(double x, int home, int band) const noexcept
     {
         if (band == home) return 0;
@@ -168,7 +169,7 @@ public:
         }
     }
 
-    /// The nearest point, given one that may be it.
+    /// Returns the nearest point, given one that may be it.
     [[nodiscard]] std::uint32_t nearest(const ChartPoint& node, std::uint32_t guess) const
     {
         Search    search{node, guess, squaredDistance(node, guess), x_.of(node.x), z_.of(node.z)};
@@ -203,7 +204,8 @@ private:
         return std::size_t(row) * std::size_t(z_.count) + std::size_t(column);
     }
 
-    /// \return whether rows further out may hold a nearer point
+    /// Searches one row of buckets.
+    /// \return  true if rows further out may hold a nearer point
     bool scanRow(Search& s, int row) const
     {
         const double gap2 = x_.gap2(s.node.x, s.row, row);
@@ -232,7 +234,7 @@ private:
     std::vector<std::uint32_t>  next_;  ///< by point
 };
 
-/// An axis of the grid: where its nodes and the points lie.
+/// An axis of the grid: the extent of its nodes and of the points.
 struct Axis {
     double first   = 0; ///< [m] first node
     double last    = 0; ///< [m] last node
@@ -254,14 +256,14 @@ struct Axis {
     [[nodiscard]] bool   holds(double x) const noexcept { return x >= first && x <= last; }
     [[nodiscard]] double cells() const noexcept { return std::max(1.0, (last - first) / spacing); }
 
-    /// [m] by which rounding may move a position in steps or bands: some 2^-53 of the largest numbers that take part;
-    /// 32 times as much costs nothing.
+    /// Returns by how much rounding may move a position in steps or bands [m]: some 2^-53 of the largest numbers that
+    /// take part; 32 times as much costs nothing.
     [[nodiscard]] double margin() const noexcept
     {
         return 0x1p-48 * (std::abs(first) + std::abs(last) + spacing + (high - low));
     }
 
-    /// About `width` [m] wide, but no more than `most` bands.
+    /// Returns bands about `width` [m] wide, but at most `most` of them.
     [[nodiscard]] Bands bands(double width, std::size_t most) const
     {
         Bands bands;
@@ -275,7 +277,8 @@ struct Axis {
     }
 };
 
-/// Points per cell of the grid, of a sample of the points; tells the axes where points lie. Only speed hangs on it.
+/// Returns the points per cell of the grid, from some of the points, and sets the axes' extents. Only speed depends
+/// on it.
 [[nodiscard]] double survey(std::span<const ChartPoint> points, Axis& x, Axis& z)
 {
     constexpr std::size_t kSamples = 1000;
@@ -289,9 +292,9 @@ struct Axis {
     return double(inside * stride) / (x.cells() * z.cells());
 }
 
-/// Rows of nodes to which points offer themselves. In a random cloud one node in exp(pi r^2 density) has its nearest
-/// point further away than r = rows / 2 steps. One in exp(11) = 60000 means that most grids need no buckets, which cost
-/// more than one row.
+/// Returns the number of rows of nodes to which points offer themselves. In a random cloud one node in
+/// exp(pi r^2 density) has its nearest point further away than r = rows / 2 steps. One in exp(11) = 60000 means that
+/// most grids need no buckets, which cost more than one row.
 [[nodiscard]] int rowsFor(double density)
 {
     const double rows = 2 * std::sqrt(11 / (std::numbers::pi * std::max(density, 1e-9)));

@@ -8,10 +8,10 @@
 
 namespace palp {
 
-/// For every node of a grid the number of the point nearest to it, in the order in which a NodeField stores nodes.
+/// Finds for every node of a grid the number of the nearest point, in the order in which a NodeField stores nodes.
 ///
-/// Exact: the squared distances are compared in doubles, and of equally near points the lowest number wins. Fastest
-/// with half to four points per cell of the grid; nodes far from every point cost more.
+/// The answer is exact: the squared distances are compared in doubles, and of equally near points the lowest number
+/// wins. The search is fastest with half to four points per cell of the grid; nodes far from every point cost more.
 ///
 /// \param origin  position of node (0, 0) [m]
 /// \param points  at least one, finite [m]; may lie outside the grid

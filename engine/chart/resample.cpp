@@ -12,7 +12,8 @@
 namespace palp {
 namespace {
 
-/// The rigidity of the nearest point where there is no mean yet, and the number of nodes without a point nearby.
+/// Takes the rigidity of the nearest point where there is no mean yet; returns the number of nodes without a point
+/// nearby.
 void takeNearest(const PatchWindow& window, std::span<const ChartPoint> positions, std::span<const double> rigidities,
                  double nearby, Resampled& result)
 {

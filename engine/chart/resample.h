@@ -17,7 +17,7 @@ struct PatchWindow {
     PlateGrid  grid;
     ChartPoint corner; ///< chart position of node (0, 0) [m]
 
-    /// A square of `size` [m] with `cells` cells a side.
+    /// Returns a square of `size` [m] with `cells` cells a side.
     /// \param cells  even, so that the contact is a node
     [[nodiscard]] static PatchWindow square(double size, int cells);
 
@@ -26,24 +26,25 @@ struct PatchWindow {
 
 struct Resampled {
     NodeField   rigidity;              ///< D [N m] at the nodes
-    std::size_t nodesWithoutPoint = 0; ///< nodes that had no point nearby and took the nearest one's value [1]
+    std::size_t nodesWithoutPoint = 0; ///< nodes that had no point nearby and took the nearest one's value
 };
 
-/// How far along either axis the log-mean looks for points: 4 s, where the weight is 3e-4 [m].
+/// Returns how far along either axis the log-mean looks for points: 4 s, where the weight is 3e-4 [m].
 ///
 /// The width s is the spacing of the points, so that some are always near, but no less than half that of the nodes, so
+/// that no point falls between them. Points farther than that outside the window do not matter to its rigidity.
 /// that no point falls between them. Points farther than that outside the window do not matter to its rigidity.
 ///
 /// \param pointSpacing  of the cloud [m]
 /// \param nodeSpacing   of the grid, the larger one [m]
 [[nodiscard]] double kernelReach(double pointSpacing, double nodeSpacing) noexcept;
 
-/// Rigidity at the nodes of a window from scattered values.
+/// Computes the rigidity at the nodes of a window from scattered values.
 ///
 /// Log-mean: ln D = sum w_i ln D_i / sum w_i,  w = exp(-d^2 / (2 s^2)),  over the points in the square of half
 /// side 4 s about the node,  s = max(pointSpacing, h/2). A node with no point in its square takes the nearest one's
-/// value. A node counts as without a point if none lies within 2.5 s: in a random cloud that befalls one node in 10^8,
-/// so a count above zero means a hole, a border or a far side.
+/// value. A node counts as without a point if none lies within 2.5 s: in a random cloud one node in 10^8 has none, so a
+/// count above zero means a hole, a border or a far side.
 ///
 /// \param positions     of the points in the chart [m], at least one; may lie outside the window
 /// \param rigidities    D of the same points [N m], > 0

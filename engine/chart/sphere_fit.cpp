@@ -17,12 +17,12 @@ namespace {
 using Matrix5 = Eigen::Matrix<double, 5, 5>;
 using Vector5 = Eigen::Matrix<double, 5, 1>;
 
-// Order of the unknowns. Position first, so that the leading 3x3 block of R is the factor of the positions alone.
+// Order of the unknowns. Position is first, so that the leading 3x3 block of R is the factor of the positions alone.
 enum Column { kX, kY, kZ, kSquare, kOne };
 
-// Rounding units [1] by which a row of the scaled design may be off, when the coordinates are right to half a unit:
-// shift 1, scale 2, square and sum 5, factorisation about as much again. Smaller, and exact planes far from the origin
-// turn into spheres; larger, and true curvature is thrown away.
+// Number of rounding units by which a row of the scaled design may be off, when the coordinates are right to half a
+// unit: shift 1, scale 2, square and sum 5, factorisation about as much again. If it is smaller, exact planes far from
+// the origin turn into spheres; if larger, true curvature is thrown away.
 constexpr double kRowRounding = 16;
 
 // The least uncertainty of the fit's unit-length coefficients [1], caused by rounding alone, that counts as "not
@@ -56,7 +56,7 @@ bool hasFourDistinct(std::span<const glm::dvec3> points)
     return false;
 }
 
-/// Where the points are and how large: x = (p - centroid) / scale has mean 0 and root mean square 1.
+/// Position and size of the points: x = (p - centroid) / scale has mean 0 and root mean square 1.
 struct Placement {
     glm::dvec3 centroid{};   ///< [m]
     double     scale    = 0; ///< [m]
@@ -83,12 +83,12 @@ struct Placement {
     }
 };
 
-/// R of design = Q R, divided by the square root of the number of points so that it does not grow with it.
+/// Computes R of design = Q R, divided by the square root of the number of points so that it does not grow with it, by
 /// Householder on a fixed block of rows below the R so far: constant memory. R stays triangular by itself, because a
 /// reflection leaves alone the rows that are zero in its column.
 Matrix5 factorOfDesign(std::span<const glm::dvec3> points, const Placement& placement)
 {
-    constexpr int kBlock = 64; // rows [1]: long enough to hide the five rows carried along, short enough for the stack
+    constexpr int kBlock = 64; // rows: long enough to hide the five rows carried along, short enough for the stack
     using Stack          = Eigen::Matrix<double, 5 + kBlock, 5>;
     Stack        stack   = Stack::Zero();
     const double weight  = 1 / std::sqrt(double(points.size()));
@@ -104,7 +104,7 @@ Matrix5 factorOfDesign(std::span<const glm::dvec3> points, const Placement& plac
     return stack.topRows<5>();
 }
 
-/// C of Pratt's constraint u^T C u = u1^2 + u2^2 + u3^2 - 4 u0 u4 = 1, in the order of Column.
+/// Returns C of Pratt's constraint u^T C u = u1^2 + u2^2 + u3^2 - 4 u0 u4 = 1, in the order of Column.
 Matrix5 prattConstraint()
 {
     Matrix5 c        = Matrix5::Zero();
@@ -116,7 +116,7 @@ Matrix5 prattConstraint()
     return c;
 }
 
-/// The coefficients of the fit, scaled so that u^T C u = 1 (see fitSphere).
+/// Returns the coefficients of the fit, scaled so that u^T C u = 1 (see fitSphere).
 Vector5 prattVector(const Eigen::JacobiSVD<Matrix5>& svd)
 {
     // Points exactly on a sphere have a last singular value of 0; raised to rounding it stays the smallest by far, and
@@ -133,7 +133,7 @@ Vector5 prattVector(const Eigen::JacobiSVD<Matrix5>& svd)
 
 SphereFit planeThrough(const Placement& placement, const Eigen::Vector3d& normal)
 {
-    // Of the two normals the one with the positive largest component, so that the answer does not hang on rounding.
+    // The one of the two normals whose largest component is positive, so that the answer does not depend on rounding.
     Eigen::Index largest = 0;
     normal.cwiseAbs().maxCoeff(&largest);
     const Eigen::Vector3d n = normal * std::copysign(1.0, normal[largest]);

@@ -11,7 +11,7 @@ namespace palp {
 /// A sphere or its limit, a plane, as the zero set of
 ///     f(p) = (curvature/2) |q|^2 + gradient . q + offset,   q = p - reference,
 /// scaled so that |gradient|^2 - 2 curvature offset = 1 (Pratt's normalisation: |grad f| = 1 on the surface).
-/// Nothing here blows up when curvature goes to 0. f < 0 lies inside a sphere of positive curvature.
+/// Nothing here diverges when curvature goes to 0. f < 0 lies inside a sphere of positive curvature.
 struct SphereFit {
     glm::dvec3 reference{};       ///< [m] centroid of the fitted points
     double     curvature = 0;     ///< [1/m] 1/radius, >= 0; 0 is a plane
@@ -22,12 +22,12 @@ struct SphereFit {
     [[nodiscard]] double     radius() const noexcept;                                ///< [m] infinity for a plane
     [[nodiscard]] glm::dvec3 centre() const noexcept;                                ///< [m] not finite for a plane
     [[nodiscard]] double     signedDistance(const glm::dvec3& point) const noexcept; ///< [m] > 0 outside
-    /// Unit direction away from the centre [1]; at the centre itself, where none is better, a fixed arbitrary one.
+    /// Returns the unit direction away from the centre [1]; at the centre itself a fixed arbitrary one.
     [[nodiscard]] glm::dvec3 normal(const glm::dvec3& point) const noexcept;
     [[nodiscard]] glm::dvec3 foot(const glm::dvec3& point) const noexcept; ///< [m] nearest surface point
 };
 
-/// What a set of points determines.
+/// The kinds of surface that a set of points determines.
 enum class FitOutcome {
     sphere,
     plane,        ///< curvature is zero within rounding; the fit holds the least-squares plane
@@ -57,11 +57,11 @@ struct SphereFitResult {
 /// The answer is the same for points moved, turned or scaled. Only rounding separates a plane from a sphere, and a
 /// ring from a narrow band: noise on a plane gives a sphere of large radius, which callers need not tell apart.
 ///
-/// \param  points   positions [m], finite, any number and order, repeats allowed (each counts)
-/// \return          what the points determine, and the fit if they determine a sphere or a plane
-/// \throws          ContractViolation naming the first point that is not finite
-/// \thread          pure; memory is constant, time linear in the number of points
-/// \source          Pratt 1987, "Direct least-squares fitting of algebraic surfaces"; Kumari & Chaudhuri, eqs 1-3
+/// \param points  positions [m], finite, any number and order, repeats allowed (each counts)
+/// \return the kind of surface that the points determine, and the fit if it is a sphere or a plane
+/// \throws ContractViolation naming the first point that is not finite
+/// \thread pure; memory is constant, time linear in the number of points
+/// \source Pratt 1987, "Direct least-squares fitting of algebraic surfaces"; Kumari & Chaudhuri, eqs 1-3
 /// \differs         Eq. 3 divides by u4; with eq. 1 as written the divisor is u0.
 ///                  The points are centred and scaled to unit rms first: uncentred, single precision finds a radius
 ///                  of 37 for a cap of radius 5 some 27 away, and double loses half its digits.

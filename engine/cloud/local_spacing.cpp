@@ -15,29 +15,29 @@
 namespace palp {
 namespace {
 
-constexpr std::size_t kNeighbours = 6; ///< [1] besides the point itself
+constexpr std::size_t kNeighbours = 6; ///< besides the point itself
 
-/// Search radius over the distance of the sixth neighbour of the point before, a near one: holds 15 points where the
-/// density does not vary. Where it holds fewer than seven the exact, slower search follows. (The cloud's usual spacing
-/// would not do: where points are a hundred times closer it holds a hundred thousand of them.)
+/// Search radius over the distance of the sixth neighbour of the point before, a near one [1]: holds 15 points where
+/// the density does not vary. Where it holds fewer than seven the exact, slower search follows. (The cloud's usual
+/// spacing would not do: where points are a hundred times closer it holds a hundred thousand of them.)
 constexpr double kLikelyReach = 1.6;
 
-/// Radius of the median over the point's own first guess: 28 points of a regular sheet.
+/// Radius of the median over the point's own first guess [1]: 28 points of a regular sheet.
 constexpr double kMedianReach = 3;
 
-/// A point that is so much further from its neighbours than they are among themselves [1] is a stray, or one of the
-/// sparse side of a step in density; in a random sheet none is, at its corners neither. Then it is the area that
-/// decides and not the number of points: of a stray the others' spacing holds, as all around is theirs.
+/// A point this many times further from its neighbours than they are among themselves [1] is a stray, or belongs to the
+/// sparse side of a step in density; a random sheet has none, also at its corners. Then the area decides and not the
+/// number of points: a stray takes the others' spacing, as all the area around is theirs.
 constexpr double kAlone = 3;
 
 /// Share of the disc around such a point that the others' areas cover if it is a stray over a sheet [1]: 0.8, wherever
 /// it is. Just outside a dense half of a sheet it is 0.4.
 constexpr double kCovered = 0.6;
 
-/// Where points coincide no spacing falls below this share of the cloud's [1]: radii must stay lengths.
+/// Where points coincide no spacing falls below this share of the cloud's [1]: radii must stay above zero.
 constexpr double kLeast = 0.05;
 
-/// The points in an order in which neighbours follow each other, so that what a search reads is still in the cache.
+/// Returns the points in an order in which neighbours follow each other, so that what a search reads is in the cache.
 std::vector<std::uint32_t> alongCurve(std::span<const glm::dvec3> positions)
 {
     glm::dvec3 low = positions[0], high = positions[0];
@@ -58,7 +58,7 @@ std::vector<std::uint32_t> alongCurve(std::span<const glm::dvec3> positions)
     return order;
 }
 
-/// The value that half of the others do not exceed; reorders.
+/// Returns the value that half of the others do not exceed; reorders.
 double median(std::vector<double>& values)
 {
     const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
@@ -66,8 +66,8 @@ double median(std::vector<double>& values)
     return *middle;
 }
 
-/// The value that half of the area does not exceed, each value standing for an area of its square; reorders. Infinite
-/// if together they cover less than kCovered of a disc.
+/// Returns the value that half of the area does not exceed, each value standing for an area of its square; reorders.
+/// Infinite if together they cover less than kCovered of a disc.
 double medianOfArea(std::vector<double>& values, double radius)
 {
     std::sort(values.begin(), values.end());

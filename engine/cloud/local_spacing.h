@@ -8,12 +8,12 @@
 
 namespace palp {
 
-/// Mean distance between the points of the surface around each point [m], for clouds whose density varies.
+/// Returns the mean distance between the points of the surface around each point [m], for clouds whose density varies.
 ///
-/// First d6 sqrt(pi/6), d6 the distance to the sixth neighbour: of n points per square metre, six lie in a circle of
-/// area 6/n. Then the median of that over the points within three times as far, so that one hole, one stray or one pair
-/// of points does not count. A second sheet two spacings away does not disturb d6. Beside a step in density, where most
-/// of these points are those of the dense side, the median of the area is taken.
+/// It takes d6 sqrt(pi/6) first, d6 the distance to the sixth neighbour: of n points per square metre, six lie in a
+/// circle of area 6/n. Then it takes the median of that over the points within three times as far, so that one hole,
+/// one stray or one pair of points does not count. A second sheet two spacings away does not disturb d6. Beside a step
+/// in density, where most of these points are those of the dense side, it takes the median of the area.
 ///
 /// \param positions  those that the index was built from
 /// \return           as many as positions, each > 0

@@ -16,8 +16,8 @@ inline constexpr std::uint32_t kMortonCells = std::uint32_t(1) << 21;
     return (bits | bits << 2) & 0x1249249249249249;
 }
 
-/// Position along the Morton (Z-order) curve of a cell: its three numbers with their bits interleaved, so that cells
-/// with near codes are near in space.
+/// Returns the position along the Morton (Z-order) curve of a cell: its three numbers with their bits interleaved, so
+/// that cells with near codes are near in space.
 /// \param x, y, z  below kMortonCells
 [[nodiscard]] constexpr std::uint64_t mortonCode(std::uint32_t x, std::uint32_t y, std::uint32_t z) noexcept
 {

@@ -36,14 +36,14 @@ namespace {
 
 constexpr double kRounding = 0x1p-20; ///< [1] relative error of a squared distance in floats, with a reserve of two
 
-/// Coordinates up to here are searched by floats [index units]. Further out floats could not tell the points of a cloud
-/// apart any more; and squares stay far from overflow.
+/// Coordinates up to here are searched by floats [index units]. Further out floats could no longer tell the points of a
+/// cloud apart; and squares stay far from overflow.
 constexpr double kFloatReach = 0x1p20;
 
 /// Least slack [index units]: keeps squares of floats far from underflow.
 constexpr double kLeastSlack = 0x1p-60;
 
-/// Scaling stops here: in clouds of 1e-120 m even kLeastSlack must be a length whose square a double can hold, and in
+/// Largest scaling: in clouds of 1e-120 m even kLeastSlack must be a length whose square a double can hold, and in
 /// clouds of 1e150 m, which kFloatReach then leaves to doubles alone, the whole extent.
 constexpr int kMostScaling  = 400;
 constexpr int kLeastScaling = -480;
@@ -100,7 +100,7 @@ struct IndexFrame {
         reach = all * scale;
     }
 
-    /// Whether floats serve to search around a place [index units].
+    /// Returns true if floats serve to search around a place [index units].
     [[nodiscard]] bool searchable(const glm::dvec3& place) const noexcept
     {
         return reach <= kFloatReach && largest(place) <= kFloatReach;
@@ -116,15 +116,15 @@ struct IndexFrame {
     [[nodiscard]] glm::dvec3 to(const glm::dvec3& position) const noexcept { return (position - centre) * scale; }
 };
 
-/// Radius [m] that holds k points of a surface nearly always: k and twice the square root of k, the standard deviation
-/// if the points are random. A first guess; whether it holds is checked.
+/// Returns a radius [m] that holds k points of a surface nearly always: k and twice the square root of k, the standard
+/// deviation if the points are random. It is a first guess, which is checked.
 [[nodiscard]] double likelyRadius(std::size_t k, double spacing) noexcept
 {
     const double points = double(k) + 2 * std::sqrt(double(k)) + 2;
     return spacing * std::sqrt(points / std::numbers::pi);
 }
 
-/// Order of the points along the Morton curve; equal codes by rising index.
+/// Returns the order of the points along the Morton curve; equal codes by rising index.
 [[nodiscard]] std::vector<std::uint32_t> mortonOrder(std::span<const glm::dvec3> positions, const IndexFrame& frame)
 {
     struct Key {
@@ -193,13 +193,13 @@ public:
                 inner > 0 ? float(inner * inner * (1 - kRounding)) : -1.0F, float(outer * outer * (1 + kRounding))};
     }
 
-    /// Radius within which a search through boxes of floats misses no point.
+    /// Returns the radius within which a search through boxes of floats misses no point.
     [[nodiscard]] float searchRadius(double radius) const noexcept
     {
         return float((radius + 2 * slack_) * (1 + kRounding));
     }
 
-    /// No point whose squared distance came out as this is further away.
+    /// Returns the largest distance of a point whose squared distance came out as this.
     [[nodiscard]] double largestDistance(float distance2) const noexcept
     {
         return std::sqrt(double(distance2)) * (1 + kRounding) + slack_;
@@ -212,8 +212,8 @@ private:
     double     slack_;
 };
 
-/// The slots that may be among the k nearest, by distances of floats. Twice as many wait as are needed before the
-/// further half goes, so that each costs constant time on average.
+/// The slots that may be among the k nearest, by distances of floats. Twice as many are kept as are needed before the
+/// further half is dropped, so that each costs constant time on average.
 class Candidates {
 public:
     explicit Candidates(std::size_t k) : k_(k) { keys_.reserve(kWaiting * k); }
@@ -229,14 +229,14 @@ public:
 
     void clear() noexcept { keys_.clear(); }
 
-    /// How many have a squared distance, as floats measured it, of at most `inner2`.
+    /// Returns how many candidates have a squared distance, as floats measured it, of at most `inner2`.
     [[nodiscard]] std::size_t within(float inner2) const noexcept
     {
         return std::size_t(
             std::count_if(keys_.begin(), keys_.end(), [=](std::uint64_t key) { return distance2(key) <= inner2; }));
     }
 
-    /// Drops what is certainly not among the k nearest of at least k candidates.
+    /// Drops the candidates that are certainly not among the k nearest of at least k.
     /// \return  radius [index units] that holds the k nearest candidates
     double prune(const FloatSphere& sphere)
     {
@@ -257,7 +257,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t kWaiting = 2; ///< [1] candidates that wait for pruning, per neighbour wanted
+    static constexpr std::size_t kWaiting = 2; ///< candidates that wait for pruning, per neighbour wanted
 
     [[nodiscard]] static float distance2(std::uint64_t key) noexcept
     {
@@ -297,6 +297,7 @@ void sortByDistance(std::vector<Neighbour>& found)
     found = std::move(sorted);
 }
 
+/// Keeps the k nearest.
 /// \param found  any order; the k best stay, nearest first, equal distances by rising index
 void keepNearest(std::vector<Neighbour>& found, std::size_t k)
 {
@@ -354,7 +355,8 @@ struct NeighbourIndex::Impl {
     void gather(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
                 std::vector<std::uint32_t>& found) const;
 
-    /// Fills `candidates` with at least the k nearest, if all of them are within `start` [index units]; else says no.
+    /// Fills `candidates` with at least the k nearest.
+    /// \return  false unless all of them are within `start` [index units]
     [[nodiscard]] bool findCandidates(const FloatSphere& sphere, double start, std::size_t k,
                                       Candidates& candidates) const;
 };

@@ -14,11 +14,11 @@ struct Neighbour {
     double        distance = 0; ///< [m]
 };
 
-/// Radius and nearest-point search over fixed positions.
+/// Searches fixed positions by radius and for the nearest points.
 ///
-/// Embree bounding volume hierarchy over blocks of 32 Morton-ordered points, each block one user primitive that is
-/// filtered with vector instructions. Answers are those of a brute-force search in double precision, exactly: a point
-/// is within the radius if the squared distance, in doubles, is at most the squared radius.
+/// It is an Embree bounding volume hierarchy over blocks of 32 Morton-ordered points, each block one user primitive
+/// that is filtered with vector instructions. Answers are those of a brute-force search in double precision, exactly: a
+/// point is within the radius if the squared distance, in doubles, is at most the squared radius.
 /// \thread  const calls from any number of threads at once
 class NeighbourIndex {
 public:
@@ -33,17 +33,17 @@ public:
     /// first. Allocates only if the capacity of `found` does not suffice.
     void gather(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const;
 
-    /// As above, for callers who do not mind an allocation.
+    /// Returns the same, for callers that can afford an allocation.
     [[nodiscard]] std::vector<std::uint32_t> gather(const glm::dvec3& centre, double radius) const;
 
-    /// The k nearest points (fewer if the cloud is smaller), nearest first; equal distances by rising index.
+    /// Returns the k nearest points (fewer if the cloud is smaller), nearest first; equal distances by rising index.
     [[nodiscard]] std::vector<Neighbour> nearest(const glm::dvec3& centre, std::size_t k) const;
 
     [[nodiscard]] std::size_t size() const noexcept;
 
-    /// Mean distance between points of the surface, 1/sqrt(points per square metre) [m]: the median over up to 2000
-    /// points, spread evenly, of d6 sqrt(pi/6), d6 the distance to the sixth neighbour. Computed once, at construction.
-    /// 0 if the cloud has fewer than seven points or most of them coincide.
+    /// Returns the mean distance between points of the surface, 1/sqrt(points per square metre) [m]: the median over up
+    /// to 2000 points, spread evenly, of d6 sqrt(pi/6), d6 the distance to the sixth neighbour. Computed once, at
+    /// construction. 0 if the cloud has fewer than seven points or most of them coincide.
     [[nodiscard]] double spacing() const noexcept;
 
 private:

@@ -22,7 +22,7 @@ constexpr std::uint64_t kRowsPerProgress = 1u << 14; ///< between two looks at t
 
 constexpr std::size_t kNone = std::size_t(-1); ///< no property
 
-/// What is different in the new file.
+/// The differences between the new file and the original.
 struct Changes {
     RepaintedPly               result;
     std::size_t                column = kNone; ///< of the points' properties: the one whose values are replaced
@@ -30,13 +30,13 @@ struct Changes {
     std::optional<std::string> unit; ///< of a comment stiffness_unit that is added, or stands in place of another
 };
 
-/// Floats below are rounded more coarsely, or to zero.
+/// Returns true if a float can hold the value: smaller ones are rounded more coarsely, or to zero.
 bool fitsFloat(double value)
 {
     return value >= double(std::numeric_limits<float>::min()) && value <= double(std::numeric_limits<float>::max());
 }
 
-/// The original must still be what was painted.
+/// Refuses an original that is no longer what was painted.
 void refuseOtherPoints(const std::string& name, const LoadedCloud& now, const PointCloud& painted)
 {
     if (now.report.droppedPoints > 0)
@@ -70,7 +70,7 @@ Changes changesOf(const std::string& name, const PlyHeader& header, const CloudR
     const bool        modulus = painted.kind() == StiffnessKind::modulus;
     const bool        hidden  = hasProperty(vertex, "stiffness") || hasProperty(vertex, "scalar_stiffness");
     const char* const own     = modulus || hidden ? "stiffness" : "flexural_rigidity";
-    // Without a unit it stays what it is, beside the stiffness; unless both have the same name.
+    // Without a unit the property stays what it is, beside the stiffness; unless both have the same name.
     if (readAs.range && changes.column != kNone && vertex.properties[changes.column].name != own)
         changes.column = kNone;
     if (changes.column == kNone) {
@@ -94,7 +94,7 @@ Changes changesOf(const std::string& name, const PlyHeader& header, const CloudR
     return changes;
 }
 
-/// Copies a file, but for the changes. The file has been read before, so that what is wrong now changed since.
+/// Copies a file, but for the changes. The file has been read before, so an error now means that it changed since.
 class Copier {
 public:
     Copier(ByteReader& reader, BlockWriter& out, const PlyHeader& header, const Changes& changes,
@@ -151,7 +151,8 @@ private:
         out_.append(end);
     }
 
-    /// \param stiffness  of the row's point; empty if it is none
+    /// Copies one row.
+    /// \param stiffness  of the row's point; empty if the row is no point
     void copyRow(const PlyElement& element, std::optional<double> stiffness)
     {
         if (header_.ascii)
@@ -209,7 +210,7 @@ private:
         out_.append(raw->substr(begin + word.size()));
     }
 
-    /// The word that is the number of a property.
+    /// Returns the word that is the number of a property.
     std::string_view wordOf(const PlyElement& element, std::string_view line, std::size_t column) const
     {
         std::string_view rest = line;

@@ -8,13 +8,13 @@
 
 namespace palp {
 
-/// Which property of the new file holds the stiffness.
+/// The property of the new file that holds the stiffness.
 struct RepaintedPly {
     std::string property;
     bool        appended = false; ///< the original holds none, or one in no physical unit
 };
 
-/// Writes a PLY file once more with another stiffness, whole or not at all. Everything else keeps its bytes: encoding,
+/// Writes a PLY file again with another stiffness, whole or not at all. Everything else keeps its bytes: encoding,
 /// comments, elements, the other properties with their names, types and order, and also the stiffness of points whose
 /// value is the same.
 ///
@@ -31,7 +31,7 @@ struct RepaintedPly {
 [[nodiscard]] RepaintedPly repaintPly(const std::filesystem::path& original, const CloudReadSettings& readAs,
                                       const PointCloud& painted, const std::filesystem::path& target);
 
-/// As repaintPly, between streams; the original has `size` bytes, can be sought in, and is called `name` in messages.
+/// Does the same between streams; the original has `size` bytes, can be sought in, and is called `name` in messages.
 [[nodiscard]] RepaintedPly formatRepaintedPly(std::ostream& stream, std::istream& original, std::uint64_t size,
                                               const std::string& name, const CloudReadSettings& readAs,
                                               const PointCloud& painted);

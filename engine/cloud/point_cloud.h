@@ -10,13 +10,13 @@
 
 namespace palp {
 
-/// What the stiffness of a cloud's points is.
+/// The quantity that the stiffness of a cloud's points is.
 enum class StiffnessKind {
     modulus, ///< Young's modulus E [Pa]
     rigidity ///< flexural rigidity D [N m]
 };
 
-/// The unit in which files and reports state a stiffness: "Pa" or "N_m".
+/// Returns the unit in which files and reports state a stiffness: "Pa" or "N_m".
 [[nodiscard]] const char* unitOf(StiffnessKind kind) noexcept;
 
 struct Bounds {
@@ -40,7 +40,8 @@ public:
     /// \throws Error naming the first point that breaks the invariant
     PointCloud(std::vector<glm::dvec3> positions, std::vector<double> stiffness, StiffnessKind kind);
 
-    /// The same points, which both then share, with other stiffnesses of the same kind: a quarter of the memory is new.
+    /// Makes a cloud of the same points, which both then share, with other stiffnesses of the same kind: a quarter of
+    /// the memory is new.
     /// \throws Error as above
     PointCloud(const PointCloud& points, std::vector<double> stiffness);
 

@@ -19,7 +19,7 @@ enum class CloudFormat {
     text ///< .xyz .txt .csv
 };
 
-/// How numbers stand in a written PLY or PCD file; text files are always text.
+/// The form of numbers in a written PLY or PCD file; text files are always text.
 enum class CloudEncoding { binaryLittleEndian, binaryBigEndian, ascii };
 
 enum class RangeScale { linear, logarithmic };
@@ -33,11 +33,11 @@ struct StiffnessRange {
     RangeScale scale = RangeScale::linear;
 };
 
-/// Young's modulus where neither the file nor the user gives a stiffness: soft skin over a palm, 4 mm thick, dents by
-/// about 2 mm at 1 N with it [Pa].
+/// Young's modulus where neither the file nor the user gives a stiffness [Pa]: a soft skin over a palm, 4 mm thick,
+/// then dents by about 2 mm at 1 N.
 inline constexpr double kDefaultModulus = 0.3e6;
 
-/// What the user says about a file; what is left empty is taken from the file, and else as said here.
+/// The user's settings for reading a file; an empty one is taken from the file, and else as stated here.
 struct CloudReadSettings {
     std::string lengthUnit;              ///< of the coordinates: m, mm, cm, ...; empty: the file's comment, else metres
     std::string stiffnessProperty;       ///< empty: the first of kStiffnessProperties that the file has
@@ -54,14 +54,14 @@ struct PropertyRange {
     double largest  = 0;
 };
 
-/// What was found in a file and how it was understood, for the user to check.
+/// The findings in a file and how it was understood, for the user to check.
 struct CloudFileReport {
     std::string                  format;                    ///< such as "PLY, binary little-endian"
     std::size_t                  points             = 0;    ///< in the cloud
-    std::size_t                  droppedPoints      = 0;    ///< left out because of NaN or infinity
+    std::size_t                  droppedPoints      = 0;    ///< omitted because of NaN or infinity
     std::size_t                  faces              = 0;    ///< in the file, of any number of corners
-    std::size_t                  degenerateFaces    = 0;    ///< left out: fewer than three corners, or one twice
-    std::size_t                  droppedFaces       = 0;    ///< left out because they lost a point
+    std::size_t                  degenerateFaces    = 0;    ///< omitted: fewer than three corners, or one twice
+    std::size_t                  droppedFaces       = 0;    ///< omitted because they lost a point
     std::size_t                  duplicatePositions = 0;    ///< points that lie exactly where an earlier one lies
     std::vector<std::string>     properties;                ///< scalar properties of a point, in file order
     std::string                  lengthUnitSource;          ///< such as "mm, from the file's comment"
@@ -84,11 +84,11 @@ struct LoadedCloud {
 /// triangles; other elements and lists are checked and skipped.
 /// PCD: ascii and binary; fields with COUNT > 1 are skipped. Text: one point per line, `x y z [stiffness]` or named by
 /// a header line or by `columns`. Quality, confidence and intensity never become stiffness unless the user names them.
-/// The same position may occur often, but not be the only one.
+/// The same position may occur often, but must not be the only one.
 /// \throws Error naming the file, the line or byte, what was expected and what was found
 [[nodiscard]] LoadedCloud readCloud(const std::filesystem::path& path, const CloudReadSettings& settings = {});
 
-/// As readCloud, from a stream of `size` bytes whose first byte is the file's first; `name` stands in messages.
+/// Does the same from a stream of `size` bytes whose first byte is the file's first; `name` stands in messages.
 [[nodiscard]] LoadedCloud parseCloud(std::istream& stream, std::uint64_t size, const std::string& name,
                                      CloudFormat format, const CloudReadSettings& settings = {});
 
@@ -105,7 +105,8 @@ struct CloudWriteSettings {
         faces{}; ///< to stand beside the points of a PLY file; other formats have no place for them
 };
 
-/// Whether the format of the path's extension has a place for faces. \throws Error if no format has the extension
+/// Returns true if the format of the path's extension has a place for faces.
+/// \throws Error if no format has the extension
 [[nodiscard]] bool holdsFaces(const std::filesystem::path& path);
 
 /// Writes a cloud, whole or not at all; the format is that of the extension. Numbers are doubles (or as many digits as
@@ -116,7 +117,7 @@ struct CloudWriteSettings {
 void writeCloud(const std::filesystem::path& path, const PointCloud& cloud,
                 std::span<const NamedField> extraFields = {}, const CloudWriteSettings& settings = {});
 
-/// As writeCloud, to a stream; `separator` stands between the numbers of a text file.
+/// Does the same to a stream; `separator` stands between the numbers of a text file.
 void formatCloud(std::ostream& stream, CloudFormat format, const PointCloud& cloud,
                  std::span<const NamedField> extraFields = {}, const CloudWriteSettings& settings = {},
                  char separator = ' ');

@@ -5,7 +5,7 @@
 namespace palp {
 namespace {
 
-/// Cubes along the longest side at most: as many as a disc of a thousand points needs; more would cost more to clear
+/// Most cubes along the longest side: as many as a disc of a thousand points needs; more would cost more to clear
 /// than they save.
 constexpr double kMostCells = 32;
 

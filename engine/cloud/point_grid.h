@@ -10,17 +10,17 @@
 
 namespace palp {
 
-/// Cubes over some thousand points, for searches among only these. Built and searched in a fraction of a millisecond.
-/// \thread one; allocates only where it has not had as many points or cubes before
+/// Cubes over some thousand points, to search among only these. Built and searched in a fraction of a millisecond.
+/// \thread one; allocates only if it has not had as many points or cubes before
 class PointGrid {
 public:
+    /// Sorts the places into cubes.
     /// \param places  finite [m], at least one
-    /// \param edge    of the cubes [m], >= 0; they are larger if they were too many. The radius of
-    ///                the searches suits.
+    /// \param edge    of the cubes [m], >= 0; they are larger if they were too many. The radius of the searches suits.
     void build(std::span<const glm::dvec3> places, double edge);
 
     /// Calls visit(index of the place, squared distance [m^2]) for the places within `radius` [m] of `place`, in an
-    /// order that depends on nothing but the places and theirs. A place for which `visit` says true is taken out: no
+    /// order that depends on nothing but the places and theirs. A place for which `visit` returns true is taken out: no
     /// search finds it again until build().
     template <class Visit>
     void takeNear(const glm::dvec3& place, double radius, Visit&& visit)
@@ -37,8 +37,8 @@ public:
         });
     }
 
-    /// The same for all places in the cubes that the ball meets, also those outside of it: leaving these out would cost
-    /// more than it saves where nothing has to be done for them.
+    /// Does the same for all places in the cubes that the ball meets, also those outside of it: omitting these would
+    /// cost more than it saves where nothing has to be done for them.
     template <class Visit>
     void around(const glm::dvec3& place, double radius, Visit&& visit) const
     {
@@ -75,6 +75,7 @@ private:
         return d.x * d.x + d.y * d.y + d.z * d.z;
     }
 
+    /// Visits the cubes around a place.
     /// \param grid  this one, const or not, as its cubes are for `visit`
     template <class Grid, class Visit>
     static void eachCube(Grid& grid, const glm::dvec3& place, double radius, const Visit& visit)

@@ -36,7 +36,8 @@ glm::dvec3 onSphere(Uniform& u)
     return {s * std::cos(longitude), s * std::sin(longitude), z};
 }
 
-/// Uniform per area: the unit sphere's element grows by a b c |(x/a, y/b, z/c)| when it is stretched to the ellipsoid.
+/// Returns a point, uniform per area: the unit sphere's element grows by a b c |(x/a, y/b, z/c)| when it is stretched
+/// to the ellipsoid.
 glm::dvec3 onEllipsoid(Uniform& u, const glm::dvec3& axes)
 {
     const double largest = 1 / std::min({axes.x, axes.y, axes.z});
@@ -48,7 +49,8 @@ glm::dvec3 onEllipsoid(Uniform& u, const glm::dvec3& axes)
 
 using Height = double (*)(double x, double y); ///< [m] over [m]
 
-/// Uniform per area on z = height(x, y) over a centred square: keeps a point with probability |dA|/(dx dy) / kSteepest.
+/// Returns a point, uniform per area, on z = height(x, y) over a centred square: keeps one with probability
+/// |dA|/(dx dy) / kSteepest.
 glm::dvec3 onHeightField(Uniform& u, double edge, Height height)
 {
     constexpr double kSteepest = 1.6; // above sqrt(1 + slope^2) of every height field here; their slopes stay below 1.2
@@ -70,13 +72,13 @@ double saddle(double x, double y)
     return (x * x - y * y) / (2 * 80e-3);
 }
 
-/// A forearm's gentle curve and a wart 1.5 mm high.
+/// Returns the height of a forearm's gentle curve and a wart 1.5 mm high.
 double skin(double x, double y)
 {
     return -y * y / (2 * 150e-3) + 1.5e-3 * bump(x, y, 3e-3);
 }
 
-/// Hollow of the hand, the thumb's mound, and tendons that stand out by 0.6 mm.
+/// The hollow of the hand, the thumb's mound, and tendons that stand out by 0.6 mm.
 constexpr std::array<double, 4> kTendonSlopes = {-0.28, -0.09, 0.10, 0.29}; // dx/dy, fanning out from the wrist [1]
 double                          tendonDistance(double x, double y)
 {
@@ -108,7 +110,7 @@ double sheetModulus(const glm::dvec3&)
 {
     return 1.5e6;
 }
-/// A tendon 8 mm wide, ten times as stiff, along y.
+/// Returns the modulus of a pad with a tendon 8 mm wide, ten times as stiff, along y.
 double padModulus(const glm::dvec3& p)
 {
     return std::abs(p.x) <= 4e-3 ? 3.5e6 : 0.35e6;
@@ -141,7 +143,7 @@ Bounds square(double edge, double low, double high)
     return {{-edge / 2, -edge / 2, low}, {edge / 2, edge / 2, high}};
 }
 
-/// Everything that makes a sample: what users see of it, and how its points come about.
+/// The parts of a sample: what users see of it, and how its points are made.
 struct Shape {
     Sample sample;
     Bounds bounds;                          ///< [m]

@@ -18,25 +18,26 @@ struct Sample {
     std::size_t               points;      ///< default number of points
     Material                  material;
     double                    foundation;      ///< elastic foundation k [Pa/m]
-    double                    window;          ///< edge of the chart window [m]
+    double                    window;          ///< edge of the patch window [m]
     double                    footprintRadius; ///< of the fingertip [m]
     glm::dvec3                place;           ///< where a first touch is interesting [m]
     std::optional<glm::dvec3> from;            ///< the finger's side of an open shell [1]; empty: closed, from outside
 };
 
-/// All samples, in the order in which help texts list them.
+/// Returns all samples, in the order in which help texts list them.
 [[nodiscard]] std::vector<Sample> samples();
 
+/// Returns the sample of that name.
 /// \throws Error naming the samples there are
 [[nodiscard]] const Sample& sampleNamed(std::string_view name);
 
-/// Random points, uniform per area, on the sample's surface; the modulus [Pa] follows the sample's own law or `law`.
+/// Makes random points, uniform per area, on the sample's surface; the modulus [Pa] follows the sample's law or `law`.
 /// The same seed gives the same points on every machine.
 /// \param points  at least 16
 [[nodiscard]] PointCloud makeSample(const Sample& sample, std::size_t points, std::uint64_t seed,
                                     const std::optional<SpatialLaw>& law = {});
 
-/// The region a sample fills [m]; laws are laid across it.
+/// Returns the region a sample fills [m]; laws are laid across it.
 [[nodiscard]] Bounds boundsOf(const Sample& sample);
 
 } // namespace palp

@@ -10,7 +10,7 @@
 
 namespace palp {
 
-/// What is touched: points with a stiffness, the index over them, perhaps a mesh, and the material of the sheet.
+/// A touched object: points with a stiffness, the index over them, perhaps a mesh, and the material of the sheet.
 ///
 /// Nothing of it changes while it is touched; a touch returns its deformation as a field beside the object. Copies,
 /// repainted() and withMaterial() share positions, index and faces: of a million points only the stiffness is copied.
@@ -22,11 +22,11 @@ public:
     /// \param faces  of the cloud's points; none: the object is a cloud without a mesh
     explicit SoftObject(PointCloud cloud, const Material& material = {}, std::vector<Triangle> faces = {});
 
-    /// The same points with other stiffnesses of the same kind [Pa] or [N m].
+    /// Returns the same points with other stiffnesses of the same kind [Pa] or [N m].
     /// \throws Error as PointCloud does
     [[nodiscard]] SoftObject repainted(std::vector<double> stiffness) const;
 
-    /// The same points, of another thickness or Poisson's ratio.
+    /// Returns the same points, of another thickness or Poisson's ratio.
     [[nodiscard]] SoftObject withMaterial(const Material& material) const;
 
     [[nodiscard]] const PointCloud&         cloud() const noexcept { return cloud_; }
@@ -38,7 +38,7 @@ public:
     [[nodiscard]] std::span<const glm::dvec3> positions() const noexcept { return cloud_.positions(); } ///< [m]
     [[nodiscard]] double                      spacing() const noexcept { return index_->spacing(); }    ///< [m]
 
-    /// Flexural rigidity D at a point [N m].
+    /// Returns the flexural rigidity D at a point [N m].
     [[nodiscard]] double rigidity(std::size_t point) const noexcept { return cloud_.rigidity(point, material_); }
 
 private:

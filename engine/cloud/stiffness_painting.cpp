@@ -84,7 +84,7 @@ void StiffnessPainting::cover(std::uint32_t point, double coverage, double value
     if (coverage <= coverage_[slot]) return;
     coverage_[slot]   = coverage;
     const double from = stroke_.values[slot];
-    // Clamped, because the logarithm and its inverse are rounded; whoever covers all gets the very value.
+    // Clamped, because the logarithm and its inverse are rounded; full coverage gives the very value.
     const double to = std::exp(std::lerp(std::log(from), std::log(value), coverage));
     set(point, coverage < 1 ? std::clamp(to, std::min(from, value), std::max(from, value)) : value);
 }
@@ -109,7 +109,7 @@ std::span<const std::uint32_t> StiffnessPainting::paint(const Brush& brush, doub
 
 double StiffnessPainting::riseToMean(std::size_t place, double radius)
 {
-    // Relative to its own logarithm, so that among equal ones it is exactly zero.
+    // Taken relative to the point's own logarithm, so that among equal points it is exactly zero.
     double       sum = 0, weights = 0;
     const double own = logarithms_[place], perRadius2 = 1 / (radius * radius);
     grid_.around(places_[place], radius, [&](std::size_t other, double distance2) {

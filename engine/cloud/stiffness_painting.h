@@ -18,7 +18,7 @@ namespace palp {
 struct Brush {
     glm::dvec3 centre{};     ///< on the surface [m]
     double     radius   = 0; ///< > 0 [m]
-    double     strength = 1; ///< share of the way to the value that one stroke goes in the middle, 0 to 1 [1]
+    double     strength = 1; ///< how far one stroke goes to the value in the middle, 0 to 1 [1]
 
     [[nodiscard]] double coverage(double distance) const noexcept; ///< \param distance [m]
 };
@@ -34,33 +34,33 @@ struct Brush {
 /// \thread one
 class StiffnessPainting {
 public:
-    /// What the strokes that can be taken back or done again may hold [bytes]: 12 for each point that a stroke changed,
-    /// so 5.6 million points. The oldest strokes are forgotten first, but never the last: if it changed more points
-    /// than that, it is what is held. Beside that a painting holds 20 bytes for each point of the cloud.
+    /// Most memory of the strokes that can be taken back or done again [bytes]: 12 for each point that a stroke
+    /// changed, so 5.6 million points. The oldest strokes are forgotten first, but never the last: if it changed more
+    /// points than that, it alone is held. Beside that a painting holds 20 bytes for each point of the cloud.
     static constexpr std::size_t kHistoryBytes = std::size_t(64) << 20;
 
     /// \param object  outlives this
     /// \throws Error if the cloud has fewer than seven points or most of them coincide
     explicit StiffnessPainting(const SoftObject& object, std::size_t historyBytes = kHistoryBytes);
 
-    void beginStroke(); ///< Ends the one before, if there is one.
-    void endStroke();   ///< Makes what was changed one step of undo().
+    void beginStroke(); ///< Begins a stroke; ends the one before, if there is one.
+    void endStroke();   ///< Ends the stroke: its changes are one step of undo().
 
-    /// One dab towards a value.
+    /// Puts one dab towards a value.
     /// \param value  [Pa] or [N m], as the cloud's kind
     /// \return       the points that the brush covers; valid until the next call
     /// \throws Error if the brush or the value is not finite or not above zero
     std::span<const std::uint32_t> paint(const Brush& brush, double value);
 
-    /// One dab towards the mean of the logarithms around each point, as they were when the stroke began: over an eighth
-    /// of the radius, but at least 2 and at most 4 local spacings, weighted by 1 - (distance / that)².
+    /// Puts one dab towards the mean of the logarithms around each point, as they were when the stroke began: over an
+    /// eighth of the radius, but at least 2 and at most 4 local spacings, weighted by 1 - (distance / that)².
     /// Returns and throws as paint().
     std::span<const std::uint32_t> smooth(const Brush& brush);
 
-    /// Takes the last stroke back, to the bit; one that has not ended ends.
-    /// \return the points that changed, none if there is nothing to take back; valid until the next call
+    /// Takes the last stroke back, to the bit; a stroke that has not ended ends.
+    /// \return  the points that changed, none if there is nothing to take back; valid until the next call
     std::span<const std::uint32_t> undo();
-    /// Does what was taken back again, to the bit.
+    /// Does the stroke that was taken back again, to the bit.
     std::span<const std::uint32_t> redo();
 
     [[nodiscard]] bool canUndo() const noexcept { return !done_.empty() || !stroke_.points.empty(); }
@@ -72,7 +72,7 @@ public:
     [[nodiscard]] std::size_t             historyBytes() const noexcept { return historyBytes_; } ///< held now
 
 private:
-    /// Points and what they were before; after undo() what they were then, so that a swap goes either way.
+    /// Points and their values before the stroke; undo() swaps the values, so that a swap goes either way.
     struct Stroke {
         std::vector<std::uint32_t> points;
         std::vector<double>        values; ///< [Pa] or [N m]
@@ -109,9 +109,9 @@ private:
     PointGrid                  grid_;       ///< the same
 };
 
-/// Where the dabs of a stroke along a path are put: an eighth of the radius apart, so that coverage along the path dips
-/// by less than a hundredth. Those between the corners of the path lie on the points nearest to it, because a straight
-/// line leaves a round object.
+/// Returns the places of the dabs of a stroke along a path: an eighth of the radius apart, so that coverage along the
+/// path dips by less than a hundredth. Those between the corners of the path lie on the points nearest to it, because a
+/// straight line leaves a round object.
 /// \param path  corners [m], at least one
 /// \throws Error if there were more than 100 000
 [[nodiscard]] std::vector<glm::dvec3> dabsAlong(std::span<const glm::dvec3> path, double radius,

@@ -39,7 +39,7 @@ std::span<const std::uint32_t> SurfaceFlood::reach(const glm::dvec3& centre, dou
     }
     grid_.build(places_, longest);
 
-    // Whoever is reached is taken out of the grid, so that all searches together see each point only some times.
+    // A point that is reached is taken out of the grid, so that all searches together see each point only some times.
     reached_.assign(1, std::uint32_t(first));
     grid_.takeNear(places_[first], 0, [&](std::size_t i, double) { return i == first; });
     for (std::size_t next = 0; next < reached_.size(); ++next) {

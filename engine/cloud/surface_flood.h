@@ -11,8 +11,8 @@
 
 namespace palp {
 
-/// Finds the piece of surface in a ball that hangs together with the ball's middle, so that what is done to one side of
-/// a thin object is not done to the other.
+/// Finds the piece of surface in a ball that hangs together with the ball's middle, so that a change to one side of a
+/// thin object is not made to the other.
 ///
 /// From the point nearest to the middle a flood goes from point to point, inside the ball, over steps of at most
 /// kStep local spacings. Sides three spacings apart are told apart; closer ones may run together. Around a rim that is
@@ -30,7 +30,7 @@ public:
     /// \throws Error if the cloud has fewer than seven points or most of them coincide
     SurfaceFlood(std::span<const glm::dvec3> positions, const NeighbourIndex& index);
 
-    /// The points of the piece in no particular order; empty if no point is in the ball. Valid until the next call.
+    /// Finds the points of the piece, in no order; empty if no point is in the ball. Valid until the next call.
     /// \param centre  [m], finite
     /// \param radius  [m], >= 0
     [[nodiscard]] std::span<const std::uint32_t> reach(const glm::dvec3& centre, double radius);

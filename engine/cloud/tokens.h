@@ -9,7 +9,7 @@
 
 namespace palp {
 
-/// Takes the next word off the front of `rest`: what stands between blanks and tabs; empty if there is none.
+/// Takes the next word off the front of `rest`: the text between blanks and tabs; empty if there is none.
 [[nodiscard]] inline std::string_view nextWord(std::string_view& rest)
 {
     const auto  blank = [](char c) { return c == ' ' || c == '\t'; };
@@ -22,7 +22,7 @@ namespace palp {
     return word;
 }
 
-/// The text without blanks and tabs at either end.
+/// Returns the text without blanks and tabs at either end.
 [[nodiscard]] inline std::string_view trimmed(std::string_view text)
 {
     const std::size_t first = text.find_first_not_of(" \t");
@@ -30,7 +30,7 @@ namespace palp {
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// The number that the whole word is, nan and inf included; nothing if it is not one or a double cannot hold it.
+/// Returns the number that the whole word is, nan and inf included; nothing if it is none or a double cannot hold it.
 [[nodiscard]] inline std::optional<double> parseNumber(std::string_view word)
 {
     if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
@@ -41,7 +41,7 @@ namespace palp {
     return number;
 }
 
-/// The non-negative whole number below 2^64 that the whole word is.
+/// Returns the non-negative whole number below 2^64 that the whole word is.
 [[nodiscard]] inline std::optional<std::uint64_t> parseCount(std::string_view word)
 {
     std::uint64_t     number{};
@@ -51,7 +51,7 @@ namespace palp {
     return number;
 }
 
-/// The shortest text that reads back as the same float or double.
+/// Returns the shortest text that reads back as the same float or double.
 template <class Number>
 [[nodiscard]] std::string shown(Number value)
 {

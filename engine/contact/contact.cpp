@@ -17,8 +17,8 @@ std::string inMetres(const glm::dvec3& p)
     return text.str();
 }
 
-/// Normal of the ellipsoid that fills the bounds, at the point: right for closed objects and for thin ones with two
-/// sides. A flat sheet has no inside: there it is the axis across.
+/// Returns the normal, at the point, of the ellipsoid that fills the bounds: right for closed objects and for thin ones
+/// with two sides. A flat sheet has no inside: there it is the axis across.
 glm::dvec3 awayFromMiddle(const Bounds& bounds, const glm::dvec3& point)
 {
     constexpr double kFlat  = 1e-3; // of the bounds' diagonal; a sheet of paper has less

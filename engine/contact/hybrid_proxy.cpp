@@ -1,12 +1,12 @@
 // The default proxy. One tick in contact:
 //
-//   find and fit the surfaces near the proxy -> where would it rest on them, nearest to the HIP? -> what does friction
-//   leave of the way? -> one step of it -> again, until nothing moves.
+//   fit the surfaces near the proxy -> find where it would rest on them, nearest to the HIP -> shorten the way by
+//   friction -> take one step of it -> repeat until nothing moves.
 //
-// The step is a share b of the way, by the two last ways (Barzilai-Borwein): on ground that bends up, deeper than its
-// radius, the whole way would overshoot ever further. A step that turned the way round was too long and is taken again,
-// shorter. The distance to the HIP must not decide that: the ripple of fitted planes, 0.01 to 0.04 spacings, times the
-// depth makes false minima of it.
+// The step is a share b of the way, from the two last ways (Barzilai-Borwein): on ground that bends up, deeper than its
+// radius, the whole way would overshoot further each time. A step that turned the way round was too long and is taken
+// again, shorter. The distance to the HIP must not decide that: the ripple of fitted planes, 0.01 to 0.04 spacings,
+// times the depth makes false minima of it.
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ namespace palp {
 namespace {
 
 // Lengths are in local spacings unless noted.
-constexpr int    kIterations  = 24;   // [1] per tick
+constexpr int    kIterations  = 24;   // per tick
 constexpr double kTolerance   = 2e-5; // nothing moves by more: done
 constexpr double kFadePerTick = 0.05; // [1] 20 ms from all of the force to none
 constexpr double kLookAfter   = 0.25; // travel after which a new surface may have come into sight
@@ -57,7 +57,7 @@ public:
     void reset(const glm::dvec3& hip) noexcept override;
 
 private:
-    /// What a tick's iteration remembers of its last step.
+    /// The last step, for the next one of the same tick.
     struct Descent {
         glm::dvec3 fromPlace{}, fromWay{}, step{}; ///< [m] before the last step, and that step
         Surfaces   fromSurfaces{};
@@ -116,7 +116,7 @@ void HybridProxy::step(const glm::dvec3& hip) noexcept
     lastHip_ = hip;
 }
 
-/// Goes on to the HIP, or to the first surface on the way.
+/// Moves on to the HIP, or to the first surface on the way.
 void HybridProxy::travelFreely(const glm::dvec3& hip) noexcept
 {
     const Arrival end  = travel_.go(state.position, hip, surfaces_);
@@ -147,7 +147,7 @@ void HybridProxy::followSurfaces(const glm::dvec3& hip) noexcept
     state.spacing = spacing();
 }
 
-/// Looks for surfaces where that is due and fits the known ones.
+/// Looks for surfaces if a look is due, and fits the known ones.
 /// \return  [m] the furthest that a surface was moved
 double HybridProxy::updateSurfaces(const glm::dvec3& hip, Descent& descent) noexcept
 {
@@ -163,13 +163,14 @@ double HybridProxy::updateSurfaces(const glm::dvec3& hip, Descent& descent) noex
     return corrected;
 }
 
-/// \return whether the tick is done
+/// Runs one iteration of a tick.
+/// \return  true if the tick is done
 bool HybridProxy::iterate(const glm::dvec3& hip, Descent& descent, bool& decided) noexcept
 {
     double corrected = updateSurfaces(hip, descent);
     rest_            = restPointOn(surfaces_.all(), hip);
     if (!rest_.touching()) {
-        // From here, never by a jump to the HIP: another wall may be between.
+        // The way starts here, never with a jump to the HIP: another wall may be between.
         travelFreely(hip);
         descent.stepped   = false;
         descent.sinceLook = -1;
@@ -188,8 +189,8 @@ bool HybridProxy::iterate(const glm::dvec3& hip, Descent& descent, bool& decided
     return takeStep(descent, friction_.shortened(full, depth), corrected);
 }
 
-/// One step of the way, or the last one again, shorter.
-/// \return whether nothing moved any more
+/// Takes one step of the way, or the last one again, shorter.
+/// \return  true if nothing moved any more
 bool HybridProxy::takeStep(Descent& descent, const glm::dvec3& way, double corrected) noexcept
 {
     if (descent.stepped && glm::dot(way, descent.step) < -kTurned * glm::dot(descent.fromWay, descent.step)) {
@@ -217,7 +218,7 @@ bool HybridProxy::takeStep(Descent& descent, const glm::dvec3& way, double corre
     return std::max(length, corrected) < kTolerance * spacing();
 }
 
-/// Past a border the force goes within a few ticks, while the proxy slides on along the last plane.
+/// Fades the force within a few ticks past a border, while the proxy slides on along the last plane.
 void HybridProxy::fadeForce() noexcept
 {
     double support = 0;
@@ -227,7 +228,8 @@ void HybridProxy::fadeForce() noexcept
     state.fade += std::clamp(support - state.fade, -kFadePerTick, kFadePerTick);
 }
 
-/// A press, a slide, a curve or a stop of the HIP change the pull by no more than the HIP moves; the rest is a jump.
+/// Updates the pull. Where the HIP presses, slides, curves or stops, the pull changes by no more than the HIP moves; a
+/// larger change is a jump.
 void HybridProxy::updatePull(const glm::dvec3& hip) noexcept
 {
     const glm::dvec3 jump  = state.fade * (state.position - hip) - state.pull;

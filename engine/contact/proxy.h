@@ -8,7 +8,7 @@
 
 namespace palp {
 
-/// How the proxy finds the surface in the points.
+/// The methods by which the proxy finds the surface in the points.
 enum class ProxyForm {
     hybrid,     ///< a ball finds planes, planes carry the contact
     sphere,     ///< the paper's radial overshoot, pushed out to a fixed small overlap
@@ -27,11 +27,11 @@ struct ProxySettings {
     double    dynamicFriction = 0; ///< [1] the same while slipping, at most `staticFriction`
 };
 
-/// Where the proxy is after a tick.
+/// The state of the proxy after a tick.
 struct ProxyState {
     glm::dvec3 position{};       ///< [m] on the surface in contact, at the HIP in free space
     glm::dvec3 normal{0, 0, 1};  ///< [1] unit, towards the hand, of the surface that carries most
-    glm::dvec3 pull{};           ///< [m] what is felt, from the HIP: fade * (position - HIP), but never jumping
+    glm::dvec3 pull{};           ///< [m] what is felt, from the HIP: fade * (position - HIP), without jumps
     bool       touching = false; ///< the surface lies between the HIP and where it came from
     double     fade     = 0;     ///< [1] share of the force to be shown: falls to 0 in 20 ms past a border
     double     spacing  = 0;     ///< [m] of the points around here
@@ -42,12 +42,12 @@ struct ProxyState {
 
 /// The point of the surface nearest to the hand that the hand has not passed through.
 ///
-/// In free space it is the HIP (haptic interface point, where the hand is). In contact it stays on the surface, and the
-/// HIP behind it: the force is k * pull, which is the business of the force law. The cloud needs neither normals nor a
-/// mesh; the side of a sheet is the one that the hand came from, so start in free space.
+/// In free space it is the HIP (haptic interface point, where the hand is). In contact it stays on the surface, with
+/// the HIP behind it; the force law makes the force, k * pull. The cloud needs neither normals nor a mesh; the side of
+/// a sheet is the one that the hand came from, so a session must start in free space.
 ///
-/// Where the object is sharper than its points are close, at an edge, a rim or when a second wall comes into sight, the
-/// position jumps, and so it does on the ideal surface. The pull follows by at most a tenth of itself and the way of
+/// Where the object is sharper than its points are close (at an edge, at a rim, or when a second wall comes into sight)
+/// the position jumps, as it does on the ideal surface. The pull follows by at most a tenth of itself and the way of
 /// the HIP per tick: after an abrupt end it dies away within 40 ms, in free space. The spheres' pull is not held back.
 ///
 /// One tick is one millisecond: fade, slip and pull are bounded per call.
@@ -64,7 +64,7 @@ public:
     Proxy(Proxy&&) noexcept;
     Proxy& operator=(Proxy&&) noexcept;
 
-    /// Moves on by one tick. The first call only says where the hand starts.
+    /// Moves on by one tick. The first call only sets where the hand starts.
     /// \param hip  [m] where the hand is now; if it is not finite nothing moves
     const ProxyState& step(const glm::dvec3& hip) noexcept;
 

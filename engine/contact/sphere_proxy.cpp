@@ -1,5 +1,5 @@
 // The paper's proxy: a sphere that the points inside push out, each by its radial overshoot r - d along its radius.
-// Kept as published, and in a regulated form, as what the hybrid is measured against.
+// It is kept as published, and in a regulated form, to measure the hybrid against.
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 namespace palp {
 namespace {
 
-constexpr double kRadius     = 3;    // [spacings] random clouds have holes up to 1.9 in radius, and it must not sink in
-constexpr int    kSteps      = 100;  // [1] per tick
+constexpr double kRadius     = 3;    // [spacings] above 1.9, the radius of holes in random clouds: it must not sink in
+constexpr int    kSteps      = 100;  // per tick
 constexpr double kSubStep    = 0.25; // [radius] no step is longer
 constexpr double kApproach   = 0.05; // [radius] step of the regulated form while it is alone
 constexpr double kOverlap    = 0.1;  // [radius] largest overshoot that the regulated form keeps
@@ -39,7 +39,7 @@ public:
     void reset(const glm::dvec3& hip) noexcept override;
 
 private:
-    /// The points inside the sphere, together.
+    /// The overshoots of the points inside the sphere, together.
     struct Overshoot {
         int        count = 0;
         glm::dvec3 mean{};      ///< [m]
@@ -81,8 +81,8 @@ SphereProxy::Overshoot SphereProxy::overshoot()
     return over;
 }
 
-/// One step on the surface.
-/// \return whether nothing moved any more
+/// Takes one step on the surface.
+/// \return  true if nothing moved any more
 bool SphereProxy::slide(const glm::dvec3& hip, const Overshoot& over) noexcept
 {
     const double     radius = kRadius * state.spacing;

@@ -21,14 +21,14 @@ glm::dvec3 RecentMotion::velocity() const noexcept
         const Sample& before = samples_[(newest_ + kSamples - n) % kSamples];
         if (newest.time - before.time > kSpan + kRounding && oldest != &newest) break;
         oldest = &before;
-        if (newest.time - before.time > kSpan) break; // a slow clock: the last two samples are all there is
+        if (newest.time - before.time > kSpan) break; // a slow clock: only the last two positions count
     }
     return oldest == &newest ? glm::dvec3(0) : (newest.position - oldest->position) / (newest.time - oldest->time);
 }
 
 glm::dvec3 aheadOf(ComplianceLaw law, const glm::dvec3& contact, const glm::dvec3& velocity, double period) noexcept
 {
-    constexpr double kPeriodsAhead = 1.5; // [1] see the header
+    constexpr double kPeriodsAhead = 1.5; // see the header
     return law == ComplianceLaw::table ? contact + kPeriodsAhead * period * velocity : contact;
 }
 

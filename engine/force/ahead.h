@@ -7,19 +7,19 @@
 
 namespace palp {
 
-/// Where the next window must be centred, and how far its table must reach, so that it fits the hand when it arrives.
+/// The centre of the next patch window and the reach of its table, so that it fits the hand when it arrives.
 
-/// Velocity of a moving point over its last 10 ms: long enough to leave an encoder's steps behind (a step of 60 µm in
+/// The velocity of a moving point over its last 10 ms: long enough to average an encoder's steps (a step of 60 µm in
 /// 10 ms is 6 mm/s), short enough to follow a stroking hand.
 /// \thread one at a time; no allocation
 class RecentMotion {
 public:
     static constexpr double kSpan = 10e-3; ///< [s]
 
-    void add(double time, const glm::dvec3& position) noexcept; ///< [s], [m]; a time that does not advance is left out
+    void add(double time, const glm::dvec3& position) noexcept; ///< [s], [m]; a time that does not advance is omitted
     void forget() noexcept { count_ = 0; }                      ///< the finger left the surface
 
-    /// [m/s] from the oldest position of the last kSpan to the newest; zero with fewer than two.
+    /// Returns the velocity [m/s] from the oldest position of the last kSpan to the newest; zero with fewer than two.
     [[nodiscard]] glm::dvec3 velocity() const noexcept;
 
 private:
@@ -27,21 +27,22 @@ private:
         double     time = 0;
         glm::dvec3 position{};
     };
-    static constexpr std::size_t kSamples = 32; // [1] at 1 kHz three times the span; if faster, the span shrinks
+    static constexpr std::size_t kSamples = 32; // at 1 kHz three times the span; if faster, the span shrinks
 
     std::array<Sample, kSamples> samples_{}; // a ring
     std::size_t                  newest_ = 0;
     std::size_t                  count_  = 0;
 };
 
-/// Centre of the next window [m]: contact + 1.5 period velocity, the middle of the time during which its table will be
-/// in use (from one period after the contact to two). For the laws that hold one number, the contact itself.
+/// Returns the centre of the next patch window [m]: contact + 1.5 period velocity, the middle of the time during
+/// which its table will be in use (from one period after the contact to two). For the laws that hold one number: the
+/// contact.
 /// \param period  of the deformation thread, as measured [s]
 [[nodiscard]] glm::dvec3 aheadOf(ComplianceLaw law, const glm::dvec3& contact, const glm::dvec3& velocity,
                                  double period) noexcept;
 
-/// Entries along each axis of a table that covers what a hand can do before the next one arrives [1]: 1 for the laws
-/// that hold one number, else 3, 5 or 7.
+/// Returns the number of entries along each axis of a table that covers what a hand can do before the next one
+/// arrives: 1 for the laws that hold one number, else 3, 5 or 7.
 ///
 /// The reach must be v T/2 + a (2T)^2/2 for a hand of 0.2 m/s and 3 m/s^2: 3.3 mm at 60 Hz, 10 mm at 30 Hz.
 /// \param period   of the deformation thread [s]

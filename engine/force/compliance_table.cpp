@@ -16,7 +16,7 @@ struct Hermite {
     }
 };
 
-/// The cell of the lattice that holds a coordinate, and where in it.
+/// The cell of the lattice that holds a coordinate, and the place in the cell.
 struct Place {
     int    cell;
     double fraction;
@@ -40,8 +40,8 @@ struct Lattice {
         return entries[std::size_t(i * side + j)];
     }
 
-    /// Mixed derivative times spacing^2: the mean of how slopeX changes along z and slopeZ along x; one-sided at the
-    /// rim.
+    /// Returns the mixed derivative times spacing^2: the mean of how slopeX changes along z and slopeZ along x;
+    /// one-sided at the rim.
     [[nodiscard]] double twist(int i, int j) const noexcept
     {
         const int    i0 = std::max(i - 1, 0), i1 = std::min(i + 1, side - 1);

@@ -7,21 +7,21 @@
 
 namespace palp {
 
-/// How plate and contact give under footprints on a square lattice around a centre: what the servo knows of the
-/// neighbourhood until the next patch arrives.
+/// The compliance of plate and contact under footprints on a square lattice around a centre: what the servo knows of
+/// the neighbourhood until the next patch arrives.
 ///
 ///     entry (i, j) is the footprint at chart position ((i - side/2) spacing, (j - side/2) spacing), stored at
 ///     [i * side + j]; the chart's origin is the entry in the middle
 ///
-/// Holds ln c and ln k_c, which change evenly where rigidity grows by factors. Entries beyond side * side are not
-/// looked at. Of fixed size and trivially copyable: it goes through a three-slot hand-off as it is.
+/// It holds ln c and ln k_c, which change evenly where rigidity grows by factors. Entries beyond side * side are
+/// ignored. Its size is fixed and it is trivially copyable, so that it passes through a three-slot hand-off as it is.
 ///
 /// \thread pure value
 struct ComplianceTable {
-    static constexpr int kMostSide    = 7; ///< [1] reach of 3 R: 0.2 m/s and 30 Hz, see tableSide()
+    static constexpr int kMostSide    = 7; ///< entries of the widest reach, 3 R: 0.2 m/s and 30 Hz, see tableSide()
     static constexpr int kMostEntries = kMostSide * kMostSide;
 
-    /// A logarithm under one footprint, and how it changes as the footprint moves in this window.
+    /// A logarithm under one footprint, and its change as the footprint moves in this window.
     struct Entry {
         double value  = 0; ///< [1]
         double slopeX = 0; ///< [1/m]
@@ -38,7 +38,7 @@ struct ComplianceTable {
 
     std::uint64_t sequence = 0;       ///< of the contact that it was solved for; 0: none
     double        time     = 0;       ///< [s] of that contact, on the servo's clock
-    Chart         chart;              ///< whose origin is the centre of the window
+    Chart         chart;              ///< its origin is the centre of the patch window
     int           side    = 1;        ///< entries along each axis, an odd number
     double        spacing = 0;        ///< of the entries [m]
     Entries       compliance{};       ///< ln c
@@ -46,7 +46,7 @@ struct ComplianceTable {
 
     [[nodiscard]] double reach() const noexcept { return side / 2 * spacing; } ///< along each axis [m]
 
-    /// Bicubic, from values and slopes (Hermite's form): continuous with its first derivatives.
+    /// Interpolates bicubically from values and slopes (Hermite's form): continuous with its first derivatives.
     ///
     /// The slopes are exact and free, see solveTable(); the twist (the mixed derivative) is from differences of them.
     /// A lattice as coarse as the footprint's radius then loses 0.1 % of c at a wart of contrast 100 and 0.3 to 0.4 %
@@ -56,7 +56,7 @@ struct ComplianceTable {
 
     [[nodiscard]] Values middle() const noexcept;
 
-    /// False if the shape is none or an entry is not finite: nothing may then be felt of it.
+    /// Returns false if the shape is impossible or an entry is not finite: nothing of the table may then be felt.
     [[nodiscard]] bool usable() const noexcept;
 };
 

@@ -9,11 +9,11 @@ ComplianceTable::Values ComplianceTracker::lookUp(const glm::dvec3& contact) con
 {
     if (law_ != ComplianceLaw::table) return table_.middle();
     if (const auto place = table_.chart.project(contact)) return table_.at(*place);
-    // Round the back of the sphere, or not finite: what was felt last stays.
+    // The contact is behind the sphere, or not finite: the last felt value stays.
     return {compliance_.handed - compliance_.offset, contact_.handed - contact_.offset, true};
 }
 
-/// What becomes of a logarithm when the table changes its value at the contact.
+/// Updates the offset of a logarithm when the table changes its value at the contact.
 void ComplianceTracker::carry(Carried& carried, double before, double after) const noexcept
 {
     constexpr double kRate = 10; // [1/s] 1 % per ms, our own prototype's: faster is felt as a tick, slower lags

@@ -8,7 +8,7 @@
 
 namespace palp {
 
-/// What the servo makes of the tables that the deformation thread publishes.
+/// The laws by which the servo uses the tables that the deformation thread publishes.
 enum class ComplianceLaw {
     table, ///< by the contact's position in the newest table; the jump between tables dies away
     hold,  ///< the middle of the newest table, until the next: a step with every patch
@@ -20,7 +20,7 @@ constexpr auto namesOf(ComplianceLaw)
     return std::to_array<NamedValue<ComplianceLaw>>({{table, "table"}, {hold, "hold"}, {blend, "blend"}});
 }
 
-/// What one tick of the servo knows.
+/// The servo's input of one tick.
 struct ComplianceTick {
     glm::dvec3             contact{};        ///< [m] of the proxy, world
     double                 time   = 0;       ///< [s] of the servo's clock
@@ -39,28 +39,28 @@ struct LocalCompliance {
 ///
 /// The contact is projected into the table's own chart, radially onto its sphere: the same map that brought the
 /// rigidity of the points there, so that a contact finds the points around it wherever it is, and off the sphere too.
-/// What is left is how the rest of the surface is bent differently from the sphere, which the plate does not know
+/// What remains is how the rest of the surface is bent differently from the sphere, which the plate does not know
 /// either. (Onto the tangent plane, 12 mm on a radius of 35 mm would be 0.2 mm short, and a contact off the sphere
 /// would be shifted by that distance times the slope.)
 ///
 /// Where a new table disagrees with the old one at the contact, the difference is carried as an offset of ln c, and of
 /// ln k_c, which dies at 1 % per millisecond, or within one period if that is faster.
 /// \thread the servo's; no allocation, lock or throw
-/// \source our own prototype, with slopes in place of twice as many footprints; README.md here has what was measured
+/// \source our own prototype, with slopes in place of twice as many footprints; README.md here has the measurements
 class ComplianceTracker {
 public:
     explicit ComplianceTracker(ComplianceLaw law = ComplianceLaw::table) noexcept : law_(law) {}
 
-    /// Empty until the first usable table. A table counts once, by its sequence number; one that is not usable() is
-    /// not taken.
+    /// Returns the compliance in use; empty until the first usable table. A table counts once, by its sequence number;
+    /// one that is not usable() is not taken.
     [[nodiscard]] std::optional<LocalCompliance> tick(const ComplianceTick& now) noexcept;
 
-    /// The finger left the surface: what comes next starts without an offset.
+    /// Ends a contact, when the finger left the surface: the next one starts without an offset.
     void restart() noexcept;
 
     [[nodiscard]] ComplianceLaw law() const noexcept { return law_; }
-    [[nodiscard]] std::uint64_t clampedTicks() const noexcept { return clampedTicks_; }   ///< since construction [1]
-    [[nodiscard]] std::uint64_t refusedTables() const noexcept { return refusedTables_; } ///< not usable() [1]
+    [[nodiscard]] std::uint64_t clampedTicks() const noexcept { return clampedTicks_; }   ///< since construction
+    [[nodiscard]] std::uint64_t refusedTables() const noexcept { return refusedTables_; } ///< not usable()
     [[nodiscard]] double        period() const noexcept { return period_; }            ///< of the tables, smoothed [s]
     [[nodiscard]] double        offset() const noexcept { return compliance_.offset; } ///< still carried, of ln c [1]
 
@@ -68,7 +68,7 @@ private:
     /// One of the two logarithms on its way to the hand.
     struct Carried {
         double handed = 0; // in the last tick [1]
-        double offset = 0; // to what the table says [1]
+        double offset = 0; // from the table's value [1]
         double rate   = 0; // at which the offset dies [1/s]
         double from   = 0; // where a blend began [1]
     };

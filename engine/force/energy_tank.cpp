@@ -36,7 +36,7 @@ EnergyTankOutput EnergyTank::step(const EnergyTankInput& in) noexcept
     const double income = settings_.damping * (in.normalSpeed * in.normalSpeed + speed * speed) + settings_.power;
     energy_             = std::min(settings_.limit, energy_ + income * dt);
 
-    // What the step of stiffness costs at this depth. A fall gives the energy back; outside it is free.
+    // Cost of the step of stiffness at this depth. A fall gives the energy back; outside it is free.
     EnergyTankOutput out;
     const double     depth = std::max(in.depth, 0.0);
     const double     need  = depth * depth * (in.stiffness - stiffness_) / 2;

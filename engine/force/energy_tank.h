@@ -2,7 +2,7 @@
 
 namespace palp {
 
-/// Numbers of the tank. Origin of all: simulation of press, slide and release on an arm of 0.46 kg and 3.2 N s/m, with
+/// Settings of the tank. All are from simulation of press, slide and release on an arm of 0.46 kg and 3.2 N s/m, with
 /// edges 6 mm wide, 2 to 5 mm deep, at 0.05 and 0.2 m/s, and stiffness from 100 to 1000 N/m.
 struct EnergyTankSettings {
     double limit = 2e-3;   ///< [J] the most it holds; what one step of stiffness may inject at once
@@ -30,24 +30,26 @@ struct EnergyTankOutput {
 };
 
 /// Pays for stiffness that rises under a loaded finger. A contact of depth d stores d^2 K / 2: sliding onto a stiffer
-/// spot puts d^2 (K2 - K1) / 2 into the hand, every time it goes round; shaking across an edge pumps. Here a rise is
-/// paid by the hand itself, through a brake along the surface, and the rest from a small store that the arm's damping
-/// fills; what cannot be paid waits, and the stiffness lags.
+/// spot puts d^2 (K2 - K1) / 2 into the hand, once per round; shaking across an edge pumps. Here the hand itself pays
+/// for a rise, through a brake along the surface, and a small store that the arm's damping fills pays the rest; what
+/// cannot be paid waits, and the stiffness lags.
 ///
 /// The servo calls it, once a tick, between the force law and the governor:
 ///
 ///     K = min(law, governor.stiffnessCap()) -> tank.step() -> force = K depth normal - brake -> governor.step()
 ///
-/// Invariants: 0 <= energy() <= limit; the stiffness rises in contact only by what was paid. A bound on growth, not
-/// strict passivity: damping and power let in a few mJ per second.
+/// Invariants: 0 <= energy() <= limit; the stiffness rises in contact only by what was paid. This bounds growth, and is
+/// not strict passivity: damping and power let in a few mJ per second.
+/// \thread one
 /// \differs the exact cure is the lateral force -(d^2/2) dK/ds along the slope of K, which needs that slope without
-/// noise \thread one
+///          noise
 class EnergyTank {
 public:
     /// \throws Error naming a setting that is negative or not finite
     explicit EnergyTank(const EnergyTankSettings& settings = {});
 
-    /// Values that are not finite end the contact with stiffness 0 and an empty tank; a negative dt counts as 0.
+    /// Runs one tick. Values that are not finite end the contact with stiffness 0 and an empty tank; a negative dt
+    /// counts as 0.
     EnergyTankOutput step(const EnergyTankInput& in) noexcept;
 
     [[nodiscard]] double energy() const noexcept { return energy_; }       ///< [J] in the tank

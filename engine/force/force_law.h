@@ -6,7 +6,7 @@
 
 namespace palp {
 
-/// How the depth of the hand in the surface becomes a force.
+/// The laws that turn the depth of the hand in the surface into a force.
 enum class ForceLaw {
     series, ///< contact and plate are springs in series: F = depth / (1/k_c + c)
     paper   ///< F = k_c depth: the plate bends on the screen, but is not felt
@@ -17,15 +17,15 @@ constexpr auto namesOf(ForceLaw)
     return std::to_array<NamedValue<ForceLaw>>({{series, "series"}, {paper, "paper"}});
 }
 
-/// Stiffness of the contact itself, k_c = E A / h [N/m], with A the area of the footprint.
-/// Ballpark: skin 0.3 MPa, 4 mm thick, footprint of radius 3.6 mm: 3 kN/m.
+/// Returns the stiffness of the contact itself, k_c = E A / h [N/m], with A the area of the footprint.
+/// For skin of 0.3 MPa, 4 mm thick, and a footprint of radius 3.6 mm it is about 3 kN/m.
 /// \param modulus          E at the contact [Pa]
 /// \param footprintRadius  [m]
 /// \param thickness        h [m]
 /// \source Kumari & Chaudhuri 2016, the force law F = (E A / h) depth
 [[nodiscard]] double contactStiffness(double modulus, double footprintRadius, double thickness) noexcept;
 
-/// Stiffness that the hand feels [N/m].
+/// Returns the stiffness that the hand feels [N/m].
 /// \param contactStiffness  k_c [N/m]
 /// \param compliance        c of the plate under the footprint [m/N]
 /// \differs the paper feels k_c alone, which does not depend on how the neighbourhood bends

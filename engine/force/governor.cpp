@@ -88,7 +88,7 @@ GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
     force = clampedForce(force, out); // 5
     slewTo(force, passed, out);       // 6
 
-    const bool slow = glm::length(in.velocity) <= settings_.maximumSpeed; // 7; a wait sees to it itself
+    const bool slow = glm::length(in.velocity) <= settings_.maximumSpeed; // 7; while waiting, engage() checks it
     if (!slow && engagement_ != Engagement::waiting) latch(GovernorFault::tooFast, in.time);
     if (fault_ != GovernorFault::none) faultGain_ = std::max(0.0, faultGain_ - passed.fall / settings_.faultRamp);
 
@@ -162,7 +162,7 @@ void ForceGovernor::checkInput(const GovernorInput& in) noexcept
 double ForceGovernor::freshness(double age) const noexcept
 {
     if (age <= settings_.staleAfter) return 1;
-    if (!(age < settings_.staleAfter + settings_.staleRamp)) return 0; // nor if it is not a number
+    if (!(age < settings_.staleAfter + settings_.staleRamp)) return 0; // also if it is not a number
     return 1 - (age - settings_.staleAfter) / settings_.staleRamp;
 }
 
@@ -172,7 +172,7 @@ void ForceGovernor::observeEnergy(const GovernorInput& in, double dt) noexcept
     if (engagement_ == Engagement::waiting) {
         energy_ = 0;
     } else if (known && hasPosition_) {
-        // What the force that acted on the way here did, and what others answer for.
+        // Energy of the force that acted on the way here, plus what the arm's damping and the tank account for.
         const std::size_t acting = tick_ + kDelays - 1 - std::size_t(settings_.delaySamples);
         energy_ -= glm::dot(sent_[acting % kDelays], in.position - lastPosition_);
         energy_ += settings_.creditedDamping * glm::dot(in.velocity, in.velocity) * dt + in.admittedEnergy;
@@ -193,7 +193,7 @@ glm::dvec3 ForceGovernor::passiveForce(glm::dvec3 force, const GovernorInput& in
     const bool   flows = engagement_ == Engagement::engaging || engagement_ == Engagement::engaged;
     if (!flows || energy_ >= 0 || !(speed > settings_.passivitySpeed)) return force;
     out.damping = std::min(-energy_ / (speed * speed * dt), settings_.passivityDamping);
-    // A force along the motion gives energy: it is taken back, but never turned round, or the surface would be sticky.
+    // A force along the motion gives energy: it is reduced, but never turned round, or the surface would be sticky.
     const double along = glm::dot(force, in.velocity);
     if (along >= 0) out.damping = std::min(out.damping, along / (speed * speed));
     mark(out, GovernorAction::damped);

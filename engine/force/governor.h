@@ -15,10 +15,10 @@ namespace palp {
 /// Colgate & Brown and Hulin et al. (stiffness of a sampled spring); OpenHaptics, CHAI3D and the Force Dimension SDK
 /// (what drivers limit by default); the Falcon's mass 0.46 kg and damping 3.2 N s/m are one published measurement.
 struct GovernorSettings {
-    double nominalPeriod = 1e-3; ///< [s] of the servo; stands in where a tick says that no time went by
+    double nominalPeriod = 1e-3; ///< [s] of the servo; used where a tick says that no time passed
     double longestTick   = 4e-3; ///< [s] a later tick lets a force grow by no more than this one
     double stall         = 0.1;  ///< [s] without a tick is a fault
-    int    missedTicks   = 20;   ///< [1] more exchanges without an answer, or ticks without time, in a row are a fault
+    int    missedTicks   = 20;   ///< more exchanges without an answer, or ticks without time, in a row are a fault
 
     double staleAfter = 5e-3;  ///< [s] age up to which the last render force is held
     double staleRamp  = 20e-3; ///< [s] from there to zero
@@ -40,18 +40,18 @@ struct GovernorSettings {
     double maximumSpeed = 1.2;   ///< [m/s] beyond it is a fault (OpenHaptics: 1.2)
     double faultRamp    = 20e-3; ///< [s] from a fault to zero force, at the latest
 
-    double calmForce  = 0.2; ///< [N] below it ... (CHAI3D's "wait for small force")
-    int    calmTicks  = 10;  ///< [1] ... for so many ticks, the force may come on
-    double engageTime = 1.5; ///< [s] from nothing to all of it; 1 to 2
+    double calmForce  = 0.2; ///< [N] below this ... (CHAI3D's "wait for small force")
+    int    calmTicks  = 10;  ///< ... for this number of ticks, the force may come on
+    double engageTime = 1.5; ///< [s] from zero force to all of it; 1 to 2
 
     double maximumStiffness = 1000; ///< [N/m] where the loop is not the limit
     /// [N/m] at a period of 1 ms and one sample of delay. The released arm is stable there up to 2137 and passive up to
     /// 2133, so this is a margin of two.
     double stiffnessAtOneMillisecond = 1000;
-    int    delaySamples              = 1; ///< [1] from a position to the effect of its force, beside the hold; 0 to 7
+    int    delaySamples              = 1; ///< from a position to the effect of its force, beside the hold; 0 to 7
 };
 
-/// Why no force flows. The numbers are recorded: never reuse one.
+/// Reasons for which no force flows. The numbers are recorded: never reuse one.
 enum class GovernorFault : std::uint8_t {
     none              = 0,
     forceNotFinite    = 1, ///< the render force, or an energy that comes with it
@@ -77,7 +77,7 @@ constexpr auto namesOf(GovernorFault)
                                                      {tooFast, "too-fast"}});
 }
 
-/// What a tick did to the force; GovernorOutput::actions is a sum of these.
+/// Effects of a tick on the force; GovernorOutput::actions is a sum of these.
 enum class GovernorAction : std::uint32_t {
     notHomed   = 1,
     outsideBox = 2,
@@ -91,7 +91,7 @@ enum class GovernorAction : std::uint32_t {
     releasing  = 512  ///< going down to zero, to wait again
 };
 
-/// One tick. Vectors share one frame.
+/// Input of one tick. Vectors share one frame.
 struct GovernorInput {
     glm::dvec3 force{};             ///< [N] on the hand, wanted; the newest there is, however old
     double     forceAge = 0;        ///< [s] since it was computed; infinity if there has never been one
@@ -102,7 +102,7 @@ struct GovernorInput {
     double     time       = 0;      ///< [s] of this tick; only noted with a fault
     double     dt         = 0;      ///< [s] since the last tick
     double     loopPeriod = 0;      ///< [s] measured, as a mean over some 0.1 s; sets stiffnessCap()
-    int        missedExchanges = 0; ///< [1] with the device, in a row
+    int        missedExchanges = 0; ///< with the device, in a row
 
     double admittedEnergy = 0; ///< [J] that the tank let in this tick: EnergyTankOutput::used
     /// [J] in the contact's spring: EnergyTankOutput::stored. Infinity: unknown.
@@ -123,9 +123,9 @@ struct GovernorOutput {
     }
 };
 
-/// The last word on every force before a device: no force leaves without it. Each tick, in this order:
+/// Checks every force before a device: no force leaves without it. Each tick takes these steps, in this order:
 ///
-///   1  what came in can be believed: finite, the clock runs, the device answers    else fault, 0
+///   1  the input is credible: finite, the clock runs, the device answers           else fault, 0
 ///   2  homed and in the box                                                        else 0, then engage anew
 ///   3  fresh: held for 5 ms, to zero in 20 ms                                      then engage anew
 ///   4  passivity: E -= f (x - x'); if E < 0, f -= alpha v
@@ -135,13 +135,15 @@ struct GovernorOutput {
 ///   8  engaged: below 0.2 N for 10 ticks in the box, then from nothing to all in 1.5 s
 ///
 /// While it waits (8) no force can flow, and a fast hand (7) only restarts the wait. A fault stays until reset(). Every
-/// failure ends at exactly zero within 20 ms of ticks. Scaling to the motors' torques is the device's.
+/// failure ends at exactly zero within 20 ms of ticks. The device scales forces to its motors' torques.
 ///
 /// Invariants: the force is finite and at most maximumForce; nothing is allocated, locked or thrown.
-/// \source Hannaford & Ryu 2002 for step 4. \differs (a) E is taken from the force that acted, damping, limits and the
-/// device's delay included, so what the controller dissipates is not credited once more; (b) part of the arm's own
-/// damping is counted, without which an honest sampled spring looks active; (c) E is at most what the contact stores
-/// plus a reserve, so that energy that was dissipated does not hide what comes later. \thread the servo's
+/// \source Hannaford & Ryu 2002 for step 4
+/// \thread the servo's
+/// \differs (a) E is taken from the force that acted, damping, limits and the device's delay included, so what the
+///          controller dissipates is not credited once more; (b) part of the arm's own damping is counted, without
+///          which an honest sampled spring looks active; (c) E is at most what the contact stores plus a reserve, so
+///          that energy that was dissipated does not hide what comes later
 class ForceGovernor {
 public:
     /// \throws Error naming a setting out of its range
@@ -149,15 +151,15 @@ public:
 
     GovernorOutput step(const GovernorInput& in) noexcept;
 
-    /// What the last step() let through, as devices take it.
+    /// Returns what the last step() let through, as devices take it.
     [[nodiscard]] GovernedForce force() const noexcept { return GovernedForce(sent_[(tick_ - 1) % kDelays]); }
 
-    /// The operator has seen the fault. A cause that lasts is found again by the next tick; the force engages anew.
+    /// Ends a fault that the operator has seen. The next tick finds a cause that lasts again; the force engages anew.
     void reset() noexcept;
 
-    /// The most that a force law may render [N/m], for the loop period of the last tick:
-    /// min(maximum, stiffnessAtOneMillisecond 1.5 ms / (T/2 + delaySamples T)); 0 if that period makes no sense. Falls
-    /// at once, rises at once: pass the result through the tank, which pays for a rise.
+    /// Returns the most that a force law may render [N/m], for the loop period of the last tick:
+    /// min(maximum, stiffnessAtOneMillisecond 1.5 ms / (T/2 + delaySamples T)); 0 if that period makes no sense. It
+    /// falls and rises at once: pass the result through the tank, which pays for a rise.
     [[nodiscard]] double stiffnessCap() const noexcept { return cap_; }
 
     [[nodiscard]] GovernorFault           fault() const noexcept { return fault_; }
@@ -170,8 +172,8 @@ private:
     enum class Engagement : std::uint8_t { waiting, engaging, engaged, releasing };
 
     struct Elapsed {
-        double rise; ///< [s] for what lets a force grow
-        double fall; ///< [s] for what takes it down
+        double rise; ///< [s] by which a force may grow
+        double fall; ///< [s] by which it may fall
     };
 
     [[nodiscard]] Elapsed    elapsed(double dt) const noexcept;

@@ -12,11 +12,11 @@
 namespace palp {
 namespace {
 
-/// Rungs to either side of the middle one, and how far apart [1]: rigidities from a hundredth to a hundred times as
+/// Number of rungs to either side of the middle one, and per decade: rigidities from a hundredth to a hundred times as
 /// large, with 1e-3 of c lost between two of them at the corner of a table; 17 tables to solve, once per scene.
 constexpr int kRungs = 8, kRungsPerDecade = 4;
 
-/// Central difference of the load of a footprint that moves.
+/// Returns the central difference of the load of a footprint that moves.
 NodeField slopeOf(const NodeField& ahead, const NodeField& behind, double distance)
 {
     NodeField slope = ahead;
@@ -25,7 +25,7 @@ NodeField slopeOf(const NodeField& ahead, const NodeField& behind, double distan
     return slope;
 }
 
-/// ln c of a footprint, with its slopes.
+/// Returns ln c of a footprint, with its slopes.
 ComplianceTable::Entry complianceOf(const FootprintLattice& lattice, std::size_t n, const NodeField& response)
 {
     const double compliance = dot(lattice.loads[n], response);
@@ -33,7 +33,8 @@ ComplianceTable::Entry complianceOf(const FootprintLattice& lattice, std::size_t
             2 * dot(lattice.slopesZ[n], response) / compliance};
 }
 
-/// ln k_c of a footprint, with its slopes.  \param over  ln D over that of some node
+/// Returns ln k_c of a footprint, with its slopes.
+/// \param over  ln D over that of some node
 ComplianceTable::Entry contactOf(const FootprintLattice& lattice, std::size_t n, const NodeField& over, double node)
 {
     return {std::log(lattice.shape.contactPerRigidity * node) + dot(lattice.loads[n], over),

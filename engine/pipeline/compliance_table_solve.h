@@ -7,17 +7,17 @@
 
 namespace palp {
 
-/// What a table's footprints are: a constant of the scene.
+/// Size and number of a table's footprints: a constant of the scene.
 struct FootprintTable {
     double radius             = 4e-3; ///< of a footprint, and their spacing [m]
     int    side               = 3;    ///< footprints along each axis: 1, 3, 5 or 7, see tableSide()
     double contactPerRigidity = 0;    ///< k_c over D: 12 (1 - nu^2) pi R^2 / h^4 [1/m^2]
 };
 
-/// The footprints of a table in one window: a constant of the scene, made once.
+/// The footprints of a table in one patch window: a constant of the scene, made once.
 ///
 /// A footprint off the middle feels the window's edge (2 % at a twentieth of the width without foundation), and the
-/// phase of the grid under it. What a plate of constant rigidity does to each is kept here and taken out of every
+/// phase of the grid under it. The effect of a plate of constant rigidity on each is kept here and taken out of every
 /// table: on a homogeneous object tables are then flat to the last bit. On a foundation it depends on the rigidity (the
 /// corner of 7 x 7 footprints reads 3 % less where D is three times as large, and the window 9 l instead of 12), so it
 /// is kept for a ladder of rigidities, and a plate takes that of its geometric mean.
@@ -30,20 +30,21 @@ struct FootprintLattice {
     /// ln c(e)/c(0) of homogeneous windows, with its slopes, by rigidity; one rung without a foundation.
     std::vector<ComplianceTable::Entries> rungs{};
 
-    /// For a plate whose rigidity has this geometric mean [N m]: straight between rungs, the last one beyond them.
+    /// Returns the entries for a plate whose rigidity has this geometric mean [N m]: linear between rungs, the last one
+    /// beyond them.
     [[nodiscard]] ComplianceTable::Entries homogeneous(double meanRigidity) const;
 };
 
-/// The lattice of the settings' window on a homogeneous object whose rigidity is the geometric mean of this one's.
+/// Solves the lattice of the settings' window on a homogeneous object of the geometric mean of this one's rigidity.
 /// \param side  1, 3, 5 or 7, see tableSide()
-/// \throws Error if the window is too small for the table
+/// \throws Error if the patch window is too small for the table
 [[nodiscard]] FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings& settings, int side,
                                                 PlateSolver& solver);
 
-/// Solves the lattice of one window.
+/// Solves the lattice of one patch window.
 /// \param homogeneous  the window: grid, edges, foundation, and one rigidity throughout, in the middle of what is to
 ///                     come
-/// \param tolerance    as for the tables themselves: what iteration leaves is then taken out too
+/// \param tolerance    as for the tables themselves: the error that iteration leaves is then taken out too
 /// \throws Error if a footprint does not lie wholly on the plate
 [[nodiscard]] FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& shape, PlateSolver& solver,
                                             double tolerance);
@@ -54,7 +55,7 @@ struct TableSolution {
     double          compliance; ///< c there [m/N]
 };
 
-/// Self-compliances of all footprints on one plate, in one batch.
+/// Solves the self-compliances of all footprints on one plate, in one batch.
 ///
 /// c(q) = p_q . w_q with A w_q = p_q. A is symmetric, so that dc/dq = 2 (dp_q/dq) . w_q: slopes need no further solve.
 /// k_c(q) is that of the rigidity's geometric mean over the footprint, weighted as the load is: at a step of the

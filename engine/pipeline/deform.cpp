@@ -13,7 +13,7 @@
 #include "engine/core/quantity.h"
 #include "engine/plate/load.h"
 
-// The paper's section 2. Each step fills in its part of the patch; deform() below is their order.
+// The paper's section 2. Each step fills in its part of the patch; deform() below gives their order.
 
 namespace palp {
 namespace {
@@ -35,7 +35,7 @@ private:
 
 // --- 2.1: the neighbourhood
 
-/// Radius of the ball that holds every point which can matter to the window [m].
+/// Returns the radius of the ball that holds every point which can matter to the window [m].
 ///
 /// Chord and chart distance agree in the azimuthal map. In the cylindrical ones
 /// chord^2 = 2 r^2 (1 - cos a cos b) <= r^2 (a^2 + 2 sin^2 b), which is x^2 + 2 z^2 (Lambert) or 2 x^2 + z^2
@@ -74,7 +74,7 @@ std::string degrees(double cosine)
     return std::to_string(std::lround(std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi)) + " degrees";
 }
 
-/// Whether the cloud has another side behind the contact: points in a tube inwards, beyond the surface itself.
+/// Returns true if the cloud has another side behind the contact: points in a tube inwards, beyond the surface itself.
 bool isClosedBehind(const SoftObject& object, const glm::dvec3& contact, const glm::dvec3& outward)
 {
     const double reach = 3 * object.spacing(); // radius of the tube, and where it begins: some ten points across [m]
@@ -84,7 +84,7 @@ bool isClosedBehind(const SoftObject& object, const glm::dvec3& contact, const g
     });
 }
 
-/// The chart on the hand's side of the surface; sets patch.sideUnsure.
+/// Returns the chart on the hand's side of the surface; sets patch.sideUnsure.
 ///
 /// A known direction decides unless it runs along the surface. A guessed one decides only where it is within 60 degrees
 /// of the normal; elsewhere the surface is an open sheet, which has no outside: there it is touched from the positive
@@ -114,7 +114,7 @@ Chart chartAt(Patch& patch, const SoftObject& object, const PatchSettings& setti
     return around(patch.contact.outward);
 }
 
-/// The chart, and the places in it of the points on the near side.
+/// Makes the chart, and projects the points on the near side into it.
 void layFlat(Patch& patch, const SoftObject& object, const PatchSettings& settings, const std::optional<Frame>& carried)
 {
     const StageClock clock(patch.times.project);
@@ -128,7 +128,8 @@ void layFlat(Patch& patch, const SoftObject& object, const PatchSettings& settin
 
 // --- 2.4: a grid takes over the rigidity of the points
 
-/// A window that holds next to nothing of the cloud would still give an answer, and a wrong unit is the usual reason.
+/// Refuses a window that holds next to nothing of the cloud: it would still give an answer, and the usual reason is a
+/// wrong unit.
 void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
 {
     constexpr std::ptrdiff_t kFewestPoints  = 9;   // 3 by 3: less is no field of rigidity
@@ -162,7 +163,7 @@ void sampleRigidity(Patch& patch, const SoftObject& object, const PatchSettings&
 
 // --- 2.5, equations 6 to 8: the plate bends under a unit force
 
-/// Force of 1 N on the footprint about the middle node.
+/// Returns the load of 1 N on the footprint about the middle node.
 NodeField unitLoad(const PlateGrid& grid, const PatchSettings& settings)
 {
     return footprintLoad(grid, 1, grid.sizeX() / 2, grid.sizeZ() / 2, settings.footprintRadius);
@@ -186,7 +187,7 @@ void bendPlate(Patch& patch, const PatchSettings& settings, PlateSolver& solver)
     keep(patch, std::move(solution), softness);
 }
 
-/// The same under each footprint of a lattice.
+/// Bends the plate also under each footprint of a lattice.
 ComplianceTable bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLattice& lattice,
                           PlateSolver& solver)
 {
@@ -199,7 +200,7 @@ ComplianceTable bendPlate(Patch& patch, const PatchSettings& settings, const Foo
 
 // --- 2.6, equation 9: the plate moves the points, and in series with the contact it is what the hand feels
 
-/// Response of the points by bilinear interpolation; outside the window nothing moves.
+/// Interpolates the response of the points bilinearly; outside the window nothing moves.
 void movePoints(Patch& patch)
 {
     const StageClock clock(patch.times.lift);

@@ -6,19 +6,19 @@
 
 namespace palp {
 
-/// Section 2 of the paper on one clock: contact, neighbourhood, sphere, chart, rigidity, plate, points.
+/// Runs section 2 of the paper on one clock: contact, neighbourhood, sphere, chart, rigidity, plate, points.
 ///
-/// Solves for a force of 1 N on a smooth footprint about the contact; the plate is linear, so any force follows.
+/// The plate is solved for a force of 1 N on a smooth footprint about the contact; it is linear, so any force follows.
 /// \param carried  chart axes of a neighbouring contact; empty: the chart's own
-/// \throws Error if the plate cannot be solved (for example free on all sides), if the window holds next to nothing of
-///         the cloud, or if the hand's direction runs along the surface
+/// \throws Error if the plate cannot be solved (for example free on all sides), if the patch window holds next to
+///         nothing of the cloud, or if the hand's direction runs along the surface
 /// \thread that of the solver; announces factorisations of many seconds on a terminal
 /// \source Kumari & Chaudhuri 2016, sections 2.1 to 2.6
-/// \differs as differencesFromPaper() says of the settings; engine/method.md has every difference and why
+/// \differs as differencesFromPaper() lists for the settings; engine/method.md has every difference and its reason
 [[nodiscard]] Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings,
                            PlateSolver& solver, const std::optional<Frame>& carried = {});
 
-/// As above, with the plate solved by the reference solver.
+/// Does the same, with the plate solved by the reference solver.
 [[nodiscard]] Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings);
 
 struct PatchWithTable {
@@ -26,8 +26,8 @@ struct PatchWithTable {
     std::optional<ComplianceTable> table; ///< about the patch's chart; empty if it is not deformed()
 };
 
-/// deform() for a hand that moves: solves for a lattice of footprints in the same window, so that the servo can look
-/// up the compliance of wherever the contact is until the next patch comes; see ComplianceTracker.
+/// Does what deform() does, for a hand that moves: it solves for a lattice of footprints in the same window, so that
+/// the servo can look up the compliance wherever the contact is until the next patch comes; see ComplianceTracker.
 ///
 /// The caller sets the table's sequence number and time.
 /// \param contact  where the hand will be, see aheadOf()
@@ -38,8 +38,9 @@ struct PatchWithTable {
                                              const PatchSettings& settings, const FootprintLattice& lattice,
                                              PlateSolver& solver, const std::optional<Frame>& carried = {});
 
-/// How far the compliance is from its limit of fine grids, relative [1]: the change of c from a grid twice as coarse,
-/// divided by 3 (Richardson, second order). Empty if the cells are not a multiple of 4 or the footprint is too small.
+/// Estimates how far the compliance is from its limit of fine grids, relative [1]: the change of c from a grid twice as
+/// coarse, divided by 3 (Richardson, second order). Empty if the cells are not a multiple of 4 or the footprint is too
+/// small.
 [[nodiscard]] std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings,
                                                         PlateSolver& solver);
 

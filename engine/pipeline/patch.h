@@ -14,10 +14,10 @@
 
 namespace palp {
 
-/// Scene constants: everything that decides what a touch feels like, apart from the object itself.
+/// The constants of a scene that decide what a touch feels like, apart from the object itself.
 ///
-/// Window, footprint and area of contact are lengths that are never derived from the points at the contact. So the
-/// compliance of a homogeneous object is exactly constant, and whatever the hand feels is in the object.
+/// Patch window, footprint and area of contact are lengths that are never derived from the points at the contact. So
+/// the compliance of a homogeneous object is exactly constant, and everything that the hand feels is in the object.
 struct PatchSettings {
     double     foundation      = 0;     ///< k [Pa/m] of what lies below; 0: nothing (the paper)
     double     window          = 40e-3; ///< edge of the square of chart that bends [m]
@@ -30,14 +30,14 @@ struct PatchSettings {
     double     tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
 };
 
-/// Milliseconds that each stage of deform() took.
+/// The milliseconds that each stage of deform() took.
 struct StageTimes {
     double gather = 0, fit = 0, project = 0, resample = 0, prepare = 0, solve = 0, lift = 0;
 
     [[nodiscard]] double total() const noexcept { return gather + fit + project + resample + prepare + solve + lift; }
 };
 
-/// What a unit force at the contact does to the neighbourhood.
+/// The response of the neighbourhood to a unit force at the contact.
 struct Patch {
     Contact         contact;
     SphereFitResult sphere;
@@ -61,22 +61,22 @@ struct Patch {
     SolveReport report;
     StageTimes  times; ///< [ms]
 
-    /// False if the points do not determine a surface; then nothing below `sphere` is filled in.
+    /// Returns false if the points do not determine a surface; then nothing below `sphere` is filled in.
     [[nodiscard]] bool deformed() const noexcept { return sphere.usable(); }
 
-    /// Unit vector along which a force presses: into the surface.
+    /// Returns the unit vector along which a force presses: into the surface.
     [[nodiscard]] glm::dvec3 forceDirection() const noexcept { return -chart.frame.normal; }
 };
 
-/// A unit vector as complaints and warnings show it: "0.00,0.60,0.80".
+/// Returns a unit vector as complaints and warnings show it: "0.00,0.60,0.80".
 [[nodiscard]] std::string directionText(const glm::dvec3& direction);
 
-/// The whole cloud under `force` [N] at the patch's contact: p_i + force * response_i * forceDirection.
+/// Returns the whole cloud under `force` [N] at the patch's contact: p_i + force * response_i * forceDirection.
 /// \source Kumari & Chaudhuri 2016, eq. 9
-/// \differs that equation is empty in print: what moves, how far and along what is ours
+/// \differs that equation is empty in print: what moves, how far and in which direction is ours
 [[nodiscard]] std::vector<glm::dvec3> displaced(const PointCloud& cloud, const Patch& patch, double force);
 
-/// Deflection of every point of the cloud under `force` [N], positive into the surface [m].
+/// Returns the deflection of every point of the cloud under `force` [N], positive into the surface [m].
 [[nodiscard]] std::vector<double> deflections(const PointCloud& cloud, const Patch& patch, double force);
 
 } // namespace palp

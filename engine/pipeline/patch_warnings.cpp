@@ -9,7 +9,7 @@
 namespace palp {
 namespace {
 
-/// Width beyond which the edges of a window on a foundation are not felt [m]; empty without a foundation.
+/// Returns the width beyond which the edges of a patch window on a foundation are not felt [m]; empty without one.
 ///
 /// 10 characteristic lengths l = (D/k)^(1/4) hold the compliance to 0.1 %, and 12 where D varies by more than 10;
 /// measured against windows of 24 l for warts. D is the geometric mean over the window.
@@ -28,7 +28,7 @@ double largest(const NodeField& field)
     return *std::max_element(field.values().begin(), field.values().end());
 }
 
-/// Largest value on the sides of the grid.
+/// Returns the largest value on the sides of the grid.
 double edgeDeflection(const NodeField& field)
 {
     double    most  = 0;

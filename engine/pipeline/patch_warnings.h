@@ -6,7 +6,7 @@
 
 namespace palp {
 
-/// What a user must know about a result, in sentences: where theory or data end. Empty is good.
+/// Returns, in sentences, the limits of theory and data that a user of a result must know. Empty is good.
 /// \param force  that presses [N]
 [[nodiscard]] std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force);
 

@@ -10,7 +10,7 @@ namespace palp {
 
 /// The two ways to run the pipeline; engine/method.md says how they differ.
 enum class Preset {
-    palpate, ///< what we hold to be right
+    palpate, ///< the method that we hold to be right
     paper    ///< as Kumari & Chaudhuri published it
 };
 constexpr auto namesOf(Preset)
@@ -19,11 +19,11 @@ constexpr auto namesOf(Preset)
     return std::to_array<NamedValue<Preset>>({{palpate, "palpate"}, {paper, "paper"}});
 }
 
-/// These settings with the preset's map, sampling, edges, foundation and force law.
+/// Returns these settings with the preset's map, sampling, edges, foundation and force law.
 /// `palpate` leaves the foundation as it is, `paper` removes it.
 [[nodiscard]] PatchSettings withPreset(PatchSettings settings, Preset preset);
 
-/// One line per respect in which the settings differ from the paper's method; empty for the preset `paper`.
+/// Returns one line per respect in which the settings differ from the paper's method; empty for the preset `paper`.
 [[nodiscard]] std::vector<std::string> differencesFromPaper(const PatchSettings& settings);
 
 } // namespace palp

@@ -8,7 +8,7 @@
 namespace palp {
 namespace {
 
-/// The table that the scene asks for; without a wish, the largest that its rate has a use for and its window room.
+/// Makes the table that the scene asks for; otherwise the largest that its rate can use and its window has room for.
 FootprintLattice latticeOf(const Scene& scene, const SoftObject& object, PlateSolver& solver)
 {
     const auto of = [&](int side) { return footprintLattice(object, scene.patch, side, solver); };

@@ -8,7 +8,7 @@
 
 namespace palp {
 
-/// Answers a touch: what the slow half of a session found there.
+/// The answer to a touch: the result of the slow half of a session.
 struct DeformationAnswer {
     std::optional<PatchUpdate> update; ///< for the servo; empty: nothing could be solved there
     std::optional<Patch>       patch;  ///< for an observer; there whenever `update` is
@@ -22,7 +22,7 @@ using PatchSolver = std::function<DeformationAnswer(const Touch&, double period)
 /// \thread one at a time, together with its plate solver
 class Deformation {
 public:
-    /// Opens the plate solver of the scene and solves the homogeneous window, some tenths of a second.
+    /// Opens the plate solver of the scene and solves the homogeneous patch window, some tenths of a second.
     /// \param object  outlives this
     /// \throws Error as PlateSolver and footprintLattice() do
     Deformation(const SoftObject& object, const Scene& scene);
@@ -32,14 +32,14 @@ public:
     /// \param period  of the deformation, as measured [s]
     [[nodiscard]] DeformationAnswer solve(const Touch& touch, double period);
 
-    /// solve() of this object, which must outlive it.
+    /// Returns solve() of this object, which must outlive it.
     [[nodiscard]] PatchSolver solver()
     {
         return [this](const Touch& touch, double period) { return solve(touch, period); };
     }
 
-    /// Goes on with other stiffnesses of the same points. The table's lattice stays that of the first object: it depends
-    /// on the mean of the rigidity alone, and through that on how far a foundation lets a dent spread.
+    /// Goes on with other stiffnesses of the same points. The table's lattice stays that of the first object: it
+    /// depends on the mean of the rigidity alone, and through that on how far a foundation lets a dent spread.
     /// \param object  repainted() or as it was; outlives this
     void repaint(const SoftObject& object);
 

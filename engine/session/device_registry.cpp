@@ -22,7 +22,7 @@ const DeviceOption* optionOf(const DeviceRecord& record, std::string_view flag) 
     return found == record.options.end() ? nullptr : &*found;
 }
 
-/// "falcon or falcon-emulator": the devices that have an option.
+/// Returns the devices that have an option: "falcon or falcon-emulator".
 std::string ownersOf(std::string_view flag)
 {
     std::string owners;

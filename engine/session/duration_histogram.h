@@ -4,17 +4,17 @@
 
 namespace palp {
 
-/// How long something takes, often: counts in bins of 1/32 octave, so quantiles are right to 2.2 %.
+/// The distribution of a duration: counts in bins of 1/32 octave, so that quantiles are right to 2.2 %.
 /// \thread one at a time; add() neither allocates nor waits
 class DurationHistogram {
 public:
     void add(double seconds) noexcept;
 
-    [[nodiscard]] std::uint64_t count() const noexcept { return count_; } ///< [1]
-    [[nodiscard]] double        most() const noexcept { return most_; }   ///< exactly [s]; 0 if there is none
+    [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+    [[nodiscard]] double        most() const noexcept { return most_; } ///< exactly [s]; 0 if there is none
 
-    /// The upper end of the bin that holds the share, 0.999 for example; the last bins' is at most most(). 0 if there
-    /// is none. [s]
+    /// Returns the upper end of the bin that holds the share, 0.999 for example [s]; that of the last bins is at most
+    /// most(). 0 if there is none.
     [[nodiscard]] double quantile(double share) const noexcept;
 
 private:

@@ -43,7 +43,7 @@ GrippedArm::GrippedArm(const GrippingHand& hand, const SimulatedArmSettings& arm
 
 HapticState GrippedArm::exchange(const GovernedForce& force, double now) noexcept
 {
-    HapticState state = arm_.exchange(force, now); // on to now, by the hand of the last tick
+    HapticState state = arm_.exchange(force, now); // moves on to now, with the hand of the last tick
     state.buttons     = hand_.path.buttons(hand_.path.begin() + now);
     arm_.holdBy(hand_.at(now));
     return state;

@@ -9,16 +9,17 @@ namespace palp {
 /// A simulated arm, gripped by a scripted hand.
 extern const DeviceRecord kArmRecord;
 
-/// A scripted hand that grips a simulated device by a spring and a damper while it goes along a path: forces move the
+/// A scripted hand that grips a simulated device by a spring and a damper while it moves along a path: forces move the
 /// grip, as they would with a person.
 struct GrippingHand {
     const HandPath& path; ///< [m] of the scene, its first sample is where the hand is at time 0; outlives the device
-    SimulatedHand   grip; ///< how firmly: 150 N/m is relaxed, 500 firm; its target is ignored
+    SimulatedHand   grip; ///< stiffness and damping: 150 N/m is relaxed, 500 firm; its target is ignored
     DeviceFrame     frame{};
 
-    /// The hand at a time [s] of the session, in the device's frame.
+    /// Returns the hand at a time [s] of the session, in the device's frame.
     [[nodiscard]] SimulatedHand at(double time) const noexcept;
 
+    /// Checks that the path stays within the device's reach.
     /// \throws Error naming the first time at which the path is farther than `radius` [m] from the frame's origin
     void demandWithin(double radius) const;
 };

@@ -28,8 +28,8 @@ std::unique_ptr<HapticDevice> make(const DeviceRequest& request)
     return std::make_unique<GrippedFalcon>(*request.hand, Ft232EmulatorSettings{}, settings);
 }
 
-/// Where the hand that homes it has the grip along the device's z [m], by the time [s] since then: out, in as far as it
-/// goes, and back to the middle. Empty once it has been there for a moment.
+/// Returns where the hand that homes the Falcon has the grip along the device's z [m], by the time [s] since then: out,
+/// in as far as it goes, and back to the middle. Empty once it has been there for a moment.
 std::optional<double> homingPlace(double time)
 {
     constexpr double kOut = 0.048, kIn = -0.052, kSpeed = 0.1, kRest = 0.3; // [m], [m/s], [s]
@@ -40,7 +40,7 @@ std::optional<double> homingPlace(double time)
     return {};
 }
 
-/// The emulator has the encoders, the delays and the stops.
+/// Returns the settings of an arm alone: the emulator has the encoders, the delays and the stops.
 SimulatedArmSettings bareArm()
 {
     SimulatedArmSettings arm;
@@ -85,7 +85,7 @@ GrippedFalcon::GrippedFalcon(const GrippingHand& hand, const Ft232EmulatorSettin
 
 HapticState GrippedFalcon::exchange(const GovernedForce& force, double now) noexcept
 {
-    if (!running_ || now < last_) { // the servo's clock starts, or starts anew
+    if (!running_ || now < last_) { // the servo's clock starts, or starts again
         begun_  = emulator_.now() - now;
         waited_ = 0;
     }
@@ -98,7 +98,7 @@ HapticState GrippedFalcon::exchange(const GovernedForce& force, double now) noex
     return device_.exchange(force, now);
 }
 
-/// On its path, or off it to home the Falcon.
+/// Returns the hand now, on its path or off it to home the Falcon.
 SimulatedHand GrippedFalcon::handNow()
 {
     if (homingSince_) {

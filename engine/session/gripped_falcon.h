@@ -17,7 +17,7 @@ inline constexpr DeviceOption kFalconCold{
     DeviceOption::Kind::flag};
 
 /// A Falcon in a scripted hand, emulated from the packets on its wire to the arm. The driver is that of a real Falcon.
-/// It follows the clock of exchange(), virtual or real. Where the clock starts anew, so does the hand's path.
+/// It follows the clock of exchange(), virtual or real. When the clock starts again, so does the hand's path.
 /// \thread as HapticDevice
 class GrippedFalcon : public HapticDevice {
 public:
@@ -25,7 +25,7 @@ public:
     explicit GrippedFalcon(const GrippingHand& hand, const Ft232EmulatorSettings& falcon = ready(),
                            const FalconDeviceSettings& device = {});
 
-    /// A Falcon whose firmware runs and that is homed.
+    /// Returns the settings of a Falcon whose firmware runs and that is homed.
     [[nodiscard]] static Ft232EmulatorSettings ready();
 
     [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }
@@ -35,10 +35,10 @@ public:
     HapticState exchange(const GovernedForce& force, double now) noexcept override;
     void        light(std::uint8_t lights) noexcept override { device_.light(lights); }
 
-    /// The hand leaves its path and homes the Falcon: out, in as far as it goes, and back. The path begins after that.
+    /// Makes the hand leave its path and home the Falcon: out, in as far as it goes, and back. The path begins then.
     void home() noexcept override { homingSince_ = emulated_; }
 
-    /// The hand has not come back from homing yet.
+    /// Returns true while the hand has not come back from homing.
     [[nodiscard]] bool isBeingHomed() const noexcept { return homingSince_.has_value(); }
 
     [[nodiscard]] Ft232Emulator& emulator() noexcept { return emulator_; } ///< \thread that of exchange()

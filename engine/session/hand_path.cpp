@@ -20,7 +20,7 @@ namespace palp {
 namespace {
 
 constexpr double      kTick        = 1e-3;       // [s] of generated hands: the servo's period
-constexpr std::size_t kMostSamples = 10'000'000; // [1] 2.8 hours at 1 kHz; a larger file is no hand
+constexpr std::size_t kMostSamples = 10'000'000; // 2.8 hours at 1 kHz; a larger file is no hand
 
 std::string text(double value)
 {
@@ -32,7 +32,8 @@ std::string text(double value)
 /// Takes samples one by one and refuses the first that no hand can make.
 class Checked {
 public:
-    /// \param sampleName  "line 4", "row 3", for complaints
+    /// Adds a sample.
+    /// \param where  "line 4", "row 3", for complaints
     void add(const HandPose& sample, const std::string& where)
     {
         const std::array<double, 4> numbers = {sample.time, sample.position.x, sample.position.y, sample.position.z};
@@ -70,18 +71,18 @@ private:
     }
 };
 
-/// A file's own word in a complaint.
+/// Returns a file's own word for a complaint.
 std::string plain(std::string_view word)
 {
     constexpr std::size_t kMost = 60; // [bytes]
     std::string           shown;
-    for (const char c : word.substr(0, kMost)) shown += c >= ' ' && c <= '~' ? c : '?'; // a terminal would obey it
+    for (const char c : word.substr(0, kMost)) shown += c >= ' ' && c <= '~' ? c : '?'; // a terminal obeys others
     return word.size() > kMost ? shown + "..." : shown;
 }
 
-constexpr std::string_view kBetween = ",; \t\r"; // what may stand between numbers
+constexpr std::string_view kBetween = ",; \t\r"; // separators of numbers
 
-/// The first four words of a line, empty where there are fewer, and how many there are.
+/// The first four words of a line, empty where there are fewer, and their number.
 struct Words {
     std::array<std::string_view, 4> first{};
     std::size_t                     count = 0;
@@ -100,15 +101,15 @@ Words wordsOf(std::string_view line)
     }
 }
 
-/// As many columns as the header has, four without one: a comma too many may be a decimal one.
+/// Demands as many columns as the header has, four without one: a comma too many may be a decimal one.
 void demandColumns(const Words& words, std::size_t columns, const std::string& where)
 {
-    if (words.count == columns || words.count < 4) return; // too few are told number by number
+    if (words.count == columns || words.count < 4) return; // too few are reported number by number
     throw Error(where + ": expected " + std::to_string(columns) + " columns, found " + std::to_string(words.count) +
                 "; decimals have a point, and further columns need a header line");
 }
 
-/// The word of a line in a column that is counted from 0; empty if there are fewer.
+/// Returns the word of a line in a column that is counted from 0; empty if there are fewer.
 std::string_view wordAt(std::string_view line, std::size_t column)
 {
     for (;; --column) {
@@ -119,7 +120,7 @@ std::string_view wordAt(std::string_view line, std::size_t column)
     }
 }
 
-/// Where a header has buttons; 0 (where time is): nowhere.
+/// Returns the column in which a header has buttons; 0 (where time is) if it has none.
 std::size_t buttonsIn(std::string_view header, std::size_t columns)
 {
     for (std::size_t k = 4; k < columns; ++k)
@@ -170,7 +171,8 @@ HandPath handOf(const NodeField& rows, const std::string& name)
     return HandPath(std::move(samples), name);
 }
 
-/// Integral of the smooth step u^2 (3 - 2u) from 0 to u, for u clamped to [0, 1]; beyond 1 it rises by 1 per u.
+/// Returns the integral of the smooth step u^2 (3 - 2u) from 0 to u, for u clamped to [0, 1]; beyond 1 it rises by 1
+/// per u.
 double rampedTime(double u)
 {
     const double v = std::clamp(u, 0.0, 1.0);
@@ -334,8 +336,8 @@ HandPath draped(const HandPath& hand, const HandPlace& place, const SoftObject& 
     const double               radius  = kReach * spacing;
     std::vector<HandPose>      samples = hand.samples();
     std::vector<std::uint32_t> near;
-    // Heights are looked for around the last one: where the hand has come from the surface is known. It starts at the
-    // place and walks to the first sample in steps of a spacing.
+    // Heights are looked for around the last one: where the hand has come from, the surface is known. The search starts
+    // at the place and walks to the first sample in steps of a spacing.
     double     height = 0; // [m] above the plane through the place
     const auto follow = [&](const glm::dvec3& inPlane) {
         object.index().gather(place.point + inPlane + height * place.outward, radius, near);

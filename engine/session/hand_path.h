@@ -16,7 +16,7 @@
 
 namespace palp {
 
-/// Where a scripted hand is at one time.
+/// The place of a scripted hand at one time.
 struct HandPose {
     double        time = 0;    ///< [s]
     glm::dvec3    position{};  ///< of the HIP [m]
@@ -25,23 +25,24 @@ struct HandPose {
 
 /// A scripted hand: straight lines between samples.
 ///
-/// Lines, not a cubic through the samples: a cubic overshoots, into the object if it must, and is faster in places than
-/// the hand was; a line is never faster than fastest(), and at the time of a sample gives that sample bit for bit.
+/// They are lines, not a cubic through the samples: a cubic overshoots, into the object if it must, and is faster in
+/// places than the hand was; a line is never faster than fastest(), and at the time of a sample it gives that sample
+/// bit for bit.
 /// Invariant: at least two samples, all finite, times rising.
 /// \thread immutable; pure
 class HandPath {
 public:
-    /// Faster is no hand, but a wrong unit [m/s]: a thrown ball has 40.
+    /// Largest speed of a hand [m/s]: a higher one is a wrong unit; a thrown ball has 40.
     static constexpr double kFastest = 100;
 
     /// \param name  opens complaints
     /// \throws Error naming the first sample that is wrong (counted from 0)
     explicit HandPath(std::vector<HandPose> samples, const std::string& name = "hand");
 
-    /// The hand at a time [s]: at rest at the first sample before it begins, at the last after it has ended.
+    /// Returns the hand at a time [s]: at rest at the first sample before it begins, at the last after it has ended.
     [[nodiscard]] glm::dvec3 position(double time) const noexcept;
 
-    /// The buttons that are down at a time [s]: those of the last sample up to then.
+    /// Returns the buttons that are down at a time [s]: those of the last sample up to then.
     [[nodiscard]] std::uint32_t buttons(double time) const noexcept;
 
     [[nodiscard]] double begin() const noexcept { return samples_.front().time; }             ///< [s]
@@ -54,9 +55,9 @@ private:
     double                fastest_ = 0; ///< [m/s]
 };
 
-/// Reads a hand from a file of rows time [s], x, y, z [m]; further columns are skipped where a header line has them
-/// too, so that samples.csv of a recorded session is a hand. But for one that is called "buttons", in text: a whole
-/// number, bit i of which says that button i is down.
+/// Reads a hand from a file of rows time [s], x, y, z [m]. Further columns are skipped where a header line has them
+/// too, so that samples.csv of a recorded session is a hand; in text, one that is called "buttons" is read: a whole
+/// number, whose bit i is set if button i is down.
 ///
 /// .npy: an array of shape (n, 4) or wider. Any other extension: text, one sample a line, numbers between commas,
 /// semicolons, blanks or tabs; lines that start with '#' are comments; a header line is skipped if its first name
@@ -65,7 +66,7 @@ private:
 ///         than HandPath::kFastest (millimetres?)
 [[nodiscard]] HandPath readHand(const std::filesystem::path& path);
 
-/// The same of text, from a stream; `name` stands in messages.
+/// Reads a hand from a stream of text; `name` stands in messages.
 [[nodiscard]] HandPath parseHand(std::istream& in, const std::string& name);
 
 /// A place on an object and the side of the hand there.
@@ -74,15 +75,15 @@ struct HandPlace {
     glm::dvec3 outward{0, 0, 1}; ///< [1] unit vector to the hand
 };
 
-/// Scene::place, or the point of the cloud that is nearest to who looks along -z: that of the largest z.
+/// Returns Scene::place, or the point of the cloud nearest to a viewer who looks along -z: that of the largest z.
 [[nodiscard]] glm::dvec3 placeOf(const Scene& scene, const PointCloud& cloud);
 
-/// Where the scene is touched: the cloud's point nearest to placeOf(), and the side Scene::from; where the scene names no
-/// place, the viewer's side.
-/// \throws Error if the place is farther than a quarter of the window from the cloud
+/// Returns where the scene is touched: the cloud's point nearest to placeOf(), and the side Scene::from; where the
+/// scene names no place, the viewer's side.
+/// \throws Error if the place is farther than a quarter of the patch window from the cloud
 [[nodiscard]] Contact contactOf(const Scene& scene, const SoftObject& object);
 
-/// Where the scene's hand works: contactOf() without what is known of its side.
+/// Returns where the scene's hand works: contactOf() without the knowledge about its side.
 /// \throws Error as contactOf()
 [[nodiscard]] HandPlace handPlace(const Scene& scene, const SoftObject& object);
 
@@ -97,7 +98,7 @@ constexpr auto namesOf(HandMotion)
     return std::to_array<NamedValue<HandMotion>>({{press, "press"}, {circle, "circle"}, {scan, "scan"}});
 }
 
-/// What a generated hand does.
+/// The settings of a generated hand.
 struct HandScript {
     HandMotion motion   = HandMotion::press;
     double     speed    = 0.05;  ///< the highest it has [m/s]
@@ -107,8 +108,9 @@ struct HandScript {
     double     duration = 5;     ///< [s]
 };
 
-/// A generated hand in the plane through the place, perpendicular to its outward direction: sampled every millisecond
-/// from time 0 on, without a jump in velocity, never faster than the script's speed. Same script, same bits.
+/// Makes a hand in the plane through the place, perpendicular to its outward direction: sampled every millisecond
+/// from time 0 on, without a jump in velocity, never faster than the script's speed. The same script gives the
+/// same bits.
 ///
 ///     press   outward height  h - (h + d)(1 - cos(pi t / T))/2,  T = pi (h + d) / (2 speed), again and again
 ///     circle  press's first half beside the place, then round it, the speed rising smoothly within a fifth of a second
@@ -117,11 +119,11 @@ struct HandScript {
 /// \throws Error naming what is not positive
 [[nodiscard]] HandPath makeHand(const HandScript& script, const HandPlace& place);
 
-/// A hand that keeps its depth over a curved object: each sample moves along `outward` by the height of the cloud above
-/// the plane through the place, there.
+/// Makes a hand that keeps its depth over a curved object: each sample moves along `outward` by the height of the cloud
+/// above the plane through the place, there.
 ///
 /// The height is the weighted mean of the near points' heights, weights (1 - r^2/R^2)^2 by their distance r in the
-/// plane, R three spacings of the cloud: smooth where the hand is, whatever the points. Where the cloud ends the last
+/// plane, R three spacings of the cloud: smooth where the hand is, for any points. Where the cloud ends the last
 /// height stays. The result may be faster than makeHand's by the slope of the surface.
 [[nodiscard]] HandPath draped(const HandPath& hand, const HandPlace& place, const SoftObject& object);
 

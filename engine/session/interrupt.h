@@ -3,8 +3,8 @@
 
 namespace palp {
 
-/// From now on Ctrl-C and a request to end make this true, so that a session ends in order: zero force, a recording
-/// that is complete. A second one ends the program.
+/// Makes Ctrl-C and a request to end, from now on, set the returned flag, so that a session ends in order: zero force
+/// and a complete recording. A second one ends the program.
 [[nodiscard]] const std::atomic<bool>& catchInterrupts();
 
 } // namespace palp

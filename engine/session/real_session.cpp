@@ -21,26 +21,26 @@ using Seconds = std::chrono::duration<double>;
 
 constexpr double kTick = 1e-3; ///< nominal period of servo and proxy [s]
 
-/// A hand and when it was there.
+/// A hand and its time.
 struct TimedHand {
     double time = 0; ///< [s]
     Hand   hand;
 };
 
-/// What the servo shows to the caller.
+/// The servo's output for the caller.
 struct Shown {
     TickRecord    sample;
     double        loopPeriod = 0; ///< [s]
     std::uint32_t buttons    = 0;
 };
 
-/// What the deformation shows to the caller.
+/// The deformation's output for the caller.
 struct ShownPatch {
     std::optional<Patch> patch;
     double               solveTime = 0; ///< [s]
 };
 
-/// What the threads share, and nothing else.
+/// The data that the threads share, and nothing else.
 struct Shared {
     Latest<TimedHand>    hand; ///< with threads of the paper only, as is the next
     Latest<ProxyContact> held;
@@ -87,7 +87,7 @@ private:
     const RealSessionSettings& settings_;
     Shared                     shared_;
     ContactHalf                contact_;      ///< of the servo's thread, or of the proxy's
-    ProxyContact               nothing_;      ///< of the servo's thread, before the proxy's first word
+    ProxyContact               nothing_;      ///< of the servo's thread, before the proxy's first answer
     ForceHalf                  force_;        ///< of the servo's thread
     SessionSummary             summary_;      ///< of the servo's thread
     SessionSummary             slow_;         ///< of the deformation's
@@ -96,7 +96,7 @@ private:
     double                     lastTick_ = 0; ///< [s] of the servo's
 };
 
-/// The servo's thread.
+/// Runs the servo.
 void RealSession::servoThread()
 {
     constexpr double kMean = 0.1; // [s] over which the measured period is averaged
@@ -133,7 +133,7 @@ TickRecord RealSession::tick(const ForceHalf::TickTime& now, const HapticState& 
     return force_.tick(now, hand, contact, shared_.update.held());
 }
 
-/// What the hand holds: computed here, or the last word of the proxy's thread.
+/// Returns the contact of the hand: computed here, or the latest of the proxy's thread.
 const ProxyContact& RealSession::held(double time, const Hand& hand) noexcept
 {
     if (settings_.threads == SessionThreads::paper) {
@@ -150,10 +150,10 @@ const ProxyContact& RealSession::held(double time, const Hand& hand) noexcept
     return contact;
 }
 
-/// The proxy's thread, with threads of the paper.
+/// Runs the proxy, with threads of the paper.
 void RealSession::proxyThread()
 {
-    static_cast<void>(askForRealTime()); // the servo's warning says it all
+    static_cast<void>(askForRealTime()); // the servo's warning covers this thread too
     Metronome metronome{std::chrono::microseconds(1000)};
     while (!shared_.over) {
         metronome.wait();
@@ -172,12 +172,13 @@ void RealSession::publish(const ProxyContact& held) noexcept
     shared_.touch.publish();
 }
 
-/// The time from one solve to the next, smoothed: what a window must be ahead by.
+/// The time from one solve to the next, smoothed: how far ahead a window must be.
 class SolvePeriod {
 public:
     explicit SolvePeriod(double nominal) : nominal_(nominal), mean_(nominal) {}
 
-    /// A solve begins. \return [s]
+    /// Notes that a solve begins.
+    /// \return [s] the smoothed time from one solve to the next
     double begins(Clock::time_point now)
     {
         constexpr double kLongest = 0.5, kShare = 0.2; // [s] beyond it the hand was away; of the newest [1]
@@ -192,7 +193,7 @@ private:
     Clock::time_point last_{};
 };
 
-/// The deformation's thread: the newest touch, once a period.
+/// Runs the deformation: solves for the newest touch, once a period.
 void RealSession::deformationThread()
 {
     const double  nominal = 1 / parts_.scene.deformationRate;
@@ -219,7 +220,7 @@ void RealSession::deformationThread()
     }
 }
 
-/// Whatever goes wrong in a solve is one patch that there is not; the touch goes on with the one before.
+/// Solves one patch. If anything fails there is no patch for this touch, and the session goes on with the one before.
 DeformationAnswer RealSession::solved(const Touch& touch, double period)
 {
     try {
@@ -229,7 +230,7 @@ DeformationAnswer RealSession::solved(const Touch& touch, double period)
     }
 }
 
-/// The caller's thread: looks on until the servo ends.
+/// Shows the session to the caller, on its thread, until the servo ends.
 void RealSession::watch()
 {
     const auto       period = std::chrono::duration_cast<Clock::duration>(Seconds(settings_.viewPeriod));

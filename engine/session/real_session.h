@@ -17,10 +17,10 @@ struct SessionView {
     double           solveTime  = 0;  ///< of the last patch [s]; 0: none yet
     std::uint32_t    buttons    = 0;  ///< of the device
     const Patch*     patch = nullptr; ///< the last one: displaced(cloud, *patch, |force|) is the surface; may be null
-    std::string_view warning{};       ///< what the system refused of real-time rights; empty if nothing
+    std::string_view warning{};       ///< the real-time rights that the system refused; empty if none
 };
 
-/// What a session in real time needs beside its parts.
+/// The settings of a session in real time, beside its parts.
 struct RealSessionSettings {
     double         seconds = 5; ///< [s]
     SessionThreads threads = SessionThreads::servo;
@@ -30,19 +30,19 @@ struct RealSessionSettings {
     const std::atomic<bool>*                stop       = nullptr; ///< ends the session once it is true; may be null
 };
 
-/// Runs a whole session in real time: servo and deformation have threads of their own, and the caller looks on.
+/// Runs a whole session in real time: servo and deformation have threads of their own, and the caller watches.
 ///
 ///     servo 1 ms --Touch--> deformation 1/rate --PatchUpdate--> servo     each a three-slot hand-off, newest wins
 ///       \--TickRecord--> caller <--Patch--/                          read in place, nothing is copied out
 ///
-///     paper:  force 1 ms --Hand--> proxy 1 ms --Touch--> deformation; the force takes the proxy's last word, a tick
-///     old
+///     paper:  force 1 ms --Hand--> proxy 1 ms --Touch--> deformation; the force takes the proxy's latest answer, a
+///     tick old
 ///
 /// A deformation that fails or stalls leaves the servo with its last patch, flagged as stale. A solver that throws has
-/// failed to solve one patch, and SessionSummary::why says so. A device that is unplugged ends the session. Whatever
-/// ends it, an exception of onView included, the device is given zero force.
-/// \param warning  what the system refused of real-time rights; empty if nothing
-/// \throws whatever onView or onTick threw, once all threads have ended
+/// failed to solve one patch; SessionSummary::why has the reason. A device that is unplugged ends the session. However
+/// a session ends, also by an exception of onView, the device is given zero force.
+/// \param warning  the real-time rights that the system refused; empty if none
+/// \throws anything that onView or onTick threw, once all threads have ended
 /// \differs the paper has a thread each for proxy and force, which makes the force a tick or two late; here one thread
 ///          does both, and SessionThreads::paper keeps two
 SessionSummary runReal(const SessionParts& parts, const RealSessionSettings& settings, std::string& warning);

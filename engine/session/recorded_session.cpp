@@ -18,13 +18,13 @@ namespace {
 
 constexpr std::size_t kMostOfDescription = std::size_t(4) << 20; // [bytes] of session.json
 
-/// What the header of a column says, and where its numbers begin.
+/// The number of rows in the header of a column, and where its numbers begin.
 struct Extent {
     std::uint64_t rows  = 0;
     std::uint64_t begin = 0; ///< [bytes]
 };
 
-/// The shape of `column` as numpy writes it, but for the number of rows: (rows,) or (rows, 3).
+/// Reads a header. It must be that of `column` as numpy writes it, but for the number of rows: (rows,) or (rows, 3).
 Extent readHeader(std::istream& in, const SessionColumn& column, const std::string& name)
 {
     constexpr std::size_t     kBefore = 10; // [bytes] magic, version 1, length of the header
@@ -70,7 +70,8 @@ OpenColumn openColumn(const std::filesystem::path& folder, const SessionColumn& 
     return {std::move(in), path.string(), extent.rows};
 }
 
-/// \param expected  samples of a session that was finished: all columns have as many
+/// Reads the columns of a folder.
+/// \param expected  records of a session that was finished: all columns have as many
 std::vector<TickRecord> readColumns(const std::filesystem::path& folder, std::optional<std::uint64_t> expected)
 {
     std::vector<OpenColumn> open;
@@ -87,7 +88,7 @@ std::vector<TickRecord> readColumns(const std::filesystem::path& folder, std::op
     std::vector<char>       part;
     for (std::size_t k = 0; k < open.size(); ++k) {
         const SessionColumn&  column = sessionColumns()[k];
-        constexpr std::size_t kPart  = 65536; // [1] rows at a time
+        constexpr std::size_t kPart  = 65536; // rows at a time
         for (std::size_t begin = 0; begin < rows; begin += kPart) {
             const std::size_t count = std::min<std::size_t>(kPart, rows - begin);
             part.resize(count * column.bytes());
@@ -101,7 +102,7 @@ std::vector<TickRecord> readColumns(const std::filesystem::path& folder, std::op
     return samples;
 }
 
-/// The scene of a recording of format 1, whose keys had other names.
+/// Returns the scene of a recording of format 1, whose keys had other names, with the names of today.
 std::string withNamesOfToday(const std::string& scene)
 {
     using Json       = nlohmann::ordered_json;
@@ -142,7 +143,7 @@ std::string valueText(const SessionColumn& column, const char* bytes)
     return {};
 }
 
-/// Bits of an eight-byte number, for NaNs whose payloads differ.
+/// Returns the bits of an eight-byte number as text, for NaNs whose payloads differ.
 std::string bitsText(const char* bytes)
 {
     std::uint64_t bits = 0;
@@ -152,7 +153,7 @@ std::string bitsText(const char* bytes)
            std::string(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), bits, 16).ptr) + ")";
 }
 
-/// The first component in which one column of two samples differs.
+/// Finds the first component in which one column of two records differs.
 std::optional<SessionDifference> differenceIn(const SessionColumn& column, const TickRecord& a, const TickRecord& b)
 {
     const std::size_t each = column.bytes() / column.components;

@@ -11,7 +11,7 @@
 
 namespace palp {
 
-/// A session as it lies in its folder.
+/// A session that was read from its folder.
 struct RecordedSession {
     std::filesystem::path   folder;
     std::string             clock;            ///< "real", "virtual"
@@ -24,8 +24,8 @@ struct RecordedSession {
     std::vector<TickRecord> samples;
 };
 
-/// The number of the format that Recording writes. Format 1 had other names of three keys of the scene and of the solver;
-/// readSession() translates them.
+/// The number of the format that Recording writes. Format 1 had other names of three keys of the scene and of the
+/// solver; readSession() translates them.
 inline constexpr int kSessionFormat = 2;
 
 /// Reads what Recording wrote. Of a session that was killed it reads the ticks that all columns have.
@@ -40,7 +40,7 @@ inline constexpr int kSessionFormat = 2;
 /// The first place where two sessions differ.
 struct SessionDifference {
     std::size_t sample = 0;    ///< counted from 0
-    double      time   = 0;    ///< of that sample [s]
+    double      time   = 0;    ///< of that record [s]
     std::string column;        ///< empty: one session ends here
     std::size_t component = 0; ///< of a vector: 0, 1, 2
     std::string first;         ///< value in the first session; its bits too where the values print alike
@@ -48,10 +48,10 @@ struct SessionDifference {
 };
 
 /// Compares tick by tick and, within one, column by column, bit for bit: NaN equals the same NaN, and 0 is not -0.
-/// What the wall clock measured (SessionColumn::measured) is omitted. Empty if nothing differs.
+/// Columns measured by the wall clock (SessionColumn::measured) are omitted. Empty if nothing differs.
 [[nodiscard]] std::optional<SessionDifference> compareSessions(const RecordedSession& a, const RecordedSession& b);
 
-/// One sentence: "sample 412 (0.412 s): force z is 0.8312 in run1 and 0.8313 in run2".
+/// Describes a difference in one sentence: "sample 412 (0.412 s): force z is 0.8312 in run1 and 0.8313 in run2".
 [[nodiscard]] std::string describe(const SessionDifference& difference, const RecordedSession& a,
                                    const RecordedSession& b);
 

@@ -32,9 +32,9 @@ using Clock = std::chrono::steady_clock;
 
 static_assert(std::endian::native == std::endian::little, ".npy numbers are written as they lie in memory");
 
-constexpr std::size_t kRing       = 4096; // [1] samples: 4 s at 1 kHz, longer than a disk should ever make us wait
+constexpr std::size_t kRing       = 4096; // records: 4 s at 1 kHz, longer than a disk should ever make us wait
 constexpr auto        kVisits     = std::chrono::milliseconds(2); // of the writer; a kill may cost 10 ms
-constexpr std::size_t kBatch      = 256;  // [1] samples written at once, all or none: what the end of a disk may cost
+constexpr std::size_t kBatch      = 256;  // records written at once, all or none: what the end of a disk may cost
 constexpr std::size_t kHeader     = 128;  // [bytes] of each .npy file, for every count below 2^64; a multiple of 64
 constexpr std::size_t kMostOfLine = 1024; // [bytes] of samples.csv: 23 numbers of up to 25 characters
 
@@ -57,6 +57,7 @@ std::string npyHeader(const SessionColumn& column, std::uint64_t rows)
 /// A file that grows, and whose beginning may be written again.
 class GrowingFile {
 public:
+    /// Makes the file.
     /// \throws Error if there is one of that name, or none can be made
     explicit GrowingFile(std::filesystem::path path)
         : path_(std::move(path)), handle_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644))
@@ -73,6 +74,7 @@ public:
     }
     GrowingFile& operator=(GrowingFile&&) = delete;
 
+    /// Writes bytes at a place.
     /// \throws Error naming the file and the reason; then some of the bytes may stand in it
     void write(std::string_view bytes, std::uint64_t at)
     {
@@ -86,14 +88,14 @@ public:
         }
     }
 
-    /// Writes at the end of what is whole.
+    /// Writes at the end of the complete part.
     void append(std::string_view bytes)
     {
         write(bytes, whole_ + pending_);
         pending_ += bytes.size();
     }
-    void accept() noexcept { whole_ += std::exchange(pending_, 0); } ///< what was appended counts as whole
-    void undo() noexcept                                             ///< what was appended goes
+    void accept() noexcept { whole_ += std::exchange(pending_, 0); } ///< counts the appended bytes as complete
+    void undo() noexcept                                             ///< drops the appended bytes
     {
         pending_ = 0;
         if (::ftruncate(handle_, off_t(whole_)) != 0) errno = 0; // then it stays, and the header does not count it
@@ -124,7 +126,7 @@ std::string csvHeader()
     return line;
 }
 
-/// Appends one number as text that brings the same bits back. `text` has room.
+/// Appends one number as text that brings the same bits back. `text` must have room.
 void appendNumber(std::string& text, const SessionColumn& column, const char* bytes)
 {
     std::array<char, 32> digits;
@@ -154,7 +156,7 @@ void appendLine(std::string& text, const TickRecord& sample)
     text.back() = '\n';
 }
 
-/// The sample files of a folder, which always end together.
+/// The column files of a folder, which always end together.
 class SampleFiles {
 public:
     explicit SampleFiles(const std::filesystem::path& folder) : csv_(folder / "samples.csv")
@@ -167,7 +169,8 @@ public:
         accept();
     }
 
-    /// All of the samples, at most kBatch, or none. \throws Error naming the file and the reason
+    /// Appends all of the records, at most kBatch, or none.
+    /// \throws Error naming the file and the reason
     void append(std::span<const TickRecord> samples)
     {
         try {
@@ -184,12 +187,12 @@ public:
             for (std::size_t k = 0; k < columns_.size(); ++k)
                 columns_[k].write(npyHeader(sessionColumns()[k], rows_ + samples.size()), 0);
         } catch (const Error&) {
-            // A header lies within blocks that the file has, so it is data that found no room; but if not:
+            // A header lies within blocks that the file has, so usually data found no room; but if not:
             for (std::size_t k = 0; k < columns_.size(); ++k) {
                 columns_[k].undo();
                 try {
                     columns_[k].write(npyHeader(sessionColumns()[k], rows_), 0);
-                } catch (const Error&) { // the first complaint is the one to hear
+                } catch (const Error&) { // the first complaint is the one to report
                 }
             }
             csv_.undo();
@@ -258,6 +261,7 @@ void writeDescription(const std::filesystem::path& folder, const nlohmann::order
     });
 }
 
+/// Makes a folder for a session.
 /// \throws Error if it is there and not empty
 void makeFresh(const std::filesystem::path& folder)
 {
@@ -269,8 +273,8 @@ void makeFresh(const std::filesystem::path& folder)
     if (failure) throw Error(folder.string() + ": cannot be read: " + failure.message());
 }
 
-/// A thread that gets no signals: those are for the program's own thread, and a write beyond the limit on sizes is then
-/// an error instead of the end.
+/// Starts a thread that gets no signals: those are for the program's own thread, and a write beyond the limit on sizes
+/// is then an error instead of the end.
 template <class Work>
 std::thread quietThread(Work work)
 {
@@ -296,7 +300,7 @@ struct Recording::Impl {
     {
         Clock::time_point last = Clock::now();
         for (bool more = true; more;) {
-            more = !finishing.load(std::memory_order_acquire); // before the last look: what came earlier is seen
+            more = !finishing.load(std::memory_order_acquire); // before the last look: earlier records are seen
             drain();
             const Clock::time_point time = Clock::now();
             longestGap                   = std::max(longestGap, std::chrono::duration<double>(time - last).count());
@@ -348,7 +352,7 @@ struct Recording::Impl {
         description["stopped"]       = report.stopped ? nlohmann::ordered_json(*report.stopped) : nullptr;
         try {
             writeDescription(folder, description);
-        } catch (const Error&) { // a full disk: the description from the start is still there, and says unfinished
+        } catch (const Error&) { // a full disk: the description from the start is still there, and states unfinished
             if (!report.stopped) report.stopped = "session.json could not be completed";
         }
     }
@@ -372,7 +376,7 @@ Recording::Recording(const std::filesystem::path& folder, const SessionInfo& inf
     makeFresh(folder);
     try {
         impl_ = std::make_unique<Impl>(folder, info, std::move(complain));
-    } catch (...) { // the folder was empty: what is in it is half of a beginning
+    } catch (...) { // the folder was empty: it holds an incomplete beginning
         std::error_code ignored;
         for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
             std::filesystem::remove(entry.path(), ignored);

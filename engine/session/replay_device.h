@@ -8,7 +8,7 @@
 namespace palp {
 
 /// Plays the device of a recorded session: each exchange returns the hand of the next record, to the bit and in the
-/// scene's frame, whatever the force and the time are. After the last record the device counts as lost.
+/// scene's frame, for any force and time. After the last record the device counts as lost.
 /// \thread as HapticDevice
 class ReplayDevice : public HapticDevice {
 public:

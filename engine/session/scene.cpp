@@ -21,12 +21,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A key that editors look for in a file, and that says nothing about the scene.
+/// A key that editors look for in a file, and that has no meaning for the scene.
 constexpr std::string_view kSchemaKey = "$schema";
 /// The largest scene file that is read [bytes]: real ones have a thousand.
 constexpr std::size_t kLargestFile = std::size_t(1) << 20;
 
-/// What each kind of key may be in JSON, besides a text.
+/// Returns the JSON kind that a kind of key may have, besides a text.
 std::optional<JsonObject::Kind> jsonKindOf(SceneKey::Kind kind)
 {
     switch (kind) {
@@ -45,7 +45,7 @@ std::optional<JsonObject::Kind> jsonKindOf(SceneKey::Kind kind)
     }
 }
 
-/// {"x0": "free"} as x0=free.
+/// Returns {"x0": "free"} as x0=free.
 std::string edgesOf(const JsonObject& edges)
 {
     edges.allowOnly({"x0", "x1", "z0", "z1"});
@@ -55,7 +55,7 @@ std::string edgesOf(const JsonObject& edges)
     return sides.empty() ? "clamped" : sides;
 }
 
-/// A value of a file in the spelling of a flag.
+/// Returns a value of a file in the spelling of a flag.
 std::string textOf(const JsonObject& file, const SceneKey& key)
 {
     const std::string_view name = key.name;
@@ -78,7 +78,7 @@ std::string textOf(const JsonObject& file, const SceneKey& key)
     return name == "edges" ? edgesOf(file.object(name)) : file.json(name);
 }
 
-/// What one source says about one key.
+/// The statement of one source about one key.
 struct Statement {
     std::string text;
     std::string what; ///< opens complaints
@@ -98,7 +98,7 @@ public:
         }
     }
 
-    /// What the strongest source says of the key, itself or by its preset.
+    /// Returns the statement of the strongest source about the key, by itself or by its preset.
     [[nodiscard]] std::optional<Statement> about(const SceneKey& key) const
     {
         for (const Origin origin : kRanks) {
@@ -139,7 +139,7 @@ private:
     std::map<Origin, std::map<std::string, std::string, std::less<>>> presets_;
 };
 
-/// Before all other keys: what suits a sample depends on it.
+/// Reads the key of the cloud, before all other keys: the defaults of a sample depend on it.
 void readCloudKey(Scene& scene, const Statement& said, const std::filesystem::path& folder)
 {
     const std::string expected = sceneKey("cloud").expected();
@@ -165,7 +165,7 @@ void readCloudKey(Scene& scene, const Statement& said, const std::filesystem::pa
     scene.cloud = path.lexically_normal().string();
 }
 
-/// What suits the cloud, where nobody says anything else.
+/// Takes the sample's own values, which other sources may replace.
 void takeSample(Scene& scene)
 {
     const Sample& sample        = sampleNamed(sampleName(scene));
@@ -182,7 +182,7 @@ void takeSample(Scene& scene)
 }
 
 /// Refuses keys that contradict each other though each is right by itself.
-/// \param said  key: what opens complaints about it
+/// \param said  by key: the opening of complaints about it
 void refuseContradictions(const Scene& scene, const std::map<std::string, std::string>& said)
 {
     const auto whatSays = [&](const std::string& key) {
@@ -201,7 +201,7 @@ void refuseContradictions(const Scene& scene, const std::map<std::string, std::s
                plainNumber(scene.dynamicFriction));
 }
 
-/// Metres in one unit of a plain number of a length that `origin` states.
+/// Returns the metres in one unit of a plain number of a length that `origin` states.
 double metresPerPlainNumber(const SceneOverrides& overrides, const Sources& sources, Origin origin)
 {
     if (origin != Origin::flag || !overrides.flagsInLengthUnit) return 1;
@@ -210,6 +210,7 @@ double metresPerPlainNumber(const SceneOverrides& overrides, const Sources& sour
     return metresPer(WrittenValue{sceneKey("length_unit"), unit->text, unit->what}.word());
 }
 
+/// Checks that a key is about the kind of cloud that the scene has.
 /// \throws Error if the key is about samples and the cloud is a file, or the other way round
 void demandUse(const Scene& scene, const SceneKey& key, const Statement& one)
 {
@@ -242,7 +243,7 @@ Scene sceneOf(const JsonObject& file, const std::filesystem::path& folder, const
                     "a flag of a scene has the name of a key, not " + key);
 
     const Sources                      sources(file, overrides);
-    std::map<std::string, std::string> said; // key: what opens complaints about it
+    std::map<std::string, std::string> said; // by key: the opening of complaints about it
     Scene                              scene;
     scene.toolKeys   = overrides.toolKeys;
     const auto cloud = sources.about(sceneKey("cloud"));
@@ -255,7 +256,7 @@ Scene sceneOf(const JsonObject& file, const std::filesystem::path& folder, const
         const auto one = sources.about(*key);
         if (!one) continue;
         const double metres = metresPerPlainNumber(overrides, sources, one->origin.origin);
-        // On the command line a length_unit is that of its plain numbers too, also where no file is read.
+        // On the command line a length_unit applies to its plain numbers too, also where no file is read.
         if (key->name == "length_unit" && isSample(scene) && overrides.flagsInLengthUnit &&
             one->origin.origin == Origin::flag)
             continue;

@@ -22,10 +22,10 @@
 
 namespace palp {
 
-/// Where a value of a scene came from; a later one wins.
+/// The origin of a scene's value; a later one wins.
 enum class Origin {
-    standard,    ///< what this program takes if nobody says anything
-    sample,      ///< what suits the procedural cloud
+    standard,    ///< the program's default
+    sample,      ///< of the procedural cloud
     scene,       ///< the scene file
     environment, ///< PALPATE_<KEY>
     flag         ///< the command line
@@ -45,13 +45,14 @@ struct ValueOrigin {
 struct Scene;
 struct SceneKey;
 
-/// What a tool lays over the cloud of a scene, by keys of its own in the scene's file: nodules that are to be found,
-/// for example. A scene carries it into recordings and replays; the library knows no more of it.
+/// A change that a tool makes to the cloud of a scene, by keys of its own in the scene's file: nodules to be found, for
+/// example. A scene carries it into recordings and replays; the library does not interpret it.
 class CloudOverlay {
 public:
     virtual ~CloudOverlay() = default;
 
-    /// The cloud with what lies over it. \throws Error if it does not fit the cloud
+    /// Returns the cloud with the overlay.
+    /// \throws Error if it does not fit the cloud
     [[nodiscard]] virtual PointCloud over(const PointCloud& cloud, const Scene& scene) const = 0;
 };
 
@@ -66,7 +67,7 @@ struct Scene {
     CloudReadSettings reading;    ///< how a cloud file is read
     std::string stiffness; ///< law of the modulus over the cloud, see parseSpatialLaw [Pa]; empty: the cloud's own
 
-    std::optional<glm::dvec3> place{}; ///< [m] on the cloud; empty: where it comes nearest to who looks along -z
+    std::optional<glm::dvec3> place{}; ///< [m] on the cloud; empty: nearest to a viewer who looks along -z
     std::optional<glm::dvec3> from{};  ///< the hand's side there, of any length; empty: away from the cloud's middle
 
     Preset        preset = Preset::palpate; ///< the last one that was asked for; its values stand in `patch`
@@ -91,13 +92,13 @@ struct Scene {
     std::map<std::string, ValueOrigin, std::less<>> origins; ///< of every key that has a value
 };
 
-/// The value of an environment variable, or nullptr; an empty value counts as none.
+/// Returns the value of an environment variable, or nullptr; an empty value counts as none.
 using Environment = std::function<const char*(const char*)>;
 
-/// That of this process.
+/// Returns the environment of this process.
 [[nodiscard]] Environment processEnvironment();
 
-/// What the user says beside the file.
+/// The user's statements beside the file.
 struct SceneOverrides {
     std::map<std::string, std::string, std::less<>> flags{};       ///< text per key ("max_force": "4 N")
     Environment                                     environment{}; ///< none: no variable counts, as in replays
@@ -109,29 +110,29 @@ struct SceneOverrides {
     const std::vector<SceneKey>* toolKeys = nullptr; ///< that a tool adds to the library's, see scene_keys.h
 };
 
-/// Reads a scene file: JSON, comments allowed, SI unless a text says its unit. samples/scenes/scene.schema.json
+/// Reads a scene file: JSON, comments allowed, SI unless a text states its unit. samples/scenes/scene.schema.json
 /// describes every key. Precedence: default < sample < scene < environment < flag. A preset sets its values where it is
 /// asked for: a file's preset below the file's own keys, that of a flag above all of the file, below other flags.
 ///
-/// A relative path of a cloud starts at the scene file's folder; in the environment or a flag at the current one.
+/// A relative path of a cloud starts at the scene file's folder; in the environment or a flag, at the current one.
 /// \throws Error, one sentence: the file, variable or flag, the key, what was expected and found, what to try
 [[nodiscard]] Scene readScene(const std::filesystem::path& file, const SceneOverrides& overrides = {});
 
-/// The same from the text of a file that is called `name` and lies in `folder`.
+/// Reads a scene from the text of a file that is called `name` and lies in `folder`.
 [[nodiscard]] Scene parseScene(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                                const SceneOverrides& overrides = {});
 
-/// The scene as one JSON object that parseScene() reads back to the same values; a file's path is absolute in it.
+/// Returns the scene as one JSON object that parseScene() reads back to the same values; a file's path is absolute.
 [[nodiscard]] std::string sceneJson(const Scene& scene);
 
 enum class ConfigFormat { text, json };
 
-/// Every key with its value, its unit and where the value came from: what `--print-config` shows.
+/// Returns every key with its value, its unit and the value's origin: the output of `--print-config`.
 [[nodiscard]] std::string printConfig(const Scene& scene, ConfigFormat format);
 
 inline constexpr std::string_view kSamplePrefix = "sample:";
 
-/// Whether the cloud is a procedural one, and its name without the prefix.
+/// Returns true if the cloud is a procedural one; sampleName() returns its name without the prefix.
 [[nodiscard]] inline bool isSample(const Scene& scene)
 {
     return scene.cloud.starts_with(kSamplePrefix);
@@ -141,26 +142,27 @@ inline constexpr std::string_view kSamplePrefix = "sample:";
     return std::string_view(scene.cloud).substr(kSamplePrefix.size());
 }
 
-/// Whether two scenes have the same cloud, as far as their keys say.
+/// Returns true if two scenes have the same cloud, as far as their keys tell.
 [[nodiscard]] bool haveSameCloud(const Scene& a, const Scene& b);
 
-/// The cloud as the scene says that it is read, with the scene's law and overlay, if it has them.
+/// Loads the cloud as the scene states, with the scene's law and overlay, if it has them.
 /// \throws Error as readCloud() and CloudOverlay::over() do, and if the file's stiffness contradicts the scene
 [[nodiscard]] LoadedCloud loadCloud(const Scene& scene);
 
-/// What is touched in a scene, and how its file was understood.
+/// The touched object of a scene, and how its file was understood.
 struct LoadedObject {
     SoftObject      object;
     CloudFileReport report;
 };
 
-/// loadCloud() with its index, of the scene's material.
+/// Loads the cloud by loadCloud(), with its index and the scene's material.
 [[nodiscard]] LoadedObject loadObject(const Scene& scene);
 
-/// The cloud without the overlay.
+/// Loads the cloud without the overlay.
 [[nodiscard]] LoadedCloud loadBareCloud(const Scene& scene);
 
-/// 16 hexadecimal digits that tell clouds apart: FNV-1a over the bits of places and stiffnesses. Not against malice.
+/// Returns 16 hexadecimal digits that tell clouds apart: FNV-1a over the bits of places and stiffnesses. They do not
+/// protect against malice.
 [[nodiscard]] std::string fingerprint(const PointCloud& cloud);
 
 } // namespace palp

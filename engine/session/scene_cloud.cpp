@@ -7,12 +7,12 @@
 #include "engine/core/spatial_law.h"
 #include "engine/session/scene_keys.h"
 
-// What a scene's cloud is made of.
+// The cloud of a scene.
 
 namespace palp {
 namespace {
 
-/// The scene's law at every place, in place of the stiffness that the cloud has.
+/// Applies the scene's law at every place, instead of the stiffness that the cloud has.
 PointCloud withLaw(const PointCloud& cloud, const Scene& scene, StiffnessKind kind)
 {
     const Bounds&       bounds = cloud.bounds();
@@ -38,7 +38,7 @@ LoadedCloud sampleOf(const Scene& scene)
     return {makeSample(sample, scene.points, scene.seed, law), std::move(report)};
 }
 
-/// How a complaint about a key begins: "--uniform", or "skin.json: key \"uniform\"".
+/// Returns the opening of a complaint about a key: "--uniform", or "skin.json: key \"uniform\"".
 std::string openingOf(const Scene& scene, const std::string& key)
 {
     const auto found = scene.origins.find(key);
@@ -47,7 +47,7 @@ std::string openingOf(const Scene& scene, const std::string& key)
     return origin == Origin::scene ? where + ": key \"" + key + "\"" : where;
 }
 
-/// The file's own word on its stiffness stands against the user's, or its stiffness against a uniform one.
+/// Refuses a file whose own statement on its stiffness contradicts the user's, or that has one beside a uniform one.
 void refuseContradiction(const Scene& scene, const LoadedCloud& loaded)
 {
     if (!scene.stiffness.empty() || !loaded.report.stiffnessProperty) return;

@@ -81,7 +81,7 @@ D dimensionOf(const CloudReadSettings& reading)
     return reading.stiffnessKind.value_or(StiffnessKind::modulus) == StiffnessKind::modulus ? D::pressure : D::rigidity;
 }
 
-/// A stiffness above zero, a modulus or a rigidity as the scene's stiffness_unit says.
+/// Returns a stiffness above zero, a modulus or a rigidity by the scene's stiffness_unit.
 double stiffnessOf(const S& scene, const V& given, std::string_view text)
 {
     const double value = parseQuantity(text, dimensionOf(scene.reading), given.what);
@@ -89,7 +89,7 @@ double stiffnessOf(const S& scene, const V& given, std::string_view text)
     return value;
 }
 
-/// "20kPa,2MPa".
+/// Reads a range such as "20kPa,2MPa".
 void readRange(S& scene, const V& given)
 {
     const std::size_t comma = given.text.find(',');
@@ -99,7 +99,7 @@ void readRange(S& scene, const V& given)
                                          stiffnessOf(scene, given, text.substr(comma + 1)), RangeScale::linear};
 }
 
-/// After stiffness_range.
+/// Reads the scale of the range; comes after stiffness_range.
 void readLogRange(S& scene, const V& given)
 {
     if (!given.yesNo()) return;
@@ -114,8 +114,8 @@ void readStiffnessUnit(S& scene, const V& given)
         given.word() == unitOf(StiffnessKind::modulus) ? StiffnessKind::modulus : StiffnessKind::rigidity;
 }
 
-/// The plate's own bound is nu <= 0.5: its equations hold there. A scene is of a material, and none is incompressible:
-/// nu of 0.5 and more is a slip (per cent, or another number in the wrong place).
+/// Reads Poisson's ratio. The plate's own bound is nu <= 0.5: its equations hold there. A scene is of a material, and
+/// none is incompressible: nu of 0.5 and more is a slip (per cent, or another number in the wrong place).
 void readPoisson(S& scene, const V& given)
 {
     const double nu = parseQuantity(given.text, D::none, given.what);

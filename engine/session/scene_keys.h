@@ -24,13 +24,13 @@ struct KeyBounds {
     int    multipleOf = 1;     ///< of counts
 };
 
-/// How a panel shows a key: a number as a slider, a word as a list.
+/// The form in which a panel shows a key: a number as a slider, a word as a list.
 struct KeyControl {
     enum class Panel { material, patch, servo };
     Panel       panel = Panel::material;
     const char* label = "";
 
-    // Of a slider.
+    // The rest applies to sliders.
     const char* unit    = "";        ///< in which the number is shown and sent; empty for none
     double      perUnit = 1;         ///< SI units in one of these
     double      least = 0, most = 0; ///< of the slider, in `unit`: narrower than what a scene takes
@@ -44,25 +44,25 @@ struct KeyControl {
 ///
 /// Quantities may be plain numbers in `unit` or texts with a unit of the same dimension ("4 mm").
 struct SceneKey {
-    /// Which commands have a use for the key; a later group is for commands that take the earlier ones too.
+    /// The commands that use the key; a later group is for commands that take the earlier ones too.
     enum class Group {
-        object, ///< what is touched, and how its file is read
-        touch,  ///< where it is touched, how it bends, what is felt of it
-        session ///< what happens from tick to tick
+        object, ///< the touched object, and how its file is read
+        touch,  ///< where it is touched, how it bends, how it is felt
+        session ///< the session from tick to tick
     };
     enum class Kind { text, word, number, count, yesNo, point, range, object };
-    enum class For { anyCloud, file, sample }; ///< which clouds the key can be about
+    enum class For { anyCloud, file, sample }; ///< the clouds that the key can be about
 
     std::string_view name, help;
     Group            group = Group::object;
     Kind             kind  = Kind::text;
     std::string_view unit{}; ///< of plain numbers; "1" for a ratio or a count, empty for names and texts
-    std::string_view form{}; ///< what is expected where the kind does not say it, such as "a direction [x, y, z]"
+    std::string_view form{}; ///< the expected form, where the kind does not define it, such as "a direction [x, y, z]"
     std::string_view example{};
     Dimension        dimension = Dimension::none; ///< of a number
     std::optional<KeyBounds>  bounds{};
-    std::vector<std::string>  words{};  ///< all that are taken, of Kind::word; of a count the numbers
-    std::string               schema{}; ///< JSON Schema of the value, where the kind does not say it
+    std::vector<std::string>  words{};  ///< all that are accepted, of Kind::word; of a count the numbers
+    std::string               schema{}; ///< JSON Schema of the value, where the kind does not define it
     For                       cloud        = For::anyCloud;
     bool                      decidesCloud = false; ///< another value makes another cloud
     std::optional<KeyControl> control{};            ///< empty: no panel shows it
@@ -71,19 +71,20 @@ struct SceneKey {
     std::string (*write)(const Scene&)        = nullptr; ///< as JSON; empty: the scene has no value
     double (*number)(const Scene&)            = nullptr; ///< of a number or a count with a control [unit]
 
-    /// What is taken, as complaints, help and tips state it: "a length from 1e-6 to 1 m, such as 4 mm".
+    /// Returns what is accepted, as complaints, help and tips state it: "a length from 1e-6 to 1 m, such as 4 mm".
     [[nodiscard]] std::string expected() const;
 };
 
-/// A value as somebody wrote it. Numbers, lists and objects of a file arrive in the spelling of a flag, so that each
-/// key has one reader.
+/// A value as it was written. Numbers, lists and objects of a file arrive in the spelling of a flag, so that each key
+/// has one reader.
 struct WrittenValue {
     const SceneKey&    key;
     const std::string& text;
     const std::string& what;                     ///< opens complaints: "skin.json: key \"thickness\"", "--thickness"
     double             metresPerPlainNumber = 1; ///< of lengths without a unit
 
-    /// \throws Error  always: what was expected and found
+    /// Refuses the value.
+    /// \throws Error always: what was expected and found
     [[noreturn]] void refuse(const std::string& hint = {}) const;
 
     // All below throw Error unless the text is one and lies within the key's bounds.
@@ -99,33 +100,34 @@ struct WrittenValue {
     }
 };
 
-/// All keys of the library, in the order in which they are read, listed and printed.
+/// Returns all keys of the library, in the order in which they are read, listed and printed.
 [[nodiscard]] const std::vector<SceneKey>& sceneKeys();
 
-/// Those, and then the ones that a tool has added.
+/// Returns those, and then the keys that a tool has added.
 [[nodiscard]] std::vector<const SceneKey*> sceneKeysWith(const std::vector<SceneKey>* toolKeys);
 
+/// Returns the key of that name.
 /// \pre there is one
 [[nodiscard]] const SceneKey& sceneKey(std::string_view name);
 
-/// "--max-force" and "PALPATE_MAX_FORCE".
+/// Returns the names of a key's flag, "--max-force", and of its variable, "PALPATE_MAX_FORCE".
 [[nodiscard]] std::string flagOf(std::string_view key);
 [[nodiscard]] std::string variableOf(std::string_view key);
 
-/// The values that a preset sets, in the spelling of flags. `palpate` leaves the foundation as it is.
+/// Returns the values that a preset sets, in the spelling of flags. `palpate` leaves the foundation as it is.
 [[nodiscard]] std::map<std::string, std::string, std::less<>> presetValues(Preset preset);
 
-/// The JSON Schema of scene files, and the keys as a table in Markdown.
+/// Returns the JSON Schema of scene files, and the keys as a table in Markdown.
 [[nodiscard]] std::string sceneSchema(const std::vector<SceneKey>* toolKeys = nullptr);
 [[nodiscard]] std::string sceneKeyTable(const std::vector<SceneKey>* toolKeys = nullptr);
 
-/// "1e-6" and "0.25": the fewest digits that bring the number back, without zeros in the exponent.
+/// Returns "1e-6" or "0.25": the fewest digits that bring the number back, without zeros in the exponent.
 [[nodiscard]] std::string plainNumber(double value);
 
-/// A text as JSON.
+/// Returns a text as JSON.
 [[nodiscard]] std::string quotedJson(std::string_view text);
 
-/// The names of an enumeration, as `SceneKey::words`.
+/// Returns the names of an enumeration, as `SceneKey::words`.
 template <NamedEnum Enum>
 [[nodiscard]] std::vector<std::string> namesIn()
 {

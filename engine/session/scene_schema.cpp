@@ -7,14 +7,14 @@
 
 #include "engine/session/scene_keys.h"
 
-// What describes the keys to editors and on pages.
+// Descriptions of the keys for editors and for pages.
 
 namespace palp {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A bound as JSON: whole numbers without a point.
+/// Returns a bound as JSON: whole numbers without a point.
 Json boundJson(double value)
 {
     return value == std::floor(value) && std::abs(value) < 1e15 ? Json(std::int64_t(value)) : Json(value);

@@ -13,25 +13,27 @@ std::uint32_t flag(SessionFlag which, bool set) noexcept
     return set ? static_cast<std::uint32_t>(which) : 0U;
 }
 
-/// What the sampled spring at a cap takes of the arm's damping, K (T/2 + delay), with one sample of delay [N s/m].
+/// Returns what the sampled spring at a cap takes of the arm's damping, K (T/2 + delay), with one sample of delay
+/// [N s/m].
 double spentDamping(double cap)
 {
     return cap * 1.5e-3;
 }
 
-/// [1] samples; with a thread of its own the proxy's word is up to two more ticks old.
+/// Returns the delay in samples; with a thread of its own the proxy's answer is up to two more ticks old.
 int delayOf(SessionThreads threads)
 {
     return threads == SessionThreads::paper ? 3 : 1;
 }
 
-/// What both the scene wants and the device can do; 0 in a device's list says nothing.
+/// Returns the lower of what the scene wants and the device can do; 0 in a device's list states nothing.
 double lower(double wanted, double possible)
 {
     return possible > 0 ? std::min(wanted, possible) : wanted;
 }
 
-/// The longer the delay, the lower the cap at a period of 1 ms: the spring then spends what it does with one record.
+/// Sets the governor. The longer the delay, the lower the cap at a period of 1 ms: the spring then spends what it does
+/// with a delay of one sample.
 GovernorSettings governorOf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads)
 {
     GovernorSettings settings;
@@ -43,7 +45,7 @@ GovernorSettings governorOf(const Scene& scene, const HapticDeviceInfo& limits, 
     return settings;
 }
 
-/// The tank lives on what the cap leaves of an arm's 3.2 N s/m, less a reserve.
+/// Sets the tank, which lives on what the cap leaves of an arm's 3.2 N s/m, less a reserve.
 EnergyTankSettings tankOf(const Scene& scene, const HapticDeviceInfo& limits)
 {
     constexpr double   kArm = 2.5; // [N s/m] of 3.2

@@ -17,7 +17,7 @@
 
 namespace palp {
 
-/// What the deformation tells the servo about one patch. Trivially copyable: it goes through a three-slot hand-off.
+/// The deformation's message to the servo about one patch. Trivially copyable: it passes through a three-slot hand-off.
 struct PatchUpdate {
     ComplianceTable table;             ///< with sequence number and time
     double          rigidity      = 0; ///< D in the middle [N m]
@@ -26,7 +26,7 @@ struct PatchUpdate {
     std::int32_t    iterations    = 0; ///< of the plate's solver
 };
 
-/// What the servo tells the deformation about the touch.
+/// The servo's message to the deformation about the touch.
 struct Touch {
     std::uint64_t sequence = 0; ///< counts ticks; 0: none yet
     double        time     = 0; ///< [s]
@@ -46,7 +46,7 @@ enum class SessionFlag : std::uint32_t {
     governed     = 1U << 13  ///< the governor held the force back: damped, clamped, slewed, waiting or coming on
 };
 
-/// Where a device says the hand is.
+/// The state of the hand as a device reports it.
 struct Hand {
     glm::dvec3    position{};     ///< of the HIP [m]
     glm::dvec3    velocity{};     ///< filtered [m/s]
@@ -73,7 +73,7 @@ private:
     static constexpr std::uint32_t kHomed = 1U << 8, kInBox = 1U << 9;
 };
 
-/// Which thread does what in real time; see runReal().
+/// The division of work between threads in real time; see runReal().
 enum class SessionThreads {
     servo, ///< one thread from the hand to the force
     paper  ///< proxy and force on threads of their own, as Kumari & Chaudhuri run them
@@ -84,7 +84,7 @@ constexpr auto namesOf(SessionThreads)
     return std::to_array<NamedValue<SessionThreads>>({{servo, "servo"}, {paper, "paper"}});
 }
 
-/// What the hand touches: the proxy and its pull.
+/// The contact of the hand: the proxy and its pull.
 struct ProxyContact {
     Touch      touch;
     glm::dvec3 pull{};          ///< [m] from the hand to where the force law acts; see ProxyState
@@ -98,6 +98,7 @@ public:
     /// \param object  outlives this
     ContactHalf(const SoftObject& object, const Scene& scene);
 
+    /// Runs one tick of the proxy.
     /// \param time  [s] of the session's clock
     /// \param hip   [m]
     const ProxyContact& tick(double time, const glm::dvec3& hip) noexcept;
@@ -114,22 +115,23 @@ private:
 /// \thread as ContactHalf
 class ForceHalf {
 public:
-    /// The device's first button. Held down for 20 ms it resets the governor's fault, because whoever holds the device is
-    /// its operator; a shorter press does not count, because packets may be corrupt.
+    /// The device's first button. Held down for 20 ms it resets the governor's fault, because the person who holds the
+    /// device is its operator; a shorter press does not count, because packets may be corrupt.
     static constexpr std::uint32_t kOperatorsButton = 1;
     static constexpr int           kPressTicks      = 20;
 
-    /// \param limits  of the device: what it can render bounds what the scene wants
+    /// \param limits  of the device; they bound the values of the scene
     explicit ForceHalf(const Scene& scene, const HapticDeviceInfo& limits = {},
                        SessionThreads threads = SessionThreads::servo);
 
-    /// When a tick is, on which clock.
+    /// The time of a tick, and its clock.
     struct TickTime {
         double time;       ///< [s] of the session's clock
         double dt;         ///< [s] since the last tick
         double loopPeriod; ///< [s] measured, as a mean over some 0.1 s
     };
 
+    /// Runs one tick of the force.
     /// \param newest  the deformation's last update; null: none yet
     /// \return the record of the tick, complete but for tickTime
     TickRecord tick(const TickTime& now, const Hand& hand, const ProxyContact& held,
@@ -138,7 +140,7 @@ public:
     [[nodiscard]] const ForceGovernor& governor() const noexcept { return governor_; }
 
 private:
-    /// The wanted force and what was paid for it.
+    /// The wanted force and the tank's payment for it.
     struct WantedForce {
         glm::dvec3       force{};
         EnergyTankOutput tank{};
@@ -155,9 +157,10 @@ private:
     int               pressed_ = 0; ///< ticks that the operator's button has been down
 };
 
-/// One tick of touch, both halves.
+/// Both halves of a tick of touch.
 ///
-/// The same calls on every clock: the servo thread runs them each millisecond, a virtual session as fast as it can.
+/// The calls are the same on every clock: the servo thread makes them each millisecond, a virtual session as fast as it
+/// can.
 /// \thread as its halves
 class Servo {
 public:

@@ -15,16 +15,16 @@
 namespace palp {
 namespace {
 
-/// Of the thickness: the deflection is at most some tenths more than the hand's depth, so that theory holds [1].
+/// Share of the thickness [1]: the deflection is at most some tenths more than the hand's depth, so that theory holds.
 constexpr double kDepth = 0.4;
 
-/// The grip of a hand that was asked for none, on a device that only moves when it is gripped.
+/// The default grip of a hand, on a device that only moves when it is gripped.
 constexpr SimulatedHand kGrip{.stiffness = 300, .damping = 2};
 
-/// A hand hardly goes farther than so many sizes of the object [1].
+/// Largest extent of a likely hand, in sizes of the object [1].
 constexpr double kWide = 5;
 
-/// Diagonal of the box that the hand stays in [m].
+/// Returns the diagonal of the box that the hand stays in [m].
 double widthOf(const HandPath& path)
 {
     glm::dvec3 low = path.samples().front().position, high = low;
@@ -49,7 +49,7 @@ HandPath generated(HandMotion motion, const HandChoice& choice, double seconds, 
     return draped(makeHand(script, place), place, object);
 }
 
-/// A file is as long as it is, unless the user says how long.
+/// Reads a hand's file. It sets the session's length, unless the user states one.
 void readPath(SessionHand& hand, const HandChoice& choice, const SoftObject& object)
 {
     hand.path = std::make_unique<const HandPath>(readHand(choice.hand));
@@ -59,7 +59,8 @@ void readPath(SessionHand& hand, const HandChoice& choice, const SoftObject& obj
                                 formatQuantity(size, "m") + ": are its positions metres?");
 }
 
-/// What a scripted hand grips begins where the hand does; any other device has its middle before the scene's place.
+/// Returns the frame of the device. A device that a scripted hand grips begins where the hand does; any other has its
+/// middle before the scene's place.
 DeviceFrame frameOf(const SessionHand& hand, const Scene& scene, const SoftObject& object)
 {
     const glm::dvec3 start = hand.path ? hand.path->position(hand.path->begin()) : glm::dvec3(0);
@@ -87,7 +88,7 @@ void makeDevice(SessionHand& hand, const HandChoice& choice, const Scene& scene,
     hand.device  = record.make(request);
 }
 
-/// A word that is neither a hand nor a file was meant for a hand that sounds like it.
+/// Refuses a word that is neither a hand nor a file, but was meant for a hand with a similar name.
 void refuseSlips(const std::string& word)
 {
     if (std::filesystem::exists(word)) return;

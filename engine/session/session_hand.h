@@ -14,13 +14,13 @@
 
 namespace palp {
 
-/// Which hand a session is to have.
+/// The user's choice of a session's hand.
 struct HandChoice {
     std::string                  hand   = "scan"; ///< press, circle, scan, a device of deviceRecords(), or a file
     double                       speed  = 0.05;   ///< [m/s] of a generated hand, at most
     double                       radius = 0.01;   ///< [m] of a circle; half the length of a scan
     std::optional<double>        depth{};         ///< [m] below the surface; empty: 40 % of the thickness
-    std::optional<SimulatedHand> grip{};          ///< a generated hand or a file grips a simulated device so firmly
+    std::optional<SimulatedHand> grip{};          ///< of a generated hand or a file, on a simulated device
     DeviceOptionValues           options{};       ///< of the device
     std::optional<double>        seconds{};       ///< empty: 5 s, or a file's own length
 
@@ -35,14 +35,14 @@ struct SessionHand {
     std::unique_ptr<HapticDevice>   device;
     DeviceFrame                     frame;
     double                          seconds = 5; ///< [s] how long
-    std::vector<std::string>        warnings;    ///< what is odd about it, in sentences
+    std::vector<std::string>        warnings;    ///< what is unusual about it, in sentences
 
-    /// A person holds it, so that it runs in real time only.
+    /// Returns true if a person holds it, so that it runs in real time only.
     [[nodiscard]] bool isHeldByPerson() const noexcept { return record && record->holder == DeviceHolder::person; }
 };
 
-/// Checks what the words alone tell: the hand's name and the options of its device. Whether the device is plugged in
-/// shows when it is opened.
+/// Checks what the arguments alone show: the hand's name and the options of its device. Opening a device shows if it
+/// is plugged in.
 /// \throws Error naming `--hand` or the option
 void demandGood(const HandChoice& choice);
 

@@ -6,9 +6,9 @@
 
 namespace palp {
 
-/// Where a device's frame lies in the scene.
+/// The place of a device's frame in the scene.
 struct DeviceFrame {
-    glm::dvec3 origin{};                    ///< [m] of the scene: where the middle of the workspace is
+    glm::dvec3 origin{};                    ///< [m] of the scene: place of the middle of the workspace
     glm::dquat sceneFromDevice{1, 0, 0, 0}; ///< rotation, a unit quaternion
 
     /// Converts the hand of this state into the scene.

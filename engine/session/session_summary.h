@@ -10,7 +10,7 @@
 
 namespace palp {
 
-/// What a session did, for a report.
+/// The summary of a session, for a report.
 struct SessionSummary {
     std::uint64_t     ticks = 0, contactTicks = 0;
     std::uint64_t     patches = 0, failedPatches = 0;
@@ -20,17 +20,17 @@ struct SessionSummary {
     double            mostDepth       = 0;                     ///< [m] of the hand below the proxy, along the normal
     double            leastCompliance = 0, mostCompliance = 0; ///< in use [m/N]; 0: never in contact
     GovernorFault     fault       = GovernorFault::none;       ///< the last
-    DeviceFault       deviceFault = DeviceFault::none;         ///< the first, but for starting up
+    DeviceFault       deviceFault = DeviceFault::none;         ///< the first, except while starting up
     std::string       why;                                     ///< the last patch that failed; may be empty
     DurationHistogram tick;                                    ///< computing a tick [s]
     DurationHistogram solve;                                   ///< computing a patch [s]
     DurationHistogram period;                                  ///< from tick to tick [s]; empty on a virtual clock
 
-    /// Counts a sample in.
+    /// Counts a record in.
     void add(const TickRecord& sample) noexcept;
 };
 
-/// Each sample of a session as it is made.
+/// Receives each record of a session as it is made.
 using OnTick = std::function<void(const TickRecord&)>;
 
 } // namespace palp

@@ -12,12 +12,12 @@ struct ShippedScene {
     std::string           feel; ///< what to feel in it, from the file's first line
 };
 
-/// The folder of the shipped scenes. A program may have been moved together with its data: they are looked for from
-/// where the program is, then in the current folder.
+/// Returns the folder of the shipped scenes. A program may have been moved together with its data: they are looked for
+/// from where the program is, then in the current folder.
 /// \throws Error naming where they were expected
 [[nodiscard]] std::filesystem::path shippedScenesFolder();
 
-/// The scenes of a folder, by name.
+/// Returns the scenes of a folder, by name.
 /// \throws Error if it cannot be read
 [[nodiscard]] std::vector<ShippedScene> scenesIn(const std::filesystem::path& folder);
 

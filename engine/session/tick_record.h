@@ -9,11 +9,11 @@
 
 namespace palp {
 
-/// What a session keeps of one tick of the servo.
+/// The record of one tick of the servo.
 struct TickRecord {
     double        time = 0;          ///< [s] since the session's start
     glm::dvec3    hip{};             ///< [m] where the hand is
-    glm::dvec3    hipVelocity{};     ///< [m/s] filtered, as the device tells
+    glm::dvec3    hipVelocity{};     ///< [m/s] filtered, as the device reports
     glm::dvec3    proxy{};           ///< [m] where the tool is held
     glm::dvec3    force{};           ///< [N] on the hand, after the governor
     glm::dvec3    normal{};          ///< [1] of the surface at the proxy; zero without contact
@@ -41,10 +41,10 @@ struct SessionColumn {
     std::size_t      offset;     ///< in TickRecord [bytes]
     std::string_view unit;
     std::string_view means;
-    bool             measured; ///< by the wall clock: differs from run to run, so replays do not compare it
+    bool             measured; ///< by the wall clock: it differs from run to run, so replays do not compare it
 
     [[nodiscard]] std::size_t bytes() const noexcept { return components * (type == Type::float64 ? 8 : 4); }
-    /// The type as numpy spells it, little endian.
+    /// Returns the type as numpy spells it, little endian.
     [[nodiscard]] std::string_view numpyType() const noexcept
     {
         return type == Type::float64 ? "<f8" : type == Type::int32 ? "<i4" : "<u4";

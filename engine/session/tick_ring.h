@@ -8,10 +8,10 @@
 
 namespace palp {
 
-/// First in, first out, between one thread that must never wait and one that may.
+/// A first-in, first-out queue between one thread that must never wait and one that may.
 ///
-/// Both ends count upwards and never wrap: tail - head is what lies between them, and an index is a count modulo the
-/// capacity, a power of two. Each end keeps a copy of the other's count and looks again only when that copy says full
+/// Both ends count upwards and never wrap: tail - head values lie between them, and an index is a count modulo the
+/// capacity, a power of two. Each end keeps a copy of the other's count and looks again only when that copy shows full
 /// or empty, so that a push touches a line of the other core's cache once in many times.
 /// Invariant: head <= tail <= head + capacity.
 /// \thread push(): one producer; front(), pop(): one consumer; both wait-free, without allocation
@@ -23,7 +23,7 @@ public:
 
     [[nodiscard]] std::size_t capacity() const noexcept { return slots_.size(); }
 
-    /// False, and nothing is changed, if the ring is full.
+    /// Adds a value. Returns false, and changes nothing, if the ring is full.
     [[nodiscard]] bool push(const T& value) noexcept
     {
         const std::size_t tail = tail_.load(std::memory_order_relaxed);
@@ -36,7 +36,7 @@ public:
         return true;
     }
 
-    /// The oldest values that lie together, up to the end of the storage; empty if there is none.
+    /// Returns the oldest values that lie together, up to the end of the storage; empty if there is none.
     [[nodiscard]] std::span<const T> front() noexcept
     {
         const std::size_t head = head_.load(std::memory_order_relaxed);
@@ -45,6 +45,7 @@ public:
         return std::span<const T>(slots_).subspan(begin, std::min(tailSeen_ - head, slots_.size() - begin));
     }
 
+    /// Removes the oldest values.
     /// \param count  at most front().size()
     void pop(std::size_t count) noexcept
     {

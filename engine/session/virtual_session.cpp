@@ -20,7 +20,7 @@ double secondsSince(Clock::time_point start)
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The last that a device hears is zero force, on every way out.
+/// Gives the device zero force at last, on every way out.
 class ZeroAtLast {
 public:
     explicit ZeroAtLast(HapticDevice& device) : device_(device) {}

@@ -24,13 +24,13 @@ constexpr int  kLanes = 4;
 typedef double Numbers __attribute__((vector_size(8 * kLanes)));
 #define PALPATE_PART [[gnu::always_inline]] inline
 
-/// exp(x) to 1e-15 for |x| < 700, without branches, so that loops of it become vector instructions.
+/// Returns exp(x) to 1e-15 for |x| < 700, without branches, so that loops of it become vector instructions.
 PALPATE_PART double exponential(double x)
 {
     constexpr double kRound = 0x1.8p52; // adding it leaves the nearest whole number in the lowest bits
     constexpr double kHigh = 0x1.62e42fefa3800p-1, kLow = 0x1.ef35793c76730p-45; // ln 2
     const double     whole = x * std::numbers::log2e + kRound, n = whole - kRound;
-    const double     r      = (x - n * kHigh) - n * kLow; // |r| <= ln 2 / 2: the first term left out is 4e-18
+    const double     r      = (x - n * kHigh) - n * kLow; // |r| <= ln 2 / 2: the first term omitted is 4e-18
     double           series = 1.0 / 6227020800; // the sum of r^k / k!, unrolled: a loop would not become vectors
     series                  = series * r + 1.0 / 479001600;
     series                  = series * r + 1.0 / 39916800;
@@ -48,7 +48,7 @@ PALPATE_PART double exponential(double x)
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(series) + (std::bit_cast<std::uint64_t>(whole) << 52));
 }
 
-/// Numbers exp(factor t).
+/// Computes the numbers exp(factor t).
 PALPATE_PART void exponentials(double factor, const double* t, double* to, std::size_t count)
 {
 #pragma GCC ivdep
@@ -79,7 +79,7 @@ struct Reach {
     }
 };
 
-/// Powers ratio^m times a table's entries, the ones from `count` on 0; returns how many registers they fill.
+/// Computes powers ratio^m times a table's entries, the ones from `count` on 0; returns how many registers they fill.
 PALPATE_PART int factorsOf(double ratio, double scale, const double* table, int count, double* to)
 {
     const double  squared = ratio * ratio, fourth = squared * squared;
@@ -200,7 +200,7 @@ void spread(const Task& task)
 
 using Mark = unsigned char; // 1: yes
 
-/// Cells of the grid, one about each node, and as many around them as a point there may matter to.
+/// Cells of the grid, one about each node, and those around them in which a point may still matter.
 struct Cells {
     int               marginX, marginZ; ///< [nodes]
     int               rows, columns;
@@ -221,8 +221,8 @@ struct Cells {
     }
 };
 
-/// How far along the other axis a cell's mark reaches, by the distance along one [nodes]; empty where it does not even
-/// reach its own node, and where it reaches so far that growing marks takes longer than looking for nearest points.
+/// Returns how far along the other axis a cell's mark reaches, by the distance along one [nodes]; empty where it does
+/// not reach even its own node, or so far that growing marks takes longer than looking for nearest points.
 std::vector<int> reaches(const PlateGrid& grid, double nearby)
 {
     constexpr int    kFarthest = 64; // [nodes]
@@ -257,7 +257,7 @@ public:
             for (int j = distance; j < cells_.columns - distance; ++j) to[j] |= from[j - distance] | from[j + distance];
         }
     }
-    /// Those of the nodes.
+    /// Adds the marks of the nodes.
     void addTo(Mark* __restrict row, int nodes) const
     {
         const Mark* from = grown_.data() + cells_.marginZ;

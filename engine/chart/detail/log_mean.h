@@ -15,7 +15,7 @@ public:
     LogMeanSums(const PatchWindow& window, std::span<const ChartPoint> positions, std::span<const double> rigidities,
                 double width);
 
-    /// exp of the mean of ln D [N m] of one row of nodes; not a number where no point reaches.
+    /// Computes exp of the mean of ln D [N m] of one row of nodes; not a number where no point reaches.
     void means(int i, std::span<double> row) const;
 
 private:
@@ -24,11 +24,11 @@ private:
     std::vector<double> sums_;   ///< for each row of nodes those of w [1], then those of w ln(D / 1 N m)
 };
 
-/// Whether a glance shows that every node of a window has a point nearby, as resampleRigidity() counts it. False where
-/// one has none, or where only the distances themselves can tell.
+/// Returns true if a quick test shows that every node of a window has a point nearby, as resampleRigidity() counts it;
+/// false where a node has none, or where only the distances themselves can tell.
 ///
-/// A point lies within half a spacing of its nearest node along either axis. So it is near to all nodes around that one
-/// which are near to the farthest corner of its cell: cells are marked, and the marks grown.
+/// A point lies within half a spacing of its nearest node along either axis. It is thus near to all nodes around that
+/// one which are near to the farthest corner of its cell: cells are marked, and the marks grown.
 [[nodiscard]] bool surelyCovered(const PatchWindow& window, std::span<const ChartPoint> positions, double width);
 
 } // namespace palp

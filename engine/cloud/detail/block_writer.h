@@ -22,7 +22,7 @@ public:
         if (block_.size() >= kBlock) flush();
     }
 
-    /// The bytes of a number in the given order.
+    /// Appends the bytes of a number in the given order.
     template <class Number>
     void appendNumber(Number value, std::endian order)
     {
@@ -32,8 +32,8 @@ public:
         append({bytes.data(), bytes.size()});
     }
 
-    /// What was appended reaches the stream at the latest here; nothing does so by itself, so that nothing is written
-    /// while an exception unwinds.
+    /// Writes everything appended so far to the stream. The destructor does not flush, so that nothing is written while
+    /// an exception unwinds.
     void flush()
     {
         stream_.write(block_.data(), std::streamsize(block_.size()));

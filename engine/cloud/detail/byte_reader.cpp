@@ -9,10 +9,10 @@
 namespace palp {
 namespace {
 
-/// Large enough that the calls of the stream cost nothing, small enough for the second-level cache [bytes].
+/// Block size [bytes]: large enough that the calls of the stream cost nothing, small enough for the second-level cache.
 constexpr std::size_t kBlock = std::size_t(1) << 20;
 
-/// No program writes longer lines: a thousand-sided face has about 8 KiB. Must not exceed kBlock [bytes].
+/// Longest line that is read [bytes]; a thousand-sided face has about 8 KiB. Must not exceed kBlock.
 constexpr std::size_t kLongestLine = std::size_t(1) << 16;
 
 /// Longest text of a file that a message repeats [characters].

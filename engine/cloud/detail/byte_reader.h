@@ -9,16 +9,16 @@
 
 namespace palp {
 
-/// Text of a file for use in a message: without control characters, cut where it is long.
+/// Returns text of a file for use in a message: without control characters, cut where it is long.
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// The same in quotes.
+/// Returns the same in quotes.
 [[nodiscard]] std::string inQuotes(std::string_view text);
 
-/// Whether it holds nothing but blanks, tabs and line ends.
+/// Returns true if the text holds nothing but blanks, tabs and line ends.
 [[nodiscard]] bool isBlankText(std::string_view text);
 
-/// What ends a line that was read as it stands: LF, CR LF, or at the end of a file CR or nothing.
+/// Returns the end of a raw line: LF, CR LF, or at the end of a file CR or nothing.
 [[nodiscard]] std::string_view lineEndOf(std::string_view rawLine);
 
 /// Reads a hostile stream in large blocks and always knows the line and the byte it is at.
@@ -29,17 +29,17 @@ public:
     /// \param name  of the file, for messages
     ByteReader(std::istream& stream, std::uint64_t size, std::string name);
 
-    /// The next line without its end (LF or CR LF), or nothing at the end of the file; valid until the next call.
+    /// Returns the next line without its end (LF or CR LF), nothing at the end of the file; valid until the next call.
     /// \throws Error if the line is longer than 64 KiB
     [[nodiscard]] std::optional<std::string_view> line();
 
-    /// The same with its end, as the bytes stand in the file.
+    /// Returns the same with its end, as the bytes stand in the file.
     [[nodiscard]] std::optional<std::string_view> rawLine();
 
-    /// The next line that holds more than blanks; nothing at the end of the file.
+    /// Returns the next line that holds more than blanks; nothing at the end of the file.
     [[nodiscard]] std::optional<std::string_view> lineWithText();
 
-    /// The next bytes, valid until the next call.
+    /// Returns the next bytes, valid until the next call.
     /// \throws Error if the file ends before
     [[nodiscard]] const std::byte* take(std::size_t count)
     {
@@ -53,7 +53,7 @@ public:
     /// \throws Error if the file ends before
     void skip(std::uint64_t count);
 
-    /// Whether only blanks, tabs and line ends are left; reads them.
+    /// Reads blanks, tabs and line ends; returns true if nothing else was left.
     [[nodiscard]] bool onlyBlanksLeft();
 
     [[nodiscard]] const std::string& name() const noexcept { return name_; }
@@ -62,10 +62,13 @@ public:
     [[nodiscard]] std::uint64_t      remaining() const noexcept { return size_ - offset(); }   ///< [bytes]
     [[nodiscard]] std::uint64_t      lineNumber() const noexcept { return lineNumber_; } ///< of the last line, from 1
 
+    /// Refuses the line read last.
     /// \throws Error "NAME: line N: MESSAGE" about the line read last
     [[noreturn]] void failAtLine(const std::string& message) const;
+    /// Refuses the next byte.
     /// \throws Error "NAME: byte N: MESSAGE" about the next byte
     [[noreturn]] void failAtByte(const std::string& message) const;
+    /// Refuses the file.
     /// \throws Error "NAME: MESSAGE"
     [[noreturn]] void fail(const std::string& message) const;
 

@@ -19,13 +19,13 @@ namespace {
 /// Points are indexed by 32-bit numbers, of which the last means "none".
 constexpr std::uint64_t kMostPoints = 0xFFFF'FFFEu;
 
-/// Larger objects are not felt by hand, and distances squared in 32-bit floats overflow from 1e19 m on [m].
+/// Largest coordinate [m]: no hand feels larger objects, and squared distances overflow 32-bit floats from 1e19 m on.
 constexpr double kLargestCoordinate = 1e9;
 
 /// Rows between two looks at the clock: about a millisecond.
 constexpr std::uint64_t kRowsPerProgress = 1u << 14;
 
-/// Names that a message lists before it says how many are left.
+/// Number of names that a message lists before it states how many are left.
 constexpr std::size_t kLongestList = 40;
 
 constexpr std::array<const char*, kSlots> kSlotNames = {"x", "y", "z", "stiffness"};
@@ -58,7 +58,7 @@ const char* nameOf(StiffnessKind kind)
     return kind == StiffnessKind::modulus ? "modulus [Pa]" : "flexural rigidity [N_m]";
 }
 
-/// The place of the only property of that name.
+/// Returns the index of the only property of that name.
 std::optional<std::size_t> find(const ByteReader& reader, const std::vector<std::string>& properties,
                                 std::string_view name)
 {
@@ -69,7 +69,7 @@ std::optional<std::size_t> find(const ByteReader& reader, const std::vector<std:
     return std::size_t(first - properties.begin());
 }
 
-/// A well-mixed 64-bit number of a position's bits.
+/// Returns a well-mixed 64-bit number of a position's bits.
 std::uint64_t hashOf(const glm::dvec3& p)
 {
     std::uint64_t hash = 0;
@@ -81,7 +81,8 @@ std::uint64_t hashOf(const glm::dvec3& p)
     return hash;
 }
 
-/// Points whose position an earlier point already has. Sorting, unlike a hash table, stays fast for a hostile file.
+/// Counts the points at a position that an earlier point already has. Sorting, unlike a hash table, stays fast for a
+/// hostile file.
 std::size_t countDuplicates(const std::vector<glm::dvec3>& positions)
 {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order(positions.size());
@@ -307,7 +308,7 @@ void CloudRows::mapRange()
     if (found_.smallest == found_.largest)
         reader_.fail("property " + inQuotes(header_.properties[*columns_[kSlotStiffness]]) + " is " +
                      shown(found_.smallest) + " at every point, which a range from " + shown(from) + " to " +
-                     shown(to) + " cannot spread; leave the range away or make its ends equal");
+                     shown(to) + " cannot spread; omit the range or make its ends equal");
     // Quarters, because the difference of two doubles can overflow; shifted up first if it could underflow.
     const double up    = std::max(std::abs(found_.smallest), std::abs(found_.largest)) < 1 ? 1e200 : 0.25;
     const double width = up * found_.largest - up * found_.smallest;

@@ -14,33 +14,33 @@
 
 namespace palp {
 
-/// What the head of a file says, in the words common to all formats.
+/// The contents of a file's header, in the words common to all formats.
 struct CloudHeader {
     std::string                format;        ///< such as "PLY, ascii"
     std::vector<std::string>   properties;    ///< single numbers of a point, in file order
     std::optional<std::string> lengthUnit;    ///< of a comment "length_unit m"
     std::optional<std::string> stiffnessUnit; ///< of a comment "stiffness_unit Pa"
 
-    /// Takes note of a comment that states a unit; all others are ignored.
-    /// \throws Error if an earlier comment says something else
+    /// Notes a comment that states a unit; all others are ignored.
+    /// \throws Error if an earlier comment states another
     void readComment(std::string_view comment, const ByteReader& reader);
 };
 
-/// What a number of a row is for.
+/// The meaning of a number of a row.
 enum RowSlot : std::size_t { kSlotX, kSlotY, kSlotZ, kSlotStiffness, kSlots };
 
 /// The numbers of one point that matter, in the file's units, indexed by RowSlot.
 using CloudRow = std::array<double, kSlots>;
 
-/// The names under which stiffness is looked for, the first that is there wins. Programs for point clouds put
+/// The names under which stiffness is looked for; the first that is there wins. Programs for point clouds put
 /// "scalar_" before the names of their own properties. Quality, confidence and intensity mean too many things.
 inline constexpr std::array<std::string_view, 6> kStiffnessProperties = {
     "stiffness", "scalar_stiffness", "flexural_rigidity", "scalar_flexural_rigidity", "D", "E"};
 
-/// The kind of a stiffness of which only the property's name is known.
+/// Returns the kind of a stiffness of which only the property's name is known.
 [[nodiscard]] StiffnessKind kindByName(std::string_view property) noexcept;
 
-/// Gives meaning to the numbers of a file: the one place that knows units, ranges and which property is stiffness.
+/// Interprets the numbers of a file: the one place that knows units, ranges and which property is stiffness.
 /// Use: ask `slotOf` which properties to deliver, `add` each row, `finish`.
 /// \thread one
 class CloudRows {
@@ -48,10 +48,10 @@ public:
     /// \throws Error if x, y, z or the wanted stiffness are missing or ambiguous, or a unit is unknown
     CloudRows(const ByteReader& reader, CloudHeader header, const CloudReadSettings& settings);
 
-    /// The slot that a property (an index in CloudHeader::properties) fills; kSlots: none.
+    /// Returns the slot that a property (an index in CloudHeader::properties) fills; kSlots: none.
     [[nodiscard]] std::size_t slotOf(std::size_t property) const noexcept;
 
-    /// Where a row stands: on a line of its own, or at a byte.
+    /// The place of a row: on a line of its own, or at a byte.
     enum class Place { line, byte };
 
     /// Checks a promised number of points against the bytes that are left, and only then makes room for them.
@@ -64,7 +64,7 @@ public:
 
     [[nodiscard]] std::uint64_t rowsRead() const noexcept { return rowsRead_; } ///< dropped ones included
 
-    /// The rows that were left out, rising.
+    /// Returns the rows that were omitted, rising.
     [[nodiscard]] std::span<const std::uint32_t> droppedRows() const noexcept { return droppedRows_; }
 
     /// Maps ranges and builds the cloud.

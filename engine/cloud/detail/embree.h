@@ -27,7 +27,7 @@
 
 namespace palp {
 
-/// Point queries over boxes, by Embree 3 or 4. Internal to the cloud layer: the only file that names Embree.
+/// Answers point queries over boxes, by Embree 3 or 4. Internal to the cloud layer: the only file that names Embree.
 ///
 /// The boxes are primitives of one user geometry, because point queries never visit Embree's own point primitives.
 /// Embree orders its leaves by primitive number, so the tree, and with it the order of the visits, does not depend
@@ -77,15 +77,15 @@ public:
     }
 
 private:
-    // ThreadSanitizer does not see how Embree's builders hand over to TBB's workers and would cry wolf. Not for others:
-    // the setting holds down the number of TBB's threads in the whole process for as long as the device lives.
+    // ThreadSanitizer does not see how Embree's builders hand over to TBB's workers, and reports false races. The
+    // setting is for it only: TBB's threads in the whole process are limited for as long as Embree's own device lives.
 #if defined(PALP_THREAD_SANITIZER)
     static constexpr const char* kConfiguration = "threads=1";
 #else
     static constexpr const char* kConfiguration = "";
 #endif
 
-    /// No exception may pass through Embree, which would swallow it: it waits here until the query has returned.
+    /// Calls `visit`. An exception may not pass through Embree, which would swallow it: it waits for the query to end.
     template <class Visit>
     struct Call {
         Visit&             visit;

@@ -10,28 +10,29 @@
 namespace palp {
 
 /// Makes triangles of the faces of a file: a polygon becomes a fan about its first corner. A face with fewer than three
-/// corners, or with a corner twice, is left out and counted. Faces may come before the points they are made of.
+/// corners, or with a corner twice, is omitted and counted. Faces may come before the points they are made of.
 /// Use: for each face `addCorner` and then `endFace`; `finish` once all points are read.
 /// \thread one
 class FaceRows {
 public:
-    /// Whether points may be dropped later, so that faces must be remembered as wholes.
+    /// Tells if points may be dropped later, so that faces must be remembered as wholes.
     enum class Points { allKept, someDropped };
 
     /// \param points  rows of points in the file
     FaceRows(const ByteReader& reader, std::uint64_t points, Points kept);
 
-    /// Makes room for the triangles of a file, of which only the bytes that are left bound the number.
+    /// Makes room for the triangles of a file; only the bytes that are left bound their number.
     /// \param faces       rows of the element
     /// \param leastBytes  that a triangle takes in the file, > 0
     void expect(std::uint64_t faces, std::uint64_t leastBytes);
 
+    /// Takes the next corner of the face that is being read.
     /// \param corner  index of a point as it stands in the file
     /// \throws Error naming the face if it is no whole number below the number of points
     void addCorner(double corner, CloudRows::Place place);
     void endFace();
 
-    /// The triangles by the numbers of the points that are left; a face that lost one is left out as a whole.
+    /// Returns the triangles by the numbers of the points that are left; a face that lost a point is omitted.
     /// \param dropped  rows of points, rising
     [[nodiscard]] std::vector<Triangle> finish(std::span<const std::uint32_t> dropped);
 

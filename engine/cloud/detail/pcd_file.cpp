@@ -14,7 +14,7 @@
 namespace palp {
 namespace {
 
-/// Every field has at most this many numbers; the largest in use are descriptors of about 1344 [1].
+/// Most numbers of a field; the largest fields in use are descriptors of about 1344.
 constexpr std::uint64_t kMostNumbersPerField = 1u << 16;
 
 struct Field {
@@ -33,7 +33,7 @@ struct PcdHeader {
     std::vector<Field> fields;
 };
 
-/// Reads the head of a file line by line; the entries may come in any order, but DATA is the last.
+/// Reads the header of a file line by line; the entries may come in any order, but DATA is the last.
 class HeaderParser {
 public:
     explicit HeaderParser(ByteReader& reader) : reader_(reader) {}
@@ -49,7 +49,8 @@ public:
 private:
     using Words = std::vector<std::string>;
 
-    /// \return whether this was the last line of the header
+    /// Reads the next line of the header.
+    /// \return  true if it was the last
     bool parseLine()
     {
         const std::optional<std::string_view> line = reader_.lineWithText();

@@ -140,7 +140,7 @@ const char* formatName(CloudEncoding encoding)
     return "";
 }
 
-/// The rows of element face.
+/// Writes the rows of element face.
 void writeFaces(std::ostream& stream, std::span<const Triangle> faces, std::size_t points, CloudEncoding encoding)
 {
     const std::endian order = encoding == CloudEncoding::binaryBigEndian ? std::endian::big : std::endian::little;

@@ -26,7 +26,7 @@ constexpr const char* kKnownTypes = "char, uchar, short, ushort, int, uint, floa
 /// The list that makes up a face, by its two usual names.
 constexpr std::array<std::string_view, 2> kFaceLists = {"vertex_indices", "vertex_index"};
 
-/// Reads the head of a file line by line.
+/// Reads the header of a file line by line.
 class HeaderParser {
 public:
     explicit HeaderParser(ByteReader& reader) : reader_(reader) {}

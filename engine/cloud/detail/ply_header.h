@@ -29,7 +29,7 @@ struct PlyElement {
     [[nodiscard]] bool hasList() const noexcept;
 };
 
-/// What the head of a PLY file declares.
+/// The declarations of a PLY file's header.
 struct PlyHeader {
     CloudHeader             cloud;
     bool                    ascii = false;
@@ -37,18 +37,18 @@ struct PlyHeader {
     std::vector<PlyElement> elements;
     std::size_t             vertex = 0; ///< index of the element that holds the points
 
-    /// The fewest bytes that a row can take; in a text a number takes a digit and a separator.
+    /// Returns the fewest bytes that a row can take; in a text a number takes a digit and a separator.
     [[nodiscard]] std::uint64_t leastBytes(const PlyElement& element) const noexcept;
 };
 
-/// Reads the head of a file, up to and with the line end_header.
+/// Reads the header of a file, up to and with the line end_header.
 /// \throws Error naming the line, what was expected and what was found
 [[nodiscard]] PlyHeader parsePlyHeader(ByteReader& reader);
 
-/// Says of each property of a point what it is for.
+/// Sets the slot that each property of a point fills.
 void assignSlots(PlyElement& vertex, const CloudRows& rows);
 
-/// The length of a list whose bytes or word the reader has just passed.
+/// Returns the length of a list whose bytes or word the reader has just passed.
 /// \throws Error if it is no whole number from 0 up, or if a binary file has no room for as many items
 [[nodiscard]] std::uint64_t listLength(const ByteReader& reader, const PlyProperty& list, const std::byte* bytes,
                                        std::endian order);

@@ -20,8 +20,8 @@ struct alignas(64) PointBlock {
     std::uint32_t point[kBlockPoints]; ///< index into the caller's positions
 };
 
-/// A sphere with the doubt that rounding to floats brings: squares of the radii inside which a point is certainly in
-/// the sphere and outside which it is certainly not.
+/// A sphere with the doubt from rounding to floats: squares of the radii inside which a point is certainly in the
+/// sphere and outside which it is certainly not.
 struct Shell {
     float x      = 0;
     float y      = 0;
@@ -30,7 +30,7 @@ struct Shell {
     float outer2 = 0;
 };
 
-/// What a processor does best with one block.
+/// The fastest functions of a processor for one block.
 struct BlockFilter {
     /// Writes the points that are certainly inside to `certain` (room for kBlockPoints), in the order of the block, and
     /// returns how many; sets one bit of `doubtful` for every point between the two radii.
@@ -43,7 +43,7 @@ struct BlockFilter {
 
 namespace detail {
 
-// Plain C++, for the compiler to vectorise with whatever the function it is inlined in may use.
+// Plain C++: the compiler vectorises it with the instructions of the function that it is inlined in.
 
 [[gnu::always_inline]] inline std::uint32_t measureBlock(const PointBlock& block, const Shell& shell, float* distance2)
 {
@@ -112,7 +112,7 @@ __attribute__((target("avx512f,popcnt"))) inline unsigned gatherAvx512(const Poi
         const __mmask16 inside    = _mm512_cmp_ps_mask(distance2, _mm512_set1_ps(shell.inner2), _CMP_LE_OQ);
         const __mmask16 near      = _mm512_cmp_ps_mask(distance2, _mm512_set1_ps(shell.outer2), _CMP_LE_OQ);
         const __m512i   points    = _mm512_load_si512(block.point + first);
-        // Through a register: compressing straight into memory takes some hundred cycles on AMD Zen 4.
+        // Goes through a register: compressing straight into memory takes some hundred cycles on AMD Zen 4.
         _mm512_storeu_si512(certain + count, _mm512_maskz_compress_epi32(inside, points));
         count += static_cast<unsigned>(__builtin_popcount(inside));
         doubtful |= static_cast<std::uint32_t>(near & ~inside) << first;
@@ -134,8 +134,9 @@ __attribute__((target("avx512f"))) inline std::uint32_t measureAvx512(const Poin
 
 } // namespace detail
 
-/// The filters for each kind of processor, the fastest that this one runs first. Chosen at run time, so that one binary
-/// serves every x86-64; written out rather than by target_clones, whose resolvers run before the sanitizers start.
+/// Returns the filters for each kind of processor, the fastest that this one runs first. The choice is made at run
+/// time, so that one binary serves every x86-64, and not by target_clones, whose resolvers run before the sanitizers
+/// start.
 [[nodiscard]] inline std::vector<BlockFilter> blockFilters()
 {
     std::vector<BlockFilter> filters;

@@ -12,10 +12,10 @@
 namespace palp {
 namespace {
 
-/// Bytes that are collected before the stream is called.
+/// Number of bytes that are collected before the stream is called.
 constexpr std::size_t kBlock = std::size_t(1) << 18;
 
-/// The longest shortest text of a double is "-2.2250738585072014e-308", and then a separator.
+/// Most characters of a number: the longest shortest text of a double is "-2.2250738585072014e-308", then a separator.
 constexpr std::size_t kLongestNumber = 25;
 
 bool isPlainName(const std::string& name)

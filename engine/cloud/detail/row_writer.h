@@ -9,7 +9,7 @@
 
 namespace palp {
 
-/// The part of writing a cloud that all formats share: names, units and rows of doubles.
+/// Writes the parts of a cloud that all formats share: names, units and rows of doubles.
 /// The cloud and the fields must outlive it.
 class RowWriter {
 public:
@@ -18,9 +18,9 @@ public:
     [[nodiscard]] const std::vector<std::string>& columns() const noexcept { return columns_; } ///< x y z stiffness ...
     [[nodiscard]] const std::vector<std::string>& comments() const noexcept { return comments_; } ///< the units
 
-    /// One line per point, as many digits as bring the same double back.
+    /// Writes one line per point, with as many digits as bring the same double back.
     void writeText(std::ostream& stream, char separator) const;
-    /// Every point's doubles in the given byte order.
+    /// Writes every point's doubles in the given byte order.
     void writeBinary(std::ostream& stream, std::endian order) const;
 
 private:

@@ -11,7 +11,7 @@ namespace palp {
 /// The types a number can have in a PLY or PCD file.
 enum class ScalarType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 
-/// [bytes]
+/// Returns the size of a type [bytes].
 [[nodiscard]] constexpr std::size_t sizeOf(ScalarType type) noexcept
 {
     switch (type) {
@@ -45,7 +45,7 @@ template <class T>
     return std::bit_cast<T>(copy);
 }
 
-/// As a double; 64-bit integers beyond 2^53 are rounded.
+/// Reads a number as a double; 64-bit integers beyond 2^53 are rounded.
 [[nodiscard]] inline double loadScalar(ScalarType type, const std::byte* bytes, std::endian order) noexcept
 {
     switch (type) {

@@ -19,7 +19,8 @@ class Fields {
 public:
     Fields(std::string_view line, char separator) : rest_(line), separator_(separator) {}
 
-    /// \return whether there was another field
+    /// Takes the next field.
+    /// \return  true if there was another field
     bool next(std::string_view& field)
     {
         if (separator_ == ' ') {
@@ -93,7 +94,7 @@ public:
     }
 
 private:
-    /// The first line that is no comment; comments before it may state units.
+    /// Returns the first line that is no comment; comments before it may state units.
     std::optional<std::string> firstLine()
     {
         while (const auto line = reader_.lineWithText()) {
@@ -109,7 +110,8 @@ private:
         return std::nullopt;
     }
 
-    /// \return whether the line is a header and not a point
+    /// Finds the separator and the columns.
+    /// \return  true if the line is a header and not a point
     bool chooseColumns(std::string_view line)
     {
         const bool slashes = line.starts_with("//");
@@ -132,8 +134,8 @@ private:
         return isHeader;
     }
 
-    /// Coordinates may be capital letters; stiffness may be a small letter where the user wrote it, but not in a file,
-    /// where d and e could be anything.
+    /// Returns the name by which a column is known. Coordinates may be capital letters; stiffness may be a small letter
+    /// where the user wrote it, but not in a file, where d and e could be anything.
     std::string canonical(const std::string& name) const
     {
         if (name.size() != 1 || name == settings_.stiffnessProperty) return name;

@@ -8,15 +8,15 @@
 namespace palp {
 namespace {
 
-constexpr int kRounds = 200; ///< [1] per tick; a catch after a jump of 60 spacings takes up to 94
+constexpr int kRounds = 200; ///< per tick; a catch after a jump of 60 spacings takes up to 94
 
-/// A surface that is higher below the proxy is dropped, and found again by the ball [spacings].
+/// A surface further below the proxy than this is dropped, and the ball finds it again [spacings].
 constexpr double kHoldHeight = 1.0;
 
-/// Fits after a step at which the surface was further away than kHoldHeight [1].
+/// Number of fits after a step at which the surface was further away than kHoldHeight.
 constexpr int kFitsFromAfar = 3;
 
-/// The ball rolls at most this far per round [largest spacing]: bounds the search along a way close over a sheet.
+/// Longest way that the ball rolls in a round [largest spacing]: it bounds the search along a way close over a sheet.
 constexpr double kLongestRoll = 24;
 
 /// Moves at most `longest` [m] towards the goal.
@@ -33,7 +33,7 @@ double highest(const Surfaces& surfaces, const glm::dvec3& place) noexcept
     return height;
 }
 
-/// The surface that the place is furthest behind; none if it is behind none.
+/// Returns the surface that the place is furthest behind; null if it is behind none.
 const SurfacePlane* passed(const Surfaces& surfaces, const glm::dvec3& place) noexcept
 {
     const SurfacePlane* deepest = nullptr;
@@ -51,7 +51,7 @@ glm::dvec3 FreeTravel::roll(const glm::dvec3& from, const glm::dvec3& goal) noex
     const glm::dvec3 to      = stepTowards(from, goal, kLongestRoll * largest);
     const glm::dvec3 way     = to - from;
     const double     share   = points_.firstTouch(from, to);
-    // A touch must put the point into the ball, or the next round would see it come again and again.
+    // A touch must put the point into the ball, or the next round would meet the same point again.
     constexpr double kInto = 1e-9; // [largest spacing]
     return share < 1 ? stepTowards(from + share * way, to, kInto * largest) : to;
 }

@@ -6,7 +6,7 @@
 
 namespace palp {
 
-/// Where a way through free space ended.
+/// The end of a way through free space.
 struct Arrival {
     glm::dvec3 position{};      ///< [m]
     bool       touched = false; ///< a surface lies between here and the goal; `position` is within one step of it
@@ -23,7 +23,8 @@ class FreeTravel {
 public:
     FreeTravel(NearPoints& points, SurfaceTracker& tracker) : points_(points), tracker_(tracker) {}
 
-    /// \param surfaces  known ones near `from`; returns those near the end
+    /// Travels from `from` [m] to `to` [m], or to the first surface on the way.
+    /// \param surfaces  known ones near `from`; on return those near the end
     [[nodiscard]] Arrival go(const glm::dvec3& from, const glm::dvec3& to, Surfaces& surfaces) noexcept;
 
 private:

@@ -9,11 +9,11 @@
 namespace palp {
 namespace {
 
-/// The ball is searched this much larger than asked for, so that the next balls lie in it too [1]. At 0.1 spacings per
-/// tick one search then serves 15 ticks.
+/// The ball that is searched is this many times larger than the one asked for, so that the next balls lie in it too
+/// [1]. At 0.1 spacings per tick one search then serves 15 ticks.
 constexpr double kReserve = 1.4;
 
-/// A ball held from a place with a hole is given up when one so much smaller is asked for [1].
+/// A ball kept from a place with a hole is given up when a ball this many times smaller is asked for [1].
 constexpr double kTooLarge = 3;
 
 } // namespace

@@ -11,19 +11,19 @@
 
 namespace palp {
 
-/// The points about a place that wanders slowly: one search in the tree serves many ticks.
+/// The points about a place that moves slowly: one search in the tree serves many ticks.
 ///
 /// Invariant: `inside` calls back for the same points in the same order, whatever was asked before (unless kMost forces
-/// a coarser level) and whatever instructions the processor has. So sums over them have the same bits on every run.
+/// a coarser level) and whatever instructions the processor has. Sums over them thus have the same bits on every run.
 /// \thread one; allocates nothing after construction
 class NearPoints {
 public:
     /// \param object  outlives this
     explicit NearPoints(const SoftObject& object);
 
-    /// Calls visit(const NearPoint&, squared distance [m^2]) for the points within `radius` [m] of `centre` [m], as
-    /// they are seen with a spacing of `scale` [m]: where they are many times closer, some stand for the others and
-    /// have the spacing that these have among themselves.
+    /// Calls visit(const NearPoint&, squared distance [m^2]) for the points within `radius` [m] of `centre` [m], as a
+    /// search with a spacing of `scale` [m] sees them: where points are many times closer, some stand for the others
+    /// and have the spacing that these have among themselves.
     template <class Visit>
     void inside(const glm::dvec3& centre, double radius, double scale, Visit&& visit)
     {
@@ -41,7 +41,7 @@ public:
         tree_.holding(place, visit);
     }
 
-    /// The share [1] of the way after which it first enters a ball that `from` is not in; 1 if there is none.
+    /// Returns the share [1] of the way after which it first enters a ball that `from` is not in; 1 if there is none.
     [[nodiscard]] double firstTouch(const glm::dvec3& from, const glm::dvec3& to) const noexcept
     {
         return tree_.firstTouch(from, to);
@@ -51,7 +51,7 @@ public:
     [[nodiscard]] double largestSpacing() const noexcept { return tree_.largestSpacing(); } ///< [m]
     [[nodiscard]] double usualSpacing() const noexcept { return spacing_; }                 ///< [m]
 
-    /// As many points are held at most, of a coarser level if need be. A ball usually holds 100, and 500 about a hole.
+    /// Most points that are held; a coarser level is taken if need be. A ball usually holds 100, and 500 about a hole.
     static constexpr std::size_t kMost = 4096;
 
 private:
@@ -67,7 +67,7 @@ private:
 
     double              spacing_; ///< [m]
     PointTree           tree_;
-    std::array<Ball, 4> balls_; ///< by the level, modulo their number: beside a step in density several are asked for
+    std::array<Ball, 4> balls_; ///< by the level, modulo their number: beside a step in density several are in use
 };
 
 } // namespace palp

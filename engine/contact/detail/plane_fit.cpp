@@ -12,27 +12,27 @@ namespace {
 // an error of 0.04 in height and of 2 degrees in the normal.
 constexpr double      kLeastRadius  = 3.75;
 constexpr double      kMostRadius   = 8;
-constexpr std::size_t kEnoughPoints = 12;   // [1] the radius is kEnoughReach times the distance of this one
+constexpr std::size_t kEnoughPoints = 12;   // the radius is kEnoughReach times the distance of this one
 constexpr double      kEnoughReach  = 1.9;  // [1]
-constexpr std::size_t kFewestPoints = 6;    // [1] four unknowns, and two to spare
+constexpr std::size_t kFewestPoints = 6;    // four unknowns, and two to spare
 constexpr double      kFullSupport  = 0.34; // [1] centroid's offset over the radius; random clouds have 0.08 (sd), ...
 constexpr double      kNoSupport    = 0.50; // ... a straight border 0.29
 constexpr double      kNoiseCurve   = 0.06; // [1/spacing] K below it is shrunk away
 constexpr double      kMostCurve    = 0.15; // [1/spacing]
 constexpr double      kSlopeRidge   = 0.01; // [spacing^2] added to the variances of a and b
 constexpr double      kCurveRidge   = 0.05; // [spacing^4] added to the variance of q
-constexpr double      kBetween      = 0.2;  // points in a groove that are so little nearer to one side are neither's
+constexpr double      kBetween      = 0.2;  // points in a groove nearer to one side by less belong to neither
 constexpr double      kCrowded      = 2;    // [1] points this many times closer than the spacing count less
 constexpr double      kSteepest     = 1;    // [1] slope against the given plane
 
-/// Weight of a height: 1 up to kFullHeight, a smoothstep down to 0 at kNoHeight.
+/// Returns the weight of a height: 1 up to kFullHeight, a smoothstep down to 0 at kNoHeight.
 double heightWeight(double height) noexcept
 {
     const double x = std::clamp((kNoHeight - height) / (kNoHeight - kFullHeight), 0.0, 1.0);
     return x * x * (3 - 2 * x);
 }
 
-/// Any unit vector across; which one does not matter, but it is always the same.
+/// Returns a unit vector across; which one does not matter, but it is always the same.
 glm::dvec3 across(const glm::dvec3& n) noexcept
 {
     const glm::dvec3 a = glm::abs(n);
@@ -75,7 +75,7 @@ struct Moments {
     }
 };
 
-/// Of all points, those of other surfaces too: a groove is not a border.
+/// Centroid of all points, those of other surfaces included: a groove is not a border.
 struct Centroid {
     double weight = 0, a = 0, b = 0; // sums
 
@@ -88,7 +88,7 @@ struct Centroid {
     [[nodiscard]] double offset() const noexcept { return std::hypot(a, b) / weight; } ///< [m]
 };
 
-/// K of the quadratic fit, by eliminating beta and gamma; then what noise could have made is taken away.
+/// Returns K of the quadratic fit, by eliminating beta and gamma, less what noise could have made.
 double curvature(const Moments& m, double spacing) noexcept
 {
     // With S the symmetric 2x2 block of (a, b):  (qq - c' S^-1 c) K = qh - c' S^-1 g,  c = (aq, bq), g = (ah, bh).
@@ -164,8 +164,8 @@ std::optional<PlaneFit> PlaneFitter::fit(const glm::dvec3& place, const glm::dve
         return share * share;
     };
     const auto weightOf = [&](const Sample& s) {
-        // Where points are closer than half as usual here they count by the area they stand for, or a step in density
-        // would look like a border.
+        // Where points are closer than half the usual spacing here, they count by the area they stand for, or a step in
+        // density would look like a border.
         const double area = std::min(1.0, kCrowded * s.spacing / spacing);
         return area * area * fall(s) * heightWeight(std::abs(s.h) / spacing);
     };

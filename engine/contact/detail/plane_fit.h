@@ -16,11 +16,11 @@ struct SurfacePlane {
     glm::dvec3 foot{};          ///< [m] a point of the surface
     double     support = 0;     ///< [1] 1: points all around; 0: at or beyond a border
 
-    /// [m] of a place over the plane, negative behind it
+    /// Returns the height of a place over the plane [m], negative behind it.
     [[nodiscard]] double height(const glm::dvec3& place) const noexcept;
 };
 
-/// What a fit found.
+/// The result of a fit.
 struct PlaneFit {
     SurfacePlane plane;
     double       spacing = 0; ///< [m] weighted mean of the points' own
@@ -33,10 +33,10 @@ struct PlaneFit {
 ///
 ///     h ~ alpha + beta a + gamma b + K q,    weights (1 - d^2/r^2)^2 psi(|h|)
 ///
-/// psi falls from 1 to 0 between two heights: a second sheet does not count. K is shrunk to K (K s)^2 / ((K s)^2 +
-/// k0^2) and clamped, s the spacing, and the rest is solved again: curvature that noise could have made is taken for
-/// none. The new normal is that of the given plane, tilted by (beta, gamma): its side cannot flip. The radius r grows
-/// in holes. Support falls where the centroid of the points is off centre, as at a border.
+/// psi falls from 1 to 0 between two heights, so that a second sheet does not count. With s the spacing, K is shrunk to
+/// K (K s)^2 / ((K s)^2 + k0^2) and clamped, and the rest is solved again: curvature that noise could have made counts
+/// as none. The new normal is that of the given plane, tilted by (beta, gamma): its side cannot flip. The radius r
+/// grows in holes. Support falls where the centroid of the points is off centre, as at a border.
 ///
 /// \thread one; allocates nothing after construction
 /// \source our own reconstruction; constants chosen by our own prototype on 8 to 40 random clouds a case
@@ -44,11 +44,12 @@ class PlaneFitter {
 public:
     explicit PlaneFitter(NearPoints& points);
 
+    /// Fits the surface at a place.
     /// \param place    [m] near the surface
     /// \param normal   [1] unit; the plane through `place` that the surface is near to
     /// \param spacing  [m] around here
-    /// \param others   a point nearer to one of these than to the given plane is left out
-    /// \return         nothing if fewer than six points are near
+    /// \param others   a point nearer to one of these than to the given plane is omitted
+    /// \return         empty if fewer than six points are near
     [[nodiscard]] std::optional<PlaneFit> fit(const glm::dvec3& place, const glm::dvec3& normal, double spacing,
                                               std::span<const SurfacePlane> others) noexcept;
 
@@ -71,19 +72,19 @@ private:
 
     NearPoints&         points_;
     std::vector<Sample> samples_;
-    std::size_t         owned_ = 0; ///< how many of them are own
+    std::size_t         owned_ = 0; ///< number of own samples
     std::vector<double> squares_;   ///< [m^2] scratch of collectEnough
 };
 
-/// Surfaces whose normals differ by less are one surface [1]: cosine of 32 degrees.
+/// Surfaces whose normals have a larger cosine are one surface [1]: 32 degrees.
 inline constexpr double kSameSurface = 0.848;
 
-/// Height up to which a point counts fully, and from which on not at all [spacings]: noise of 0.2 spacings passes, a
-/// sheet two spacings below does not.
+/// A point counts fully up to the first height, and not at all from the second on [spacings]: noise of 0.2 spacings
+/// passes, a sheet two spacings below does not.
 inline constexpr double kFullHeight = 0.8;
 inline constexpr double kNoHeight   = 1.4;
 
-/// No single step is longer [spacings]: less than kFullHeight, so that one step cannot leave the window.
+/// Longest single step [spacings]: less than kFullHeight, so that one step cannot leave the heights that count.
 inline constexpr double kStepCap = 0.5;
 
 } // namespace palp

@@ -11,21 +11,21 @@
 namespace palp {
 namespace {
 
-/// So many points stay of those that are stacked in less than a spacing [1]. A sheet has 1 there, a volume 2.
+/// Number of points that stay of those stacked in less than a spacing. A sheet has 1 there, a volume 2.
 constexpr std::size_t kStacked = 32;
 
-/// Where the spacings differ by less than this, all points are always shown [1]: those of a random sheet differ by 7.
+/// Where the spacings differ by a smaller factor, all points are always shown [1]: those of a random sheet differ by 7.
 constexpr double kUniform = 16;
 
-/// A look with the spacing s needs no points closer than s over this [1]; with the levels' factor of two, up to 16
-/// times as many are found as a uniform sheet has.
+/// A search with the spacing s needs no points closer than s over this [1]; with the levels' factor of two it finds up
+/// to 16 times as many as a uniform sheet has.
 constexpr double kFiner = 2;
 
-/// Levels beyond the sparsest point: where a volume is full of points, even those of a coarse level are many.
+/// Number of levels beyond the sparsest point: where a volume is full of points, even a coarse level has many.
 constexpr int kSpareLevels = 3;
 constexpr int kMostLevels  = 100;
 
-/// Keeps of the points those that come first in their cube.
+/// Keeps those points that come first in their cube.
 void thin(std::span<const glm::dvec3> positions, double side, std::vector<std::uint32_t>& points)
 {
     struct Place {
@@ -33,7 +33,7 @@ void thin(std::span<const glm::dvec3> positions, double side, std::vector<std::u
         std::uint32_t point;
         auto          operator<=>(const Place&) const = default;
     };
-    constexpr double   kFar = 0x1p62; // cubes; beyond, where a cloud of such an extent has its strays, all are one
+    constexpr double   kFar = 0x1p62; // cubes; beyond, among the strays of so wide a cloud, all are one
     std::vector<Place> places;
     places.reserve(points.size());
     for (const std::uint32_t i : points) {
@@ -57,7 +57,7 @@ struct PointTree::Builder {
     std::vector<std::uint8_t>   shown; ///< level by point
     std::vector<std::uint32_t>  order;
 
-    /// The level up to which each point is shown.
+    /// Sets the level up to which each point is shown.
     void setLevels()
     {
         const auto ownLevel = [&](std::size_t i) {
@@ -72,7 +72,7 @@ struct PointTree::Builder {
         tree.levels_ = top + kSpareLevels + 1;
         std::vector<std::vector<std::uint32_t>> own(std::size_t(tree.levels_));
         for (std::size_t i = 0; i < positions.size(); ++i) own[shown[i]].push_back(std::uint32_t(i));
-        // Of what level m - 1 shows and is closer than the cubes of level m, one per cube goes on.
+        // Of the points that level m - 1 shows and that are closer than the cubes of level m, one per cube goes on.
         std::vector<std::uint32_t> going;
         for (int m = 1; m < tree.levels_; ++m) {
             const auto& joining = own[std::size_t(m - 1)];
@@ -120,7 +120,7 @@ struct PointTree::Builder {
         tree.nodes_[here].next = std::uint32_t(tree.nodes_.size());
     }
 
-    /// Those shown longest, the others evenly; returns the new end.
+    /// Keeps the points that are shown longest, and an even choice of the others; returns the new end.
     std::size_t keepSome(std::size_t from, std::size_t to)
     {
         const auto at = [&](std::size_t k) { return order.begin() + std::ptrdiff_t(k); };
@@ -167,7 +167,7 @@ double PointTree::firstTouch(const glm::dvec3& from, const glm::dvec3& to) const
     const glm::dvec3 way   = to - from;
     const double     way2  = glm::dot(way, way);
     double           share = 1;
-    // The way up to what was found so far, against the node's box with its largest ball around.
+    // Tests the way, up to what was found so far, against the node's box with its largest ball around.
     const auto meets = [&](const Node& node) {
         double begin = 0, end = share;
         for (int k = 0; k < 3; ++k) {
@@ -183,7 +183,7 @@ double PointTree::firstTouch(const glm::dvec3& from, const glm::dvec3& to) const
         return begin <= end;
     };
     walk(meets, [&](std::size_t i) {
-        // |from + t way - p|^2 = radius^2; the lesser root is where the way comes to touch.
+        // |from + t way - p|^2 = radius^2; at the lesser root the way comes to touch.
         const glm::dvec3 d            = from - points_[i].position;
         const double     radius       = kBall * points_[i].spacing;
         const double     half         = glm::dot(d, way);

@@ -16,18 +16,18 @@ struct NearPoint {
 };
 
 /// Radius of a point's own ball in its spacings [1]: the largest empty circle in a random cloud of 10^4 points has a
-/// radius of 1.9. The balls of a sheet overlap, so what passes through it passes through a ball.
+/// radius of 1.9. The balls of a sheet overlap, so that every way through the sheet passes through a ball.
 inline constexpr double kBall = 2.5;
 
 /// The points of a cloud whose density varies, for searches whose work does not depend on how much it varies.
 ///
 /// A box tree over the points, halved along the longest axis. Each node knows the largest ball of its points, so that
-/// the balls about a place are found wherever they end, by double arithmetic, exactly. And each point has a level, up
-/// to which it is shown: with h the least spacing of the cloud,
+/// the balls about a place are found wherever they end, by double arithmetic, exactly. Each point has a level, up to
+/// which it is shown: with h the least spacing of the cloud,
 ///
 ///     level m:  every point whose spacing is at least 2^m h, and of the closer ones one per cube of that side.
 ///
-/// So whoever looks at the surface with a spacing of s finds it covered by points no closer than about s / 4.
+/// A search with a spacing of s thus finds the surface covered by points no closer than about s / 4.
 /// Where points are stacked, more than 32 in a box that is smaller than their spacing, 32 of them stay.
 /// \thread  const calls from any number of threads at once; they allocate nothing
 class PointTree {
@@ -36,7 +36,7 @@ public:
     /// \param spacings   [m] around each, > 0
     PointTree(std::span<const glm::dvec3> positions, std::span<const double> spacings);
 
-    /// The level for a look with the spacing `scale` [m]; 0, all points, where the density hardly varies.
+    /// Returns the level for a search with the spacing `scale` [m]; 0, all points, where the density hardly varies.
     [[nodiscard]] int    level(double scale) const noexcept;
     [[nodiscard]] double cell(int level) const noexcept; ///< [m] side of its cubes; 0 for level 0
     [[nodiscard]] bool   mixed() const noexcept;         ///< the density varies by more than that of a random sheet
@@ -69,21 +69,21 @@ public:
              });
     }
 
-    /// The share [1] of the way between two places [m] after which it first enters a ball that `from` is not in; 1 if
-    /// there is none.
+    /// Returns the share [1] of the way between two places [m] after which it first enters a ball that `from` is not
+    /// in; 1 if there is none.
     [[nodiscard]] double firstTouch(const glm::dvec3& from, const glm::dvec3& to) const noexcept;
 
 private:
-    static constexpr std::size_t kLeaf = 8; ///< points of a leaf at most
+    static constexpr std::size_t kLeaf = 8; ///< most points of a leaf
 
-    /// In the order of a walk from the root, the near half first: node i + 1 is the first child of node i.
+    /// A node. They lie in the order of a walk from the root, near half first: node i + 1 is the first child of node i.
     struct Node {
         glm::dvec3    low{}, high{}; ///< [m] of the points
         double        ball  = 0;     ///< [m] largest radius of their balls
         std::uint32_t next  = 0;     ///< the node after this one's children
         std::uint32_t first = 0;     ///< of the points of a leaf
         std::uint16_t count = 0;     ///< of the points of a leaf; 0: not a leaf
-        std::uint8_t  level = 0;     ///< highest of the points
+        std::uint8_t  level = 0;     ///< highest of its points
     };
 
     [[nodiscard]] static double distance2(const Node& node, const glm::dvec3& place) noexcept
@@ -101,7 +101,7 @@ private:
         return d.x * d.x + d.y * d.y + d.z * d.z;
     }
 
-    /// visit(index) of the points of all leaves that `enter`, as their parents do, until it returns false.
+    /// Calls visit(index) for the points of all leaves that `enter`, as their parents do, until it returns false.
     template <class Enter, class Visit>
     void walk(Enter&& enter, Visit&& visit) const
     {

@@ -8,27 +8,27 @@
 namespace palp {
 namespace {
 
-/// Beyond the nearest point, the ball of the outward direction reaches this wide over a flat sheet [spacings].
+/// Width over a flat sheet, beyond the nearest point, of the ball that gives the outward direction [spacings].
 constexpr double kView = 2;
 
-/// Fits at the point that was seen, before one at the foot of the proxy [1].
+/// Number of fits at the point that was seen, before one at the foot of the proxy.
 constexpr int kFitsAtPoint = 3;
 
-/// Points this much sparser than here say where the surface is by their own spacing only [1]. In a random cloud hardly
-/// any are.
+/// Points this many times sparser than those here tell where the surface is by their own spacing only [1]. A random
+/// cloud has hardly any.
 constexpr double kSparser = 2;
 
-/// A plane that opposes a known one as much, and passes through it here, is the known one from below [1]: cosine.
+/// A plane whose cosine to a known one is lower, and which passes through it here, is the known one from below [1].
 constexpr double kFromBelow = -0.5;
 
-/// What was seen from afar must have points all around, or it is the past of a border or an edge [1]: support.
+/// Least support of a surface seen from afar [1]: points all around. With less it lies past a border or an edge.
 constexpr double kSureSupport = 0.9;
 
-/// Planes nearer to parallel than this do not define an edge or a corner [1]: determinant of their Gram matrix.
+/// Planes whose Gram matrix has a smaller determinant are too nearly parallel to define an edge or a corner [1].
 constexpr double kParallel = 1e-6;
 
-/// Multipliers of the planes in a set: sum of multiplier x normal moves `place` onto all of them.
-/// \return false if the set is empty or nearly parallel
+/// Computes the multipliers of the planes in a set: the sum of multiplier x normal moves `place` onto all of them.
+/// \return  false if the set is empty or nearly parallel
 bool multipliers(std::span<const SurfacePlane> planes, unsigned set, const glm::dvec3& place,
                  std::array<double, Surfaces::kMost>& lambda) noexcept
 {
@@ -56,7 +56,7 @@ bool multipliers(std::span<const SurfacePlane> planes, unsigned set, const glm::
         return true;
     }
     if (count != 3) return false;
-    // Unit diagonal; a, b, c the cosines. Cramer's rule.
+    // The diagonal is 1; a, b and c are the cosines. Cramer's rule.
     const double a = gram(0, 1), b = gram(0, 2), c = gram(1, 2);
     const double determinant = 1 + 2 * a * b * c - a * a - b * b - c * c;
     if (determinant < kParallel) return false;
@@ -106,7 +106,7 @@ RestPoint restPointOn(std::span<const SurfacePlane> planes, const glm::dvec3& hi
         const double     depth  = deepest(planes, point);
         const double     length = glm::length(point - hip);
         const bool       free   = depth <= kRounding * scale;
-        // If the planes contradict each other the least wrong set is taken.
+        // If the planes contradict each other, the least wrong set is taken.
         if (found ? free && length < reach : free || depth < behind) {
             best   = {point, lambda};
             behind = depth;
@@ -154,7 +154,7 @@ SurfaceTracker::VisiblePoints SurfaceTracker::findVisible(const Surfaces& surfac
     return visible;
 }
 
-/// Whose own balls the place of a trial lies in, of the points near its plane.
+/// Finds in which points' own balls the place of a trial lies, among the points near its plane.
 SurfaceTracker::NearbyPoints SurfaceTracker::pointsNear(const TrialPlane& trial) const noexcept
 {
     NearbyPoints near;
@@ -171,8 +171,8 @@ SurfaceTracker::NearbyPoints SurfaceTracker::pointsNear(const TrialPlane& trial)
     return near;
 }
 
-/// A fit, with a larger spacing where the surface goes on with sparser points: what looks like a border is none then.
-/// Of all tried, the one with the most support.
+/// Fits a plane, with a larger spacing where the surface goes on with sparser points: an apparent border is none
+/// then. Returns the fit with the most support.
 std::optional<PlaneFit> SurfaceTracker::fitPlane(const TrialPlane& trial, std::span<const SurfacePlane> others) noexcept
 {
     if (!points_.mixed()) return fitter_.fit(trial.place, trial.normal, trial.spacing, others);
@@ -206,7 +206,7 @@ bool SurfaceTracker::addSurface(Surfaces& surfaces, const VisiblePoints& visible
         if (!found) return false;
         plane = found->plane;
     }
-    // A plane that misses the point that was seen is another's: of a sheet hidden behind it, or the floor from below.
+    // A plane that misses the point that was seen belongs to a sheet hidden behind it, or is the floor from below.
     if (!(plane.support > 0 && std::abs(plane.height(nearest.position)) < kFullHeight * spacing &&
           plane.height(place) > -kFullHeight * spacing))
         return false;
@@ -229,7 +229,7 @@ bool SurfaceTracker::discover(Surfaces& surfaces, const glm::dvec3& place, const
         return false;
     }
     if (surfaces.count == 0) surfaces.spacing = visible.nearest.spacing;
-    // What was seen from further away was seen better: near a hole the nearest points are all on one side.
+    // A surface is seen better from further away: near a hole the nearest points are all on one side.
     const Surfaces before = surfaces;
     if (surfaces.count == 0 && addSurface(surfaces, visible, place, surfaces.seen)) {
         if (surfaces.planes[0].support >= kSureSupport) return true;
@@ -240,8 +240,8 @@ bool SurfaceTracker::discover(Surfaces& surfaces, const glm::dvec3& place, const
     return true;
 }
 
-/// Beside a step in density the noise of sparse points can look like a ceiling. One that has come down to a known floor
-/// is none: drops the later of two.
+/// Drops the later of two surfaces that contradict each other. Beside a step in density the noise of sparse points can
+/// look like a ceiling; one that has come down to a known floor is none.
 void SurfaceTracker::dropContradicting(Surfaces& surfaces) noexcept
 {
     for (int j = surfaces.count - 1; j > 0; --j)

@@ -17,13 +17,13 @@ struct Surfaces {
     std::array<SurfacePlane, kMost> planes{};
     int                             count   = 0;
     double                          spacing = 0; ///< [m] around here
-    glm::dvec3                      seen{};      ///< [1] normal of the first, as last seen from afar; 0: nothing was
+    glm::dvec3                      seen{};      ///< [1] normal of the first, as last seen from afar; 0: none was seen
 
     [[nodiscard]] std::span<const SurfacePlane> all() const noexcept { return {planes.data(), std::size_t(count)}; }
     void                                        remove(int which) noexcept;
 };
 
-/// Where a tool pulled to the HIP comes to rest on some planes.
+/// The place where a tool pulled to the HIP comes to rest on some planes.
 struct RestPoint {
     glm::dvec3                          point{}; ///< [m] nearest to the HIP that is behind no plane
     std::array<double, Surfaces::kMost> load{};  ///< [m] how hard each plane holds, along its normal; 0: not touched
@@ -31,19 +31,19 @@ struct RestPoint {
     [[nodiscard]] bool touching() const noexcept { return load[0] > 0 || load[1] > 0 || load[2] > 0; }
 };
 
-/// The point nearest to `hip` that lies behind none of the planes, by trying every set of them.
+/// Returns the point nearest to `hip` that lies behind none of the planes, by trying every set of them.
 /// \thread pure; no allocation
 [[nodiscard]] RestPoint restPointOn(std::span<const SurfacePlane> planes, const glm::dvec3& hip) noexcept;
 
-/// The point nearest to `place` on all the planes that carry load in `rest`.
+/// Returns the point nearest to `place` on all the planes that carry load in `rest`.
 /// \thread pure; no allocation
 [[nodiscard]] glm::dvec3 ontoLoaded(std::span<const SurfacePlane> planes, const RestPoint& rest,
                                     const glm::dvec3& place) noexcept;
 
 /// Finds surfaces and follows them as the proxy moves.
 ///
-/// A surface is found by a ball about the proxy: its nearest visible point, one that no known surface hides, is where a
-/// plane is fitted, from several directions in turn. A found surface is fitted again at the foot of the proxy.
+/// A surface is found by a ball about the proxy: a plane is fitted at its nearest visible point, one that no known
+/// surface hides, from several directions in turn. A found surface is fitted again at the foot of the proxy.
 /// \thread one; allocates nothing after construction
 /// \source our own reconstruction, after the idea that only visible points may count
 class SurfaceTracker {
@@ -53,11 +53,11 @@ public:
 
     /// Adds at most one surface seen from `place` [m].
     /// \param towards  [m] where the proxy is going
-    /// \return         whether points, visible ones, are within the ball; if none was added, the way may be blocked
+    /// \return         true if visible points are within the ball; if no surface was added then, the way may be blocked
     bool discover(Surfaces& surfaces, const glm::dvec3& place, const glm::dvec3& towards) noexcept;
 
-    /// Fits every surface again at the foot of `place` [m]. One that finds no points, or only beyond its border, stays
-    /// as it was, with support 0.
+    /// Fits every surface again at the foot of `place` [m]. A surface that finds no points, or only points beyond its
+    /// border, stays as it was, with support 0.
     /// \return  [m] the furthest that a surface was moved
     double refresh(Surfaces& surfaces, const glm::dvec3& place) noexcept;
 
@@ -77,7 +77,7 @@ private:
         double     spacing = 0; ///< [m]
     };
 
-    /// Which points' own balls a place lies in.
+    /// The points in whose own balls a place lies.
     struct NearbyPoints {
         bool   alike   = false; ///< points about as close as the trial, or closer
         double sparser = 0;     ///< [m] spacing of the nearest of those much sparser; 0: none
