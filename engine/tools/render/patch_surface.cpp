@@ -114,7 +114,8 @@ public:
         for (int i = 0; i < coarse_.nodesX(); ++i)
             for (int j = 0; j < coarse_.nodesZ(); ++j) field_(i, j) = at(i * coarse_.spacingX, j * coarse_.spacingZ);
     }
-    /// \param x, z  from the window's corner, in the window [m]  \return [1/N]
+    /// \param x, z  from the window's corner, in the window [m]
+    /// \return [1/N]
     [[nodiscard]] double of(double x, double z) const { return interpolate(coarse_, field_, x, z); }
 
 private:
