@@ -31,7 +31,7 @@ struct BenchOptions {
     int                      runs = 11;
 };
 
-constexpr int kFewestNodes = 33, kMostNodes = 1025; // a side
+constexpr int kFewestNodes = 33, kMostNodes = 1025; // on a side
 constexpr int kFewestRuns = 11;                     // quartiles of fewer say little
 
 std::vector<std::string> allCases()
@@ -89,7 +89,7 @@ void check(const BenchOptions& o)
             "or part of a name");
 }
 
-/// Starts again as the program that has the peers, if it stands beside this one, with one thread for each library.
+/// Starts again with one thread for each library, as the program that has the peers if it is beside this one.
 void becomeBenchmark()
 {
     const std::filesystem::path self  = runningProgram();
@@ -113,7 +113,7 @@ BenchReport measure(const BenchOptions& o)
 
     std::vector<std::string> cases = o.cases;
     if (cases.empty()) cases = o.quick ? plateCases() : allCases();
-    if (o.quick && o.cases.empty()) std::erase(cases, "batch"); // it takes as long as all others
+    if (o.quick && o.cases.empty()) std::erase(cases, "batch"); // it takes as long as all others together
     const auto wants = [&](const std::vector<std::string>& some) {
         return std::ranges::any_of(some,
                                    [&](const auto& name) { return std::ranges::find(cases, name) != cases.end(); });
@@ -126,7 +126,7 @@ BenchReport measure(const BenchOptions& o)
         plates.nodes = o.quick ? std::vector<int>{33, 65, 129, 257} : std::vector<int>{33, 65, 129, 257, 513, 1025};
     if (o.quick) {
         plates.quick         = true;
-        plates.patience      = 40; // what has begun then is done before 50 s are over
+        plates.patience      = 40; // what begins before then ends within 50 s
         plates.mostEigen     = 129;
         plates.jacobiSeconds = 3;
         plates.mostMemory    = 257;
@@ -180,38 +180,37 @@ void runBench(const BenchOptions& o)
 
 void addBenchCommand(CLI::App& app)
 {
-    CLI::App* bench =
-        app.add_subcommand("bench", "how fast the plate's solver is, beside what people would use instead");
-    const auto o = std::make_shared<BenchOptions>();
-    bench->add_flag("--quick", o->quick, "only plates of up to 257 nodes, in less than a minute");
-    bench->add_option("--solver", o->solver, "where Palpate computes, as for the command solve")->capture_default_str();
+    CLI::App*  bench = app.add_subcommand("bench", "times the plate's solver and its alternatives");
+    const auto o     = std::make_shared<BenchOptions>();
+    bench->add_flag("--quick", o->quick, "measures only plates of up to 257 nodes a side, in less than a minute");
+    bench->add_option("--solver", o->solver, "where Palpate computes, as in palpate solve")->capture_default_str();
     bench
         ->add_option(
             "--cases", o->cases,
-            "what to measure: new_map, new_load, contrast, jacobi, memory, batch, update, gather, grid_map; several "
-            "by commas; all if absent")
+            "what to measure, separated by commas: new_map, new_load, contrast, jacobi, memory, batch, update, gather, "
+            "grid_map [all]")
         ->delimiter(',');
     bench
         ->add_option("--nodes", o->nodes, "nodes a side of the square grids, 33 to 1025, one more than a multiple of 4")
         ->delimiter(',');
     bench
         ->add_option("--maps", o->maps,
-                     "rigidities of new_map, new_load and contrast: linear, hyperbolic, wart, disc_100, disc_0.1, "
-                     "discs; several by commas; all if absent")
+                     "rigidities of new_map, new_load and contrast, separated by commas: linear, hyperbolic, wart, "
+                     "disc_100, disc_0.1, discs [all]")
         ->delimiter(',');
     bench
         ->add_option("--schedule", o->schedule,
-                     "how a cycle is cut into dispatches: automatic (fused on hardware), pass-by-pass or fused")
+                     "how a cycle is divided into dispatches: automatic (fused on hardware), pass-by-pass or fused")
         ->capture_default_str();
-    bench->add_option("--runs", o->runs, "timed turns of each, at least 11")->capture_default_str();
+    bench->add_option("--runs", o->runs, "timed turns of each measurement, at least 11")->capture_default_str();
     bench->add_option("--out", o->out, "folder for plate.json, plate.txt and pictures of the curves");
     bench->add_flag("--json", o->json, "machine-readable");
     bench->footer(
-        "Times are processor time of one thread, medians and quartiles of turns: peer, Palpate, peer, Palpate, ...\n"
+        "Times are processor time of one thread: medians and quartiles of alternating turns of peer and Palpate.\n"
         "\"error\" is the largest error over the largest deflection, against a refined solution on the same grid;\n"
-        "\"discretisation\" asks for an error below the grid's own. Peers are found when they are there:\n"
-        "CHOLMOD (libsuitesparse-dev) and nanoflann (libnanoflann-dev), by the program palpate_peers, which is built\n"
-        "beside this one with -DPALPATE_BENCH_PEERS=ON. What it all means: engine/performance.md.\n"
+        "\"discretisation\" asks for an error below the grid's own. The peers CHOLMOD (libsuitesparse-dev) and\n"
+        "nanoflann (libnanoflann-dev) are measured if the program palpate_peers is beside this one; it is built with\n"
+        "-DPALPATE_BENCH_PEERS=ON. engine/performance.md explains the results.\n"
         "Examples:\n"
         "  palpate bench --quick\n"
         "  palpate bench --out bench\n"

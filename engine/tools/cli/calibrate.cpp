@@ -1,4 +1,4 @@
-// palpate calibrate: a Falcon weighs a known mass, and so finds out what its motors make of a torque.
+// palpate calibrate: a Falcon weighs a known mass, which measures the torque that its motors give for a command.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -35,14 +35,14 @@ struct CalibrateOptions {
     bool               emulator = false, json = false;
 };
 
-/// The counts per torque that the Falcon runs with while it is weighed [1/(N m)].
+/// Returns the counts per torque that the Falcon uses during the weighing [1/(N m)].
 double countsBefore(const CalibrateOptions& o)
 {
     const std::string counts = textOf(o.falcon, kFalconCounts);
     return counts.empty() ? FalconMotors::kCountsPerTorque : numberOf(kFalconCounts, counts);
 }
 
-/// "200 g" or "0.2".
+/// Reads "200 g" or "0.2" [kg].
 double kilograms(std::string text)
 {
     const std::string given = text;
@@ -57,21 +57,21 @@ double kilograms(std::string text)
     throw Error("--mass: expected 50 g to 500 g, found \"" + given + "\"");
 }
 
-/// A Falcon, a clock, and somebody with a mass.
+/// A Falcon, a clock, and a user with a mass.
 struct Bench {
     HapticDevice&                           device;
     std::function<double()>                 wait; ///< waits for the next tick and returns when it is [s]
     std::function<void(double gain, Stage)> act;  ///< what the user does, each tick; may be empty
 };
 
-/// Tells whether a mass has come onto the grip and hangs still.
+/// Detects that a mass has been hung on the grip and hangs still.
 class HangsStill {
 public:
     bool operator()(double upwards, double speed, double dt) noexcept
     {
         constexpr double kLeast = 0.2, kStill = 5e-3, kLong = 3; // [N], [m/s], [s] beyond the integral's second
         time_ += dt;
-        if (time_ < 1) without_ = upwards; // it has just stopped moving
+        if (time_ < 1) without_ = upwards; // the arm has just stopped moving
         still_ = upwards > without_ + kLeast && speed < kStill ? still_ + dt : 0;
         return still_ >= kLong;
     }
@@ -84,10 +84,11 @@ private:
 void tell(const CalibrateOptions& o, Stage stage)
 {
     if (stage == Stage::bare)
-        std::cerr << "palpate: lift the grip to the middle of its workspace and hold it there loosely; let go as force "
-                     "comes on, within 2 s; the arm is weighed, going up and down for 16 s\n";
+        std::cerr << "palpate: lift the grip to the middle of its workspace and hold it there loosely; release it when "
+                     "the force begins, within 2 s; the arm then moves up and down for 16 s and is weighed\n";
     if (stage == Stage::hang)
-        std::cerr << "palpate: hang " << o.mass << " on the grip and let go; it goes on once the mass hangs still\n";
+        std::cerr << "palpate: hang " << o.mass
+                  << " on the grip and release it; the weighing continues when the mass hangs still\n";
     if (stage == Stage::loaded) std::cerr << "palpate: hands off: arm and mass are weighed for 16 s\n";
 }
 
@@ -97,20 +98,22 @@ void tell(const CalibrateOptions& o, Stage stage)
     throw CheckFailed(why);
 }
 
-/// \param ill  [s] that the device has been at fault
+/// Gives up if the device is at fault or the governor has stopped the force.
+/// \param ill  time for which the device has been at fault [s]
 void demandWell(const HapticState& state, double ill, GovernorFault fault)
 {
     constexpr double kPatience = 1; // [s]
     if (ill > kPatience)
-        giveUp(std::string("the Falcon is not well: ") + name(state.fault) + "; palpate doctor may tell why");
+        giveUp(std::string("the Falcon reports a fault: ") + name(state.fault) + "; run palpate doctor for the cause");
     if (fault != GovernorFault::none)
-        giveUp(std::string("the governor stopped the force: ") + name(fault) + "; start again, move the grip slowly");
+        giveUp(std::string("the governor stopped the force: ") + name(fault) +
+               "; start again and move the grip slowly");
 }
 
-/// Goes through all stages. Whichever way it ends, the device closes, and so its last force is zero.
+/// Goes through all stages. However it ends, the device is closed, so its last force is zero.
 void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibration)
 {
-    constexpr double         kPatience = 300; // [s] for all of it
+    constexpr double         kPatience = 300; // [s] for all stages
     const std::atomic<bool>& stop      = catchInterrupts();
     ForceGovernor            governor;
     HangsStill               hangsStill;
@@ -118,7 +121,7 @@ void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrati
     Stage                    told  = Stage::done;
     const double             begin = bench.wait();
     for (double last = begin, gain = 0, ill = 0, period = 1e-3; calibration.stage() < Stage::done;) {
-        if (stop) throw Error("calibration was given up; no force flows");
+        if (stop) throw Error("the calibration was interrupted; the force is off");
         if (calibration.stage() != told) tell(o, told = calibration.stage());
         const double now = bench.wait(), dt = now - last;
         last = now;
@@ -142,15 +145,15 @@ void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrati
         force = governor.force();
         if (told == Stage::hang && hangsStill(force.newtons().y, glm::length(state.velocity), dt)) calibration.hung();
         if (told == Stage::hang && !state.inBox)
-            giveUp("the grip was pulled out of its workspace: take a lighter mass, and let it down gently");
-        if (now > begin + kPatience) giveUp("it took more than 5 minutes; nothing was weighed");
+            giveUp("the grip was pulled out of its workspace: take a lighter mass and lower it gently");
+        if (now > begin + kPatience) giveUp("the calibration took more than 5 minutes; nothing was weighed");
     }
     if (calibration.stage() == Stage::failed) giveUp(calibration.failure());
 }
 
 void weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
 {
-    HidapiSystem hid; // which a Falcon does not use
+    HidapiSystem hid; // not used by a Falcon
     const auto   falcon = kFalconRecord.make({.hid = hid, .options = o.falcon});
     falcon->open();
     waitForHoming(*falcon, catchInterrupts());
@@ -162,20 +165,20 @@ void weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
     weigh(o, bench, calibration);
 }
 
-/// What is true of the emulated Falcon, and unknown to its driver.
+/// The emulated Falcon's true values, which its driver does not know.
 constexpr double kEmulatedCounts = 5000; ///< [counts/(N m)]
-constexpr double kEmulatedArm    = 0.21; ///< [kg] of it weighs on the grip
+constexpr double kEmulatedArm    = 0.21; ///< [kg] part of the arm that weighs on the grip
 
-/// A Falcon of whose force friction takes 0.05 N, in virtual time, and a user with a mass in reach.
+/// A Falcon in virtual time whose friction takes 0.05 N of its force, and a user with a mass within reach.
 struct EmulatedBench {
     SimulatedArm  arm;
     double        hanging = 0; ///< [kg]
-    double        asked   = 0; ///< [s] since the user is to hang the mass
+    double        asked   = 0; ///< [s] since the user was asked to hang the mass
     double        now     = 0; ///< [s]
     Ft232Emulator emulator;
     FalconDevice  falcon;
 
-    static constexpr glm::dvec3 kHeld{0, 0.004, -0.006}; ///< [m] where the user holds the grip at first
+    static constexpr glm::dvec3 kHeld{0, 0.004, -0.006}; ///< [m] the place where the user first holds the grip
 
     explicit EmulatedBench(double countsPerTorque)
         : arm({.friction = 0.05, .encoderStep = 0, .delaySamples = 0}, kHeld),
@@ -202,14 +205,14 @@ struct EmulatedBench {
         return settings;
     }
 
-    /// The mass's inertia is omitted, because means do not see it.
+    /// The mass's inertia is omitted, because it does not change means.
     glm::dvec3 moved(const glm::dvec3& force, double dt)
     {
         arm.step(force - glm::dvec3(0, (kEmulatedArm + hanging) * 9.81, 0), dt);
         return arm.position();
     }
 
-    /// Holds the grip until force comes on, and hangs `mass` [kg] on it two seconds after being asked to.
+    /// Holds the grip until the force begins, and hangs `mass` [kg] on it two seconds after being asked to.
     void act(double gain, Stage stage, double mass)
     {
         arm.holdBy(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = kHeld} : SimulatedHand{});
@@ -220,7 +223,7 @@ struct EmulatedBench {
 
 void weighEmulated(const CalibrateOptions& o, double mass, FalconCalibration& calibration)
 {
-    std::cerr << "palpate: this Falcon is emulated, and so is the hand that does what follows, faster than real time\n";
+    std::cerr << "palpate: this Falcon and the hand that acts on it are emulated, faster than real time\n";
     EmulatedBench emulated(countsBefore(o));
     Bench bench{emulated.falcon, [&] { return emulated.now = std::max(emulated.now + 1e-3, emulated.emulator.now()); },
                 [&](double gain, Stage stage) { emulated.act(gain, stage, mass); }};
@@ -240,13 +243,12 @@ void print(const CalibrateOptions& o, double mass, const FalconCalibration& cali
         std::cout << jsonText(report);
         return;
     }
-    std::printf("counts per N m   %.0f   (%.0f until now: its forces were %.2f times what was asked for)\n", counts,
+    std::printf("counts per N m   %.0f   (%.0f before: the forces were %.2f times those asked for)\n", counts,
                 countsBefore(o), countsBefore(o) / counts);
     std::printf("the arm          %.0f g weigh on the grip\n", 1000 * arm);
     if (o.emulator)
-        std::printf(
-            "in truth         %.0f and %.0f g: this Falcon is emulated, its numbers are good for nothing else\n",
-            kEmulatedCounts, 1000 * kEmulatedArm);
+        std::printf("true values      %.0f and %.0f g: this Falcon is emulated, do not use its numbers with another\n",
+                    kEmulatedCounts, 1000 * kEmulatedArm);
     std::printf("use it           palpate run SCENE --hand falcon --falcon-counts %.0f\n", counts);
 }
 
@@ -265,15 +267,17 @@ void calibrate(const CalibrateOptions& o)
 
 void addCalibrateCommand(CLI::App& app)
 {
-    auto* command = app.add_subcommand("calibrate", "a Falcon weighs a known mass, so that its newtons are true");
+    auto* command = app.add_subcommand("calibrate", "weighs a known mass with a Falcon to calibrate its force");
     auto  o       = std::make_shared<CalibrateOptions>();
-    command->add_option("--mass", o->mass, "what you will hang on the grip, 50 g to 500 g")->capture_default_str();
+    command->add_option("--mass", o->mass, "the mass that you will hang on the grip, 50 g to 500 g")
+        ->capture_default_str();
     addDeviceOptions(*command, o->falcon, std::array{&kFalconRecord});
-    command->add_flag("--emulator", o->emulator, "an emulated Falcon and hand, in virtual time: to see how it goes");
-    command->add_flag("--json", o->json, "machine-readable; what to do is said on standard error all the same");
+    command->add_flag("--emulator", o->emulator,
+                      "calibrates an emulated Falcon with an emulated hand, in virtual time, as a demonstration");
+    command->add_flag("--json", o->json, "machine-readable; instructions still go to standard error");
     command->footer(
-        "The grip goes up and down by 8 mm while the mean of the force is taken, without the mass and with it;\n"
-        "a minute in all. Nothing may touch it meanwhile. Exit code 1: it could not be weighed.\n"
+        "The grip moves up and down by 8 mm while the mean force is measured, first without and then with the mass.\n"
+        "This takes a minute; nothing may touch the grip meanwhile. Exit code 1: the weighing failed.\n"
         "Examples:\n"
         "  palpate calibrate --mass '200 g'\n"
         "  palpate calibrate --mass 0.1 --falcon-firmware falcon.bin\n"

@@ -26,9 +26,9 @@ nlohmann::json pointJson(const glm::dvec3& p)
 
 void refuseSourceAsTarget(const std::string& option, const std::string& source, const std::string& target)
 {
-    std::error_code none; // no such file: no danger
+    std::error_code none; // no such file: nothing is lost
     if (!std::filesystem::equivalent(source, target, none) || none) return;
-    throw Error(option + ": " + target + " is the cloud that is read, which would be lost; name another file");
+    throw Error(option + ": " + target + " is the file of the cloud and would be overwritten; name another file");
 }
 
 std::string placeText(const glm::dvec3& place, double diagonal, double metresPerUnit)
@@ -48,7 +48,8 @@ std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& 
 {
     std::vector<std::string> said;
     if (report.lengthUnitAssumed)
-        said.emplace_back("assumed metres: there is no length_unit, and no comment in the file; set --length-unit");
+        said.emplace_back(
+            "assumed metres: no length_unit is set and the file has no comment on its unit; set --length-unit");
     if (report.stiffnessAssumed && scene.stiffness.empty())
         said.push_back("no stiffness in the file: uniform " + formatQuantity(kDefaultModulus, "Pa") +
                        " assumed; set --uniform or --stiffness");
@@ -60,7 +61,7 @@ std::vector<std::string> huntNote(const Scene& scene, const PointCloud& cloud)
     const study::HiddenNodules* const hidden = study::hiddenIn(scene);
     if (!hidden) return {};
     return {"the scene's hunt has hidden " + counted(hidden->nodules(cloud, scene).size(), "nodule") +
-            " in this stiffness; palpate hunt and palpate view score who looks for them"};
+            " in this stiffness; palpate hunt and palpate view score a search for them"};
 }
 
 std::vector<std::string> cloudWarnings(const Scene& scene, const PointCloud& cloud, const CloudFileReport& report)

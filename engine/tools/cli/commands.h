@@ -6,7 +6,7 @@
 
 namespace palp {
 
-/// Each adds one sub-command; its callback prints to standard output and throws Error on bad input.
+/// Each of these functions adds one sub-command; its callback prints to standard output and throws Error on bad input.
 void addInfoCommand(CLI::App& app);
 void addConvertCommand(CLI::App& app);
 void addPaintCommand(CLI::App& app);
@@ -14,7 +14,7 @@ void addTouchCommand(CLI::App& app);
 void addSolveCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
 void addDoctorCommand(CLI::App& app);
-void addRunCommand(CLI::App& app); ///< run and replay
+void addRunCommand(CLI::App& app); ///< adds run and replay
 void addHuntCommand(CLI::App& app);
 void addStudyCommand(CLI::App& app);
 void addRenderCommand(CLI::App& app);
@@ -24,23 +24,24 @@ void addPaperCommand(CLI::App& app);
 void addCalibrateCommand(CLI::App& app);
 void addBenchCommand(CLI::App& app);
 
-/// A check that was asked for says no: exit code 1. What was found has been printed.
+/// The failure of a check that was asked for: exit code 1. The findings have been printed.
 struct CheckFailed : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// \throws Error naming the first option of the command that was given an empty value
+/// Refuses options that are given an empty value.
+/// \throws Error naming the first such option of the command
 void refuseEmptyValues(const CLI::App& command);
 
-/// So that no slip writes a picture over a scene, a hand or a table.
+/// Refuses other files, so that no slip writes a picture over a scene, a hand or a table.
 /// \param option  opens the complaint
 /// \throws Error unless the file's name ends in .svg, or is empty: no picture
 void demandSvg(const std::string& option, const std::string& file);
 
-/// The command line that a command's options are, quoted for a shell.
+/// Returns the command line with a command's options, quoted for a shell.
 [[nodiscard]] std::string commandOf(const CLI::App& command);
 
-/// JSON as all programs print it. A file name may hold bytes that are not UTF-8: JSON cannot, they become U+FFFD.
+/// Returns JSON as all commands print it. JSON holds only UTF-8: other bytes, as in file names, become U+FFFD.
 template <class Json>
 [[nodiscard]] std::string jsonText(const Json& json)
 {

@@ -36,7 +36,7 @@ void convert(const ConvertOptions& options)
     std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
     if (!faces && !loaded.faces.empty())
         warnings.push_back("the " + std::to_string(loaded.faces.size()) +
-                           " triangles are not in it: only PLY holds faces; name a .ply file to keep them");
+                           " triangles were not written: only PLY holds faces; name a .ply file to keep them");
     if (options.json) {
         nlohmann::json report = cloudJson(options.source.name, loaded);
         report["written"]     = options.target;
@@ -60,7 +60,7 @@ void addConvertCommand(CLI::App& app)
     const auto options = std::make_shared<ConvertOptions>();
     options->source.addTo(*command, SceneKey::Group::object);
     command->add_option("TARGET", options->target, "a .ply, .pcd, .xyz, .txt or .csv file")->required();
-    command->add_option("--encoding", options->encoding, "of PLY and PCD: binary, binary-big-endian, ascii")
+    command->add_option("--encoding", options->encoding, "encoding of PLY and PCD: binary, binary-big-endian or ascii")
         ->capture_default_str();
     command->add_flag("--json", options->json, "machine-readable report");
     command->footer("Examples:\n"

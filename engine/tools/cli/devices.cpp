@@ -21,10 +21,10 @@ struct DevicesOptions {
     bool json       = false;
 };
 
-/// What this machine can solve plates on.
+/// The processors of this machine that can solve plates.
 struct Machine {
     std::vector<compute::Processor>   gpus;
-    std::optional<compute::Processor> host{compute::describeHost()}; ///< empty: only GPUs are asked for
+    std::optional<compute::Processor> host{compute::describeHost()}; ///< empty: only GPUs were asked for
     std::string                       processor{processorName()}, instructionSet{hostVariant().isa}; ///< of the host
     int                               taken = host->index; ///< index of the one that "auto" takes
 };
@@ -93,7 +93,7 @@ void printText(const DeviceList& haptics)
     std::cout << "looked for with " << hapticSupport() << "\n";
 }
 
-/// Vulkan may be broken; the host is there all the same.
+/// Lists the processors; where Vulkan is broken the host remains.
 /// \throws compute::ProcessorError if Vulkan does not start and only GPUs are asked for
 Machine lookAtMachine(const DevicesOptions& options)
 {
@@ -161,23 +161,24 @@ void printDevices(const DevicesOptions& options)
 
 void addDevicesCommand(CLI::App& app)
 {
-    CLI::App*    command = app.add_subcommand("devices", "lists haptic devices, and the processors that solve plates");
+    CLI::App*    command = app.add_subcommand("devices", "lists haptic devices and the processors that solve plates");
     const auto   options = std::make_shared<DevicesOptions>();
     CLI::Option* haptic  = command->add_flag("--haptic", options->haptic, "lists only haptic devices");
     CLI::Option* all     = command->add_flag("--processors", options->processors,
                                              "lists only processors: GPUs, as Vulkan sees them, and the host");
-    command->add_flag("--gpus", options->gpus, "lists only GPUs; exit code 4: none can be used")->excludes(haptic, all);
+    command->add_flag("--gpus", options->gpus, "lists only GPUs; exit code 4 if none can be used")
+        ->excludes(haptic, all);
     all->excludes(haptic);
     command->add_flag("--json", options->json,
-                      "machine-readable: a list where only one sort is asked for, else an object with \"haptic\" and "
+                      "machine-readable: a list if only one kind is asked for, else an object with \"haptic\" and "
                       "\"processors\"; \"auto\" is true for the processor that auto takes");
     command->footer(
-        "A haptic device is opened and let go again to see whether that works; one that cannot be used comes with\n"
-        "the reason and with what helps. \"palpate doctor\" looks at the rest of the machine.\n"
+        "Each haptic device is opened and closed again as a test; for one that cannot be used the list gives the\n"
+        "reason and a remedy. \"palpate doctor\" examines the rest of the machine.\n"
         "A GPU is named by its index or by a part of its name; \"host\" is this processor, with native code for the\n"
         "best instruction set that it has; the environment variable PALPATE_HOST_ISA sets a limit (portable,\n"
-        "avx2 or avx512). auto takes a GPU, discrete before integrated before virtual, else the host. It takes no\n"
-        "GPU in software; such a one is taken by its name, or by \"lavapipe\".\n"
+        "avx2 or avx512). auto takes a GPU, discrete before integrated before virtual, else the host. It never takes\n"
+        "a GPU in software; choose one by its name, or by \"lavapipe\".\n"
         "Examples:\n"
         "  palpate devices\n"
         "  palpate devices --processors --json\n"

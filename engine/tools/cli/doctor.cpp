@@ -53,12 +53,12 @@ void examineAndPrint(bool asJson)
 
 void addDoctorCommand(CLI::App& app)
 {
-    CLI::App*  command = app.add_subcommand("doctor", "what this machine lacks for haptics, and what helps");
+    CLI::App*  command = app.add_subcommand("doctor", "lists what this machine lacks for haptics, with remedies");
     const auto asJson  = std::make_shared<bool>(false);
     command->add_flag("--json", *asJson, "machine-readable");
     command->footer(
-        "What it prints names no person, no file and no serial number: paste it into a report.\n"
-        "\"ok\"; \"warning\": it works, but worse than it could; \"missing\": what needs it does not work.\n"
+        "The output names no person, no file and no serial number, so that it can be pasted into a report.\n"
+        "Verdicts: \"ok\"; \"warning\": works, but not at its best; \"missing\": what needs it does not work.\n"
         "The exit code is 0, whatever was found.\n"
         "Examples:\n"
         "  palpate doctor\n"

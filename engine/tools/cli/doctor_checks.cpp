@@ -60,7 +60,7 @@ Finding display()
 {
     if (!displayName().empty()) return {"display", Verdict::ok, displayName()};
     return {"display", Verdict::missing, "neither DISPLAY nor WAYLAND_DISPLAY is set",
-            "run it on a desktop; without a window there are \"palpate run\" and \"palpate touch\""};
+            "run it on a desktop; \"palpate run\" and \"palpate touch\" need no window"};
 }
 
 #ifdef __linux__
@@ -92,12 +92,11 @@ Finding usb()
     std::error_code failed;
     const auto      buses = std::distance(fs::directory_iterator("/dev/bus/usb", failed), fs::directory_iterator());
     if (!failed && buses > 0) return {"usb", Verdict::ok, std::to_string(buses) + " buses in /dev/bus/usb"};
-    return {
-        "usb", Verdict::missing, "there is no /dev/bus/usb",
-        "in a container pass it on, in Docker's case by its option --device /dev/bus/usb; else the kernel has no USB"};
+    return {"usb", Verdict::missing, "there is no /dev/bus/usb",
+            "in a container pass it on, with Docker by --device /dev/bus/usb; elsewhere the kernel lacks USB support"};
 }
 
-/// What is to be said of a kind of device that needs hardware.
+/// Returns the finding on a kind of device that needs hardware.
 Finding ofDevice(const DeviceRecord& record, const DeviceList& haptics)
 {
     const std::string   part(record.name);
@@ -119,7 +118,7 @@ Finding ofDevice(const DeviceRecord& record, const DeviceList& haptics)
 
 std::vector<Finding> examine(const DeviceList& haptics)
 {
-    std::vector<Finding> findings{realTime()}; // first: drivers of GPUs map memory that would be locked as well
+    std::vector<Finding> findings{realTime()}; // first, because GPU drivers map memory that would be locked too
     for (const Finding& finding : {vulkan(), host(), display(), usb()}) findings.push_back(finding);
     for (const DeviceRecord* record : deviceRecords()) {
         if (record->support) findings.push_back(ofDevice(*record, haptics));

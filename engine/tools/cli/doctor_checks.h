@@ -6,11 +6,11 @@
 
 namespace palp {
 
-/// Examines every part of the machine that a session needs, in less than a second. For some milliseconds a thread of its
-/// own asks for real-time scheduling and locks all memory, then it gives both back.
+/// Examines every part of the machine that a session needs, in less than a second. For some milliseconds another thread
+/// asks for real-time scheduling and locks all memory, then gives both back.
 [[nodiscard]] std::vector<Finding> examine(const DeviceList& haptics);
 
-/// What the program is made of: its version, compiler, libraries, and the system below.
+/// The program's version, compiler and libraries, and the system that it runs on.
 struct Make {
     std::string palpate, compiler, libraries, system;
 };

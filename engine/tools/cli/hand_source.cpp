@@ -17,7 +17,7 @@ double metres(const std::string& text, const std::string& option, double metresP
     throw Error(option + ": expected a length above 0, found \"" + text + "\"");
 }
 
-/// "50 mm/s" or "0.05".
+/// Reads "50 mm/s" or "0.05" [m/s].
 double metresPerSecond(const std::string& text, const std::string& option)
 {
     std::string length = text;
@@ -28,7 +28,7 @@ double metresPerSecond(const std::string& text, const std::string& option)
                 ", found \"" + text + "\"");
 }
 
-/// "150 N/m" or "150".
+/// Reads "150 N/m" or "150" [N/m].
 SimulatedHand gripOf(const std::string& text)
 {
     std::string number = text;

@@ -8,7 +8,7 @@
 
 namespace palp {
 
-/// What the command line says about the hand, in its own words.
+/// The options of the hand, as the command line gives them.
 struct HandOptions {
     std::string        hand  = "scan"; ///< as HandChoice::hand
     std::string        speed = "50 mm/s", depth, reach = "10 mm";
@@ -18,28 +18,28 @@ struct HandOptions {
     std::string        seconds; ///< "5 s"; empty: 5 s, or a file's own length
 };
 
-/// "press, circle, scan": the hands that Palpate generates.
+/// Returns "press, circle, scan": the hands that Palpate generates.
 [[nodiscard]] std::string generatedHands();
 
-/// "falcon, bridge, ...": the devices that a command without a window can use.
+/// Returns "falcon, bridge, ...": the devices that a command without a window can use.
 [[nodiscard]] std::string deviceHands();
 
 /// Adds every option of these devices.
 void addDeviceOptions(CLI::App& command, DeviceOptionValues& values, std::span<const DeviceRecord* const> records);
 
-/// "5 s" or "5" [s].
+/// Reads "5 s" or "5" [s].
 /// \throws Error naming --seconds
 [[nodiscard]] double secondsOf(const std::string& text);
 
-/// The hand that the options ask for, with its device open.
+/// Returns the hand that the options ask for, with its device open.
 /// \throws Error naming the option, the file, or why the device cannot be used
 [[nodiscard]] SessionHand handFor(const HandOptions& options, const Scene& scene, const SoftObject& object);
 
-/// Checks what can be said of the options before a hand is there: its name, its numbers, a file that can be read.
+/// Checks what can be checked before the hand is opened: its name, its numbers, a file that can be read.
 /// \throws Error naming the option
 void demandGood(const HandOptions& options);
 
-/// Waits until somebody has homed the device, and says on standard error what to do.
+/// Waits until the user has homed the device, and says on standard error what to do.
 /// \throws Error as the function of device/homing.h does
 void waitForHoming(HapticDevice& device, const std::atomic<bool>& stop);
 

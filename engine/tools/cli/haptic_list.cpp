@@ -23,7 +23,7 @@ DeviceList listHaptics()
     for (DeviceListing& device : list.devices) {
         const DeviceRecord* record = deviceNamed(device.name);
         if (!record || record->holder != DeviceHolder::pointer || !displayName().empty()) continue;
-        device.usable = false; // it lives in a window
+        device.usable = false; // the device is a window's pointer
         device.why    = "there is no display";
         device.help   = "run it on a desktop, or with DISPLAY or WAYLAND_DISPLAY set";
     }

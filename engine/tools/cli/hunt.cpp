@@ -12,7 +12,7 @@
 #include "engine/tools/cli/session_run.h"
 #include "engine/tools/study/hunt_picture.h"
 
-// palpate hunt: a hand looks for hidden nodules, and how it went is scored.
+// palpate hunt: a hand looks for hidden nodules, and its search is scored.
 
 namespace palp {
 namespace {
@@ -49,15 +49,16 @@ void tell(const HuntOptions& o, const Scene& scene, const SoftObject& object, co
     printText(score, study::hiddenIn(scene)->hunt);
 }
 
-/// The scene of who named none is there in a checkout alone.
+/// Checks that the default scene exists, which only a checkout has.
 void demandScene(const HuntOptions& o)
 {
     if (o.scene.name == kDefaultScene && !std::filesystem::exists(kDefaultScene))
-        throw Error(std::string("SCENE: ") + kDefaultScene +
-                    " was not found here; name a scene file with a \"hunt\", or go to the folder of palpate's samples");
+        throw Error(
+            std::string("SCENE: ") + kDefaultScene +
+            " was not found here; name a scene file with a \"hunt\", or run the command from Palpate's checkout");
 }
 
-/// A session that was recorded.
+/// Scores a recorded session.
 void scoreRecorded(const HuntOptions& o)
 {
     const RecordedSession session = readSession(o.score);
@@ -65,7 +66,7 @@ void scoreRecorded(const HuntOptions& o)
     const SoftObject      object  = loadObject(scene).object;
     study::HuntScorer     scorer(scene, object.cloud());
     if (!session.cloud.empty() && session.cloud != fingerprint(object.cloud()))
-        throw Error(o.score + ": expected the cloud that was recorded, found another one: " + scene.cloud +
+        throw Error(o.score + ": expected the cloud of the recording, found another one: " + scene.cloud +
                     " has changed");
     for (const TickRecord& sample : session.samples) scorer.add(sample);
     tell(o, scene, object, scorer.score(), {});
@@ -90,19 +91,18 @@ void hunt(HuntOptions o)
 
 void addHuntCommand(CLI::App& app)
 {
-    CLI::App*  command = app.add_subcommand("hunt", "a hand looks for hidden nodules, and is scored");
+    CLI::App*  command = app.add_subcommand("hunt", "scores a hand's search for hidden nodules");
     const auto o       = std::make_shared<HuntOptions>();
     o->scene.addTo(*command, SceneKey::Group::session);
-    command->add_option("--score", o->score, "folder of a session that was recorded: nothing is felt, only scored")
+    command->add_option("--score", o->score, "folder of a recorded session, which is scored without touching anything")
         ->excludes(command->get_option("SCENE"));
     addSessionOptions(*command, o->session);
     command->add_option("--record", o->session.record, "a new folder for the session");
-    command->add_option("--out", o->out, "a picture from above: what was hidden, found, missed and declared (.svg)");
+    command->add_option("--out", o->out, "a picture from above of hidden, found, missed and declared places (.svg)");
     command->add_flag("--json", o->json, "machine-readable, SI units");
     command->footer(
-        "A button of the device, held for 20 ms, declares the place that is touched. A hand from a file "
-        "presses with a column\n\"buttons\". Nobody holding a device: palpate view SCENE, where M "
-        "declares.\n"
+        "A button of the device, held for 20 ms, declares the touched place. In a hand's file the column \"buttons\"\n"
+        "does. Without a device use palpate view SCENE, where M declares.\n"
         "Examples:\n"
         "  palpate hunt samples/scenes/nodule_hunt.json --hand falcon --seconds 60 --hunt-seed 7 --out hunt.svg\n"
         "  palpate hunt samples/scenes/nodule_hunt.json --hand samples/scenes/nodule_hunt_hand.csv --clock "

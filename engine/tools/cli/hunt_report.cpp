@@ -87,7 +87,7 @@ void printText(const HuntScore& s, const study::Hunt& hunt)
               << percent(s.tooHard) << " of the contact above " << formatQuantity(hunt.tooHard, "N") << "\n"
               << "  in contact for " << formatQuantity(s.contact, "s") << " of " << formatQuantity(s.duration, "s")
               << "; " << percent(s.coverage) << " of the ground felt\n";
-    if (s.inAir > 0) std::cout << "  " << s.inAir << " declared without touching: they say nothing of any place\n";
+    if (s.inAir > 0) std::cout << "  " << s.inAir << " declared without touching, and not scored as a place\n";
     if (s.declarations.empty())
         std::cout << "  nothing was declared: press a button of the device over a nodule (M in the window, a column "
                      "\"buttons\" in a hand's file)\n";

@@ -5,10 +5,10 @@
 
 namespace palp {
 
-/// How a hunt went, as the programs tell it: SI units, names with their unit.
+/// Returns a hunt's score as all commands print it: SI units, names with their unit.
 [[nodiscard]] nlohmann::json jsonOf(const study::HuntScore& score);
 
-/// The same as a table on standard output.
+/// Prints the same as a table on standard output.
 void printText(const study::HuntScore& score, const study::Hunt& hunt);
 
 } // namespace palp

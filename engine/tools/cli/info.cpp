@@ -86,7 +86,7 @@ void printSamples(bool json)
 
 void addInfoCommand(CLI::App& app)
 {
-    CLI::App*  command = app.add_subcommand("info", "what a cloud holds and how it is understood");
+    CLI::App*  command = app.add_subcommand("info", "shows what a cloud holds and how it is read");
     const auto options = std::make_shared<InfoOptions>();
     options->source.addTo(*command, SceneKey::Group::object);
     command->get_option("SCENE")->required(false);

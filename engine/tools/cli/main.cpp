@@ -1,5 +1,5 @@
-// palpate: the command line. Exit codes: 0 good, 1 a check that failed or a fault of ours, 2 bad usage or input, 4 a
-// GPU that is asked for cannot be used.
+// palpate: the command line. Exit codes: 0 good, 1 a failed check or an internal fault, 2 bad usage or input, 4 a
+// requested GPU cannot be used.
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -32,7 +32,7 @@ constexpr int kNoGpu       = 4; // 3 is a missing package, see engine/prepare.sh
 
 constexpr const char* kUnprinted = "standard output cannot be written";
 
-/// What was printed has arrived, by whichever of the two libraries.
+/// Flushes both libraries' output and checks that it has been written.
 bool printed()
 {
     std::cout.flush();
@@ -46,7 +46,7 @@ int complain(const std::string& sentence, int code)
     return code;
 }
 
-/// The library would only say that some command is required.
+/// Names an unknown command, where the library would only say that some command is required.
 void refuseUnknownCommand(const CLI::App& app, const std::string& name)
 {
     std::string known;
@@ -57,7 +57,7 @@ void refuseUnknownCommand(const CLI::App& app, const std::string& name)
     throw palp::Error("unknown command \"" + name + "\"; known: " + known + "; see --help");
 }
 
-/// "help solve" means "solve --help".
+/// Turns "help solve" into "solve --help".
 std::vector<const char*> wordsOf(int argumentCount, char** arguments)
 {
     std::vector<const char*> words(arguments, arguments + argumentCount);
@@ -67,8 +67,8 @@ std::vector<const char*> wordsOf(int argumentCount, char** arguments)
     return words;
 }
 
-/// The allocation that failed may have unwound through a driver, which then waits for its own locks in its exit
-/// handlers: there is no way out through them.
+/// Ends the program without its exit handlers: an allocation that failed inside a driver may have left locks for which
+/// the driver's handlers would wait.
 [[noreturn]] void leaveWithoutMemory()
 {
     std::_Exit(complain("out of memory; try fewer cells or points", kBadInput)); // std::cerr has no buffer
@@ -89,23 +89,23 @@ int main(int argumentCount, char** arguments)
     app.set_version_flag("--version", "palpate " PALPATE_VERSION);
     app.footer("Examples:\n"
                "  palpate touch sample:skin --out touch          a poke into a wart, with pictures\n"
-               "  palpate info scan.ply --length-unit mm         what a file holds and how it is understood\n"
+               "  palpate info scan.ply --length-unit mm         what a file holds and how it is read\n"
                "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
                "  palpate paint scan.ply --stroke 'at=0,0,30mm radius=5mm value=2MPa' --out wart.ply\n"
-               "                                                 a stiff spot on it; the rest of the file stays\n"
+               "                                                 a stiff spot on it; the rest of the file is kept\n"
                "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
                "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
-               "  palpate hunt samples/scenes/nodule_hunt.json   a hand looks for hidden nodules, and is scored\n"
+               "  palpate hunt samples/scenes/nodule_hunt.json   a hand's search for hidden nodules, scored\n"
                "  palpate study samples/studies/paper.json --participant P01 --out study   blinded trials, a table of "
                "answers\n"
                "  palpate render sample:palm --out palm.png      a picture of a touch, without a display\n"
-               "  palpate perceive sample:skin                   what a person would notice of it, predicted\n"
+               "  palpate perceive sample:skin                   a prediction of what a person would notice\n"
                "  palpate paper --out report                     the paper's experiments, computed again\n"
-               "  palpate devices                                what this machine can compute on, and feel with\n"
-               "  palpate doctor                                 what it lacks, and what helps\n"
-               "  palpate calibrate --mass '200 g'               a Falcon weighs a mass, so that its newtons are true\n"
-               "  palpate bench --quick                          how fast its solver is, and those of others\n"
-               "Each command explains itself with --help.");
+               "  palpate devices                                processors and haptic devices of this machine\n"
+               "  palpate doctor                                 what it lacks for haptics, with remedies\n"
+               "  palpate calibrate --mass '200 g'               a Falcon weighs a mass to calibrate its force\n"
+               "  palpate bench --quick                          times of its solver and of alternatives\n"
+               "Run a command with --help for its options and examples.");
     palp::addTouchCommand(app);
     palp::addSolveCommand(app);
     palp::addInfoCommand(app);
@@ -122,7 +122,7 @@ int main(int argumentCount, char** arguments)
     palp::addPaperCommand(app);
     palp::addCalibrateCommand(app);
     palp::addBenchCommand(app);
-    std::signal(SIGXFSZ, SIG_IGN); // a file beyond the limit on sizes is then a write that fails, with a sentence
+    std::signal(SIGXFSZ, SIG_IGN); // a file beyond the size limit then fails as a write, with a sentence
     try {
         const std::vector<const char*> words = wordsOf(argumentCount, arguments);
         if (words.size() > 1) refuseUnknownCommand(app, words[1]);

@@ -25,15 +25,16 @@ struct PaintOptions {
     bool                     json = false;
 };
 
-/// What is painted, and how its file was read.
+/// The painted cloud, and how its file was read.
 struct Canvas {
     explicit Canvas(const SceneSource& source)
         : scene(source.load()), loaded(source.loadCloud(scene)), file(isSample(scene) ? "" : scene.cloud),
           warnings(cloudWarnings(scene, loaded.cloud, loaded.report))
     {
         if (!scene.stiffness.empty() && source.name.ends_with(".json"))
-            warnings.emplace_back("the scene's law is painted over here, but in a session it would replace what is "
-                                  "painted: take the key \"stiffness\" out of a scene of the new cloud");
+            warnings.emplace_back(
+                "the scene's law of stiffness is painted over here, but in a session it would replace "
+                "the paint: take the key \"stiffness\" out of a scene of the new cloud");
     }
 
     Scene                    scene;
@@ -47,7 +48,8 @@ bool isPly(const std::string& file)
     return !file.empty() && holdsFaces(file);
 }
 
-/// Writes the file of the source once more, or a new one where that cannot be; says how the stiffness is found in it.
+/// Writes the source's file with the new stiffness, or else a new file.
+/// \return how the stiffness is found in it
 RepaintedPly write(const PaintOptions& o, const Canvas& canvas, const PointCloud& painted)
 {
     if (isPly(canvas.file) && isPly(o.out)) return repaintPly(canvas.file, canvas.scene.reading, painted, o.out);
@@ -70,7 +72,7 @@ nlohmann::json jsonOf(const StrokeOrder& order, const StrokeReport& report)
 
 void paint(const PaintOptions& o)
 {
-    static_cast<void>(holdsFaces(o.out)); // a name of no format is the first thing to say
+    static_cast<void>(holdsFaces(o.out)); // first, refuses a name of no known format
     Canvas canvas(o.source);
     refuseSourceAsTarget("--out", canvas.file.empty() ? o.source.name : canvas.file, o.out);
     const SoftObject         object(canvas.loaded.cloud);
@@ -99,7 +101,7 @@ void paint(const PaintOptions& o)
     if (changed == 0) canvas.warnings.emplace_back("no stroke changed anything");
     const bool kept = isPly(canvas.file) && isPly(o.out); // what the original had
     if (!written.appended && !canvas.scene.reading.stiffnessProperty.empty())
-        canvas.warnings.push_back("the stiffness is where it was: read it with --stiffness-property " +
+        canvas.warnings.push_back("the stiffness keeps its property: read it with --stiffness-property " +
                                   written.property + ", and without --stiffness-range");
     const auto [least, most] = std::minmax_element(painted.stiffness().begin(), painted.stiffness().end());
     if (o.json) {
@@ -133,21 +135,21 @@ void addPaintCommand(CLI::App& app)
     options->source.addTo(*command, SceneKey::Group::object);
     command
         ->add_option("--stroke", options->strokes,
-                     "a stroke of the brush, once for each:\n"
-                     "  at        X,Y,Z in the middle, on the surface; or a path X,Y,Z;X,Y,Z;...\n"
-                     "  radius    where the brush ends; its effect falls smoothly from the middle to there\n"
-                     "  value     the stiffness it goes towards, by equal factors; or in its place\n"
-                     "  smooth    towards the mean around each point\n"
-                     "  strength  share of the way that the stroke goes in the middle, up to 1 [1]")
+                     "a stroke of the brush; may be repeated:\n"
+                     "  at        its middle X,Y,Z on the surface, or a path X,Y,Z;X,Y,Z;...\n"
+                     "  radius    of the brush; its effect falls smoothly from the middle to this distance\n"
+                     "  value     stiffness that it approaches, by equal factors; or instead of it\n"
+                     "  smooth    approaches the mean around each point\n"
+                     "  strength  share of the way that it goes in the middle, up to 1 [1]")
         ->required()
         ->allow_extra_args(false);
     command
         ->add_option("--out", options->out,
-                     "the painted cloud; a .ply from a .ply keeps everything but the stiffness as it is")
+                     "file for the painted cloud; a .ply painted from a .ply keeps everything but the stiffness")
         ->required();
     command->add_flag("--json", options->json, "machine-readable report, SI units");
     command->footer(
-        "Only the side that the brush is on is painted, if the other one is three point spacings away.\n"
+        "Only the side under the brush is painted, if the other side is three point spacings away.\n"
         "Examples:\n"
         "  palpate paint sample:palm --stroke 'at=14mm,5mm,0 radius=6mm value=2MPa' --out palm.ply\n"
         "  palpate paint scan.ply --length-unit mm --stroke 'at=12,0,30;15,2,30;18,5,29 radius=3 value=1MPa "

@@ -20,7 +20,7 @@
 #include "engine/tools/paper/page.h"
 #include "engine/tools/paper/parts.h"
 
-// palpate paper: the paper's experiments, computed again, as one page with every number beside it.
+// palpate paper: computes the paper's experiments again and writes one page with every number beside it.
 
 namespace palp {
 namespace {
@@ -40,18 +40,16 @@ struct Part {
 
 const std::vector<Part>& parts()
 {
-    static const std::vector<Part> kParts = {{'a', "pressing the ellipsoid", placesPart},
-                                             {'b', "bending the lobe", lobePart},
-                                             {'c', "taking times", timePart},
-                                             {'d', "solving random maps", stabilityPart},
-                                             {'e', "iterating as Jacobi", jacobiPart},
-                                             {'f', "comparing maps", mapsPart},
-                                             {'g', "feeling a wart", wartPart},
-                                             {'h', "predicting what is noticed", perceptionPart}};
+    static const std::vector<Part> kParts = {
+        {'a', "pressing the ellipsoid", placesPart}, {'b', "bending the lobe", lobePart},
+        {'c', "measuring times", timePart},          {'d', "solving random maps", stabilityPart},
+        {'e', "iterating as Jacobi", jacobiPart},    {'f', "comparing maps", mapsPart},
+        {'g', "feeling a wart", wartPart},           {'h', "predicting what people notice", perceptionPart}};
     return kParts;
 }
 
-/// Letters of the parts that are wanted, in their order. \throws Error naming the known ones
+/// Returns the letters of the wanted parts, in their order.
+/// \throws Error naming the known ones
 std::string wantedParts(const std::string& only)
 {
     std::string known, wanted;
@@ -68,7 +66,7 @@ std::string wantedParts(const std::string& only)
     return known;
 }
 
-/// Devices whose time is taken: with auto the host and every GPU that can be used, else the one that is named.
+/// Returns the processors to time: with auto the host and every usable GPU, else the one that is named.
 std::vector<std::string> timedDevices(const PaperOptions& o, const PlateSolver& device)
 {
     if (!compute::isProcessorWord(o.solver, compute::kAutoProcessor)) return {o.solver};
@@ -107,7 +105,7 @@ void paper(const PaperOptions& o)
 {
     const std::string wanted = wantedParts(o.only);
     if (!o.bunny.empty() && wanted.find('b') == std::string::npos)
-        throw Error("--bunny: belongs to part b, which --only leaves out; add b to it");
+        throw Error("--bunny: is used by part b, which --only omits; add b to --only");
     SolverChoice choice;
     choice.solver      = o.solver;
     PlateSolver device = choice.open();
@@ -140,7 +138,7 @@ void paper(const PaperOptions& o)
         print(sections, folder / "index.html");
 }
 
-/// The command as a shell takes it again.
+/// Returns the command line, quoted for a shell.
 std::string commandOf(const PaperOptions& o)
 {
     std::string command = "palpate paper --out '" + o.out + "'";
@@ -154,17 +152,18 @@ std::string commandOf(const PaperOptions& o)
 
 void addPaperCommand(CLI::App& app)
 {
-    CLI::App*  command = app.add_subcommand("paper", "the paper's experiments and claims, computed again, on one page");
-    const auto o       = std::make_shared<PaperOptions>();
+    CLI::App* command =
+        app.add_subcommand("paper", "computes the paper's experiments again and compares its claims, on one page");
+    const auto o = std::make_shared<PaperOptions>();
     command->add_option("--out", o->out, "folder for index.html, numbers.json and timings.json")->required();
     command->add_option("--only", o->only, "parts, such as a,c,h [all]");
     command->add_flag("--quick", o->quick,
-                      "fewer points and coarser grids: to see that all works, not for its numbers");
+                      "fewer points and coarser grids, to check that all parts run; not for its numbers");
     command->add_option("--bunny", o->bunny,
-                        "your copy of the Stanford bunny, for an ear in part b (prints its terms)");
+                        "file with your copy of the Stanford bunny, whose ear part b bends too (prints its terms)");
     command
         ->add_option("--solver", o->solver,
-                     "where plates are solved, as for solve; auto also takes the time of every GPU that works")
+                     "where plates are solved, as in palpate solve; auto also times every GPU that works")
         ->capture_default_str();
     command->add_flag("--json", o->json, "prints every number too, SI units");
     command->footer(

@@ -8,12 +8,12 @@
 
 namespace palp {
 
-/// Everything a touch says, in SI units, for --json and touch.json.
-/// \param force  that presses [N]; the patch itself holds responses to 1 N
+/// Returns every number of a touch, in SI units, for --json and touch.json.
+/// \param force  presses [N]; the patch itself holds responses to 1 N
 [[nodiscard]] nlohmann::json patchJson(const Patch& patch, const Material& material, const PatchSettings& settings,
                                        double force, PlateSolver& device);
 
-/// The scene constants of a touch.
+/// Returns the scene constants of a touch.
 [[nodiscard]] nlohmann::json settingsJson(const Material& material, const PatchSettings& settings);
 
 } // namespace palp

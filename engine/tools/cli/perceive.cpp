@@ -19,7 +19,7 @@
 #include "engine/tools/paper/scene_perception.h"
 #include "engine/tools/paper/section.h"
 
-// palpate perceive: what a person would notice of an object's stiffness, predicted.
+// palpate perceive: predicts what a person would notice of an object's stiffness.
 
 namespace palp {
 namespace {
@@ -48,10 +48,10 @@ struct Felt {
     PlateSolver       solver;
 };
 
-/// To either side of the middle [m].
+/// Returns the length of the path to either side of the middle [m].
 double reachOf(const PerceiveOptions& o, const Scene& scene)
 {
-    constexpr double kShare = 1.0 / 3, kMost = 1; // of the window: what is felt in the middle is not felt there; [m]
+    constexpr double kShare = 1.0 / 3, kMost = 1; // of the window, beyond which the middle is not felt; [m]
     if (o.reach.empty()) return kShare * scene.patch.window;
     const double reach = parseQuantity(o.reach, Dimension::length, "--reach", metresPerPlainNumber(o.scene, scene));
     if (!(reach > 0 && reach <= kMost))
@@ -133,7 +133,7 @@ void print(const PerceiveOptions& o, const Felt& felt, const ScenePerception& p,
     row("  within 5 mm", p.atRest, &NoticedSteps::passing);
     row("  floor (artefacts)", p.atRest, &NoticedSteps::floor);
     row("right answers, sliding", p.sliding, &NoticedSteps::right);
-    std::printf("\nJ counts steps that can just be told apart; a step is told right in 3 of 4 trials.\n");
+    std::printf("\nJ counts just noticeable steps; one step is told right in 3 of 4 trials.\n");
     if (map)
         std::printf("map: %zu places, typically %s\n", map->places.size(), formatQuantity(map->typical, "N/m").c_str());
 }
@@ -162,28 +162,28 @@ void perceive(const PerceiveOptions& o)
     else
         print(o, felt, found, map);
     if (!found.floorIsLow())
-        std::cerr
-            << "palpate: warning: on the same points with one stiffness J is "
-            << formatNumber(found.sliding.front().floor)
-            << " for a finger that notices 7 %, and should be below 0.5: part of what is felt is an artefact; try "
-               "a wider --window, more --cells or a shorter --reach\n";
+        std::cerr << "palpate: warning: on the same points with one stiffness J is "
+                  << formatNumber(found.sliding.front().floor)
+                  << " for a finger that notices 7 %, and should be below 0.5: part of the felt stiffness is an "
+                     "artefact; try "
+                     "a wider --window, more --cells or a shorter --reach\n";
 }
 
 } // namespace
 
 void addPerceiveCommand(CLI::App& app)
 {
-    CLI::App*  command = app.add_subcommand("perceive", "what a person would notice of an object, predicted");
+    CLI::App*  command = app.add_subcommand("perceive", "predicts what a person would notice of an object");
     const auto o       = std::make_shared<PerceiveOptions>();
     o->scene.addTo(*command, SceneKey::Group::session);
     command->add_option("--along", o->along, "direction of the path through the place, X,Y,Z [the chart's east]");
-    command->add_option("--reach", o->reach, "of the path to either side, such as 10mm [a third of the window]");
-    command->add_option("--places", o->places, "at rest along the path")
+    command->add_option("--reach", o->reach, "length of the path to either side, such as 10mm [a third of the window]");
+    command->add_option("--places", o->places, "number of places at rest along the path")
         ->check(CLI::Range(3, 1001))
         ->capture_default_str();
     command->add_option("--out", o->out, "SVG file for felt stiffness along the path");
     command->add_option("--picture", o->picture, "SVG file for the object, coloured by what is noticed");
-    command->add_option("--picture-places", o->mapPlaces, "touches of the map, about so many")
+    command->add_option("--picture-places", o->mapPlaces, "approximate number of touches of the map")
         ->check(CLI::Range(8, 20'000))
         ->capture_default_str();
     command->add_flag("--json", o->json, "machine-readable, SI units");
@@ -191,7 +191,7 @@ void addPerceiveCommand(CLI::App& app)
                     "  palpate perceive sample:skin --out path.svg\n"
                     "  palpate perceive samples/scenes/palm.json --along 1,0,0 --reach 20mm --json\n"
                     "  palpate perceive samples/scenes/skin_wart.json --picture wart.svg\n"
-                    "J is the number of steps between two stiffnesses that can just be told apart, for people whose\n"
+                    "J is the number of just noticeable steps between two stiffnesses, for people whose\n"
                     "smallest noticed change is 7, 15 or 22 %. The floor is J on the same points with one stiffness.");
     command->callback([command, o] {
         refuseEmptyValues(*command);

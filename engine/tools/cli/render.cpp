@@ -40,7 +40,7 @@ struct RenderOptions {
     bool               dark = false, json = false, ghost = false, sphere = false, projected = false;
 };
 
-/// The value of an option with a fixed set of names, or a sentence that lists them.
+/// Returns the value of an option with a fixed set of names.
 template <class T>
 T named(const std::optional<T>& value, const std::string& option, const std::string& text, const char* known)
 {
@@ -48,7 +48,7 @@ T named(const std::optional<T>& value, const std::string& option, const std::str
     throw Error(option + ": unknown name \"" + text + "\"; known: " + known);
 }
 
-/// "1600x1200"
+/// Reads "1600x1200" [px].
 PictureSize sizeOf(const std::string& text, int finer)
 {
     constexpr int kLeast = 16, kMost = 4096; // [px]
@@ -75,7 +75,7 @@ TouchLook lookOf(const RenderOptions& o)
     return look;
 }
 
-/// Everything that is touched and drawn, made once.
+/// The touched and drawn object with its renderer, made once.
 struct Stage {
     explicit Stage(const RenderOptions& o)
         : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.processor = o.drawOn}),
@@ -86,7 +86,7 @@ struct Stage {
     PictureSize     size;
     TouchLook       look;
     Scene           scene;
-    SurfaceRenderer renderer; // before the cloud: what is missing is said at once
+    SurfaceRenderer renderer; // before the cloud, so that a missing device is reported at once
     LoadedObject    loaded;
     PlateSolver     solver;
     TouchView       view;
@@ -134,7 +134,7 @@ struct Written {
     double      force = 0, deepest = 0, milliseconds = 0; ///< [N], [m], of drawing [ms]
 };
 
-/// Draws what the view shows and writes it.
+/// Draws the view and writes the picture.
 Written write(Stage& stage, const Camera& camera, const std::filesystem::path& file)
 {
     const auto start = std::chrono::steady_clock::now();
@@ -146,7 +146,7 @@ Written write(Stage& stage, const Camera& camera, const std::filesystem::path& f
     return {file.string(), 0, 0, std::chrono::duration<double, std::milli>(end - start).count()};
 }
 
-/// A touch at the scene's place.
+/// Draws a touch at the scene's place.
 Written still(const RenderOptions& o, Stage& stage)
 {
     const Patch      patch = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
@@ -165,14 +165,15 @@ Written still(const RenderOptions& o, Stage& stage)
     return written;
 }
 
-/// The session's samples at evenly spread times, from the first to the last tick.
+/// Returns the session's records at evenly spread times, from the first to the last tick.
 std::vector<TickRecord> samplesOf(const RenderOptions& o, Stage& stage, int frames)
 {
     HandOptions hand;
-    hand.hand         = o.hand;
-    hand.seconds      = o.seconds;
+    hand.hand          = o.hand;
+    hand.seconds       = o.seconds;
     SessionHand source = handFor(hand, stage.scene, stage.loaded.object);
-    if (source.isHeldByPerson()) throw Error("--hand " + o.hand + ": somebody holds it; pictures are made of scripted hands");
+    if (source.isHeldByPerson())
+        throw Error("--hand " + o.hand + ": a person holds it; --frames needs a scripted hand");
     Deformation             deformation(stage.loaded.object, stage.scene);
     const SessionParts      parts{stage.scene, stage.loaded.object, deformation.solver(), *source.device, source.frame};
     std::vector<TickRecord> all;
@@ -184,7 +185,7 @@ std::vector<TickRecord> samplesOf(const RenderOptions& o, Stage& stage, int fram
     return samples;
 }
 
-/// "film.png", 3: "film_0003.png"
+/// Returns "film_0003.png" for "film.png", 3.
 std::filesystem::path frameFile(const std::filesystem::path& out, int number)
 {
     char text[16];
@@ -192,7 +193,7 @@ std::filesystem::path frameFile(const std::filesystem::path& out, int number)
     return out.parent_path() / (out.stem().string() + text + out.extension().string());
 }
 
-/// The session of a scripted hand in virtual time, one camera and one scale of colours for all pictures.
+/// Draws the session of a scripted hand in virtual time, with one camera and one scale of colours for all pictures.
 std::vector<Written> film(const RenderOptions& o, Stage& stage)
 {
     const Patch        middle  = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
@@ -254,7 +255,7 @@ void render(const RenderOptions& o)
     if (o.frames && (*o.frames < 1 || *o.frames > kMostFrames))
         throw Error("--frames: expected 1 to 9999, found " + std::to_string(*o.frames));
     if (o.frames && !o.force.empty())
-        throw Error("--force: with --frames the hand decides how hard it presses; leave one of the two out");
+        throw Error("--force: with --frames the hand decides how hard it presses; omit one of the two");
     Stage stage(o);
     for (const std::string& sentence : cloudWarnings(stage.scene, stage.loaded.object.cloud(), stage.loaded.report))
         std::cerr << "palpate: warning: " << sentence << "\n";
@@ -265,26 +266,30 @@ void render(const RenderOptions& o)
 
 void addRenderCommand(CLI::App& app)
 {
-    CLI::App*  command = app.add_subcommand("render", "pictures of a touched object, without a display");
+    CLI::App*  command = app.add_subcommand("render", "draws pictures of a touched object, without a display");
     const auto o       = std::make_shared<RenderOptions>();
     command->add_option("--out", o->out, "PNG file; with --frames a number is added before .png")->required();
-    command->add_option("--size", o->size, "of the picture [px]")->capture_default_str();
-    command->add_option("--finer", o->finer, "drawn so many times larger, then averaged: smooth edges")
+    command->add_option("--size", o->size, "size of the picture [px]")->capture_default_str();
+    command
+        ->add_option("--finer", o->finer,
+                     "factor by which the picture is drawn larger, then averaged, for smooth edges")
         ->check(CLI::Range(1, 4))
         ->capture_default_str();
-    command->add_option("--force", o->force, "that presses, such as '1 N' [what dents by a third of the thickness]");
-    command->add_option("--colour,--color", o->colour, "deflection, stiffness or plain")->capture_default_str();
-    command->add_option("--colour-map,--color-map", o->map, "of colours: viridis, cividis or grey")
+    command->add_option("--force", o->force,
+                        "force that presses, such as '1 N' [the force that dents by a third of the thickness]");
+    command->add_option("--colour,--color", o->colour, "quantity in colours: deflection, stiffness or plain")
+        ->capture_default_str();
+    command->add_option("--colour-map,--color-map", o->map, "map of colours: viridis, cividis or grey")
         ->capture_default_str();
     command->add_option("--exaggerate", o->exaggerate, "factor on every displacement")->capture_default_str();
-    command->add_option("--view", o->view, "patch: what bends; whole: the object")->capture_default_str();
-    command->add_flag("--dark", o->dark, "a dark ground");
-    command->add_flag("--ghost", o->ghost, "dots where the dent is at rest");
-    command->add_flag("--sphere", o->sphere, "the near half of the fitted sphere");
-    command->add_flag("--projected", o->projected, "dots where the points lie on that sphere");
-    command->add_option("--frames", o->frames, "so many pictures along the path of --hand, in virtual time");
-    command->add_option("--hand", o->hand, "of --frames: press, circle, scan or a file")->capture_default_str();
-    command->add_option("--seconds", o->seconds, "of --frames: how long the hand goes")->capture_default_str();
+    command->add_option("--view", o->view, "patch: the part that bends; whole: the object")->capture_default_str();
+    command->add_flag("--dark", o->dark, "draws on a dark ground");
+    command->add_flag("--ghost", o->ghost, "adds dots where the dented points are at rest");
+    command->add_flag("--sphere", o->sphere, "adds the near half of the fitted sphere");
+    command->add_flag("--projected", o->projected, "adds dots where the points lie on that sphere");
+    command->add_option("--frames", o->frames, "number of pictures along the path of --hand, in virtual time");
+    command->add_option("--hand", o->hand, "hand for --frames: press, circle, scan or a file")->capture_default_str();
+    command->add_option("--seconds", o->seconds, "time that the hand moves, for --frames")->capture_default_str();
     command->add_option("--draw-on", o->drawOn, "Vulkan device that draws, as \"palpate devices\" names it")
         ->capture_default_str();
     command->add_flag("--json", o->json, "machine-readable, SI units");

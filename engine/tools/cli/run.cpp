@@ -13,7 +13,7 @@
 #include "engine/tools/cli/session_run.h"
 #include "engine/tools/study/hunt_scene.h"
 
-// palpate run and palpate replay: a hand feels a scene, and a recorded session is felt again.
+// palpate run and palpate replay: a hand feels a scene, and a recorded session is computed again.
 
 namespace palp {
 namespace {
@@ -55,13 +55,13 @@ void replay(const ReplayOptions& o)
         throw Error(o.folder + ": recorded in real time, which no replay can repeat; expected clock \"virtual\"");
     Scene scene  = sceneOf(session, &study::huntKeys());
     scene.solver = o.solver.empty() ? session.solver : o.solver;
-    if (session.samples.empty()) throw Error(o.folder + ": there are no samples in it, so there is nothing to replay");
+    if (session.samples.empty()) throw Error(o.folder + ": it has no samples, so there is nothing to replay");
     if (!session.finished)
-        warn({o.folder + " was not finished: its first " + std::to_string(session.samples.size()) +
+        warn({o.folder + " is not complete: its first " + std::to_string(session.samples.size()) +
               " samples are replayed"});
     const SoftObject object = loadObject(scene).object;
     if (!session.cloud.empty() && session.cloud != fingerprint(object.cloud()))
-        warn({"the cloud is not the one that was recorded: " + scene.cloud + " has changed"});
+        warn({"the cloud is not the recorded one: " + scene.cloud + " has changed"});
     Deformation deformation(object, scene);
 
     RecordedSession again = session;
@@ -90,12 +90,12 @@ void replay(const ReplayOptions& o)
 
 void addRunCommand(CLI::App& app)
 {
-    auto* run_ = app.add_subcommand("run", "a hand feels a scene");
+    auto* run_ = app.add_subcommand("run", "touches a scene with a hand, in real or virtual time");
     auto  o    = std::make_shared<RunOptions>();
     addSessionOptions(*run_, o->session);
     run_->add_option("--record", o->session.record, "a new folder for the session");
     run_->add_flag("--print-config", o->printConfig,
-                   "every value of the scene, with where it came from, and nothing else");
+                   "prints every value of the scene and its source, and touches nothing");
     run_->add_flag("--json", o->json, "machine-readable");
     o->scene.addTo(*run_, SceneKey::Group::session);
     run_->footer("Examples:\n"
@@ -110,11 +110,12 @@ void addRunCommand(CLI::App& app)
         run(*o);
     });
 
-    auto* again = app.add_subcommand("replay", "a recorded session is felt again");
+    auto* again = app.add_subcommand("replay", "computes a recorded session again");
     auto  r     = std::make_shared<ReplayOptions>();
     again->add_option("DIR", r->folder, "folder of a session that was recorded in virtual time")->required();
     again->add_option("--solver", r->solver, "where the plate is solved [as in the session]");
-    again->add_flag("--compare", r->compare, "exit code 1 and the first sample that differs, if one does");
+    again->add_flag("--compare", r->compare,
+                    "compares both sessions; exit code 1 and the first sample that differs, if one does");
     again->add_flag("--json", r->json, "machine-readable");
     again->footer("Examples:\n  palpate replay session --compare\n  palpate replay session --json");
     again->callback([again, r] {

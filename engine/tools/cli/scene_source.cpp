@@ -41,7 +41,7 @@ std::string helpOf(const SceneKey& key)
                   "such as linear:from=2e4,to=2e6,axis=x or gaussian:from=3e5,to=3e6,centre=0;0;0,sigma=0.003";
 }
 
-/// Whether the text holds a number other than zero without a unit.
+/// Returns whether the text holds a number other than zero without a unit.
 bool holdsPlainNumber(const std::string& text)
 {
     for (std::size_t begin = 0; begin <= text.size();) {
@@ -82,7 +82,7 @@ Scene sceneFrom(const std::string& name, const std::map<std::string, std::string
 {
     SceneOverrides overrides{flags, processEnvironment(), true, &study::huntKeys()};
     if (name.ends_with(".json")) return readScene(name, overrides);
-    if (name.starts_with(kSamplePrefix)) // whether it is there is the first thing to say
+    if (name.starts_with(kSamplePrefix)) // first, refuses an unknown sample
         static_cast<void>(sampleNamed(std::string_view(name).substr(kSamplePrefix.size())));
     else
         static_cast<void>(openForReading(name));
@@ -95,7 +95,7 @@ Scene SceneSource::load() const
     if (flags.contains("stiffness"))
         for (const char* key : {"stiffness_property", "stiffness_range", "log_range", "uniform"})
             if (flags.contains(key))
-                throw Error(flagOf(key) + ": --stiffness replaces the stiffness that this option is about; omit it");
+                throw Error(flagOf(key) + ": --stiffness replaces the stiffness that this option describes; omit it");
     return sceneFrom(name, flags);
 }
 
@@ -116,7 +116,7 @@ LoadedCloud SceneSource::loadCloud(const Scene& scene) const
         const bool  isLength = found != keys.end() && (key == "place" || found->dimension == Dimension::length);
         if (isLength && holdsPlainNumber(text))
             throw Error(flagOf(key) + ": " + text +
-                        " has no unit, and would be metres, but the file's lengths are in " + source +
+                        " has no unit and would mean metres, but the file's lengths are in " + source +
                         "; write units, or add --length-unit");
     }
     return loaded;

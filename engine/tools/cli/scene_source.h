@@ -8,10 +8,10 @@
 
 namespace palp {
 
-/// The options by which every command is given what it touches: a scene file, a cloud file or sample:NAME, and a flag for
-/// each key of scenes that the command has a use for.
+/// The options by which every command is told what to touch: a scene file, a cloud file or sample:NAME, and a flag for
+/// each key of scenes that the command uses.
 ///
-/// Plain numbers of lengths among the flags are in the unit of --length-unit (or of the scene's length_unit), else metres.
+/// Plain numbers of lengths among the flags are in the unit of --length-unit (or the scene's length_unit), else metres.
 struct SceneSource {
     std::string                                     name;
     std::map<std::string, std::string, std::less<>> flags; ///< of the scene's keys, as given
@@ -20,23 +20,23 @@ struct SceneSource {
     /// command's parsing.
     void addTo(CLI::App& command, SceneKey::Group upTo);
 
-    /// A scene file ends in .json; anything else is a cloud, and the scene is what suits it.
+    /// Reads the scene: a name ending in .json is a scene file; any other is a cloud, with the scene that suits it.
     /// \throws Error as readScene() does, and for a flag that another one makes useless
     [[nodiscard]] Scene load() const;
 
-    /// The scene's cloud, as palp::loadCloud() gives it.
+    /// Returns the scene's cloud, as palp::loadCloud() does.
     /// \throws Error as loadCloud() does, and for a length that was taken as metres where the file states another unit
     [[nodiscard]] LoadedCloud  loadCloud(const Scene& scene) const;
-    [[nodiscard]] LoadedObject loadObject(const Scene& scene) const; ///< the same with its index and material
+    [[nodiscard]] LoadedObject loadObject(const Scene& scene) const; ///< does the same, with index and material
 
-    /// "sample:skin", or the file's name without its ending.
+    /// Returns "sample:skin", or the file's name without its ending.
     [[nodiscard]] std::string title() const;
 };
 
-/// The scene of a scene file, cloud file or sample, with these values over it and all that the environment says.
+/// Returns the scene of a scene file, cloud file or sample, with the flags and the environment's values over it.
 [[nodiscard]] Scene sceneFrom(const std::string& name, const std::map<std::string, std::string, std::less<>>& flags);
 
-/// Metres in one unit of a plain number of a length on the command line.
+/// Returns the metres that a plain number 1 means as a length on the command line.
 [[nodiscard]] double metresPerPlainNumber(const SceneSource& source, const Scene& scene);
 
 } // namespace palp

@@ -62,22 +62,21 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
     std::vector<std::string> said;
     const auto               say = [&](std::string sentence) { said.push_back(std::move(sentence)); };
     if (s.contactTicks == 0)
-        say("the hand never touched: it must start outside of the object, and come from the side that it presses");
+        say("the hand never touched: it must start outside of the object, on the side that it presses");
     if (s.contactTicks > 0 && s.mostForce == 0 && s.fault == GovernorFault::none)
-        say("the hand touched and no force came on: that takes 1.5 s of a hand slower than 1.2 m/s, and a device that "
-            "is "
-            "homed and in its workspace");
+        say("the hand touched, but no force came on: the hand must stay slower than 1.2 m/s for 1.5 s, and the "
+            "device must be homed and in its workspace");
     if (s.fault != GovernorFault::none) say(std::string("the governor stopped the force: ") + name(s.fault));
-    if (s.deviceFault != DeviceFault::none) say(std::string("the device was not well: ") + name(s.deviceFault));
+    if (s.deviceFault != DeviceFault::none) say(std::string("the device reported a fault: ") + name(s.deviceFault));
     if (s.beyondTheory > 0)
         say("the deflection exceeded half the thickness in " + std::to_string(s.beyondTheory) +
             " ticks: Kirchhoff plate theory does not hold there");
     if (s.beyondTable > 0)
         say("the contact left the table's reach in " + std::to_string(s.beyondTable) +
-            " ticks: a larger table_size or deformation_rate follows faster hands");
-    if (10 * s.staleTicks > s.contactTicks) // the first of every touch are old by nature
-        say(std::to_string(s.staleTicks) + " ticks had a patch older than three of its periods: a smaller grid, "
-                                           "deformation_rate or table_size is solved in time");
+            " ticks: raise table_size or deformation_rate for fast hands");
+    if (10 * s.staleTicks > s.contactTicks) // the first ticks of every touch have an old patch
+        say(std::to_string(s.staleTicks) + " ticks had a patch older than three of its periods: lower cells, "
+                                           "deformation_rate or table_size");
     if (s.failedPatches > 0) say(std::to_string(s.failedPatches) + " patches could not be solved: " + s.why);
     return said;
 }

@@ -8,13 +8,15 @@
 
 namespace palp {
 
-/// What a session did, as the programs tell it.
+/// Returns a session's summary as all commands print it.
 [[nodiscard]] nlohmann::json jsonOf(const SessionSummary& summary);
 
-/// \param device  that solved the plate  \param hand  what the hand was
+/// Prints the same on standard output.
+/// \param device  solved the plate
+/// \param hand    the kind of hand
 void printText(const SessionSummary& summary, const std::string& device, const std::string& hand);
 
-/// What was not as it should be, in sentences. Empty is good.
+/// Returns, in sentences, what was not as it should be; empty if nothing was.
 [[nodiscard]] std::vector<std::string> warningsOf(const SessionSummary& summary);
 
 } // namespace palp

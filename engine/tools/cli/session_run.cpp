@@ -27,7 +27,7 @@
 namespace palp {
 namespace {
 
-/// Variables of the environment that were likely meant for a key.
+/// Returns warnings on variables of the environment that were likely meant for a key.
 std::vector<std::string> strangeVariables()
 {
     std::vector<std::string> variables, said;
@@ -43,7 +43,7 @@ std::vector<std::string> strangeVariables()
     return said;
 }
 
-/// What one must know before touching: the plate at the scene's place, on the host, which needs no device.
+/// Returns warnings before touching, from the plate at the scene's place, solved on the host, which needs no GPU.
 std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object)
 {
     try {
@@ -52,17 +52,17 @@ std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object
         const Patch     patch = deform(object, {place.point, place.outward}, scene.patch, host);
         return warnings(patch, scene.patch, 0);
     } catch (const Error& error) { // a hand from a file may work elsewhere
-        return {std::string("at the scene's place nothing can be felt: ") + error.what()};
+        return {std::string("nothing can be felt at the scene's place: ") + error.what()};
     }
 }
 
-/// On a terminal, while the participant is told nothing else: how much of the time is over.
+/// Shows on a terminal how much of the time has passed, while a participant is told nothing else.
 void showTime(Progress& progress, double time, double seconds)
 {
     progress.at(std::size_t(std::llround(1000 * time)), std::size_t(std::llround(1000 * seconds)));
 }
 
-/// In real time; the line shows what the hand feels.
+/// Runs a session in real time, with a line that shows what the hand feels.
 SessionSummary playLive(const SessionOptions& o, double seconds, const SessionParts& parts, Recording* recording,
                         const OnTick& also)
 {
@@ -81,7 +81,7 @@ SessionSummary playLive(const SessionOptions& o, double seconds, const SessionPa
     settings.stop    = &catchInterrupts();
     settings.onTick  = [&, heard = bool(also)](const TickRecord& sample) {
         if (recording) recording->push(sample);
-        if (heard) static_cast<void>(ring.push(sample)); // whoever looks away for four seconds has a gap
+        if (heard) static_cast<void>(ring.push(sample)); // a reader that stops for four seconds has a gap
     };
     settings.onView = [&, heard = bool(also)](const SessionView& view) {
         if (heard) drain();
@@ -169,9 +169,9 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     demandGood(o);
     const SessionClock clock = clockNamed(o.clock);
     Deformation        deformation(loaded.object, scene); // what can fail fails before a folder is made
-    SessionHand         hand = handFor(o.hand, scene, loaded.object);
+    SessionHand        hand = handFor(o.hand, scene, loaded.object);
     if (hand.isHeldByPerson() && clock != SessionClock::real)
-        throw Error("--hand " + o.hand.hand + ": somebody holds it, in real time; leave out --clock virtual");
+        throw Error("--hand " + o.hand.hand + ": a person holds it, in real time; omit --clock virtual");
 
     SessionRun run;
     run.solver   = deformation.plateSolver().name();
@@ -206,7 +206,7 @@ void demandGood(const SessionOptions& options)
     const auto         threads = valueNamed<SessionThreads>(options.threads);
     if (!threads) throw Error("--threads: expected servo or paper, found \"" + options.threads + "\"");
     if (*threads == SessionThreads::paper && clock != SessionClock::real)
-        throw Error("--threads paper: a virtual clock has no threads; leave one of the two out");
+        throw Error("--threads paper: a virtual clock has no threads; omit one of the two");
 }
 
 void addSessionOptions(CLI::App& command, SessionOptions& options)
@@ -215,23 +215,23 @@ void addSessionOptions(CLI::App& command, SessionOptions& options)
         .add_option("--hand", options.hand.hand,
                     generatedHands() +
                         ": a generated hand about the scene's place; a file of time [s], x, y, z [m], "
-                        "perhaps buttons; or a device: " +
-                        deviceHands() + " (palpate devices lists which are there; of several, NAME@PATH)")
+                        "and optionally buttons; or a device: " +
+                        deviceHands() + " (palpate devices lists those connected; NAME@PATH selects one of several)")
         ->capture_default_str();
-    command.add_option("--seconds", options.hand.seconds, "how long [5 s; a file's own length]");
-    command.add_option("--speed", options.hand.speed, "of press, circle and scan, at most")->capture_default_str();
+    command.add_option("--seconds", options.hand.seconds, "duration [5 s, or a file's own length]");
+    command.add_option("--speed", options.hand.speed, "largest speed of press, circle and scan")->capture_default_str();
     command.add_option("--press-depth", options.hand.depth,
-                       "of the hand below the surface [40 % of the thickness, within plate theory]");
+                       "depth of the hand below the surface [40 % of the thickness, within plate theory]");
     command.add_option("--reach", options.hand.reach, "radius of the circle, half the length of the scan")
         ->capture_default_str();
     command.add_option(
         "--arm", options.hand.grip,
-        "the hand grips a simulated device with this stiffness (relaxed '150 N/m', firm '500 N/m'), so that "
-        "forces move it");
+        "stiffness with which the hand grips a simulated device, so that forces move it (relaxed '150 N/m', "
+        "firm '500 N/m')");
     addDeviceOptions(command, options.hand.device, deviceRecords());
     command
         .add_option("--clock", options.clock,
-                    "real: a tick a millisecond; virtual: as fast as it goes, the same every time")
+                    "real: one tick per millisecond; virtual: as fast as possible, with equal results every time")
         ->capture_default_str();
     command
         .add_option("--threads", options.threads,

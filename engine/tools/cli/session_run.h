@@ -13,23 +13,24 @@
 
 namespace palp {
 
-/// How a session is run, apart from the scene: what run, hunt and study share.
+/// The options of a session apart from the scene, shared by run, hunt and study.
 struct SessionOptions {
     HandOptions hand;
     std::string clock = "real", threads = "servo";
     std::string record;        ///< a new folder; empty: nothing is recorded
-    std::string command;       ///< as a shell would take it again
-    bool        json  = false; ///< no live line beside it
-    bool        blind = false; ///< says nothing of what is touched: neither warnings nor numbers
+    std::string command;       ///< the command line, quoted for a shell
+    bool        json  = false; ///< prints JSON, and so no live line
+    bool        blind = false; ///< tells nothing about what is touched: neither warnings nor numbers
 };
 
-/// Adds --hand and all that belongs to it, --clock and --threads.
+/// Adds --hand and its options, --clock and --threads.
 void addSessionOptions(CLI::App& command, SessionOptions& options);
 
+/// Checks --clock and --threads.
 /// \throws Error naming --clock or --threads
 void demandGood(const SessionOptions& options);
 
-/// What a session was.
+/// The result of a session.
 struct SessionRun {
     SessionSummary                 summary;
     std::string                    solver; ///< of the plate
@@ -41,22 +42,24 @@ struct SessionRun {
 };
 
 /// Runs a session from the first tick to the last, which leaves the device at zero force.
-/// \param onTick  sees every sample, on the calling thread; may be empty
+/// \param onTick  is given every record, on the calling thread; may be empty
 /// \throws Error as handFor(), Deformation and Recording do
 [[nodiscard]] SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const SessionOptions& options,
                                     const OnTick& onTick = {});
 
-/// A session in virtual time, with a line on a terminal. \param stop  ends it once it is true; may be null
+/// Runs a session in virtual time, with a line on a terminal.
+/// \param stop  ends it once it is true; may be null
 SessionSummary playVirtual(const SessionParts& parts, double seconds, const OnTick& also,
                            const std::atomic<bool>* stop = nullptr);
 
-/// Sentences on standard error.
+/// Prints sentences on standard error.
 void warn(const std::vector<std::string>& sentences);
 
 [[nodiscard]] nlohmann::json jsonOf(const SessionRun& run);
 void                         printText(const SessionRun& run);
 
-/// \throws CheckFailed if the force was stopped, or samples are missing in the recording
+/// Checks that the session and its recording are whole.
+/// \throws CheckFailed if the force was stopped, or records are missing in the recording
 void demandWhole(const SessionRun& run);
 
 } // namespace palp

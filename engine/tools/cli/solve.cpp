@@ -64,7 +64,7 @@ Solved solved(const SolveOptions& options)
     s.note             = solver.note();
     if (s.note != told) std::cerr << "palpate: the reference solver took over: " << s.note << "\n";
     if (const SolveReport& report = s.solution.report; !report.converged)
-        s.problem.warnings.push_back("the answer is not as good as asked for: its error is about " +
+        s.problem.warnings.push_back("the solution misses --tolerance: its error is about " +
                                      formatNumber(*report.errorEstimate) +
                                      " or more, relative; try fewer cells, less contrast or --solver reference");
     for (const std::string& warning : s.problem.warnings) std::cerr << "palpate: warning: " << warning << "\n";
@@ -87,11 +87,11 @@ nlohmann::ordered_json orNull(const std::optional<T>& value)
 
 bool hasSquareCells(const PlateGrid& grid)
 {
-    constexpr double kRounding = 1e-9; // [1] relative: above the rounding of size / cells
+    constexpr double kRounding = 1e-9; // relative, above the rounding of size / cells [1]
     return std::abs(grid.spacingX - grid.spacingZ) <= kRounding * grid.spacingX;
 }
 
-/// The sum of all forces [N].
+/// Returns the sum of all forces [N].
 double totalForce(const PlateProblem& problem)
 {
     return std::accumulate(problem.nodalForce.values().begin(), problem.nodalForce.values().end(), 0.0);
@@ -198,13 +198,13 @@ void solveAndPrint(const SolveOptions& options)
 
 void addSolveCommand(CLI::App& app)
 {
-    CLI::App*  command = app.add_subcommand("solve", "deflection of one plate from a problem file");
+    CLI::App*  command = app.add_subcommand("solve", "computes the deflection of one plate from a problem file");
     const auto options = std::make_shared<SolveOptions>();
     command->add_option("PROBLEM", options->problem, "problem file (JSON, SI units)")->required();
     command->add_option(
         "--cells", options->cells,
-        "solve on this many cells along x, those along z in proportion (at least 4; the reference solver "
-        "takes 1050625 nodes in all, such as 1024 x 1024 cells)");
+        "number of cells along x, with those along z in proportion (at least 4; the reference solver takes up to "
+        "1050625 nodes in all, such as 1024 x 1024 cells)");
     options->solver.addTo(*command);
     command->add_flag("--json", options->json,
                       "machine-readable, full precision; max_deflection is the deflection of "

@@ -15,7 +15,7 @@ struct SolverChoice {
 
     void addTo(CLI::App& command);
 
-    /// Says on standard error what "auto" found broken.
+    /// Opens the solver; says on standard error what "auto" found broken.
     /// \throws Error for a tolerance out of range, and as openSolver() does
     [[nodiscard]] PlateSolver open() const;
 };
@@ -24,7 +24,8 @@ struct SolverChoice {
 /// \throws compute::UnknownProcessor for a name that no solver has, compute::ProcessorError for one that cannot be used
 [[nodiscard]] PlateSolver openSolver(const std::string& name);
 
-/// \throws Error that names --tolerance and its bounds
+/// Checks that a tolerance is in range.
+/// \throws Error naming --tolerance and its bounds
 void checkTolerance(double tolerance);
 
 /// Says on standard error which processor "auto" took in place of a broken one, if there is a note of that.

@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 5> kKeys = {"at", "radius", "value", "str
 
 using Words = std::map<std::string, std::string, std::less<>>;
 
-/// "at=1,2,3 smooth" as at: 1,2,3 and smooth: nothing.
+/// Reads "at=1,2,3 smooth" as at: 1,2,3 and smooth: nothing.
 Words wordsOf(const std::string& text, const std::string& what)
 {
     Words            words;

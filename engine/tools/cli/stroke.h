@@ -15,23 +15,24 @@ struct StrokeOrder {
     std::vector<glm::dvec3> path;         ///< corners [m]
     double                  radius   = 0; ///< [m]
     double                  strength = 1; ///< [1]
-    std::optional<double>   value;        ///< [Pa] or [N m]; empty: smooths
+    std::optional<double>   value;        ///< [Pa] or [N m]; empty: the stroke smooths
 };
 
-/// \param what                  opens complaints, such as "--stroke 2"
-/// \param metresPerPlainNumber  of places and radii without a unit
-/// \throws Error naming the word, what was expected and found
+/// Reads a stroke.
+/// \param what                  opens error sentences, such as "--stroke 2"
+/// \param metresPerPlainNumber  applies to places and radii without a unit
+/// \throws Error naming the word, what was expected and what was found
 [[nodiscard]] StrokeOrder parseStroke(const std::string& text, const std::string& what, double metresPerPlainNumber,
                                       StiffnessKind kind);
 
-/// What a stroke did.
+/// The effect of a stroke.
 struct StrokeReport {
     std::size_t dabs   = 0;
-    std::size_t points = 0; ///< that the brush covered
+    std::size_t points = 0; ///< number that the brush covered
 };
 
-/// Paints a stroke, with progress on a terminal.
-/// \throws Error if a corner of the path is further from the cloud than the radius
+/// Paints a stroke and shows progress on a terminal.
+/// \throws Error if a corner of the path is farther from the cloud than the radius
 [[nodiscard]] StrokeReport paintStroke(const StrokeOrder& order, const std::string& what, const SoftObject& object,
                                        StiffnessPainting& painting);
 

@@ -6,7 +6,7 @@
 #include "engine/tools/cli/study_report.h"
 #include "engine/tools/cli/study_run.h"
 
-// palpate study: blinded trials in a balanced order, answers from the keyboard, a table; and what the tables say.
+// palpate study: blinded trials in a balanced order, answers from the keyboard, a table, and an analysis of tables.
 
 namespace palp {
 namespace {
@@ -23,10 +23,10 @@ void study_(const StudyOptions& o, bool handGiven)
     demandSvg("--plot", o.plot);
     const bool runs = !o.run.plan.empty() || !o.run.participant.empty() || !o.out.empty() || o.order;
     if (!o.analyse.empty() && runs)
-        throw Error("--analyse reads what was answered: PLAN, --participant, --out and --order are of a run; leave one "
-                    "of the two out");
+        throw Error("--analyse reads answers, whereas PLAN, --participant, --out and --order belong to a run; omit "
+                    "one or the other");
     if (!o.analyse.empty()) return analyseStudies(o.analyse, o.plot, o.run.json);
-    if (!o.plot.empty()) throw Error("--plot is of --analyse; leave one of the two out");
+    if (!o.plot.empty()) throw Error("--plot belongs to --analyse, which is not given; add --analyse or omit --plot");
     if (o.run.plan.empty()) throw Error("PLAN: expected the file of a study's plan, found none; see samples/studies");
     if (o.run.participant.empty())
         throw Error("--participant: expected a name that ends in a number, such as P01, found none");
@@ -56,20 +56,20 @@ void study_(const StudyOptions& o, bool handGiven)
 
 void addStudyCommand(CLI::App& app)
 {
-    CLI::App*  command = app.add_subcommand("study", "blinded trials with participants, and what they answered");
-    const auto o       = std::make_shared<StudyOptions>();
-    command->add_option("PLAN", o->run.plan, "the study's plan, see samples/studies");
+    CLI::App* command = app.add_subcommand("study", "runs blinded trials with participants and analyses their answers");
+    const auto o      = std::make_shared<StudyOptions>();
+    command->add_option("PLAN", o->run.plan, "file of the study's plan; see samples/studies");
     command->add_option("--participant", o->run.participant, "a name that ends in a number from 1 on, such as P01");
-    command->add_option("--out", o->out, "folder of the study; each participant has one in it");
+    command->add_option("--out", o->out, "folder of the study, which holds one for each participant");
     command->add_flag("--order", o->order, "prints the participant's whole order, unblinded, and runs nothing");
     command->add_option("--analyse,--analyze", o->analyse,
-                        "folders of studies or participants: means, shares and intervals of what was answered");
-    command->add_option("--plot", o->plot, "with --analyse: the shares as a picture (.svg)");
-    command->add_flag("--json", o->run.json, "machine-readable, SI units; participants read on standard error");
+                        "folders of studies or participants: prints means, shares and intervals of the answers");
+    command->add_option("--plot", o->plot, "with --analyse: file for a picture of the shares (.svg)");
+    command->add_flag("--json", o->run.json, "machine-readable, SI units; texts for participants go to standard error");
     auto* const hand = (addSessionOptions(*command, o->run.session), command->get_option("--hand"));
-    command->footer("A participant sees \"Trial 3 of 20\" and the question. q pauses; the same command goes on. The "
-                    "answers are\nOUT/PARTICIPANT/trials.csv, a row a trial, each on the disk before the next "
-                    "begins.\n"
+    command->footer("A participant sees \"Trial 3 of 20\" and the question. q pauses; the same command resumes. The "
+                    "answers are in\nOUT/PARTICIPANT/trials.csv, one row per trial, written to disk before the next "
+                    "trial begins.\n"
                     "Examples:\n"
                     "  palpate study samples/studies/paper.json --participant P01 --order\n"
                     "  palpate study samples/studies/paper.json --participant P01 --out study --hand falcon\n"

@@ -22,11 +22,11 @@ using study::Interval;
 using study::Share;
 using Json = nlohmann::json;
 
-/// Everything that was answered in one study.
+/// All answers of one study.
 struct Answers {
     std::vector<study::TrialRow> rows;
     study::Stiffnesses           stiffnesses;
-    std::size_t                  participants = 0; ///< [1]
+    std::size_t                  participants = 0;
 };
 
 std::vector<std::filesystem::path> participantsIn(const std::filesystem::path& folder)
@@ -162,7 +162,7 @@ void printOrder(const study::StudyPlan& plan, const std::string& participant, bo
 void analyseStudies(const std::vector<std::string>& folders, const std::filesystem::path& plot, bool json)
 {
     const Answers all = answersIn(folders);
-    if (all.rows.empty()) throw Error(folders.front() + ": expected trials that were answered, found none yet");
+    if (all.rows.empty()) throw Error(folders.front() + ": expected answered trials, found none yet");
     const auto summaries = study::analyse(all.rows, all.stiffnesses);
     if (!plot.empty()) writeFileWhole(plot, [&](std::ostream& file) { file << study::analysisSvg(summaries); });
     if (json) {
@@ -172,7 +172,7 @@ void analyseStudies(const std::vector<std::string>& folders, const std::filesyst
         return;
     }
     std::cout << counted(all.rows.size(), "trial") << " of " << counted(all.participants, "participant")
-              << "; intervals of 95 %: shares by Wilson's score, which takes trials for independent, means "
+              << "; intervals of 95 %: shares by Wilson's score, which assumes independent trials, means "
                  "by a bootstrap over participants\n";
     for (const AnswerSummary& s : summaries) printText(s);
 }

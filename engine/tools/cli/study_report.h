@@ -10,10 +10,10 @@ namespace palp {
 /// Prints the whole order of a participant, conditions and right answers included: for the experimenter.
 void printOrder(const study::StudyPlan& plan, const std::string& participant, bool json);
 
-/// Sums up what participants answered, with predictions beside it.
-/// \param folders  of studies or of participants
+/// Prints a summary of the participants' answers, with predictions beside it.
+/// \param folders  the folders of studies or of participants
 /// \param plot     an SVG file; empty: none
-/// \throws Error naming a folder without trials, or of another study than the first
+/// \throws Error naming a folder that has no trials or is of another study than the first
 void analyseStudies(const std::vector<std::string>& folders, const std::filesystem::path& plot, bool json);
 
 } // namespace palp

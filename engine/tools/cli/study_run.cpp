@@ -33,9 +33,9 @@ using study::TrialRow;
 using Json = nlohmann::json;
 
 constexpr const char* kStudyFile   = "study.json";
-constexpr std::size_t kLongestLine = 1000;                  ///< [bytes] that is kept of an answer
-constexpr int         kMostStrange = 20;                    ///< [1] answers in a row, where nobody can be asked again
-constexpr std::size_t kLargestFile = std::size_t(16) << 20; ///< [bytes] of it
+constexpr std::size_t kLongestLine = 1000;                  ///< [bytes] kept of an answer
+constexpr int         kMostStrange = 20;                    ///< unknown answers in a row from input that is no terminal
+constexpr std::size_t kLargestFile = std::size_t(16) << 20; ///< [bytes] of that file
 
 /// A condition, ready to be touched.
 struct Felt {
@@ -43,7 +43,7 @@ struct Felt {
 
     explicit Felt(const Scene& scene) : loaded(loadObject(scene)) {}
 
-    /// At the scene's place, as the device renders it [N/m]; null where nothing can be felt.
+    /// Returns the stiffness at the scene's place, as the device renders it [N/m]; null where nothing can be felt.
     [[nodiscard]] Json stiffness(const Scene& scene) const
     {
         try {
@@ -57,21 +57,22 @@ struct Felt {
     }
 };
 
-using Answers = std::map<std::string, std::string>; ///< what is typed, what the table says
+using Answers = std::map<std::string, std::string>; ///< from what is typed to what the table holds
 
-/// The participant wants to go on later.
+/// The participant pauses, to resume later.
 struct Paused {};
 
-/// Keys that were hit while an object was touched answer nothing.
+/// Discards keys that were hit while an object was touched, so that they answer nothing.
 void forgetKeys()
 {
     if (isatty(STDIN_FILENO) != 0) ::tcflush(STDIN_FILENO, TCIFLUSH);
 }
 
-/// A line from the keyboard or the file that stands for it. \throws Paused at its end or at Ctrl-C
+/// Reads a line from the keyboard or from a file in its place.
+/// \throws Paused at its end or at Ctrl-C
 std::string keyedLine()
 {
-    constexpr int            kLook = 100; // [ms] so often Ctrl-C is asked for, should it come between two waits
+    constexpr int            kLook = 100; // [ms] period of checks for Ctrl-C, which may come between two waits
     const std::atomic<bool>& stop  = catchInterrupts();
     std::string              text;
     for (char c = 0;;) {
@@ -83,14 +84,14 @@ std::string keyedLine()
         if (got < 0 && errno == EINTR) continue;
         if (got <= 0 && text.empty()) throw Paused();
         if (got <= 0 || c == '\n') return text;
-        if (text.size() < kLongestLine) text += c; // no answer is as long
+        if (text.size() < kLongestLine) text += c; // no answer is this long
     }
 }
 
 /// Force over the time in contact.
 struct ForceTally {
     double        sum = 0, peak = 0; ///< [N]
-    std::uint64_t ticks = 0;         ///< [1]
+    std::uint64_t ticks = 0;
 
     void add(const TickRecord& sample)
     {
@@ -102,7 +103,7 @@ struct ForceTally {
     [[nodiscard]] double mean() const { return ticks > 0 ? sum / double(ticks) : 0; }
 };
 
-/// Everything of one participant's run.
+/// One participant's run.
 class Sitting {
 public:
     Sitting(const StudyRun& run, const StudyPlan& plan)
@@ -124,7 +125,7 @@ public:
         } catch (const Paused&) {
             paused = true;
             say("\nPaused after " + std::to_string(table_->rows().size()) + " of " + std::to_string(trials_.size()) +
-                " trials; the same command goes on.\n");
+                " trials; run the same command to resume.\n");
         }
         tellUnfelt();
         return {table_->rows().size(), trials_.size(), paused, folder_ / "trials.csv"};
@@ -150,14 +151,14 @@ private:
     std::optional<study::TrialTable> table_;
 };
 
-/// Without the place where a device is plugged in, which may be another tomorrow.
+/// Returns the hand without the port of its device, which may change from day to day.
 std::string wordOf(const Json& value)
 {
     const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
     return text.substr(0, text.find('@'));
 }
 
-/// The study's file is written once; later it must say the same.
+/// Writes the study's file once; later runs must agree with it.
 void Sitting::agree()
 {
     Json now{{"format", 1},
@@ -173,12 +174,12 @@ void Sitting::agree()
         for (const char* key : {"participant", "plan", "clouds"})
             if (before[key] != now[key])
                 throw Error((folder_ / kStudyFile).string() + ": expected the plan that this participant began with, " +
-                            "found that " + run_.plan + " or a scene of it has changed since; take another --out");
+                            "found that " + run_.plan + " or a scene of it has changed since; choose another --out");
         for (const char* key : {"hand", "clock"})
             if (before.contains(key) && wordOf(before[key]) != wordOf(now[key])) // earlier versions did not keep them
                 throw Error((folder_ / kStudyFile).string() + ": expected the --" + key +
                             " that this participant began with, " + before[key].dump() + ", found " + now[key].dump() +
-                            "; trials could not be compared; take another --out");
+                            "; trials could not be compared; choose another --out");
         return;
     }
     makeFolder(folder_);
@@ -188,7 +189,7 @@ void Sitting::agree()
     writeFileWhole(folder_ / kStudyFile, [&](std::ostream& file) { file << jsonText(now); });
 }
 
-/// Every row is the trial that the order has there.
+/// Checks that every row is the trial that the order has there.
 void Sitting::demandOurs() const
 {
     const auto& rows = table_->rows();
@@ -204,13 +205,14 @@ void Sitting::demandOurs() const
                     ": expected the trials of this participant in their order, found others; was the table changed?");
 }
 
-/// For the experimenter: answers that say nothing of what was to be touched.
+/// Warns the experimenter of answers that have no touch behind them.
 void Sitting::tellUnfelt() const
 {
     for (const TrialRow& row : table_->rows())
         if (row.peakForce <= 0)
-            std::cerr << "palpate: trial " << row.trial << ": nothing was felt: the hand never touched, or it had no "
-                      << "force; its answer says nothing\n";
+            std::cerr << "palpate: trial " << row.trial
+                      << ": nothing was felt: the hand never touched or had no force; "
+                      << "its answer is not valid\n";
 }
 
 std::string Sitting::line() const
@@ -225,7 +227,7 @@ std::string Sitting::line() const
 }
 
 /// Asks again until the answer is a known one.
-/// \throws Error after many others in a row that no terminal sent: a file's end may be far
+/// \throws Error after many unknown answers in a row from input that is no terminal: a file's end may be far
 std::string Sitting::answerAmong(const Answers& known, const std::string& wanted) const
 {
     for (int strange = 1;; ++strange) {
@@ -234,9 +236,9 @@ std::string Sitting::answerAmong(const Answers& known, const std::string& wanted
         if (answer != known.end()) return answer->second;
         if (strange >= kMostStrange && isatty(STDIN_FILENO) == 0) {
             say("\n");
-            throw Error("standard input: expected one that would " + wanted + ", found " +
+            throw Error("standard input: expected a line that would " + wanted + ", found " +
                         std::to_string(kMostStrange) +
-                        " other lines in a row; this trial is not recorded, the same command goes on with it");
+                        " other lines in a row; this trial is not recorded; run the same command to repeat it");
         }
         say("  please " + wanted + ", or q: ");
     }
@@ -264,12 +266,13 @@ std::string Sitting::ask(const Task& task) const
     return answerAmong(known, "answer " + choice);
 }
 
-/// One touch. \return the session's folder, from the study's
+/// Runs one touch.
+/// \return the session's folder, from the study's
 std::string Sitting::touch(std::size_t condition, const std::string& name, ForceTally& force)
 {
     std::error_code ignored;
     std::string     fresh = name;
-    for (int again = 2; std::filesystem::exists(folder_ / fresh, ignored); ++again) // a trial that did not count
+    for (int again = 2; std::filesystem::exists(folder_ / fresh, ignored); ++again) // after a trial that did not count
         fresh = name + "_again" + std::to_string(again);
     SessionOptions options   = run_.session;
     options.record           = (folder_ / fresh).string();
@@ -280,7 +283,7 @@ std::string Sitting::touch(std::size_t condition, const std::string& name, Force
     try {
         demandWhole(session);
     } catch (const CheckFailed& failed) {
-        std::cerr << "palpate: " << failed.what() << ": this trial does not count; the same command goes on with it\n";
+        std::cerr << "palpate: " << failed.what() << ": this trial does not count; run the same command to repeat it\n";
         throw;
     }
     return run_.participant + "/" + fresh;
@@ -325,10 +328,10 @@ TrialRow Sitting::trial(std::size_t number)
 Json readStudyFile(const std::filesystem::path& participantFolder)
 {
     const std::filesystem::path path = participantFolder / kStudyFile;
-    const Json file = Json::parse(readWhole(path, kLargestFile, "what a study says of itself"), nullptr, false);
+    const Json file = Json::parse(readWhole(path, kLargestFile, "a study's description"), nullptr, false);
     const bool good = file.is_object() && file.value("format", Json()) == 1 && file.contains("plan") &&
                       file["plan"].is_string() && file.contains("participant") && file.contains("clouds");
-    if (!good) throw Error(path.string() + ": expected what palpate study writes, found something else");
+    if (!good) throw Error(path.string() + ": expected a file of palpate study, found something else");
     return file;
 }
 

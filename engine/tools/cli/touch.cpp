@@ -30,10 +30,10 @@ struct TouchOptions {
     bool        json  = false;
 };
 
-/// The force that presses [N].
+/// Returns the force that presses [N].
 double forceOf(const TouchOptions& options)
 {
-    constexpr double kMost = 1e6; // [N] far beyond what a hand can feel, and far from where a result could overflow
+    constexpr double kMost = 1e6; // [N] far beyond what a hand can feel, and far below what could overflow a result
     const double     force = parseQuantity(options.force, Dimension::force, "--force");
     if (!(std::abs(force) <= kMost))
         throw Error("--force: expected a force from -1e6 to 1e6 N, found \"" + options.force + "\"");
@@ -45,7 +45,7 @@ constexpr const char* kSummary = "touch.json";
 std::string percent(double share)
 {
     char             text[32];
-    constexpr double kLeast = 1e-5; // [1] the third decimal of a percent
+    constexpr double kLeast = 1e-5; // the third decimal of a percent [1]
     if (share > 0 && share < kLeast) return "below 0.001 %";
     std::snprintf(text, sizeof text, share < 0.1 ? "%.2g %%" : "%.0f %%", 100 * share);
     return text;
@@ -99,7 +99,7 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
             std::printf("  wrote              %s\n", (options.out + "/" + file.get<std::string>()).c_str());
 }
 
-/// What the touch looks like; the names of the files, in the order in which one looks at them.
+/// Writes the touch's pictures and returns the names of their files, in reading order.
 std::vector<std::string> writePictures(const std::filesystem::path& folder, const PointCloud& cloud, const Patch& patch,
                                        const PatchSettings& settings, double force)
 {
@@ -127,13 +127,13 @@ std::vector<std::string> writePictures(const std::filesystem::path& folder, cons
     return files;
 }
 
-/// The deformed cloud, the grids and the pictures.
+/// Writes the deformed cloud, the grids and the pictures.
 std::vector<std::string> writeFiles(const TouchOptions& options, const PointCloud& cloud, const Patch& patch,
                                     const PatchSettings& settings, double force)
 {
     const std::filesystem::path folder = options.out;
     makeFolder(folder);
-    // touch.json, written last, says that the folder holds one whole set: that of an earlier touch must not.
+    // touch.json is written last, as the mark of a complete folder, so that of an earlier touch must go first.
     std::error_code failure;
     std::filesystem::remove(folder / kSummary, failure);
     if (failure) throw Error((folder / kSummary).string() + ": cannot be replaced: " + failure.message());
@@ -160,7 +160,7 @@ void refuseOverflow(const nlohmann::json& report)
     for (const char* key :
          {"rigidity_at_contact", "compliance", "contact_stiffness", "felt_stiffness", "max_deflection"})
         if (!std::isfinite(report[key].get<double>()))
-            throw Error(std::string("touch: ") + key + " is not finite; are stiffness, --thickness and --force right?");
+            throw Error(std::string("touch: ") + key + " is not finite; check the stiffness, --thickness and --force");
 }
 
 void touch(const TouchOptions& options)
@@ -204,14 +204,14 @@ void touch(const TouchOptions& options)
 void addTouchCommand(CLI::App& app)
 {
     CLI::App* command =
-        app.add_subcommand("touch", "presses a scripted finger on a cloud: how far it gives, how it feels");
+        app.add_subcommand("touch", "presses a scripted finger on a cloud and reports dent and felt stiffness");
     const auto o = std::make_shared<TouchOptions>();
     o->source.addTo(*command, SceneKey::Group::touch);
     command->add_option("--force", o->force, "force that presses, such as 0.5N")->capture_default_str();
     command->add_option(
         "--out", o->out,
-        "folder for the deformed cloud, grids, pictures and touch.json; that comes last: a folder without it "
-        "holds no whole set");
+        "folder for the deformed cloud, grids, pictures and touch.json, which is written last: a folder without it "
+        "is incomplete");
     command->add_flag("--json", o->json, "machine-readable, SI units");
     command->footer(
         "Examples:\n"

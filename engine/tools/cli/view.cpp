@@ -38,7 +38,7 @@ struct ViewOptions {
 
 #ifdef PALPATE_WINDOW
 
-/// "1280x720", or what was last.
+/// Reads "1280x720" [px], or returns the window's last size.
 glm::ivec2 sizeOf(const std::string& text)
 {
     if (text.empty()) return rememberedSize();
@@ -95,7 +95,7 @@ SessionInfo infoOf(const ViewOptions& o, const Stage& stage, const HapticDevice&
     return info;
 }
 
-/// A SpaceMouse that is not the hand moves the camera.
+/// Opens a SpaceMouse to move the camera, unless it is the hand.
 std::unique_ptr<SpaceMouse> capFor(const ViewOptions& o, HidSystem& system)
 {
     if (deviceNamed(o.hand.hand) == &kSpaceMouseRecord) return nullptr;
@@ -106,12 +106,12 @@ std::unique_ptr<SpaceMouse> capFor(const ViewOptions& o, HidSystem& system)
                 cap->open();
                 return cap;
             }
-    } catch (const Error&) { // it is a comfort, not a need
+    } catch (const Error&) { // the SpaceMouse is optional
     }
     return nullptr;
 }
 
-/// The scorer of a scene in which something is hidden; empty for any other, and for recorded sessions.
+/// Returns the scorer of a scene in which something is hidden; empty for any other, and for recorded sessions.
 std::optional<study::HuntScorer> scorerFor(const SceneSource& source)
 {
     if (std::filesystem::is_directory(source.name)) return {};
@@ -133,7 +133,7 @@ void view(const ViewOptions& o)
     SessionHand source;
     if (deviceNamed(o.hand.hand) != &kMouseRecord)
         settings.hand = [&](const Stage& stage, const HandWait& wait) -> WorkbenchHand {
-            source = {}; // a device is opened once at a time
+            source = {}; // a device can be open only once
             source = handFor(o.hand, stage.scene(), stage.object());
             waitForHoming(*source.device, wait.givenUp, wait.tell);
             return {source.device.get(), source.frame, source.isHeldByPerson() ? 1e9 : source.seconds};
@@ -155,8 +155,8 @@ void view(const ViewOptions& o)
     settings.camera  = cap.get();
 
     std::optional<PanelFrame> panels; // outlives what draws it and what feeds it
-    GlfwWindow               window("Palpate", sizeOf(o.size));
-    compute::ContextSettings gpu{.processor = o.drawOn};
+    GlfwWindow                window("Palpate", sizeOf(o.size));
+    compute::ContextSettings  gpu{.processor = o.drawOn};
     if (o.validate) gpu.validation = compute::Validation::synchronization;
     SurfaceRenderer renderer(gpu, window.link());
     if (!o.noPanels && PanelFrame::available()) panels.emplace(window.scale());
@@ -178,7 +178,7 @@ void view(const ViewOptions& o)
     if (score && !o.json) printText(*score, study::hiddenIn(o.scene.load())->hunt);
     const auto messages = renderer.takeMessages();
     for (const std::string& message : messages) std::cerr << "palpate: validation: " << message << "\n";
-    if (!messages.empty()) throw CheckFailed("the validation layer has complained");
+    if (!messages.empty()) throw CheckFailed("the validation layer has messages");
 }
 
 #else
@@ -195,7 +195,7 @@ void view(const ViewOptions&)
 
 void addViewCommand(CLI::App& app)
 {
-    CLI::App*  command = app.add_subcommand("view", "an object in a window, touched with the mouse");
+    CLI::App*  command = app.add_subcommand("view", "shows an object in a window, to be touched with the mouse");
     const auto o       = std::make_shared<ViewOptions>();
     o->hand.hand       = kMouseRecord.name;
     o->scene.addTo(*command, SceneKey::Group::session);
@@ -206,19 +206,21 @@ void addViewCommand(CLI::App& app)
                      std::string(kMouseRecord.name) + "; or any hand of palpate run: " + generatedHands() +
                          ", a file, " + deviceHands())
         ->capture_default_str();
-    command->add_option("--seconds", o->hand.seconds, "closes by itself after so long [until it is closed]");
-    command->add_option("--colour,--color", o->colour, "deflection, stiffness or plain")->capture_default_str();
-    command->add_option("--colour-map,--color-map", o->map, "of colours: viridis, cividis or grey")
+    command->add_option("--seconds", o->hand.seconds, "time after which the window closes by itself [never]");
+    command->add_option("--colour,--color", o->colour, "quantity in colours: deflection, stiffness or plain")
         ->capture_default_str();
-    command->add_flag("--dark", o->dark, "a dark ground");
-    command->add_option("--size", o->size, "of the window [px] [as it was last]");
-    command->add_flag("--no-panels", o->noPanels, "keys and mouse alone");
+    command->add_option("--colour-map,--color-map", o->map, "map of colours: viridis, cividis or grey")
+        ->capture_default_str();
+    command->add_flag("--dark", o->dark, "draws on a dark ground");
+    command->add_option("--size", o->size, "size of the window [px] [its last size]");
+    command->add_flag("--no-panels", o->noPanels, "shows no panels; keys and mouse still work");
     command->add_option("--draw-on", o->drawOn, "Vulkan device that draws, as \"palpate devices\" names it")
         ->capture_default_str();
-    command->add_flag("--validate", o->validate, "under Vulkan's validation layer; any message is exit code 1");
+    command->add_flag("--validate", o->validate,
+                      "runs under Vulkan's validation layer; exit code 1 if it has a message");
     command->add_flag("--json", o->json, "machine-readable, SI units");
     addDeviceOptions(*command, o->hand.device, deviceRecords());
-    command->footer("Hold Space over the object and move: that touches it, the wheel is depth. F1 shows all keys.\n"
+    command->footer("Hold Space over the object and move to touch it; the wheel sets the depth. F1 shows all keys.\n"
                     "Examples:\n"
                     "  palpate view\n"
                     "  palpate view samples/scenes/skin_wart.json --colour stiffness\n"

@@ -8,8 +8,8 @@
 
 namespace palp {
 
-/// Does the work on a thread of its own. What takes longer than 50 ms is waited for by calling `wait` again and again,
-/// until it returns false or the work is done.
+/// Does the work on another thread. If it takes longer than 50 ms, calls `wait` repeatedly until that returns false or
+/// the work is done.
 /// \return what the work returns
 /// \throws what it throws, and Error for a machine with too little memory
 template <class Work, class Wait>

@@ -57,7 +57,7 @@ bool CameraControl::followSpaceMouse()
 bool CameraControl::settle(const Bounds& bounds, const PictureArea& area, const glm::ivec2& size, double elapsed,
                            bool jumps)
 {
-    constexpr double kGlide = 0.08, kLongest = 0.05; // [s] in which a third of the way is left; of a step
+    constexpr double kGlide = 0.08, kLongest = 0.05; // [s] time after which a third of the way is left; longest step
     constexpr double kThere = 1e-3;                  // of half the height: no step is seen [1]
     if (size.x < 1 || size.y < 1) return false;
     const glm::dvec2 wanted = centreOf(area, size), left = wanted - camera_.centre;

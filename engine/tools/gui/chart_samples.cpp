@@ -5,10 +5,10 @@
 namespace palp {
 namespace {
 
-constexpr int kMostCells = 48; ///< of the small picture a side: it is 130 px wide [1]
-constexpr int kMostNodes = 4;  ///< of a mean a side [1]
+constexpr int kMostCells = 48; ///< on a side of the small picture, which is 130 px wide
+constexpr int kMostNodes = 4;  ///< on a side of a mean
 
-/// The nodes of a side that one value stands for.
+/// The nodes along a side that one value is the mean of.
 struct Nodes {
     int first = 0, last = 0, step = 1;
 };

@@ -24,8 +24,9 @@ void Controls::switchTool()
     const bool paints = state.tool == Tool::touch;
     state.tool        = paints ? Tool::paint : Tool::touch;
     if (paints) paintBefore_ = state.look.paint;
-    state.look.paint = paints ? ViewPaint::stiffness : paintBefore_; // what is painted is seen
-    say(paints ? "brush: left button paints, [ and ] size, Ctrl+Z takes back" : "hold Space and move: touch");
+    state.look.paint = paints ? ViewPaint::stiffness : paintBefore_; // the paint is visible
+    say(paints ? "brush: the left button paints, [ and ] change its size, Ctrl+Z undoes"
+               : "hold Space and move: touch");
 }
 
 void Controls::resizeBrush(double factor)
@@ -34,7 +35,7 @@ void Controls::resizeBrush(double factor)
     say("brush of " + formatQuantity(parts_.state.brush.radius, "m"));
 }
 
-/// Lets go of the object, whatever the hand is; never quits.
+/// Releases the object, whichever hand is in use; never quits.
 void Controls::letGo()
 {
     parts_.state.keys = false;
@@ -44,7 +45,7 @@ void Controls::letGo()
 void Controls::replayLast()
 {
     const std::string& last = parts_.session.recorder().lastFolder();
-    last.empty() ? say("nothing has been recorded yet: F5 records") : open(last);
+    last.empty() ? say("nothing has been recorded yet: F5 starts a recording") : open(last);
 }
 
 void Controls::goOn()
@@ -104,7 +105,7 @@ void Controls::perform(const PanelWishes& wishes)
 void Controls::followPointer(const WindowInput& input)
 {
     std::optional<Hit> hit;
-    if (input.touch || input.doubleClick || parts_.state.tool == Tool::paint) // it looks at every point
+    if (input.touch || input.doubleClick || parts_.state.tool == Tool::paint) // hitAt() looks at every point
         hit = parts_.object.stage().hitAt(parts_.state.camera, input.pointer, input.size);
     parts_.session.followPointer(input, hit, parts_.state.pressDepth);
     if (input.panelsTakePointer) return parts_.paint.endStroke(parts_.object.stage());
@@ -121,7 +122,7 @@ void Controls::paintWith(const WindowInput& input, const std::optional<Hit>& hit
     parts_.paint.stroke(stage, parts_.state.brush, hit->point);
     if (!parts_.session.recorder().recording()) return;
     parts_.session.end();
-    say("the recording has ended: what it was of is being painted");
+    say("the recording has ended, because its object is being painted");
 }
 
 } // namespace palp

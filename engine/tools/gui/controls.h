@@ -8,7 +8,7 @@
 
 namespace palp {
 
-/// The parts of a workbench, which outlive who acts on them.
+/// The parts of a workbench. They outlive the Controls that act on them.
 struct WorkbenchParts {
     ViewState&     state;
     Notices&       notices;
@@ -21,7 +21,8 @@ struct WorkbenchParts {
 };
 
 /// Does what a user asks for by a key, in a panel or with the pointer. Invariant: nothing that takes long happens
-/// here; it is requested, and the session ends for it. \thread the window's
+/// here; it is requested, and the session ends for it.
+/// \thread the window's
 class Controls {
 public:
     explicit Controls(const WorkbenchParts& parts) : parts_(parts) {}
@@ -52,7 +53,7 @@ public:
 
     enum class Shot { still, window };
     void savePicture(Shot shot);
-    /// Shows or hides the sheet of keys; where there are no panels, they are told in a line.
+    /// Shows or hides the sheet of keys; without panels, shows the keys in a line.
     void toggleKeySheet();
     void setPanels(bool exist) { panelsExist_ = exist; }
 
@@ -69,7 +70,7 @@ private:
     void paintWith(const WindowInput& input, const std::optional<Hit>& hit);
 
     WorkbenchParts parts_;
-    ViewPaint      paintBefore_ = ViewPaint::stiffness; ///< colours that were shown when the brush was taken
+    ViewPaint      paintBefore_ = ViewPaint::stiffness; ///< colours shown before the brush was taken
     bool           panelsExist_ = false;
 };
 

@@ -13,14 +13,14 @@
 namespace palp {
 namespace {
 
-/// GLFW's last complaint, or nothing.
+/// Returns GLFW's last error, or nothing.
 std::string reason()
 {
     const char* text = nullptr;
     return glfwGetError(&text) != GLFW_NO_ERROR && text ? std::string(" (") + text + ")" : std::string();
 }
 
-/// 0 for keys that nobody asks for.
+/// Returns the number of a key; 0 for keys that nothing uses.
 int keyOf(int key)
 {
     switch (key) {
@@ -78,7 +78,7 @@ void GlfwWindow::Impl::listen()
     });
     glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) { of(w).input.wheel += y; });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
-        constexpr double kDouble = 0.3; // [s] between the two clicks
+        constexpr double kDouble = 0.3; // [s] longest time between the two clicks
         if (button != GLFW_MOUSE_BUTTON_LEFT || action != GLFW_PRESS) return;
         Impl&        self      = of(w);
         const double now       = glfwGetTime();
@@ -92,8 +92,8 @@ void GlfwWindow::Impl::listen()
     });
 }
 
-/// Sizes, and where the pointer is, in the desktop's units. Asking costs a round trip to the desktop each, which shows
-/// while pictures are on the way there: after this one, GLFW tells.
+/// Asks for the sizes and the pointer's place, in the desktop's units. Each question is a round trip to the desktop,
+/// which is slow while pictures are on the way there; later values come by GLFW's callbacks.
 void GlfwWindow::Impl::ask()
 {
     glfwGetFramebufferSize(window, &pixels.x, &pixels.y);
@@ -106,7 +106,7 @@ void GlfwWindow::Impl::ask()
                                       [](GLFWwindow* w, float x, float) { of(w).input.scale = std::max(1.0F, x); });
 }
 
-/// What is held, and everything in pixels.
+/// Reads the held keys and buttons, and converts everything to pixels.
 void GlfwWindow::Impl::readState()
 {
     const auto held    = [this](int key) { return glfwGetKey(window, key) == GLFW_PRESS; };

@@ -7,20 +7,22 @@
 
 namespace palp {
 
-/// A window on the desktop. \thread the program's first
+/// A window on the desktop.
+/// \thread the program's first
 class GlfwWindow {
 public:
-    /// \param size  [px]
-    /// \throws Error, one sentence, if there is no display: and that palpate render needs none
+    /// \param size  size of the window [px]
+    /// \throws Error if there is no display; the sentence adds that palpate render needs none
     GlfwWindow(const std::string& title, const glm::ivec2& size);
     ~GlfwWindow();
     GlfwWindow(const GlfwWindow&)            = delete;
     GlfwWindow& operator=(const GlfwWindow&) = delete;
 
-    /// For the renderer that shows pictures here; the window outlives it.
+    /// Returns the link for the renderer that shows pictures here; the window outlives it.
     [[nodiscard]] WindowLink link();
 
-    /// What happened since the last call. \param patience  waits so long for something to happen [s]
+    /// Returns what happened since the last call.
+    /// \param patience  longest wait for something to happen [s]
     [[nodiscard]] WindowInput poll(double patience = 0);
 
     void setTitle(const std::string& title);

@@ -6,7 +6,7 @@
 
 namespace palp {
 
-/// Keys that are no characters; all others are their capital letter, digit or sign.
+/// The numbers of keys without a character; any other key's number is its capital letter, digit or sign.
 enum SpecialKey : int {
     kTabKey = 256,
     kEscapeKey,
@@ -27,26 +27,26 @@ struct KeyPress {
     bool control = false, shift = false;
 };
 
-/// What happened in a window since the last picture.
+/// The events in a window since the last picture.
 struct WindowInput {
     glm::ivec2 size{};    ///< of the picture [px]; 0: minimised
     double     scale = 1; ///< of a display with many pixels per inch [1]
     glm::dvec2 pointer{}; ///< from the upper left corner [px]
-    glm::dvec2 moved{};   ///< by the pointer [px]
-    double     wheel = 0; ///< notches, away from the user [1]
+    glm::dvec2 moved{};   ///< movement of the pointer [px]
+    double     wheel = 0; ///< notches, positive away from the user
 
     bool left = false, right = false, middle = false; ///< buttons that are down
     bool shift = false, touch = false;                ///< keys that are held: shift; space or H
-    bool leftPressed = false, doubleClick = false;    ///< just now
+    bool leftPressed = false, doubleClick = false;    ///< since the last picture
 
     std::vector<KeyPress>              keys;
     std::vector<char32_t>              typed;           ///< characters, for texts
-    std::vector<std::filesystem::path> dropped;         ///< files and folders that were let fall here
-    bool                               closing = false; ///< somebody asks the window to close
+    std::vector<std::filesystem::path> dropped;         ///< files and folders dropped on the window
+    bool                               closing = false; ///< the window is asked to close
 
-    bool panelsTakePointer = false, panelsTakeKeys = false; ///< what follows is not for the object
+    bool panelsTakePointer = false, panelsTakeKeys = false; ///< the panels take this input, not the object
 
-    /// Whether anything is there that may change the picture.
+    /// Returns whether any input may change the picture.
     [[nodiscard]] bool any() const
     {
         return moved != glm::dvec2(0) || wheel != 0 || left || right || middle || touch || !keys.empty() ||

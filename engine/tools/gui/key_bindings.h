@@ -14,12 +14,12 @@ enum class KeyModifier { none, control, shift };
 /// The parts of the sheet of keys.
 enum class KeyGroup { view, show, touch, program };
 
-/// When a binding applies: in a hunt something is hidden in the object, and nothing may tell where.
+/// When a binding applies. In a hunt something is hidden in the object, and no key may show where.
 enum class KeyScope { always, nothingHidden, somethingHidden };
 
 /// A key, or something done with the mouse, and what it does.
 struct KeyBinding {
-    int         key; ///< as KeyPress::key; 0: explained here, and handled by the pointer's input
+    int         key; ///< as KeyPress::key; 0: only explained here, and handled as pointer input
     KeyModifier modifier;
     KeyScope    scope;
     KeyGroup    group;
@@ -29,10 +29,10 @@ struct KeyBinding {
     const char* brief = nullptr; ///< in the line of keys of a window without panels; null: omitted there
 };
 
-/// All bindings. They handle keys, the sheet of keys (F1) shows them, and a test holds the README's table against them.
+/// Returns all bindings. They handle keys, the sheet of keys (F1) shows them, and a test compares the README's table.
 [[nodiscard]] std::span<const KeyBinding> keyBindings();
 
-/// Does what a key is bound to. One that does not apply now says so.
+/// Performs the action of a key. A binding that does not apply now shows a message instead.
 void handleKey(const KeyPress& press, Controls& controls);
 
 /// A line of the sheet of keys.
@@ -41,7 +41,8 @@ struct KeyLine {
     std::string keys; ///< "P  Shift+P"
     std::string help;
 };
-/// Returns the lines for what applies. \param hidden  something is hidden in the object
+/// Returns the lines of the bindings that apply.
+/// \param hidden  something is hidden in the object
 [[nodiscard]] std::vector<KeyLine> keyLines(bool hidden);
 
 /// Returns the keys that apply as one line of text, for windows without panels.

@@ -7,10 +7,11 @@
 namespace palp {
 
 /// Holds the sentences that the window shows to its user: the last message, what is being done, and what went wrong.
-/// Invariant: there are at most five faults, and no two in a row are the same. \thread the window's
+/// Invariant: there are at most five faults, and no two in a row are the same.
+/// \thread the window's
 class Notices {
 public:
-    /// \param complained  hears each new fault; may be empty
+    /// \param complained  is called with each new fault; may be empty
     explicit Notices(std::function<void(const std::string&)> complained) : complained_(std::move(complained)) {}
 
     void say(const std::string& message);
@@ -18,7 +19,7 @@ public:
     void clearMessage() { message_.clear(); }
     void clearFaults() { faults_.clear(); }
 
-    /// Names what goes on on another thread; an empty name says that it is over.
+    /// Names the activity of another thread; an empty name ends it.
     void               setActivity(const std::string& activity);
     [[nodiscard]] bool busy() const { return !activity_.empty(); }
 
@@ -27,7 +28,7 @@ public:
     [[nodiscard]] const std::string&              current() const { return busy() ? activity_ : message_; }
     [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }
 
-    /// Counts what a new picture would show.
+    /// Returns the number of changes that a new picture would show.
     [[nodiscard]] std::uint64_t changes() const { return changes_; }
 
 private:

@@ -19,11 +19,11 @@ std::function<OpenedObject()> ObjectSource::opener(const std::string& what, cons
             auto  stage = std::make_unique<Stage>(scene);
             return OpenedObject{what, std::move(scene), std::move(stage)};
         };
-    std::optional<Scene> now; // its object may do
+    std::optional<Scene> now; // its object may be used again
     if (stage_ && !stage_->painting().changed()) now = stage_->scene();
     return [what, now, toolKeys = settings_.toolKeys, solver = stage_ ? stage_->scene().solver : "auto"] {
         RecordedSession session = readSession(what);
-        if (session.samples.empty()) throw Error(what + ": there are no samples in it, so there is nothing to replay");
+        if (session.samples.empty()) throw Error(what + ": it has no samples, so there is nothing to replay");
         Scene scene  = palp::sceneOf(session, toolKeys);
         scene.solver = solver;
         auto stage   = now && haveSameCloud(scene, *now) ? nullptr : std::make_unique<Stage>(scene);

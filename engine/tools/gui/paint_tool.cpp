@@ -85,9 +85,9 @@ bool PaintTool::mayDiscard(const Stage& stage)
 {
     if (!unsaved(stage)) return true;
     const bool warned = kept_ == Kept::warned;
-    kept_             = warned ? Kept::unsaved : Kept::warned; // what discards it may fail
+    kept_             = warned ? Kept::unsaved : Kept::warned; // the action that discards it may fail
     if (warned) return true;
-    notices_.complain("what is painted is not saved: Ctrl+S saves it, asking for the same again discards it");
+    notices_.complain("what is painted is not saved: Ctrl+S saves it, repeating the request discards it");
     return false;
 }
 

@@ -9,16 +9,18 @@
 
 namespace palp {
 
-/// Paints stiffness on the object on the stage, takes it back, and saves it.
-/// Invariant: paint that is on the object and not in a file is never discarded without a warning. \thread the window's
+/// Paints stiffness on the object on the stage, undoes strokes, and saves the paint.
+/// Invariant: paint that is on the object and not in a file is never discarded without a warning.
+/// \thread the window's
 class PaintTool {
 public:
     explicit PaintTool(Notices& notices) : notices_(notices) {}
 
-    /// Forgets the last object. \pre its paint may be discarded
+    /// Forgets the last object.
+    /// \pre its paint may be discarded
     void startAnew();
 
-    /// Dabs from where the stroke was to here; the first call begins a stroke.
+    /// Dabs from the stroke's last place to this one; the first call begins a stroke.
     void               stroke(Stage& stage, const BrushChoice& brush, const glm::dvec3& place);
     void               endStroke(Stage& stage);
     [[nodiscard]] bool inStroke() const { return lastDab_.has_value(); }
@@ -26,10 +28,10 @@ public:
     void undo(Stage& stage);
     void redo(Stage& stage);
 
-    /// Writes the painted cloud as a new PLY file and says so, or why it could not.
+    /// Writes the painted cloud as a new PLY file, and shows its name or why it could not be written.
     void               save(const Stage& stage);
     [[nodiscard]] bool unsaved(const Stage& stage) const;
-    /// Returns true if the paint is saved or the user has asked twice; warns at the first time.
+    /// Returns true if the paint is saved or the user has asked twice; warns the first time.
     [[nodiscard]] bool mayDiscard(const Stage& stage);
 
 private:

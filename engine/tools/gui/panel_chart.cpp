@@ -28,7 +28,7 @@ Tone toneOf(Edge edge)
     return edge == Edge::clamped ? Tone::plain : edge == Edge::supported ? Tone::accent : Tone::second;
 }
 
-/// Clamped sides are thick, supported ones thin, free ones dashed: told apart without their colours too.
+/// Draws clamped sides thick, supported ones thin and free ones dashed, distinct without their colours too.
 void drawSide(const PanelDesk& desk, ImVec2 from, ImVec2 to, Edge edge)
 {
     ImDrawList* const   draw = ImGui::GetWindowDrawList();
@@ -48,7 +48,7 @@ void drawSide(const PanelDesk& desk, ImVec2 from, ImVec2 to, Edge edge)
     }
 }
 
-/// The field as a mesh whose corners have the colours of their values; z is up.
+/// Draws the field as a mesh whose corners have the colours of their values; z is up.
 void drawField(const PanelDesk& desk, const ChartMap& map, ImVec2 corner, float side)
 {
     ImDrawList* const   draw = ImGui::GetWindowDrawList();
@@ -73,7 +73,7 @@ void drawField(const PanelDesk& desk, const ChartMap& map, ImVec2 corner, float 
         }
 }
 
-/// Contact, fingertip and sides over a field.
+/// Draws contact, fingertip and sides over a field.
 void drawMarks(const PanelDesk& desk, const Patch& patch, ImVec2 corner, float side)
 {
     ImDrawList* const draw = ImGui::GetWindowDrawList();
@@ -82,7 +82,7 @@ void drawMarks(const PanelDesk& desk, const Patch& patch, ImVec2 corner, float s
     const PlateGrid&  grid = patch.window.grid;
     const ImVec2      contact(corner.x - side * float(patch.window.corner.x / grid.sizeX()),
                               end.y + side * float(patch.window.corner.z / grid.sizeZ()));
-    // White on black: seen on every colour.
+    // White on black is visible on every colour.
     for (const auto& [ink, thick] : {std::pair{IM_COL32(0, 0, 0, 200), 3 * s}, {IM_COL32(255, 255, 255, 255), s}}) {
         draw->AddLine(ImVec2(contact.x - 5 * s, contact.y), ImVec2(contact.x + 5 * s, contact.y), ink, thick);
         draw->AddLine(ImVec2(contact.x, contact.y - 5 * s), ImVec2(contact.x, contact.y + 5 * s), ink, thick);
@@ -106,7 +106,7 @@ void drawBar(const PanelDesk& desk, const ChartMap& map, ImVec2 corner, float si
         draw->AddRectFilled(ImVec2(corner.x + side * float(n) / kSteps, corner.y),
                             ImVec2(corner.x + side * float(n + 1) / kSteps, corner.y + high),
                             packed(surfaceColour((n + 0.5) / kSteps, desk.state.look.map)));
-    // From the right, as far as there is room.
+    // Drawn from the right, as far as there is room.
     float free = corner.x + side + 1;
     for (auto tick = map.axis.ticks().rbegin(); tick != map.axis.ticks().rend(); ++tick) {
         const float at   = corner.x + side * float(map.axis.position(tick->value));
@@ -119,7 +119,7 @@ void drawBar(const PanelDesk& desk, const ChartMap& map, ImVec2 corner, float si
     }
 }
 
-/// \return where the pointer is over the map, in shares of its sides from the lower left corner
+/// \return the pointer's place on the map, in shares of its sides from the lower left corner
 std::optional<ImVec2> drawMap(const PanelDesk& desk, const Patch& patch, const ChartMap& map, float side)
 {
     ImGui::BeginGroup();
@@ -138,21 +138,21 @@ std::optional<ImVec2> drawMap(const PanelDesk& desk, const Patch& patch, const C
     return pointed;
 }
 
-/// What lies under the pointer, or else at the contact: the lines are always there, so that nothing jumps.
+/// Writes the values under the pointer, or else at the contact: the lines are always there, so that nothing jumps.
 void drawReadOut(const PanelDesk& desk, const Patch& patch, const std::optional<ImVec2>& pointed)
 {
     const PlateGrid& grid = patch.window.grid;
     const auto node = [](float share, int cells) { return std::clamp(int(share * float(cells) + 0.5F), 0, cells); };
     const int  i    = pointed ? node(pointed->x, grid.cellsX) : grid.cellsX / 2;
     const int  j    = pointed ? node(pointed->y, grid.cellsZ) : grid.cellsZ / 2;
-    toned(desk, Tone::faint, pointed ? "under the pointer" : "at the contact, or point at a map");
+    toned(desk, Tone::faint, pointed ? "under the pointer" : "at the contact; point at a map to change it");
     reading(desk, Half::left, "x, right", formatted("%.1f mm", 1e3 * (patch.window.corner.x + i * grid.spacingX)));
     reading(desk, Half::right, "z, up", formatted("%.1f mm", 1e3 * (patch.window.corner.z + j * grid.spacingZ)));
     reading(desk, Half::left, "D", formatQuantity(patch.plate.rigidity(i, j), "N m"));
     reading(desk, Half::right, "w", formatted("%.4f mm", 1e3 * desk.content.force * patch.response(i, j)));
 }
 
-/// How each kind of side is drawn.
+/// Explains how each kind of side is drawn.
 void drawKeyOfSides(const PanelDesk& desk)
 {
     const float sample = 16 * desk.scale, gap = 4 * desk.scale;
@@ -178,7 +178,7 @@ ChartMap rigidityMap(const Patch& patch)
 
 ChartMap dentMap(const Patch& patch, double force)
 {
-    constexpr double kFlat   = 0.01;                                      // [mm] dents of less have the colours of none
+    constexpr double kFlat   = 0.01;                                      // [mm] smaller dents have the colour of none
     ChartSamples     samples = chartSamples(patch.response, 1e3 * force); // [mm]
     const auto       range   = rangeOf(samples.values, Scale::linear).value_or(ValueRange{0, 1});
     const Axis       axis({std::min(0.0, range.low), std::max(range.high, kFlat)}, Scale::linear, "", 3);
@@ -191,7 +191,7 @@ void drawChartSection(PanelDesk& desk)
 {
     const Patch* const patch = desk.content.patch;
     if (!patch || !patch->deformed()) {
-        tonedWrapped(desk, Tone::faint, "Nothing is bent yet: touch the surface. Hold Space and point at the object.");
+        tonedWrapped(desk, Tone::faint, "Nothing is bent yet. Hold Space and point at the object to touch it.");
         return;
     }
     const float    gap  = 12 * desk.scale;

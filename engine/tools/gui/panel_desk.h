@@ -5,7 +5,7 @@
 
 namespace palp {
 
-/// What every section of the panels works with, for one frame.
+/// The inputs of every section of the panels, for one frame.
 struct PanelDesk {
     ViewState&          state;
     const PanelContent& content;
@@ -15,7 +15,8 @@ struct PanelDesk {
     [[nodiscard]] bool dark() const { return state.look.ground == Ground::dark; }
 };
 
-/// One bar over the whole width. \return its height [px]
+/// Draws one bar over the whole width.
+/// \return its height [px]
 float drawStatusLine(PanelDesk& desk);
 
 // The sections of the column, without their headers.
@@ -26,7 +27,7 @@ void drawTimingSection(PanelDesk& desk);
 void drawSceneSection(PanelDesk& desk);
 void drawPaintSection(PanelDesk& desk);
 
-/// All keys, over the middle of the picture, until it is closed.
+/// Draws all keys over the middle of the picture, until the sheet is closed.
 void drawKeySheet(PanelDesk& desk);
 
 } // namespace palp

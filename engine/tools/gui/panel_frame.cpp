@@ -19,7 +19,7 @@ PanelFrame::PanelFrame(double scale)
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io    = ImGui::GetIO();
-    io.IniFilename = nullptr; // where panels are is ours to say
+    io.IniFilename = nullptr; // Palpate lays out the panels
     io.LogFilename = nullptr;
     setScale(scale);
 }
@@ -38,13 +38,13 @@ void PanelFrame::setScale(double scale)
     ImFontConfig font;
     font.FontDataOwnedByAtlas = false;
     const auto bytes          = fontBytes();
-    // Latin with Greek, and the signs of units and of keys.
+    // The ranges hold Latin, Greek, and the signs of units and keys.
     static constexpr ImWchar kGlyphs[] = {0x20,   0xFF,   0x391,  0x3C9,  0x2010, 0x2026, 0x2070, 0x209F,
                                           0x2190, 0x2193, 0x2212, 0x2212, 0x2265, 0x2265, 0};
-    // ImGui asks for a pointer that it does not write through.
+    // ImGui takes a non-const pointer but does not write through it.
     io.Fonts->AddFontFromMemoryTTF(const_cast<unsigned char*>(bytes.data()), int(bytes.size()),
                                    kPanelFont * float(scale), &font, kGlyphs);
-#if IMGUI_VERSION_NUM < 19200 // later ones do that while they draw
+#if IMGUI_VERSION_NUM < 19200 // later versions do that while they draw
     io.Fonts->Build();
 #endif
     ImGui::GetStyle() = ImGuiStyle(); // sizes are scaled from those of scale 1
@@ -58,14 +58,14 @@ void PanelFrame::setDark(bool dark)
     dark ? ImGui::StyleColorsDark() : ImGui::StyleColorsLight();
     ImGuiStyle& style    = ImGui::GetStyle();
     style.WindowRounding = style.FrameRounding = 3;
-    style.Colors[ImGuiCol_WindowBg].w          = 0.92F; // a hint of what is below
+    style.Colors[ImGuiCol_WindowBg].w          = 0.92F; // the picture below shows through slightly
 }
 
 void PanelFrame::beginWithoutWindow(const glm::ivec2& size, const PanelPointer& pointer)
 {
     ImGuiIO& io     = ImGui::GetIO();
     io.DisplaySize  = ImVec2(float(size.x), float(size.y));
-    io.DeltaTime    = 1.0F / 60; // [s] always the same: pictures are
+    io.DeltaTime    = 1.0F / 60; // [s] constant, so that pictures are the same every time
     io.MousePos     = ImVec2(float(pointer.at.x), float(pointer.at.y));
     io.MouseDown[0] = pointer.down;
     ImGui::NewFrame();
@@ -90,8 +90,8 @@ bool pressed(const WindowInput& input, int key)
 
 } // namespace
 
-// Fed by us, not by ImGui's back end for GLFW: that asks the desktop for the focus in every frame and waits for the
-// answer, behind the picture that is on its way there.
+// Input is given to ImGui here, not by ImGui's back end for GLFW, which asks the desktop for the focus in every frame
+// and waits for the answer behind the picture that is on its way there.
 WindowInput PanelFrame::begin(WindowInput input)
 {
     setScale(input.scale);

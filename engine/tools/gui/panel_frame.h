@@ -7,16 +7,17 @@
 
 namespace palp {
 
-/// Pointer and buttons where no window gives them to ImGui, as in pictures without a display.
+/// Pointer and button for ImGui where there is no window, as in pictures without a display.
 struct PanelPointer {
     glm::dvec2 at{-1, -1}; ///< [px]
     bool       down = false;
 };
 
-/// The one ImGui context of a program: its font, its style, the beginning and the end of its frames. \thread one
+/// The one ImGui context of a program: its font, its style, the beginning and the end of its frames.
+/// \thread one
 class PanelFrame {
 public:
-    /// Returns whether this build has panels; without them nothing here does anything.
+    /// Returns whether this build has panels; without them all functions do nothing.
     [[nodiscard]] static bool available() noexcept;
 
     /// \param scale  of a display with many pixels per inch [1]
@@ -25,17 +26,19 @@ public:
     PanelFrame(const PanelFrame&)            = delete;
     PanelFrame& operator=(const PanelFrame&) = delete;
 
-    /// Light or dark, as the ground is.
+    /// Sets a light or dark style, to match the ground.
     void setDark(bool dark);
 
-    /// Another display: font and distances in its pixels from now on. The same as before: nothing.
+    /// Sets font and distances for another display; does nothing if the scale is the same.
     /// \pre between two frames
     void setScale(double scale);
 
-    /// A frame without a window. \param size  of the picture [px]
+    /// Begins a frame without a window.
+    /// \param size  of the picture [px]
     void beginWithoutWindow(const glm::ivec2& size, const PanelPointer& pointer = {});
 
-    /// A frame with what happened in a window, at its scale. \return the same, with what the panels take for themselves
+    /// Begins a frame with a window's input, at its scale.
+    /// \return the input, marked with what the panels take
     [[nodiscard]] WindowInput begin(WindowInput input);
 
     void end();
@@ -43,7 +46,7 @@ public:
 private:
     double                                scale_ = 0; ///< [1]; 0: not set yet
     bool                                  dark_  = false;
-    std::chrono::steady_clock::time_point last_{}; ///< frame of a window
+    std::chrono::steady_clock::time_point last_{}; ///< time of the last frame with a window
 };
 
 } // namespace palp

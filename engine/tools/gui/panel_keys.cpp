@@ -12,7 +12,7 @@ void drawLines(const PanelDesk& desk, const char* title, KeyGroup group)
     for (const KeyLine& line : keyLines(desk.state.blind)) {
         if (line.group != group) continue;
         ImGui::TextUnformatted(line.keys.c_str());
-        ImGui::SameLine(150 * desk.scale, 0); // from where the group begins
+        ImGui::SameLine(150 * desk.scale, 0); // from the start of the group
         toned(desk, Tone::faint, line.help);
     }
     ImGui::NewLine();
@@ -23,7 +23,7 @@ void drawLines(const PanelDesk& desk, const char* title, KeyGroup group)
 void drawKeySheet(PanelDesk& desk)
 {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowBgAlpha(0.98F); // it is read, not looked through
+    ImGui::SetNextWindowBgAlpha(0.98F); // nearly opaque, to be read
     ImGui::SetNextWindowPos(ImVec2(screen.x / 2, screen.y / 2), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
     ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(screen.x, screen.y));
     if (ImGui::Begin("Keys", &desk.state.keys,

@@ -7,7 +7,7 @@
 
 namespace palp {
 
-/// Draws the panels when they are due: at once where the user is at them, and a few times a second otherwise, because
+/// Draws the panels when they are due: at once while the user works in them, otherwise a few times a second, because
 /// drawing them takes as long as drawing the object. Invariant: each frame of ImGui that is begun is ended.
 /// \thread the window's
 class PanelLayer {
@@ -17,11 +17,13 @@ public:
 
     [[nodiscard]] bool exist() const noexcept { return frame_ != nullptr; }
 
-    /// Gives the panels what happened. \return the same, with what the panels take for themselves
+    /// Gives the panels the input.
+    /// \return the input, marked with what the panels take
     [[nodiscard]] WindowInput begin(WindowInput input, bool dark, bool resized);
-    /// Draws the panels if they are due. \return what the user asked for in them
+    /// Draws the panels if they are due.
+    /// \return what the user asked for in them
     [[nodiscard]] PanelWishes draw(ViewState& state, const PanelContent& content, double scale, Screen& screen);
-    /// Draws nothing: the last panels stay.
+    /// Draws nothing; the last panels stay.
     void skip();
 
     [[nodiscard]] bool due() const { return due_; }

@@ -8,7 +8,7 @@ namespace palp {
 
 float columnWidth(float width, float scale)
 {
-    constexpr float kWidth = 300, kMostOfWidth = 0.6F; // at scale 1 [px]; of a narrow window [1]
+    constexpr float kWidth = 300, kMostOfWidth = 0.6F; // at scale 1 [px]; share of a narrow window [1]
     return std::min(kWidth * scale, kMostOfWidth * width);
 }
 
@@ -28,7 +28,7 @@ PictureArea freeArea(const ViewState& state, const glm::ivec2& size, double scal
     if (!state.panels) return {{0, 0}, all};
     const double left = columnWidth(float(size.x), float(scale)), top = statusHeight(float(scale));
     const double foot = state.texts ? footHeight(float(size.y), float(scale)) : 0;
-    // A window that is lower than its own lines has no room left; half of it is as good as any answer.
+    // A window lower than its own lines has no room left; half of it serves as well as any other answer.
     return {{left, top}, {all.x - left, std::max(0.5 * all.y, all.y - top - foot)}};
 }
 

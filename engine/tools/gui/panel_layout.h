@@ -5,16 +5,19 @@
 
 namespace palp {
 
-// Where panels lie in a window: known without drawing them, so that the object can be put beside them.
+// The layout of panels in a window, known without drawing them, so that the object can be put beside them.
 
 inline constexpr float kPanelFont = 15; ///< size of their font, at scale 1 [px]
 inline constexpr float kStatusPad = 5;  ///< above and below the text of the status line, at scale 1 [px]
 
-/// Of the column at the left [px]. \param width  of the picture [px] \param scale  of the display [1]
+/// Returns the width of the column at the left [px].
+/// \param width  of the picture [px]
+/// \param scale  of the display [1]
 [[nodiscard]] float columnWidth(float width, float scale);
-/// Of the line at the top [px].
+/// Returns the height of the line at the top [px].
 [[nodiscard]] float statusHeight(float scale);
-/// Of the texts at the foot of the picture, see annotate() [px]. \param height  of the picture [px]
+/// Returns the height of the texts at the foot of the picture, see annotate() [px].
+/// \param height  of the picture [px]
 [[nodiscard]] float footHeight(float height, float scale);
 
 /// A part of a picture.
@@ -23,11 +26,11 @@ struct PictureArea {
     glm::dvec2 size{};   ///< [px]
 };
 
-/// What the panels leave of a picture: all of it while they are hidden.
+/// Returns the area of a picture that the panels leave free: all of it while they are hidden.
 /// \param size  of the picture [px]
 [[nodiscard]] PictureArea freeArea(const ViewState& state, const glm::ivec2& size, double scale);
 
-/// See Camera::centre: the middle of an area, of a picture of that size [1].
+/// Returns the middle of an area in a picture of that size, as Camera::centre has it [1].
 [[nodiscard]] glm::dvec2 centreOf(const PictureArea& area, const glm::ivec2& size);
 
 } // namespace palp

@@ -5,7 +5,7 @@
 namespace palp {
 namespace {
 
-/// A slider of a number in SI units, shown in others.
+/// Draws a slider of a number in SI units that is shown in other units.
 void slider(const PanelDesk& desk, const char* label, const char* means, double& value, double perUnit, double least,
             double most, const char* format, bool logarithmic)
 {
@@ -25,18 +25,19 @@ void drawPaintSection(PanelDesk& desk)
 {
     BrushChoice& brush = desk.state.brush;
     if (const auto how = segments(desk, "how", brush.smooths ? 1 : 0, {"paint", "smooth"})) brush.smooths = *how == 1;
-    slider(desk, "radius  [ ]", "Of the brush: [ and ] change it", brush.radius, 1e-3, 0.2, 100, "%.1f mm", true);
+    slider(desk, "radius  [ ]", "Radius of the brush; [ and ] change it", brush.radius, 1e-3, 0.2, 100, "%.1f mm",
+           true);
     ImGui::BeginDisabled(brush.smooths);
     if (desk.content.cloud.kind() == StiffnessKind::modulus)
         slider(desk, "stiffness", "Young's modulus that is painted", brush.value, 1e3, 1, 1e5, "%.0f kPa", true);
     else
         slider(desk, "rigidity", "Flexural rigidity that is painted", brush.value, 1e-3, 1e-3, 1e4, "%.3f mN m", true);
     ImGui::EndDisabled();
-    slider(desk, "strength", "How far one stroke goes from what is there to what is painted", brush.strength, 1e-2, 1,
-           100, "%.0f %%", false);
-    desk.wishes.undo |= buttonIf(desk.content.canUndo, "undo  Ctrl+Z", "Takes the last stroke back");
+    slider(desk, "strength", "Share of the way to the painted value that one stroke goes", brush.strength, 1e-2, 1, 100,
+           "%.0f %%", false);
+    desk.wishes.undo |= buttonIf(desk.content.canUndo, "undo  Ctrl+Z", "Undoes the last stroke");
     ImGui::SameLine();
-    desk.wishes.redo |= buttonIf(desk.content.canRedo, "redo  Ctrl+Y", "Paints it again");
+    desk.wishes.redo |= buttonIf(desk.content.canRedo, "redo  Ctrl+Y", "Paints the stroke again");
     desk.wishes.save |= buttonIf(desk.content.painted, "save  Ctrl+S", "Writes the cloud as PLY");
     ImGui::SameLine();
     toned(desk, desk.content.painted ? Tone::warning : Tone::faint, desk.content.painted ? "not saved" : "unchanged");

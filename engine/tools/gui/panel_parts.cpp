@@ -20,7 +20,7 @@ ImVec4 floats(Rgb8 colour)
     return ImGui::ColorConvertU32ToFloat4(packed(colour));
 }
 
-/// Black or white, whichever stands out.
+/// Returns black or white, whichever has more contrast.
 /// \source Rec. 601 luma
 Rgb8 inkOver(Rgb8 fill)
 {
@@ -28,7 +28,7 @@ Rgb8 inkOver(Rgb8 fill)
     return luma > 140'000 ? Rgb8{20, 20, 20} : Rgb8{255, 255, 255};
 }
 
-/// A label at `from`, its number ending at `to`, both from the window's left edge [px].
+/// Writes a label at `from` and its number ending at `to`, both from the window's left edge [px].
 void readingBetween(const PanelDesk& desk, float from, float to, const char* label, std::string_view value, Tone tone)
 {
     ImGui::SetCursorPosX(from);
@@ -119,7 +119,7 @@ void readingOfAge(const PanelDesk& desk, Half half, const char* label)
     const bool        stale = (now.faults & static_cast<std::uint32_t>(SessionFlag::stalePatch)) != 0;
     if (!desk.content.touching || !(now.compliance > 0) || !std::isfinite(now.patchAge))
         return reading(desk, half, label, "\u2013");
-    constexpr double  kOld = 10; // [s] from here on nobody needs the number
+    constexpr double  kOld = 10; // [s] age beyond which the number is not shown
     const std::string age  = now.patchAge < kOld ? formatted("%.0f ms", 1e3 * now.patchAge) : "> 10 s";
     reading(desk, half, label, stale ? age + " stale" : age, stale ? Tone::warning : Tone::good);
 }

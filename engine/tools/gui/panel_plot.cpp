@@ -12,7 +12,7 @@ namespace {
 constexpr float kGutter     = 34; ///< left of a plot, for its numbers, at scale 1 [px]
 constexpr float kMostTick   = 18; ///< of the height that a number along y takes, at scale 1 [px]
 constexpr float kDash       = 4;  ///< of a dashed stroke, at scale 1 [px]
-constexpr int   kTicksAlong = 5;  ///< numbers below a plot, at most [1]
+constexpr int   kTicksAlong = 5;  ///< numbers below a plot, at most
 
 ImVec2 vec(const glm::vec2& v)
 {
@@ -26,7 +26,7 @@ double roundEnd(double value, double least)
     const double most   = drawable(value, Scale::linear) ? std::max(value, least) : least;
     const double decade = std::pow(10.0, std::floor(std::log10(most)));
     for (const double digit : {1.0, 2.0, 3.0, 5.0})
-        if (digit * decade >= most * (1 - 1e-9)) return digit * decade; // rounding of the decade
+        if (digit * decade >= most * (1 - 1e-9)) return digit * decade; // allows for rounding of the decade
     return 10 * decade;
 }
 
@@ -46,7 +46,7 @@ PanelPlot::PanelPlot(const PanelDesk& desk, const PanelPlotSettings& settings)
 
 glm::vec2 PanelPlot::pixel(double x, double y) const
 {
-    // Not much beyond the frame, and somewhere even if it is no number: what draws is not asked about infinity.
+    // Keeps places near the frame, even for values that are not numbers, so that no infinity is drawn.
     const auto       near = [](double share) { return std::isnan(share) ? 0.0 : std::clamp(share, -1.0, 2.0); };
     const double     up   = near(y_.position(y));
     const glm::dvec2 share(near(x_.position(x)), down_ ? up : 1 - up);
@@ -60,7 +60,7 @@ void PanelPlot::drawFrame(const PanelPlotSettings& settings) const
     const Rgb8          ink  = inkOn(desk_.state.look.ground);
     const std::uint32_t text = packed(colourOf(Tone::faint, desk_.dark())), grid = packed(ink, 0.14);
     draw->AddRectFilled(vec(low_), vec(high_), packed(ink, 0.03));
-    // From the right: the last number has the unit, and those that it leaves no room for have only their line.
+    // Goes from the right: the last number has the unit, and ticks without room for a number have only their line.
     float free = high_.x + 0.5F * font;
     for (auto tick = x_.ticks().rbegin(); tick != x_.ticks().rend(); ++tick) {
         const float       at    = pixel(tick->value, y_.range().low).x;
@@ -90,7 +90,7 @@ void PanelPlot::line(const glm::vec2& from, const glm::vec2& to, Tone tone, Stro
         draw->AddLine(vec(from), vec(to), ink, 1.5F * desk_.scale);
         return;
     }
-    // By the place along x, so that the dashes of neighbouring pieces go on into each other.
+    // Dashes follow the place along x, so that those of neighbouring pieces join.
     const float dash = kDash * desk_.scale;
     for (float at = std::floor((from.x - low_.x) / (2 * dash)) * 2 * dash + low_.x; at < to.x; at += 2 * dash) {
         const float a = std::max(at, from.x), b = std::min(at + dash, to.x), run = to.x - from.x;
@@ -124,7 +124,7 @@ void PanelPlot::bars(std::span<const float> heights, Tone tone)
     for (std::size_t n = 0; n < heights.size(); ++n) {
         if (heights[n] <= 0) continue;
         const float top =
-            std::min(pixel(x_.range().low, double(heights[n])).y, high_.y - desk_.scale); // a hair at least
+            std::min(pixel(x_.range().low, double(heights[n])).y, high_.y - desk_.scale); // at least one line high
         draw->AddRectFilled(ImVec2(low_.x + wide * float(n), top), ImVec2(low_.x + wide * float(n + 1) - 1, high_.y),
                             packed(colourOf(tone, desk_.dark())));
     }

@@ -12,36 +12,37 @@
 
 namespace palp {
 
-/// What a small plot shows; numbers are in the units of its titles.
+/// The settings of a small plot; numbers are in the units of its titles.
 struct PanelPlotSettings {
     const char* title;  ///< with the unit: "force [N]"
     ValueRange  x, y;   ///< of the axes
-    const char* xUnit;  ///< beside the last number below: "s"
-    float       height; ///< without the numbers below, at scale 1 [px]
+    const char* xUnit;  ///< written beside the last number below the plot: "s"
+    float       height; ///< without the numbers below the plot, at scale 1 [px]
     Scale       xScale   = Scale::linear;
-    bool        yNumbers = true;  ///< numbers beside the axis; without them heights compare only
+    bool        yNumbers = true;  ///< numbers beside the axis; without them heights can only be compared
     bool        yDown    = false; ///< larger values are lower, as depths are
 };
 
-/// A plot of the panels' width: the frame, round ticks and titles at once, curves as they are added.
+/// A plot as wide as the panels. The frame, round ticks and titles are drawn at once, curves as they are added.
 class PanelPlot {
 public:
     PanelPlot(const PanelDesk& desk, const PanelPlotSettings& settings);
 
     enum class Stroke { whole, dashed };
-    /// Values at even steps. \param first, step  along x, in its unit
+    /// Draws values at even steps.
+    /// \param first, step  along x, in its unit
     void curve(std::span<const float> values, double first, double step, Tone tone, Stroke stroke = Stroke::whole);
 
-    /// Bars side by side over the whole of x; heights in the unit of y, zero for none.
+    /// Draws bars side by side over the whole of x, with heights in the unit of y, zero for none.
     void bars(std::span<const float> heights, Tone tone);
 
-    /// An upright line at a value of x, below the title.
+    /// Draws an upright line at a value of x, below the title.
     void mark(double x, Tone tone);
 
-    /// In the upper right corner, from right to left: a stroke and what it means.
+    /// Adds a stroke and its meaning in the upper right corner, from right to left.
     void legend(const char* text, Tone tone, Stroke stroke = Stroke::whole);
 
-    /// Where the pointer is, in units of the axes; empty if it is elsewhere.
+    /// Returns the pointer's place in units of the axes; empty if it is elsewhere.
     [[nodiscard]] std::optional<glm::dvec2> pointed() const;
 
 private:
@@ -57,8 +58,8 @@ private:
     bool             pointed_   = false;
 };
 
-/// The least of 1, 2, 3 and 5 times a power of ten that is no less than a value: the end of an axis that seldom moves.
-/// \param least  what the end never falls below, and is if the value cannot be drawn; > 0
+/// Returns the least of 1, 2, 3 and 5 times a power of ten that is no less than a value: an axis end that seldom moves.
+/// \param least  least end, and the end if the value cannot be drawn; > 0
 [[nodiscard]] double roundEnd(double value, double least);
 
 } // namespace palp

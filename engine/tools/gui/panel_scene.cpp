@@ -12,7 +12,7 @@ namespace {
 constexpr float kLabels   = 118; ///< width of this section's labels, at scale 1 [px]
 constexpr float kOwnWidth = 44;  ///< of the button beside a law, at scale 1 [px]
 
-/// What a key means, what it takes, and where its value came from.
+/// Returns a key's meaning, the values it takes, and the source of its value.
 void explain(const PanelDesk& desk, std::string_view name)
 {
     if (!ImGui::IsItemHovered()) return;
@@ -33,7 +33,7 @@ void labelOf(const PanelDesk& desk, const char* label, std::string_view key)
     ImGui::SetNextItemWidth(-1);
 }
 
-/// A slider whose value is the scene's but while it is dragged, and a wish when it is let go.
+/// Draws a slider that shows the scene's value except while it is dragged, and makes a wish when it is released.
 void drawSlider(PanelDesk& desk, const SceneKey& key)
 {
     const KeyControl& control = *key.control;
@@ -72,8 +72,8 @@ void drawList(PanelDesk& desk, const SceneKey& key)
 
 void drawLaw(PanelDesk& desk)
 {
-    constexpr std::size_t kRoom = 1024;  // [bytes] for what is typed
-    constexpr const char* kOwn  = "own"; // as the scene's key says: no law
+    constexpr std::size_t kRoom = 1024;  // [bytes] for typed text
+    constexpr const char* kOwn  = "own"; // the key's word for no law
     const std::string&    now   = desk.content.scene.stiffness;
     std::vector<char>     text(now.size() + kRoom);
     std::memcpy(text.data(), now.c_str(), now.size() + 1);
@@ -87,10 +87,10 @@ void drawLaw(PanelDesk& desk)
         now != text.data())
         desk.wishes.values["stiffness"] = *text.data() ? text.data() : kOwn;
     explain(desk, "stiffness");
-    if (!now.empty()) { // its way back
+    if (!now.empty()) { // the button that restores the cloud's own
         ImGui::SameLine();
         if (ImGui::SmallButton(kOwn)) desk.wishes.values["stiffness"] = kOwn;
-        tip("Takes the cloud's own stiffness again");
+        tip("Restores the cloud's own stiffness");
     }
     bool first = true;
     for (const char* law : {"constant", "linear", "hyperbolic", "gaussian"}) {
@@ -98,11 +98,11 @@ void drawLaw(PanelDesk& desk)
         first = false;
         if (ImGui::SmallButton(law))
             desk.wishes.values["stiffness"] = lawPreset(law, desk.content.scene, desk.content.cloud);
-        tip("Takes this law, from the least to the largest stiffness of the cloud");
+        tip("Applies this law, from the least to the largest stiffness of the cloud");
     }
 }
 
-/// Two opposite sides of the window in one line.
+/// Draws two opposite sides of the patch window in one line.
 void drawSides(PanelDesk& desk, const char* label, Edge PlateEdges::*low, Edge PlateEdges::*high)
 {
     labelOf(desk, label, "edges");

@@ -16,7 +16,7 @@ std::string orDash(bool known, const std::string& text)
     return known ? text : "\u2013";
 }
 
-/// Counts by their logarithm: one late tick in a million is as plain to see as it must be.
+/// Draws counts on a logarithmic scale, so that one late tick in a million is visible.
 void drawPeriods(const PanelDesk& desk)
 {
     const std::span<const float> counts = desk.content.history.periods();
@@ -31,7 +31,7 @@ void drawPeriods(const PanelDesk& desk)
                              Scale::logarithmic,
                              false});
     plot.bars(heights, Tone::accent);
-    plot.mark(1, Tone::second); // [ms] what the servo aims at
+    plot.mark(1, Tone::second); // [ms] the servo's intended period
     const auto at = plot.pointed();
     if (!at) return;
     const double share =
@@ -60,7 +60,7 @@ void drawDevice(const PanelDesk& desk, const char* role, const std::string& devi
     ImGui::SameLine(66 * desk.scale + ImGui::GetStyle().WindowPadding.x, 0);
     if (software) {
         badge("software", colourOf(Tone::warning, false));
-        tip("This machine draws without a GPU: pictures are slower, forces are not");
+        tip("This machine draws without a GPU, which slows pictures but not forces");
         ImGui::SameLine();
     }
     ImGui::TextUnformatted(device.empty() ? "\u2013" : device.c_str()); // cut off at the panel's edge

@@ -16,7 +16,7 @@ namespace palp {
 namespace {
 
 constexpr double kSpan     = TouchHistory::kSteps * TouchHistory::kStep; ///< of the curves over time [s]
-constexpr double kHeadroom = 1.35;                                       ///< above a curve, for its title [1]
+constexpr double kHeadroom = 1.35; ///< factor above a curve, which leaves room for its title [1]
 
 void drawFaults(PanelDesk& desk)
 {
@@ -31,14 +31,14 @@ void drawFaults(PanelDesk& desk)
     for (const std::string& sentence : desk.content.faults) tonedWrapped(desk, Tone::fault, sentence);
     if (needsAttention(desk.content)) {
         if (ImGui::SmallButton("start anew")) desk.wishes.resetFault = true;
-        tip("Forgets what is told here and begins a new session (R)");
+        tip("Clears these messages and begins a new session (R)");
     }
     if (!desk.content.touching) return;
     for (const std::string& sentence : notesOn(desk.content.history.newest()))
         tonedWrapped(desk, Tone::warning, sentence);
 }
 
-/// How deep the hand is below the proxy [m]; 0 out of contact.
+/// Returns the depth of the hand below the proxy [m]; 0 out of contact.
 double penetration(const TickRecord& sample)
 {
     return std::max(0.0, glm::dot(sample.proxy - sample.hip, sample.normal));
@@ -58,7 +58,7 @@ void drawNumbers(const PanelDesk& desk)
     reading(desk, Half::right, "depth", orDash(formatted("%.2f mm", penetration(now) * 1e3)));
     reading(desk, Half::left, "felt",
             !known ? "\u2013" : formatted("%.0f N/m%s", std::min(felt, cap), felt > cap ? " cap" : ""));
-    if (known && felt > cap) tip("As stiff as the scene lets it be: stiffness_cap");
+    if (known && felt > cap) tip("Limited by the scene's stiffness_cap");
     reading(desk, Half::right, "rigidity", orDash(formatQuantity(now.rigidity, "N m")));
     reading(desk, Half::left, "dent", orDash(formatted("%.3f mm", now.maxDeflection * 1e3)));
     readingOfAge(desk, Half::right, "patch");
@@ -86,7 +86,7 @@ void drawOverTime(const PanelDesk& desk)
     over("penetration [mm]", depths, 0.1, Tone::second);
 }
 
-/// Through the contact, along x or along z [mm].
+/// Returns the dent through the contact, along x or along z [mm].
 std::vector<float> profile(const Patch& patch, double force, bool alongX)
 {
     const PlateGrid&   grid = patch.window.grid;
@@ -105,15 +105,15 @@ void drawProfile(const PanelDesk& desk)
         tonedWrapped(desk, Tone::faint, "No patch yet: hold Space and point at the object.");
         return;
     }
-    const PatchWindow&    window = patch->window;
-    const auto       x = profile(*patch, desk.content.force, true), z = profile(*patch, desk.content.force, false);
-    const double     deepest = double(std::max(*std::ranges::max_element(x), *std::ranges::max_element(z)));
-    const double     least   = desk.content.force > 0 ? 0.02 : 0.2; // [mm] labels of smaller ones have no room
-    const double     end     = roundEnd(deepest, least);
-    const ValueRange across{
+    const PatchWindow& window = patch->window;
+    const auto         x = profile(*patch, desk.content.force, true), z = profile(*patch, desk.content.force, false);
+    const double       deepest = double(std::max(*std::ranges::max_element(x), *std::ranges::max_element(z)));
+    const double       least   = desk.content.force > 0 ? 0.02 : 0.2; // [mm] smaller ends leave no room for labels
+    const double       end     = roundEnd(deepest, least);
+    const ValueRange   across{
         1e3 * std::min(window.corner.x, window.corner.z),
         1e3 * std::max(window.corner.x + window.grid.sizeX(), window.corner.z + window.grid.sizeZ())}; // [mm]
-    // Depths go down, as in the object; beyond zero there is room for the title.
+    // Depths point down, as in the object; beyond zero there is room for the title.
     PanelPlot plot(desk, {"dent w [mm]", across, {-0.4 * end, end}, "mm", 76, Scale::linear, true, true});
     plot.legend("z", Tone::second, PanelPlot::Stroke::dashed);
     plot.legend("x", Tone::accent);

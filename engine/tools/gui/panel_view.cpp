@@ -48,16 +48,16 @@ void drawToggles(PanelDesk& desk)
 
 void drawButtons(PanelDesk& desk)
 {
-    desk.wishes.frame |= buttonIf(true, "frame", "The whole object in the picture (F)");
+    desk.wishes.frame |= buttonIf(true, "frame", "Fits the whole object into the picture (F)");
     ImGui::SameLine();
-    desk.wishes.reset |= buttonIf(true, "reset", "The view as it was in the beginning (R)");
+    desk.wishes.reset |= buttonIf(true, "reset", "Restores the first view (R)");
     ImGui::SameLine();
     desk.wishes.screenshot |=
-        buttonIf(true, "screenshot", "Writes the picture as a file, without panels (P; Shift+P with them)");
+        buttonIf(true, "screenshot", "Writes the picture to a file, without panels (P) or with them (Shift+P)");
     ImGui::SameLine();
     const bool recording = !desk.content.recording.empty();
     desk.wishes.record |= buttonIf(true, recording ? "stop##record" : "record##record",
-                                   recording ? "Ends the recording (F5)" : "Records what is felt (F5)");
+                                   recording ? "Ends the recording (F5)" : "Records the session (F5)");
 }
 
 void drawTool(PanelDesk& desk)
@@ -65,7 +65,7 @@ void drawTool(PanelDesk& desk)
     labelled(desk, "tool", "The pointer carries a hand that touches, or a brush of stiffness (B)");
     if (const auto tool = segments(desk, "tool", int(desk.state.tool), {"touch", "paint"}))
         desk.state.tool = Tool(*tool);
-    labelled(desk, "press depth", "How far below the surface the pointer carries the hand: the wheel, while touching");
+    labelled(desk, "press depth", "Depth of the pointer's hand below the surface; the wheel sets it while touching");
     const double most = 1e3 * kDeepest * desk.content.scene.material.thickness, least = -most; // [mm]
     double       depth = 1e3 * desk.state.pressDepth;                                          // [mm]
     if (ImGui::SliderScalar("##depth", ImGuiDataType_Double, &depth, &least, &most, "%.2f mm",
@@ -78,7 +78,7 @@ void drawTool(PanelDesk& desk)
 void drawViewSection(PanelDesk& desk)
 {
     drawColours(desk);
-    labelled(desk, "exaggerate", "Factor on every displacement in the picture; forces stay what they are (X)");
+    labelled(desk, "exaggerate", "Factor on every displacement in the picture; forces do not change (X)");
     const double least = 1, most = 20;
     ImGui::SliderScalar("##exaggeration", ImGuiDataType_Double, &desk.state.look.exaggeration, &least, &most,
                         "\u00d7 %.1f", ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);

@@ -11,10 +11,10 @@
 namespace palp {
 namespace {
 
-/// A smaller window has sections closed at first [px at scale 1].
+/// A window smaller than this has sections closed at first [px at scale 1].
 constexpr float kSmallWidth = 700, kSmallHeight = 480;
 
-/// Calm and compact: less room around everything than Dear ImGui takes by itself.
+/// Sets a compact style: less room around everything than Dear ImGui's own.
 class Style {
 public:
     Style(bool dark, float s)
@@ -27,7 +27,7 @@ public:
         ImGui::PushStyleVar(ImGuiStyleVar_ScrollbarSize, 10 * s);
         ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
         const Rgb8 ink = inkOn(dark ? Ground::dark : Ground::light), blue = colourOf(Tone::accent, dark);
-        // As what fades below the texts of the picture: a hint of it stays.
+        // Like the fading below the texts of the picture: it stays slightly visible.
         colour(ImGuiCol_WindowBg, dark ? Rgb8{30, 32, 36} : Rgb8{246, 247, 248}, 0.92);
         colour(ImGuiCol_Text, ink, 1);
         colour(ImGuiCol_FrameBg, ink, 0.10);
@@ -67,7 +67,7 @@ struct Section {
     float openFrom; ///< height of a window in which it is open at first [px at scale 1]
 };
 
-/// As much is open as fits without scrolling: in low windows what is felt, since how it looks has keys too.
+/// As much is open as fits without scrolling; in low windows the touch, since the view can be set by keys too.
 constexpr Section kSections[] = {
     {"View", drawViewSection, 700},      {"Touch", drawTouchSection, kSmallHeight}, {"Chart", drawChartSection, 960},
     {"Timing", drawTimingSection, 1180}, {"Scene", drawSceneSection, 1660},
@@ -79,7 +79,7 @@ bool header(const char* title, bool open)
     return ImGui::CollapsingHeader(title);
 }
 
-/// What is open when the column is small is closed once more when the window has become small.
+/// Closes sections that do not fit when the window has become small.
 void closeWhereSmall(bool small)
 {
     ImGuiStorage* const kept = ImGui::GetStateStorage();
@@ -90,7 +90,7 @@ void closeWhereSmall(bool small)
     kept->SetBool(was, small);
 }
 
-/// \param top, foot  that belong to others [px]
+/// \param top, foot  heights that belong to others [px]
 void drawColumn(PanelDesk& desk, float top, float foot)
 {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
@@ -99,7 +99,7 @@ void drawColumn(PanelDesk& desk, float top, float foot)
     const bool   small = screen.x < kSmallWidth * s || screen.y < kSmallHeight * s;
     ImGui::SetNextWindowPos(ImVec2(0, top));
     ImGui::SetNextWindowSizeConstraints(ImVec2(wide, 0), ImVec2(wide, most));
-    ImGui::SetNextWindowSize(ImVec2(wide, 0)); // as high as what is open in it
+    ImGui::SetNextWindowSize(ImVec2(wide, 0)); // as high as the open sections
     if (ImGui::Begin("panels", nullptr,
                      ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                          ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
@@ -118,7 +118,7 @@ PanelWishes drawPanels(ViewState& state, const PanelContent& content, double sca
     PanelWishes wishes;
     PanelDesk   desk{state, content, wishes, float(scale)};
     const Style style(desk.dark(), desk.scale);
-    // A fault is shown whether or not there are panels: without them, no hand would know why it feels nothing.
+    // A fault is shown even while panels are hidden, so that the user learns why the hand feels nothing.
     const bool column = state.panels && !state.blind;
     if (column || needsAttention(content)) {
         const float top  = drawStatusLine(desk);

@@ -11,29 +11,29 @@
 
 namespace palp {
 
-/// What panels show of a session and its machine. Everything outlives the frame.
+/// The content of the panels: a session and its machine. Everything outlives the frame.
 struct PanelContent {
     const Scene&             scene;
-    const PointCloud&        cloud; ///< as it is painted now
+    const PointCloud&        cloud; ///< with its present paint
     const TouchHistory&      history;
-    const Patch*             patch      = nullptr;                         ///< that is drawn; may be null
-    double                   force      = 0;                               ///< that bends it [N]
+    const Patch*             patch      = nullptr;                         ///< the drawn one; may be null
+    double                   force      = 0;                               ///< bends the patch [N]
     double                   loopPeriod = 0, solveTime = 0, frameTime = 0; ///< [s]
     std::string              hand{};                                       ///< "mouse", "Novint Falcon"
-    std::string              solvedOn{};                                   ///< device of the plate
-    std::string              drawnOn{};                                    ///< of the pictures
+    std::string              solvedOn{};                                   ///< solver of the plate
+    std::string              drawnOn{};                                    ///< device of the pictures
     bool                     drawnInSoftware = false;
     bool                     touching        = false; ///< a session runs
     bool                     replaying       = false; ///< of a recording
     std::string              recording{};             ///< its folder; empty: none
     std::string              title{};                 ///< of what is touched
     bool                     painted = false, canUndo = false, canRedo = false;
-    std::vector<std::string> faults{};   ///< what is wrong now, each a sentence with its remedy
-    std::string              message{};  ///< of the last thing done: "saved ..."; may be empty
-    std::string              realTime{}; ///< what the system refused of real-time rights; empty if nothing
+    std::vector<std::string> faults{};   ///< present faults, each a sentence with its remedy
+    std::string              message{};  ///< on the last action: "saved ..."; may be empty
+    std::string              realTime{}; ///< real-time rights that the system refused; empty if none
 };
 
-/// What the user asked for in a panel, to be done by the window.
+/// The user's requests in the panels, to be met by the window.
 struct PanelWishes {
     std::map<std::string, std::string, std::less<>>
          values; ///< of scene keys, as flags take them: {"thickness", "4 mm"}
@@ -41,8 +41,8 @@ struct PanelWishes {
     bool resetFault = false; ///< of the governor: starts the session anew
 };
 
-/// The panels over the view, with Dear ImGui: view, scene's values, touch, chart, timing, painting, keys.
-/// Changes of the view happen in `state` at once, all else is a wish.
+/// Draws the panels over the view, with Dear ImGui: view, scene's values, touch, chart, timing, painting, keys.
+/// Changes of the view are made in `state` at once; all others are returned as wishes.
 /// \pre between ImGui::NewFrame() and ImGui::Render()
 /// \param scale  of a display with many pixels per inch [1]
 [[nodiscard]] PanelWishes drawPanels(ViewState& state, const PanelContent& content, double scale);

@@ -1,7 +1,7 @@
 #include "engine/tools/gui/panel_frame.h"
 #include "engine/tools/gui/panels.h"
 
-// The panels of builds without Dear ImGui: there are none.
+// Builds without Dear ImGui have no panels.
 
 namespace palp {
 

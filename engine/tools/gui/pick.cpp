@@ -20,7 +20,7 @@ Ray rayThrough(const Camera& camera, const glm::dvec2& at, const glm::dvec2& siz
 std::optional<Hit> pick(const Ray& ray, std::span<const glm::dvec3> positions, std::span<const glm::dvec3> normals,
                         std::span<const double> radii, double blur)
 {
-    constexpr double kBehind = 0.35; // of the blur: farther off the first disc's plane is another sheet [1]
+    constexpr double kBehind = 0.35; // of the blur: points farther from the first disc's plane are another sheet [1]
     const auto       farOff  = [&](const glm::dvec3& point) { // square of the distance from the ray [m²]
         const glm::dvec3 away  = point - ray.from;
         const double     along = glm::dot(away, ray.along);
@@ -54,7 +54,7 @@ std::optional<Hit> pick(const Ray& ray, std::span<const glm::dvec3> positions, s
     if (!(sum > 0) || !(glm::length(outward) > 0)) return Hit{positions[first], facing};
     middle /= sum;
     outward = glm::normalize(outward);
-    // On the plane of the means, where the ray goes through it.
+    // The hit is where the ray goes through the plane of the means.
     const double slope = glm::dot(ray.along, outward);
     if (std::abs(slope) < 0.1) return Hit{middle, outward};
     return Hit{ray.from + glm::dot(middle - ray.from, outward) / slope * ray.along, outward};

@@ -13,7 +13,9 @@ struct Ray {
     glm::dvec3 along{0, 0, -1}; ///< [1] unit
 };
 
-/// From the eye through a place of the picture. \param at  from its upper left corner [px] \param size  of it [px]
+/// Returns the ray from the eye through a place of the picture.
+/// \param at    from the picture's upper left corner [px]
+/// \param size  of the picture [px]
 [[nodiscard]] Ray rayThrough(const Camera& camera, const glm::dvec2& at, const glm::dvec2& size);
 
 /// A place on a surface of points and its side towards the eye.
@@ -22,8 +24,8 @@ struct Hit {
     glm::dvec3 outward{0, 0, 1}; ///< [1] unit
 };
 
-/// Where a ray first meets the discs of a cloud: the mean over the points around there, weighted by (1 - d²/R²)² of
-/// their distances d from the ray, so that a pointer that glides makes a hand that glides. Empty if it misses.
+/// Returns where a ray first meets the discs of a cloud: the mean over the points around there, weighted by
+/// (1 - d²/R²)² of their distances d from the ray, so that the hand glides as the pointer does. Empty if it misses.
 ///
 /// Looks at every point: 0.1 ms for 40 000.
 /// \param positions, normals  of the points [m], [1] unit, of either side

@@ -11,9 +11,9 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-constexpr double kFramePeriod = 1.0 / 60; ///< no display shows more [s]
-constexpr double kQuick       = 12e-3;    ///< of a fine picture that is as good as a fast one [s]
-constexpr double kRest        = 0.8;      ///< until a fine picture is due, where nothing changes [s]
+constexpr double kFramePeriod = 1.0 / 60; ///< shortest period of pictures [s]
+constexpr double kQuick       = 12e-3;    ///< longest time of a fine picture that replaces fast ones [s]
+constexpr double kRest        = 0.8;      ///< time without changes after which a fine picture is due [s]
 
 bool empty(const glm::ivec2& size)
 {
@@ -33,7 +33,7 @@ PictureLoop::PictureLoop(Screen& screen) : screen_(screen), shownAt_(Clock::now(
 
 double PictureLoop::patience(const glm::ivec2& size) const
 {
-    constexpr double kIdle = 0.1; // between looks at a window in which nothing happens [s]
+    constexpr double kIdle = 0.1; // period of looks at a window in which nothing happens [s]
     return restsFine_ || empty(size) ? kIdle : std::max(0.0, kFramePeriod - sinceBegin());
 }
 

@@ -9,13 +9,14 @@
 namespace palp {
 
 /// Draws the window's pictures: decides when one is due and how finely it is drawn, and measures how long it takes.
-/// Invariant: while nothing changes, the last picture is a fine one and no other is drawn. \thread the window's
+/// Invariant: while nothing changes, the last picture is a fine one and no other is drawn.
+/// \thread the window's
 class PictureLoop {
 public:
     /// \param screen  outlives this
     explicit PictureLoop(Screen& screen);
 
-    /// Something differs from what the last picture shows.
+    /// Notes that something differs from what the last picture shows.
     void changed() { changedAt_ = Clock::now(); }
 
     /// Returns how long to wait for input before the next picture [s].
@@ -24,18 +25,23 @@ public:
     [[nodiscard]] bool   resized(const glm::ivec2& size) const { return size != drawnSize_; }
     [[nodiscard]] double sinceBegin() const; ///< of the last picture [s]
 
-    /// Begins a picture: what is prepared from here on counts as drawing it.
+    /// Begins a picture; the preparations that follow count as drawing it.
     void begin(const glm::ivec2& size);
-    /// Draws the picture that was begun. \param touching  counts it in the report
+    /// Draws the picture that was begun.
+    /// \param touching  counts it in the report
     void show(const ViewScene& scene, const Camera& camera, const Overlay* texts, bool touching);
     /// Shows the last picture once more.
     void rest() { screen_.present(); }
-    /// Draws words alone, without times.
+    /// Draws words alone, and measures no times.
     void showWords(const ViewScene& words, const Camera& camera, const glm::ivec2& size, double scale);
 
-    /// Writes the object as a PNG file, finer than on the screen. \return the file \throws Error
+    /// Writes the object as a PNG file, finer than on the screen.
+    /// \return the file
+    /// \throws Error if it cannot be drawn or written
     std::string saveStill(ViewScene& scene, const Camera& camera, const std::string& title);
-    /// Writes what the window shows, panels included, as a PNG file. \return the file \throws Error
+    /// Writes what the window shows, panels included, as a PNG file.
+    /// \return the file
+    /// \throws Error if it cannot be drawn or written
     std::string saveWindow(const ViewScene& scene, const Camera& camera, const Overlay* texts);
 
     [[nodiscard]] const compute::Processor& device() const { return screen_.device(); }
@@ -54,7 +60,7 @@ private:
     PictureSize       size_;                         ///< of the picture that was begun
     double            frameTime_ = 0, drawTime_ = 0; ///< [s]
     double            fineTime_  = 0;                ///< of the last fine picture [s]; 0: there was none
-    bool              restsFine_ = false;            ///< the last picture is a fine one of what rests
+    bool              restsFine_ = false;            ///< the last picture is a fine one, of an object at rest
     WorkbenchReport   report_;
 };
 

@@ -23,7 +23,8 @@ struct TextContent {
 };
 
 /// Keeps the texts over the window's pictures, because writing them takes longer than a frame may.
-/// Invariant: a picture of another size never gets these texts. \thread the window's
+/// Invariant: a picture of another size never gets these texts.
+/// \thread the window's
 class PictureTexts {
 public:
     /// Writes the texts anew if they have changed, but not with every frame.

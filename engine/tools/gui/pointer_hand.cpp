@@ -26,7 +26,7 @@ void PointerHand::begin(const Hit& at)
 
 bool PointerHand::press(const Hit& at, double depth)
 {
-    // A hand that glides over the surface turns little from picture to picture, and one that hovers may go anywhere
+    // A hand that glides over the surface turns little from picture to picture, and a hovering one may move anywhere
     // on its own side of the object.
     const double turned = glm::dot(at.outward, at_.outward);
     const double above_ = glm::dot(above(at_, height_) - at.point, at.outward); // where it hovers, over that place [m]
@@ -39,7 +39,7 @@ bool PointerHand::press(const Hit& at, double depth)
 
 void PointerHand::target(const glm::dvec3& place)
 {
-    constexpr std::uint32_t kButton = 2; // the second: the first is the operator's
+    constexpr std::uint32_t kButton = 2; // the second one; the first is the operator's
     target_                         = place;
     device_->target(place - origin_, marking_ ? kButton : 0);
 }

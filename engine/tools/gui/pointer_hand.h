@@ -8,33 +8,35 @@
 
 namespace palp {
 
-/// The pointer of a window as a hand: over the place that the pointer is on, as deep below the surface as the wheel
-/// says, and off it again when it is let go. \thread the window's
+/// The pointer of a window as a hand: it presses the place under the pointer, as deep below the surface as the wheel
+/// sets, and leaves it when it is released.
+/// \thread the window's
 class PointerHand {
 public:
-    /// \param start   where it hovers first  \param height  above the surface while it hovers [m]
-    /// \param bounds  of the object: how far it may have to go
+    /// \param start   where it hovers first
+    /// \param height  above the surface while it hovers [m]
+    /// \param bounds  bounds of the object, which limit its reach
     PointerHand(const Hit& start, double height, const Bounds& bounds);
 
     [[nodiscard]] HapticDevice& device() noexcept { return *device_; }
     [[nodiscard]] DeviceFrame   frame() const noexcept { return {origin_}; }
 
-    /// Presses at a place, or goes on pressing at another.
+    /// Presses at a place, or continues to press at another.
     /// \param depth  below the surface [m]
-    /// \return false: the object may lie between the hand and the place. Nothing has happened; begin() there
+    /// \return false if the object may lie between the hand and the place; nothing has changed, call begin() there
     [[nodiscard]] bool press(const Hit& at, double depth);
 
-    /// The hand begins anew, hovering over a place. \pre no session runs
+    /// Lets the hand begin anew, hovering over a place.
+    /// \pre no session runs
     void begin(const Hit& at);
 
-    /// Holds the device's button down, or lets it go: in a hunt that declares the place. Costs nothing if nothing
-    /// changes.
+    /// Presses or releases the device's button, which declares the place in a hunt. Costs nothing if nothing changes.
     void mark(bool down);
 
-    /// Lets go: springs back to where it hovers.
+    /// Releases the surface: the hand springs back to where it hovers.
     void release();
 
-    /// Where it is, or hovers.
+    /// Returns the place where the hand is, or hovers.
     [[nodiscard]] const Hit& at() const noexcept { return at_; }
 
     [[nodiscard]] bool pressing() const noexcept { return pressing_; }

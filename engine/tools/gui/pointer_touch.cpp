@@ -8,22 +8,22 @@
 namespace palp {
 
 PointerTouch::PointerTouch(const Stage& stage, Notices& notices)
-    : stage_(stage), notices_(notices),
-      hand_(Hit{stage.place().point, stage.place().outward}, stage.scene().startHeight, stage.painted().cloud().bounds())
+    : stage_(stage), notices_(notices), hand_(Hit{stage.place().point, stage.place().outward},
+                                              stage.scene().startHeight, stage.painted().cloud().bounds())
 {
 }
 
 PointerTouch::Outcome PointerTouch::follow(const WindowInput& input, const std::optional<Hit>& hit, double& depth)
 {
-    constexpr auto   kHeld = std::chrono::milliseconds(60); // thrice what declares
-    constexpr double kStep = 0.05, kMost = 3; // of the thickness: a notch, and how deep and high it goes [1]
+    constexpr auto   kHeld = std::chrono::milliseconds(60); // three times the time that declares
+    constexpr double kStep = 0.05, kMost = 3; // of the thickness: a notch, and the largest depth and height [1]
     if (Clock::now() - declared_ > kHeld) hand_.mark(false);
     if (!input.touch) awaitsRelease_ = false;
     if (!input.touch || input.panelsTakeKeys || awaitsRelease_) {
         hand_.release();
         return Outcome::touched;
     }
-    if (input.panelsTakePointer) return Outcome::touched;             // over a panel the hand stays where it is
+    if (input.panelsTakePointer) return Outcome::touched;       // over a panel the hand stays in place
     const double thickness = stage_.scene().material.thickness; // [m]
     depth                  = std::clamp(depth - kStep * thickness * input.wheel, -kMost * thickness, kMost * thickness);
     if (input.wheel != 0) notices_.say("depth " + formatQuantity(depth, "m"));
@@ -48,7 +48,7 @@ void PointerTouch::declare()
 
 void PointerTouch::begin()
 {
-    // Which side a hand is on is known from where it comes.
+    // The side that a hand is on follows from the direction it comes from.
     hand_.begin(std::exchange(beginAt_, std::nullopt).value_or(hand_.at()));
 }
 

@@ -4,7 +4,8 @@
 
 namespace palp {
 
-/// Where a workbench's pictures go; the words are those of SurfaceRenderer, and so is what they mean. \thread one
+/// The target of a workbench's pictures. Its functions have the names and meanings of SurfaceRenderer's.
+/// \thread one
 class Screen {
 public:
     Screen()                         = default;
@@ -20,7 +21,7 @@ public:
     [[nodiscard]] virtual const compute::Processor& device() const noexcept = 0;
 };
 
-/// A window's, through a renderer that was made with it and outlives this.
+/// The screen of a window, through a renderer that was made with the window and outlives this.
 class WindowScreen final : public Screen {
 public:
     explicit WindowScreen(SurfaceRenderer& renderer) : renderer_(renderer) {}

@@ -9,7 +9,8 @@
 namespace palp {
 
 /// Records sessions on demand. Invariant: one session has one recording at most, which ends with it, and folders are
-/// never overwritten. \thread the window's
+/// never overwritten.
+/// \thread the window's
 class SessionRecorder {
 public:
     explicit SessionRecorder(Notices& notices) : notices_(notices) {}
@@ -17,17 +18,19 @@ public:
     SessionRecorder(const SessionRecorder&)            = delete;
     SessionRecorder& operator=(const SessionRecorder&) = delete;
 
-    /// The next session is to be recorded.
+    /// Requests that the next session be recorded.
     void request() { requested_ = true; }
-    /// Starts the recording that was requested; says so, or why it could not. \pre no session runs
+    /// Starts the requested recording; shows its folder, or why it could not start.
+    /// \pre no session runs
     void begin(const std::function<SessionInfo()>& info);
-    /// Ends the recording, if there is one, and complains of what was lost. \pre no session runs
+    /// Ends the recording, if there is one, and shows a fault if records were lost.
+    /// \pre no session runs
     void end();
 
-    /// Is null while nothing is recorded. Only the servo's thread may push while a session runs.
+    /// Returns null while nothing is recorded. Only the servo's thread may push while a session runs.
     [[nodiscard]] Recording*         recording() const noexcept { return recording_.get(); }
     [[nodiscard]] const std::string& folder() const noexcept { return folder_; } ///< of the newest recording, or empty
-    /// Is empty until a recording has ended.
+    /// Returns an empty text until a recording has ended.
     [[nodiscard]] const std::string& lastFolder() const noexcept { return lastFolder_; }
 
 private:

@@ -34,7 +34,7 @@ void Stage::change(const Scene& scene)
     deformation_ = std::move(made);
     painted_     = std::move(object);
     solved_      = painted_;
-    fresh_.take(); // older than that
+    fresh_.take(); // the waiting paint is older
     scene_    = scene;
     place_    = startPlace(scene, loaded_.object);
     solvedOn_ = deformation_->plateSolver().name();

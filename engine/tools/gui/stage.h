@@ -11,8 +11,8 @@
 
 namespace palp {
 
-/// What lies before the user: an object, its picture, its paint, and the plate that bends it. \thread the window's, but
-/// for solver()
+/// The object before the user, its picture, its paint, and the plate that bends it.
+/// \thread the window's, except for solver()
 class Stage {
 public:
     /// \throws Error as loadObject(), Deformation and CloudSkin do
@@ -27,18 +27,19 @@ public:
     [[nodiscard]] const HandPlace&       place() const noexcept { return place_; } ///< where the hand starts
     [[nodiscard]] const std::string&     solvedOn() const noexcept { return solvedOn_; }
 
-    /// Other values for the same object: no file is read again, and its paint stays.
+    /// Takes other values for the same object: no file is read again, and its paint stays.
     /// \pre no session runs
-    /// \throws Error, and nothing has changed
+    /// \throws Error for values that cannot be used; then nothing has changed
     void change(const Scene& scene);
 
     [[nodiscard]] const StiffnessPainting& painting() const noexcept { return painting_; }
     [[nodiscard]] const SoftObject&        painted() const noexcept { return *painted_; } ///< as it is now
 
-    /// Returns where the object lies under a pointer. \param at  in a picture of that size [px]
+    /// Returns the place of the object under a pointer.
+    /// \param at  in a picture of that size [px]
     [[nodiscard]] std::optional<Hit> hitAt(const Camera& camera, const glm::dvec2& at, const glm::dvec2& size) const;
 
-    /// A dab of a brush, or whatever else changes the stiffness: shown at once and felt with the next patch.
+    /// Applies a dab of a brush, or another change of the stiffness: shown at once and felt with the next patch.
     template <class Change>
     void paint(Change change)
     {
@@ -46,7 +47,7 @@ public:
         takePaint();
     }
 
-    /// For the deformation's thread: with the newest paint. Must not outlive this.
+    /// Returns the solver for the deformation's thread, with the newest paint. It must not outlive this.
     [[nodiscard]] PatchSolver solver();
 
 private:
@@ -65,7 +66,7 @@ private:
     std::string                               solvedOn_;
 };
 
-/// The scene's hand place; where that is off the object, the point of the object that lies uppermost.
+/// Returns the scene's hand place, or the object's uppermost point if that place is off the object.
 [[nodiscard]] HandPlace startPlace(const Scene& scene, const SoftObject& object);
 
 } // namespace palp

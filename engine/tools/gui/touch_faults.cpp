@@ -11,20 +11,21 @@ FaultAdvice adviceOn(GovernorFault fault) noexcept
         break;
     case GovernorFault::forceNotFinite:
         return {"The computed force was not a finite number.",
-                "Start anew; if it comes back, take a thicker or softer sheet, and report the scene."};
+                "Start anew; if it recurs, choose a thicker or softer sheet, and report the scene."};
     case GovernorFault::positionNotFinite:
-        return {"The device told a place that is not a finite number.", "Reconnect the device, then start anew."};
+        return {"The device reported a place that is not a finite number.", "Reconnect the device, then start anew."};
     case GovernorFault::velocityNotFinite:
-        return {"The device told a speed that is not a finite number.", "Reconnect the device, then start anew."};
+        return {"The device reported a speed that is not a finite number.", "Reconnect the device, then start anew."};
     case GovernorFault::clockNotFinite:
-        return {"The clock of the servo told no finite time.", "Start anew; if it comes back, reboot."};
+        return {"The clock of the servo gave no finite time.", "Start anew; if it recurs, reboot."};
     case GovernorFault::clockStopped:
-        return {"The clock of the servo stood still.", "Start anew; if it comes back, reboot."};
+        return {"The clock of the servo stood still.", "Start anew; if it recurs, reboot."};
     case GovernorFault::loopStalled:
-        return {"The servo stood still for more than 0.1 s.",
-                "Close what keeps the processor busy, then start anew; palpate doctor tells how to get real time."};
+        return {
+            "The servo stood still for more than 0.1 s.",
+            "Close programs that keep the processor busy, then start anew; palpate doctor shows how to get real time."};
     case GovernorFault::deviceLost:
-        return {"The device did not answer for 20 exchanges.", "Look at its cable and its power, then start anew."};
+        return {"The device did not answer for 20 exchanges.", "Check its cable and its power, then start anew."};
     case GovernorFault::tooFast:
         return {"The hand moved faster than 1.2 m/s.", "Hold it still, then start anew."};
     }
@@ -43,9 +44,10 @@ std::vector<std::string> notesOn(const TickRecord& sample)
         const char* text;
     };
     static constexpr Note kNotes[] = {
-        {SessionFlag::noPatch, "No answer of the plate yet, so no force: wait, or take fewer cells."},
-        {SessionFlag::beyondTheory, "Deeper than half the thickness, where plate theory ends: press less."},
-        {SessionFlag::beyondTable, "Beyond the table of compliances: move more slowly, or raise the rate."},
+        {SessionFlag::noPatch, "The plate has no answer yet, so there is no force: wait, or choose fewer cells."},
+        {SessionFlag::beyondTheory, "The dent is deeper than half the thickness, where plate theory ends: press less."},
+        {SessionFlag::beyondTable,
+         "The contact is beyond the table of compliances: move more slowly, or raise the rate."},
         {SessionFlag::proxyLimited, "The proxy ran out of iterations: move more slowly."},
     };
     std::vector<std::string> notes;

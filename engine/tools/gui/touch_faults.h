@@ -8,22 +8,22 @@
 
 namespace palp {
 
-/// What a person can make of a fault: a sentence on why, and one on what to do.
+/// The explanation of a fault: a sentence on its reason and one on its remedy.
 struct FaultAdvice {
     const char* reason;
     const char* remedy;
 };
 
-/// Of every fault but GovernorFault::none, whose sentences are empty.
+/// Returns the advice on a fault; the sentences of GovernorFault::none are empty.
 [[nodiscard]] FaultAdvice adviceOn(GovernorFault fault) noexcept;
 
-/// The governor's fault of a sample; see TickRecord::faults.
+/// Returns the governor's fault of a record; see TickRecord::faults.
 [[nodiscard]] GovernorFault governorFault(const TickRecord& sample) noexcept;
 
-/// What the other bits of a sample's faults say while they are set, each a sentence with its remedy.
+/// Returns the meanings of the other bits that are set in a record's faults, each a sentence with its remedy.
 [[nodiscard]] std::vector<std::string> notesOn(const TickRecord& sample);
 
-/// Whether anything in the session needs its user's attention: a fault, or whatever the window has found.
+/// Returns whether anything needs the user's attention: a fault of the session, or one that the window has found.
 [[nodiscard]] bool needsAttention(const PanelContent& content) noexcept;
 
 } // namespace palp

@@ -13,15 +13,15 @@ namespace palp {
 class TouchHistory {
 public:
     static constexpr double      kStep     = 0.01;                    ///< of a point of a curve [s]
-    static constexpr std::size_t kSteps    = 600;                     ///< of a curve [1]: six seconds
-    static constexpr std::size_t kBins     = 40;                      ///< of the histogram of periods [1]
+    static constexpr std::size_t kSteps    = 600;                     ///< of a curve: six seconds
+    static constexpr std::size_t kBins     = 40;                      ///< of the histogram of periods
     static constexpr double      kShortest = 0.5e-3, kLongest = 8e-3; ///< its ends, on a logarithmic scale [s]
 
-    /// Each sample of a session, in order. A time that goes back is a new session: what was before is forgotten.
+    /// Adds each record of a session, in order. A time that goes back is a new session: the earlier one is forgotten.
     void add(const TickRecord& sample) noexcept;
     void clear() noexcept { *this = {}; }
 
-    /// Oldest first; the last is the newest whole step. As many of each.
+    /// Return equally many values, oldest first; the last is the newest whole step.
     [[nodiscard]] std::span<const float> forces() const noexcept
     {
         return {forces_.data() + kSteps - count_, count_};
@@ -31,7 +31,7 @@ public:
         return {depths_.data() + kSteps - count_, count_};
     } ///< of the hand below the proxy, largest in a step [m]
 
-    /// Ticks per bin of their period, from kShortest to kLongest; shorter and longer ones are in the end bins [1].
+    /// Returns the ticks per bin of their period, from kShortest to kLongest; others are in the end bins.
     [[nodiscard]] std::span<const float> periods() const noexcept { return periods_; }
     [[nodiscard]] std::uint64_t          ticks() const noexcept { return ticks_; }
     [[nodiscard]] const TickRecord&      newest() const noexcept { return newest_; }

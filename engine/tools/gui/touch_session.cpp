@@ -45,11 +45,10 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
     hand_  = hand;
     state_ = State::ready;
     recorder_.begin([this] { return settings_.recorded(*stage_, *hand_.device); });
-    const SessionParts  parts{stage_->scene(), stage_->object(),
-                             solver(),        *hand.device,           hand.frame};
+    const SessionParts  parts{stage_->scene(), stage_->object(), solver(), *hand.device, hand.frame};
     RealSessionSettings real;
     real.seconds    = hand.seconds;
-    real.viewPeriod = 1e-4; // as soon as a picture is done the next begins
+    real.viewPeriod = 1e-4; // the next picture begins as soon as one is done
     real.stop       = &ended_;
     real.onView     = onView;
     real.onTick     = [this, recording = recorder_.recording()](const TickRecord& record) {
@@ -59,7 +58,7 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
     conclude(runReal(parts, real, realTime_));
 }
 
-/// Says why a session has come to its end by itself.
+/// Shows why a session has ended by itself.
 void TouchSession::conclude(const SessionSummary& summary)
 {
     recorder_.end();
@@ -69,11 +68,11 @@ void TouchSession::conclude(const SessionSummary& summary)
         notices_.say("the replay is over");
     } else if (summary.deviceFault != DeviceFault::none) {
         notices_.complain(std::string("the device is ") + name(summary.deviceFault) +
-                          ": plug it in again and press R to go on");
+                          ": plug it in again and press R to continue");
         state_ = State::halted;
     } else if (settings_.hand) {
         state_ = State::halted;
-        notices_.say("the hand has come to its end: R starts it again");
+        notices_.say("the hand's motion has ended: R starts it again");
     }
 }
 
@@ -96,10 +95,10 @@ void TouchSession::startReplay(const RecordedSession& session)
 
 void TouchSession::toggleRecording()
 {
-    if (recorder_.recording()) { // it ends with its session
+    if (recorder_.recording()) { // the recording ends with its session
         notices_.say("recorded " + recorder_.folder());
     } else if (stage_->painting().changed()) {
-        return notices_.say("save the paint first and open it: recordings are of files");
+        return notices_.say("save the paint and open its file first: only objects from files can be recorded");
     } else if (!settings_.recorded || replay_ || halted()) {
         return notices_.say("nothing can be recorded now");
     } else {
@@ -112,7 +111,7 @@ void TouchSession::followPointer(const WindowInput& input, const std::optional<H
 {
     if (!byPointer() || !pointer_) return;
     if (pointer_->follow(input, hit, depth) == PointerTouch::Outcome::touched) return;
-    if (recorder_.recording()) notices_.say("the recording has ended: the hand went round the object");
+    if (recorder_.recording()) notices_.say("the recording has ended, because the hand moved round the object");
     end();
 }
 
@@ -120,8 +119,8 @@ void TouchSession::letGo()
 {
     if (pointer_) pointer_->letGo();
     if (!settings_.hand || halted()) return notices_.say("let go; close the window to quit");
-    halt(); // the session ends, and its last force is none
-    notices_.say("let go: no force; R takes the object again, closing the window quits");
+    halt(); // the session ends, with zero as its last force
+    notices_.say("let go: the force is off; R touches again, closing the window quits");
 }
 
 void TouchSession::declare()
@@ -153,7 +152,7 @@ void TouchSession::noteRealTime(std::string_view warning)
     if (realTime_.empty()) realTime_ = warning;
 }
 
-/// Returns the stage's solver; what it cannot solve is told to the window's thread.
+/// Returns the stage's solver; a patch that it cannot solve is reported to the window's thread.
 PatchSolver TouchSession::solver()
 {
     return [this, solve = stage_->solver()](const Touch& touch, double period) {

@@ -18,21 +18,21 @@
 namespace palp {
 
 /// Runs one session after the other on the stage, with the pointer, a device or a replay as the hand.
-/// Invariant: a session that was halted leaves no force, and none runs until resume(). \thread the window's, but for
-/// givenUp()
+/// Invariant: a session that was halted leaves no force, and none runs until resume().
+/// \thread the window's, except for givenUp()
 class TouchSession {
 public:
     /// \param settings  outlive this
     TouchSession(const WorkbenchSettings& settings, Notices& notices);
 
-    /// Another object, or other values of its scene: the pointer's hand begins anew over it.
+    /// Takes another object, or other values of its scene: the pointer's hand begins anew over it.
     void setStage(Stage& stage);
 
     using ReadyHand = std::function<std::optional<WorkbenchHand>()>;
     using OnView    = std::function<void(const SessionView&)>;
     /// Runs a session in real time until it ends: the replay if there is one, or else the hand's.
     /// \pre there is a stage
-    /// \param readyHand  makes the settings' hand ready, if they have one; empty: no session is wanted any more
+    /// \param readyHand  makes the settings' hand ready, if they have one; returns nothing if no session is wanted now
     /// \param onView     is called between two looks at the session
     /// \throws Error as readyHand and runReal() do; the recording has ended then
     void run(const ReadyHand& readyHand, const OnView& onView);
@@ -42,12 +42,13 @@ public:
     /// Ends the session that runs; the next one begins after resume().
     void halt();
     void resume();
-    /// To be called before each session.
+    /// Must be called before each session.
     void                                   rearm() { ended_ = false; }
     [[nodiscard]] bool                     halted() const { return state_ == State::halted; }
     [[nodiscard]] bool                     neverRan() const { return state_ == State::neverRan; }
     [[nodiscard]] const std::atomic<bool>& givenUp() const { return ended_; } ///< \thread any
 
+    /// Replays a session from the next session on.
     /// \param session  outlives its replay
     void               startReplay(const RecordedSession& session);
     void               stopReplay() { replay_.reset(); }
@@ -61,12 +62,12 @@ public:
 
     /// Follows the pointer, and begins another session where the hand cannot move in a straight line.
     void followPointer(const WindowInput& input, const std::optional<Hit>& hit, double& depth);
-    /// Lets go of the object, whatever the hand is.
+    /// Releases the object, whichever hand is in use.
     void letGo();
     /// Declares the place that the pointer's hand is on.
     void declare();
 
-    /// Takes over what the session's threads have handed on since the last call.
+    /// Collects what the session's threads have handed over since the last call.
     void                              collect(const OnTick& onTick);
     [[nodiscard]] const TouchHistory& history() const { return history_; }
     [[nodiscard]] std::string         unsolved() const; ///< why the last patch could not be solved; empty: it was

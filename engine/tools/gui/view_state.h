@@ -13,10 +13,10 @@ struct BrushChoice {
     double radius   = 5e-3;  ///< [m]
     double value    = 1e6;   ///< stiffness that is painted, in the cloud's own kind [Pa] or [N m]
     double strength = 0.5;   ///< share of the way to the value that one stroke goes, 0 to 1 [1]
-    bool   smooths  = false; ///< evens out in place of painting
+    bool   smooths  = false; ///< smooths instead of painting
 };
 
-/// What the user has chosen to see and do: changed by keys, by the mouse and by panels, read by everything else.
+/// The user's choices of view and tool, changed by keys, by the mouse and by panels, and read by everything else.
 struct ViewState {
     Camera    camera;
     TouchLook look;
@@ -24,7 +24,7 @@ struct ViewState {
     bool panels = true;  ///< are shown
     bool keys   = false; ///< the sheet of keys is shown
     bool texts  = true;  ///< title, colour bar, key and scale are shown
-    bool blind  = false; ///< something is hidden in the object: nothing is shown that tells where
+    bool blind  = false; ///< something is hidden in the object, and nothing may show where
 
     Tool        tool = Tool::touch;
     BrushChoice brush;

@@ -46,7 +46,7 @@ void rememberSize(const glm::ivec2& size) noexcept
         std::filesystem::create_directories(file.parent_path());
         const std::string text = nlohmann::json{{"width", size.x}, {"height", size.y}}.dump() + "\n";
         writeFileWhole(file, [&](std::ostream& stream) { stream << text; });
-    } catch (...) { // a size is not worth a complaint
+    } catch (...) { // a size is not worth an error
     }
 }
 

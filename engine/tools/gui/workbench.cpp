@@ -57,7 +57,7 @@ WorkbenchReport Workbench::run(const Poll& poll, PanelFrame* panels)
     return std::move(report);
 }
 
-/// Does the work on a thread of its own; the window goes on, shows what it showed and says what is done.
+/// Does the work on another thread; the window stays responsive, keeps its picture and names the activity.
 /// \return what the work returns
 /// \throws what the work throws
 template <class Work>
@@ -76,7 +76,7 @@ auto Workbench::meanwhile(const std::string& activity, Work work)
     });
 }
 
-/// Opens the first object; there is nothing to show yet but words.
+/// Opens the first object, and shows only words meanwhile.
 void Workbench::openFirst()
 {
     OpenedObject opened = inBackground(object_.opener(settings_.what, settings_.values), [this] {
@@ -96,7 +96,7 @@ void Workbench::drawWords()
     ViewScene scene;
     scene.ground = state_.look.ground;
     scene.title  = fileNameOf(settings_.what);
-    scene.note   = "opening it ...";
+    scene.note   = "opening the object ...";
     pictures_.showWords(scene, state_.camera, input_.size, input_.scale);
 }
 
@@ -114,7 +114,7 @@ void Workbench::openOther(const std::string& what)
         OpenedObject opened = meanwhile("opening " + fileNameOf(what) + " ...", object_.opener(what, {}));
         notices_.clearFaults();
         adopt(std::move(opened));
-        object_.setValues({}); // they were for another object
+        object_.setValues({}); // the values were for another object
         controls_.resetView();
     } catch (const Error& error) {
         notices_.complain(error.what());
@@ -130,13 +130,13 @@ void Workbench::takeValues(const SceneValues& wanted)
         if (haveSameCloud(scene, object_.stage().scene())) {
             object_.stage().change(scene);
         } else if (paint_.mayDiscard(object_.stage())) {
-            object_.adopt(meanwhile("reading " + fileNameOf(scene.cloud) + " once more ...",
+            object_.adopt(meanwhile("reading " + fileNameOf(scene.cloud) + " again ...",
                                     [scene] { return std::make_unique<Stage>(scene); }));
             useObject();
         } else {
             return;
         }
-        if (session_.replaying()) notices_.say("the replay has ended: the scene is another one");
+        if (session_.replaying()) notices_.say("the replay has ended, because the scene has changed");
         session_.stopReplay();
         object_.setValues(std::move(values));
         notices_.clearFaults();
@@ -155,11 +155,10 @@ void Workbench::adopt(OpenedObject opened)
     const RecordedSession& recorded = *object_.recorded();
     session_.startReplay(recorded);
     if (!recorded.cloud.empty() && recorded.cloud != fingerprint(object_.stage().object().cloud()))
-        notices_.complain("the cloud is not the one that was recorded: " + object_.stage().scene().cloud +
-                          " has changed");
+        notices_.complain("the cloud is not the recorded one: " + object_.stage().scene().cloud + " has changed");
 }
 
-/// Tells what nobody has said of the cloud: no fault, but good to know.
+/// Shows what was assumed of the cloud, as a message and not as a fault.
 void Workbench::tellAssumptions()
 {
     if (!settings_.assumed) return;
@@ -172,7 +171,7 @@ void Workbench::tellAssumptions()
 }
 
 /// Begins anew with the object on the stage: the hand over it, the brush, and what may be shown of it. The ends of the
-/// scales of colours and arrows stay as they are from here on, so that deeper and stronger always looks so.
+/// scales of colours and arrows stay fixed from here on, so that a deeper dent or stronger force always looks so.
 void Workbench::useObject()
 {
     Stage&       stage = object_.stage();
@@ -182,11 +181,11 @@ void Workbench::useObject()
     state_.pressDepth     = 0.4 * scene.material.thickness;
     state_.brush.radius   = scene.patch.footprintRadius;
     state_.brush.value    = *std::ranges::max_element(stage.painted().cloud().stiffness());
-    state_.look.deepest   = 0.5 * scene.material.thickness; // as far as theory goes
+    state_.look.deepest   = 0.5 * scene.material.thickness; // the limit of plate theory
     state_.look.strongest = 0.5 * scene.maxForce;
     state_.blind          = scene.overlay != nullptr;
     if (!state_.blind) return;
-    state_.look.paint              = ViewPaint::plain; // what is hidden stays hidden
+    state_.look.paint              = ViewPaint::plain; // no colours show the hidden nodules
     state_.look.overlays.projected = false;
     state_.tool                    = Tool::touch;
 }
@@ -197,7 +196,7 @@ void Workbench::touch()
     try {
         session_.run([this] { return readyHand(); }, [this](const SessionView& view) { frame(&view); });
     } catch (const Error& error) {
-        if (session_.neverRan()) throw; // nothing works yet: that is for whoever started the program
+        if (session_.neverRan()) throw; // nothing has worked yet: the program ends with the error
         notices_.complain(error.what());
         session_.halt();
     }
@@ -211,14 +210,14 @@ std::optional<WorkbenchHand> Workbench::readyHand()
                             handAdvice_.publish();
                         }};
     try {
-        return meanwhile("getting the hand ready; Esc gives up", [&] { return settings_.hand(object_.stage(), wait); });
+        return meanwhile("getting the hand ready; Esc cancels", [&] { return settings_.hand(object_.stage(), wait); });
     } catch (const Error&) {
         if (session_.givenUp()) return std::nullopt;
         throw;
     }
 }
 
-/// One picture: what happened, what is felt, what is seen.
+/// Handles one picture: input, touch and drawing.
 void Workbench::frame(const SessionView* view)
 {
     input_ = poll_(pictures_.patience(input_.size));
@@ -238,7 +237,7 @@ void Workbench::frame(const SessionView* view)
     pictures_.rest();
 }
 
-/// Does what the user wants. A session that must end for it ends in zero force first.
+/// Does what the user asks for. A session that must end for it first ends in zero force.
 void Workbench::handle()
 {
     if (input_.closing) closing_ = true;
@@ -250,7 +249,7 @@ void Workbench::handle()
     if (camera_.followSpaceMouse()) pictures_.changed();
 }
 
-/// Puts the object into what the panels leave free, and brings it there gently when they come and go.
+/// Puts the object into the area that the panels leave free, and moves it smoothly when they appear or disappear.
 void Workbench::settleCamera()
 {
     const PictureArea area =
@@ -288,7 +287,7 @@ void Workbench::showTouch(const SessionView* view)
         std::ranges::copy(brushOutline(*hit, state_.brush.radius), std::back_inserter(stage.view().scene().outline));
 }
 
-/// Writes the texts over the picture. Panels say themselves what title and note say.
+/// Writes the texts over the picture. With panels, they show what title and note would.
 void Workbench::writeTexts(const SessionView* view)
 {
     ViewScene& scene = object_.stage().view().scene();
@@ -304,7 +303,7 @@ std::string Workbench::note(const SessionView* view) const
     if (!notices_.current().empty()) return notices_.current();
     if (!notices_.faults().empty()) return notices_.faults().back();
     if (const double force = view ? glm::length(view->sample.force) : 0; force > 0) return formatQuantity(force, "N");
-    return state_.blind ? "hold Space and move: touch.  M: there is a nodule here"
+    return state_.blind ? "hold Space and move: touch.  M: declare a nodule here"
                         : "hold Space and move: touch.  F1: keys";
 }
 

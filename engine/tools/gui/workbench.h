@@ -12,24 +12,24 @@
 
 namespace palp {
 
-/// Joins what happens in a window, the touch, and the picture in the window. It knows no window: run() is told where
-/// input comes from. Invariant: whatever ends a session or the window, the last force is zero, and no paint is lost.
+/// Joins the input of a window, the touch, and the picture in the window. It knows no window: run() takes the source of
+/// its input. Invariant: whatever ends a session or the window, the last force is zero, and no paint is lost.
 /// \thread the window's
 class Workbench {
 public:
     /// \param screen  outlives this
     Workbench(WorkbenchSettings settings, Screen& screen);
 
-    /// Returns what happened since the last picture; may wait so long [s] for something to happen.
+    /// Returns what happened since the last picture; may wait for something to happen for at most `patience` [s].
     using Poll = std::function<WindowInput(double patience)>;
-    /// Opens, touches and shows until the window is closed. What takes long, such as reading a cloud, is done on
-    /// a thread of its own, and the window says so meanwhile.
+    /// Opens, touches and shows until the window is closed. Work that takes long, such as reading a cloud, is done on
+    /// another thread, and the window says so meanwhile.
     /// \param panels  outlives the call; null: there are none
     /// \throws Error as WorkbenchSettings::open, Stage and WorkbenchSettings::hand do, before the first session
     WorkbenchReport run(const Poll& poll, PanelFrame* panels);
 
-    /// Sets values of the scene from the next session on, which begins at once; the object stays if it can. What a
-    /// scene does not take changes nothing and is complained of. To be called from `poll`, or as a panel does.
+    /// Sets values of the scene from the next session on, which begins at once; the object stays if it can. Values
+    /// that a scene refuses change nothing and show a fault. Must be called from `poll`, or as a panel does.
     void change(const SceneValues& values) { controls_.change(values); }
 
 private:
@@ -74,7 +74,7 @@ private:
     WindowInput                           input_;
     bool                                  closing_ = false;
     std::chrono::steady_clock::time_point started_;
-    std::uint64_t                         noticesDrawn_ = 0; ///< of their changes
+    std::uint64_t                         noticesDrawn_ = 0; ///< number of their changes
 };
 
 } // namespace palp

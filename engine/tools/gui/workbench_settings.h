@@ -25,50 +25,53 @@ struct WorkbenchHand {
     double        seconds = 5; ///< how long it goes [s]
 };
 
-/// What getting a hand ready may ask for, from a thread of its own.
+/// What the thread that makes a hand ready may use.
 struct HandWait {
-    const std::atomic<bool>&                       givenUp; ///< nobody wants the hand any more: end soon, by an Error
-    std::function<void(const std::string& advice)> tell;    ///< what the user is to do, such as homing; empty: nothing
+    const std::atomic<bool>&                       givenUp; ///< the hand is not wanted any more: end soon, by an Error
+    std::function<void(const std::string& advice)> tell;    ///< shows what the user must do, such as homing, or nothing
 };
 
-/// What the program gives to a workbench.
+/// The settings that the program gives to a workbench.
 struct WorkbenchSettings {
     std::string what;   ///< scene file, cloud file, sample or recorded session
     SceneValues values; ///< over the scene's
     ViewState   state;
-    double      seconds = 0; ///< closes by itself after so long [s]; 0: when it is told to
+    double      seconds = 0; ///< time after which it closes by itself [s]; 0: not by itself
 
     /// Keys that a tool adds to scenes, for the scenes of recordings; null: none.
     const std::vector<SceneKey>* toolKeys = nullptr;
 
-    /// A scene from what the user names. \thread any, one at a time \throws Error
+    /// Makes a scene from the name that the user gives.
+    /// \thread any, one at a time
+    /// \throws Error if it cannot be read
     std::function<Scene(const std::string& what, const SceneValues& values)> open;
-    /// The hand for a scene, homed; empty: the pointer. May take as long as a person needs. \thread as open
-    /// \throws Error
+    /// Returns the hand for a scene, homed; empty: the pointer. May take as long as a person needs.
+    /// \thread as open
+    /// \throws Error if the hand cannot be used
     std::function<WorkbenchHand(const Stage& stage, const HandWait& wait)> hand;
-    /// What a new recording says of itself. May be empty: nothing is recorded.
+    /// Returns the description of a new recording. May be empty: nothing is recorded.
     std::function<SessionInfo(const Stage& stage, const HapticDevice& device)> recorded;
-    /// Is told what goes wrong, each a sentence that the window shows too. May be empty.
+    /// Is called with each fault, a sentence that the window shows too. May be empty.
     std::function<void(const std::string& sentence)> complained;
-    /// Is told the name of what is shown from now on. May be empty.
+    /// Is called with the name of each object that is shown. May be empty.
     std::function<void(const std::string& name)> titled;
-    /// What was assumed of a cloud because nobody said so, in sentences. May be empty.
+    /// Returns, in sentences, what was assumed of a cloud because nothing states it. May be empty.
     std::function<std::vector<std::string>(const Scene& scene, const CloudFileReport& report)> assumed;
 
-    /// Sees the samples of the object that was named first, on the window's thread. May be empty.
+    /// Is given the records of the object that was opened first, on the window's thread. May be empty.
     OnTick onTick;
 
     const std::atomic<bool>* stop   = nullptr; ///< closes the window once it is true; may be null
     SpaceMouse*              camera = nullptr; ///< moves the camera; may be null
 };
 
-/// How the window did.
+/// The statistics of a window's run.
 struct WorkbenchReport {
-    std::uint64_t       frames = 0, touchingFrames = 0; ///< [1]
-    std::vector<double> frameTimes; ///< of the frames while something was touched: from one to the next [s]
-    std::string         said;       ///< what the user must still know; may be empty
-    std::vector<double> drawTimes;  ///< of the same: making the picture [s]
-    std::string         realTime;   ///< what the system refused of real-time rights; empty if nothing
+    std::uint64_t       frames = 0, touchingFrames = 0;
+    std::vector<double> frameTimes; ///< time from frame to frame, while something was touched [s]
+    std::string         said;       ///< a last message for the user; may be empty
+    std::vector<double> drawTimes;  ///< of the same frames: making the picture [s]
+    std::string         realTime;   ///< real-time rights that the system refused; empty if none
 };
 
 } // namespace palp

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double           kLargest   = 1e100; // beyond it, spans and their squares overflow [any unit]
 constexpr double           kNarrowest = 1e-9; // span per value below which labels would differ past the ninth digit [1]
-constexpr int              kPlainDecades = 6; // more than these read better as powers of ten [1]
-constexpr int              kLeastPlain = -3, kMostPlain = 4; // decades that read well without a power of ten [1]
+constexpr int              kPlainDecades = 6; // more than these read better as powers of ten
+constexpr int              kLeastPlain = -3, kMostPlain = 4; // decades that read well without a power of ten
 constexpr double           kOnTick = 1e-9; // an end of the range this close to a tick, in steps, is on it [1]
 constexpr std::string_view kMinus  = "\u2212";
 

@@ -15,15 +15,15 @@ struct ValueRange {
     double high = 1;
 };
 
-/// Whether a picture can show a value on this scale: finite, of a size whose differences do not overflow, and greater
-/// than zero on a logarithmic scale.
+/// Returns whether a picture can show a value on this scale: finite, of a size whose differences do not overflow, and
+/// greater than zero on a logarithmic scale.
 [[nodiscard]] bool drawable(double value, Scale scale) noexcept;
 
-/// Smallest and largest drawable value, or nullopt when there is none.
+/// Returns the smallest and largest drawable value, or nullopt when there is none.
 [[nodiscard]] std::optional<ValueRange> rangeOf(std::span<const double> values, Scale scale);
 
-/// The range itself, or, when it is (nearly) a single value, one wide enough to have an axis: a tenth of the value to
-/// either side, or -1 to 1 around zero.
+/// Returns the range itself, or, when it is (nearly) a single value, one wide enough to have an axis: a tenth of the
+/// value to either side, or -1 to 1 around zero.
 [[nodiscard]] ValueRange widened(ValueRange range, Scale scale);
 
 /// A step of an axis that has a label.
@@ -38,10 +38,10 @@ class Axis {
 public:
     /// \param range      in SI units; widened() first
     /// \param unit       SI unit, "" or "1" for none; a unit that takes no prefix gets a power of ten instead
-    /// \param mostTicks  labels that fit
+    /// \param mostTicks  number of labels that fit
     Axis(ValueRange range, Scale scale, std::string_view unit, int mostTicks);
 
-    /// 0 at the low end, 1 at the high end, linear or logarithmic in between and beyond.
+    /// Returns 0 at the low end, 1 at the high end, linear or logarithmic in between and beyond.
     /// \pre drawable(value, scale)
     [[nodiscard]] double position(double value) const;
 
@@ -50,11 +50,11 @@ public:
     [[nodiscard]] const std::vector<Tick>&   ticks() const noexcept { return ticks_; }
     [[nodiscard]] const std::vector<double>& minorTicks() const noexcept { return minorTicks_; }
 
-    /// With prefix; empty for none.
+    /// Returns the unit with its prefix; empty for none.
     [[nodiscard]] const std::string& unit() const noexcept { return unit_; }
-    /// "deflection [mm]", or the bare quantity when there is no unit.
+    /// Returns "deflection [mm]", or the bare quantity when there is no unit.
     [[nodiscard]] std::string title(std::string_view quantity) const;
-    /// The value in the unit of this axis with three significant digits: "4.20 mm".
+    /// Returns the value in the unit of this axis with three significant digits: "4.20 mm".
     [[nodiscard]] std::string text(double value) const;
 
 private:
@@ -65,7 +65,7 @@ private:
 
     ValueRange          range_;
     Scale               scale_;
-    int                 exponent_ = 0; ///< a number on the axis is value / 10^exponent_ [1]
+    int                 exponent_ = 0; ///< a number on the axis is value / 10^exponent_
     std::string         unit_;         ///< with prefix; empty for none
     std::vector<Tick>   ticks_;
     std::vector<double> minorTicks_;

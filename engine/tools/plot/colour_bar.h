@@ -10,7 +10,7 @@ namespace palp {
 
 inline constexpr double kColourBarWidth = 100; ///< with its labels [px]
 
-/// What a colour bar explains.
+/// The content of a colour bar.
 struct ColourBar {
     const Axis*                 axis = nullptr;
     std::function<Rgb8(double)> colour;   ///< of a position along the axis, 0 to 1 [1]

@@ -28,15 +28,15 @@ constexpr auto namesOf(ColourMap)
     return std::to_array<NamedValue<ColourMap>>({{viridis, "viridis"}, {cividis, "cividis"}, {grey, "grey"}});
 }
 
-/// The colour of a value on a scale from low, 0, to high, 1; positions outside take the colour of the nearer end.
-/// \param position  [1], not NaN
+/// Returns the colour at a position from low, 0, to high, 1; positions outside take the colour of the nearer end.
+/// \param position  along the map, not NaN [1]
 [[nodiscard]] Rgb8 colourAt(double position, ColourMap map = ColourMap::viridis);
 
 /// Returns the colour of a value on a lit surface: that of the map, lightened so that shading shows on it.
 /// \param position  along the map, 0 to 1 [1]
 [[nodiscard]] Rgb8 surfaceColour(double position, ColourMap map = ColourMap::viridis);
 
-/// "#rrggbb"
+/// Returns "#rrggbb".
 [[nodiscard]] std::string hexColour(Rgb8 colour);
 
 /// Colours for things that have names rather than values; safe for colour-blind readers, strongest on white first.

@@ -26,7 +26,7 @@ struct FieldFacts {
     Extreme     least, most; ///< of the drawable nodes, where there are any
 
     [[nodiscard]] bool any() const { return undrawable < total; }
-    /// Within what averaging rounds; where such extremes lie says nothing.
+    /// Returns whether the field is constant within the rounding of averages; then its extremes' places are arbitrary.
     [[nodiscard]] bool constant() const
     {
         constexpr double kRounding = 1e-6; // of the value [1]

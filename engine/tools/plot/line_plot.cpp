@@ -54,7 +54,7 @@ ValueRange rangeOfAll(std::span<const PlotSeries> series, const PlotAxis& axis, 
     for (const PlotSeries& s : series)
         if (const auto range = rangeOf(s.*values, axis.scale))
             all = all ? ValueRange{std::min(all->low, range->low), std::max(all->high, range->high)} : *range;
-    if (!all) return {0.1, 1}; // nothing to show: any axis will do
+    if (!all) return {0.1, 1}; // nothing to show: any axis is acceptable
     return padded(widened(*all, axis.scale), axis.scale);
 }
 
@@ -119,7 +119,7 @@ void drawMarkers(SvgDrawing& svg, const std::vector<glm::dvec2>& points, const L
 
 void drawSeries(SvgDrawing& svg, const PlotSeries& s, const Look& look, const PlotFrame& frame, std::size_t number)
 {
-    constexpr std::size_t kFew    = 40; // markers of one line that are still told apart [1]
+    constexpr std::size_t kFew    = 40; // markers of one line that can still be distinguished
     const bool            dense   = s.style == SeriesStyle::lineAndMarkers && s.x.size() > kFew;
     const double          spacing = dense ? kMarkerSpacing : 0;
     const double offset = dense ? 17.0 * double(number % 4) : 0; // so that markers of near curves do not coincide [px]

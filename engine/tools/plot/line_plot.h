@@ -9,10 +9,10 @@
 namespace palp {
 
 enum class SeriesStyle {
-    line,           ///< measured often: a line with its own colour and dashes
-    lineAndMarkers, ///< measured seldom: a line, and a marker of its own shape at the samples (some, if they are many)
+    line,           ///< densely sampled: a line with its own colour and dashes
+    lineAndMarkers, ///< sparsely sampled: a line, and markers of its own shape at the samples (some, if many)
     markers,        ///< a marker at every sample
-    reference,      ///< what the others are compared with: a thin dark line beneath them
+    reference,      ///< reference for the others: a thin dark line beneath them
 };
 
 /// A named sequence of points. A point that cannot be drawn (NaN, infinity, not positive on a logarithmic axis) breaks

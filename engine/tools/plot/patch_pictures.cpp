@@ -7,7 +7,7 @@
 namespace palp {
 namespace {
 
-/// What both charts show alike.
+/// The settings that both charts share.
 HeatMapSettings chartSettings(const Patch& patch, const PatchSettings& settings, const std::string& title)
 {
     HeatMapSettings chart;

@@ -13,18 +13,18 @@ struct PressedPatch {
     std::string  label;
 };
 
-/// Chart of the rigidity at the nodes, logarithmic, with the points it came from, contact and footprint.
+/// Draws a chart of the rigidity at the nodes, logarithmic, with the points it came from, contact and footprint.
 [[nodiscard]] std::string rigidityChartSvg(const Patch& patch, const PatchSettings& settings, const std::string& title);
 
-/// Chart of the deflection at the nodes under `force` [N].
-/// \param deepest  end of the colours, so that pictures compare [m]; 0: this patch's own
+/// Draws a chart of the deflection at the nodes under `force` [N].
+/// \param deepest  end of the colours, so that pictures can be compared [m]; 0: this patch's own
 [[nodiscard]] std::string deflectionChartSvg(const Patch& patch, const PatchSettings& settings, double force,
                                              const std::string& title, double deepest = 0);
 
-/// Deflection from west to east and from south to north through the contact.
+/// Plots the deflection from west to east and from south to north through the contact.
 [[nodiscard]] std::string profileSvg(const Patch& patch, double force, const std::string& title);
 
-/// Deflection from west to east through the contact, for several patches.
+/// Plots the deflection from west to east through the contact, for several patches.
 [[nodiscard]] std::string profilesSvg(std::span<const PressedPatch> patches, const std::string& title);
 
 } // namespace palp

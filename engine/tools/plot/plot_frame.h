@@ -6,7 +6,7 @@
 
 namespace palp {
 
-/// The rectangle of a plot on the page, and what its two axes mean.
+/// The rectangle of a plot on the page, and its two axes.
 struct PlotFrame {
     glm::dvec2 corner; ///< upper left [px]
     glm::dvec2 size;   ///< [px]
@@ -21,10 +21,10 @@ struct PlotFrame {
 inline constexpr double kFrameLeft  = 74; ///< room for the labels on the left of a frame [px]
 inline constexpr double kFrameBelow = 50; ///< room for the labels below a frame [px]
 
-/// Pale lines at the ticks, to be drawn under the data.
+/// Draws pale lines at the ticks; must be called before the data are drawn.
 void drawGridLines(SvgDrawing& svg, const PlotFrame& frame);
 
-/// Border, ticks, labels and titles, to be drawn over the data.
+/// Draws border, ticks, labels and titles; must be called after the data are drawn.
 void drawFrame(SvgDrawing& svg, const PlotFrame& frame, std::string_view quantityX, std::string_view quantityY);
 
 } // namespace palp

@@ -28,13 +28,13 @@ struct TextStyle {
     bool        halo    = false; ///< white edge, for text on top of a picture
 };
 
-/// A line from point to point, perhaps in several pieces.
+/// A line from point to point, possibly in several pieces.
 class SvgPath {
 public:
     SvgPath() = default;
     explicit SvgPath(std::initializer_list<glm::dvec2> corners);
     SvgPath& moveTo(glm::dvec2 point);
-    /// Starts the path when it is empty.
+    /// Adds a line, or starts the path when it is empty.
     SvgPath& lineTo(glm::dvec2 point);
     SvgPath& dotAt(glm::dvec2 point);
     SvgPath& close();
@@ -54,24 +54,24 @@ public:
     void circle(glm::dvec2 centre, double radius, std::string_view fill, const Stroke& stroke = {});
     void path(const SvgPath& path, std::string_view fill, const Stroke& stroke);
     void text(glm::dvec2 at, std::string_view content, const TextStyle& style = {});
-    /// The picture, stretched to `size`; its pixels stay sharp when it is enlarged.
+    /// Adds a picture, stretched to `size`; its pixels stay sharp when it is enlarged.
     void image(glm::dvec2 corner, glm::dvec2 size, const Image& image);
-    /// What follows is cut at the rectangle, until endClip().
+    /// Clips what follows to the rectangle, until endClip().
     void beginClip(glm::dvec2 corner, glm::dvec2 size);
     void endClip();
 
-    /// The whole file on a white ground (also on a dark page).
-    /// \param title  what a screen reader says
+    /// Returns the whole file on a white ground (also on a dark page).
+    /// \param title  text for screen readers
     [[nodiscard]] std::string finish(glm::dvec2 size, std::string_view title) const;
 
 private:
     std::string body_;
 };
 
-/// A number for SVG with at most two decimals: "12.5".
+/// Returns a number for SVG with at most two decimals: "12.5".
 [[nodiscard]] std::string svgNumber(double value);
 
-/// How wide a text comes out, roughly: the font is the viewer's. [px]
+/// Returns the approximate width of a text, whose font is the viewer's [px].
 [[nodiscard]] double textWidth(std::string_view text, double size);
 
 } // namespace palp

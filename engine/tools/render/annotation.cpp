@@ -37,7 +37,7 @@ public:
         drawText(image_, at, content, {larger * size_, ink_, anchor});
     }
 
-    /// What lies below a text fades, so that it can be read on anything.
+    /// Fades the picture below a text, so that the text can be read on anything.
     void fade(glm::dvec2 corner, glm::dvec2 extent)
     {
         constexpr int kShare = 70; // [%]
@@ -180,7 +180,7 @@ glm::dvec2 drawKey(Annotator& to, const ViewScene& scene)
     return size;
 }
 
-/// Of a round length: "20 mm".
+/// Returns the text of a round length: "20 mm".
 std::string plainText(double length)
 {
     std::string       text = formatQuantity(length, "m");
@@ -189,7 +189,7 @@ std::string plainText(double length)
     return text;
 }
 
-/// The round length, 1, 2 or 5 times a power of ten, that is at most `most`.
+/// Returns the round length, 1, 2 or 5 times a power of ten, that is at most `most`.
 double roundLength(double most)
 {
     const double decade = std::pow(10.0, std::floor(std::log10(most)));
@@ -232,10 +232,10 @@ void annotate(Image& image, const ViewScene& scene, const Camera& camera, double
     drawTitle(to, scene);
     if (!scene.values.empty()) drawColours(to, scene.colours);
     const glm::dvec2 taken = drawKey(to, scene);
-    if (!scene.positions.empty()) drawLength(to, camera, taken); // of nothing there is no length
+    if (!scene.positions.empty()) drawLength(to, camera, taken); // an empty scene has no length
 }
 
-// Everything is laid on by a share of what is there, so that what black and white become tells both share and colour.
+// Everything is blended by a share, so that the results on black and on white give both share and colour.
 Overlay annotations(const ViewScene& scene, const Camera& camera, int width, int height, double scale)
 {
     constexpr std::uint8_t kWhite = 255;

@@ -8,15 +8,15 @@
 
 namespace palp {
 
-/// Writes what a scene's colours and shapes mean onto its picture: title, colour bar with unit, a key of the shapes and
-/// a bar of a round length. Sizes follow the picture's height; a picture too small for them gets none.
+/// Writes the meaning of a scene's colours and shapes onto its picture: title, colour bar with unit, a key of the
+/// shapes and a bar of a round length. Sizes follow the picture's height; a picture too small for them gets none.
 /// \param scale  of a display with many pixels per inch [1]
 void annotate(Image& image, const ViewScene& scene, const Camera& camera, double scale = 1);
 
-/// Size of their font in a picture of that height [px].
+/// Returns the size of the annotations' font in a picture of that height [px].
 [[nodiscard]] double annotationSize(int height, double scale = 1);
 
-/// The same by itself, to be laid over pictures again and again.
+/// Annotations by themselves, to be laid over many pictures.
 struct Overlay {
     int                        width = 0, height = 0; ///< [px]
     std::vector<std::uint32_t> pixels; ///< rows from the top; red in the lowest byte, premultiplied by alpha

@@ -11,7 +11,9 @@
 namespace palp {
 namespace {
 
-/// Rodrigues' formula. \param axis  unit \param angle [rad]
+/// Rotates by Rodrigues' formula.
+/// \param axis   unit vector
+/// \param angle  [rad]
 glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double angle)
 {
     return std::cos(angle) * v + std::sin(angle) * glm::cross(axis, v) +
@@ -47,7 +49,7 @@ double Camera::halfHeight() const
 
 Camera orbited(const Camera& camera, const glm::dvec2& angles)
 {
-    constexpr double kPole  = 0.02; // the eye stays so far off [rad]
+    constexpr double kPole  = 0.02; // least angle between the eye and a pole [rad]
     Camera           result = camera;
     result.toEye            = turned(camera.toEye, camera.up, -angles.x);
     const double height     = std::asin(std::clamp(glm::dot(camera.up, camera.toEye), -1.0, 1.0)); // [rad]

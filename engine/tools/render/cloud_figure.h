@@ -14,7 +14,7 @@ struct FigureWindow {
     double     halfWidth = 1; ///< from the middle to the left edge [m], > 0
 };
 
-/// What a figure of a cloud shows, and from where.
+/// The content and direction of a figure of a cloud.
 struct CloudFigure {
     std::string                 title;
     std::string                 quantity = "deflection";  ///< of the values
@@ -30,14 +30,14 @@ struct CloudFigure {
 /// SVG file around a picture of SurfaceRenderer, with title, colour bar and scale bar.
 ///
 /// Points without a value (NaN) are grey and counted. Without a Vulkan device that can draw, and for a cloud that has
-/// no surface (see CloudSkin), the figure is a sentence that says so: whatever else a command writes is worth having.
+/// no surface (see CloudSkin), the figure is a sentence that says so, because a command's other output is still useful.
 /// \param rest    positions at rest, from which neighbours are found [m]
 /// \param now     as many positions, which are drawn [m]
 /// \param values  as many [figure.unit]
 [[nodiscard]] std::string cloudFigureSvg(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now,
                                          std::span<const double> values, const CloudFigure& figure);
 
-/// Where a figure of pressed patches looks from.
+/// The view of a figure of pressed patches.
 struct SurfaceView {
     std::string title;
     double      exaggeration = 1;   ///< factor on every displacement [1]

@@ -15,7 +15,7 @@
 namespace palp {
 namespace {
 
-constexpr std::size_t kNeighbours = 20; ///< of a fit, the point included: fewer are noisy, more round off edges [1]
+constexpr std::size_t kNeighbours = 20; ///< of a fit, the point included: fewer are noisy, more round off edges
 
 /// Radius of a disc over the spacing: smaller ones leave stains where points are strewn at random, larger ones take
 /// longer [1].
@@ -28,7 +28,7 @@ constexpr double kLeastCore = 0.7, kMostCore = 2.0;
 /// Over the distance that a core must reach: neighbours in a tangent plane are not quite where they are in space [1].
 constexpr double kReserve = 1.08;
 
-/// The smallest eigenvalue of a symmetric matrix.
+/// Returns the smallest eigenvalue of a symmetric matrix.
 /// \source O. K. Smith 1961, "Eigenvalues of a symmetric 3 x 3 matrix"
 double leastEigenvalue(const glm::dmat3& a)
 {
@@ -42,7 +42,7 @@ double leastEigenvalue(const glm::dmat3& a)
     return mean + 2 * p * std::cos(std::acos(half) / 3 + 2 * std::numbers::pi / 3);
 }
 
-/// A unit vector perpendicular to the plane that the rows of a singular matrix span.
+/// Returns a unit vector perpendicular to the plane that the rows of a singular matrix span.
 glm::dvec3 perpendicularTo(const glm::dmat3& a)
 {
     glm::dvec3 best(0);

@@ -14,13 +14,13 @@
 namespace palp {
 namespace {
 
-constexpr std::size_t kHandedTo = 10; ///< neighbours of a point, the nearest ones, itself included [1]
+constexpr std::size_t kHandedTo = 10; ///< neighbours of a point, the nearest ones, itself included
 
 /// What closes: the sum of the areas as vectors is zero by Gauss; a tenth of holes, or of mistakes, leaves less than
 /// this of their plain sum [1].
 constexpr double kClosed = 0.05;
 
-constexpr std::size_t kFewest = 100; ///< points of a piece that is asked whether it closes [1]
+constexpr std::size_t kFewest = 100; ///< least points of a piece that may count as closed
 
 /// A piece of the cloud that hangs together.
 struct Piece {

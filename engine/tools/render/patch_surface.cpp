@@ -47,7 +47,7 @@ std::vector<Near> alongEdge(const Patch& patch, std::span<const glm::dvec3> posi
 /// sheet on top. Empty where there is no surface.
 std::optional<glm::dvec3> residualAt(const std::vector<Near>& points, const ChartPoint& at, double spacing)
 {
-    constexpr std::size_t kMost  = 16; // points looked at [1]
+    constexpr std::size_t kMost  = 16; // points examined
     constexpr double      kSheet = 1;  // spacings below the highest that are still the same sheet [1]
     std::array<std::pair<double, const Near*>, kMost> near;
     near.fill({std::numeric_limits<double>::infinity(), nullptr});
@@ -74,7 +74,7 @@ std::optional<glm::dvec3> residualAt(const std::vector<Near>& points, const Char
 /// Once around the window's edge; parts where there is no surface are left out.
 std::vector<PatchSurface::EdgePlace> edgeOf(const Patch& patch, std::span<const glm::dvec3> positions)
 {
-    constexpr int                        kSteps = 48; // a side [1]
+    constexpr int                        kSteps = 48; // on a side
     const PlateGrid&                     grid   = patch.window.grid;
     const double                         width = grid.sizeX(), height = grid.sizeZ();
     const ChartPoint                     corner = patch.window.corner;
@@ -114,7 +114,8 @@ public:
         for (int i = 0; i < coarse_.nodesX(); ++i)
             for (int j = 0; j < coarse_.nodesZ(); ++j) field_(i, j) = at(i * coarse_.spacingX, j * coarse_.spacingZ);
     }
-    /// \param x, z  from the window's corner, in the window [m]  \return [1/N]
+    /// \param x, z  from the window's corner, in the window [m]
+    /// \return [1/N]
     [[nodiscard]] double of(double x, double z) const { return interpolate(coarse_, field_, x, z); }
 
 private:

@@ -27,7 +27,7 @@ bool same(std::span<const T> a, std::span<const T> b)
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
 }
 
-/// Grows over what is drawn.
+/// A rectangle that grows over the drawn places.
 class Part {
 public:
     explicit Part(const ViewFrame& frame) : frame_(frame) {}
@@ -92,7 +92,7 @@ void addFaces(Part& part, std::span<const ViewSplat> before, std::span<const Vie
             }
 }
 
-/// Triangles that are not the same in both, number by number.
+/// Finds the triangles that differ between both, number by number.
 void addShapes(Part& part, std::span<const ViewCorner> before, std::span<const ViewCorner> now)
 {
     const std::size_t corners = std::max(before.size(), now.size());

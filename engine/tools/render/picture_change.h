@@ -7,16 +7,17 @@
 
 namespace palp {
 
-/// The part of a fast picture in which it may differ from the one before: while a hand touches, little more than what
-/// it dents, and a driver in software takes as long as it has pixels to draw.
+/// Returns the part of a fast picture that may differ from the one before: during a touch little more than the dent.
+/// In a software driver the time depends on the number of pixels drawn.
 ///
-/// Both are compared, so that nobody has to tell what has changed. Parts of a picture that this leaves out would come
-/// out the same to the byte.
-/// \param now, before  everything but the overlay, of which change in its squares is for the caller to add
-/// \return nothing: all of it, as after the camera has moved; a rectangle without pixels: none of it
+/// Both inputs are compared, so that callers need not record changes. Omitted parts of a picture would come out the
+/// same to the byte.
+/// \param now, before  are compared except for the overlay, whose changed squares the caller must add
+/// \return nothing if all of it may differ, as after a motion of the camera; a rectangle without pixels if none of it
 [[nodiscard]] std::optional<PixelRect> changedPart(const SurfaceInput& before, const SurfaceInput& now);
 
-/// Of two overlays: the squares that differ. \pre of one size
+/// Returns the squares of two overlays that differ.
+/// \pre both have one size
 [[nodiscard]] PixelRect changedPart(const Overlay& before, const Overlay& now);
 
 } // namespace palp

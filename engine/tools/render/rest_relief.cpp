@@ -11,7 +11,7 @@
 namespace palp {
 namespace {
 
-constexpr double kTaps  = 40;  ///< surroundings of a point, in the mean; fewer look like grain [1]
+constexpr double kTaps  = 40;  ///< mean number of surroundings of a point; fewer look like grain
 constexpr double kWider = 3.5; ///< a second look finds what is wide and shallow, as there [1]
 
 /// Some of the points, strewn so thinly that a disc of the radius holds kTaps of them.

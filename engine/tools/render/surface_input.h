@@ -18,7 +18,7 @@ struct PixelRect {
     [[nodiscard]] bool empty() const { return left >= right || top >= bottom; }
 };
 
-/// The smallest rectangle with both in it.
+/// Returns the smallest rectangle that holds both.
 [[nodiscard]] inline PixelRect unionOf(const PixelRect& a, const PixelRect& b)
 {
     if (a.empty()) return b;
@@ -26,17 +26,17 @@ struct PixelRect {
     return {std::min(a.left, b.left), std::min(a.top, b.top), std::max(a.right, b.right), std::max(a.bottom, b.bottom)};
 }
 
-/// What one picture is drawn from.
+/// The input of one picture.
 struct SurfaceInput {
     shared::ViewFrame                   frame{};
     std::span<const shared::ViewSplat>  splats;
-    std::size_t                         dots = 0; ///< the last so many splats are dots, whatever the detail [1]
+    std::size_t                         dots = 0; ///< number of splats, the last ones, that are dots at any detail
     std::span<const std::uint32_t>      faces;    ///< numbers of splats, three to a triangle; empty: splats are drawn
     std::span<const shared::ViewCorner> shapes;   ///< three to a triangle
     Detail                              detail      = Detail::fine;
     const Overlay*                      overlay     = nullptr; ///< of the picture's size; may be null
     bool                                sameOverlay = false;   ///< to the byte, as in the picture before
-    /// What differs from the picture drawn before; nothing: draw all of it.
+    /// The part that differs from the picture drawn before; empty: draw all of it.
     std::optional<PixelRect> changed;
 };
 

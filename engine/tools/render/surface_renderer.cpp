@@ -84,14 +84,14 @@ std::vector<shared::ViewCorner> cornersOf(const ViewScene& scene, const glm::dve
     return corners;
 }
 
-/// How far what is drawn reaches from the target [m].
+/// Returns how far the drawn points reach from the target [m].
 double reachOf(const ViewScene& scene, const std::vector<shared::ViewCorner>& shapes, const glm::dvec3& target)
 {
     double reach = 1e-9;
     for (std::size_t n = 0; n < scene.positions.size(); ++n)
         reach = std::max(reach, glm::distance(scene.positions[n], target) + scene.radii[n]);
     for (const shared::ViewCorner& corner : shapes) reach = std::max(reach, double(glm::length(corner.position)));
-    // In steps, because whatever changes a frame draws all of the picture; with room, because single precision must not
+    // In steps, because a change of the frame draws all of the picture; with room, because single precision must not
     // cut off the last point [1].
     constexpr double kRoom = 1.001, kStep = 1.25;
     return kRoom * std::pow(kStep, std::ceil(std::log(reach) / std::log(kStep)));

@@ -17,13 +17,13 @@ struct TextLine {
     Anchor anchor = Anchor::start;
 };
 
-/// \param at  start, middle or end of the line on its baseline [px]; what lies outside the picture is cut off
+/// \param at  start, middle or end of the line on its baseline [px]; text outside the picture is cut off
 void drawText(Image& image, glm::dvec2 at, std::string_view text, const TextLine& line);
 
-/// From the first character's start to the last one's end [px].
+/// Returns the width from the first character's start to the last one's end [px].
 [[nodiscard]] double widthOfText(std::string_view text, double size);
 
-/// The font itself, a TrueType file.
+/// Returns the font itself, a TrueType file.
 [[nodiscard]] std::span<const unsigned char> fontBytes() noexcept;
 
 } // namespace palp

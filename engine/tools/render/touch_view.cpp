@@ -21,7 +21,7 @@ constexpr double kDot = 0.22; ///< radius of a dot, of the point's core [1]
 /// Circles and spokes of the near half of the fitted sphere, as far as a window's edge reaches.
 std::vector<ViewSegment> linesOf(const Chart& chart, double window)
 {
-    constexpr int    kCircles = 6, kSpokes = 12, kAround = 48, kAlong = 12; // [1]
+    constexpr int    kCircles = 6, kSpokes = 12, kAround = 48, kAlong = 12;
     constexpr double kQuarter = std::numbers::pi / 2, kTurn = 2 * std::numbers::pi;
     const double     k = chart.curvature;                                                     // [1/m] signed
     const double most  = std::min(window, std::abs(k) > 0 ? kQuarter / std::abs(k) : window); // along the surface [m]
@@ -135,7 +135,7 @@ void TouchView::addHand(const Patch& patch, double force, const TouchLook& look,
     const glm::dvec3 proxy  = point + look.exaggeration * dent * inward;
     if (look.overlays.markers) {
         scene_.proxy = proxy;
-        // What is drawn deeper than it is takes the hand along.
+        // An exaggerated dent moves the hand with it.
         const glm::dvec3 deeper = (look.exaggeration - 1) * dent * inward;
         scene_.hip = hand ? hand->hip + deeper : point + look.exaggeration * (felt > 0 ? force / felt : dent) * inward;
     }

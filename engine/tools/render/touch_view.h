@@ -23,7 +23,7 @@ constexpr auto namesOf(ViewPaint)
         {{deflection, "deflection"}, {stiffness, "stiffness"}, {plain, "plain"}});
 }
 
-/// What else may be shown of a touch.
+/// The additional marks of a touch.
 struct Overlays {
     bool outline   = true;  ///< of the patch
     bool arrows    = true;  ///< force and normal
@@ -33,7 +33,7 @@ struct Overlays {
     bool projected = false; ///< dots where the patch's points lie on that sphere
 };
 
-/// How a touch is shown.
+/// The look of a touch.
 struct TouchLook {
     ViewPaint paint        = ViewPaint::deflection;
     ColourMap map          = ColourMap::viridis;
@@ -44,7 +44,7 @@ struct TouchLook {
     Overlays  overlays{};
 };
 
-/// Where hand and proxy are, in place of where a hand at rest would have them.
+/// The places of hand and proxy, instead of those of a hand at rest.
 struct TouchHand {
     glm::dvec3                hip{};   ///< [m]
     glm::dvec3                force{}; ///< on the hand [N]
@@ -59,31 +59,32 @@ public:
     /// \throws as CloudSkin
     TouchView(const SoftObject& object, const PatchSettings& settings);
 
-    /// Other stiffnesses of the same points from now on. \param stiffness  outlives their use [Pa] or [N m]
+    /// Takes other stiffnesses of the same points from now on.
+    /// \param stiffness  outlives their use [Pa] or [N m]
     void repaint(std::span<const double> stiffness) { stiffness_ = stiffness; }
 
-    /// The cloud under a force, or at rest without a patch.
+    /// Makes the scene of the cloud under a force, or at rest without a patch.
     /// \param patch  of the cloud, deformed; may be null
     /// \param force  that presses [N]
     /// \param hand   empty: at rest, where the force is that of the hand's depth
     void show(const Patch* patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand = {});
 
-    /// Other settings of the same cloud from now on.
+    /// Takes other settings of the same cloud from now on.
     void use(const PatchSettings& settings);
 
-    /// Those of closed objects point outwards [1].
+    /// Returns the normals at rest; those of closed objects point outwards [1].
     [[nodiscard]] std::span<const glm::dvec3> restNormals() const noexcept { return restNormals_; }
     [[nodiscard]] std::span<const double>     radii() const noexcept { return skin_.cores(); } ///< of closed discs [m]
 
-    /// Valid until the next show(); title and note are the caller's to set.
+    /// Returns the scene, valid until the next show(); the caller sets title and note.
     [[nodiscard]] ViewScene& scene() noexcept { return scene_; }
 
 private:
-    /// What tells the patch that was shown last from others.
+    /// The values that identify the patch that was shown last.
     struct Shown {
         glm::dvec3  contact{};      ///< [m]
         double      compliance = 0; ///< [m/N]
-        std::size_t points     = 0; ///< [1]; 0: none was
+        std::size_t points     = 0; ///< 0: none was shown
     };
     void findRelief();
     void take(const Patch* patch);
@@ -113,7 +114,7 @@ private:
 /// Looks obliquely at the contact from outside so that the dent shows its depth; the patch fills the picture.
 [[nodiscard]] Camera cameraAt(const Patch& patch, double aspect);
 
-/// A round force under which the patch dents by about a third of a thickness: deep enough to be seen, within theory.
+/// Returns a round force that dents the patch by about a third of a thickness: deep enough to be seen, within theory.
 /// [N]
 [[nodiscard]] double forceThatShows(const Patch& patch, double thickness);
 

@@ -15,7 +15,7 @@ namespace palp {
 
 enum class Ground { light, dark };
 
-/// What the colours of a surface mean.
+/// The meaning of a surface's colours.
 struct ViewColours {
     ColourMap   map   = ColourMap::viridis;
     Scale       scale = Scale::linear;
@@ -35,7 +35,7 @@ struct ViewDot {
     Rgb8       colour;
 };
 
-/// Everything that one picture shows. The arrays are the caller's and live while it is drawn.
+/// The content of one picture. The arrays are the caller's and must live while it is drawn.
 struct ViewScene {
     std::span<const glm::dvec3> positions; ///< of the points, deformed [m]
     std::span<const glm::dvec3> normals;   ///< as many [1], unit; their side does not matter
@@ -74,7 +74,7 @@ inline constexpr Rgb8 kProxyColour = kNamedColours[4], kHipColour = kNamedColour
                       kNormalColour = kNamedColours[5], kSphereColour = kNamedColours[2],
                       kProjectedColour = kNamedColours[0], kPlainColour = {206, 198, 186};
 
-/// Of outlines and texts on this ground.
+/// Returns the colour of outlines and texts on this ground.
 [[nodiscard]] constexpr Rgb8 inkOn(Ground ground)
 {
     return ground == Ground::light ? Rgb8{26, 26, 26} : Rgb8{235, 235, 235};

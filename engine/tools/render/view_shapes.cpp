@@ -11,8 +11,8 @@ namespace {
 
 using Corners = std::vector<ShapeCorner>;
 
-constexpr int    kAround = 24; ///< sides of what is round [1]
-constexpr int    kThin   = 6;  ///< and of lines, which nobody sees them of [1]
+constexpr int    kAround = 24; ///< sides of round shapes
+constexpr int    kThin   = 6;  ///< sides of lines, too thin to show them
 constexpr double kTurn   = 2 * std::numbers::pi;
 
 /// A point of a body of revolution, seen along its axis, and the normal there.
@@ -21,7 +21,7 @@ struct Ring {
     double normalAlong = 0, normalOutward = 1; // [1]
 };
 
-/// Two unit vectors perpendicular to a unit vector and to each other.
+/// Returns two unit vectors perpendicular to a unit vector and to each other.
 struct Axes {
     explicit Axes(const glm::dvec3& axis)
         : along(axis),

@@ -20,18 +20,18 @@ struct VulkanImage {
 [[nodiscard]] VulkanImage makeImage(const compute::VulkanContext& context, const char* name, VkExtent2D size,
                                     VkFormat format, VkImageUsageFlags usage);
 
-/// What a pass does with one of its images.
+/// A pass's use of one of its images.
 struct PassImage {
     VkFormat      format = VK_FORMAT_UNDEFINED;
-    VkImageLayout after  = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL; ///< UNDEFINED: nobody needs it afterwards
-    VkImageLayout before = VK_IMAGE_LAYOUT_UNDEFINED; ///< other than that: what is outside of the pass's area stays
+    VkImageLayout after  = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL; ///< UNDEFINED: not needed afterwards
+    VkImageLayout before = VK_IMAGE_LAYOUT_UNDEFINED; ///< another layout keeps the image outside of the pass's area
 };
 
 using RenderPass  = compute::Owned<VkRenderPass, vkDestroyRenderPass>;
 using Framebuffer = compute::Owned<VkFramebuffer, vkDestroyFramebuffer>;
 
-/// A pass that clears its images and draws into them. What passes and copies before it wrote is seen by it, and what
-/// it writes by those after it.
+/// Makes a pass that clears its images and draws into them. It sees what earlier passes and copies have written, and
+/// later ones see what it writes.
 /// \param depth  its image for depths; of format UNDEFINED: none
 [[nodiscard]] RenderPass makePass(const compute::VulkanContext& context, std::span<const PassImage> colours,
                                   PassImage depth);

@@ -18,14 +18,14 @@ public:
     VulkanPanels(const VulkanPanels&)            = delete;
     VulkanPanels& operator=(const VulkanPanels&) = delete;
 
-    /// What ImGui::Render() has left, into the pass that is being recorded.
+    /// Records the result of ImGui::Render() into the pass that is being recorded.
     void record(VkCommandBuffer commands) const;
 
-    /// Squares of shared::kTile of a picture that it covers, as Overlay::tiles has them.
+    /// Returns the squares of shared::kTile of a picture that the result covers, as Overlay::tiles has them.
     [[nodiscard]] static std::vector<std::uint32_t> tiles();
     [[nodiscard]] static VkExtent2D                 size(); ///< of that picture [px]
 
-    /// The font's pictures have been made anew since one of these has taken them.
+    /// Returns whether the font's pictures have been made anew since an object of this class took them.
     [[nodiscard]] static bool fontHasChanged();
 
 private:

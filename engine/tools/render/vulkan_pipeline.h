@@ -12,7 +12,7 @@ using Pipeline       = compute::Owned<VkPipeline, vkDestroyPipeline>;
 using PipelineLayout = compute::Owned<VkPipelineLayout, vkDestroyPipelineLayout>;
 using SetLayout      = compute::Owned<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout>;
 
-/// How what is drawn meets what is there.
+/// The combination of drawn colours with those already in the image.
 enum class Blending {
     replace,
     add,   ///< sums
@@ -32,7 +32,7 @@ struct DrawSettings {
     VkPrimitiveTopology            topology     = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
 };
 
-/// Width and height are set when it is used.
+/// Makes a pipeline, whose width and height are set when it is used.
 [[nodiscard]] Pipeline makePipeline(const compute::VulkanContext& context, VkRenderPass pass, VkPipelineLayout layout,
                                     const DrawSettings& settings);
 

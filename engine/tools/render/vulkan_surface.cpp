@@ -73,7 +73,7 @@ VulkanSurface::~VulkanSurface()
 {
     try {
         finish();
-    } catch (const Error&) { // what hangs is leaked
+    } catch (const Error&) { // a device that hangs leaks its objects
     }
 }
 
@@ -216,7 +216,7 @@ void VulkanSurface::fit(VkExtent2D size)
 
 namespace {
 
-/// The buffer holds the bytes; it grows by more than is needed, so that it seldom must.
+/// Makes a buffer hold the bytes; it grows by more than is needed, so that it seldom must grow.
 void fillBuffer(compute::Context& context, std::optional<compute::Buffer>& buffer, const char* name,
                 std::span<const std::byte> bytes)
 {
@@ -316,7 +316,7 @@ void VulkanSurface::bindAll()
     vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set_, 0, nullptr);
 }
 
-/// Normals, depths and colours of what is seen, for the light.
+/// Draws normals, depths and colours of the visible surface, for the light.
 void VulkanSurface::recordSurface(const SurfaceInput& input)
 {
     VkClearValue zero{}, nowhere{}, farthest{};

@@ -17,7 +17,8 @@ namespace palp {
 class VulkanPanels;
 
 /// The passes of compute_shaders/shared/view_layout.h. Images are made anew when the size changes, buffers when they
-/// are too small. \thread one
+/// are too small.
+/// \thread one
 class VulkanSurface {
 public:
     /// \throws compute::ProcessorError if the device lacks a format
@@ -27,26 +28,29 @@ public:
     VulkanSurface(const VulkanSurface&)            = delete;
     VulkanSurface& operator=(const VulkanSurface&) = delete;
 
-    /// Draws and waits. \return rows from the top, channels in the order of format(); until the next call
+    /// Draws and waits.
+    /// \return rows from the top, channels in the order of format(); valid until the next call
     [[nodiscard]] std::span<const std::uint8_t> draw(const SurfaceInput& input);
 
     [[nodiscard]] VkFormat format() const noexcept { return format_; }
 
     /// Begins to draw into a window that has a next picture; finish() ends it. In between the host may prepare the next
-    /// one. \pre finished
+    /// one.
+    /// \pre finished
     void start(const SurfaceInput& input, VulkanWindow& window);
+    /// Ends what start() began.
     /// \return whether something had been started
     bool finish();
 
-    /// What ImGui::Render() has left is laid over every picture from now on, until the next call or another size.
+    /// Lays the result of ImGui::Render() over every picture from now on, until the next call or another size.
     /// \throws Error in a build without Dear ImGui
     void takePanels();
 
-    /// Whether takePanels() may be called while a picture is being drawn.
+    /// Returns whether takePanels() may be called while a picture is being drawn.
     [[nodiscard]] bool hasPanels() const;
 
 private:
-    /// A pass and what it draws into.
+    /// A pass and its framebuffer.
     struct Step {
         RenderPass  pass;
         Framebuffer framebuffer;
@@ -93,7 +97,7 @@ private:
     std::vector<std::uint32_t>    tiles_;  ///< of the overlay, then of the panels
     std::vector<std::uint32_t>    panelTiles_;
     VkExtent2D                    panelSize_{};         ///< of the picture that they are for [px]
-    bool                          freshPanels_ = false; ///< are to be drawn
+    bool                          freshPanels_ = false; ///< the panels must be drawn
 };
 
 } // namespace palp

@@ -11,7 +11,7 @@ namespace {
 using compute::check;
 using compute::typed;
 
-/// Colours as the pictures have them, without conversion.
+/// Chooses a format that takes colours without conversion.
 VkSurfaceFormatKHR formatOf(const compute::VulkanContext& context, VkSurfaceKHR surface)
 {
     std::uint32_t count = 0;
@@ -64,7 +64,7 @@ void VulkanWindow::makeChain(VkExtent2D size)
     wanted_ = size;
     VkSurfaceCapabilitiesKHR can;
     check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context_.physical, surface_, &can), "ask what a window can");
-    constexpr std::uint32_t kOurs = 0xFFFFFFFF; // the size is ours to say
+    constexpr std::uint32_t kOurs = 0xFFFFFFFF; // the program sets the size
     size_                         = can.currentExtent.width != kOurs ? can.currentExtent : size;
     size_                         = {std::clamp(size_.width, can.minImageExtent.width, can.maxImageExtent.width),
                                      std::clamp(size_.height, can.minImageExtent.height, can.maxImageExtent.height)};
@@ -93,7 +93,7 @@ void VulkanWindow::makeChain(VkExtent2D size)
 bool VulkanWindow::next(VkExtent2D size)
 {
     if (size.width == 0 || size.height == 0) return false;
-    for (int attempt = 0; attempt < 3; ++attempt) { // while it is being dragged its size changes under us
+    for (int attempt = 0; attempt < 3; ++attempt) { // its size may change here while the user drags it
         if (!chain_ || size.width != wanted_.width || size.height != wanted_.height) makeChain(size);
         if (!chain_) return false;
         const VkFence fence = ready_.get();

@@ -8,7 +8,8 @@
 
 namespace palp {
 
-/// The pictures that a window shows in turn. \thread one
+/// The pictures that a window shows in turn.
+/// \thread one
 class VulkanWindow {
 public:
     /// \param surface  of the window; is destroyed with this
@@ -18,18 +19,18 @@ public:
     VulkanWindow(const VulkanWindow&)            = delete;
     VulkanWindow& operator=(const VulkanWindow&) = delete;
 
-    /// Of the pictures: eight bits each of red, green, blue and alpha, in one order or the other.
+    /// Returns the format of the pictures: eight bits each of red, green, blue and alpha, in one order or the other.
     [[nodiscard]] VkFormat format() const noexcept { return format_.format; }
 
-    /// The next picture that can be drawn over, made anew if the window's size has changed.
+    /// Acquires the next picture that can be drawn over, made anew if the window's size has changed.
     /// \param size  of the window [px]
-    /// \return false: there is none now, as with a window that is minimised
+    /// \return false if there is none now, as with a minimised window
     [[nodiscard]] bool next(VkExtent2D size);
 
     /// Copies an image of that format, in the layout TRANSFER_SRC_OPTIMAL, onto that picture, scaled if it must be.
     void copy(VkCommandBuffer commands, VkImage image, VkExtent2D size) const;
 
-    /// Shows it, once what was recorded is done.
+    /// Shows the picture, once the recorded commands are done.
     void show();
 
 private:
