@@ -59,7 +59,7 @@ void writeFileWhole(const std::filesystem::path& path, const std::function<void(
     std::error_code status;
     if (std::filesystem::is_directory(path, status))
         throw Error(path.string() + ": cannot be written: it is a folder; name a file in it");
-    // A device or a pipe (/dev/stdout, /dev/null) must not be replaced by a file of the same name.
+    // A device file or a pipe (/dev/stdout, /dev/null) must not be replaced by a file of the same name.
     const bool replaceable = !std::filesystem::exists(path, status) || std::filesystem::is_regular_file(path, status);
     // A link stays a link: the file that it points to is replaced.
     const std::filesystem::path place =
