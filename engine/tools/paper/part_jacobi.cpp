@@ -176,7 +176,7 @@ Section jacobiPart(const ReportRun& run)
              formatNumber(kShown) + " it is " + (stop ? percent(all.back().error[*stop]) : "-") + " off at " +
              std::to_string(nodes.back()) + " nodes a side.",
          "the published iteration in double precision, errors against a direct solution", Verdict::fails,
-         "As printed it diverges, because the largest eigenvalue of its iteration is beyond 1 whatever the grid; "
+         "As printed it diverges, because the largest eigenvalue of its iteration is above 1 on every grid; "
          "damped, the rule stops far too early. Ours stops "
          "by an estimate of the error."});
     return section;

@@ -50,7 +50,7 @@ std::vector<double> stagesOf(const StageTimes& t)
     return {t.gather, t.fit, t.project, t.resample, t.prepare, t.solve, t.lift};
 }
 
-/// One grid on one device.
+/// One grid on one processor.
 struct Timed {
     std::string           device;
     int                   cells = 0;

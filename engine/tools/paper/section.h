@@ -54,7 +54,7 @@ struct Section {
     std::vector<Claim>       claims;
     std::vector<Table>       tables;
     std::vector<Figure>      figures;
-    std::vector<Quantity>    numbers; ///< the same bits from run to run on one device
+    std::vector<Quantity>    numbers; ///< the same bits from run to run on one processor
     std::vector<Quantity>    timings; ///< measured by a clock
 
     /// Returns the values of a number.
@@ -66,7 +66,7 @@ struct Section {
 struct ReportRun {
     PlateSolver&                                  device;
     bool                                          quick = false; ///< small enough for a test, with larger errors
-    std::vector<std::string>                      timed{};  ///< devices whose time is taken, as PlateSolver wants them
+    std::vector<std::string>                      timed{};  ///< processors to be timed, as PlateSolver names them
     std::function<void(std::size_t, std::size_t)> onStep{}; ///< (done, total); may be empty
 
     void step(std::size_t done, std::size_t total) const
