@@ -66,8 +66,8 @@ struct Section {
 struct ReportRun {
     PlateSolver&                                  device;
     bool                                          quick = false; ///< small enough for a test, with larger errors
-    std::vector<std::string>                      timed{};  ///< processors to be timed, as PlateSolver names them
-    std::function<void(std::size_t, std::size_t)> onStep{}; ///< (done, total); may be empty
+    std::vector<std::string>                      timed{};       ///< processors to be timed, as PlateSolver names them
+    std::function<void(std::size_t, std::size_t)> onStep{};      ///< (done, total); may be empty
 
     void step(std::size_t done, std::size_t total) const
     {
