@@ -1,6 +1,6 @@
 #!/bin/sh
-# Installs what is missing (asks first unless root), builds, touches objects and draws them, and computes the paper
-# again: a page of pictures, and one of claims.
+# Installs missing packages (asks first unless root), builds, touches objects and draws them, and computes the paper
+# again. It makes a page of pictures and one of claims.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 . engine/prepare.sh
@@ -11,7 +11,7 @@ usage: sh samples/demo.sh [--yes] [--no-install] [--dry-run]
 
   --yes          install missing packages without asking (password-less sudo)
   --no-install   install nothing; exit 3 naming what is missing
-  --dry-run      print what would be done
+  --dry-run      print the steps without running them
 TEXT
 }
 
@@ -26,7 +26,7 @@ done
 # shellcheck disable=SC2086
 prepare_packages $packages_build
 build=${PALPATE_BUILD:-build}
-# A build that the tests made keeps its options: changing them would compile everything again.
+# A build that the tests made keeps its options, because a change would compile everything again.
 if [ -f "$build/CMakeCache.txt" ]; then prepare_build "$build"; else prepare_build "$build" -DPALPATE_TESTS=OFF -DPALPATE_BENCHMARKS=OFF; fi
 out=$build/demo
 if [ -n "$dry_run" ]; then say "would write $out/index.html"; exit 0; fi
@@ -36,7 +36,7 @@ say '== a wart under the skin'
 say
 say '== objects that are touched'
 mkdir -p "$out" || exit 1
-draw() { # name of the picture, what stands below it, and what palpate render takes
+draw() { # name of the picture, its caption, and the arguments of palpate render
     name=$1 caption=$2
     shift 2
     "$build/bin/palpate" render "$@" --size 1000x700 --out "$out/$name.png" || exit 1

@@ -1,11 +1,11 @@
 #!/bin/sh
-# Includes point downward, and each outside library stays behind its wall. Argument: the checkout.
+# Checks that includes point downward and that each outside library stays behind its wall. Argument: the checkout.
 set -u
 cd "$1" || exit 1
 
-# From the bottom up; a file may include its own folder and those before it. A folder's own subfolders count as it.
+# The layers from the bottom up. A file may include its own folder and those before it; subfolders count as their folder.
 layers='core compute cloud contact chart plate force pipeline session tools/plot tools/render tools/gui tools/bench tools/paper tools/study tools/cli'
-# The layer of a path below engine/, and its place in the list.
+# layer_of prints the layer of a path below engine/, level_of its place in the list.
 layer_of() {
     case $1 in
     tools/*/*) rest=${1#tools/}; echo "tools/${rest%%/*}" ;;
@@ -24,7 +24,7 @@ level_of() {
 bad=0
 complain() { echo "$*"; bad=1; }
 
-# Every file of every depth: the folders that hold sources are found, not listed.
+# All files at all depths are checked: the folders that hold sources are found, not listed.
 files=$(find engine -name '*.h' -o -name '*.cpp' | sort)
 session=$(level_of session)
 for folder in $(for file in $files; do dirname "$file"; done | sort -u); do
@@ -48,15 +48,15 @@ for folder in $(for file in $files; do dirname "$file"; done | sort -u); do
     done
 done
 
-# The oracle shares no code with what it judges.
+# The reference solver shares no code with the solver that it judges.
 shared=$(grep -rnE '^ *# *include *"(engine/plate/(multigrid|host)|engine/compute|compute_shaders)/' engine/plate/reference)
 [ -z "$shared" ] || complain "the reference solver shares code with the solver that it judges: $shared"
 
-# A device knows forces and positions, nothing of objects.
+# A device knows forces and positions, and nothing of objects.
 others=$(grep -rnE '^ *# *include *"' device --include="*.h" --include="*.cpp" | grep -vE '"(device|engine/core)/')
 [ -z "$others" ] || complain "device/ includes more than engine/core: $others"
 
-# library: pattern of its includes: files that may hold them
+# wall LIBRARY PATTERN FILES: only FILES may hold includes that match PATTERN
 wall() {
     found=$(grep -rlE "^ *# *include *[<\"]$2" engine device --include='*.h' --include='*.cpp' | grep -vE "^(engine|device)/($3)$")
     [ -z "$found" ] || complain "$1 is included outside its wall: $found"

@@ -1,12 +1,12 @@
 #!/bin/sh
-# Every relative link and picture of the pages points at something that is there, and every #part at a heading. Arguments: the
-# checkout; pages, or none for all that git or a reader would show.
+# Checks that every relative link and picture of the pages points at an existing file, and every #part at a heading.
+# Arguments: the checkout; pages, or none for all that git or a reader would show.
 set -u
 cd "$1" || exit 1
 shift
 [ $# -gt 0 ] || set -- ./*.md engine/*.md engine/*/README.md engine/tools/*/README.md device/README.md tests/README.md samples/*/README.md
 
-# "PAGE<tab>TARGET" of each link outside of code blocks
+# prints "PAGE<tab>TARGET" of each link outside of code blocks
 links() {
     awk -v tick='`' '
     FNR == 1 { code = 0 }
@@ -19,7 +19,7 @@ links() {
         }
     }' "$@"
 }
-# the names that GitHub gives to the headings of a page
+# prints the names that GitHub gives to the headings of a page
 headings() {
     awk -v tick='`' '
     substr($0, 1, 3) == tick tick tick { code = !code }
@@ -45,5 +45,5 @@ while IFS='	' read -r page target; do
     esac
 done <"$work"
 
-[ $bad -eq 0 ] && echo "$(wc -l <"$work") links point at something"
+[ $bad -eq 0 ] && echo "$(wc -l <"$work") links point at existing files and headings"
 exit $bad

@@ -1,5 +1,6 @@
 #!/bin/sh
-# engine/method.md lists every \differs note of the code, and nothing else; the tests that it names exist. Argument: the checkout.
+# Checks that engine/method.md lists every \differs note of the code, and nothing else, and that the tests that it names
+# exist. Argument: the checkout.
 #
 # A note belongs to the declaration that follows its comment. A row of the page is [`NAME`](FILE): NAME must stand in the
 # first line of that declaration.
@@ -7,7 +8,7 @@ set -u
 cd "$1" || exit 1
 page=${2:-engine/method.md}
 
-# "FILE<tab>declaration" for every note
+# prints "FILE<tab>declaration" for every note
 notes() {
     find engine compute_shaders device samples -name '*.h' -o -name '*.cpp' -o -name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' | sort | while IFS= read -r file; do
         awk -v file="$file" '
@@ -17,7 +18,7 @@ notes() {
         END { line = "the end of the file"; told() }' "$file"
     done
 }
-# "FILE<tab>NAME" for every row, files as from the checkout
+# prints "FILE<tab>NAME" for every row, with files relative to the checkout
 rows() {
     grep '^|' "$page" | awk -v tick='`' '{
         while (match($0, "\\[" tick "[A-Za-z]+" tick "\\]\\([^)]*\\)")) {
@@ -38,7 +39,7 @@ notes >"$work/notes"
 rows >"$work/rows"
 [ -s "$work/notes" ] && [ -s "$work/rows" ] || { echo "no note or no row was found"; exit 1; }
 
-# Every note has a row of its own, every row a note.
+# Every note needs a row of its own, and every row a note.
 awk -F '	' -v page="$page" '
 function holds(text, name) { return (" " text " ") ~ ("[^A-Za-z0-9_]" name "[^A-Za-z0-9_]") }
 NR == FNR { ++rows; file[rows] = $1; name[rows] = $2; next }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The two commands on machines that lack packages, root, sudo or a terminal, played by stand-ins first in PATH.
+# Tests the two commands on machines that lack packages, root, sudo or a terminal. Substitutes first in PATH imitate them.
 # Argument: the checkout.
 set -u
 cd "$1" || exit 1
@@ -8,7 +8,7 @@ trap 'rm -rf "$place"' EXIT
 passed=0 failed=0
 
 stand_in() { printf '#!/bin/sh\n%s\n' "$2" >"$place/bin/$1"; chmod +x "$place/bin/$1"; }
-machine() { # a fresh set of stand-ins; every call of apt-get or sudo leaves a line in calls
+machine() { # makes new substitutes; every call of apt-get or sudo writes a line to calls
     rm -rf "$place/bin" "$place/calls"
     mkdir "$place/bin"
     : >"$place/calls"
@@ -26,7 +26,7 @@ check() { # check DESCRIPTION EXIT-CODE WORD COMMAND...
     if ! grep -qF -- "$word" "$place/out"; then echo "FAILED: $what: no '$word' in: $(cat "$place/out")"; failed=$((failed + 1)); return; fi
     passed=$((passed + 1))
 }
-calls() { # calls DESCRIPTION PATTERN: the pattern is in the calls; an empty pattern: there were none
+calls() { # calls DESCRIPTION PATTERN: expects the pattern in the calls; with an empty pattern, no calls
     if [ -z "$2" ] && [ -s "$place/calls" ] || { [ -n "$2" ] && ! grep -q -- "$2" "$place/calls"; }; then
         echo "FAILED: $1: $(cat "$place/calls")"; failed=$((failed + 1))
     else
@@ -57,7 +57,7 @@ for script in tests/run.sh samples/demo.sh; do
     calls "$script needs neither root nor network when nothing is missing" ''
 done
 
-# Both commands share a build folder: after the demo, which builds no tests, the tests still come to be.
+# Both commands share a build folder: after the demo, which builds no tests, tests/run.sh still builds them.
 machine 0
 stand_in dpkg-query 'printf "install ok installed"'
 stand_in cmake "echo \"cmake \$*\" >>'$place/calls'; : >'$place/build/CMakeCache.txt'"

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Runs what a page tells its reader to type, in order, as a reader would: every line of each ```sh block and every inline
-# command that begins with "palpate ". A ```json block becomes the .json file that the command before it names.
-# Arguments: the checkout, palpate, a folder that may be emptied, pages of the checkout. A command that a page gains is run
-# as it is, and must exit 0.
+# Runs the commands of a page in order, as a reader would: every line of each ```sh block and every inline command that
+# begins with "palpate ". A ```json block becomes the .json file that the command before it names.
+# Arguments: the checkout, palpate, a folder that may be emptied, pages of the checkout. A new command on a page is run as
+# it is, and must exit 0.
 set -u
 checkout=$1 palpate=$2
 scratch=$3"/reader's folder" # a path with a space and an apostrophe
@@ -11,10 +11,10 @@ mkdir -p "$scratch/build" && cd "$scratch" || exit 1
 scratch=$PWD
 shift 3
 
-# What the commands find: the samples, the programs, and the scan that the pages speak of. Outputs stay here.
+# The commands find the samples, the programs, and the scan that the pages name. Outputs stay here.
 ln -s "$checkout/samples" samples
 ln -s "$(dirname "$palpate")" build/bin
-make_scan() { # a sheet in millimetres at z = 30, a point a millimetre, "quality" from 0 at its sides to 1 in the middle
+make_scan() { # prints a sheet in millimetres at z = 30, a point per millimetre, "quality" 0 at its sides to 1 in the middle
     awk 'BEGIN {
         print "ply\nformat ascii 1.0\nelement vertex 5041\nproperty float x\nproperty float y\nproperty float z\nproperty float quality\nend_header"
         for (x = -35; x <= 35; ++x) for (y = -35; y <= 35; ++y) print x, y, 30, 1 - (x < 0 ? -x : x) / 35
@@ -22,8 +22,8 @@ make_scan() { # a sheet in millimetres at z = 30, a point a millimetre, "quality
 }
 make_scan >scan.ply
 
-# Commands that do not end with 0 here, each with its exit code, what it must say, the words that it is known by and why.
-# Where a Falcon is plugged in these are passed over: no test may move a device.
+# Sets the exit code and a required message for a command; the patterns name the commands that do not end with 0 here,
+# with the reason. Where a Falcon is plugged in, its commands are skipped: no test may move a device.
 expected() {
     case $1 in
     *'--hand falcon '* | *'--hand falcon') code=2 says='no Novint Falcon is plugged in' ;; # a machine without one
@@ -32,7 +32,7 @@ expected() {
     esac
 }
 
-# events: "run", "json" or "unknown", a tab, and the command, the file's name, or what is wrong
+# prints events: "run" or "unknown", a tab, and the command or the mistake; writes the JSON files
 events() {
     awk -v tick='`' '
     function emit(kind, text) { print kind "\t" text }
@@ -53,7 +53,7 @@ events() {
         if (block == "json" && last == "") { emit("unknown", "line " NR ": a JSON block without a command before it that names a .json file"); block = "none" }
         else if (block == "json") printf "" >last
         else if (block == "cpp") block = "none" # install/run.sh builds and runs it
-        else if (block != "sh") { emit("unknown", "line " NR ": a block of kind \"" block "\": teach the test what its reader does with it"); block = "none" }
+        else if (block != "sh") { emit("unknown", "line " NR ": a block of kind \"" block "\": the test has no rule for it"); block = "none" }
         next
     }
     block == "sh" {
@@ -67,7 +67,7 @@ events() {
     END { if (block != "") emit("unknown", "a block that does not end") }' "$1"
 }
 
-# A window stays open until somebody closes it: wait for it, ask the program to end, expect 0.
+# A window stays open until it is closed: the function waits for it, asks the program to end, and expects 0.
 open_window() { # command
     DISPLAY=:$display timeout 300 sh -c "exec ${1%%#*}" </dev/null >out 2>err &
     program=$!
@@ -78,24 +78,24 @@ open_window() { # command
         sleep 0.1
     done
     sleep 1
-    kill -TERM $program 2>/dev/null # timeout hands it on, and ends with the program's own code
+    kill -TERM $program 2>/dev/null # timeout passes the signal on and ends with the program's own code
     wait $program
     found=$?
     [ $n -le 400 ] || { echo "FAILED: no window in 40 s: $1"; failed=1; }
     [ $found -eq 0 ] || { echo "FAILED ($found, in a window): $1"; cat err; failed=1; }
 }
 
-run() { # one command, with the code and the words that are expected of it
+run() { # runs one command and compares its exit code and message with the expected ones
     case $1 in
     'sh tests/run.sh'* | 'sh samples/demo.sh'*)
-        # The first would run this test again, the second builds for minutes: their --dry-run says what they would do.
+        # The first would run this test again, and the second builds for minutes: both run with --dry-run instead.
         script=${1%%#*}
         (cd "$checkout" && sh -c "$script --dry-run") </dev/null >out 2>err
         found=$? code=0 says=would
         ;;
     *)
         expected "${1%%  #*}"
-        if [ "$code" -ne 0 ] && [ -n "$falcon" ]; then case $1 in *falcon*) echo "passed over, a Falcon is plugged in: $1"; return ;; esac; fi
+        if [ "$code" -ne 0 ] && [ -n "$falcon" ]; then case $1 in *falcon*) echo "skipped, a Falcon is plugged in: $1"; return ;; esac; fi
         timeout 600 sh -c "$1" </dev/null >out 2>err
         found=$?
         ;;
@@ -107,7 +107,7 @@ run() { # one command, with the code and the words that are expected of it
         cat out err | tail -5
         failed=1
     elif [ -n "$says" ] && ! grep -q "$says" out err; then
-        # A build without GLFW has no windows, and says so.
+        # A build without GLFW has no windows, and prints that.
         if ! grep -q 'made without GLFW' err; then echo "FAILED: $1"; echo "  it does not say \"$says\":"; cat out err; failed=1; fi
     fi
     case $1 in *'palpate view'*) [ -z "$display" ] || grep -q 'made without GLFW' err || open_window "$1" ;; esac
@@ -146,7 +146,7 @@ for page in "$@"; do
     echo "$page: $ran commands"
 done
 
-# The test itself finds what is wrong: a page of mistakes, each of which it must name.
+# The test is tested with a page of mistakes, each of which it must name.
 cat >mistakes.md <<'PAGE'
 `palpate info --samplez` and `palpate info absent.ply`
 ```sh
@@ -165,5 +165,5 @@ found=$(grep -c '^FAILED' mistakes.txt)
 failed=$before
 [ "$found" -eq 5 ] || { echo "FAILED: of five mistakes in a page $found were found:"; cat mistakes.txt; failed=1; }
 
-[ $failed -eq 0 ] && echo 'every command of these pages does what they say'
+[ $failed -eq 0 ] && echo 'every command of these pages works as described'
 exit $failed

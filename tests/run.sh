@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs what is missing (asks first unless root), builds Release, runs every test.
+# Installs missing packages (asks first unless root), builds Release, runs every test.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 . engine/prepare.sh
@@ -11,10 +11,10 @@ usage: sh tests/run.sh [--asan | --tsan | --all] [--yes] [--no-install] [--dry-r
   (nothing)      every test, Release build in build/
   --asan         the same tests under AddressSanitizer and UndefinedBehaviorSanitizer, in build/asan
   --tsan         the same tests under ThreadSanitizer, in build/tsan
-  --all          the three one after the other, and GPU-assisted validation of the shaders
+  --all          all three builds in turn, and GPU-assisted validation of the shaders
   --yes          install missing packages without asking (password-less sudo)
   --no-install   install nothing; exit 3 naming what is missing
-  --dry-run      print what would be done
+  --dry-run      print the steps without running them
 
   sh tests/run.sh -- -R plate        only the tests whose name contains "plate"
   PALPATE_BUILD=/tmp/b sh tests/run.sh   builds elsewhere, for a checkout that cannot be written
@@ -46,11 +46,11 @@ for flavour in ${flavours:-plain}; do
     tsan) folder=$top/tsan sanitizers=thread ;;
     esac
     say "== $flavour: building in $folder"
-    # A build by the demo has cached that there are no tests.
+    # The demo's build has cached PALPATE_TESTS=OFF.
     prepare_build "$folder" -DPALPATE_TESTS=ON -DPALPATE_WERROR=ON -DPALPATE_SANITIZE=$sanitizers -DPALPATE_BENCHMARKS=$([ $flavour = plain ] && echo ON || echo OFF)
     if [ -n "$dry_run" ]; then say "would run the tests in $folder"; continue; fi
     say "== $flavour: testing"
-    # Instrumented shaders are 20 times slower: they run with --all, or when they are asked for.
+    # Instrumented shaders are 20 times slower: they run with --all, or if ctest options are given.
     excluded=
     [ $# -gt 0 ] || { [ -n "$all" ] && [ $flavour = plain ]; } || excluded='-LE shader-gpu-assisted'
     # shellcheck disable=SC2086

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Every shader of the build is valid SPIR-V. Argument: a file that lists them, one per line.
+# Checks that every shader of the build is valid SPIR-V. Argument: a file that lists them, one per line.
 set -u
 checked=0 bad=0
 while IFS= read -r module; do

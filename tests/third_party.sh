@@ -1,11 +1,11 @@
 #!/bin/sh
-# Every dependency has a row in third_party_notes.md. Argument: the checkout.
+# Checks that every dependency has a row in third_party_notes.md. Argument: the checkout.
 set -u
 cd "$1" || exit 1
 . engine/prepare.sh
 
 bad=0
-row() { # a table row that holds the word in backticks
+row() { # expects a table row that contains the word in backticks
     grep '^|' third_party_notes.md | grep -qF "\`$1\`" || { echo "third_party_notes.md has no row with \`$1\` ($2)"; bad=1; }
 }
 for name in $(cat CMakeLists.txt engine/CMakeLists.txt engine/*/CMakeLists.txt tests/CMakeLists.txt tests/*/CMakeLists.txt samples/CMakeLists.txt |

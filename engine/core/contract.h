@@ -4,14 +4,15 @@
 
 namespace palp {
 
-/// Something outside the program is not as it must be: a file, an option, a device. The message is one sentence for
-/// the user: what, where (file, line or byte), expected, found, what to try. The programs print it and exit with 2.
+/// An error of what lies outside the program: a file, an option, a device. The message is one sentence for the user: it
+/// names the subject, the place (file, line or byte), what was expected, what was found and what to try. The programs
+/// print it and exit with 2.
 class Error : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// A precondition was broken: a mistake in the calling code, never in the user's data.
+/// A broken precondition: a mistake in the calling code, never in the user's data.
 class ContractViolation : public std::logic_error {
 public:
     using std::logic_error::logic_error;

@@ -29,7 +29,7 @@ concept NamedEnum = std::is_enum_v<Enum> && requires(Enum value)
     namesOf(value);
 };
 
-/// The word for a value; "unknown" for one that the table lacks.
+/// Returns the word for a value; "unknown" for one that the table lacks.
 template <NamedEnum Enum>
 [[nodiscard]] constexpr const char* name(Enum value) noexcept
 {
@@ -38,7 +38,7 @@ template <NamedEnum Enum>
     return "unknown";
 }
 
-/// The value that a word names; empty if no value has that name.
+/// Returns the value that a word names; empty if no value has that name.
 template <NamedEnum Enum>
 [[nodiscard]] constexpr std::optional<Enum> valueNamed(std::string_view word) noexcept
 {
@@ -47,7 +47,7 @@ template <NamedEnum Enum>
     return {};
 }
 
-/// All the words as one phrase: "table, hold or blend".
+/// Returns all the words as one phrase: "table, hold or blend".
 template <NamedEnum Enum>
 [[nodiscard]] std::string wordsOf()
 {

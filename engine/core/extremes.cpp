@@ -8,14 +8,14 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Pairs, which every processor of the last twenty years has in a register: loops of plain minima stay scalar, for the
-// sake of numbers that are none.
+// The loop works on pairs, for which every processor of the last twenty years has a register. Compilers leave loops of
+// plain minima scalar, because of NaN.
 constexpr std::size_t kPair = 2;
 using Pair [[gnu::vector_size(kPair * sizeof(double))]] = double;
 
 struct Running {
     Pair least = Pair{} + kInfinity, most = Pair{} - kInfinity;
-    Pair broken{}; ///< 0 while all values are finite, or else not a number
+    Pair broken{}; ///< 0 while all values are finite, else NaN
 
     void take(const Pair& v)
     {
@@ -36,7 +36,7 @@ struct Running {
 
 Extremes extremesOf(std::span<const double> values) noexcept
 {
-    Running     one, other; // independent of each other: neither waits for the other's sums
+    Running     one, other; // independent, so that neither waits for the other's sums
     std::size_t n = 0;
     for (; n + 2 * kPair <= values.size(); n += 2 * kPair) {
         Pair v[2];

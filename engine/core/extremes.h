@@ -3,13 +3,14 @@
 
 namespace palp {
 
+/// The extremes of a set of values.
 struct Extremes {
     double least, most; ///< meaningless unless finite
     bool   finite;      ///< whether all values are finite numbers
 };
 
-/// The least and the largest of values; of none, infinity and minus infinity. As fast as memory: every deformation
-/// looks through its fields.
+/// Returns the least and the largest of values; infinity and minus infinity if there are none. It is as fast as memory,
+/// because every deformation checks its fields.
 [[nodiscard]] Extremes extremesOf(std::span<const double> values) noexcept;
 
 } // namespace palp

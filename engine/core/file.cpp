@@ -16,7 +16,7 @@ std::string reasonOfErrno()
     return errno ? std::strerror(errno) : "unknown reason";
 }
 
-/// A name beside `path` that no other process uses, so that two writers cannot spoil each other's draft.
+/// Returns a name beside `path` that no other process uses, so that two writers cannot overwrite each other's draft.
 std::filesystem::path draftOf(const std::filesystem::path& path)
 {
     return path.string() + "." + std::to_string(::getpid()) + ".part";
@@ -59,9 +59,9 @@ void writeFileWhole(const std::filesystem::path& path, const std::function<void(
     std::error_code status;
     if (std::filesystem::is_directory(path, status))
         throw Error(path.string() + ": cannot be written: it is a folder; name a file in it");
-    // A device or a pipe (/dev/stdout, /dev/null) must not be replaced by a file of the same name.
+    // A device file or a pipe (/dev/stdout, /dev/null) must not be replaced by a file of the same name.
     const bool replaceable = !std::filesystem::exists(path, status) || std::filesystem::is_regular_file(path, status);
-    // A link stays a link: what it points to is replaced.
+    // A link stays a link: the file that it points to is replaced.
     const std::filesystem::path place =
         std::filesystem::is_symlink(path, status) ? std::filesystem::weakly_canonical(path, status) : path;
     const std::filesystem::path target = replaceable ? draftOf(place) : place;
@@ -70,7 +70,7 @@ void writeFileWhole(const std::filesystem::path& path, const std::function<void(
     std::ofstream file(target, std::ios::binary | std::ios::trunc);
     if (!file) throw Error(path.string() + ": cannot be written: " + reasonOfErrno());
     try {
-        errno = 0; // what fails below, in `write` or in the last flush, says why
+        errno = 0; // a failure below, in `write` or in the last flush, sets it
         write(file);
         file.close();
         if (!file) throw Error(path.string() + ": cannot be written: " + reasonOfErrno());

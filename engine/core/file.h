@@ -13,18 +13,19 @@ namespace palp {
 /// \throws Error "PATH: cannot be read: REASON" (missing, a folder, no permission)
 [[nodiscard]] std::ifstream openForReading(const std::filesystem::path& path);
 
-/// [bytes]
+/// Returns the size of a file [bytes].
 /// \throws Error naming the path if it is no regular file
 [[nodiscard]] std::uint64_t sizeOfFile(const std::filesystem::path& path);
 
-/// The whole of a small file.
-/// \param expected  what such a file is, for the complaint about one that is longer than `most` bytes
+/// Returns the whole content of a small file.
+/// \param most      largest size that is accepted [bytes]
+/// \param expected  description of such a file, for the error about one that is longer
 /// \throws Error naming the path and the reason
 [[nodiscard]] std::string readWhole(const std::filesystem::path& path, std::size_t most, const std::string& expected);
 
 /// Writes a file whole or not at all: `write` fills a temporary file beside `path`, which is then renamed over it.
-/// Whatever goes wrong (an exception in `write`, a full disk), an older file at `path` stays as it was and nothing
-/// half-written remains.
+/// After a failure (an exception in `write`, a full disk) an older file at `path` is as it was and no partly written
+/// file remains.
 /// \throws Error naming the path and the reason
 void writeFileWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 

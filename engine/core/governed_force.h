@@ -4,15 +4,16 @@
 
 namespace palp {
 
-/// A force that a device may render: none, or what a ForceGovernor has let through. Nothing else can make one, so that
-/// no force leaves without the governor. It lies in core/ because device/ includes nothing else of the engine.
+/// A force that a device may render: zero, or one that a ForceGovernor has let through. Nothing else can make one, so
+/// that no force bypasses the governor. It lies in core/ because device/ includes nothing else of the engine.
 class GovernedForce {
 public:
-    GovernedForce() = default; ///< none
+    GovernedForce() = default; ///< zero
 
     [[nodiscard]] const glm::dvec3& newtons() const noexcept { return newtons_; } ///< [N] on the hand
 
-    /// The same force seen from another frame. \param frame  normalized here, so that the magnitude stays
+    /// Returns the same force in another frame.
+    /// \param frame  normalized here, so that the magnitude stays
     [[nodiscard]] GovernedForce rotated(const glm::dquat& frame) const noexcept
     {
         return GovernedForce(glm::normalize(frame) * newtons_);

@@ -8,19 +8,19 @@
 
 namespace palp {
 
-/// A position in the plane of the plate; the origin is the owner's to state; in a chart it is the contact.
+/// A position in the plane of the plate. Its owner states the origin; in a chart that is the contact.
 struct ChartPoint {
     double x = 0; ///< [m]
     double z = 0; ///< [m]
 };
 
-/// The regular grid of a plate: cellsX by cellsZ cells, so one node more along each side.
+/// The regular grid of a plate: cellsX by cellsZ cells, and one node more along each side.
 ///
 ///     node (i, j) lies at x = i spacingX, z = j spacingZ from the corner; it is stored at [i * nodesZ() + j]
 ///     (x first, C order: a field is the array of shape (cellsX + 1, cellsZ + 1) of a .npy file)
 struct PlateGrid {
-    int    cellsX   = 0; ///< [1]
-    int    cellsZ   = 0; ///< [1]
+    int    cellsX   = 0;
+    int    cellsZ   = 0;
     double spacingX = 0; ///< [m]
     double spacingZ = 0; ///< [m]
 
@@ -32,7 +32,7 @@ struct PlateGrid {
     bool                      operator==(const PlateGrid&) const = default;
 };
 
-/// One number per node of a PlateGrid. The unit is the owner's to state.
+/// One number per node of a PlateGrid. Its owner states the unit.
 class NodeField {
 public:
     NodeField() = default;

@@ -16,9 +16,9 @@ using Json = nlohmann::json;
 
 std::string shortened(std::string text)
 {
-    constexpr std::size_t kMost = 200; // [bytes] of a user's own text in a complaint
+    constexpr std::size_t kMost = 200; // [bytes] of a user's own text in an error
     for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?'; // a terminal would obey them
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?'; // a terminal would execute them
     return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
 }
 
@@ -27,7 +27,7 @@ std::string inQuotes(std::string_view text)
     return "\"" + std::string(text) + "\"";
 }
 
-/// A parser callback that throws at the second use of a key in one object; without it the last one would win silently.
+/// A parser callback that throws at the second use of a key in one object; the library alone would keep the last one.
 class RefuseTwins {
 public:
     explicit RefuseTwins(const std::string& where) : where_(where) {}
@@ -47,7 +47,7 @@ private:
     std::vector<std::set<std::string>> open_;
 };
 
-/// The library's own message without its tag: "parse error at line 3, column 5: ..."
+/// Returns the library's own message without its tag: "parse error at line 3, column 5: ..."
 std::string reasonOf(const Json::exception& failure)
 {
     const std::string text = failure.what();
@@ -84,7 +84,7 @@ std::string numbersInWords(std::size_t count)
 struct JsonObject::Node {
     Json value;
 
-    /// The value of a key that must be there.
+    /// Returns the value of a key that must be there.
     [[nodiscard]] const Json& at(std::string_view key, const std::string& where) const
     {
         const auto found = value.find(std::string(key));

@@ -9,23 +9,25 @@
 
 namespace palp {
 
-/// One JSON object given by a user, read key by key; every complaint names the place, the key, what was expected and
-/// what was found. Comments are allowed, a key given twice is refused.
+/// One JSON object given by a user, read key by key. Every error names the place, the key, what was expected and what
+/// was found. Comments are allowed; a key given twice is refused.
 class JsonObject {
 public:
-    /// \param where  what the text is, to open every complaint: a file's path
+    /// Parses a text.
+    /// \param where  name of the text that begins every error, such as a file's path
     /// \throws Error with line and column if the text is not JSON or not an object
     static JsonObject parse(std::string_view text, std::string where);
 
     enum class Kind { text, number, list, object, other };
 
+    /// Checks that the object has no other keys.
     /// \throws Error naming the first key that is not `known`, the one that was likely meant, and the known ones
     void allowOnly(std::initializer_list<std::string_view> known) const;
     void allowOnly(std::span<const std::string_view> known) const;
 
     [[nodiscard]] bool has(std::string_view key) const;
 
-    // All below throw Error if the key is missing or its value has another type.
+    // All functions below throw Error if the key is missing or its value has another type.
     [[nodiscard]] Kind                kind(std::string_view key) const;
     [[nodiscard]] std::string         json(std::string_view key) const; ///< the value as JSON on one line
     [[nodiscard]] JsonObject          object(std::string_view key) const;
@@ -34,11 +36,12 @@ public:
     [[nodiscard]] double              positiveNumber(std::string_view key) const;
     [[nodiscard]] int                 wholeNumber(std::string_view key, int least, int most) const;
     [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count) const;
-    /// A list of lists of `count` numbers each.
+    /// Returns a list of lists of `count` numbers each.
     [[nodiscard]] std::vector<std::vector<double>> rows(std::string_view key, std::size_t count) const;
     [[nodiscard]] std::vector<int> wholeNumbers(std::string_view key, std::size_t count, int least, int most) const;
 
-    /// Throws Error "WHERE: key "KEY": expected EXPECTED, found FOUND" for the value of a key that is there.
+    /// Refuses the value of a key that is there.
+    /// \throws Error "WHERE: key "KEY": expected EXPECTED, found FOUND", always
     [[noreturn]] void refuse(std::string_view key, const std::string& expected) const;
 
     [[nodiscard]] const std::string& where() const noexcept { return where_; }

@@ -5,21 +5,23 @@
 
 namespace palp {
 
-/// Which of three slots the writer fills, which one the reader holds, and which one lies in between: newest wins.
+/// The indices of three slots: the one that the writer fills, the one that the reader holds, and the one in between.
+/// The newest value wins.
 ///
-/// Apart from what the slots are, so that arrays and mapped memory of a device are handed over alike. The reader may
-/// keep its slot for as long as it likes; the writer always has one to fill. What was written before publish() is seen
-/// after held() has returned its slot. Invariant: the three numbers are a permutation of 0, 1, 2. \thread one writer
-/// and one reader; wait-free
+/// The class knows nothing of the slots' contents, so that it serves arrays and mapped memory of a processor alike. The
+/// reader may keep its slot for any time; the writer always has one to fill. Writes before publish() are visible after
+/// held() has returned that slot. Invariant: the three numbers are a permutation of 0, 1, 2.
+/// \thread one writer and one reader; wait-free
 class LatestSlots {
 public:
-    /// The writer's: which slot to fill next.
+    /// Returns the slot that the writer fills next. For the writer.
     [[nodiscard]] int draft() const noexcept { return draft_; }
 
-    /// The writer's: the draft is the newest now.
+    /// Makes the draft the newest slot. For the writer.
     void publish() noexcept { draft_ = between_.exchange(draft_ | kFresh, std::memory_order_acq_rel) & kIndex; }
 
-    /// The reader's: takes the newest published slot, or keeps the one that it has. \return whether it is another one
+    /// Takes the newest published slot, or keeps the one that the reader has. For the reader.
+    /// \return true if it is another one
     bool take() noexcept
     {
         if (!(between_.load(std::memory_order_relaxed) & kFresh)) return false;
@@ -27,7 +29,8 @@ public:
         return true;
     }
 
-    /// The reader's: which slot it holds; before the first take() that returned true, one without contents.
+    /// Returns the slot that the reader holds; before the first take() that returned true, one without contents. For
+    /// the reader.
     [[nodiscard]] int held() const noexcept { return held_; }
 
 private:
@@ -40,8 +43,9 @@ private:
     alignas(kLine) int held_  = 2;
 };
 
-/// The newest value from one thread to another; see LatestSlots. Values are written in place: what they need is
-/// allocated beforehand. \thread one writer (draft, publish), one reader (take, held)
+/// The newest value, handed from one thread to another; see LatestSlots. Values are written in place, in memory that is
+/// allocated beforehand.
+/// \thread one writer (draft, publish), one reader (take, held)
 template <class T>
 class Latest {
 public:
@@ -55,16 +59,16 @@ public:
         return isNew;
     }
 
-    /// Null until the first value has been taken.
+    /// Returns the value that the reader holds; null until the first one has been taken.
     [[nodiscard]] const T* held() const noexcept { return any_ ? &values_[std::size_t(slots_.held())] : nullptr; }
 
-    /// Every slot, to be prepared before the threads start.
+    /// Returns every slot, to be prepared before the threads start.
     [[nodiscard]] std::array<T, 3>& all() noexcept { return values_; }
 
 private:
     LatestSlots      slots_;
     std::array<T, 3> values_{};
-    bool             any_ = false; ///< the reader's
+    bool             any_ = false; ///< used by the reader only
 };
 
 } // namespace palp

@@ -7,7 +7,7 @@
 namespace palp {
 namespace {
 
-/// Longer words are nobody's slip [bytes]; the table below grows with the product of two lengths.
+/// Longest word that is compared [bytes]; the table below grows with the product of two lengths.
 constexpr std::size_t kLongest = 64;
 
 char plain(char c)
@@ -16,7 +16,7 @@ char plain(char c)
     return c == '-' ? '_' : c;
 }
 
-/// Slips between two words, row by row: least[i][j] turns the first i letters of `a` into the first j of `b`.
+/// Counts the slips between two words row by row: least[i][j] turns the first i letters of `a` into the first j of `b`.
 std::size_t slips(std::string_view a, std::string_view b)
 {
     std::vector<std::vector<std::size_t>> least(a.size() + 1, std::vector<std::size_t>(b.size() + 1));

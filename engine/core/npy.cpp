@@ -29,13 +29,13 @@ constexpr std::uint64_t kLongestHeader = 65536;
 
 std::string shortened(std::string_view text)
 {
-    constexpr std::size_t kMost = 60; // [bytes] of a file's own text in a complaint
+    constexpr std::size_t kMost = 60; // [bytes] of a file's own text in an error
     std::string           plain;
     for (const char c : text.substr(0, kMost)) plain += c >= ' ' && c <= '~' ? c : '?';
     return text.size() <= kMost ? plain : plain + "...";
 }
 
-/// Reads from a stream that has `left` bytes, and says where it ends too early.
+/// A reader of a stream that has `left` bytes; it reports where the stream ends too early.
 class Bytes {
 public:
     Bytes(std::istream& in, std::uint64_t size, const std::string& name)
@@ -68,7 +68,8 @@ struct Header {
     std::string_view shape;   ///< (3, 4)
 };
 
-/// The text of `key`'s value: up to the comma or brace that ends it, outside brackets and quotes. Nullopt if absent.
+/// Returns the text of `key`'s value, up to the comma or brace that ends it outside brackets and quotes; nullopt if the
+/// key is absent.
 std::optional<std::string_view> valueOf(std::string_view dictionary, std::string_view key)
 {
     for (const char quote : {'\'', '"'}) {
@@ -99,7 +100,7 @@ Header parseHeader(std::string_view text, const std::string& name)
     return {need("descr"), need("fortran_order"), need("shape")};
 }
 
-/// Bytes of one number: 8 or 4.
+/// Returns the bytes of one number: 8 or 4.
 std::size_t numberSize(const Header& header, const std::string& name)
 {
     if (header.type == "'<f8'" || header.type == "\"<f8\"") return sizeof(double);

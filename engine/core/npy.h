@@ -13,8 +13,8 @@ namespace palp {
 ///         value that is not finite (with its index)
 [[nodiscard]] NodeField readNpy(const std::filesystem::path& path);
 
-/// The same from a stream that holds exactly `size` bytes. Allocates no more than the bytes that are there ask for.
-/// \param name  what to call the stream in complaints
+/// Reads the same from a stream that holds exactly `size` bytes. It allocates no more than these bytes can fill.
+/// \param name  name of the stream in errors
 [[nodiscard]] NodeField parseNpy(std::istream& in, std::uint64_t size, const std::string& name);
 
 /// Writes a field as a float64 .npy array of shape (nodesX, nodesZ), whole or not at all.

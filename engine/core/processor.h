@@ -3,7 +3,7 @@
 
 namespace palp {
 
-/// What this machine's processor calls itself, or "unknown processor".
+/// Returns the name that this machine's processor gives itself, or "unknown processor".
 [[nodiscard]] std::string processorName();
 
 } // namespace palp

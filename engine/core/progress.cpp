@@ -9,7 +9,7 @@
 namespace palp {
 namespace {
 
-constexpr std::chrono::seconds kPatience{2}; // before anything is said
+constexpr std::chrono::seconds kPatience{2}; // before the line appears
 
 } // namespace
 
@@ -44,7 +44,7 @@ void Progress::mayLast()
 {
     if (!onTerminal_) return;
     ticker_ = std::jthread([this](const std::stop_token& stop) {
-        std::mutex                  alone; // nothing is shared: it is what a condition waits with
+        std::mutex                  alone; // nothing is shared; the condition needs a mutex to wait
         std::condition_variable_any tick;
         std::unique_lock            lock(alone);
         for (auto seconds = kPatience;; ++seconds) {

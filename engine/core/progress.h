@@ -6,8 +6,8 @@
 
 namespace palp {
 
-/// One line on the terminal for work that lasts: nothing in the first two seconds, nothing where standard error is
-/// not a terminal. The line is wiped when the object goes.
+/// One line on the terminal that shows the progress of long work. It appears after two seconds, and only where standard
+/// error is a terminal. The destructor removes it.
 /// \thread one
 class Progress {
 public:
@@ -16,14 +16,14 @@ public:
     Progress(const Progress&)            = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// Cheap enough to be called every few thousand items.
+    /// Reports progress. The call is cheap enough for every few thousand items.
     void at(std::size_t done, std::size_t total);
 
-    /// For work that cannot count its steps and is known to last: draws the line at once.
+    /// Draws the line at once, for work that cannot count its steps and is known to be long.
     void lasts(const std::string& howLong);
 
-    /// For work that cannot count its steps and may last: draws the line after two seconds and then the seconds that
-    /// went by, from a thread of its own, until the object goes. No other call may follow.
+    /// Draws the line after two seconds and then the elapsed seconds, from a thread of its own, until the object is
+    /// destroyed; for work that cannot count its steps and may be long. No other call may follow.
     void mayLast();
 
 private:

@@ -6,7 +6,7 @@
 
 namespace palp {
 
-/// What a number given by a user measures; decides which unit suffixes are known.
+/// The dimension of a number given by a user; it decides which unit suffixes are known.
 enum class Dimension { length, force, pressure, rigidity, foundation, angle, none };
 
 /// Reads "4mm", "1.5 N", "0.3MPa", "2e-3": a finite number and a unit.
@@ -16,7 +16,7 @@ enum class Dimension { length, force, pressure, rigidity, foundation, angle, non
 [[nodiscard]] double parseQuantity(std::string_view text, Dimension dimension, std::string_view what,
                                    double siPerPlainNumber = 1);
 
-/// Metres in one unit of a length: m, mm, cm, um, km, in, ft.
+/// Returns the metres in one unit of length: m, mm, cm, um, km, in, ft.
 /// \throws Error naming the units that are known
 [[nodiscard]] double metresPer(std::string_view lengthUnit);
 
@@ -24,11 +24,11 @@ enum class Dimension { length, force, pressure, rigidity, foundation, angle, non
 /// \param metresPerPlainNumber  scale of components without a unit [m]
 [[nodiscard]] glm::dvec3 parsePoint(std::string_view text, std::string_view what, double metresPerPlainNumber = 1);
 
-/// A number with an SI prefix for people, three significant digits: formatQuantity(0.0042, "m") is "4.20 mm". Beyond
-/// the prefixes from p to T it is "1.0e+300 Pa", and zero is "0 m".
+/// Writes a number with an SI prefix and three significant digits: formatQuantity(0.0042, "m") is "4.20 mm". Beyond the
+/// prefixes from p to T it is "1.0e+300 Pa", and zero is "0 m".
 [[nodiscard]] std::string formatQuantity(double value, std::string_view siUnit);
 
-/// Two digits of a small number without a unit, such as an error: "7.4e-05".
+/// Writes two digits of a small number without a unit, such as an error: "7.4e-05".
 [[nodiscard]] std::string formatNumber(double value);
 
 } // namespace palp

@@ -18,7 +18,7 @@ std::string askForRealTime()
     sched_param   wanted{};
     wanted.sched_priority = kPriority;
     const int scheduling  = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
-    // Of the whole program, so once is enough; it may take a quarter of a second.
+    // It locks the memory of the whole program, so one call is enough; the call may take a quarter of a second.
     static const int locking = mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
     const bool       locked  = locking == 0;
     if (scheduling == 0 && locked) return {};
@@ -42,7 +42,7 @@ Metronome::Clock::time_point Metronome::wait() noexcept
         next_ += late * period_;
         leftOut_ += std::uint64_t(late);
     }
-#ifdef __linux__ // std::this_thread::sleep_until() is this, but not noexcept
+#ifdef __linux__ // std::this_thread::sleep_until() does the same but is not noexcept
     const auto     since = next_.time_since_epoch();
     const auto     whole = std::chrono::duration_cast<std::chrono::seconds>(since);
     const timespec until{time_t(whole.count()), long(std::chrono::nanoseconds(since - whole).count())};

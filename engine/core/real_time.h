@@ -5,13 +5,13 @@
 
 namespace palp {
 
-/// Asks for the calling thread to run before all others (SCHED_FIFO) and for all memory to stay where it is (mlockall).
+/// Asks the system to run the calling thread before all others (SCHED_FIFO) and to keep all memory resident (mlockall).
 /// \return empty, or one sentence that says what was refused and how to allow it
 [[nodiscard]] std::string askForRealTime();
 
-/// Instants at a fixed distance, to be waited for one after the other.
+/// A clock of instants at a fixed distance, for which a thread waits one after the other.
 ///
-/// A late thread does not try to catch up: instants that have passed by more than a period are left out, and counted.
+/// A late thread does not catch up: instants that have passed by more than a period are omitted and counted.
 /// \thread one; waits neither allocate nor lock
 class Metronome {
 public:
@@ -19,10 +19,11 @@ public:
 
     explicit Metronome(std::chrono::nanoseconds period) noexcept : period_(period), next_(Clock::now()) {}
 
-    /// Sleeps until the next instant. \return the time it is then
+    /// Sleeps until the next instant.
+    /// \return the time after the sleep
     Clock::time_point wait() noexcept;
 
-    [[nodiscard]] std::uint64_t leftOut() const noexcept { return leftOut_; } ///< [1]
+    [[nodiscard]] std::uint64_t leftOut() const noexcept { return leftOut_; } ///< omitted instants
 
 private:
     std::chrono::nanoseconds period_;

@@ -5,7 +5,7 @@
 
 namespace palp {
 
-/// How the rigidity of a node follows from the points around it; engine/chart/resample.h has the definitions.
+/// The rule that gives a node its rigidity from the points around it; engine/chart/resample.h has the definitions.
 enum class Resampling {
     logMean, ///< exp of the mean of ln D, Gaussian weights: hardly any jitter while the grid slides over the points
     nearest  ///< D of the nearest projected point: the paper's; a step wherever the nearest point changes
@@ -19,7 +19,7 @@ constexpr auto namesOf(Resampling)
 inline constexpr double kSamplingReach  = 4.0; ///< of the Gaussian; the weight there is 3e-4 [standard deviations]
 inline constexpr double kSamplingNearby = 2.5; ///< beyond it a node counts as without a point [standard deviations]
 
-/// Standard deviation of the Gaussian [m], from the mean distance of the points and the grid's larger spacing [m].
+/// Returns the Gaussian's standard deviation [m], from the points' mean distance and the grid's larger spacing [m].
 [[nodiscard]] inline double samplingWidth(double pointSpacing, double nodeSpacing) noexcept
 {
     return std::max(pointSpacing, nodeSpacing / 2);

@@ -15,10 +15,10 @@
 namespace palp {
 namespace {
 
-/// Share of a shape's size within which a point counts as on its rim [1]: above the rounding of i * spacing.
+/// Share of a shape's size within which a point counts as on its rim [1]; it exceeds the rounding of i * spacing.
 constexpr double kRim = 1e-9;
 
-/// How far along the line from `start` to `end`, within [0, 1].
+/// Returns the position along the line from `start` to `end`, within [0, 1].
 double along(const SpatialLaw& law, const glm::dvec3& p)
 {
     const glm::dvec3 line = law.end - law.start;
@@ -71,7 +71,7 @@ Kind kindOf(const JsonObject& object, SpatialLaw::Space space)
                 (space == SpatialLaw::Space::plane ? ", grid" : "")); // a problem file's; its reader knows it
 }
 
-/// The region a law covers, and how its points are written.
+/// The region that a law covers, and the form in which its points are written.
 struct Region {
     glm::dvec3        low, high; ///< [m]
     SpatialLaw::Space space;
@@ -134,7 +134,8 @@ void readBox(SpatialLaw& law, const JsonObject& object, const Region& region)
     if (!glm::all(glm::lessThanEqual(law.low, law.high))) object.refuse("high", "no coordinate below that of \"low\"");
 }
 
-/// The short form as JSON text: NAME:key=value,... with numbers, vectors a;b;c, lists of vectors a;b;c/d;e;f, or words.
+/// A translator of the short form into JSON text: NAME:key=value,... with numbers, vectors a;b;c, lists of vectors
+/// a;b;c/d;e;f, or words.
 class ShortForm {
 public:
     static std::string asJson(std::string_view text)
@@ -180,7 +181,7 @@ private:
         return std::string(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), parsed).ptr);
     }
 
-    /// The parts between separators as a JSON list.
+    /// Returns the parts between separators as a JSON list.
     template <class Convert>
     static std::string list(std::string_view token, char separator, Convert&& convert)
     {

@@ -22,8 +22,8 @@ class JsonObject;
 /// | box         | to within [low, high], else from                                  |
 /// | checker     | to or from in cubes of edge `width`, counted from `start`         |
 ///
-/// t runs from 0 at `start` to 1 at `end` along their line and is clamped beyond. Distances that matter are measured
-/// in all three coordinates.
+/// t runs from 0 at `start` to 1 at `end` along their line and is clamped beyond. Distances are measured in all three
+/// coordinates.
 struct SpatialLaw {
     enum class Space { plane, volume }; ///< points given as [x, z] (a plate) or [x, y, z] (a cloud)
     enum class Kind { constant, linear, hyperbolic, exponential, gaussian, disc, box, checker };

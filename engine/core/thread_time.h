@@ -3,8 +3,8 @@
 
 namespace palp {
 
-/// Processor time that this thread has used [s]: what a computation costs, whatever else the machine has to do. Takes
-/// some 0.3 us. Where the system has no such clock, processor time of the whole program.
+/// Returns the processor time that this thread has used [s]: the cost of a computation, independent of other work on
+/// the machine. The call takes some 0.3 us. Where the system has no such clock, it is the time of the whole program.
 [[nodiscard]] inline double threadSeconds() noexcept
 {
 #ifdef CLOCK_THREAD_CPUTIME_ID

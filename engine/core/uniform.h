@@ -4,8 +4,8 @@
 
 namespace palp {
 
-/// Random numbers that are the same on every machine: the standard fixes the bits of mt19937_64 but not of its
-/// distributions.
+/// A source of random numbers that are the same on every machine: the standard fixes the bits of mt19937_64 but not of
+/// its distributions.
 class Uniform {
 public:
     explicit Uniform(std::uint64_t seed) : bits_(seed) {}

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <new>
 
-// In a file of its own: where a compiler sees malloc() behind new and free() behind delete it calls them mismatched.
+// This code has its own file: a compiler that sees malloc() behind new and free() behind delete warns of a mismatch.
 
 namespace {
 thread_local std::size_t allocations = 0;
@@ -17,7 +17,8 @@ std::size_t palp::allocationsOfThisThread() noexcept
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-// Everything ends in these, operator new too, and stands before the C library's. What they give, its free() takes.
+// All allocations, operator new too, end in these functions, which come before the C library's. Its free() accepts
+// their memory.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -60,7 +61,7 @@ int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexc
 }
 }
 
-#else // sanitizers have an allocator of their own: only what goes through operator new is counted
+#else // sanitizers have an allocator of their own: only calls of operator new are counted
 
 void* operator new(std::size_t size)
 {

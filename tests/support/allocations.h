@@ -3,8 +3,8 @@
 
 namespace palp {
 
-/// How often this thread has taken memory since it began, by new, malloc() or its kin [1]; the program that links
-/// allocations.cpp counts. Under sanitizers by new only.
+/// Returns how often this thread has allocated memory since it began, by new, malloc() or related functions; under
+/// sanitizers by new only. The program has to link allocations.cpp.
 [[nodiscard]] std::size_t allocationsOfThisThread() noexcept;
 
 } // namespace palp

@@ -7,12 +7,12 @@
 
 #include "engine/tools/render/text.h"
 
-// What the comparison of pictures must find, and what it must let pass.
+// The comparison of pictures must find some differences and let others pass.
 
 namespace palp {
 namespace {
 
-/// A picture of 320 x 240, as the smallest of the stored ones, with a ramp, a bar of one colour and a text.
+/// Draws a picture of 320 x 240, as the smallest of the stored ones, with a ramp, a bar of one colour and a text.
 Image picture(const std::string& text = "1.25 N at 60 Hz", int shift = 0)
 {
     Image image(320, 240);

@@ -1,4 +1,4 @@
-// LeakSanitizer names leaks by the library they come from, after the program: a driver must still be loaded then, or
+// LeakSanitizer names leaks by their library after the program has ended. A driver must still be loaded then, or
 // lsan.supp cannot recognise its leaks. The loader calls this function in place of the C library's.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)

@@ -4,7 +4,7 @@
 #include <pthread.h>
 #include <semaphore.h>
 
-// Stands before the C library's functions of the same names, counts, and passes on.
+// These functions come before the C library's of the same names; they count and call those.
 
 #if defined(__SANITIZE_THREAD__)
 

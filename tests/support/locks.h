@@ -3,11 +3,12 @@
 
 namespace palp {
 
-/// Locks taken and waits begun on the calling thread so far, of any mutex, read-write lock, condition or semaphore.
-/// \return 0 always under ThreadSanitizer, which has to see these calls itself
+/// Returns how many locks were taken and waits begun on the calling thread so far, of any mutex, read-write lock,
+/// condition or semaphore.
+/// \return always 0 under ThreadSanitizer, which has to see these calls itself
 [[nodiscard]] std::size_t locksOfThisThread() noexcept;
 
-/// Whether locks are counted in this build.
+/// Returns true if locks are counted in this build.
 [[nodiscard]] bool locksAreCounted() noexcept;
 
 } // namespace palp

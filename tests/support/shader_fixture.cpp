@@ -34,7 +34,7 @@ compute::Validation wantedValidation()
     throw Error("PALPATE_VALIDATION is '" + word + "'; expected off, core, synchronization or gpu");
 }
 
-/// The device of the process. GoogleTest closes it before the drivers' own statics go.
+/// The processor of the process. GoogleTest closes it before the drivers' own statics are destroyed.
 class DeviceEnvironment : public ::testing::Environment {
 public:
     void TearDown() override
@@ -60,7 +60,7 @@ private:
 
 auto* const theDevice = static_cast<DeviceEnvironment*>(::testing::AddGlobalTestEnvironment(new DeviceEnvironment));
 
-/// One array on the device, between its guard bands.
+/// One array on the processor, between its guard bands.
 class GuardedArray {
 public:
     GuardedArray(compute::Context& context, const ShaderArray& array, std::size_t number)
@@ -78,7 +78,7 @@ public:
     void             recordDownload(compute::CommandList& list) const { list.copy(on_, down_); }
     compute::Binding binding() const { return {on_, kFrontBytes}; }
 
-    /// Brings the array back and says what is wrong with it.
+    /// Brings the array back and returns its faults.
     void collect(std::vector<std::string>& faults) const
     {
         down_.makeVisibleToHost();
@@ -109,7 +109,7 @@ private:
     compute::Buffer up_, on_, down_;
 };
 
-/// Place of a number on the line of all floating-point numbers, one step per representable number.
+/// Returns the place of a number on the line of all floating-point numbers, one step per representable number.
 template <class T>
 auto placeOf(T value)
 {

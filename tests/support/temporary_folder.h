@@ -11,7 +11,7 @@
 
 namespace palp {
 
-/// A fresh folder that goes with the object.
+/// A new folder that is removed with the object.
 class TemporaryFolder {
 public:
     TemporaryFolder()
@@ -48,7 +48,7 @@ inline std::string contentsOf(const std::filesystem::path& path)
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// The sentence of the Error that `act` throws; empty if it throws none.
+/// Returns the sentence of the Error that `act` throws; empty if it throws none.
 template <class Act>
 std::string refusalOf(const Act& act)
 {
@@ -60,7 +60,7 @@ std::string refusalOf(const Act& act)
     return "";
 }
 
-/// Whether a sentence holds all of the words; for EXPECT_TRUE(...) << sentence.
+/// Returns true if a sentence contains all of the words; for EXPECT_TRUE(...) << sentence.
 inline bool holds(std::string_view sentence, std::initializer_list<std::string_view> words)
 {
     for (const std::string_view word : words)

@@ -11,15 +11,15 @@ namespace palp::bench {
 /// doubles and moment form.
 [[nodiscard]] double residualOf(const Plate& plate, const NodeField& force, const NodeField& w);
 
-/// What algebraic errors on a grid are measured against.
+/// The answer against which algebraic errors on a grid are measured.
 struct Truth {
     NodeField w;          ///< [m]
     double    correction; ///< the last step of refinement, over w [1]: errors near it are not to be trusted
 };
 
 /// Finds the answer of the grid's equations by a direct solver and iterative refinement until that stagnates. The
-/// residuals are those of the energy, in moment form, and not of the assembled matrix, so that it does not matter whose
-/// factors are used. Factorises anew.
+/// residuals are those of the energy, in moment form, and not of the assembled matrix, so that the answer does not
+/// depend on the solver whose factors are used. Factorises anew.
 [[nodiscard]] Truth refinedTruth(Direct& direct, const Plate& plate, const NodeField& force);
 
 /// Returns the grid's own error, by Richardson: the method is of second order for smooth rigidities and loads, so

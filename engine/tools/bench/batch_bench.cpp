@@ -11,12 +11,13 @@
 namespace palp::bench {
 namespace {
 
-/// An application of the operator reads deflection, rigidity, force and divisor, and writes a deflection.
+/// Bytes per node of one application of the operator: it reads deflection, rigidity, force and divisor, and writes a
+/// deflection.
 constexpr double kBytesPerNode = 5 * sizeof(float); // [byte]
 
 constexpr double kTolerance = 1e-4; // [1]
 
-/// Fingertips a millimetre apart, as the tables for a moving hand take them.
+/// Returns fingertips a millimetre apart, as the tables for a moving hand take them.
 std::vector<NodeField> fingertips(const PlateGrid& grid, int count)
 {
     const int              side = int(std::lround(std::sqrt(count)));
@@ -27,7 +28,7 @@ std::vector<NodeField> fingertips(const PlateGrid& grid, int count)
     return loads;
 }
 
-/// How fast the processor copies its own memory, reading and writing counted [GB/s]; empty without a clock.
+/// Measures how fast the processor copies its own memory, reading and writing counted [GB/s]; empty without a clock.
 std::optional<double> copyBandwidth(compute::Context& context)
 {
     constexpr std::size_t kBytes  = 64 << 20; // beyond most caches

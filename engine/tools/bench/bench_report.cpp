@@ -75,7 +75,7 @@ Json jsonOf(const BenchRow& r)
             {"note", textOrNull(r.note)}};
 }
 
-/// "-" where there is no number.
+/// Formats a number; "-" where there is none.
 std::string cell(const std::optional<double>& value, const char* format)
 {
     if (!value) return "-";

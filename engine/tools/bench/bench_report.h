@@ -9,19 +9,19 @@
 
 namespace palp::bench {
 
-/// What was measured, and on what.
+/// The measurements, and the machine and libraries on which they were made.
 struct BenchReport {
     std::string              device, processor, cholmod, eigen, nanoflann;
     int                      runs  = 0;
     bool                     quick = false;
-    std::vector<std::string> environment; ///< NAME=value, what keeps libraries to one thread
+    std::vector<std::string> environment; ///< NAME=value, variables that keep libraries to one thread
     std::vector<BenchRow>    rows;
 };
 
-/// Prints lines of text. A ratio stands only where its error does.
+/// Prints lines of text. A ratio is printed only beside its error.
 void printText(std::ostream& out, const BenchReport& report);
 
-/// Writes one JSON object with the list `rows`; engine/performance.md says what each field is.
+/// Writes one JSON object with the list `rows`; engine/performance.md describes the fields.
 [[nodiscard]] std::string jsonOf(const BenchReport& report);
 
 /// Plots times against nodes, a line per solver, from the rows of one case.

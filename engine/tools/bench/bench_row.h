@@ -24,17 +24,17 @@ struct BenchRow {
     std::optional<double>    peerBytes, palpateBytes; ///< [byte]
     std::optional<double>    error, peerError; ///< see accuracy.h; of point queries the share of wrong answers [1]
     std::optional<double>    residual, peerResidual; ///< [1]
-    std::optional<double>    tolerance;              ///< that Palpate was given [1]
+    std::optional<double>    tolerance;              ///< given to Palpate [1]
     std::optional<int>       iterations;
     std::optional<double>    workUnits;
     std::optional<double>    peerSweeps;   ///< of Jacobi
-    std::optional<bool>      extrapolated; ///< Jacobi: the time is sweeps that were not all made
+    std::optional<bool>      extrapolated; ///< of Jacobi: the time includes sweeps that were not made
     std::optional<double>    points, neighbours;
-    std::optional<int>       loads, dispatchesPerCycle;     ///< of a batch: solved together; that wait for each other
-    std::optional<double>    movedGigabytes, copyGigabytes; ///< what a batch moves at least, and a plain copy [GB/s]
+    std::optional<int>       loads, dispatchesPerCycle;     ///< of a batch: loads solved together, serial dispatches
+    std::optional<double>    movedGigabytes, copyGigabytes; ///< least rate of a batch, rate of a plain copy [GB/s]
     std::string              note;
 
-    /// The peer's time or bytes over Palpate's; empty without the error of what was measured here.
+    /// Returns the peer's time or bytes over Palpate's; empty if Palpate's error is not known or exceeds the target.
     [[nodiscard]] std::optional<double> ratio() const
     {
         if (!error || (target && *error > *target)) return {};

@@ -18,7 +18,7 @@ public:
     {
         cholmod_start(&common_);
         common_.print              = 0;
-        common_.nmethods           = 3; // tries all and keeps the one with the fewest operations
+        common_.nmethods           = 3; // CHOLMOD tries all and keeps the one with the fewest operations
         common_.method[0].ordering = CHOLMOD_AMD;
         common_.method[1].ordering = CHOLMOD_METIS;
         common_.method[2].ordering = CHOLMOD_NESDIS;
@@ -65,7 +65,7 @@ public:
     void solve(std::span<const double> right, std::span<double> answer) override
     {
         std::copy(right.begin(), right.end(), static_cast<double*>(right_->x));
-        // The form that keeps its work space from call to call.
+        // This form of the solve keeps its work space from call to call.
         if (!cholmod_solve2(CHOLMOD_A, factor_, right_, nullptr, &answer_, nullptr, &y_, &e_, &common_))
             throw Error("CHOLMOD: the solve failed");
         const auto* x = static_cast<const double*>(answer_->x);
@@ -75,7 +75,7 @@ public:
     [[nodiscard]] std::optional<std::size_t> peakBytes() const override { return common_.memory_usage; }
 
 private:
-    /// CHOLMOD reads the values where they are.
+    /// Points CHOLMOD at the values, which it reads in place.
     void use(const PlateMatrix& m)
     {
         PALP_EXPECT(m.row().size() == row_.size(), "a matrix of another pattern");

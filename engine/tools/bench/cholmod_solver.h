@@ -6,11 +6,12 @@
 
 namespace palp::bench {
 
-/// CHOLMOD in doubles: the best of its minimum degree and nested dissection orders, and whichever of its simplicial and
-/// supernodal factorisations it prefers.
+/// Makes a solver by CHOLMOD in doubles. It takes the best of CHOLMOD's minimum degree and nested dissection orders,
+/// and the simplicial or supernodal factorisation, as CHOLMOD chooses.
 [[nodiscard]] std::unique_ptr<DirectSolver> cholmodSolver(const PlateMatrix& matrix);
 
-/// "CHOLMOD 3.0.14, BLAS /usr/lib/.../libblas.so.3": its supernodal factorisation is as fast as the BLAS is.
+/// Returns a text such as "CHOLMOD 3.0.14, BLAS /usr/lib/.../libblas.so.3": the supernodal factorisation is as fast as
+/// the BLAS.
 [[nodiscard]] std::string cholmodVersion();
 
 } // namespace palp::bench

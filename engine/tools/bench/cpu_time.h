@@ -9,12 +9,13 @@ class Context;
 
 namespace palp::bench {
 
-/// Processor time of the calling thread [ms], CLOCK_THREAD_CPUTIME_ID: other work on the machine does not count.
+/// Returns the processor time of the calling thread [ms], CLOCK_THREAD_CPUTIME_ID: other work on the machine does not
+/// count.
 [[nodiscard]] double threadMilliseconds();
 
-/// Processor time of all threads of this process together [ms], CLOCK_PROCESS_CPUTIME_ID. Where one thread works, it
-/// grows as fast as threadMilliseconds(); where a library has threads of its own, such as lavapipe's queue, it shows
-/// them.
+/// Returns the processor time of all threads of this process together [ms], CLOCK_PROCESS_CPUTIME_ID. Where one thread
+/// works, it grows as fast as threadMilliseconds(); where a library has threads of its own, such as lavapipe's queue,
+/// it includes them.
 [[nodiscard]] double processMilliseconds();
 
 [[nodiscard]] double wallMilliseconds();
@@ -26,14 +27,14 @@ struct Quartiles {
 [[nodiscard]] Quartiles quartiles(std::vector<double> values);
 
 enum class Clock {
-    processor, ///< of all threads, for whatever computes on this machine's processors; one works at a time
-    wall       ///< for hardware, which computes elsewhere
+    processor, ///< of all threads, for work on this machine's processors; one thread works at a time
+    wall       ///< for work on other hardware
 };
 
 [[nodiscard]] double now(Clock clock); ///< [ms]
 [[nodiscard]] Clock  clockOf(const compute::Context& context);
 
-/// A solver that does the same work as its rivals; its parts are timed apart.
+/// A solver that does the same work as its rivals; its parts are timed separately.
 struct Contestant {
     std::string                        name;
     std::vector<std::function<void()>> parts;
@@ -47,8 +48,8 @@ struct Timing {
 };
 
 /// Times the contestants in turns, first, second, ..., first, second, ..., after one turn each that does not count.
-/// Whatever else happens on the machine then disturbs them alike.
-/// \param runs  turns that count, each
+/// Other work on the machine then disturbs all of them equally.
+/// \param runs  counted turns of each contestant
 [[nodiscard]] std::vector<Timing> takeTurns(const std::vector<Contestant>& contestants, int runs);
 
 } // namespace palp::bench

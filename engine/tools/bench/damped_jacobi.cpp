@@ -30,8 +30,8 @@ inline __attribute__((always_inline)) void sweepBody(const Sweep& s)
     const double *w0 = w + o[0], *w1 = w + o[1], *w2 = w + o[2], *w3 = w + o[3], *w4 = w + o[4], *w5 = w + o[5],
                  *w6 = w + o[6], *w7 = w + o[7], *w8 = w + o[8], *w9 = w + o[9], *w10 = w + o[10], *w11 = w + o[11],
                  *w12 = w + o[12];
-    // The arrays do not overlap, which compilers would have to test for all pairs of them: without this word the loop
-    // is not vectorised and takes three times as long.
+    // The arrays do not overlap. Without this word compilers would have to test that for all pairs of arrays; then the
+    // loop is not vectorised and takes three times as long.
 #if defined(__clang__)
 #pragma clang loop vectorize(assume_safety)
 #else
@@ -72,11 +72,11 @@ DampedJacobi::DampedJacobi(const Plate& plate, const NodeField& force, double om
     const PlateMatrix   matrix(plate);
     const std::size_t   nodes = plate.grid.nodes();
     std::vector<double> diagonal(nodes, 1);
-    for (int c = 0; c < matrix.unknowns(); ++c) // rows rise: the diagonal comes first in its column
+    for (int c = 0; c < matrix.unknowns(); ++c) // rows ascend: the diagonal comes first in its column
         diagonal[std::size_t(matrix.nodeOf()[std::size_t(c)])] =
             matrix.value()[std::size_t(matrix.columnStart()[std::size_t(c)])];
 
-    // One array of factors for each offset between a node and what it depends on.
+    // There is one array of factors for each offset between a node and a node on which it depends.
     std::map<std::ptrdiff_t, std::size_t> numberOf{{0, 0}};
     for (auto& factors : factor_) factors.assign(nodes, 0);
     const auto set = [&](int row, int column, double value) {

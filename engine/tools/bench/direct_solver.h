@@ -8,8 +8,8 @@
 
 namespace palp::bench {
 
-/// A sparse direct solver as one would use it in a loop. Its constructor makes the symbolic analysis, once for a grid;
-/// then it factorises numbers and solves for loads.
+/// A sparse direct solver, used as in a loop. Its constructor makes the symbolic analysis, once for a grid; then it
+/// factorises numbers and solves for loads.
 /// \thread one
 class DirectSolver {
 public:
@@ -24,11 +24,11 @@ public:
     /// Solves with the last factors: right side [N] to deflection [m], by unknown.
     virtual void solve(std::span<const double> right, std::span<double> answer) = 0;
 
-    /// The most memory that it has held at once [byte]; empty if it does not say.
+    /// Returns the most memory that it has held at once [byte]; empty if the library does not report it.
     [[nodiscard]] virtual std::optional<std::size_t> peakBytes() const = 0;
 };
 
-/// Eigen::SimplicialLDLT, minimum degree order.
+/// Makes a solver by Eigen::SimplicialLDLT, minimum degree order.
 [[nodiscard]] std::unique_ptr<DirectSolver> eigenSolver(const PlateMatrix& matrix);
 
 [[nodiscard]] std::string eigenVersion(); ///< "Eigen 3.4.0"
@@ -38,7 +38,7 @@ struct Direct {
     PlateMatrix                   matrix;
     std::unique_ptr<DirectSolver> solver;
 
-    /// Values, factors.
+    /// Assembles the values of the matrix and factorises it.
     void factorise(const Plate& plate)
     {
         matrix.assemble(plate);

@@ -42,7 +42,7 @@ void becomeOneThread(const std::filesystem::path& program)
         if (*c)
             words.back() += *c;
         else
-            words.emplace_back(); // each word ends with a zero
+            words.emplace_back(); // each word ends with a zero byte
     }
     words.pop_back();
     std::vector<char*> arguments;

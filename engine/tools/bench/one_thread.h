@@ -5,15 +5,17 @@
 
 namespace palp::bench {
 
-/// Lists, as NAME=value, what keeps libraries to one thread: OpenMP (in CHOLMOD), OpenBLAS, lavapipe. They read it when
-/// they are loaded, before main(), so it has to be in the environment in which a program starts.
+/// Lists, as NAME=value, the variables that keep libraries to one thread: OpenMP (in CHOLMOD), OpenBLAS, lavapipe. They
+/// read them when they are loaded, before main(), so the variables have to be in the environment in which a program
+/// starts.
 [[nodiscard]] const std::vector<std::string>& oneThreadEnvironment();
 
-/// The program that is running; empty where /proc does not say.
+/// Returns the running program; empty where /proc does not name it.
 [[nodiscard]] std::filesystem::path runningProgram();
 
-/// Becomes `program`, with the arguments of this one, in that environment. Returns if it is running in it already, or
-/// if it cannot be run: then the variables are set, which Vulkan's drivers still see.
+/// Replaces this program by `program`, with the arguments of this one, in that environment. It returns if this program
+/// already runs in that environment, or if `program` cannot be run: then the variables are set, and Vulkan's drivers
+/// still read them.
 void becomeOneThread(const std::filesystem::path& program);
 
 } // namespace palp::bench

@@ -22,21 +22,21 @@ public:
     /// Replaces `found` by the points within radius [m], with their squared distances [m^2], in any order.
     virtual void gather(const glm::dvec3& centre, double radius,
                         std::vector<std::pair<std::uint32_t, float>>& found) const = 0;
-    /// The nearest points, as many as `found` holds.
+    /// Fills `found` with the nearest points, as many as it holds.
     virtual void nearest(const glm::dvec3& centre, std::span<std::uint32_t> found) const = 0;
 };
 
-/// Libraries that people would use instead and that Palpate itself does not need. A library that was not found is an
-/// empty function, and `...Note` says what to install.
+/// Libraries that people would use instead of Palpate and that Palpate itself does not need. A library that was not
+/// found is an empty function, and `...Note` says what to install.
 ///
-/// There are two definitions of outsidePeers(): the one that `palpate` is linked with knows none; the one of
-/// `palpate_peers`, which is never installed, has what CMake found. See third_party_notes.md on licences.
+/// There are two definitions of outsidePeers(). The one that `palpate` is linked with has none of them. The one of
+/// `palpate_peers`, which is never installed, has those that CMake found. See third_party_notes.md on licences.
 struct OutsidePeers {
     std::function<std::unique_ptr<DirectSolver>(const PlateMatrix&)> cholmod;
-    std::string                                                      cholmodNote; ///< or its version and its BLAS
+    std::string                                                      cholmodNote; ///< if found, version and BLAS
 
     std::function<std::unique_ptr<RadiusSearch>(std::span<const glm::dvec3>, std::size_t leaf)> radiusSearch;
-    /// Does what palp::nearestPoint() does, from the bare points, by a tree in the plane.
+    /// Does the work of palp::nearestPoint() from the bare points, by a tree in the plane.
     std::function<std::vector<std::uint32_t>(const PlateGrid&, const ChartPoint& origin, std::span<const ChartPoint>,
                                              std::size_t leaf)>
                 nearestMap;

@@ -1,4 +1,4 @@
-// The peers of palpate_peers. PALPATE_HAS_CHOLMOD and PALPATE_HAS_NANOFLANN are CMake's findings.
+// The peers of palpate_peers. CMake defines PALPATE_HAS_CHOLMOD and PALPATE_HAS_NANOFLANN where it finds the libraries.
 #include "engine/tools/bench/outside_peers.h"
 
 #if PALPATE_HAS_CHOLMOD

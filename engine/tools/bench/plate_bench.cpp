@@ -18,14 +18,14 @@ namespace {
 
 constexpr double kTight = 1e-6; // the second accuracy, of the largest deflection [1]
 
-/// Grids beyond this need CHOLMOD for the truth: Eigen would take minutes and gigabytes.
+/// Largest grid for which Eigen computes the truth. Larger ones need CHOLMOD: Eigen would take minutes and gigabytes.
 constexpr int kMostNodesWithoutCholmod = 513; // a side
 
 /// Palpate at the loosest tolerance that gives an accuracy.
 ///
 /// A tolerance bounds an estimate in the energy norm, which for smooth rigidities is 10 to 30 times the largest error,
-/// so it says little about where the error ends up. Comparing times at equal errors needs the tolerance that just
-/// suffices: it is found by trial, half a decade at a time, and stands in the row.
+/// so it says little about the error itself. Comparing times at equal errors needs the tolerance that just suffices: it
+/// is found by trial, half a decade at a time, and is in the row.
 struct Tuned {
     std::unique_ptr<MultigridPlateSolver> solver;
     double                                tolerance = 0, error = 0, target = 0;
@@ -89,7 +89,7 @@ private:
 
     [[nodiscard]] bool has(const char* kind) const { return std::ranges::find(o_.cases, kind) != o_.cases.end(); }
 
-    /// A new load is hardly harder on one smooth map than on another.
+    /// Selects the maps for new loads: the work hardly differs between smooth maps.
     [[nodiscard]] bool loadsOn(const Map& map) const
     {
         return has("new_load") && map.smooth && (!o_.quick || map.name == "linear");
@@ -114,7 +114,7 @@ private:
 
     // --- truth
 
-    /// The best direct solver for a grid, analysed once; empty if there is none that would be done soon.
+    /// Returns the best direct solver for a grid, analysed once; empty if none would finish soon.
     Direct* directFor(int nodes)
     {
         if (!outsidePeers().cholmod && nodes > kMostNodesWithoutCholmod) return nullptr;
@@ -183,7 +183,7 @@ private:
         }
         while (found.error > target && tolerance * kStep >= MultigridPlateSolver::kLeastTolerance) {
             tolerance *= kStep;
-            found.solver.reset(); // its memory goes before the next one's comes
+            found.solver.reset(); // frees its memory before the next one is made
             found = tryTolerance(plate, goal, tolerance, target);
         }
         return found;
@@ -220,10 +220,10 @@ private:
         for (const Quartiles& part : ours.parts) row.palpatePartsMs.push_back(part.median);
     }
 
-    /// A peer and its numbers for one grid.
+    /// A peer and its measurements for one grid.
     struct Rival {
         std::string             name, note;
-        std::unique_ptr<Direct> direct; ///< empty: not there
+        std::unique_ptr<Direct> direct; ///< empty if the library is missing
         std::vector<double>     right, answer;
         double                  newMapError = 0, newLoadError = 0;
     };
@@ -242,12 +242,12 @@ private:
             add("CHOLMOD", outsidePeers().cholmod);
         else
             rivals.push_back({"CHOLMOD", outsidePeers().cholmodNote, {}, {}, {}, 0, 0});
-        // What a direct solver does depends on the pattern alone: one map stands for all.
+        // A direct solver's work depends on the pattern alone: one map represents all.
         if (map.name == "linear" && nodes <= o_.mostEigen) add("Eigen SimplicialLDLT", eigenSolver);
         return rivals;
     }
 
-    /// New map and new load against direct solvers, all in turns.
+    /// Compares a new map and a new load with direct solvers, all in turns.
     void compareDirect(const Map& map, int nodes)
     {
         const Plate plate   = plateOf(map, nodes);
@@ -351,8 +351,8 @@ private:
         double sweeps, residual, error;
     };
 
-    /// The logarithm of a quantity's factor per sweep over the last tenth of the moments; empty if it has not settled
-    /// to 2 %. By then one mode is left, the slowest, and it decays at this rate for ever.
+    /// Returns the logarithm of a quantity's factor per sweep over the last tenth of the moments; empty if it has not
+    /// settled to 2 %. By then only the slowest mode is left, which decays at this rate from there on.
     static std::optional<double> decay(const std::vector<Moment>& moments, double Moment::*quantity)
     {
         constexpr double  kSettled = 0.02; // [1]
@@ -366,8 +366,8 @@ private:
         return now;
     }
 
-    /// The first moment at which a quantity is down to `limit`: one of these, or a later one by the decay; empty if
-    /// that has not settled.
+    /// Returns the first moment at which a quantity is down to `limit`: one of these, or a later one that follows from
+    /// the decay; empty if the decay has not settled.
     static std::optional<Moment> momentOf(const std::vector<Moment>& moments, double Moment::*quantity, double limit)
     {
         for (const Moment& m : moments)
@@ -404,7 +404,7 @@ private:
                 aims, [&](const Aim& aim) { return m.residual <= aim.residual && m.error <= aim.ours.error; });
         };
 
-        // In turns: a few thousand sweeps, then Palpate once, for its first `runs` turns.
+        // They take turns: a few thousand sweeps, then Palpate once, in its first `runs` turns.
         const int           perTurn = nodes <= 33 ? 1000 : 4000;
         DampedJacobi        jacobi(plate, goal.force);
         std::vector<double> sweepMs;

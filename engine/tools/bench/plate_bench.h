@@ -20,20 +20,21 @@ struct PlateBenchOptions {
     std::vector<std::string> maps;  ///< by name, see bench_plates.h; empty: all
     int                      runs          = 11;
     int                      mostEigen     = 257;   ///< nodes a side beyond which Eigen takes seconds
-    bool                     quick         = false; ///< one load, and beyond 129 nodes fewer maps
+    bool                     quick         = false; ///< one load, and fewer maps beyond 129 nodes
     double                   patience      = 1e9;   ///< no new comparison begins after this time [s]
-    double                   jacobiSeconds = 150;   ///< per grid; then what is left is extrapolated [s]
+    double                   jacobiSeconds = 150;   ///< per grid; the rest is extrapolated [s]
     int                      mostMemory    = 1025;  ///< nodes a side of the largest grid of the case memory
 };
 
-/// new_map, new_load, contrast, jacobi, memory, batch
+/// Lists the cases: new_map, new_load, contrast, jacobi, memory, batch.
 [[nodiscard]] const std::vector<std::string>& plateCases();
 
-/// A row has been measured, or (done, total) steps are.
+/// A function that is called with (done, total) steps when a row has been measured.
 using OnStep = std::function<void(std::size_t done, std::size_t total)>;
 
-/// The cases that need nothing but plates, small grids first. What the patience leaves no time for has a row that says
-/// so. \thread one; see takeTurns
+/// Measures the cases that need nothing but plates, small grids first. A comparison for which `patience` leaves no time
+/// has a row that says so.
+/// \thread one; see takeTurns
 [[nodiscard]] std::vector<BenchRow> measurePlates(compute::Context& context, const PlateKernels& kernels,
                                                   const PlateBenchOptions& options, const OnStep& onStep);
 

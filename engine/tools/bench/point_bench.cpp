@@ -21,7 +21,7 @@
 namespace palp::bench {
 namespace {
 
-/// nanoflann's fastest leaf depends on the work: the best of these is its time.
+/// Leaf sizes of nanoflann. The fastest one depends on the work: its time is the best of these.
 constexpr std::array<std::size_t, 3> kLeaves{10, 20, 50};
 
 Quartiles scaled(const Quartiles& q, double by)
@@ -31,7 +31,7 @@ Quartiles scaled(const Quartiles& q, double by)
 
 // --- gather
 
-/// Share of points that are missing or too many, against brute force in doubles [1].
+/// Returns the share of points that are missing or too many, against brute force in doubles [1].
 double wrongShare(const std::vector<glm::dvec3>& cloud, const glm::dvec3& centre, double radius,
                   std::set<std::uint32_t> found)
 {
@@ -107,7 +107,7 @@ std::vector<BenchRow> measureGather(int runs)
 
 // --- the nearest point of every node
 
-/// Share of some nodes whose point is farther away than the nearest one [1].
+/// Returns the share of some nodes whose point is farther away than the nearest one [1].
 double wrongShare(const GridMapScene& scene, const std::vector<std::uint32_t>& nearest)
 {
     constexpr int kChecked = 500;
@@ -163,7 +163,8 @@ BenchRow measureGridMap(int nodes, int runs)
 
 // --- a whole update
 
-/// The paper's object: an ellipsoid of 40 000 points, and a window that gathers some 3000 of them.
+/// Measures an update on the paper's object: an ellipsoid of 40 000 points, and a patch window that gathers some 3000
+/// of them.
 /// \param tolerance  of the solver; "coarse" in the table, unless it is the default one
 BenchRow measureUpdate(int nodes, double tolerance, int runs, PlateSolver& solver)
 {
@@ -180,7 +181,7 @@ BenchRow measureUpdate(int nodes, double tolerance, int runs, PlateSolver& solve
     settings.tolerance       = tolerance;
 
     Patch patch;
-    for (int n = 0; n < 4; ++n) { // points gathered grow with the square of the window
+    for (int n = 0; n < 4; ++n) { // the number of points grows with the square of the window
         patch = deform(object, contact, settings, solver);
         settings.window *= std::sqrt(kGathered / double(patch.gathered.size()));
         settings.footprintRadius = std::min(settings.footprintRadius, settings.window / 4);

@@ -7,10 +7,10 @@
 
 namespace palp::bench {
 
-/// gather, grid_map, update
+/// Lists the cases: gather, grid_map, update.
 [[nodiscard]] const std::vector<std::string>& pointCases();
 
-/// The cases that begin with points: what a radius search gathers, the nearest point of every node, and a whole update.
+/// Measures the cases that begin with points: a radius search, the nearest point of every node, and a whole update.
 /// \param solver  of update, as PlateSolver takes it
 /// \param nodes   a side of the grids, odd
 [[nodiscard]] std::vector<BenchRow> measurePoints(const std::vector<std::string>& cases, const std::string& solver,

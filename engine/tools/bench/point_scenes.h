@@ -11,7 +11,7 @@ namespace palp::bench {
 /// Makes nearly uniform points on a ball of 0.1 m with bumps, in Morton order [m].
 [[nodiscard]] std::vector<glm::dvec3> bumpyBall(std::size_t points);
 
-/// Places to search around: points of the cloud, moved by less than their mean distance `spacing` [m].
+/// Returns places to search around: points of the cloud, moved by less than their mean distance `spacing` [m].
 [[nodiscard]] std::vector<glm::dvec3> searchPlaces(const std::vector<glm::dvec3>& cloud, double spacing,
                                                    std::size_t count);
 

@@ -18,13 +18,13 @@ namespace palp::report {
 namespace {
 
 constexpr double     kDiagonal = 0.2502; ///< of the original's bounds [m]
-constexpr double     kSameSize = 0.02;   ///< off from it, relative, is still the original: copies have fewer points [1]
+constexpr double     kSameSize = 0.02;   ///< relative difference at which a copy, with fewer points, has its size [1]
 constexpr double     kEar      = 40e-3;  ///< length of an ear [m]
 constexpr double     kWindow   = 18e-3;  ///< lies on the flat side of an ear [m]
 constexpr double     kForce    = 0.03;   ///< [N]
 constexpr PlateEdges kFromItsRoot{Edge::free, Edge::free, Edge::free, Edge::clamped};
 
-/// The cloud in the original's size, and the factor that took.
+/// The cloud in the original's size, and the factor of its scaling.
 struct Bunny {
     PointCloud cloud;
     double     factor = 1;
@@ -32,7 +32,7 @@ struct Bunny {
 
 Bunny readBunny(const std::filesystem::path& file)
 {
-    constexpr std::size_t kFewest = 5000; // the ear of fewer points is a handful of them [1]
+    constexpr std::size_t kFewest = 5000; // with fewer points an ear has too few
     const PointCloud      read    = readCloud(file).cloud;
     if (read.size() < kFewest)
         throw Error(file.string() + ": expected a bunny of at least " + std::to_string(kFewest) + " points, found " +
@@ -44,14 +44,14 @@ Bunny readBunny(const std::filesystem::path& file)
     return {PointCloud(positions, {read.stiffness().begin(), read.stiffness().end()}, read.kind()), factor};
 }
 
-/// Where the ear is pressed, and which way it hangs.
+/// The place where the ear is pressed, and the ear's orientation.
 struct Ear {
     glm::dvec3 place{};  ///< [m]
     Frame      frame;    ///< normal out of its flat side, north towards its root
     glm::dvec3 middle{}; ///< of the ear's thickness, below the place [m]
 };
 
-/// Spread of points about their middle: the sum of the outer products [m^2].
+/// Returns the spread of points about their middle: the sum of the outer products [m^2].
 glm::dmat3 spreadOf(const std::vector<glm::dvec3>& points, const glm::dvec3& middle)
 {
     glm::dmat3 spread(0);
@@ -59,15 +59,15 @@ glm::dmat3 spreadOf(const std::vector<glm::dvec3>& points, const glm::dvec3& mid
     return spread;
 }
 
-/// Eigenvector of the largest eigenvalue, by the power method [1].
+/// Returns the eigenvector of the largest eigenvalue, by the power method [1].
 glm::dvec3 longest(const glm::dmat3& spread)
 {
-    glm::dvec3 d = glm::normalize(glm::dvec3(0.36, 0.48, 0.80)); // any that is perpendicular to no ear
+    glm::dvec3 d = glm::normalize(glm::dvec3(0.36, 0.48, 0.80)); // any direction that is perpendicular to no ear
     for (int n = 0; n < 1000; ++n) d = glm::normalize(spread * d);
     return d;
 }
 
-/// That of the least: the longest of what is left of the trace.
+/// Returns the eigenvector of the least eigenvalue: the longest one of the trace less the matrix.
 glm::dvec3 shortest(const glm::dmat3& spread)
 {
     return longest(glm::dmat3(spread[0][0] + spread[1][1] + spread[2][2]) - spread);
@@ -80,7 +80,7 @@ glm::dvec3 middleOf(const std::vector<glm::dvec3>& points)
     return sum;
 }
 
-/// The ear that reaches highest; y is up, as in the original.
+/// Finds the ear that reaches highest; y is up, as in the original.
 Ear earOf(const SoftObject& object)
 {
     const auto       positions = object.positions();
@@ -94,12 +94,12 @@ Ear earOf(const SoftObject& object)
     double tip = 0; // beyond the middle [m]
     for (const glm::dvec3& p : ear) tip = std::max(tip, glm::dot(p - middle, along));
 
-    // Nearly half a window from the tip (the surface bends, so that it is half along it), in the middle of the width,
-    // on the side that lies farther out there.
+    // The place lies nearly half a window from the tip (half a window along the surface, which bends), in the middle of
+    // the width, on the side that lies farther out there.
     for (const glm::dvec3& p : ear)
         if (std::abs(glm::dot(p - middle, along) - (tip - 0.36 * kWindow)) < kWindow / 10) slice.push_back(p);
     const glm::dvec3 here = middleOf(slice);
-    // The slice is thin along the ear too, which does not count: there it is made long.
+    // The slice is thin along the ear too. That direction must not count, so the slice is made long there.
     const glm::dvec3 flat  = shortest(spreadOf(slice, here) + spreadOf(ear, middle) * glm::outerProduct(along, along));
     glm::dvec3       place = here;
     double           most  = -1;
@@ -115,8 +115,8 @@ Ear earOf(const SoftObject& object)
     return {place, {out, glm::cross(north, out), north}, here};
 }
 
-/// The ear's skin on the side of the finger. The other one is 5 mm behind: a sphere through both would have the ear's
-/// thickness and not its shape.
+/// Returns the ear's skin on the side of the finger. The other skin is 5 mm behind: a sphere through both would have
+/// the ear's thickness and not its shape.
 SoftObject skinOf(const SoftObject& object, const Ear& ear)
 {
     std::vector<glm::dvec3> positions;

@@ -9,7 +9,7 @@
 namespace palp::report {
 namespace {
 
-/// Chart coordinate where the field has fallen to half along one axis, straight between nodes.
+/// Returns the chart coordinate where the field has fallen to half along one axis, linear between nodes.
 double halfWay(const PatchWindow& window, const NodeField& field, bool east)
 {
     const PlateGrid& grid = window.grid;

@@ -13,7 +13,7 @@
 namespace palp::report {
 namespace {
 
-/// One point in each cube of the lattice that has any: the first.
+/// Returns the first point in each cube of the lattice that holds points.
 std::vector<std::uint32_t> onePerCube(const PointCloud& cloud, double edge)
 {
     std::set<std::array<std::int64_t, 3>> taken;
@@ -26,7 +26,7 @@ std::vector<std::uint32_t> onePerCube(const PointCloud& cloud, double edge)
     return places;
 }
 
-/// The lattice's edge that leaves about as many places as are wanted [m]: n places a spacing s apart become
+/// Returns the lattice's edge that leaves about the wanted number of places [m]: n places a spacing s apart become
 /// n (s/edge)^2, and a surface that cuts cubes askew meets half as many again.
 double edgeFor(const SoftObject& object, std::size_t wanted)
 {
@@ -35,17 +35,17 @@ double edgeFor(const SoftObject& object, std::size_t wanted)
     return spacing * std::sqrt(std::max(1.0, kAskew * double(object.size()) / double(wanted)));
 }
 
-/// Felt stiffness at all points from that at the places.
+/// Returns the felt stiffness at all points from that at the places.
 std::vector<double> between(const PointCloud& cloud, const FeltMap& map, double edge)
 {
-    constexpr std::size_t   kNearest = 8; // [1] the weight of a ninth would be next to nothing
+    constexpr std::size_t   kNearest = 8; // the weight of a ninth would be negligible
     std::vector<glm::dvec3> places;
     for (const std::uint32_t place : map.places) places.push_back(cloud.positions()[place]);
     const NeighbourIndex index(places);
     std::vector<double>  felt;
     for (const glm::dvec3& p : cloud.positions()) {
         const auto   near  = index.nearest(p, kNearest);
-        const double width = std::max(edge / 2, near.front().distance); // a lone place answers for itself
+        const double width = std::max(edge / 2, near.front().distance); // wide enough for a lone place
         double       sum = 0, weights = 0;
         for (const Neighbour& n : near) {
             const double weight = std::exp(-n.distance * n.distance / (2 * width * width));
@@ -75,7 +75,7 @@ FeltMap feltMap(const SoftObject& object, const PatchSettings& settings, std::si
             if (!patch.deformed()) throw Error("the points determine no surface");
             map.places.push_back(places[n]);
             map.stiffness.push_back(patch.feltStiffness);
-        } catch (const Error& error) { // a place at a rim or a tip: the others still make a map
+        } catch (const Error& error) { // a place at a rim or a tip: the others still give a map
             why = error.what();
             ++map.leftOut;
         }

@@ -15,10 +15,10 @@
 namespace palp::report {
 namespace {
 
-/// Points of the surface along the line, from end to end.
+/// Returns points of the surface along the line, from end to end.
 std::vector<glm::dvec3> surfaceAlong(const FeltLine& line, const SoftObject& object, int places)
 {
-    constexpr double      kPace = 10e-3; // [m/s] any that is no fault of a hand
+    constexpr double      kPace = 10e-3; // [m/s] any speed that is possible for a hand
     std::vector<HandPose> flat;
     for (int n = 0; n < places; ++n) {
         const double along = line.reach * (2.0 * n / (places - 1) - 1);
@@ -35,7 +35,7 @@ double alongOf(const FeltLine& line, const glm::dvec3& place)
     return glm::dot(place - line.middle.point, line.direction);
 }
 
-/// To and fro along the line, over whatever height the surface has.
+/// Returns a path to and fro along the line that follows the height of the surface.
 HandPath strokingHand(const FeltLine& line, const HandScript& script, const SoftObject& object)
 {
     const Frame           from  = Frame::about(line.middle.outward);
@@ -61,7 +61,7 @@ FeltRange rangeOf(const std::vector<double>& along, const std::vector<double>& l
 FeltLine feltLine(const Scene& scene, const SoftObject& object, const std::optional<glm::dvec3>& direction,
                   double reach)
 {
-    constexpr double kSteep = 0.1; // of a unit vector that remains in the surface [1]: 84 degrees from it
+    constexpr double kSteep = 0.1; // share of a unit vector that lies in the surface [1]: 84 degrees from it
     const HandPlace  middle = handPlace(scene, object);
     if (!direction) return {middle, Frame::about(middle.outward).east, reach};
     const double length = glm::length(*direction);

@@ -16,13 +16,13 @@ struct FeltLine {
     double     reach = 10e-3;      ///< to either side, measured in the plane through the middle [m]
 };
 
-/// The line through the scene's place.
-/// \param direction  roughly; empty: the chart's east there
+/// Returns the line through the scene's place.
+/// \param direction  approximate direction; empty: the chart's east there
 /// \throws Error if the direction is zero, not finite, or runs along the outward one
 [[nodiscard]] FeltLine feltLine(const Scene& scene, const SoftObject& object,
                                 const std::optional<glm::dvec3>& direction, double reach);
 
-/// What a finger at rest on a place of the line has under it.
+/// A place of the line with a finger at rest on it.
 struct FeltPlace {
     double     along = 0;            ///< from the middle [m]
     glm::dvec3 place{};              ///< on the surface [m]
@@ -32,30 +32,30 @@ struct FeltPlace {
     [[nodiscard]] double felt(ForceLaw law) const noexcept { return feltStiffness(law, contactStiffness, compliance); }
 };
 
-/// deform() about places of the line, evenly spread, with axes carried from one to the next.
+/// Runs deform() about evenly spread places of the line, with axes carried from one to the next.
 /// \param places  at least 2
 /// \throws as deform(), and Error where the points determine no surface
 [[nodiscard]] std::vector<FeltPlace> windowsAlong(const SoftObject& object, const PatchSettings& settings,
                                                   const FeltLine& line, int places, PlateSolver& device);
 
-/// What a sliding finger is given at one tick.
+/// The stiffness that a sliding finger feels at one tick.
 struct FeltTick {
     double along     = 0; ///< of the proxy, from the middle [m]
     double stiffness = 0; ///< force on the hand over its depth [N/m]
 };
 
-/// A hand that strokes once to and fro along the line, at constant depth, through all that a session has: proxy, tables
-/// at the scene's rate, hand-over, tank and governor, in virtual time. Ticks count from when the force is fully on.
+/// Moves a hand once to and fro along the line at constant depth, through all parts of a session: proxy, tables at the
+/// scene's rate, hand-over, tank and governor, in virtual time. Ticks count from the moment when the force is fully on.
 /// \throws as runVirtual(), and Error if the hand met nothing
 [[nodiscard]] std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, const FeltLine& line);
 
-/// The same points with one stiffness for all: the geometric mean. What is felt on it is an artefact.
+/// Returns the same points with one stiffness for all: the geometric mean. A change felt on it is an artefact.
 [[nodiscard]] SoftObject homogeneous(const SoftObject& object);
 
-/// How far apart the stiffest and the softest place are, as a logarithm of their ratio [1].
+/// The logarithm of the ratio of the stiffest to the softest place [1].
 struct FeltRange {
     double whole   = 0; ///< along all of the path
-    double passing = 0; ///< within kPassing: what one can compare without remembering
+    double passing = 0; ///< within kPassing: places that can be compared without memory
 };
 inline constexpr double kPassing = 5e-3; ///< about a fingertip's width [m]
 

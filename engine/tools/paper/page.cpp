@@ -95,7 +95,7 @@ std::string reportPage(std::span<const Section> sections, const Origins& origins
             "(arXiv 2005.11799). Its claims are in our words. Every figure and number below was made by one command, "
             "<code>"
          << escaped(origins.command)
-         << "</code>. The numbers are in <a href=\"numbers.json\">numbers.json</a>, what a clock measured is in <a "
+         << "</code>. The numbers are in <a href=\"numbers.json\">numbers.json</a>, measured times are in <a "
             "href=\"timings.json\">timings.json</a>.</p>\n";
     if (origins.quick)
         html << "<p><strong>A quick run:</strong> fewer points and coarser grids, to see that all works. Its numbers "

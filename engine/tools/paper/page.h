@@ -7,20 +7,20 @@
 
 namespace palp::report {
 
-/// What a report says about itself: how it was made, so that it can be made again.
+/// The origins of a report: how it was made, so that it can be made again.
 struct Origins {
     std::string version, commit, libraries, machine, device, command;
     bool        quick = false;
 };
 
-/// One HTML file that needs no other: the claims, then a part for each section with its pictures.
+/// Writes one self-contained HTML file: the claims, then a part for each section with its pictures.
 [[nodiscard]] std::string reportPage(std::span<const Section> sections, const Origins& origins);
 
-/// Every number of the sections and nothing that a clock measured: the same bytes from run to run on one device.
-/// Values that are no number are null.
+/// Writes every number of the sections except those that a clock measured: the bytes are the same from run to run on
+/// one processor. NaN and infinity are null.
 [[nodiscard]] std::string numbersJson(std::span<const Section> sections, const Origins& origins);
 
-/// What a clock measured, and on which machine.
+/// Writes the numbers that a clock measured, and the machine.
 [[nodiscard]] std::string timingsJson(std::span<const Section> sections, const Origins& origins);
 
 } // namespace palp::report

@@ -15,7 +15,7 @@ Json jsonOf(const std::vector<Quantity>& quantities)
     for (const Quantity& quantity : quantities) {
         Json values = Json::array();
         for (const double value : quantity.values)
-            values.push_back(std::isfinite(value) ? Json(value) : Json(nullptr)); // JSON has no other word for it
+            values.push_back(std::isfinite(value) ? Json(value) : Json(nullptr)); // JSON has no NaN and no infinity
         all[quantity.name] = {{"unit", quantity.unit},
                               {"value", quantity.values.size() == 1 ? values.front() : std::move(values)}};
     }

@@ -1,4 +1,4 @@
-// What the published iteration does: undamped Jacobi, stopped when the change from sweep to sweep is small.
+// The behaviour of the published iteration: undamped Jacobi, stopped when the change from sweep to sweep is small.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -35,10 +35,10 @@ struct Problem {
 /// An iteration seen at some of its sweeps.
 struct Course {
     double              omega = 1;
-    int                 nodes = 0;             ///< a side [1]
+    int                 nodes = 0;             ///< a side
     std::vector<double> sweeps, change, error; ///< relative to the largest deflection, of the iterate and of the truth
 
-    /// First of the sweeps seen at which the change is below the rule.
+    /// Returns the first of the recorded sweeps at which the change is below the rule.
     [[nodiscard]] std::optional<std::size_t> stop(double rule) const
     {
         for (std::size_t n = 0; n < change.size(); ++n)
@@ -47,8 +47,8 @@ struct Course {
     }
 };
 
-/// Every sweep at first, later every fiftieth part of those made.
-/// \param onSweeps  is told how many are done
+/// Records every sweep at first, later after every fiftieth part of the sweeps made.
+/// \param onSweeps  is called with the number of sweeps made
 Course courseOf(int nodes, double omega, int sweeps, const std::function<void(int)>& onSweeps)
 {
     const Problem       problem(nodes);
@@ -79,10 +79,10 @@ std::string fieldSvg(const Problem& problem, const NodeField& w, const std::stri
     return heatMapSvg(w, settings);
 }
 
-/// What the iterations leave on the plate, beside the answer.
+/// Draws the fields that the iterations leave on the plate, beside the answer.
 void addFields(Section& section, int nodes, const Course& damped)
 {
-    constexpr int kGrown = 30; // undamped sweeps: by then the fastest oscillation is all
+    constexpr int kGrown = 30; // undamped sweeps; by then only the fastest oscillation is visible
     const auto    stop   = damped.stop(kShown);
     const Problem problem(nodes);
     const double  deepest = *std::max_element(problem.truth.values().begin(), problem.truth.values().end());
@@ -176,7 +176,7 @@ Section jacobiPart(const ReportRun& run)
              formatNumber(kShown) + " it is " + (stop ? percent(all.back().error[*stop]) : "-") + " off at " +
              std::to_string(nodes.back()) + " nodes a side.",
          "the published iteration in double precision, errors against a direct solution", Verdict::fails,
-         "As printed it diverges, because the largest eigenvalue of its iteration is beyond 1 whatever the grid; "
+         "As printed it diverges, because the largest eigenvalue of its iteration is above 1 on every grid; "
          "damped, the rule stops far too early. Ours stops "
          "by an estimate of the error."});
     return section;

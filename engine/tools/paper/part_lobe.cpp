@@ -48,7 +48,7 @@ std::vector<double> alongMiddle(const Bent& bent)
     return values;
 }
 
-/// Deflection along the middle, from root to tip, with the beam's.
+/// Plots the deflection along the middle, from root to tip, with the beam's.
 std::string profileOf(const std::vector<Bent>& all, const std::vector<double>& beam)
 {
     std::vector<PlotSeries> plot;

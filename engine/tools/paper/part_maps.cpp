@@ -24,7 +24,7 @@ constexpr double             kModulus   = 0.6e6;                 ///< [Pa]
 constexpr double   kPoke = 0.1 * kRadius * kHalfAngle; ///< of the poke, round on the sphere: nearly a point [m]
 constexpr Material kSkin{};
 
-/// A dent of 1 N in one map, and where it was computed.
+/// A dent of 1 N in one map, and the window in which it was computed.
 struct Dent {
     Map         map;
     Chart       chart;
@@ -38,7 +38,7 @@ Chart chartOf(Map map)
     return {map, {0, 0, kRadius}, {}, 1 / kRadius};
 }
 
-/// The rectangle of the chart that the cap's square fills: from -10 to 10 degrees along either axis.
+/// Returns the rectangle of the chart that the cap's square fills: from -10 to 10 degrees along either axis.
 PatchWindow capIn(const Chart& chart, int cells)
 {
     const auto at = [&](double alpha, double beta) {
@@ -49,7 +49,7 @@ PatchWindow capIn(const Chart& chart, int cells)
     return {{cells, cells, 2 * halfX / cells, 2 * halfZ / cells}, {-halfX, -halfZ}};
 }
 
-/// A poke of 1 N that is round on the sphere: (1 - (d/R)^2)^2. Maps keep areas, so that pressures stay pressures.
+/// Returns a poke of 1 N that is round on the sphere: (1 - (d/R)^2)^2. The maps keep areas, so pressures are unchanged.
 NodeField roundPoke(const Chart& chart, const PatchWindow& window)
 {
     NodeField load(window.grid);
@@ -66,10 +66,10 @@ NodeField roundPoke(const Chart& chart, const PatchWindow& window)
     return load;
 }
 
-/// The same cap of the object, clamped at its rim.
+/// Computes the dent of the same cap of the object, clamped at its rim.
 Dent dentOfCap(Map map, const ReportRun& run)
 {
-    constexpr double  kExact = 1e-6; // what is compared are maps, not solvers [1]
+    constexpr double  kExact = 1e-6; // small, because maps are compared, not solvers [1]
     const Chart       chart  = chartOf(map);
     const PatchWindow window = capIn(chart, run.quick ? 64 : 128);
     const Plate       plate{window.grid, {}, kSkin.poissonRatio, 0, NodeField(window.grid, kSkin.rigidity(kModulus))};
@@ -78,7 +78,8 @@ Dent dentOfCap(Map map, const ReportRun& run)
     return {map, chart, window, std::move(w), shape};
 }
 
-/// The pipeline's own window: as many metres of chart in every map, and a footprint that is round there.
+/// Computes the dent in the pipeline's own window: the same metres of chart in every map, and a footprint that is round
+/// in the chart.
 Dent dentOfWindow(Map map, const SoftObject& object, const ReportRun& run)
 {
     PatchSettings settings{.window = 24e-3, .footprintRadius = 3e-3, .map = map};
@@ -88,7 +89,7 @@ Dent dentOfWindow(Map map, const SoftObject& object, const ReportRun& run)
     return {map, patch.chart, patch.window, patch.response, dentShape(patch.chart, patch.window, patch.response)};
 }
 
-/// The dent as it lies on the object: on the axes of the undistorted azimuthal map.
+/// Draws the dent as it lies on the object: on the axes of the undistorted azimuthal map.
 std::string onObject(const Dent& dent, double deepest)
 {
     constexpr int     kCells = 96;

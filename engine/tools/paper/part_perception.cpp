@@ -20,10 +20,10 @@ std::string withLess(const std::string& scene, bool quick)
     return quick ? scene.substr(0, scene.rfind('}')) + R"(, "points": 6000, "cells": 32})" : scene;
 }
 
-/// \param number, count  of the object, for progress
+/// \param number, count  of the objects, for progress
 void feel(Felt& felt, Section& section, const ReportRun& run, std::size_t number, std::size_t count)
 {
-    static constexpr std::size_t kSteps = 100; // of an object: half along the path, half for the map
+    static constexpr std::size_t kSteps = 100; // per object: half along the path, half for the map
     const auto                   part   = [&](std::size_t first) {
         return [&run, from = number * kSteps + first, count](std::size_t done, std::size_t total) {
             run.step(from + kSteps / 2 * done / total, count * kSteps);
@@ -35,7 +35,7 @@ void feel(Felt& felt, Section& section, const ReportRun& run, std::size_t number
     const FeltLine   line       = feltLine(scene, object, {}, felt.reach);
     felt.perception             = perceive(scene, object, line, run.quick ? 11 : 41, run.device, part(0));
     section.figures.push_back({"A finger at rest, one that slides, and one that slides over the same points with one "
-                               "stiffness: what varies there is the program's own doing.",
+                               "stiffness: a variation there is an artefact.",
                                pathSvg(felt.perception, scene.patch.forceLaw, "Felt along the path: " + felt.name)});
     if (!felt.map) return;
     const FeltMap map = feltMap(object, scene.patch, run.quick ? 60 : kMapPlaces, run.device, part(kSteps / 2));

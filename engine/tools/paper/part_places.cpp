@@ -94,7 +94,7 @@ Figure profileFigure(const Series& series)
     return {"From west to east through each contact.", profilesSvg(pressed, "Deflection: " + series.title())};
 }
 
-/// Deflection against rigidity; `over` divides it, to see how far from 1/D it is.
+/// Plots deflection against rigidity; `product` multiplies them, which shows the distance from 1/D.
 std::string againstRigidity(const std::vector<Series>& all, bool product)
 {
     std::vector<PlotSeries> plot;

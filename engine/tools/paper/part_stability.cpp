@@ -1,4 +1,4 @@
-// Whether anything diverges: random maps of rigidity, every combination of edges, each answer beside a direct solution.
+// A search for divergence: random maps of rigidity, every combination of edges, each answer beside a direct solution.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -18,7 +18,7 @@ namespace {
 constexpr double kSize = 40e-3, kSoftest = 2e-3, kFootprint = 4e-3; ///< of the plate [m], [N m], of the finger [m]
 constexpr double kTolerance = 1e-4;                                 ///< the pipeline's own [1]
 
-/// One random plate and what became of it.
+/// One random plate and the outcome of its solve.
 struct Trial {
     MapKind   kind     = MapKind::smooth;
     double    contrast = 1; ///< [1]
@@ -31,7 +31,7 @@ struct Trial {
     bool      takenOver  = false; ///< multigrid gave up and the direct solver answered
 };
 
-/// The n-th of the 81 combinations of clamped, supported and free sides.
+/// Returns the n-th of the 81 combinations of clamped, supported and free sides.
 PlateEdges edgesOf(int n)
 {
     constexpr Edge kEdges[] = {Edge::clamped, Edge::supported, Edge::free};
@@ -46,7 +46,7 @@ Trial trialOf(int n, int cells, Uniform& uniform)
     trial.contrast = std::pow(1000, uniform());
     trial.plate    = {grid, edgesOf(n % 81), 0.45, 0, randomMap(trial.kind, grid, trial.contrast, uniform)};
     for (double& d : trial.plate.rigidity.values()) d *= kSoftest;
-    // Every other plate lies on a foundation, and so does whatever would fall: eight lengths (D/k)^(1/4) across.
+    // Every other plate lies on a foundation, and so does any that would fall: eight lengths (D/k)^(1/4) across.
     const double length = kSize / 8, middle = kSoftest * std::sqrt(trial.contrast);
     if (uniform() < 0.5 || whyUnsolvable(trial.plate)) trial.plate.foundation = middle / std::pow(length, 4);
     const auto   place = [&] { return uniform(0.15 * kSize, 0.85 * kSize); };
@@ -131,7 +131,7 @@ Table tableOf(const std::vector<Trial>& all, const Count& total)
 Section stabilityPart(const ReportRun& run)
 {
     const int          plates = run.quick ? 81 : 1000, cells = run.quick ? 32 : 64;
-    constexpr int      kSeed = 20200525; // any; this one is the day of the preprint
+    constexpr int      kSeed = 20200525; // any number; this one is the day of the preprint
     Uniform            uniform(kSeed);
     std::vector<Trial> all;
     Count              total;
@@ -149,7 +149,7 @@ Section stabilityPart(const ReportRun& run)
         "and free sides in turn, a finger anywhere, and on every other one an elastic foundation (and where "
         "the plate would fall without one). Each answer is compared with a direct solution in double "
         "precision. The energy form is symmetric and positive for every rigidity above zero, so nothing "
-        "can diverge; the table looks whether that is so."};
+        "can diverge; the table tests that."};
     std::vector<double> contrast, kind, steps, error;
     for (const Trial& trial : all) {
         contrast.push_back(trial.contrast);

@@ -20,10 +20,10 @@ namespace palp::report {
 namespace {
 
 constexpr double kPaper        = 160e-3; ///< a deformation, as published [s]
-constexpr int    kPapersCells  = 64;     ///< the paper states no grid [1]
-constexpr double kJacobisError = 1e-2;   ///< to which Jacobi is followed [1]
+constexpr int    kPapersCells  = 64;     ///< our choice; the paper states no grid
+constexpr double kJacobisError = 1e-2;   ///< error at which Jacobi is stopped [1]
 
-/// The ellipsoid, touched on its top by the paper's recipe.
+/// The ellipsoid, touched on its top with the paper's recipe.
 struct Setting {
     explicit Setting(bool quick)
         : sample(sampleNamed("ellipsoid")),
@@ -50,7 +50,7 @@ std::vector<double> stagesOf(const StageTimes& t)
     return {t.gather, t.fit, t.project, t.resample, t.prepare, t.solve, t.lift};
 }
 
-/// One grid on one device.
+/// One grid on one processor.
 struct Timed {
     std::string           device;
     int                   cells = 0;
@@ -68,7 +68,7 @@ Timed timeOf(const Setting& setting, int cells, PlateSolver& device, int runs)
     Patch                            patch;
     for (int n = 0; n <= runs; ++n) {
         patch = deform(setting.object, setting.contact, settings, device);
-        if (n == 0) continue; // the first makes memory and kernels ready
+        if (n == 0) continue; // the first turn prepares memory and kernels
         const auto times = stagesOf(patch.times);
         for (std::size_t s = 0; s < times.size(); ++s) stages[s].push_back(1e-3 * times[s]);
         totals.push_back(1e-3 * patch.times.total());
@@ -83,7 +83,7 @@ Timed timeOf(const Setting& setting, int cells, PlateSolver& device, int runs)
     return timed;
 }
 
-/// The published iteration, damped so that it converges, until the answer is right to kJacobisError.
+/// Runs the published iteration, damped so that it converges, until the answer is right to kJacobisError.
 struct Jacobi {
     int    cells  = 0;
     double sweeps = 0, seconds = 0, error = 0;
@@ -99,7 +99,7 @@ Jacobi jacobiOf(const Setting& setting, int cells, PlateSolver& device)
     bench::DampedJacobi jacobi(plate, load);
     Jacobi              result{cells};
     for (result.error = 1; result.error > kJacobisError;) {
-        const int    more  = std::max(100, int(result.sweeps / 20)); // the error is looked at every twentieth
+        const int    more  = std::max(100, int(result.sweeps / 20)); // the error is computed every twentieth
         const double start = bench::threadMilliseconds();
         jacobi.sweep(more);
         result.seconds += 1e-3 * (bench::threadMilliseconds() - start);
@@ -237,8 +237,8 @@ Section timePart(const ReportRun& run)
             " points, the paper's recipe, from the contact to the moved points. Beside it the published "
             "iteration, damped by 0.6 so that it converges at all, followed until its largest error is "
             "1 %: in double precision, one thread, processor time, without any of the other stages.",
-        "Times are those of this machine and of what else it did; they are kept apart from the numbers. Timed are all "
-        "GPUs and the host; Vulkan in software serves tests, and --solver lavapipe times it."};
+        "Times depend on this machine and on its other work; they are kept apart from the numbers. All GPUs and the "
+        "host are timed; Vulkan in software serves tests, and --solver lavapipe times it."};
     section.claims.push_back(claimOf(all));
     section.figures.push_back(
         {"Both axes are logarithmic. Below the dashed line is faster than published.", curves(all, jacobis)});

@@ -26,7 +26,7 @@ struct Walk {
 
 Walk walk(const ReportRun& run)
 {
-    constexpr double kReach = 20e-3; // to either side [m]: there the wart is forgotten
+    constexpr double kReach = 20e-3; // to either side [m]: there the wart is not felt
     Walk             result{parseScene(run.quick ? R"({"cloud": "sample:skin", "points": 8000, "cells": 32})"
                                                  : R"({"cloud": "sample:skin"})",
                            "the wart", "."),

@@ -19,11 +19,11 @@ namespace palp::report {
 [[nodiscard]] Section wartPart(const ReportRun& run);       ///< g: felt stiffness along a line over a wart
 [[nodiscard]] Section perceptionPart(const ReportRun& run); ///< h: what would be noticed, predicted
 
-/// The dip in an ear of the Stanford bunny, from the user's own copy; appended to the part of the lobe.
+/// Appends to the part of the lobe the dip in an ear of the Stanford bunny, from the user's own copy.
 /// \throws Error naming the file and what is wrong with it
 void addBunny(Section& lobe, const std::filesystem::path& file, const ReportRun& run);
 
-/// Who made the bunny and what one may do with it, for everyone who uses it to read.
+/// Returns the bunny's maker and terms of use, to be shown to its users.
 [[nodiscard]] const std::string& bunnyTerms();
 
 } // namespace palp::report

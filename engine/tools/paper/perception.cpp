@@ -36,7 +36,7 @@ double largestRange(std::span<const double> along, std::span<const double> value
     std::iota(order.begin(), order.end(), std::size_t(0));
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return along[a] < along[b]; });
 
-    // A window slides over the places; each queue holds those that may still be its extreme, the best one first.
+    // A range slides over the places; each queue holds those that may still be its extreme, the best one first.
     std::deque<std::size_t> least, most;
     double                  range = 0;
     for (const std::size_t n : order) {

@@ -9,7 +9,7 @@
 namespace palp::report {
 namespace {
 
-/// Position along the logarithm of the contrast, 0 to 1, of a place on the unit square [1].
+/// The position, 0 to 1 along the logarithm of the contrast, of a place on the unit square [1].
 using Field = std::function<double(double x, double z)>;
 
 Field waves(Uniform& uniform)
@@ -17,7 +17,7 @@ Field waves(Uniform& uniform)
     struct Wave {
         double x, z, phase;
     };
-    constexpr double  kMost = 4; // whole waves across the plate [1]
+    constexpr double  kMost = 4; // whole waves across the plate
     std::vector<Wave> all(6);
     for (Wave& wave : all)
         wave = {2 * std::numbers::pi * uniform(-kMost, kMost), 2 * std::numbers::pi * uniform(-kMost, kMost),
@@ -47,7 +47,7 @@ Field inclusions(Uniform& uniform)
 
 Field checkers(Uniform& uniform)
 {
-    constexpr int       kSide = 8; // blocks a side [1]
+    constexpr int       kSide = 8; // blocks a side
     std::vector<double> values(kSide * kSide);
     for (double& value : values) value = uniform();
     return [values](double x, double z) {

@@ -7,10 +7,10 @@
 
 namespace palp::report {
 
-/// Kinds of random rigidity: what scans and imaginations come up with.
+/// Kinds of random rigidity, such as scans and made-up maps contain.
 enum class MapKind {
     smooth, ///< a few waves
-    rough,  ///< every node for itself
+    rough,  ///< every node independent
     discs,  ///< hard or soft inclusions with sharp rims
     blocks  ///< a coarse checker of random fields
 };
@@ -22,7 +22,8 @@ constexpr auto namesOf(MapKind)
 }
 inline constexpr std::array<MapKind, 4> kMapKinds = {MapKind::smooth, MapKind::rough, MapKind::discs, MapKind::blocks};
 
-/// Rigidity of a kind on a grid, the softest node 1 and the stiffest `contrast` as far as the kind reaches them [1].
+/// Returns a rigidity of a kind on a grid: the softest node is 1 and the stiffest is `contrast`, as far as the kind
+/// reaches them [1].
 [[nodiscard]] NodeField randomMap(MapKind kind, const PlateGrid& grid, double contrast, Uniform& uniform);
 
 } // namespace palp::report

@@ -9,7 +9,7 @@
 
 namespace palp::report {
 
-/// What one group of people would notice along a path.
+/// The steps that one group of people would notice along a path.
 struct NoticedSteps {
     double weber   = 0; ///< W [1]
     double whole   = 0; ///< J between the stiffest and the softest place of the path
@@ -18,11 +18,11 @@ struct NoticedSteps {
     double right   = 0; ///< rightAnswers() for `whole`: stiffest and softest place side by side [1]
 };
 
-/// How much floor is allowed: half a step for the keenest finger, which it tells right in 63 of 100 trials.
+/// The largest floor that is allowed: half a step for the keenest finger, which judges it right in 63 of 100 trials.
 inline constexpr double kMostFloor = 0.5;
 
-/// What would be noticed along a path over a scene's object: the model's part at places at rest, and what a sliding
-/// finger is given by all of a session, beside what it is given on the same points with one stiffness.
+/// A prediction of what is noticed along a path over a scene's object: at rest, by the model alone, and sliding,
+/// through all of a session, beside the same slide over the same points with one stiffness.
 struct ScenePerception {
     FeltLine                    line;
     std::vector<FeltPlace>      places; ///< at rest
@@ -34,8 +34,8 @@ struct ScenePerception {
     [[nodiscard]] bool floorIsLow() const noexcept { return sliding.front().floor < kMostFloor; }
 };
 
-/// Feels the scene's object and its homogeneous twin.
-/// \param places  at rest along the path, at least 2
+/// Computes the stiffness felt on the scene's object and on its homogeneous copy.
+/// \param places  number of places at rest along the path, at least 2
 /// \param onStep  (done, total) of some seconds each; may be empty
 /// \throws as windowsAlong() and strokeAlong()
 [[nodiscard]] ScenePerception perceive(const Scene& scene, const SoftObject& object, const FeltLine& line, int places,

@@ -10,9 +10,9 @@
 
 namespace palp::report {
 
-/// What a part of the report is made of: values only, so that pages and files are written elsewhere.
+// The contents of a part of the report. They are values only; pages and files are written elsewhere.
 
-/// A number, or a row of them along a curve.
+/// A number, or a list of numbers along a curve.
 struct Quantity {
     std::string         name; ///< "linear/paper/deflection"
     std::string         unit; ///< SI; "1" for none
@@ -22,7 +22,7 @@ struct Quantity {
 struct Table {
     std::string                           caption;
     std::vector<std::string>              headings;
-    std::vector<std::vector<std::string>> rows; ///< as many cells as headings
+    std::vector<std::vector<std::string>> rows; ///< one cell per heading
 };
 
 struct Figure {
@@ -39,12 +39,12 @@ constexpr auto namesOf(Verdict)
 
 /// One claim of the paper beside our figure.
 struct Claim {
-    std::string paper; ///< what it says
+    std::string paper; ///< the paper's statement
     std::string ours;  ///< our number
-    std::string how;   ///< how that is made
+    std::string how;   ///< how our number is made
     Verdict     verdict = Verdict::holds;
     std::string words;         ///< the verdict in plain words
-    bool        timed = false; ///< our number was measured by a clock: it differs from run to run
+    bool        timed = false; ///< our number was measured by a clock and differs from run to run
 };
 
 struct Section {
@@ -54,19 +54,20 @@ struct Section {
     std::vector<Claim>       claims;
     std::vector<Table>       tables;
     std::vector<Figure>      figures;
-    std::vector<Quantity>    numbers; ///< the same bits from run to run on one device
+    std::vector<Quantity>    numbers; ///< the same bits from run to run on one processor
     std::vector<Quantity>    timings; ///< measured by a clock
 
+    /// Returns the values of a number.
     /// \throws Error naming it if there is none
     [[nodiscard]] const std::vector<double>& number(std::string_view name) const;
 };
 
-/// What every part is given.
+/// The input of every part.
 struct ReportRun {
     PlateSolver&                                  device;
-    bool                                          quick = false; ///< small enough for a test: less to see, more error
-    std::vector<std::string>                      timed{};  ///< devices whose time is taken, as PlateSolver wants them
-    std::function<void(std::size_t, std::size_t)> onStep{}; ///< (done, total); may be empty
+    bool                                          quick = false; ///< small enough for a test, with larger errors
+    std::vector<std::string>                      timed{};       ///< processors to be timed, as PlateSolver names them
+    std::function<void(std::size_t, std::size_t)> onStep{};      ///< (done, total); may be empty
 
     void step(std::size_t done, std::size_t total) const
     {
@@ -74,9 +75,9 @@ struct ReportRun {
     }
 };
 
-/// "3.2 %" of a share [1]: two digits.
+/// Writes a share [1] as "3.2 %", with two digits.
 [[nodiscard]] std::string percent(double share);
-/// "3.20": so many decimals.
+/// Writes a number with the given number of decimals, such as "3.20".
 [[nodiscard]] std::string fixed(double value, int decimals);
 
 } // namespace palp::report

@@ -18,10 +18,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kMostNodules = 64;                  ///< [1] more are a texture
+constexpr std::size_t kMostNodules = 64;                  ///< more would be a texture
 constexpr double      kLeastRadius = 1e-5, kMost = 1;     ///< of a nodule and of the ground [m]
 constexpr double      kSoftest = 1, kStiffest = 1e12;     ///< moduli [Pa]: softer than any gel, stiffer than diamond
-constexpr double      kLeastForce = 1e-3, kMostForce = 8; ///< what scenes can ask of a device at most [N]
+constexpr double      kLeastForce = 1e-3, kMostForce = 8; ///< a scene cannot ask a device for more than 8 N [N]
 
 struct Limits {
     Dimension   dimension;
@@ -42,7 +42,7 @@ double within(const JsonObject& object, const char* key, const Limits& limits)
     return value;
 }
 
-/// Both ends of a range, each a number or a text.
+/// Reads both ends of a range, each a number or a text.
 std::array<double, 2> range(const JsonObject& object, const char* key, const Limits& limits)
 {
     const Json list = Json::parse(object.json(key));
@@ -86,7 +86,7 @@ std::string length(double metres)
     return formatQuantity(metres, "m");
 }
 
-/// How far the fading edge reaches from the middle [m].
+/// Returns the distance from the middle at which the fading edge ends [m].
 double reachOf(const Nodule& nodule)
 {
     return (1 + Nodule::kFade) * nodule.radius;
@@ -105,7 +105,7 @@ void demandApart(const std::vector<Nodule>& nodules)
         }
 }
 
-/// Places for nodules on the points of a cloud.
+/// A search for places of nodules on the points of a cloud.
 class HidingPlaces {
 public:
     HidingPlaces(const Hunt& hunt, const PointCloud& cloud, const glm::dvec3& place, double footprintRadius)
@@ -115,7 +115,7 @@ public:
 
     void demandOnObject(const std::vector<Nodule>& nodules) const
     {
-        constexpr double kSpacings = 2; // [1] across a smaller radius lie too few points to show an edge
+        constexpr double kSpacings = 2; // [spacings] a smaller radius has too few points across to show an edge
         for (std::size_t i = 0; i < nodules.size(); ++i) {
             const std::string which = "hunt: nodule " + std::to_string(i + 1) + ": ";
             const double      off   = index_.nearest(nodules[i].centre, 1).front().distance;
@@ -129,7 +129,7 @@ public:
         }
     }
 
-    /// Who looks for them looks there alone.
+    /// Checks that the nodules lie within the ground, because they are searched only there.
     void demandInGround(const std::vector<Nodule>& nodules) const
     {
         for (std::size_t i = 0; hunt_.ground > 0 && i < nodules.size(); ++i)
@@ -139,10 +139,10 @@ public:
                             " about the scene's place, found one that is " + length(away) + " from it");
     }
 
-    /// Random middles for nodules of these radii: the largest first, which find room most hardly.
+    /// Returns random middles for nodules of these radii; the largest come first, because they need most room.
     void scatter(std::vector<Nodule>& nodules, Uniform& random) const
     {
-        constexpr int kTries = 4000; // [1] far more than a ground that is half full needs
+        constexpr int kTries = 4000; // far more than a half full ground needs
         std::ranges::stable_sort(nodules, std::greater<>(), &Nodule::radius);
         for (std::size_t i = 0; i < nodules.size(); ++i) {
             int tries = 0;
@@ -169,18 +169,19 @@ private:
         return isInside(one);
     }
 
-    /// No border of the object is near: beside one at t radii of the ball the points' mean lies off by (2/3)
-    /// (1 - t^2)^(3/2) / (pi - acos t + t sqrt(1 - t^2)) of it, a quarter where the border touches the nodule.
+    /// Returns true if no border of the object is near. With a border at t radii of the ball the mean of the points is
+    /// off the middle by (2/3) (1 - t^2)^(3/2) / (pi - acos t + t sqrt(1 - t^2)) of the radius: a quarter where the
+    /// border touches the nodule.
     [[nodiscard]] bool isInside(const Nodule& nodule) const
     {
-        // Of the radius: above what a bent surface (a tenth on a ball of 50 mm) and chance do, four standard deviations
-        // of 400 points below a quarter [1].
+        // The limit is a share of the radius [1]: more than a bent surface (a tenth on a ball of 50 mm) and chance
+        // give, and four standard deviations of 400 points below a quarter.
         constexpr double kOff   = 0.15;
         const double     radius = 2 * (nodule.radius + footprint_);
         const auto       near   = index_.gather(nodule.centre, radius);
         glm::dvec3       mean(0);
         for (const std::uint32_t point : near) mean += cloud_.positions()[point] - nodule.centre;
-        return glm::length(mean) / double(near.size()) < kOff * radius; // it is one of the points itself
+        return glm::length(mean) / double(near.size()) < kOff * radius; // the middle is one of the points
     }
 
     const Hunt&       hunt_;
@@ -190,17 +191,18 @@ private:
     double            footprint_; ///< [m]
 };
 
-/// \param change  of the stiffness at most, relative [1]
+/// Checks that a nodule can be felt.
+/// \param change  largest relative change of the stiffness [1]
 void demandFelt(std::size_t nodule, const Nodule& one, double change)
 {
-    constexpr double kLeast = 1e-3; // [1] a seventieth of what a finger tells apart (Weber fraction 0.07)
+    constexpr double kLeast = 1e-3; // [1] a seventieth of the change that a finger notices (Weber fraction 0.07)
     if (change < kLeast)
         throw Error("hunt: nodule " + std::to_string(nodule + 1) +
                     ": key \"modulus\": expected another than the object has there, found " +
                     formatQuantity(one.modulus, "Pa") + ", which nobody can feel");
 }
 
-/// Evenly in the logarithm.
+/// Returns a random value, evenly distributed in the logarithm.
 double between(double low, double high, Uniform& random)
 {
     return low * std::pow(high / low, random());

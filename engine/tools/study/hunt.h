@@ -12,7 +12,7 @@
 
 namespace palp::study {
 
-/// A ball of another stiffness under the surface. At its radius the modulus is the geometric mean of what is inside and
+/// A ball of another stiffness under the surface. At its radius the modulus is the geometric mean of those inside and
 /// outside; it fades over a quarter of the radius to either side, so that no edge is sharper than points can show.
 struct Nodule {
     glm::dvec3 centre{};    ///< [m] on the object
@@ -21,32 +21,32 @@ struct Nodule {
 
     static constexpr double kFade = 0.25; ///< share of the radius [1]
 
-    /// How much of its modulus counts so far from its middle [m]: 1 inside, 1/2 at the radius, 0 outside [1].
+    /// Returns the weight of its modulus at a distance [m] from its middle: 1 inside, 1/2 at the radius, 0 outside [1].
     [[nodiscard]] double share(double distance) const noexcept;
 };
 
-/// What is hidden in a scene, and what counts when somebody looks for it.
+/// The nodules that are hidden in a scene, and the limits by which a search for them is scored.
 struct Hunt {
     std::vector<Nodule> nodules;                           ///< as given; empty: `count` random ones
-    std::size_t         count       = 0;                   ///< [1]
+    std::size_t         count       = 0;                   ///< of random ones
     double              leastRadius = 0, mostRadius = 0;   ///< of random ones [m]
-    double              leastModulus = 0, mostModulus = 0; ///< the same, evenly in the logarithm [Pa]
+    double              leastModulus = 0, mostModulus = 0; ///< of random ones, even in the logarithm [Pa]
     double ground     = 0;   ///< [m] radius about the scene's place: random nodules lie in it; 0: all of the object
-    double pressForce = 0.2; ///< from here on a finger that goes along an edge traces it [N]
+    double pressForce = 0.2; ///< least force with which a finger that moves along an edge traces it [N]
     double tooHard    = 2;   ///< a trainer's limit [N]
 };
 
 /// Reads a hunt from JSON: {"nodules": [{"at": [x, y, z], "radius": "4 mm", "modulus": "3 MPa"}, ...]} or {"random":
-/// {"count": 4, "radius": ["3 mm", "6 mm"], "modulus": [6e5, 3e6]}}, and perhaps "ground", "press_force", "too_hard".
-/// \param what  opens complaints
+/// {"count": 4, "radius": ["3 mm", "6 mm"], "modulus": [6e5, 3e6]}}; "ground", "press_force", "too_hard" are optional.
+/// \param what  name of the text that begins errors
 /// \throws Error naming the nodule, the key, what was expected and found
 [[nodiscard]] Hunt parseHunt(std::string_view text, const std::string& what);
 
-/// The hunt as parseHunt() reads it.
+/// Writes the hunt as parseHunt() reads it.
 [[nodiscard]] std::string huntJson(const Hunt& hunt);
 
-/// Where the nodules lie: as given, or with a seed at random places, the same on every machine. Random ones keep a
-/// footprint's radius from each other, lie within the ground, and have all of their edge on the object.
+/// Returns the nodules at their places: as given, or with a seed at random places, the same on every machine. Random
+/// ones keep a footprint's radius from each other, lie within the ground, and have their whole edge on the object.
 /// \param place            the scene's [m]
 /// \param footprintRadius  of the fingertip [m]
 /// \throws Error naming a nodule that lies beside the object, overlaps another, is too small for the cloud's points, or
@@ -55,8 +55,8 @@ struct Hunt {
                                                 const PointCloud& cloud, const glm::dvec3& place,
                                                 double footprintRadius);
 
-/// The cloud with the nodules laid over its stiffness: E = E0^(1-s) E_nodule^s with s = Nodule::share().
-/// \throws Error naming a nodule that changes the stiffness so little that nobody can feel it
+/// Returns the cloud with the nodules laid over its stiffness: E = E0^(1-s) E_nodule^s with s = Nodule::share().
+/// \throws Error naming a nodule whose change of stiffness is too small to be felt
 [[nodiscard]] PointCloud withNodules(const PointCloud& cloud, const std::vector<Nodule>& nodules,
                                      const Material& material);
 

@@ -27,7 +27,7 @@ std::string missedInk()
     return hexColour(kNamedColours[1]);
 }
 
-/// A scene's places on the page.
+/// The projection of a scene's places onto the page.
 struct Page {
     Frame      frame;
     glm::dvec3 middle;
@@ -42,7 +42,7 @@ struct Page {
 
 Page pageOf(const PointCloud& cloud, const glm::dvec3& place, const glm::dvec3& outward, double ground)
 {
-    constexpr double kEdge = 560, kMargin = 1.06; // [px], so that no mark touches the border [1]
+    constexpr double kEdge = 560, kMargin = 1.06; // [px], and a factor by which no mark touches the border [1]
     const Frame      frame = Frame::about(glm::normalize(outward));
     double           reach = ground;
     if (reach <= 0)
@@ -58,10 +58,10 @@ Page pageOf(const PointCloud& cloud, const glm::dvec3& place, const glm::dvec3& 
              Axis(shown, Scale::linear, "m", int(kEdge / 70))}};
 }
 
-/// Some of the object's points, so that one sees what was felt.
+/// Draws some of the object's points, which show its shape.
 void drawObject(SvgDrawing& svg, const Page& page, const PointCloud& cloud)
 {
-    constexpr std::size_t kMost = 4000; // [1] dots: the shape, and no megabytes
+    constexpr std::size_t kMost = 4000; // dots: enough for the shape, in a small file
     const std::size_t     step  = cloud.size() / kMost + 1;
     SvgPath               dots;
     for (std::size_t i = 0; i < cloud.size(); i += step) dots.dotAt(page.at(cloud.positions()[i]));
@@ -137,7 +137,7 @@ std::string huntSvg(const HuntScore& score, const PointCloud& cloud, const glm::
     svg.beginClip(page.plot.corner, page.plot.size);
     drawObject(svg, page, cloud);
     drawNodules(svg, page, score);
-    drawWay(svg, page, score); // it may go along an edge
+    drawWay(svg, page, score); // the path may follow an edge
     drawDeclarations(svg, page, score);
     svg.endClip();
     drawFrame(svg, page.plot, "east of the place", "north of the place");

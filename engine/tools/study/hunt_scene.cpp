@@ -40,7 +40,7 @@ void readHunt(Scene& scene, const WrittenValue& given)
     scene.overlay = std::move(hidden);
 }
 
-/// After the hunt.
+/// Reads the seed, which comes after the hunt.
 void readSeed(Scene& scene, const WrittenValue& given)
 {
     const HiddenNodules* const hidden = hiddenIn(scene);

@@ -11,18 +11,19 @@ namespace palp::study {
 class HiddenNodules : public CloudOverlay {
 public:
     Hunt                         hunt;
-    std::optional<std::uint64_t> seed; ///< places the nodules anew; empty: where the hunt has them
+    std::optional<std::uint64_t> seed; ///< places the nodules at random; empty: at the hunt's own places
 
     [[nodiscard]] PointCloud over(const PointCloud& cloud, const Scene& scene) const override;
 
-    /// Where they lie in this cloud. \throws Error as hiddenNodules() does
+    /// Returns the nodules at their places in this cloud.
+    /// \throws Error as hiddenNodules() does
     [[nodiscard]] std::vector<Nodule> nodules(const PointCloud& cloud, const Scene& scene) const;
 };
 
-/// The keys "hunt" and "hunt_seed", for SceneOverrides::toolKeys.
+/// Returns the keys "hunt" and "hunt_seed", for SceneOverrides::toolKeys.
 [[nodiscard]] const std::vector<SceneKey>& huntKeys();
 
-/// What is hidden in a scene that was read with huntKeys(); null for nothing.
+/// Returns the nodules that are hidden in a scene that was read with huntKeys(); null if there are none.
 [[nodiscard]] const HiddenNodules* hiddenIn(const Scene& scene);
 
 } // namespace palp::study

@@ -14,7 +14,8 @@
 namespace palp::study {
 namespace {
 
-/// The points on which nodules may lie, on the hand's side or not: sides are not told apart.
+/// Returns the points on which nodules may lie. They include the side that is turned away from the hand, because sides
+/// are not distinguished.
 std::vector<glm::dvec3> groundOf(const Scene& scene, const PointCloud& cloud)
 {
     const HiddenNodules* const hidden = hiddenIn(scene);
@@ -42,7 +43,7 @@ HuntScorer::HuntScorer(const Scene& scene, const PointCloud& cloud)
 
 void HuntScorer::add(const TickRecord& sample)
 {
-    constexpr double kLost = 0.1; // [s] a longer gap was no touch that could be followed
+    constexpr double kLost = 0.1; // [s] a touch cannot be followed across a longer gap
     if (sample.time < last_) begun_ += last_, last_ = -1, held_ = 0;
     const double dt  = last_ < 0 || sample.time - last_ > kLost ? 0 : sample.time - last_;
     last_            = sample.time;
@@ -88,7 +89,7 @@ void HuntScorer::press(const TickRecord& sample, double now)
 
 void HuntScorer::declare(double time, const glm::dvec3& place)
 {
-    constexpr std::size_t kMost = 10'000; // [1] of declarations that are kept: nobody means more
+    constexpr std::size_t kMost = 10'000; // declarations that are kept, more than a person makes
     const auto   gap = [&](const NoduleScore& n) { return glm::distance(place, n.nodule.centre) - n.nodule.radius; };
     const auto   nearest = std::ranges::min_element(score_.nodules, {}, gap);
     const double away    = glm::distance(place, nearest->nodule.centre);
@@ -117,7 +118,7 @@ void HuntScorer::trace(const TickRecord& sample)
         const glm::dvec3 from   = sample.proxy - nodule.centre;
         if (glm::length(from) > nodule.radius + 2 * band) continue;
         Edge& edge = edges_[i];
-        if (!edge.known) edge = {Frame::about(sample.normal), 0, true}; // the surface turns little across a nodule
+        if (!edge.known) edge = {Frame::about(sample.normal), 0, true}; // the normal changes little across a nodule
         const double east = glm::dot(from, edge.frame.east), north = glm::dot(from, edge.frame.north);
         if (std::abs(std::hypot(east, north) - nodule.radius) > band) continue;
         const double turn = std::atan2(north, east) / (2 * std::numbers::pi); // [1] -1/2 to 1/2
@@ -128,7 +129,7 @@ void HuntScorer::trace(const TickRecord& sample)
 
 void HuntScorer::cover(const glm::dvec3& place)
 {
-    constexpr double kStep = 0.25; // of the footprint's radius: what lies between is covered from both sides [1]
+    constexpr double kStep = 0.25; // share of the footprint's radius [1]; the ground between is covered from both sides
     if (coveredAny_ && glm::distance(place, coveredAt_) < kStep * footprint_) return;
     coveredAny_ = true;
     coveredAt_  = place;
@@ -138,8 +139,8 @@ void HuntScorer::cover(const glm::dvec3& place)
 
 void HuntScorer::draw(const TickRecord& sample)
 {
-    constexpr double      kStep = 0.1;     // of the footprint's radius: finer than a picture shows [1]
-    constexpr std::size_t kMost = 200'000; // [1] of places: more are a grey patch, and megabytes
+    constexpr double      kStep = 0.1;     // share of the footprint's radius, finer than a picture shows [1]
+    constexpr std::size_t kMost = 200'000; // places; more would fill an area in a large file
     auto&                 path  = score_.path;
     if (!touching_ || path.empty()) path.emplace_back();
     if (!path.back().empty() && glm::distance(path.back().back(), sample.proxy) < kStep * footprint_) return;

@@ -22,7 +22,7 @@ struct Rated {
     std::size_t n   = 0;
 };
 
-/// Everything about one condition in one task.
+/// All answers about one condition in one task.
 struct Group {
     AnswerSummary                summary;
     std::vector<double>          ratings;

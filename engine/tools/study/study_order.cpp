@@ -10,7 +10,7 @@
 namespace palp::study {
 namespace {
 
-/// By Fisher and Yates, with numbers that are the same on every machine.
+/// Shuffles by Fisher and Yates, with numbers that are the same on every machine.
 template <class T>
 void shuffle(std::vector<T>& list, Uniform& random)
 {
@@ -18,7 +18,8 @@ void shuffle(std::vector<T>& list, Uniform& random)
         std::swap(list[left - 1], list[std::min(std::size_t(random() * double(left)), left - 1)]);
 }
 
-/// A stream of its own for each use of the plan's seed. \param use  what for, below 2^16
+/// Returns a separate random stream for each use of the plan's seed.
+/// \param use  identifies the use, below 2^16
 std::uint64_t seedFor(const StudyPlan& plan, std::uint64_t participant, std::uint64_t use)
 {
     return plan.seed ^ participant << 32U ^ use << 48U;
@@ -100,7 +101,7 @@ std::uint64_t participantNumber(std::string_view name)
                       std::ranges::all_of(name, [&](char c) { return isDigit(c) || isLetter(c); });
     std::size_t begin = name.size();
     while (begin > 0 && isDigit(name[begin - 1])) --begin;
-    constexpr std::uint64_t kMost  = 1'000'000; // [1] participants: orders repeat long before
+    constexpr std::uint64_t kMost  = 1'000'000; // participants; orders repeat long before
     const auto              number = parseCount(name.substr(begin));
     if (!good || name.starts_with('-') || !number || *number < 1 || *number > kMost)
         throw Error("--participant: expected letters, digits, - and _ that end in a number from 1 on, such as P01 "

@@ -7,8 +7,8 @@
 
 namespace palp::study {
 
-/// Orders of n conditions, one a row, in which each condition comes equally often at each place and right after each
-/// other one: n rows for even n, twice as many for odd n, where each row comes backwards too.
+/// Returns orders of n conditions, one per row, in which each condition is equally often at each place and directly
+/// after each other one: n rows for even n, twice as many for odd n, where each row is also reversed.
 ///
 ///     even n, row 0:  0 1 n-1 2 n-2 ...     row i: + i, modulo n
 /// \param n  at least 1
@@ -17,22 +17,22 @@ namespace palp::study {
 
 /// One trial of one participant.
 struct Trial {
-    std::size_t                task = 0, block = 0; ///< index into StudyPlan::tasks, counted through the study [1]
+    std::size_t                task = 0, block = 0; ///< index into StudyPlan::tasks, number in the study
     std::size_t                first = 0;           ///< index into StudyPlan::conditions
-    std::optional<std::size_t> second{};            ///< of a two-alternative task
-    std::optional<std::string> right{};             ///< answer: "yes", "no", "first", "second"; empty: none is
+    std::optional<std::size_t> second{};            ///< the same, in a two-alternative task
+    std::optional<std::string> right{};             ///< "yes", "no", "first", "second"; empty: no answer is right
 };
 
-/// All trials of a participant, task by task. Each repetition of a rating or a question is a block: a row of the
-/// Williams design, the next one for the next block and for the next participant, so that as many participants as the
-/// design has rows (or a multiple) balance it; which condition is which letter of the design follows from the seed. A
-/// two-alternative task is one block with every pair as often in either order as its repetitions allow (an odd one
-/// alternates from participant to participant), shuffled by seed and participant.
+/// Returns all trials of a participant, task by task. Each repetition of a rating or a question is a block: a row of
+/// the Williams design, the next one for the next block and for the next participant. The orders are balanced over as
+/// many participants as the design has rows, or a multiple. The seed assigns the conditions to the letters of the
+/// design. A two-alternative task is one block with every pair as often in either order as its repetitions allow (an
+/// odd one alternates from participant to participant), shuffled by seed and participant.
 /// \param participant  number, from 1
 [[nodiscard]] std::vector<Trial> trialsOf(const StudyPlan& plan, std::uint64_t participant);
 
-/// The number at the end of a participant's name, "P01": 1.
-/// \throws Error if there is none, or the name is no name of a folder (letters, digits, '-', '_')
+/// Returns the number at the end of a participant's name, "P01": 1.
+/// \throws Error if there is none, or the name cannot be a folder's (letters, digits, '-', '_')
 [[nodiscard]] std::uint64_t participantNumber(std::string_view name);
 
 } // namespace palp::study

@@ -18,13 +18,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kLargestFile    = std::size_t(1) << 20; ///< [bytes] real plans have a few thousand
-constexpr int         kMostConditions = 26, kMostTasks = 20, kMostRepetitions = 100; ///< [1] more tire everybody out
-constexpr double      kLeastSeconds = GovernorSettings{}.engageTime; ///< of one touch [s]: before it no force is whole
+constexpr std::size_t kLargestFile    = std::size_t(1) << 20; ///< [bytes]; real plans have a few thousand
+constexpr int         kMostConditions = 26, kMostTasks = 20, kMostRepetitions = 100; ///< more would tire participants
+constexpr double      kLeastSeconds = GovernorSettings{}.engageTime; ///< of one touch [s]; then the force is fully on
 constexpr double      kMostSeconds  = 3600;                          ///< of one touch [s]
-constexpr std::size_t kLongestText  = 500;                           ///< [bytes] of what a participant reads at once
+constexpr std::size_t kLongestText  = 500;                           ///< [bytes] of a text that a participant reads
 
-/// A text that a terminal and a table can show.
+/// Reads a text that a terminal and a table can show.
 std::string textOf(const JsonObject& object, const char* key)
 {
     const std::string text = object.text(key);
@@ -34,7 +34,7 @@ std::string textOf(const JsonObject& object, const char* key)
     return text;
 }
 
-/// The members of a list of objects, each called after its kind and number in complaints.
+/// Returns the members of a list of objects, each named by its kind and number in errors.
 std::vector<JsonObject> objectsIn(const JsonObject& object, const char* key, const std::string& kind, int most)
 {
     const Json list = Json::parse(object.json(key));
@@ -49,14 +49,14 @@ std::vector<JsonObject> objectsIn(const JsonObject& object, const char* key, con
 
 using Flags = std::map<std::string, std::string, std::less<>>;
 
-/// Values as a scene file has them, in the spelling of flags.
+/// Returns values as in a scene file, in the spelling of flags.
 void addValues(Flags& flags, const JsonObject& condition)
 {
     if (!condition.has("values")) return;
     const JsonObject              values = condition.object("values");
     std::vector<std::string_view> known;
     for (const SceneKey* key : sceneKeysWith(&huntKeys()))
-        if (key->name != "cloud") known.push_back(key->name); // another scene says that better
+        if (key->name != "cloud") known.push_back(key->name); // another cloud needs another scene
     values.allowOnly(known);
     for (const std::string_view key : known) {
         if (!values.has(key)) continue;
@@ -94,7 +94,7 @@ std::size_t indexOf(const std::vector<Condition>& conditions, const std::string&
                 (meant ? "; did you mean \"" + std::string(*meant) + "\"?" : ""));
 }
 
-/// A list of names of conditions.
+/// Reads a list of names of conditions.
 std::vector<std::size_t> conditionsIn(const Json& list, const std::vector<Condition>& conditions,
                                       const std::string& where)
 {
@@ -107,7 +107,7 @@ std::vector<std::size_t> conditionsIn(const Json& list, const std::vector<Condit
     return found;
 }
 
-/// "yes_for" and "no_for".
+/// Reads "yes_for" and "no_for".
 void readAnswers(Task& task, const JsonObject& object, const std::vector<Condition>& conditions)
 {
     task.yes.resize(conditions.size());

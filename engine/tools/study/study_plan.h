@@ -14,9 +14,9 @@
 
 namespace palp::study {
 
-/// One thing that participants feel.
+/// One object that participants feel.
 struct Condition {
-    std::string name; ///< never shown to them
+    std::string name; ///< never shown to participants
     Scene       scene;
 };
 
@@ -32,37 +32,38 @@ constexpr auto namesOf(TaskKind)
         {{rating, "rating"}, {yesNo, "yes-no"}, {twoAlternative, "two-alternative"}});
 }
 
-/// What participants are asked.
+/// A question that participants answer.
 struct Task {
     std::string name, question;
     TaskKind    kind = TaskKind::rating;
-    std::string least, most; ///< what 1 and 5 mean; may be empty
+    std::string least, most; ///< the meanings of 1 and 5; may be empty
 
     std::vector<std::optional<bool>>        yes;   ///< the right answer per condition; empty where none is stated
-    std::vector<std::array<std::size_t, 2>> pairs; ///< of conditions, as the plan lists them
-    std::optional<std::size_t>              right; ///< 0 or 1: which of a pair as listed is the right answer
+    std::vector<std::array<std::size_t, 2>> pairs; ///< of conditions, in the plan's order
+    std::optional<std::size_t>              right; ///< 0 or 1: the right answer of each pair as listed
 };
 
-/// A study: what is felt, what is asked, how often.
+/// A study: its conditions, its questions and their repetitions.
 ///
 /// Invariant of what readPlan() returns: names are unique, pairs are of known conditions, every scene is valid.
 struct StudyPlan {
     std::string            title;
-    std::uint64_t          seed        = 1;      ///< of orders [1]
+    std::uint64_t          seed        = 1;      ///< of orders
     double                 seconds     = 8;      ///< of one touch [s]
-    std::string            hand        = "scan"; ///< as --hand; the command line wins
-    int                    repetitions = 1;      ///< of each condition or pair in a task [1]
+    std::string            hand        = "scan"; ///< as --hand, which overrides it
+    int                    repetitions = 1;      ///< of each condition or pair in a task
     std::vector<Condition> conditions;
     std::vector<Task>      tasks;
-    std::string            canonical; ///< everything that decides the study, as one text: two plans are equal or not
+    std::string            canonical; ///< all that defines the study, as one text, to compare plans
 };
 
-/// Reads a plan: JSON, comments allowed. Scenes are paths from the plan's folder; a condition's "preset" and "values"
-/// lie over its scene as flags do, "values" over "preset". The environment says nothing: a study is its plan.
-/// \throws Error, one sentence: the file, the condition or task, the key, what was expected and found
+/// Reads a plan: JSON, comments allowed. Scenes are paths from the plan's folder. A condition's "preset" and "values"
+/// override its scene as flags do, and "values" override "preset". Environment variables have no effect, so that the
+/// plan defines the study.
+/// \throws Error naming the file, the condition or task, the key, what was expected and found
 [[nodiscard]] StudyPlan readPlan(const std::filesystem::path& file);
 
-/// The same from a text that is called `name` and lies in `folder`.
+/// Reads the same from a text that is called `name` and lies in `folder`.
 [[nodiscard]] StudyPlan parsePlan(std::string_view text, const std::string& name, const std::filesystem::path& folder);
 
 } // namespace palp::study

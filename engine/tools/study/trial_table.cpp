@@ -19,7 +19,7 @@ constexpr std::size_t kLargestFile = std::size_t(64) << 20; ///< [bytes] of a ta
 struct Column {
     const char* name;
     std::string (*write)(const TrialRow&);
-    /// False: it is no such value.
+    /// Reads the column's value; false if the text is no such value.
     bool (*read)(TrialRow&, const std::string&);
 };
 
@@ -63,7 +63,7 @@ bool readCorrect(TrialRow& row, const std::string& text)
     return text.empty() || row.correct;
 }
 
-/// The only list of columns: header, rows and the reader walk it.
+/// The only list of columns: the header, the rows and the reader follow it.
 constexpr Column kColumns[] = {
     textColumn<&TrialRow::participant>("participant"),
     countColumn<&TrialRow::trial>("trial"),
@@ -107,7 +107,7 @@ std::string header()
     return line([](const Column& column) { return std::string(column.name); });
 }
 
-/// The cells of a line; no cell holds the end of one.
+/// Returns the cells of a line; no cell contains the end of a line.
 std::vector<std::string> cellsOf(std::string_view text)
 {
     std::vector<std::string> cells(1);
@@ -139,7 +139,7 @@ TrialRow rowOf(std::string_view text, const std::string& where)
     return row;
 }
 
-/// All whole lines of a table.
+/// Returns all whole lines of a table.
 std::string wholeLines(const std::filesystem::path& file)
 {
     std::string text = readWhole(file, kLargestFile, "a table of trials of at most 64 MiB");
@@ -164,7 +164,8 @@ std::vector<TrialRow> rowsOf(const std::string& text, const std::filesystem::pat
     return rows;
 }
 
-/// Appends bytes and waits until the disk has them. \throws Error; then the file is as long as before
+/// Appends bytes and waits until the disk has them.
+/// \throws Error naming the file and the reason; then the file has its former length
 void appendNow(const std::filesystem::path& file, const std::string& bytes)
 {
     const int handle = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
@@ -173,7 +174,7 @@ void appendNow(const std::filesystem::path& file, const std::string& bytes)
     const ssize_t written = ::write(handle, bytes.data(), bytes.size());
     const bool    good    = written == ssize_t(bytes.size()) && ::fsync(handle) == 0;
     const int     why     = errno;
-    if (!good && ::ftruncate(handle, before) != 0) errno = why; // then a line is cut, which the next run removes
+    if (!good && ::ftruncate(handle, before) != 0) errno = why; // the next run removes the cut line
     ::close(handle);
     if (!good)
         throw Error(file.string() + ": cannot be written: " +
