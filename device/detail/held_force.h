@@ -10,7 +10,7 @@ inline constexpr double kForceFall   = 20e-3; ///< [s] of the fall to zero that 
 inline constexpr double kHostTooSlow = 0.1;   ///< [s] from which on the fault is DeviceFault::hostTooSlow
 
 /// Returns the share of the last force that may still act [1].
-/// \param age  [s] since it was asked for
+/// \param age  [s] since it was requested
 [[nodiscard]] inline double heldShare(double age) noexcept
 {
     return 1 - std::clamp((age - kForceHold) / kForceFall, 0.0, 1.0);

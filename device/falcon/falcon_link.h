@@ -25,7 +25,7 @@ enum class FalconDivisor : std::uint16_t {
     run    = 0x0002  ///< 1 500 000 baud: the firmware runs
 };
 
-/// A link that is broken for good: another one must be opened. The device may be there, and push.
+/// A link that is permanently broken: another one must be opened. The device may be there, and push.
 class LinkLost : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
@@ -49,7 +49,7 @@ public:
     /// Returns the link's clock [s], by which its timeouts run: steady time, or the emulator's virtual time.
     [[nodiscard]] virtual double now() const noexcept = 0;
 
-    /// \throws LinkLost
+    /// \throws LinkLost if the link fails
     virtual void control(FtdiRequest request, std::uint16_t value) = 0;
 
     /// Writes all bytes or throws LinkLost; waits 0.1 s at most. On a link that is lost but not gone it still tries

@@ -39,7 +39,7 @@ struct FalconListing {
 /// kernel and goes out while the caller continues; if it fails, the next call reports it. All work is done inside the
 /// calls: there is no thread. Waiting ends when something comes in; the end of a wait is rounded up to whole
 /// milliseconds. Each write, and each transfer that came in, costs one small allocation inside libusb: do not use the
-/// link on a thread that must not allocate. Any failed transfer loses the link for good: a new link starts from
+/// link on a thread that must not allocate. Any failed transfer loses the link permanently: a new link starts from
 /// nothing, as the device needs as well. The loss is a LinkGone only if the device is no longer there. Destruction
 /// waits up to 0.1 s for the last write, then cancels all transfers and closes the device.
 ///
