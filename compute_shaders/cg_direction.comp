@@ -19,5 +19,5 @@ void main()
     if (n >= push.nodes) return;
     real beta = state[int(load) * kStateWords + kStateBeta];
     n += load * push.nodes;
-    p[n] = beta == real(0.0f) ? real(z[n]) : real(z[n]) + beta * p[n]; // before the first, p is whatever memory held
+    p[n] = beta == real(0.0f) ? real(z[n]) : real(z[n]) + beta * p[n]; // before the first direction, p holds undefined memory
 }

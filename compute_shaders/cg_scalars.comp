@@ -1,8 +1,8 @@
-// cg_scalars.comp - completes the dot products, makes of them the numbers of a step, and stops a finished solve.
+// cg_scalars.comp - completes the dot products, computes the numbers of a step, and stops a finished solve.
 // Domain     one workgroup, of a power of two of invocations; loads one after the other
 // Reads      partial sums (real), see cg_dot.comp; state of the loads (real), see cg_state.h
-// Writes     state of the loads; with PALPATE_STEP, when every load is finished, zeroes to the arguments of the indirect
-//            dispatches, so that whatever was recorded after this does nothing
+// Writes     state of the loads; with PALPATE_STEP, when every load is finished, zeroes to the arguments of the
+//            indirect dispatches, so that everything recorded after this does nothing
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -20,7 +20,8 @@ layout(std430, binding = 2) writeonly buffer Arguments { uint arguments[]; };
 const int kMostInvocations = 256; // of this workgroup
 shared real sums[kMostInvocations];
 
-// Every invocation gets the sum of the numbers at first, first + 1, ...; the order depends on the workgroup's size only.
+// Every invocation gets the sum of the numbers at first, first + 1, ...; the order depends on the workgroup's size
+// only.
 real total(uint first)
 {
     uint t = gl_LocalInvocationID.x, width = gl_WorkGroupSize.x;

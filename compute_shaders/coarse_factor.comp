@@ -1,8 +1,8 @@
 // coarse_factor.comp - Cholesky factor of the coarsest level's band, A = L L'.
 // Domain     one workgroup; unknown after unknown, the columns within reach updated side by side
 // Reads      columns of the lower triangle of A (real)
-// Writes     columns of L (real), with the inverse of the diagonal in its place, 0 where rounding has left no pivot; how
-//            often that was
+// Writes     columns of L (real), with the inverse of the diagonal in its place, 0 where rounding has left no pivot;
+//            the number of such pivots
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -33,7 +33,7 @@ void main()
     }
     barrier();
     for (int n = 0; n < unknowns; ++n) {
-        if (!moves[n]) continue; // a held node is 0 and changes nothing: for all invocations alike
+        if (!moves[n]) continue; // a held node is 0 and changes nothing; the branch is the same for all invocations
         barrier();
         real solved = right[n] * factor[n * slots];
         if (lane == 0) middle[n] = solved;

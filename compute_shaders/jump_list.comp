@@ -1,7 +1,7 @@
 // jump_list.comp - the marked tiles as a list, in their own order.
 // Domain     one workgroup; each invocation lists a stretch of the tiles
 // Reads      marks of the tiles
-// Writes     how many tiles are marked, at most kMostListed, then their numbers
+// Writes     number of marked tiles, at most kMostListed, then their indices
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

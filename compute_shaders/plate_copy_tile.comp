@@ -1,4 +1,4 @@
-// plate_copy_tile.comp - takes over what plate_relax_tile.comp wrote aside.
+// plate_copy_tile.comp - copies the deflections that plate_relax_tile.comp wrote aside.
 // Domain     as plate_relax_tile.comp
 // Reads      list of tiles, new deflections
 // Writes     deflection of nodes of push.colour of these tiles

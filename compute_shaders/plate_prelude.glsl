@@ -1,4 +1,4 @@
-// plate_prelude.glsl - what every kernel of the plate begins with.
+// plate_prelude.glsl - the common beginning of every kernel of the plate.
 //
 // Invocations   x over j (z of the plate, contiguous in memory), y over i, z over loads
 // Fields        one number per node, node (i, j) at [i nodesZ + j]; several loads one after the other

@@ -1,22 +1,22 @@
 // plate_region.glsl - red-black sweeps of a part of a level in shared memory, for plate_down.comp and plate_up.comp.
 //
-// A workgroup owns the nodes in the middle of a square region and computes the rim as well, which others own: each half
+// A workgroup owns the nodes in the middle of a square region and also computes the rim, which others own: each half
 // sweep is right two nodes less far out than the one before. So several sweeps take one pass over memory, and one
-// dispatch, at the price of computing the rim twice or more often. What comes out is what sweep after sweep of
-// plate_relax.comp gives, to the bit.
+// dispatch, at the price of computing the rim twice or more often. The result equals that of sweep after sweep of
+// plate_relax.comp, to the bit.
 //
-// The includer declares D, inverseDivisor and force, and  PlateLevel region()  which gives the level.
+// The includer declares D, inverseDivisor and force, and  PlateLevel region(),  which returns the level.
 
 #include "compute_shaders/shared/region_layout.h"
 
-layout(constant_id = 3) const int kSweeps = 2; // before, or after, the correction [1]
+layout(constant_id = 3) const int kSweeps = 2; // before, or after, the correction
 const int kRim = kRimPerSweep * kSweeps; // [nodes]
-const int kOwned = kRegion - 2 * kRim; // nodes along either side of what a workgroup answers for
+const int kOwned = kRegion - 2 * kRim; // nodes along either side of the part that a workgroup owns
 
 shared float tile[kRegion * kRegion];
 
 int base;    // of the load's fields
-int cornerI; // of the region, may lie outside the grid
+int cornerI; // corner of the region, may lie outside the grid
 int cornerJ;
 
 int   placeOf(int i, int j) { return (i - cornerI) * kRegion + (j - cornerJ); }

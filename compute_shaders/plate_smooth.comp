@@ -32,7 +32,7 @@ void main()
     base = firstOfLoad(g);
     int n = i * nodesZ(g) + j;
     float w = deflection(i, j);
-    // What was in the memory before the first step is none of its business: it may not even be a number.
+    // The first step must not use the memory's old content, which may be NaN.
     float beforeThat = push.ahead == 0.0f ? w : after[base + n];
     // The inverse divisor of a held node is 0, so it stays where it is, at 0.
     after[base + n] = smoothed(w, beforeThat, force[base + n], operatorAt(g, i, j), inverseDivisor[n], push.ahead, push.step);

@@ -5,8 +5,8 @@
 // Writes     deflection of the first level, 0 on held nodes; deflections put aside on the way down, each invocation its
 //            own nodes'
 //
-// Small levels cost a dispatch what they cost to wait for: here a cycle on all of them is one. Invocations exchange
-// numbers through shared memory only. Sweeps, residual and transfers give what the dispatches one by one give, to the
+// A dispatch on a small level costs mainly the wait for it, so a cycle on all small levels is one dispatch. Invocations
+// exchange numbers through shared memory only. Sweeps, residual and transfers equal those of single dispatches, to the
 // bit; the coarsest level is solved by its inverse, which invocations share better than substitution.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -15,7 +15,7 @@
 #include "compute_shaders/plate_prelude.glsl"
 #include "compute_shaders/shared/tail_level.h"
 
-layout(constant_id = 3) const int kSweeps = 2; // before and after the correction [1]
+layout(constant_id = 3) const int kSweeps = 2; // before and after the correction
 const int kLanes = int(gl_WorkGroupSize.x);
 
 layout(push_constant) uniform Constants { TailPush push; };

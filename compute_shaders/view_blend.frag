@@ -1,5 +1,5 @@
-// view_blend.frag - second pass, adds up: the discs near the nearest depth, weighted by the distance from their middles.
-// Source     the idea of averaging overlapping splats: Zwicker et al. 2001, "Surface splatting"
+// view_blend.frag - second pass, adds up: the discs near the nearest depth, weighted by the distance from their
+// middles. Source     the idea of averaging overlapping splats: Zwicker et al. 2001, "Surface splatting"
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "compute_shaders/view_prelude.glsl"
@@ -16,7 +16,7 @@ layout(location = 1) out vec4 colours;
 
 void main()
 {
-    const float kSameSurface = 0.7; // of a radius: what is farther behind the nearest is another surface [1]
+    const float kSameSurface = 0.7; // of a radius: discs farther behind the nearest are another surface [1]
     float r2 = dot(within, within);
     if (r2 > 1.0) discard;
     float behind = depth - texelFetch(nearestDepth, ivec2(gl_FragCoord.xy), 0).r;

@@ -1,4 +1,4 @@
-// view_face.frag - a triangle of the cloud, as the light pass wants it; with PALPATE_FAST as it is lit already.
+// view_face.frag - a triangle of the cloud for the light pass; with PALPATE_FAST already lit.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "compute_shaders/view_prelude.glsl"

@@ -1,4 +1,4 @@
-// view_face.vert - corners of the cloud's triangles, where it has some.
+// view_face.vert - corners of the cloud's triangles, if it has any.
 // Writes     normal, depth [m] and colour for the light pass; with PALPATE_FAST the lit colour alone
 #version 460
 #extension GL_GOOGLE_include_directive : require

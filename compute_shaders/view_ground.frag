@@ -1,4 +1,4 @@
-// view_ground.frag - what is behind everything.
+// view_ground.frag - the background.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "compute_shaders/view_prelude.glsl"

@@ -1,6 +1,6 @@
-// view_light.frag - last pass: light, hollows and humps, the ground; leaves the depth for the shapes that follow.
-// The cue: how far the surroundings rise above the tangent plane here, in units of their distance. Hollows are darker,
-// humps lighter, so that a dent shows although its slope is slight.
+// view_light.frag - last pass: light, hollows and humps, the background; writes the depth for the shapes that follow.
+// The cue is the rise of the surroundings above the tangent plane here, in units of their distance. Hollows are darker
+// and humps lighter, so that a dent shows although its slope is slight.
 // Source     after Luft et al. 2006, "Image enhancement by unsharp masking the depth buffer", with the tangent plane in
 //            place of a blurred depth: a slope is no hollow
 #version 460
@@ -20,7 +20,7 @@ const vec2 kSpiral[kTaps] = vec2[](
     vec2(0.6846, 0.2500), vec2(-0.7123, 0.2940), vec2(0.3434, -0.7337), vec2(0.2537, 0.8089),
     vec2(-0.7647, -0.4432), vec2(0.8971, -0.1972), vec2(-0.5475, 0.7788), vec2(-0.1265, -0.9761));
 
-/// Mean rise of the surroundings within a radius [1].
+/// Returns the mean rise of the surroundings within a radius [1].
 float hollowness(vec2 at, vec3 place, vec3 normal, float radius)
 {
     const float kLeastPixels = 3.0;
@@ -32,7 +32,7 @@ float hollowness(vec2 at, vec3 place, vec3 normal, float radius)
         if (depth == 0.0) continue;
         vec3  rise     = placeAt(vec2(texel) + 0.5, depth) - place;
         float distance = length(rise);
-        float weight   = max(0.0, 1.0 - distance / (2.0 * radius)); // what is far in depth is another thing
+        float weight   = max(0.0, 1.0 - distance / (2.0 * radius)); // a point far in depth belongs to another surface
         sum += weight * dot(rise, normal) / (distance + 0.1 * radius);
         weights += weight;
     }
@@ -48,7 +48,7 @@ void main()
         gl_FragDepth = 1.0;
         return;
     }
-    const float kWider   = 3.5;                     // a second look finds dents that are wide and shallow [1]
+    const float kWider   = 3.5;                     // a second, wider radius finds wide and shallow dents [1]
     vec3  place  = placeAt(at, surface.w);
     float hollow = hollowness(at, place, surface.xyz, frame.cueRadius) +
                    hollowness(at, place, surface.xyz, kWider * frame.cueRadius);

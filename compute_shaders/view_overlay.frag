@@ -1,4 +1,4 @@
-// view_overlay.frag - a pixel of an overlay, which covers what is there by its alpha.
+// view_overlay.frag - a pixel of an overlay, blended over the picture by its alpha.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "compute_shaders/view_prelude.glsl"

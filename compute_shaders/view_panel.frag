@@ -1,4 +1,4 @@
-// view_panel.frag - a pixel of the panels, which were drawn when they changed and are laid over every picture since.
+// view_panel.frag - a pixel of the panels, which are drawn when they change and laid over every picture.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "compute_shaders/view_prelude.glsl"

@@ -9,7 +9,8 @@ layout(location = 0) out vec4 picture;
 
 void main()
 {
-    // The ray through the pixel meets the tangent plane so far towards the eye; all in the disc's radius.
+    // Distance towards the eye at which the ray through the pixel meets the tangent plane, in units of the disc's
+    // radius.
     vec2  at   = toEye.z * vec2(2.0 * gl_PointCoord.x - 1.0, 1.0 - 2.0 * gl_PointCoord.y);
     float rise = dot(slope, at);
     if (dot(at, at) - 2.0 * rise * dot(toEye.xy, at) + rise * rise > 1.0) discard;

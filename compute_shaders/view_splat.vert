@@ -1,5 +1,7 @@
 // view_splat.vert - a point of the cloud as a disc in its tangent plane: six corners of the square around it.
-// Reads      splats  Writes  place within the disc (-1 to 1), depth [m], normal and colour; with PALPATE_DEPTH the first two and the core
+// Reads      splats
+// Writes     place within the disc (-1 to 1), depth [m], normal and colour; with PALPATE_DEPTH the first two and
+//            the core
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "compute_shaders/view_prelude.glsl"
@@ -28,13 +30,13 @@ void main()
     if (away) normal = -normal;
     colour = unpackUnorm4x8(splat.colour).rgb;
 
-    // A disc smaller than a pixel may fall between the pixels' middles, and a dense cloud show holes.
+    // A disc smaller than a pixel may fall between the pixels' middles, so that a dense cloud would show holes.
     const float kLeastPixels = 1.0;
     radius      = max(abs(splat.radius), kLeastPixels / pixelsPerMetre(max(1e-6, -centre.z)));
     vec3 aside  = normalize(cross(normal, abs(normal.x) < 0.7 ? vec3(1, 0, 0) : vec3(0, 1, 0)));
     within      = kCorners[gl_VertexIndex % 6];
 #ifdef PALPATE_DEPTH
-    core = unpackUnorm4x8(splat.colour).a; // what lies beyond would be thrown away
+    core = unpackUnorm4x8(splat.colour).a; // the rest would be discarded
     within *= core;
 #endif
     vec3 place  = centre + radius * (within.x * aside + within.y * cross(normal, aside));

@@ -10,7 +10,7 @@ namespace palp {
 namespace {
 
 constexpr double kHostStall = 0.1; // [s] see DeviceFault::hostTooSlow
-constexpr double kLongest   = 1;   // [s] the arm moves on by no more in one exchange: 8000 pieces, some 0.5 ms
+constexpr double kLongest   = 1;   // [s] the arm moves on by at most this in one exchange: 8000 pieces, some 0.5 ms
 
 } // namespace
 
@@ -21,7 +21,7 @@ ArmDevice::ArmDevice(const SimulatedArmSettings& settings, const glm::dvec3& sta
         throw Error("arm: delaySamples must be from 1 to 7, found " + std::to_string(settings.delaySamples));
     info_.model            = "simulated arm";
     info_.workspaceRadius  = settings.boxRadius;
-    info_.maximumForce     = 8;    // N: as CHAI3D's table has it for the Falcon, which the arm is modelled on
+    info_.maximumForce     = 8;    // N: CHAI3D's value for the Falcon, which the arm is modelled on
     info_.maximumStiffness = 1000; // N/m: half of the 2137 N/m up to which the released arm is stable at 1 kHz
     info_.isSimulation     = true;
 }
@@ -49,13 +49,13 @@ HapticState ArmDevice::exchange(const GovernedForce& force, double now) noexcept
     const glm::dvec3 wanted = force.newtons();
     const bool       good   = std::isfinite(wanted.x + wanted.y + wanted.z);
     const double     passed = ticked_ ? now - last_ : 0;
-    if (!std::isfinite(now) || passed < 0) { // a clock that makes no sense: nothing moves, nothing is news
+    if (!std::isfinite(now) || passed < 0) { // the clock is unusable: nothing moves, and no answer is new
         ++state_.missed;
         return state_;
     }
     const bool late = passed > kHostStall;
     state_.fault    = !good ? DeviceFault::badForce : late ? DeviceFault::hostTooSlow : DeviceFault::none;
-    // A step holds the force of the step before: what was given the last time acted until now.
+    // A step holds the force of the step before: the force of the last exchange has acted until now.
     if (late) arm_.step({}, kHostStall);
     const double   left   = std::min(passed, kLongest) - (late ? kHostStall : 0);
     const ArmState sample = arm_.step(state_.fault == DeviceFault::none ? wanted : glm::dvec3(0), left);

@@ -4,11 +4,11 @@
 
 namespace palp {
 
-/// A SimulatedArm, and the hand that holds it, as a device: exchange() moves both on to `now`, by whatever clock the
-/// caller has, virtual or real. Its frame is the arm's. The force of an exchange acts from then on, after the delay of
-/// the settings: the arm's delay of n samples is n - 1 beyond that, so it must be at least 1.
+/// A SimulatedArm, and the hand that holds it, as a device: exchange() moves both on to `now` by the caller's clock,
+/// virtual or real. Its frame is the arm's. The force of an exchange acts from then on, after the delay of the
+/// settings: the arm's delay of n samples is n - 1 beyond that, so it must be at least 1.
 ///
-/// If exchange() stays away, the force acts for 100 ms, then none; what is beyond a second is left out.
+/// If exchange() is not called, the force acts for 100 ms, then none; time beyond one second is omitted.
 class ArmDevice : public HapticDevice {
 public:
     /// \param start  [m] where the arm rests when it is opened
@@ -25,7 +25,7 @@ public:
     /// \thread that of exchange(), or any while none runs
     void holdBy(const SimulatedHand& hand) noexcept;
 
-    /// Where the arm truly is.
+    /// Returns the true position of the arm.
     /// \thread as holdBy()
     [[nodiscard]] const SimulatedArm& arm() const noexcept { return arm_; }
 

@@ -6,11 +6,11 @@
 
 namespace palp {
 
-/// How a part of the machine is.
+/// The condition of a part of the machine.
 enum class Verdict : std::uint8_t {
     ok,
     warning, ///< it works, but worse than it could
-    missing  ///< what needs it does not work
+    missing  ///< whatever needs it does not work
 };
 constexpr auto namesOf(Verdict)
 {
@@ -22,8 +22,8 @@ constexpr auto namesOf(Verdict)
 struct Finding {
     std::string part; ///< "vulkan"
     Verdict     verdict = Verdict::ok;
-    std::string found;  ///< what there is
-    std::string help{}; ///< the one line that helps; empty: nothing is to be done
+    std::string found;  ///< what was found
+    std::string help{}; ///< one line that helps; empty if nothing is to be done
 };
 
 } // namespace palp

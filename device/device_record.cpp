@@ -30,7 +30,7 @@ DeviceList listDevices(std::span<const DeviceRecord* const> records, HidSystem& 
         std::vector<DeviceListing> found{{.usable = true}};
         try {
             if (record->list) found = record->list(hid);
-        } catch (const Error& error) { // two kinds may fail for one reason
+        } catch (const Error& error) { // two kinds may fail for the same reason
             found.clear();
             if (std::ranges::find(list.troubles, error.what()) == list.troubles.end())
                 list.troubles.emplace_back(error.what());

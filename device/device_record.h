@@ -13,28 +13,28 @@
 #include "device/haptic_device.h"
 #include "device/hid/hid_port.h"
 
-// One record per kind of haptic device. The commands, their help and falcon_demo know devices by their records alone:
-// the list of them is engine/session/device_registry.cpp.
+// One record per kind of haptic device. The commands, their help and falcon_demo know devices by their records alone;
+// engine/session/device_registry.cpp lists them.
 namespace palp {
 
 struct GrippingHand; // engine/session/gripped_arm.h; here it is only passed on
 
-/// Who moves a device.
+/// The mover of a device.
 enum class DeviceHolder : std::uint8_t {
-    person,       ///< somebody does, so that it runs in real time only
-    pointer,      ///< the pointer of a window does
+    person,       ///< a person moves it, so it runs in real time only
+    pointer,      ///< the pointer of a window moves it
     scriptedHand, ///< a scripted hand grips it, see DeviceRequest::hand
     nobody        ///< it moves or rests by itself
 };
 
-/// A device that is there.
+/// A device that was found.
 struct DeviceListing {
-    std::string name{};         ///< of its record; listDevices() fills it in
-    std::string model{};        ///< "SpaceMouse Compact"; empty: as the record says
-    std::string path{};         ///< where it is plugged in; empty for what is not
+    std::string name{};         ///< name of its record; listDevices() fills it in
+    std::string model{};        ///< "SpaceMouse Compact"; empty: the record's
+    std::string path{};         ///< where it is plugged in; empty for simulations
     bool        usable = false; ///< it can be opened now
     std::string why{};          ///< why it is not usable, or what it still needs; empty if it is ready
-    std::string help{};         ///< the one line that helps; may be empty
+    std::string help{};         ///< one line that helps; may be empty
 };
 
 /// An option of a device on the command line.
@@ -47,59 +47,60 @@ struct DeviceOption {
     double           least = 0, most = 0; ///< bounds of a number
 };
 
-/// The texts of options by their flags; that of a Kind::flag is "true", and an empty text was not given.
+/// The texts of options by their flags. The text of a Kind::flag is "true"; an empty text means that the option was not
+/// given.
 using DeviceOptionValues = std::map<std::string, std::string, std::less<>>;
 
 /// \throws Error naming the option, its bounds and what was found
 [[nodiscard]] double numberOf(const DeviceOption& option, const std::string& text);
 
-/// The text of an option; empty if it was not given.
+/// Returns the text of an option; empty if it was not given.
 [[nodiscard]] std::string textOf(const DeviceOptionValues& values, const DeviceOption& option);
 
-/// What this build can do about a kind of device.
+/// The support of this build for a kind of device.
 struct DeviceSupport {
     bool        isBuilt = true;
     std::string library; ///< "libusb-1.0 1.0.26", or "compiled without libusb-1.0"
     std::string help;    ///< how to build with it
 };
 
-/// What a device is made from.
+/// The arguments from which a device is made.
 struct DeviceRequest {
     HidSystem&                                    hid;            ///< of the HID devices; outlives the device
-    DeviceOptionValues                            options{};      ///< those of the record alone
-    std::string                                   path{};         ///< of a listing; empty: the first one that is usable
+    DeviceOptionValues                            options{};      ///< only those of the record
+    std::string                                   path{};         ///< path of a listing; empty: the first usable device
     const GrippingHand*                           hand = nullptr; ///< of DeviceHolder::scriptedHand; outlives make()
     std::function<void(std::size_t, std::size_t)> onUpload{};     ///< bytes of firmware sent so far, bytes in all
 };
 
-/// Everything that a program must know of one kind of device.
+/// All that a program must know of one kind of device.
 struct DeviceRecord {
-    std::string_view name;  ///< what `--hand` takes: "falcon"
-    std::string_view model; ///< what it is, for people: "Novint Falcon"
+    std::string_view name;  ///< the word that `--hand` takes: "falcon"
+    std::string_view model; ///< name for people: "Novint Falcon"
     DeviceHolder     holder = DeviceHolder::person;
 
-    bool simulated      = false; ///< no hardware is behind it
-    bool keepsSceneAxes = false; ///< its frame is not turned to face the surface, as that of a device on a table is
+    bool simulated      = false; ///< it has no hardware
+    bool keepsSceneAxes = false; ///< its frame is not turned to face the surface, unlike that of a device on a table
 
     std::span<const DeviceOption> options{};
 
-    /// The devices of this kind that are plugged in, each opened and let go again to see whether that works.
-    /// \throws Error if they cannot be looked for
+    /// Lists the devices of this kind that are plugged in. Each is opened and closed again to see whether that works.
     /// Null: there is always one.
+    /// \throws Error if the search fails
     std::vector<DeviceListing> (*list)(HidSystem& hid) = nullptr;
 
-    /// A device of this kind; HapticDevice::open() then opens it.
+    /// Makes a device of this kind; HapticDevice::open() then opens it.
     /// \throws Error naming what is missing, or an option out of its bounds
     std::unique_ptr<HapticDevice> (*make)(const DeviceRequest& request) = nullptr;
 
     DeviceSupport (*support)()         = nullptr; ///< null: every build supports it
-    std::vector<Finding> (*findings)() = nullptr; ///< what else it needs on this machine; may be null
+    std::vector<Finding> (*findings)() = nullptr; ///< checks its other needs on this machine; may be null
 };
 
-/// What listDevices() has found.
+/// The result of listDevices().
 struct DeviceList {
     std::vector<DeviceListing> devices;
-    std::vector<std::string>   troubles; ///< why some could not be looked for; one sentence each
+    std::vector<std::string>   troubles; ///< why some could not be searched for; one sentence each
 };
 
 /// Looks for the devices of these records, in their order.

@@ -10,36 +10,36 @@
 
 namespace palp {
 
-/// What a device is and can do. Valid before open(); what only the open device knows is filled in by it.
+/// A device's identity and abilities. They are valid before open(), which adds what only the open device knows.
 struct HapticDeviceInfo {
     std::string model;  ///< "Novint Falcon"
-    std::string path;   ///< where it is plugged in, to tell two apart; may be empty
+    std::string path;   ///< where it is plugged in, to distinguish two; may be empty
     std::string serial; ///< may be empty
 
-    double workspaceRadius  = 0; ///< [m] of the sphere about the origin in which the kinematics are good
-    double maximumForce     = 0; ///< [N] it holds in every direction of that sphere; 0: input only
-    double maximumStiffness = 0; ///< [N/m] of a wall it renders stably at 1 kHz
+    double workspaceRadius  = 0; ///< [m] of the sphere about the origin in which the kinematics are valid
+    double maximumForce     = 0; ///< [N] that it holds in every direction in that sphere; 0: input only
+    double maximumStiffness = 0; ///< [N/m] of a wall that it renders stably at 1 kHz
     double maximumDamping   = 0; ///< [N s/m]
 
-    unsigned buttons      = 0;     ///< how many
+    unsigned buttons      = 0;     ///< number of buttons
     bool     needsHoming  = false; ///< its position is unknown until the user has moved it to its stops
     bool     rotates      = false; ///< senses its orientation
     bool     hasGripper   = false; ///< senses how far the grip is closed
-    bool     isSimulation = false; ///< no hardware behind it
+    bool     isSimulation = false; ///< it has no hardware
 };
 
-/// Why a device gives no state, or no good one. Numbers are recorded: never reuse one.
+/// Why a device gives no valid state. Numbers are recorded: never reuse one.
 enum class DeviceFault : std::uint8_t {
     none        = 0,
     closed      = 1, ///< not opened yet, or closed
-    unplugged   = 2, ///< it went away while open; close(), and open() once it is back
-    silent      = 3, ///< more than 20 exchanges or 100 ms without an answer; or the link broke: close(), and open()
-    garbled     = 4, ///< answers that make no sense, as many
-    kinematics  = 5, ///< a position that the arm cannot have
-    ownWatchdog = 6, ///< the device says that it stopped by itself
-    badForce    = 7, ///< it was asked for a force that is not finite; it rendered none
-    startingUp  = 8, ///< being opened: upload, first exchange
-    hostTooSlow = 9  ///< exchange() was not called for 100 ms; the force had long gone by then
+    unplugged   = 2, ///< it went away while open; call close(), and open() once it is back
+    silent      = 3, ///< more than 20 exchanges or 100 ms without an answer, or a broken link: call close(), open()
+    garbled     = 4, ///< as many answers that are invalid
+    kinematics  = 5, ///< a position that is impossible for the arm
+    ownWatchdog = 6, ///< the device reports that it stopped by itself
+    badForce    = 7, ///< the requested force was not finite; it rendered none
+    startingUp  = 8, ///< it is being opened: upload, first exchange
+    hostTooSlow = 9  ///< exchange() was not called for 100 ms; the force was already zero
 };
 constexpr auto namesOf(DeviceFault)
 {
@@ -59,8 +59,8 @@ constexpr auto namesOf(DeviceFault)
 /// The device as of its last good answer, in its own frame: x right, y up, z towards the user, the origin in the middle
 /// of its workspace.
 struct HapticState {
-    double        time     = 0; ///< [s] of that answer, by the clock that exchange() is given
-    std::uint64_t sequence = 0; ///< answers so far; unchanged: nothing new since the last exchange
+    double        time     = 0; ///< [s] of that answer, by the clock given to exchange()
+    std::uint64_t sequence = 0; ///< answers so far; unchanged if there was none since the last exchange
     glm::dvec3    position{};   ///< [m]
     glm::dvec3    velocity{};   ///< [m/s] filtered
     glm::dquat    orientation{1, 0, 0, 0};
@@ -73,40 +73,42 @@ struct HapticState {
     DeviceFault   fault        = DeviceFault::closed;
 };
 
-/// Lights, where a device has them; a sum of these.
+/// Lights of a device that has them; values are sums of these.
 enum class DeviceLight : std::uint8_t { none = 0, red = 1, green = 2, blue = 4 };
 
-/// One haptic device, real or simulated: what a driver must offer, and all that the engine knows of it.
+/// One haptic device, real or simulated: the interface that a driver implements, and all that the engine knows of it.
 ///
-/// The life of one: open(); every millisecond exchange(); close(). Trouble while open is a state, never an exception.
+/// Call open(), then exchange() every millisecond, then close(). A fault while open is reported in the state, never as
+/// an exception.
 /// \thread open, close and destruction on any one thread while no exchange runs; exchange() on the servo's
 class HapticDevice {
 public:
     HapticDevice()                               = default;
     HapticDevice(const HapticDevice&)            = delete;
     HapticDevice& operator=(const HapticDevice&) = delete;
-    virtual ~HapticDevice()                      = default; ///< of every driver: as close()
+    virtual ~HapticDevice()                      = default; ///< every driver's destructor does what close() does
 
     [[nodiscard]] virtual const HapticDeviceInfo& info() const noexcept = 0;
 
-    /// Makes it ready for exchange(); may take seconds (a firmware upload). Open already: nothing.
-    /// \throws Error, one sentence: what is missing and the one line that helps
+    /// Makes it ready for exchange(), which may take seconds (a firmware upload). Does nothing if it is open.
+    /// \throws Error saying in one sentence what is missing and what helps
     virtual void open() = 0;
 
-    /// Zero force, then lets go of the device. Closed already: nothing.
+    /// Sends zero force, then releases the device. Does nothing if it is closed.
     virtual void close() noexcept = 0;
 
-    /// One tick: renders `force` from now on, and tells where the hand is. It takes well below a millisecond, waits for
-    /// no thread and allocates nothing. If it is not called, a driver with a thread holds the force for 5 ms and lets
-    /// it fall to zero in 20 ms more; any other device does so by its own watchdog. After 100 ms the next state says so.
+    /// Does one tick: renders `force` from now on, and returns the state of the hand. It takes well below a
+    /// millisecond, waits for no thread and allocates nothing. If it is not called, a driver with a thread holds the
+    /// force for 5 ms and lets it fall to zero in 20 ms more; any other device does so by its own watchdog. After 100
+    /// ms the next state reports it.
     /// \param force  [N] in the device's frame
     /// \param now    [s] of the servo's clock; simulated devices move on to it
     virtual HapticState exchange(const GovernedForce& force, double now) noexcept = 0;
 
-    /// Asks the user to home it, by lights or words, where that is needed. Until HapticState::homed no force flows.
+    /// Asks the user, by lights or words, to home a device that needs it. No force flows until HapticState::homed.
     virtual void home() noexcept {}
 
-    /// Lights from the next exchange on; a sum of DeviceLight.
+    /// Sets the lights from the next exchange on, a sum of DeviceLight.
     virtual void light(std::uint8_t /*lights*/) noexcept {}
 };
 

@@ -38,7 +38,7 @@ MouseDevice::MouseDevice(const MouseDeviceSettings& settings) : settings_(settin
     info_.workspaceRadius = settings.reach;
     info_.buttons         = 3;
     info_.isSimulation    = true;
-    release(); // a target to begin with
+    release(); // sets the first target
 }
 
 void MouseDevice::open()
@@ -64,11 +64,11 @@ HapticState MouseDevice::exchange(const GovernedForce& force, double now) noexce
     state_.fault    = good ? DeviceFault::none : DeviceFault::badForce;
     shown_.publish();
     target_.take();
-    const Target& target = *target_.held(); // the constructor has left one
+    const Target& target = *target_.held(); // the constructor has set one
 
     const double passed = state_.sequence == 0 ? 0 : now - state_.time;
-    if (!std::isfinite(passed)) return state_; // a clock that makes no sense: nothing moves
-    if (passed < 0) {                          // another session's clock: it goes on from there
+    if (!std::isfinite(passed)) return state_; // the clock is unusable: nothing moves
+    if (passed < 0) {                          // the clock of another session: continue from there
         state_.time = now;
         return state_;
     }

@@ -9,19 +9,19 @@
 
 namespace palp {
 
-/// The pointer of a window.
+/// Settings of the pointer of a window.
 extern const DeviceRecord kMouseRecord;
 
 struct MouseDeviceSettings {
     double     settle = 20e-3; ///< [s] time constant of the spring to the target; a display shows a picture every 16 ms
-    glm::dvec3 rest{};         ///< [m] where the point springs back to when it is let go
+    glm::dvec3 rest{};         ///< [m] to which the point returns when it is released
     double     reach = 0.05;   ///< [m] radius of the sphere that the point stays in
 };
 
-/// A pointer in a window as a hand: a point on a critically damped spring to where the window says. The window moves in
-/// steps of a picture, the point smoothly, exactly along the solution of x'' = -(x - target)/s² - 2 x'/s whatever the
-/// tick. Forces move nothing; they are kept for the window to show.
-/// \thread see HapticDevice; target(), release() and shownForce() on one more, the window's
+/// A pointer in a window as a device: a point on a critically damped spring to the window's target. The target moves
+/// once per picture, the point smoothly and, for any tick, exactly along the solution of x'' = -(x - target)/s² - 2
+/// x'/s. Forces move nothing; they are kept for the window to show.
+/// \thread see HapticDevice; target(), release() and shownForce() on one more thread, the window's
 class MouseDevice : public HapticDevice {
 public:
     /// \throws Error naming a setting out of its range
@@ -33,14 +33,14 @@ public:
     void        close() noexcept override;
     HapticState exchange(const GovernedForce& force, double now) noexcept override;
 
-    /// The window's: where the point is pulled from now on, and which buttons are down. Wait-free.
-    /// \param point  [m] in the device's frame, brought into the reach; one that is not finite is left out
+    /// Sets, for the window, where the point is pulled from now on and which buttons are down. Wait-free.
+    /// \param point  [m] in the device's frame, limited to the reach; one that is not finite is omitted
     void target(const glm::dvec3& point, std::uint32_t buttons = 0) noexcept;
 
-    /// The window's: the point springs back to its rest, all buttons up. Wait-free.
+    /// Lets the point return to its rest, for the window, with all buttons up. Wait-free.
     void release() noexcept { target(settings_.rest); }
 
-    /// The window's: [N] the force of the newest exchange. Wait-free.
+    /// Returns, for the window, the force of the newest exchange [N]. Wait-free.
     [[nodiscard]] glm::dvec3 shownForce() noexcept;
 
 private:

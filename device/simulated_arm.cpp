@@ -11,7 +11,7 @@
 namespace palp {
 namespace {
 
-constexpr double kPiece = 125e-6; ///< [s] longest piece of the integration: friction turns with the motion that often
+constexpr double kPiece = 125e-6; ///< [s] longest piece of the integration: friction turns once per piece
 constexpr int    kOrder = 10;     ///< of the Taylor series; the rest is below 1e-12 for a hand of 1e6 N/m
 
 } // namespace
@@ -61,8 +61,8 @@ void SimulatedArm::move(const glm::dvec3& force, double dt) noexcept
 {
     const double m = settings_.mass, b = settings_.damping + hand_.damping, k = hand_.stiffness;
 
-    // m x'' = push + drag - k x - b x', where the hand pulls towards where it is and goes. Friction acts against the
-    // motion; at rest it holds what it can.
+    // m x'' = push + drag - k x - b x', where the hand pulls towards its own place and velocity. Friction acts against
+    // the motion; at rest it balances the force as far as it can.
     const glm::dvec3 push   = force + k * hand_.target + hand_.damping * hand_.targetVelocity;
     const glm::dvec3 pull   = push - k * position_;
     const bool       rests  = velocity_ == glm::dvec3(0);
@@ -70,7 +70,7 @@ void SimulatedArm::move(const glm::dvec3& force, double dt) noexcept
     glm::dvec3       drag{};
     if (settings_.friction > 0 && !sticks) drag = -settings_.friction * glm::normalize(rests ? pull : velocity_);
 
-    // Derivatives of x one after the other by the equation, each with its power of dt over its factorial.
+    // The equation gives one derivative of x after the other, each with its power of dt over its factorial.
     const glm::dvec3 before = velocity_;
     if (!sticks) {
         glm::dvec3 lower = position_, upper = velocity_; // the n-th and the next derivative

@@ -15,22 +15,22 @@ struct SimulatedArmSettings {
     double mass           = 0.46;  ///< [kg]
     double damping        = 3.2;   ///< [N s/m]
     double friction       = 0;     ///< [N] Coulomb's, against the motion; a few 0.01 N are plausible
-    double encoderStep    = 48e-6; ///< [m] per axis; 0 is continuous
-    double velocityWindow = 15e-3; ///< [s] over which positions are differenced; drivers take 15 to 20 ms
+    double encoderStep    = 48e-6; ///< [m] per axis; 0 means continuous
+    double velocityWindow = 15e-3; ///< [s] over which positions are differenced; drivers use 15 to 20 ms
     double halfWorkspace  = 0.05;  ///< [m] per axis; the arm stops dead there
-    double boxRadius      = 0.045; ///< [m] sphere about the origin, inside which ArmState::inBox holds
-    int    delaySamples   = 1;     ///< from a force to its effect, 0 to 7; beside the hold until the next one
+    double boxRadius      = 0.045; ///< [m] of the sphere about the origin in which ArmState::inBox is true
+    int    delaySamples   = 1;     ///< from a force to its effect, 0 to 7; in addition to the hold over a tick
 };
 
-/// A hand that holds the grip by a spring and a damper to a place that moves evenly.
+/// A hand that pulls the grip by a spring and a damper to a place that moves at constant velocity.
 struct SimulatedHand {
-    double     stiffness = 0;    ///< [N/m] 0 lets go; a relaxed hand 150, a firm one 500
+    double     stiffness = 0;    ///< [N/m] 0 for none; a relaxed hand has 150, a firm one 500
     double     damping   = 0;    ///< [N s/m] 0 to 5
     glm::dvec3 target{};         ///< [m] now
     glm::dvec3 targetVelocity{}; ///< [m/s]
 };
 
-/// What the device's driver would know.
+/// The state of the arm that a device's driver would know.
 struct ArmState {
     double     time = 0;     ///< [s]
     glm::dvec3 position{};   ///< [m] in whole encoder steps
@@ -38,14 +38,14 @@ struct ArmState {
     bool       inBox = true; ///< the grip is inside the box
 };
 
-/// An arm and the hand that holds it, in virtual time: what a stability test needs of a device. The same steps give the
-/// same samples, bit for bit.
+/// An arm and the hand that holds it, in virtual time: the device of a stability test. The same steps give the same
+/// states, bit for bit.
 ///
-///     force --delay--> hold over the tick --> mass, damper, friction, hand --> encoder --> sample
+///     force --delay--> hold over the tick --> mass, damper, friction, hand --> encoder --> state
 ///
-/// Between ticks the motion is that of the differential equation to rounding (a Taylor series of order 10 over at most
-/// 125 us, good for hand springs up to 1e6 N/m); friction acts along the last velocity of each such piece, and the arm
-/// comes to rest where it reverses.
+/// Between ticks the motion solves the differential equation to rounding (a Taylor series of order 10 over at most
+/// 125 us, valid for hand springs up to 1e6 N/m). Friction acts along the last velocity of each such piece, and the arm
+/// comes to rest where its motion reverses.
 /// \thread one
 class SimulatedArm {
 public:
@@ -53,13 +53,13 @@ public:
     explicit SimulatedArm(const SimulatedArmSettings& settings = {}, const glm::dvec3& position = {},
                           const glm::dvec3& velocity = {});
 
-    /// Sets the place and the strength of the hand from now on; between ticks its target moves on evenly.
+    /// Sets the place and the strength of the hand from now on; between ticks its target moves at constant velocity.
     void holdBy(const SimulatedHand& hand) noexcept { hand_ = hand; }
 
-    /// One tick: the motors take over `force` (after the delay) and hold it while `period` goes by.
-    /// \param force   [N] on the hand; one that is not finite counts as none
-    /// \param period  [s] not above zero or not finite: no time goes by
-    /// \return the sample at the end of the period
+    /// Does one tick: the motors take over `force` (after the delay) and hold it for the period.
+    /// \param force   [N] on the hand; one that is not finite counts as zero
+    /// \param period  [s] if not above zero or not finite, no time passes
+    /// \return the state at the end of the period
     ArmState step(const glm::dvec3& force, double period) noexcept;
 
     [[nodiscard]] ArmState          sample() const noexcept;
@@ -67,7 +67,7 @@ public:
     [[nodiscard]] const glm::dvec3& velocity() const noexcept { return velocity_; } ///< [m/s] true
 
 private:
-    static constexpr std::size_t kDelays = 8; ///< a ring of forces on their way
+    static constexpr std::size_t kDelays = 8; ///< size of the ring of delayed forces
 
     [[nodiscard]] glm::dvec3 encoded() const noexcept;
     void                     move(const glm::dvec3& force, double dt) noexcept;

@@ -6,19 +6,20 @@
 
 namespace palp {
 
-/// Filters the velocity of a position that comes in encoder steps: the difference over some time, as drivers of haptic
-/// devices take it (CHAI3D 15 ms, the Force Dimension SDK 20 ms). At 1 kHz one step of 48 um is 0.05 m/s from sample to sample,
-/// and 0.003 m/s over 15 ms.
+/// Filters the velocity of a position that comes in encoder steps: the difference over some time, as in drivers of
+/// haptic devices (CHAI3D 15 ms, the Force Dimension SDK 20 ms). At 1 kHz one step of 48 um is 0.05 m/s between two
+/// positions, and 0.003 m/s over 15 ms.
 /// \thread one; allocates nothing
 class VelocityFilter {
 public:
-    /// \param window  [s]; less where samples come so fast that 128 of them are shorter
+    /// \param window  [s]; shorter if 128 positions cover less time
     explicit VelocityFilter(double window) noexcept : window_(window) {}
 
-    /// Forgets all, so that a jump of the position is no velocity.
+    /// Forgets all positions, so that a jump of the position gives no velocity.
     void restart() noexcept { count_ = 0; }
 
-    /// \param time  [s] above the last one; one that is not replaces that sample
+    /// Adds a position.
+    /// \param time  [s] above the last one; otherwise the position replaces the last
     void add(double time, const glm::dvec3& position) noexcept
     {
         if (count_ == 0 || time > past_[newest_].time) {
@@ -28,7 +29,8 @@ public:
         past_[newest_] = {time, position};
     }
 
-    /// [m/s] since the first sample that is a window old, or the oldest; zero if there is but one.
+    /// Returns the velocity [m/s] since the first position that is a window old, or the oldest; zero if there is only
+    /// one.
     [[nodiscard]] glm::dvec3 velocity() const noexcept
     {
         if (count_ < 2) return {};
@@ -39,7 +41,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t kPast = 128; ///< a ring
+    static constexpr std::size_t kPast = 128; ///< size of the ring of positions
 
     struct TimedPosition {
         double     time = 0;   ///< [s]

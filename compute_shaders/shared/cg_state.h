@@ -1,8 +1,8 @@
-// cg_state.h - scalars of conjugate gradients, one set per load, and what is done with them (GLSL and C++).
+// cg_state.h - scalars of conjugate gradients, one set per load, and their use (GLSL and C++).
 //
 // Conjugate gradients gain gain_k = alpha_k (r_k, z_k) in the squared energy norm of the error with each step (Hestenes
 // & Stiefel 1952), so error_k^2 = gain_k+1 + gain_k+2 + ... A geometric tail with the larger of the last two ratios
-// estimates it without another step. Relative to the energy of the answer, (f, x).
+// estimates it without another step. The estimate is relative to the energy of the answer, (f, x).
 #ifndef PALPATE_CG_STATE_H
 #define PALPATE_CG_STATE_H
 
@@ -17,8 +17,8 @@ const int kStateAlpha    = 2; // of the next update [1]
 const int kStateEnergy   = 3; // (f, x)
 const int kStateGain     = 4; // of the last step
 const int kStateEstimate = 5; // of the relative error in the energy norm [1]
-const int kStateSteps    = 6; // done since they were last counted anew
-const int kStateRatio    = 7; // of gains to those before them, the largest of late [1]
+const int kStateSteps    = 6; // steps since the count was last reset
+const int kStateRatio    = 7; // largest recent ratio of a gain to the one before [1]
 
 #ifdef __cplusplus
 } // namespace palp::shared

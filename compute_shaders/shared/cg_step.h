@@ -3,16 +3,16 @@
 struct CgStep {
     real alpha;    // [1]
     real gain;     // in the squared energy norm of the error
-    real ratio;    // of gains to those before them, the largest of late [1]
+    real ratio;    // largest recent ratio of a gain to the one before [1]
     real estimate; // of the relative error in the energy norm after this step [1]
-    real steps;    // done, this one included
+    real steps;    // steps done, this one included
 };
 
-// Largest ratio that the geometric tail is trusted with: beyond it a tail of twenty steps is assumed. A first step has
-// no ratio: what is left is taken to be as much as what was gained. Gains rise and fall where convergence is slow, so a
+// Largest ratio for which the geometric tail is used: beyond it a tail of twenty steps is assumed. A first step has no
+// ratio: the remaining error is taken to be as large as the gain. Gains rise and fall where convergence is slow, so a
 // ratio is forgotten by kMemory per step only. A single ratio may be lucky, as small grids with sharp discs have shown:
-// below kSecondRatio it is not believed. Where rounding leaves no positive pq no step is taken, and (r, z), which is
-// about the squared error, says what is left. Constants have few binary digits, for compilers of shaders round a float
+// below kSecondRatio it is not used. Where rounding leaves no positive pq no step is taken, and (r, z), which is about
+// the squared error, estimates the rest. Constants have few binary digits, because compilers of shaders round a float
 // in a double sum later than C++ does.
 CgStep stepOf(real pq, real rz, real energy, real lastGain, real lastRatio, real steps)
 {

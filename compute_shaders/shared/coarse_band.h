@@ -16,10 +16,10 @@ const int kMostCoarseCells = 16; // along either side; the kernels' shared array
 const int kMostCoarseNodes = (kMostCoarseCells + 1) * (kMostCoarseCells + 1);
 const int kMostHalfBand    = 2 * (kMostCoarseCells + 1);
 
-// A pivot of no more than this share of the diagonal is rounding, perhaps negative. Its node is held then, by an inverse
-// of 0, which keeps the factor finite and the solve symmetric; but what moves with that node is lost to the solver, and it
-// must say so. In floats a plate that only a soft foundation holds has such pivots, or one that a soft strip holds; in
-// doubles only contrasts of 1e12 and more.
+// A pivot of at most this share of the diagonal is rounding, perhaps negative. Its node is then held, by an inverse of
+// 0, which keeps the factor finite and the solve symmetric; but the motion with that node is lost to the solver, which
+// must report it. In floats a plate that only a soft foundation holds has such pivots, or one that a soft strip holds;
+// in doubles only contrasts of 1e12 and more.
 const float kLeastPivot       = 1e-7f;  // [1]
 const float kLeastPivotDouble = 1e-15f; // [1]
 

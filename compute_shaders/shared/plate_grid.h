@@ -6,7 +6,7 @@ bool isHeld(PlateLevel g, int i, int j)
            (j == 0 && (g.free & kSideZ0) == 0u) || (j == g.cellsZ && (g.free & kSideZ1) == 0u);
 }
 
-// Index of the node whose value a ghost has: itself inside, its mirror image outside.
+// Returns the index of the node whose value a ghost has: itself inside, its mirror image outside.
 int mirrored(int n, int cells)
 {
     int inside = n < 0 ? -n : n;

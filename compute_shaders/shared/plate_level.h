@@ -1,4 +1,4 @@
-// plate_level.h - one level of the grid hierarchy, as every kernel of the plate is given it (GLSL and C++).
+// plate_level.h - one level of the grid hierarchy, an input of every kernel of the plate (GLSL and C++).
 #ifndef PALPATE_PLATE_LEVEL_H
 #define PALPATE_PLATE_LEVEL_H
 

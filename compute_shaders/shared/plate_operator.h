@@ -10,18 +10,18 @@
 // node stands for half a cell.
 //
 // A second difference is written as a change of changes: changes between neighbours of a smooth field are exact in
-// floating point, so that the rounding of a curvature is relative to the slope and not to the deflection. Code that goes
-// along rows can keep changes for the next row.
+// floating point, so that the rounding of a curvature is relative to the slope and not to the deflection. Code that
+// goes along rows can keep changes for the next row.
 //
-// All loads come first and nothing branches round them: a compiler can then share them, and Vulkan in software, which
-// pays for each, loads 13 deflections and 9 rigidities.
+// All loads from memory come first, without branches around them: a compiler can then share them, and Vulkan in
+// software, where each load costs time, loads 13 deflections and 9 rigidities.
 //
-// The includer provides, for nodes of the grid,  real rigidity(int i, int j),  real deflection(int i, int j)  for nodes of
-// the same colour as the one asked for (i + j even apart) and  real otherColour(int i, int j)  for the others; they are
-// the same field except within a half sweep.
+// The includer provides, for nodes of the grid,  real rigidity(int i, int j),  real deflection(int i, int j)  for nodes
+// of the same colour as the node of the call (i + j even apart) and  real otherColour(int i, int j)  for the others;
+// they are the same field except within a half sweep.
 // Include plate_grid.h first.
 //
-// Domain   any node that is not held; nodes out of the grid are never asked for
+// Domain   any node that is not held; nodes outside the grid are never requested
 // Source   energy as in engine/plate/reference/plate_energy.h; moment form after Kumari & Chaudhuri 2016, eqs 6 to 8
 
 bool isHingedX(PlateLevel g, int i)
@@ -68,7 +68,8 @@ real momentZ(PlateLevel g, int i, int j, real nodeRigidity, real p, real q)
     return j < 0 || j > g.cellsZ || isHingedZ(g, j) ? real(0) : m;
 }
 
-// Twisting moment of the cell whose first corner is (i, j), from the changes of w along x on its two sides; zero outside.
+// Twisting moment of the cell whose first corner is (i, j), from the changes of w along x on its two sides; zero
+// outside.
 real twistingMoment(PlateLevel g, int i, int j, real sumOfRigidities, real change0, real change1)
 {
     real m = real(g.twist) * sumOfRigidities * change(change0, change1);

@@ -21,7 +21,7 @@ struct RelaxPush {
 
 struct SmoothPush {
     PlateLevel level;
-    float      ahead; // share of the last step that is taken again [1]; 0 in the first step, which has none before it
+    float      ahead; // share of the last step that is taken again [1]; 0 in the first step
     float      step;  // of the residual over the divisor [1]
 };
 
@@ -39,7 +39,7 @@ struct VectorPush {
 struct ScalarsPush {
     uint  loads;
     uint  partials;      // per dot product
-    uint  begins;        // 2: anew, without a previous direction; 1: counts its steps anew; 0: goes on
+    uint  begins;        // 2: restarts without a previous direction; 1: restarts the count of steps; 0: continues
     uint  argumentWords; // of the indirect dispatches that a finished solve makes empty
     float tolerance;     // of the error estimate, relative [1]; 0 never stops
 };

@@ -3,9 +3,9 @@
 // Include plate_operator.h first.
 
 // Rows of A have 13 entries; a node shares its colour, the parity of i + j, with eight of its twelve neighbours. A half
-// sweep takes those from before the half sweep, and then converges (the splitting is P-regular) for every rigidity if the
-// divisor is at least (a + s)/2, s the sum of |entries| of the same colour, by Gershgorin. For constant rigidity that is
-// a/1.25; the divisor below is there a/1.1, and the bound with a margin of 2 % where the rigidity is rough.
+// sweep takes those from before the half sweep, and then converges (the splitting is P-regular) for every rigidity if
+// the divisor is at least (a + s)/2, s the sum of |entries| of the same colour, by Gershgorin. For constant rigidity
+// that is a/1.25, where the divisor below is a/1.1; where the rigidity is rough it is the bound with a margin of 2 %.
 real relaxationDivisor(real diagonal, real sameColour)
 {
     return max(diagonal / real(1.1f), real(0.51f) * (diagonal + sameColour));

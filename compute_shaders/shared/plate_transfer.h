@@ -1,13 +1,14 @@
 // plate_transfer.h - cubic interpolation between two levels, and its transpose (GLSL and C++).
 //
-// One axis at a time, by tables that the host makes once per pair of levels (engine/plate/multigrid/transfer_table.h): they know
-// the ghosts beyond each kind of side, and sizes that do not divide by two. A fourth-order equation needs transfers
+// One axis at a time, by tables that the host makes once per pair of levels
+// (engine/plate/multigrid/detail/transfer_table.h): they handle the ghosts beyond each kind of side, and sizes that do
+// not divide by two. A fourth-order equation needs transfers
 // whose orders sum to more than four: bilinear interpolation makes the cycle diverge. Restriction is exactly the
 // transpose, because residuals are forces; a symmetric cycle can then precondition conjugate gradients. Include
 // transfer_layout.h first.
 //
-// The inner sums are those that can be shared: of a coarse row of nodes with all fine rows that it gives to, of a coarse
-// row with all fine rows that it takes from. A weight of 0 may be omitted, as deflections and forces are finite.
+// The inner sums are those that can be shared: of a coarse row of nodes with all fine rows that it gives to, of a
+// coarse row with all fine rows that it takes from. A weight of 0 may be omitted, as deflections and forces are finite.
 //
 // The includer provides  float tableX(int n), float tableZ(int n)  and  real coarseValue(int i, int j)  or
 // float fineValue(int i, int j).

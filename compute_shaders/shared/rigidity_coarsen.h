@@ -1,8 +1,8 @@
 // rigidity_coarsen.h - rigidity of a coarser level (GLSL and C++).
 //
 // Geometric mean with weights 1/4, 1/2, 1/4 along each axis that is coarsened. Square roots of products, in place of
-// exponentials of logarithms, are rounded alike on every processor. Arithmetic means serve random rigidities as well but
-// sharp inclusions much worse; harmonic means fail.
+// exponentials of logarithms, are rounded alike on every processor. Arithmetic means are as good for random rigidities
+// but much worse for sharp inclusions; harmonic means fail.
 //
 // The includer provides  float fineRigidity(int i, int j).
 
@@ -11,7 +11,7 @@ float meanOfThree(float before, float middle, float after)
     return sqrt(middle * sqrt(before * after));
 }
 
-// Fine index that lies on, or nearest to, a coarse one.
+// Returns the fine index that lies on, or nearest to, a coarse one.
 int finePlace(int coarse, int fineCells, int coarseCells)
 {
     return (2 * coarse * fineCells + coarseCells) / (2 * coarseCells);

@@ -8,7 +8,7 @@
 namespace palp::shared {
 #endif
 
-// What the kernel's shared arrays and loops are made for: levels of 64, 32 and 16 cells a side.
+// The sizes of the kernel's shared arrays and loops: levels of 64, 32 and 16 cells per side.
 const int kTailPool   = 8000;    // numbers in shared memory, 32 kB
 const int kTailNodes  = 65 * 65; // of a level
 const int kTailHalf   = 65 * 33; // nodes of one colour of a level, counted as columns times half rows rounded up

@@ -1,7 +1,8 @@
-// view_layout.h - what the pictures of engine/tools/render are drawn from (GLSL and C++).
+// view_layout.h - the data from which engine/tools/render draws pictures (GLSL and C++).
 //
-// A fine frame is four passes: the nearest depth of all splats; the mean of normals, colours and depths of the splats near
-// that depth; the surface that they make; its light, over which the shapes (proxy, arrows, ...) are drawn. A fast one is only the last, with points that are lit one by one.
+// A fine frame is four passes: the nearest depth of all splats; the mean of normals, colours and depths of the splats
+// near that depth; the surface that they make; its light, over which the shapes (proxy, arrows, ...) are drawn. A fast
+// frame has only the last pass, with points that are lit one by one.
 // View space: x right, y up, z towards the eye, lengths in m about the scene's own origin.
 #ifndef PALPATE_VIEW_LAYOUT_H
 #define PALPATE_VIEW_LAYOUT_H
@@ -35,7 +36,7 @@ PALPATE_VIEW_CONST kBindTiles =
 PALPATE_VIEW_CONST kBindFaces  = 10; // numbers of splats, three to a triangle
 PALPATE_VIEW_CONST kBindPanels = 11; // colours of the panels, premultiplied
 
-PALPATE_VIEW_CONST kHollow = 4; // beyond 1/8 nothing gets darker or lighter, see cueOf() [1]
+PALPATE_VIEW_CONST kHollow = 4; // scale of hollowness: beyond 1/8 nothing gets darker or lighter, see cueOf() [1]
 
 PALPATE_VIEW_CONST kTile = 32; // side of such a square [px]
 
@@ -47,13 +48,13 @@ struct ViewFrame {
     float width;       // of the picture [px]
     vec3  groundBelow; // and at its foot
     float height;      // [px]
-    float widthAtOne;  // half the width of what is seen at depth 1 m, or anywhere if orthographic [m]
+    float widthAtOne;  // half the width of the view at depth 1 m, or at any depth if orthographic [m]
     float heightAtOne; // [m]
-    float cueRadius;   // of the surroundings that tell hollows from humps [m]
-    float cueGain;     // of that [1]
-    float shine;       // of the surface's light, how much is a reflection [1]
+    float cueRadius;   // of the surroundings that distinguish hollows from humps [m]
+    float cueGain;     // of their rise [1]
+    float shine;       // share of the surface's light that is a reflection [1]
     float unused;
-    float hiddenShare;  // how much of a shape shows through the surface [1]
+    float hiddenShare;  // share of a shape that shows through the surface [1]
     uint  orthographic; // 1: the eye is infinitely far away
 };
 

@@ -5,7 +5,8 @@
 
 namespace palp {
 
-/// \throws Error naming the device and its setting if the value is out of its range, or no number
+/// Checks a setting.
+/// \throws Error naming the device and its setting if the value is out of its range or not a number
 inline void demandRange(const char* device, const char* setting, double value, double least, double most)
 {
     if (!(value >= least && value <= most))

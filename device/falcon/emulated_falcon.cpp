@@ -28,7 +28,7 @@ EmulatedFalcon::EmulatedFalcon(const EmulatedFalconSettings& settings, Arm arm)
 
 void EmulatedFalcon::setDtr(bool high) noexcept
 {
-    // The loader starts over; the firmware, once it runs, takes no notice [I].
+    // The loader starts over; running firmware ignores this [I].
     if (high && !dtr_ && stage_ != FalconStage::running) {
         stage_ = FalconStage::hello;
         heard_ = {};
@@ -123,7 +123,7 @@ FalconReply EmulatedFalcon::reply()
     FalconReply answer;
     answer.grip       = grip_;
     const auto angles = kinematics_.angles(position_ + FalconKinematics::kMiddle);
-    if (!angles) return answer; // an arm of the caller's that left the workspace: encoders at 0, not homed
+    if (!angles) return answer; // the caller's arm left the workspace: encoders at 0, not homed
     const auto counts = kinematics_.counts(*angles);
     for (std::size_t leg = 0; leg < 3; ++leg) {
         const auto bit = std::uint8_t(1u << leg);
@@ -151,7 +151,7 @@ void EmulatedFalcon::moveTo(double time)
 {
     while (time_ < time) {
         double until = std::min(time, time_ + kPiece);
-        // Up to where the motors let go, and from there on without them.
+        // The arm moves with the motors until they let go, and then without them.
         const double limp = commanded_ + settings_.holdTime;
         if (commanded_ >= 0 && limp > time_) until = std::min(until, limp);
         const auto pushes = motors();

@@ -15,12 +15,12 @@
 
 namespace palp {
 
-/// How an emulated Falcon behaves. What nobody has measured is marked [I] for inferred.
+/// The behaviour of an emulated Falcon. Values that were not measured are marked [I] for inferred.
 struct EmulatedFalconSettings {
     bool running = false; ///< the firmware is up from an earlier session
-    bool homed   = false; ///< and the legs have met their stops
+    bool homed   = false; ///< the legs have met their stops as well
 
-    /// What came at another baud before the firmware is up makes the boot loader deaf until the link is opened anew.
+    /// Bytes at another baud before the firmware is up make the boot loader deaf until the link is reopened.
     /// [I] One driver's author reports that asking for running firmware spoils the upload that follows.
     bool probingDeafens = true;
 
@@ -28,14 +28,14 @@ struct EmulatedFalconSettings {
     double answerTime      = 50e-6; ///< [s] from the end of a packet to the start of the answer [I]
     double countsPerTorque = FalconMotors::kCountsPerTorque; ///< [counts/(N m)]
 
-    std::array<int, 3> offset{-700, 300, 512}; ///< [counts] that the encoders are wrong by before homing
+    std::array<int, 3> offset{-700, 300, 512}; ///< [counts] error of the encoders before homing
     double             outerStop = 600;        ///< [counts] a leg is homed after it was as far out as this [I] ...
     double             innerStop = -1300;      ///< [counts] ... and then as far in as this [I]
 
     FalconGeometry geometry{};
 };
 
-/// What runs on the Falcon's own processor.
+/// The program that runs on the Falcon's own processor.
 enum class FalconStage : std::uint8_t {
     asleep,  ///< no firmware; needs a pulse of DTR: low, then high
     hello,   ///< waits for 0A 43 0D at 9600 baud, answers 0A 44 2C 0D
@@ -44,32 +44,32 @@ enum class FalconStage : std::uint8_t {
     running
 };
 
-/// A Falcon behind its serial bridge: boot loader, firmware, motors, encoders and the arm. It knows nothing of USB. Any
-/// 4096 to 16384 bytes are a firmware. After `holdTime` without a packet its motors let go.
+/// A Falcon behind its serial bridge: boot loader, firmware, motors, encoders and the arm, without USB. Any 4096 to
+/// 16384 bytes are a firmware. After `holdTime` without a packet its motors let go.
 /// \thread one
 /// \source libnifalcon (BSD-3), src/comm/FalconCommLibUSB.cpp and src/firmware/FalconFirmwareNovintSDK.cpp: the bytes
 class EmulatedFalcon {
 public:
     /// Moves the arm; both vectors in the device's frame, as HapticState's.
     /// \param force  [N] on the hand
-    /// \param dt     [s] 0 to 1 ms; 0 asks where it is
-    /// \return where the grip is then [m]
+    /// \param dt     [s] 0 to 1 ms; 0 only asks for the position
+    /// \return position of the grip after `dt` [m]
     using Arm = std::function<glm::dvec3(const glm::dvec3& force, double dt)>;
 
-    /// \throws Error naming what cannot be
-    /// \param arm  none: the grip stays in the middle
+    /// \param arm  if empty, the grip stays in the middle
+    /// \throws Error naming a setting out of its range
     explicit EmulatedFalcon(const EmulatedFalconSettings& settings = {}, Arm arm = {});
 
-    /// Takes one byte that has come in whole, at that divisor and time [s].
-    /// \return the answer, which holds until the next call
+    /// Takes one complete byte, received at that divisor and time [s].
+    /// \return the answer, which is valid until the next call
     std::span<const std::uint8_t> receive(std::uint8_t byte, std::uint16_t divisor, double time);
 
     void setDtr(bool high) noexcept;
-    void linkOpened() noexcept { deaf_ = false; }                  ///< as by unplugging and plugging
+    void linkOpened() noexcept { deaf_ = false; }                  ///< as by replugging
     void press(std::uint8_t buttons) noexcept { grip_ = buttons; } ///< bits as FalconReply::grip
     void powerCycle();                                             ///< the firmware and the homing are lost
 
-    void moveTo(double time); ///< [s] the arm moves until then
+    void moveTo(double time); ///< [s] moves the arm until then
 
     [[nodiscard]] FalconStage                      stage() const noexcept { return stage_; }
     [[nodiscard]] const std::vector<std::uint8_t>& image() const noexcept { return image_; }     ///< the firmware
@@ -96,16 +96,16 @@ private:
     FalconStage                 stage_ = FalconStage::asleep;
     bool                        dtr_   = true;
     bool                        deaf_  = false;
-    std::array<std::uint8_t, 3> heard_{}; ///< the last bytes, newest last
+    std::array<std::uint8_t, 3> heard_{}; ///< the last bytes, the newest at the end
     std::vector<std::uint8_t>   image_;
     FalconPacket                incoming_{};
     std::size_t                 filled_ = 0; ///< bytes of incoming_
     FalconPacket                outgoing_{};
     FalconCommand               command_{};
-    double                      commanded_ = -1; ///< [s] when
+    double                      commanded_ = -1; ///< [s] time of the last command
     std::uint64_t               packets_   = 0;
     std::uint8_t                grip_ = 0, homedLegs_ = 0, wasOut_ = 0;
-    double                      time_       = 0;  ///< [s] the arm has moved until then
+    double                      time_       = 0;  ///< [s] time up to which the arm has moved
     double                      lastTorque_ = -1; ///< [s]
     glm::dvec3                  position_{};      ///< [m]
 };

@@ -10,14 +10,14 @@
 namespace palp {
 namespace {
 
-constexpr double kStroke        = 8e-3; ///< [m] each way: some hundred counts, and beyond the width of static friction
-constexpr double kPeriod        = 4;    ///< [s] 13 mm/s at most
-constexpr double kStiffness     = 300; ///< [N/m] a third of what the loop holds; the arm's own damping is enough for it
-constexpr double kIntegral      = 300; ///< [N/(m s)] the weight is found with a time constant of a second
-constexpr double kMostForce     = 5.7; ///< [N] below the governor's 6, beyond which a mean says nothing
-constexpr double kLeast         = 0.1; ///< [N] that the mass must weigh
-constexpr double kSpread        = 0.05; ///< [N] between the two periods that are measured; a touch is more
-constexpr const char* kTooHeavy = "arm and mass could not be held: take a lighter mass";
+constexpr double      kStroke    = 8e-3; ///< [m] each way: some hundred counts, and wider than static friction
+constexpr double      kPeriod    = 4;    ///< [s] 13 mm/s at most
+constexpr double      kStiffness = 300;  ///< [N/m] a third of what the loop holds; the arm's own damping suffices
+constexpr double      kIntegral  = 300;  ///< [N/(m s)] the weight is found with a time constant of a second
+constexpr double      kMostForce = 5.7;  ///< [N] below the governor's 6, beyond which a mean is meaningless
+constexpr double      kLeast     = 0.1;  ///< [N] least weight of the mass
+constexpr double      kSpread    = 0.05; ///< [N] most difference of the two measured periods; a touch causes more
+constexpr const char* kTooHeavy  = "arm and mass could not be held: take a lighter mass";
 
 } // namespace
 
@@ -33,7 +33,7 @@ glm::dvec3 FalconCalibration::step(const HapticState& state, const GovernedForce
 {
     using Stage = FalconCalibrationStage;
     if (stage_ == Stage::done || stage_ == Stage::failed) return {};
-    if (!(gain > 0) || state.fault != DeviceFault::none || !(dt > 0)) { // let go by the governor: from the start
+    if (!(gain > 0) || state.fault != DeviceFault::none || !(dt > 0)) { // the governor has let go: start again
         anchor_   = state.position;
         integral_ = {};
         if (stage_ == Stage::loaded) fail(kTooHeavy); // it fell out of its workspace

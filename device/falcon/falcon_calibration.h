@@ -11,7 +11,7 @@
 namespace palp {
 
 struct FalconCalibrationSettings {
-    double     mass            = 0.2;                            ///< [kg] known, hung on the grip; 0.05 to 0.5
+    double     mass            = 0.2;                            ///< [kg] known mass on the grip; 0.05 to 0.5
     double     countsPerTorque = FalconMotors::kCountsPerTorque; ///< [counts/(N m)] that the device runs with
     glm::dvec3 up{0, 1, 0};                                      ///< [1] against gravity, in the device's frame
     double     gravity = 9.81;                                   ///< [m/s2]
@@ -28,13 +28,13 @@ enum class FalconCalibrationStage : std::uint8_t {
 /// Finds how many counts a motor needs for a torque, with a known mass on the grip.
 ///
 /// The wanted force holds the grip at a place that goes up and down by 8 mm in 4 s. Over whole periods its mean is the
-/// weight, whatever friction and inertia do. With F0 and F1 [N] the means without and with the mass, as commanded with
-/// G counts per torque, the motors have in truth
+/// weight, independent of friction and inertia. With F0 and F1 [N] the means without and with the mass, as commanded
+/// with G counts per torque, the motors truly have
 ///
 ///     G' = G (F1 - F0) / (mass gravity),
 ///
-/// which goes into FalconLoopSettings::countsPerTorque. A G' out of the bounds of FalconMotors is a failure: the mass was
-/// another one than was named, or something else was weighed. A quarter of a minute for each weighing, hands off.
+/// which goes into FalconLoopSettings::countsPerTorque. A G' out of the bounds of FalconMotors is a failure: the mass
+/// is not the given one, or something else was weighed. Each weighing takes a quarter of a minute, hands off.
 ///
 ///     1  home the device; lift the grip to the middle of its workspace and hold it there loosely
 ///     2  each tick: state = device.exchange(force), then governor.step() with step()'s force; let go as force comes on
@@ -49,23 +49,23 @@ public:
     /// \throws Error naming a setting out of its range
     explicit FalconCalibration(const FalconCalibrationSettings& settings = {});
 
-    /// One tick.
-    /// \param sent  the force that the device was last given
+    /// Does one tick.
+    /// \param sent  the force that the device was last given [N]
     /// \param gain  [1] of the governor; below 1 nothing is weighed, at 0 the place to hold is where the grip is
     /// \param dt    [s] since the last tick
     /// \return the force wanted [N], for the governor
     glm::dvec3 step(const HapticState& state, const GovernedForce& sent, double gain, double dt) noexcept;
 
-    void hung() noexcept; ///< the mass hangs; at any other stage than `hang`: nothing
+    void hung() noexcept; ///< says that the mass hangs; ignored at any stage but `hang`
 
     [[nodiscard]] FalconCalibrationStage stage() const noexcept { return stage_; }
     [[nodiscard]] const char*            failure() const noexcept { return failure_; } ///< one sentence, or empty
 
     [[nodiscard]] std::optional<double> countsPerTorque() const noexcept; ///< [counts/(N m)] once done
-    [[nodiscard]] std::optional<double> armMass() const noexcept;         ///< [kg] that weighs on the grip; once done
+    [[nodiscard]] std::optional<double> armMass() const noexcept;         ///< [kg] of the arm on the grip; once done
 
 private:
-    static constexpr int kPeriods = 4; ///< of a weighing: two to settle, two to measure
+    static constexpr int kPeriods = 4; ///< periods of a weighing: two to settle, two to measure
 
     void start(FalconCalibrationStage stage) noexcept;
     void endPeriod() noexcept;
@@ -76,9 +76,9 @@ private:
     FalconCalibrationSettings    settings_;
     FalconCalibrationStage       stage_   = FalconCalibrationStage::bare;
     const char*                  failure_ = "";
-    glm::dvec3                   anchor_{};   ///< [m] about which the place to hold goes up and down
+    glm::dvec3                   anchor_{};   ///< [m] middle of the motion of the place to hold
     glm::dvec3                   integral_{}; ///< [N]
-    double                       time_ = 0;   ///< [s] in the period
+    double                       time_ = 0;   ///< [s] since the period began
     double                       sum_  = 0;   ///< [N s] of the force upwards in the period
     std::array<double, kPeriods> means_{};    ///< [N] of the periods
     int                          periods_ = 0;

@@ -10,7 +10,7 @@ constexpr std::uint8_t kZero = 0x41;               ///< 'A', the byte of the val
 
 constexpr std::size_t kNumberSize = 4;  ///< [bytes] of one int16
 constexpr std::size_t kFlags      = 13; ///< place of the byte of flags
-constexpr std::size_t kUnknown    = 14; ///< place of the byte that nobody knows the use of
+constexpr std::size_t kUnknown    = 14; ///< place of the byte whose use is unknown
 
 constexpr std::uint8_t kMostOfNibble = 0x0F, kMostOfReplyFlags = 0x7F;
 
@@ -37,8 +37,8 @@ FalconPacket pack(const std::array<std::int16_t, 3>& numbers, std::uint8_t flags
     return packet;
 }
 
-/// Whether a byte may stand at this place of a packet. What the byte before the last one holds is not known, so there
-/// anything from 0x41 up is taken.
+/// Returns whether a byte may stand at this place of a packet. The content of the byte before the last one is unknown,
+/// so any value from 0x41 up is accepted there.
 constexpr bool fits(std::size_t place, std::uint8_t byte, std::uint8_t mostOfFlags)
 {
     if (place == 0) return byte == kStart;
@@ -106,7 +106,7 @@ std::optional<FalconReply> decodeReply(std::span<const std::uint8_t, 16> bytes) 
 void FalconParser::feed(std::span<const std::uint8_t> bytes) noexcept
 {
     for (const std::uint8_t byte : bytes) {
-        if (byte == kStart) { // whatever was coming in will not be finished
+        if (byte == kStart) { // an unfinished packet is discarded
             skipped_ += filled_;
             filled_ = 0;
         } else if (!fits(filled_, byte, kMostOfReplyFlags)) {
@@ -123,7 +123,7 @@ void FalconParser::feed(std::span<const std::uint8_t> bytes) noexcept
             --waiting_;
             skipped_ += packet_.size();
         }
-        // Each byte has been found to fit, so there is a reply.
+        // Each byte was checked when it came, so there is a reply.
         replies_[(oldest_ + waiting_++) % kWaiting] = decodeReply(packet_).value_or(FalconReply{});
     }
 }

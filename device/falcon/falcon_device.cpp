@@ -11,7 +11,7 @@
 namespace palp {
 namespace {
 
-constexpr double kMostWait = 0.1; ///< [s] that a step follows the servo's clock; beyond it the clocks are set anew
+constexpr double kMostWait = 0.1; ///< [s] by which a step follows the servo's clock; beyond it the clocks are set anew
 
 double seconds(std::chrono::steady_clock::duration duration)
 {
@@ -54,7 +54,7 @@ void FalconDevice::close() noexcept
     line_->isOver = true;
     if (line_->thread.joinable()) line_->thread.join();
     line_.reset();   // its FalconLoop ends with zero force
-    cancel_ = false; // of the start that is over
+    cancel_ = false; // it was meant for the start that is over
 }
 
 HapticState FalconDevice::exchange(const GovernedForce& force, double now) noexcept
@@ -67,10 +67,10 @@ HapticState FalconDevice::exchange(const GovernedForce& force, double now) noexc
     return newest(now);
 }
 
-/// The I/O thread: the newest force, and less of it the longer the servo does not ask.
+/// Runs the I/O thread: sends the newest force, and less of it the longer the servo does not call.
 void FalconDevice::converse(Line& line, bool asksForRealTime) noexcept
 {
-    // Refusal is no news to the user: the servo asked before and said so.
+    // A refusal is not reported: the servo has asked before and reported it.
     if (asksForRealTime) static_cast<void>(askForRealTime());
     while (!line.isOver && !line.loop->isLost()) {
         line.requests.take();

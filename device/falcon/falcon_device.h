@@ -15,33 +15,33 @@
 
 namespace palp {
 
-/// Who carries the packets.
+/// The thread that carries the packets.
 enum class FalconPace : std::uint8_t {
-    thread, ///< a thread of its own, as fast as the line goes: for real time. exchange() waits for nothing
-    stepped ///< exchange() itself: for virtual time and for programs of one thread. It takes a round trip
+    thread, ///< a thread of its own, as fast as the line: for real time. exchange() does not wait
+    stepped ///< the caller of exchange(), which takes a round trip: for virtual time and programs of one thread
 };
 
 struct FalconDeviceSettings {
-    std::vector<std::uint8_t> firmware; ///< to upload where none runs: readFirmware(); empty: it must run
+    std::vector<std::uint8_t> firmware; ///< see readFirmware(), uploaded if none runs; empty: it must run
     FalconPace                pace = FalconPace::thread;
     std::string               path;                   ///< for HapticDeviceInfo
-    std::string               serial;                 ///< the same
+    std::string               serial;                 ///< for HapticDeviceInfo
     bool                      asksForRealTime = true; ///< for its thread, if it may; without, packets may be late
     FalconStartSettings       start{};
     FalconLoopSettings        loop{};
 };
 
-/// A Novint Falcon behind any FalconLink. FalconLoop says when forces flow. Beyond that, a force that exchange() does
-/// not renew is held for 5 ms and falls to zero in 20 ms more, and close() ends with packets of zero force.
+/// A Novint Falcon behind any FalconLink. FalconLoop decides when forces flow. In addition, a force that exchange()
+/// does not renew is held for 5 ms and falls to zero in 20 ms more, and close() ends with packets of zero force.
 ///
-/// Forces come by the governor only, positions are those of the device's frame: the kinematics' less (0, 0, 125 mm).
-/// Buttons: bit 0 plus, 1 forward, 2 centre, 3 minus. Until it is homed its light is red: the user pulls the grip out,
-/// then pushes it in. In the pace `stepped`, exchange() takes a round trip, and the last force stays until the Falcon's
-/// own firmware lets go if it is not called.
+/// Forces come from the governor only. Positions are in the device's frame: the kinematics' less (0, 0, 125 mm).
+/// Buttons: bit 0 plus, 1 forward, 2 centre, 3 minus. The light is red until the device is homed: the user pulls the
+/// grip out, then pushes it in. In the pace `stepped`, if exchange() is not called, the last force acts until the
+/// Falcon's own firmware lets go.
 /// \thread as HapticDevice; the pace `thread` hands over by Latest
 class FalconDevice final : public HapticDevice {
 public:
-    /// \param open  opens the bridge; called by open(), several times if an upload fails
+    /// \param open  opens the bridge; open() calls it, several times if an upload fails
     explicit FalconDevice(FalconLinkOpener open, const FalconDeviceSettings& settings = {});
     ~FalconDevice() override { close(); }
 
@@ -51,7 +51,7 @@ public:
     HapticState                           exchange(const GovernedForce& force, double now) noexcept override;
     void light(std::uint8_t lights) noexcept override { lights_ = lights; } ///< if settings.loop.showsState is off
 
-    /// Makes an open() that runs give up, or the next one. While the device is open it does nothing.
+    /// Makes a running open(), or the next one, give up. It has no effect while the device is open.
     /// \thread any
     void cancelOpen() noexcept { cancel_ = true; }
 
@@ -65,9 +65,9 @@ private:
     struct Answer {
         HapticState       state{};
         Clock::time_point time{};  ///< when the exchange ended
-        double            age = 0; ///< [s] of the answer then
+        double            age = 0; ///< [s] of the answer at that time
     };
-    /// What open() makes and close() destroys: the thread and its hand-offs.
+    /// The thread and its hand-offs, which open() makes and close() destroys.
     struct Line {
         explicit Line(std::unique_ptr<FalconLoop> newLoop) : loop(std::move(newLoop)) {}
         std::unique_ptr<FalconLoop> loop;
@@ -76,7 +76,7 @@ private:
         std::atomic<bool>           isOver = false;
         std::thread                 thread;
         double                      offset  = 0;    ///< [s] from the link's clock to the servo's; stepped
-        double                      last    = 0;    ///< [s] servo's clock at the last exchange; stepped
+        double                      last    = 0;    ///< [s] of the servo's clock at the last exchange; stepped
         bool                        isFirst = true; ///< exchange() was not called yet; stepped
     };
 

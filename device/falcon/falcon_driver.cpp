@@ -19,17 +19,17 @@ constexpr std::array<std::uint8_t, 3> kHello{0x0A, 0x43, 0x0D};
 constexpr std::array<std::uint8_t, 4> kWelcome{0x0A, 0x44, 0x2C, 0x0D};
 constexpr std::uint8_t                kLoad = 0x41;
 
-constexpr int         kHellos      = 30;    ///< [1] libnifalcon says hello up to 100 times; the attempts are more here
+constexpr int         kHellos      = 30;    ///< per attempt; libnifalcon says hello up to 100 times, in fewer attempts
 constexpr double      kHelloTime   = 50e-3; ///< [s] 7 bytes at 9600 baud are 7 ms, and the latency timer has 16
-constexpr std::size_t kChunk       = 62;    ///< [byte] its echo fills a packet, which does not wait for the timer
+constexpr std::size_t kChunk       = 62;    ///< [byte] whose echo fills a packet, which does not wait for the timer
 constexpr double      kEchoTime    = 0.1;   ///< [s] a chunk takes 4.4 ms, the last one up to 16 more
 constexpr double      kAnswerTime  = 20e-3; ///< [s] for a packet and its answer: 1 to 2 ms
-constexpr int         kAnswers     = 3;     ///< [1] in a row before the firmware is believed to run
-constexpr int         kProbes      = 5;     ///< [1] packets to firmware that may be running
-constexpr int         kQuestions   = 4;     ///< [1] packets of askFalcon(): 80 ms
-constexpr int         kFirstProbes = 50;    ///< [1] packets to firmware that starts: for 1 s
+constexpr int         kAnswers     = 3;     ///< in a row before the firmware counts as running
+constexpr int         kProbes      = 5;     ///< packets to firmware that may be running
+constexpr int         kQuestions   = 4;     ///< packets of askFalcon(): 80 ms
+constexpr int         kFirstProbes = 50;    ///< packets to starting firmware: for 1 s
 
-constexpr std::chrono::milliseconds kGlance(10); ///< at the cancelling, while it waits to reopen
+constexpr std::chrono::milliseconds kGlance(10); ///< between looks at `cancel` while it waits to reopen
 
 constexpr const char* kAdvice = "; try without a hub, or take the Falcon off its power for a moment";
 
@@ -49,7 +49,7 @@ void prepare(FalconLink& link, std::uint16_t latency, FalconDivisor divisor, std
     link.control(FtdiRequest::eventCharacter, event);
 }
 
-/// The first answer that comes in time.
+/// Returns the first answer that comes in time.
 std::optional<FalconReply> listen(FalconLink& link, FalconParser& parser)
 {
     std::array<std::uint8_t, 256> bytes;
@@ -61,7 +61,7 @@ std::optional<FalconReply> listen(FalconLink& link, FalconParser& parser)
     return {};
 }
 
-/// One start. Reasons why an attempt failed are strings, empty where it did not.
+/// One start of a Falcon. The reason why an attempt failed is a string, empty if it did not fail.
 class Start {
 public:
     Start(std::span<const std::uint8_t> firmware, const FalconStartSettings& settings, const std::atomic<bool>* cancel)
@@ -92,7 +92,7 @@ private:
     {
         try {
             return probe(started, kProbes);
-        } catch (const LinkLost& lost) { // an attempt opens it anew
+        } catch (const LinkLost& lost) { // an attempt reopens it
             lost_ = lost.what();
             return false;
         }
@@ -103,7 +103,7 @@ private:
         started.link.reset(); // before it is opened again
         try {
             started.link = open();
-        } catch (const Error& error) { // it may be on its way back, or busy for a moment
+        } catch (const Error& error) { // it may be coming back, or busy for a moment
             waitToReopen();
             return error.what();
         }
@@ -123,7 +123,7 @@ private:
         if (cancel_ && cancel_->load()) throw Error("the start of the Falcon was cancelled");
     }
 
-    /// In steady time: there is no link whose clock would tell.
+    /// Waits in steady time, because there is no link with a clock.
     void waitToReopen() const
     {
         using Clock    = std::chrono::steady_clock;
@@ -140,7 +140,7 @@ private:
                         " s: " + reason_ + kAdvice);
     }
 
-    /// Whether the firmware answers. Leaves the link as run-time packets need it.
+    /// Returns whether the firmware answers. It leaves the link as run-time packets need it.
     bool probe(StartedFalcon& started, int packets)
     {
         FalconLink& link = *started.link;
@@ -177,7 +177,7 @@ private:
         return "the boot loader does not answer";
     }
 
-    /// Whether these bytes come, after whatever: some hosts see a zero before them.
+    /// Returns whether these bytes come, perhaps after others: some hosts see a zero before them.
     static bool heard(FalconLink& link, std::span<const std::uint8_t> wanted, double timeout)
     {
         std::array<std::uint8_t, 256> bytes;
@@ -192,7 +192,7 @@ private:
         return false;
     }
 
-    /// Chunk after chunk, each compared with its echo: there is no other check.
+    /// Uploads chunk after chunk and compares each with its echo: there is no other check.
     std::string upload(FalconLink& link) const
     {
         for (std::size_t at = 0; at < firmware_.size(); at += kChunk) {
@@ -215,7 +215,7 @@ private:
     std::span<const std::uint8_t> firmware_;
     FalconStartSettings           settings_;
     const std::atomic<bool>*      cancel_;
-    double                        end_ = 0;                      ///< [s] of the link's clock
+    double                        end_ = 0;                      ///< [s] by the link's clock
     std::string                   lost_;                         ///< why asking failed, if it did
     std::string                   reason_ = "it gave no answer"; ///< why the last attempt failed
 };
@@ -250,7 +250,7 @@ bool releaseMotors(FalconLink& link, const FalconCommand& command) noexcept
             link.write(encode(zero));
         } catch (const LinkGone&) { // the motors let go by themselves
             return false;
-        } catch (const std::exception&) { // perhaps the next one gets through
+        } catch (const std::exception&) { // the next one may get through
         }
     }
     return true;

@@ -12,60 +12,60 @@
 namespace palp {
 
 /// Opens the bridge of one Falcon, the same one each time.
-/// \throws Error, one sentence why it cannot be opened
+/// \throws Error saying in one sentence why it cannot be opened
 using FalconLinkOpener = std::function<std::unique_ptr<FalconLink>()>;
 
 struct FalconStartSettings {
-    int    attempts = 10; ///< at most, each with a link opened anew; peers take 10 to 40
-    double deadline = 30; ///< [s] for all of it; an attempt that goes well takes 0.8 s
+    int    attempts = 10; ///< at most, each with a reopened link; other drivers take 10 to 40
+    double deadline = 30; ///< [s] for all attempts; a successful one takes 0.8 s
 
-    /// [s] of steady time after an attempt in which it could not be opened: a bridge needs some tenths of a second to
-    /// be known to the system again.
+    /// [s] wait in steady time after an attempt in which it could not be opened: the system needs some tenths of a
+    /// second to list a bridge again.
     double reopenAfter = 0.3;
 
-    /// Lets the bridge pass on each answer at its '>' in place of once a millisecond, which doubles the rate. Off until
-    /// somebody has tried it on a device.
+    /// Lets the bridge pass on each answer at its '>' instead of once a millisecond, which doubles the rate. It is off
+    /// because it has not been tried on a device.
     bool eventCharacter = false;
 
-    /// Told of each piece of the firmware that came back as it was sent: bytes so far, bytes in all. May take 20 ms.
+    /// Called for each piece of the firmware that was echoed correctly: bytes so far, bytes in all. It may take 20 ms.
     std::function<void(std::size_t, std::size_t)> onUpload{};
 };
 
-/// What a Falcon needs before forces can flow.
+/// The state of a Falcon before forces can flow.
 enum class FalconReadiness : std::uint8_t {
     ready,
     notHomed,  ///< its firmware runs
-    noFirmware ///< or it is in no state to answer
+    noFirmware ///< or it cannot answer
 };
 
-/// Asks for answers, with packets of zero force and without lights, for 0.1 s at most. The link is to be closed then:
-/// a boot loader that was asked may be deaf until it is opened anew.
-/// \throws LinkLost
+/// Asks for answers, with packets of zero force and without lights, for 0.1 s at most. Close the link afterwards: a
+/// boot loader that was asked may be deaf until the link is reopened.
+/// \throws LinkLost if the link fails
 [[nodiscard]] FalconReadiness askFalcon(FalconLink& link);
 
 /// A Falcon that answers.
 struct StartedFalcon {
     std::unique_ptr<FalconLink> link;
     FalconReply                 reply{};      ///< its last answer
-    int                         attempts = 0; ///< uploads that it took; 0: its firmware was running
+    int                         attempts = 0; ///< uploads that were needed; 0: its firmware was running
 };
 
-/// Opens a Falcon and sees to it that its firmware runs: it is lost whenever the power is. Asks for answers first; then
-/// uploads, in attempts that start from nothing; and believes none that does not end with answers. The motors get
-/// nothing but zero.
+/// Opens a Falcon and makes sure that its firmware runs, which is lost with the power. It asks for answers first, then
+/// uploads, in attempts that start from nothing; an attempt succeeds only if answers follow. The motors get zero only.
 ///
-/// \param firmware  bytes to upload; none: the firmware must be running
-/// \param cancel    may become true on another thread: gives up within 0.1 s
-/// \throws Error, one sentence: why, and what to try; what `open` throws, if that is at the first time
+/// \param firmware  bytes to upload; if empty, the firmware must be running
+/// \param cancel    may become true on another thread, which ends the call within 0.1 s
+/// \throws Error saying in one sentence why and what to try; or what the first call of `open` throws
 /// \source   libnifalcon (BSD-3), src/comm/FalconCommLibUSB.cpp: steps, divisors, lines, echo
-/// \differs  it uploads without asking, reads the answer's length only, and does not look whether the result answers.
-///           One author's driver found that asking spoils the upload; so the link is opened anew in between
+/// \differs  libnifalcon uploads without asking, reads only the answer's length, and does not check whether the
+///           firmware then answers. One author's driver found that asking spoils the upload, so the link is reopened in
+///           between
 StartedFalcon startFalcon(const FalconLinkOpener& open, std::span<const std::uint8_t> firmware,
                           const FalconStartSettings& settings = {}, const std::atomic<bool>* cancel = nullptr);
 
-/// Three packets of zero force, each tried even where the one before failed; a device that is gone ends them.
-/// \return false: it is gone
+/// Sends three packets of zero force, each even if the one before failed, unless the device is gone.
 /// \param command  the lights of these packets
+/// \return false if the device is gone
 bool releaseMotors(FalconLink& link, const FalconCommand& command) noexcept;
 
 } // namespace palp

@@ -31,7 +31,7 @@ std::vector<std::uint8_t> readFirmware(const std::filesystem::path& path)
 {
     if (path.empty()) throw Error("no firmware for the Falcon is named: " + expected() + "; " + kAdvice);
 
-    // A pipe or a device could make us wait for ever.
+    // Reading a pipe or a device could wait for ever.
     std::error_code failure;
     if (std::filesystem::exists(path, failure) && !std::filesystem::is_regular_file(path, failure))
         throw Error(path.string() + ": not a plain file; " + expected() + "; " + kAdvice);

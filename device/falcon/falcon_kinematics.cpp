@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kTolerance = 1e-9; ///< [rad] of Newton's method: 1e-10 m, and far above rounding
 constexpr int    kSteps = 20; ///< of Newton's method; it takes 9 at most from the middle, 2 to 4 from the last position
-constexpr int    kHalvings = 10;    ///< of a step; after so many the residual has a minimum here that is not 0
-constexpr double kLongest  = 20e-3; ///< [m] of a step; without a limit one start in 6000 leads out of the workspace
+constexpr int    kHalvings = 10;    ///< of a step; after these the residual has a minimum here that is not 0
+constexpr double kLongest  = 20e-3; ///< [m] of a step; without this limit one start in 6000 leads out of the workspace
 
-/// Nearer to a singularity than this the Jacobian is not used. Both measures are 1 for a leg at right angles and for
-/// three legs at right angles to each other; in the ball of 40 mm about the middle they are above 0.4 (a test looks),
-/// so that forces are never refused where they are asked for. In the cube about it 2 places in 10 000 are refused.
+/// Bounds below which the Jacobian is not used, because a singularity is near. The measures are 1 for a leg at right
+/// angles and for three legs at right angles to each other. In the ball of 40 mm about the middle both are above 0.4 (a
+/// test checks this), so forces are never refused there. In the cube about the ball 2 places in 10 000 are refused.
 constexpr double kLeastLever  = 0.15; ///< [1] sin t3 sin(t2 - t1), 0 where shin and thigh are in line
 constexpr double kLeastVolume = 0.15; ///< [1] of the box that the rows of the Jacobian span, each made a unit vector
 
@@ -35,7 +35,7 @@ bool isFinite(const glm::dvec3& v)
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// x of  rows x = right,  by Cramer's rule; not finite where the rows lie in a plane.
+/// Solves  rows x = right  by Cramer's rule; x is not finite where the rows lie in a plane.
 glm::dvec3 solve(const std::array<glm::dvec3, 3>& rows, const std::array<double, 3>& right)
 {
     const glm::dvec3 c0 = glm::cross(rows[1], rows[2]), c1 = glm::cross(rows[2], rows[0]),
@@ -43,7 +43,7 @@ glm::dvec3 solve(const std::array<glm::dvec3, 3>& rows, const std::array<double,
     return (right[0] * c0 + right[1] * c1 + right[2] * c2) / glm::dot(rows[0], c0);
 }
 
-/// The largest difference of the three [rad].
+/// Returns the largest difference of the three [rad].
 double distance(const std::array<double, 3>& a, const std::array<double, 3>& b)
 {
     return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
@@ -84,8 +84,8 @@ FalconKinematics::FalconKinematics(const FalconGeometry& geometry) : geometry_(g
 //
 //     t1 = atan2(w, U) - acos(k / R),  t2 = atan2(w - thigh sin t1, U - thigh cos t1),
 //
-// of the two elbows the outer one. As the grip moves by dx, the shin's length does not change: along its rods
-// n = (sin t3 cos t2, cos t3, sin t3 sin t2) the elbow must keep up, n.dx = thigh sin t3 sin(t2 - t1) dt1, hence
+// which is the outer one of the two elbows. As the grip moves by dx, the shin's length does not change. The elbow
+// follows along the rods n = (sin t3 cos t2, cos t3, sin t3 sin t2):  n.dx = thigh sin t3 sin(t2 - t1) dt1,  hence
 //
 //     d t1 / d x = n / (thigh sin t3 sin(t2 - t1)).
 std::optional<FalconKinematics::Pose> FalconKinematics::pose(const glm::dvec3& position) const noexcept
@@ -129,7 +129,7 @@ std::optional<std::array<double, 3>> FalconKinematics::angles(const glm::dvec3& 
     return legs->angles;
 }
 
-// Newton's method on angles(x) - angles = 0. A step is cut to kLongest, and halved while it leads out of reach or no
+// Newton's method on angles(x) - angles = 0. A step is cut to kLongest, then halved while it leads out of reach or not
 // nearer.
 std::optional<glm::dvec3> FalconKinematics::position(const std::array<double, 3>& angles,
                                                      const glm::dvec3&            start) const noexcept

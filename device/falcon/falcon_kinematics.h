@@ -7,17 +7,17 @@
 
 namespace palp {
 
-/// Lengths and angles of a Novint Falcon: three like legs, each a thigh on a motor and a shin of two parallel rods,
-/// which hold the grip between them.
+/// Lengths and angles of a Novint Falcon: three equal legs hold the grip between them, each a thigh on a motor and a
+/// shin of two parallel rods.
 ///
-/// No maker's drawing is public. All values are libnifalcon's (BSD-3, include/falcon/core/FalconGeometry.h and
+/// The maker has published no drawing. All values are libnifalcon's (BSD-3, include/falcon/core/FalconGeometry.h and
 /// FalconKinematic.h), whose offsets of the base were revised twice; its authors call the result poor at the edges of
-/// the workspace. Hence a struct to be set, not constants.
+/// the workspace. The values are therefore settings, not constants.
 struct FalconGeometry {
     double thigh    = 60e-3;     ///< [m] from the motor's axle to the elbow
     double shin     = 102.5e-3;  ///< [m] the rods of the shin
-    double joints   = 22.5e-3;   ///< [m] both joints of the shin, 11.25 mm each, which do not swing sideways
-    double gripOut  = 14.43e-3;  ///< [m] from the middle of the grip outwards to where the shin holds it
+    double joints   = 22.5e-3;   ///< [m] of both joints of the shin, 11.25 mm each, which do not swing sideways
+    double gripOut  = 14.43e-3;  ///< [m] from the middle of the grip outwards to the shin's end
     double gripSide = -25e-3;    ///< [m] and sideways
     double baseOut  = 40e-3;     ///< [m] from the device's axis outwards to the axle
     double baseSide = -23.09e-3; ///< [m] and sideways
@@ -26,14 +26,15 @@ struct FalconGeometry {
     /// from the front.
     std::array<double, 3> azimuths{1.832595714594046, -0.261799387799149, -2.356194490192345};
 
-    double zeroAngle     = 0.610865238198015; ///< [rad] 35 degrees: of the thigh where its encoder reads 0
-    double countsPerTurn = 1280;              ///< [counts] a turn of the motor: 320 slots, four edges each
-    double driveRatio    = 110.0 / 14.25; ///< [1] turns of the motor a turn of the thigh: radii of sector and capstan
+    double zeroAngle     = 0.610865238198015; ///< [rad] 35 degrees: angle of the thigh at encoder reading 0
+    double countsPerTurn = 1280;              ///< [counts] per turn of the motor: 320 slots, four edges each
+    double driveRatio    = 110.0 / 14.25; ///< [1] turns of the motor per turn of the thigh: radii of sector and capstan
 
     [[nodiscard]] double countsPerRadian() const noexcept; ///< 1572.56 as shipped
 };
 
-/// Where the grip is when the thighs stand so, and what torques make which force.
+/// The kinematics of a Falcon: positions of the grip from angles of the thighs, forces from torques, and their
+/// inverses.
 ///
 /// Frame: x right, y up, z towards the user, the origin on the device's axis in the plane of the axles; the grip is at
 /// about z = 75 to 175 mm. A leg stands at its azimuth phi and works in its own frame: u outwards, v sideways, w = z,
@@ -45,7 +46,8 @@ struct FalconGeometry {
 ///
 ///     u = thigh cos t1 - gripOut + L cos t2,   v = shin cos t3 - gripSide,   w = thigh sin t1 + L sin t2.
 ///
-/// Vectors of three are of the legs: angles [rad] t1, torques [N m] about it, positive where a thigh swings outwards.
+/// Arrays of three have an entry per leg: angles t1 [rad] and torques about its axis [N m], positive where a thigh
+/// swings outwards.
 /// \source   the closure is that of R. E. Stamper, "A Three Degree of Freedom Parallel Manipulator with Only
 ///           Translational Degrees of Freedom" (PhD thesis, University of Maryland, 1997), as libnifalcon applies it
 /// \differs  from libnifalcon, where the third column of the Jacobian has sin^2 t2 in place of sin t2 sin t3, and where
@@ -53,45 +55,45 @@ struct FalconGeometry {
 /// \thread   const and pure; no allocation
 class FalconKinematics {
 public:
-    /// \throws Error naming a length or an angle that cannot be
+    /// \throws Error naming a length or an angle that is impossible
     explicit FalconKinematics(const FalconGeometry& geometry = {});
 
     [[nodiscard]] const FalconGeometry& geometry() const noexcept { return geometry_; }
 
-    /// Angles of the thighs where the grip is at `position` [m]; empty where a leg does not reach.
+    /// Returns the angles of the thighs with the grip at `position` [m]; empty where a leg does not reach.
     [[nodiscard]] std::optional<std::array<double, 3>> angles(const glm::dvec3& position) const noexcept;
 
-    /// Position of the grip [m] where the thighs stand at `angles`, by Newton's method to 1e-9 rad.
-    /// \param start  [m] where it looks first: the last position; one out of reach counts as the middle, (0, 0, 125 mm)
-    /// \return empty where 20 steps do not get there: these are no angles of an arm, or the arm is singular there
+    /// Returns the position of the grip [m] with the thighs at `angles`, by Newton's method to 1e-9 rad.
+    /// \param start  [m] first guess, the last position; one out of reach counts as the middle, (0, 0, 125 mm)
+    /// \return empty where 20 steps do not suffice: an arm cannot have these angles, or it is singular there
     [[nodiscard]] std::optional<glm::dvec3> position(const std::array<double, 3>& angles,
                                                      const glm::dvec3&            start = kMiddle) const noexcept;
 
-    /// Row i: how the angle of leg i changes as the grip moves, d angle_i / d position [rad/m]; empty where a leg does
-    /// not reach, or near a singularity.
+    /// Returns the Jacobian: row i is d angle_i / d position [rad/m] of leg i; empty where a leg does not reach, or
+    /// near a singularity.
     [[nodiscard]] std::optional<std::array<glm::dvec3, 3>> jacobian(const glm::dvec3& position) const noexcept;
 
-    /// Torques of the motors [N m] that push the hand at `position` [m] with `force` [N]; empty as jacobian(), or where
-    /// the force is not finite.
+    /// Returns the torques of the motors [N m] that push the hand at `position` [m] with `force` [N]; empty where
+    /// jacobian() is, or where the force is not finite.
     [[nodiscard]] std::optional<std::array<double, 3>> torques(const glm::dvec3& position,
                                                                const glm::dvec3& force) const noexcept;
 
-    /// Force on the hand [N] of these torques; empty as jacobian(). The inverse of torques().
+    /// Returns the force on the hand [N] of these torques, the inverse of torques(); empty where jacobian() is.
     [[nodiscard]] std::optional<glm::dvec3> force(const glm::dvec3&            position,
                                                   const std::array<double, 3>& torques) const noexcept;
 
-    /// Angles that encoders of such counts mean.
+    /// Returns the angles that these counts of the encoders mean.
     [[nodiscard]] std::array<double, 3> angles(const std::array<std::int16_t, 3>& counts) const noexcept;
 
-    /// [counts] at those angles, not rounded.
+    /// Returns the counts of the encoders at these angles, not rounded.
     [[nodiscard]] std::array<double, 3> counts(const std::array<double, 3>& angles) const noexcept;
 
-    /// [m] the middle of the workspace: that of VRPN's driver; the largest ball in reach of all legs is 3 mm further
+    /// Middle of the workspace [m], as in VRPN's driver. That of the largest ball in reach of all legs is 3 mm further
     /// out.
     static constexpr glm::dvec3 kMiddle{0, 0, 0.125};
 
 private:
-    /// The three legs with the grip somewhere.
+    /// The three legs at one position of the grip.
     struct Pose {
         std::array<double, 3>     angles{};        ///< [rad] t1
         std::array<glm::dvec3, 3> rows{};          ///< [rad/m] of the Jacobian; not finite where a leg is stretched

@@ -1,4 +1,4 @@
-// What the Falcons that are plugged in need before they can be used; knows no libusb.
+// Finds what the plugged-in Falcons need before they can be used; independent of libusb.
 #include "device/falcon/detail/libusb_link.h"
 #include "device/falcon/falcon_driver.h"
 #include "engine/core/contract.h"
@@ -6,7 +6,7 @@
 namespace palp {
 namespace {
 
-/// Asks one that can be opened. Its link is closed again: the next one finds a boot loader that listens.
+/// Asks a Falcon that can be opened. Its link is then closed, so that the boot loader listens to the next one.
 void ask(FalconListing& listing)
 {
     try {

@@ -15,21 +15,21 @@
 namespace palp {
 namespace {
 
-constexpr double kStale    = 10e-3; ///< [s] age of an answer from which on no force goes out: half the shortest hold
-constexpr double kRise     = 20e-3; ///< [s] in which a force comes on after a break, as long as the governor's fall
-constexpr double kLongest  = 4e-3;  ///< [s] that counts of the time between two packets, as for the governor
+constexpr double kStale    = 10e-3; ///< [s] age of an answer from which on no force is sent: half the shortest hold
+constexpr double kRise     = 20e-3; ///< [s] in which a force rises after a break, as long as the governor's fall
+constexpr double kLongest  = 4e-3;  ///< [s] most time between two packets that is counted, as in the governor
 constexpr double kBothWays = 2 * 16 * 10 / 1.5e6; ///< [s] 213 us: a packet and its answer on the wire
 
-constexpr int    kMostMissed  = 20;    ///< [1] DeviceFault::silent
-constexpr double kMostSilence = 0.1;   ///< [s] the same
-constexpr int    kGoodAgain   = 20;    ///< [1] good answers after which a fault of the line is over
-constexpr int    kPatience    = 4;     ///< [1] misses after which packets go out only every ...
-constexpr double kPause       = 10e-3; ///< [s] ... so often, so that they do not pile up in a line that stands still
+constexpr int    kMostMissed  = 20;    ///< see DeviceFault::silent
+constexpr double kMostSilence = 0.1;   ///< [s] likewise
+constexpr int    kGoodAgain   = 20;    ///< good answers after which a fault of the line is over
+constexpr int    kPatience    = 4;     ///< misses after which a packet is sent only once per kPause
+constexpr double kPause       = 10e-3; ///< [s] so that packets do not pile up in a stalled line
 
 constexpr double kFastest = 4;    ///< [m/s] of a grip; the governor stops at 1.2
-constexpr double kSlip    = 1e-3; ///< [m] that answers may come closer than they were asked for, at kFastest
-constexpr double kJump    = 5e-3; ///< [m] from one answer to the next, beyond which that is no velocity
-constexpr double kBlink   = 5e-3; ///< [s] after which an answer that is back in place proves no jump to be a mistake
+constexpr double kSlip    = 1e-3; ///< [m] at kFastest, because answers may follow each other faster than their packets
+constexpr double kJump    = 5e-3; ///< [m] from one answer to the next, beyond which no velocity is computed
+constexpr double kBlink   = 5e-3; ///< [s] after which a grip that is back in place does not prove the jump wrong
 constexpr double kUsual   = 1.5;  ///< [m/s] of a grip that was in place all the time: just above the governor's limit
 
 constexpr std::size_t kRead = 512; ///< [byte] at once
@@ -92,7 +92,7 @@ const HapticState& FalconLoop::exchange(const FalconRequest& request) noexcept
         const double until      = now + settings_.answerTimeout;
         for (double left = until - now; left > 0; left = until - link_->now()) {
             isAnswered = collect(left) || isAnswered;
-            if (isAnswered && link_->now() - sent_ >= kBothWays) break; // one that came sooner answers another packet
+            if (isAnswered && link_->now() - sent_ >= kBothWays) break; // an earlier one answers another packet
         }
         if (!isAnswered) miss();
     } catch (const LinkGone&) {
@@ -120,7 +120,7 @@ FalconLoop::~FalconLoop()
     if (loss_ != Loss::gone) release();
 }
 
-/// \return false: the device is gone
+/// \return false if the device is gone
 bool FalconLoop::release() noexcept
 {
     command_.homing = false;
@@ -149,7 +149,7 @@ FalconDrive FalconLoop::drive(const FalconRequest& request, double now) noexcept
     return made;
 }
 
-/// [N] what of the wanted force may act.
+/// Returns the part of the wanted force that may act [N].
 glm::dvec3 FalconLoop::allowed(const FalconRequest& request, double now) noexcept
 {
     const bool isOpen =
@@ -159,7 +159,8 @@ glm::dvec3 FalconLoop::allowed(const FalconRequest& request, double now) noexcep
     return isOpen ? gain_ * request.force : glm::dvec3(0);
 }
 
-/// Reads once; of several answers only the newest counts. \return whether there was one, and it was believed
+/// Reads once; of several answers only the newest counts.
+/// \return whether there was one that was believed
 bool FalconLoop::collect(double timeout)
 {
     std::array<std::uint8_t, kRead> bytes;
@@ -195,12 +196,12 @@ bool FalconLoop::accept(const FalconReply& reply) noexcept
     return true;
 }
 
-/// Position and velocity of a homed arm; both stay where there is none, or none that is believed.
+/// Updates position and velocity of a homed arm; both stay if there is no position that is believed.
 bool FalconLoop::placeGrip(const FalconReply& reply, double now) noexcept
 {
     const auto angles   = kinematics_.angles(reply.encoders);
     const auto position = kinematics_.position(angles, state_.position + FalconKinematics::kMiddle);
-    if (!position) { // a jump as well: to a place that there is not
+    if (!position) { // counts as a jump: this place does not exist
         inDoubt_ = hasPlace_;
         agreed_  = 0;
         return false;
@@ -217,7 +218,8 @@ bool FalconLoop::placeGrip(const FalconReply& reply, double now) noexcept
     return true;
 }
 
-/// How far it may have moved grows with time, so that time alone must not make a jump credible.
+/// Returns whether a position is believed. The distance that the grip may have moved grows with time, but time alone
+/// must not make a jump credible.
 bool FalconLoop::isCredible(const glm::dvec3& here, double now) noexcept
 {
     const double moved = glm::length(here - state_.position), since = now - placed_;
@@ -231,7 +233,7 @@ bool FalconLoop::isCredible(const glm::dvec3& here, double now) noexcept
     return agreed_ >= kGoodAgain;
 }
 
-/// The next position is believed, wherever it is.
+/// Forgets the last position, so that the next one is believed wherever it is.
 void FalconLoop::forgetPlace() noexcept
 {
     hasPlace_ = inDoubt_ = false;
@@ -248,7 +250,7 @@ void FalconLoop::miss() noexcept
     forgetPlace();
 }
 
-/// What is not gone for certain may still push, and may still hear.
+/// Handles a lost link. A device that is not certainly gone may still push, and may still receive.
 void FalconLoop::lose(Loss loss) noexcept
 {
     loss_ = loss == Loss::broken && !release() ? Loss::gone : loss;

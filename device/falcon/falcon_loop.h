@@ -18,57 +18,57 @@ struct FalconLoopSettings {
     double         countsPerTorque = FalconMotors::kCountsPerTorque; ///< [counts/(N m)] see FalconCalibration
     FalconGeometry geometry{};
     double         workspaceRadius = 0.04;   ///< [m] sphere about the middle; 44 mm is the largest in reach of all legs
-    double         velocityWindow  = 15e-3;  ///< [s] as the simulated arm and CHAI3D
+    double         velocityWindow  = 15e-3;  ///< [s] as in the simulated arm and CHAI3D
     double         answerTimeout   = 2.5e-3; ///< [s] for an answer; with a latency timer of 1 ms it takes 1 to 1.5
     bool           showsState      = true;   ///< by falconLight()
 };
 
-/// The light of a Falcon that shows its state, see FalconLoopSettings::showsState.
+/// Returns the light of a Falcon that shows its state, see FalconLoopSettings::showsState.
 [[nodiscard]] DeviceLight falconLight(const HapticState& state) noexcept;
 
-/// What that light tells the user: "green  forces flow".
+/// Returns the meaning of that light for the user: "green  forces flow".
 [[nodiscard]] const char* meaningOf(DeviceLight light) noexcept;
 
-/// What the host wants of one exchange.
+/// The host's request to one exchange.
 struct FalconRequest {
     glm::dvec3   force{};    ///< [N] on the hand, device's frame
     std::uint8_t lights = 0; ///< a sum of DeviceLight, where settings.showsState is off
-    double       share  = 1; ///< [1] of the force at most; beyond it the force comes on as after a break
-    DeviceFault  host   = DeviceFault::none; ///< what the host itself has to complain of: then no force
+    double       share  = 1; ///< [1] most share of the force; if it rises the force comes on as after a break
+    DeviceFault  host   = DeviceFault::none; ///< the host's own fault; no force flows while there is one
 };
 
 /// The conversation with a Falcon whose firmware runs: packet out, packet in.
 ///
-/// A force goes out only while the arm is homed and in its workspace, the last answer is less than 10 ms old and
-/// nothing is at fault; after any break it comes on within 20 ms. What a fault of the line was is over after 20 good
-/// answers in a row; but a link that is lost stays so, `unplugged` if the device is gone, else `silent`. An answer that
-/// comes sooner than one can is another packet's, late or repeated: it counts, but the next is waited for.
+/// A force is sent only while the arm is homed and in its workspace, the last answer is less than 10 ms old and there
+/// is no fault; after any break it rises within 20 ms. A fault of the line ends after 20 good answers in a row, but a
+/// lost link stays lost: `unplugged` if the device is gone, else `silent`. An answer that comes sooner than possible
+/// belongs to another packet, late or repeated: it counts, but the loop waits for the next.
 ///
-/// An answer that would have the grip move faster than 4 m/s is not believed. From then on there is no force until the
-/// grip is back where it was within 5 ms, or 20 answers in a row agree on another place; after 5 ms it is a fault,
+/// An answer by which the grip moves faster than 4 m/s is not believed. From then on there is no force until the grip
+/// is back where it was within 5 ms, or 20 answers in a row agree on another place; after 5 ms the fault is
 /// `kinematics`.
 /// \thread one
 class FalconLoop {
 public:
     /// \throws Error naming a setting out of its range
     FalconLoop(std::unique_ptr<FalconLink> link, const FalconLoopSettings& settings);
-    ~FalconLoop(); ///< three packets without force
+    ~FalconLoop(); ///< sends three packets without force
 
-    /// One packet out, and answers in until the newest is there: settings.answerTimeout at most.
-    /// \return the state then; time by the link's clock
+    /// Sends one packet and reads answers until the newest is there, for settings.answerTimeout at most.
+    /// \return the state after that; its time is by the link's clock
     const HapticState& exchange(const FalconRequest& request) noexcept;
 
-    /// Takes in what comes until the link's clock shows `until` [s].
+    /// Reads answers until the link's clock shows `until` [s].
     void listen(double until) noexcept;
 
     [[nodiscard]] double             now() const noexcept { return link_->now(); } ///< [s] the link's clock
     [[nodiscard]] const HapticState& state() const noexcept { return state_; }
 
-    /// The link is lost: exchange() does nothing any more. The state's fault says how.
+    /// Returns whether the link is lost. exchange() then does nothing; the state's fault says how the link was lost.
     [[nodiscard]] bool isLost() const noexcept { return loss_ != Loss::none; }
 
 private:
-    enum class Loss : std::uint8_t { none, broken, gone }; ///< of the link: broken, it may still take a packet
+    enum class Loss : std::uint8_t { none, broken, gone }; ///< of the link; a broken one may still take a packet
 
     void                      send(const FalconRequest& request, double now);
     [[nodiscard]] glm::dvec3  allowed(const FalconRequest& request, double now) noexcept;
@@ -91,20 +91,20 @@ private:
     HapticState                 state_{};
     FalconCommand               command_{};
     DeviceFault                 line_      = DeviceFault::none; ///< what is wrong with the line or the arm
-    double                      gain_      = 0;                 ///< [1] of the force
+    double                      gain_      = 0;                 ///< [1] share of the force that is sent
     double                      sent_      = 0;                 ///< [s] when the last packet went out
-    double                      answered_  = 0;                 ///< [s] when the last answer came that was believed
+    double                      answered_  = 0;                 ///< [s] when the last believed answer came
     double                      placed_    = 0;                 ///< [s] when the last position came
-    bool                        hasPlace_  = false;             ///< there is one to compare the next with
-    bool                        disbelief_ = false;             ///< an answer was not believed since the last that was
-    bool                        inDoubt_   = false;             ///< it jumped, and where it is now is not settled
-    glm::dvec3                  elsewhere_{};                   ///< [m] where it was then, by the last answer
+    bool                        hasPlace_  = false;             ///< there is a position to compare the next with
+    bool                        disbelief_ = false;             ///< an answer since the last believed one was not
+    bool                        inDoubt_   = false;             ///< the grip jumped and its place is uncertain
+    glm::dvec3                  elsewhere_{};                   ///< [m] its place while in doubt, by the last answer
     double                      seen_     = 0;                  ///< [s] when that answer came
-    int                         agreed_   = 0;                  ///< answers in a row that agree with each other then
+    int                         agreed_   = 0;                  ///< answers in a row that agree while in doubt
     Loss                        loss_     = Loss::none;
     int                         good_     = 0; ///< answers with a position in a row
-    int                         unsolved_ = 0; ///< without one in a row
-    std::uint64_t               skipped_  = 0; ///< [byte] by the parser at the last answer
+    int                         unsolved_ = 0; ///< answers without a position in a row
+    std::uint64_t               skipped_  = 0; ///< [byte] skipped by the parser up to the last answer
 };
 
 } // namespace palp

@@ -31,7 +31,7 @@ FalconDrive FalconMotors::drive(const glm::dvec3& position, const glm::dvec3& fo
 
     const double largest =
         countsPerTorque_ * std::max({std::abs((*torques)[0]), std::abs((*torques)[1]), std::abs((*torques)[2])});
-    out.badForce = !std::isfinite(largest); // finite but past all numbers, such as 1e308 N
+    out.badForce = !std::isfinite(largest); // also catches overflow of finite forces such as 1e308 N
     if (out.badForce) return out;
     out.scale = largest > kMost ? kMost / largest : 1;
 

@@ -8,7 +8,7 @@
 
 namespace palp {
 
-/// What the motors are told, of one force.
+/// The motor numbers for one force.
 struct FalconDrive {
     std::array<std::int16_t, 3> motors{};         ///< [counts] for a FalconCommand; at most kMost in magnitude
     double                      scale    = 0;     ///< [1] share of the force that is rendered; below 1: saturated
@@ -16,43 +16,46 @@ struct FalconDrive {
     bool                        singular = false; ///< out of reach or near a singularity; no force is rendered
 };
 
-/// From forces to what the motors are told, and back.
+/// Converts forces to the numbers for the motors, and back.
 ///
 /// A motor pushes inwards where its number is positive, against the angles of the kinematics: count = -G torque. Where
 /// a number would exceed the range, all three shrink by one factor: a weaker force, in the same direction.
 /// \thread const and pure; it allocates nothing
 class FalconMotors {
 public:
-    /// [counts] most that a motor takes. Beyond it the vendor's driver scales as above; beyond an int16 the packet
-    /// would turn the sign of the force.
+    /// Largest number that a motor takes [counts]. Beyond it the vendor's driver scales as above; beyond an int16 the
+    /// packet would reverse the force.
     static constexpr std::int16_t kMost = 4095;
 
-    /// [counts/(N m)] G. Most packets of the vendor's driver that libnifalcon holds (util/translate_packet.py) give
+    /// G [counts/(N m)]. Most packets of the vendor's driver that libnifalcon holds (util/translate_packet.py) give
     /// 4000 to 4700, with the Jacobian of FalconKinematics and their forces taken as newtons. libnifalcon multiplies by
-    /// 10 000. Measured on no device: if the larger one is right, our forces are too weak. With 4200 the motors hold 14
-    /// N in the middle, whichever way.
+    /// 10 000. Neither was measured on a device: if the larger one is right, Palpate's forces are too weak. With 4200
+    /// the motors hold 14 N in the middle, in any direction.
     static constexpr double kCountsPerTorque = 4200;
 
-    /// [counts/(N m)] the bounds of G, the same for every option, setting and calibration. They are for safety: a G that
-    /// is k times too large makes every force and every stiffness k times larger than the governor has let through. With
-    /// the 1000 N/m that it lets through, a Falcon that needs 4200 gets 2400 N/m at the upper bound, somewhat more than
-    /// the 2137 N/m up to which its released arm is stable at 1 kHz; beyond that the loop swings. It is also the largest G that a public driver uses. Below the lower bound less than half of a force is rendered, and a
+    /// Bounds of G [counts/(N m)], the same for every option, setting and calibration. They are for safety: a G that is
+    /// k times too large makes every force and every stiffness k times larger than the governor allows. With the
+    /// governor's 1000 N/m, a Falcon that needs 4200 gets 2400 N/m at the upper bound, somewhat more than the 2137 N/m
+    /// up to which its released arm is stable at 1 kHz; beyond that the loop swings. The upper bound is also the
+    /// largest G that a public driver uses. Below the lower bound less than half of a force is rendered, and a
     /// calibration no longer holds its mass.
     static constexpr double kLeastCountsPerTorque = 2000, kMostCountsPerTorque = 10000;
 
-    /// \throws Error if a value of G is out of its bounds or no number
+    /// Checks a value of G.
+    /// \throws Error if it is out of its bounds or not a number
     static void demandCountsPerTorque(double countsPerTorque);
 
     /// \param countsPerTorque  [counts/(N m)] G
-    /// \throws Error as demandCountsPerTorque() does
+    /// \throws Error where demandCountsPerTorque() does
     explicit FalconMotors(const FalconKinematics& kinematics      = FalconKinematics{},
                           double                  countsPerTorque = kCountsPerTorque);
 
+    /// Computes the motor numbers for a force.
     /// \param position  [m] of the grip, in the frame of the kinematics
     /// \param force     [N] on the hand
     [[nodiscard]] FalconDrive drive(const glm::dvec3& position, const glm::dvec3& force) const noexcept;
 
-    /// Torques [N m] of motors that are told this.
+    /// Returns the torques [N m] that these numbers give.
     [[nodiscard]] std::array<double, 3> torques(const std::array<std::int16_t, 3>& motors) const noexcept;
 
 private:

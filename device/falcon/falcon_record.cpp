@@ -36,7 +36,7 @@ DeviceSupport support()
     return {hasFalconSupport(), falconSupport(), "install libusb-1.0-0-dev and build Palpate anew"};
 }
 
-/// Whether some rule names the product, given in lower case; rules may spell it in any.
+/// Returns whether a rule names the product, given in lower case; rules may spell it in any case.
 bool hasUdevRule(const std::string& product)
 {
     for (const char* folder :
@@ -64,7 +64,7 @@ Finding udevRule()
 Finding firmware()
 {
     const char*    part = "falcon firmware";
-    const fs::path path = falconFirmwarePath(""); // as the environment says
+    const fs::path path = falconFirmwarePath(""); // from the environment
     if (path.empty())
         return {part, Verdict::warning, "FALCON_FIRMWARE is not set; a Falcon that was just plugged in needs it",
                 "export FALCON_FIRMWARE=FILE, the image that came with the device's own driver"};

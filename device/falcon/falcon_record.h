@@ -20,11 +20,11 @@ inline constexpr DeviceOption kFalconEventCharacter{
 inline constexpr DeviceOption kFalconFirmware{"--falcon-firmware",
                                               "image that a Falcon needs after it was plugged in [FALCON_FIRMWARE]"};
 
-/// The settings that the options ask for, without the firmware.
+/// Returns the settings that the options ask for, without the firmware.
 /// \throws Error naming an option out of its bounds
 [[nodiscard]] FalconDeviceSettings falconSettings(const DeviceRequest& request);
 
-/// The firmware that the options or FALCON_FIRMWARE name; empty if neither does.
+/// Reads the firmware that the options or FALCON_FIRMWARE name; empty if neither does.
 /// \throws Error naming the file
 [[nodiscard]] std::vector<std::uint8_t> falconFirmware(const DeviceRequest& request);
 

@@ -10,16 +10,16 @@
 namespace palp {
 namespace {
 
-constexpr double                      kClock        = 3e6;  ///< [Hz] that divisors divide
+constexpr double                      kClock        = 3e6;  ///< [Hz] clock that divisors divide
 constexpr double                      kBitsPerByte  = 10;   ///< start, eight, stop
 constexpr double                      kWriteTimeout = 0.1;  ///< [s] FalconLink::write
 constexpr std::size_t                 kOutBuffer    = 256;  ///< [byte] of the chip, to the wire
 constexpr std::size_t                 kPayload      = 62;   ///< [byte] of a packet of 64
-constexpr std::size_t                 kPast         = 50;   ///< answers that a replay goes back
+constexpr std::size_t                 kPast         = 50;   ///< answers by which a replay goes back
 constexpr double                      kSplit        = 1e-3; ///< [s] between the pieces of a split answer
 constexpr std::array<std::uint8_t, 2> kStatus{0x01, 0x60};  ///< modem and line status: nothing to report
 
-/// [s] a byte takes. Bits 14 and 15 are the fraction: 0, 1/2, 1/4, 1/8; 0 and 1 are 3 and 2 Mbaud.
+/// Returns the time of a byte [s]. Bits 14 and 15 are the fraction: 0, 1/2, 1/4, 1/8; 0 and 1 are 3 and 2 Mbaud.
 double byteTime(std::uint16_t divisor)
 {
     constexpr std::array<double, 4> kFractions{0, 0.5, 0.25, 0.125};
@@ -29,7 +29,7 @@ double byteTime(std::uint16_t divisor)
     return kBitsPerByte * by / kClock;
 }
 
-/// One opening of the emulator's link; gone once the emulator was unplugged, lost once a write failed.
+/// One opening of the emulator's link. It is gone once the emulator was unplugged, and lost once a write failed.
 class Connection final : public FalconLink {
 public:
     explicit Connection(Ft232Emulator& emulator) noexcept : emulator_(emulator) {}
@@ -98,7 +98,7 @@ bool Ft232Emulator::troubled(LinkTroubleKind kind, double time) const noexcept
     });
 }
 
-/// When what is ready at `time` [s] can move.
+/// Returns when data that is ready at `time` [s] can move [s].
 double Ft232Emulator::unstalled(double time) const noexcept
 {
     for (const LinkTrouble& trouble : troubles_)
@@ -157,7 +157,7 @@ void Ft232Emulator::write(std::span<const std::uint8_t> bytes)
     const double deadline = time_ + kWriteTimeout;
     waitUntil(time_ + settings_.transferTime);
     for (const std::uint8_t byte : bytes) {
-        while (out_.size() >= kOutBuffer) { // the chip says "not now"
+        while (out_.size() >= kOutBuffer) { // the chip accepts no more
             if (out_.front().time > deadline) throw LinkLost("the Falcon's link takes no more bytes");
             waitUntil(out_.front().time);
         }
@@ -218,13 +218,13 @@ void Ft232Emulator::waitUntil(double time)
     falcon_.moveTo(time_);
 }
 
-/// What the Falcon says from `time` [s] on, at the divisor it was spoken to, with the troubles of that time.
+/// Sends the Falcon's answer from `time` [s] on, at the divisor of the command, with the troubles of that time.
 void Ft232Emulator::answer(std::span<const std::uint8_t> bytes, std::uint16_t divisor, double time)
 {
     const auto has = [&](LinkTroubleKind kind) { return troubled(kind, time); };
     if (bytes.empty() || has(LinkTroubleKind::silence)) return;
     std::vector<std::uint8_t> said(bytes.begin(), bytes.end());
-    if (said.size() < FalconPacket{}.size()) { // of the loader
+    if (said.size() < FalconPacket{}.size()) { // an answer of the boot loader
         if (falcon_.stage() == FalconStage::loader && has(LinkTroubleKind::echoMismatch)) said.back() ^= 0x10;
         return put(said, divisor, time);
     }
@@ -238,7 +238,7 @@ void Ft232Emulator::answer(std::span<const std::uint8_t> bytes, std::uint16_t di
     if (has(LinkTroubleKind::repeat)) said.insert(said.end(), bytes.begin(), bytes.end());
     if (has(LinkTroubleKind::garbage))
         for (int n = 0; n < 5; ++n) {
-            noise_ = noise_ * 1664525u + 1013904223u; // any bytes do
+            noise_ = noise_ * 1664525u + 1013904223u; // any bytes suffice
             said.insert(said.begin(), std::uint8_t(noise_ >> 24));
         }
     if (has(LinkTroubleKind::merged) && held_.empty()) {
@@ -254,7 +254,7 @@ void Ft232Emulator::answer(std::span<const std::uint8_t> bytes, std::uint16_t di
     put(said, divisor, time);
 }
 
-/// Onto the wire to the host.
+/// Puts bytes on the wire to the host.
 void Ft232Emulator::put(std::span<const std::uint8_t> bytes, std::uint16_t divisor, double time)
 {
     for (const std::uint8_t byte : bytes) {
@@ -263,7 +263,7 @@ void Ft232Emulator::put(std::span<const std::uint8_t> bytes, std::uint16_t divis
     }
 }
 
-/// A byte is in the chip; it is noise, here lost, where the bauds differ.
+/// Takes a byte into the chip. Where the bauds differ it would be noise; here it is lost.
 void Ft232Emulator::arrive(const WireByte& byte)
 {
     if (byte.divisor != divisor_) return;
@@ -274,7 +274,7 @@ void Ft232Emulator::arrive(const WireByte& byte)
 void Ft232Emulator::sendPacket(double time)
 {
     timer_ = time + latency_;
-    if (buffer_.empty()) return; // two status bytes, of which FalconLink tells nothing
+    if (buffer_.empty()) return; // a packet of two status bytes, which FalconLink does not report
     std::vector<std::uint8_t> bytes(kStatus.begin(), kStatus.end());
     bytes.insert(bytes.end(), buffer_.begin(), buffer_.end());
     buffer_.clear();

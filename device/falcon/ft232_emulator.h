@@ -11,7 +11,7 @@
 
 namespace palp {
 
-/// What can go wrong between a Falcon and the host.
+/// Troubles between a Falcon and the host.
 enum class LinkTroubleKind : std::uint8_t {
     runt,         ///< answers lose their last two bytes
     merged,       ///< an answer is kept back until the next one, and comes with it
@@ -20,8 +20,8 @@ enum class LinkTroubleKind : std::uint8_t {
     replay,       ///< the answer of 50 packets ago comes in place of the new one
     repeat,       ///< an answer comes twice
     echoMismatch, ///< the loader's echo has a wrong bit
-    silence,      ///< what the device says is lost; it hears and acts
-    stall,        ///< nothing moves either way; afterwards it goes on
+    silence,      ///< the device's answers are lost; it receives and acts
+    stall,        ///< nothing moves in either direction; afterwards the link continues
     unplug        ///< LinkLost; afterwards it can be opened again
 };
 
@@ -37,26 +37,26 @@ struct Ft232EmulatorSettings {
     EmulatedFalconSettings falcon{};
 };
 
-/// A Falcon with its FT232R bridge on a USB that goes by virtual time: only write, read and control let time pass. The
-/// same calls give the same bytes and times, bit for bit.
+/// A Falcon with its FT232R bridge on a USB in virtual time: only write, read and control let time pass. The same calls
+/// give the same bytes and times, bit for bit.
 ///
 ///     write -> transfer -> 256 bytes of buffer -> 10 bits a byte at the divisor -> EmulatedFalcon
 ///     read  <- transfer <- packet of 2 status and at most 62 bytes <- 10 bits a byte <- its answer
 ///
-/// The chip sends a packet when 62 bytes are there, when the event character comes, or when the latency timer runs out,
-/// which starts with each packet [I]. A byte at another divisor than the other side's is lost.
+/// The chip sends a packet when it has 62 bytes, when the event character comes, or when the latency timer runs out,
+/// which restarts with each packet [I]. A byte is lost if the divisors of the two sides differ.
 /// \thread one
 /// \source Linux, drivers/usb/serial/ftdi_sio.h: requests, divisors, timer, event character; buffers of the FT232R: [I]
 class Ft232Emulator final : public FalconLink {
 public:
     explicit Ft232Emulator(const Ft232EmulatorSettings& settings = {}, EmulatedFalcon::Arm arm = {});
 
-    /// Opens the link anew: the chip starts over. Refers to this emulator, which must outlive it.
+    /// Opens the link anew, which resets the chip. The link refers to this emulator, which must outlive it.
     /// \throws Error while it is unplugged
     [[nodiscard]] std::unique_ptr<FalconLink> connect();
 
     void cause(const LinkTrouble& trouble) { troubles_.push_back(trouble); }
-    void waitUntil(double time); ///< [s] lets time pass until then; a time that has passed: nothing
+    void waitUntil(double time); ///< [s] lets time pass until then; does nothing if that time is over
 
     [[nodiscard]] double now() const noexcept override { return time_; }
     void                 control(FtdiRequest request, std::uint16_t value) override;
@@ -68,12 +68,12 @@ public:
 
 private:
     struct WireByte {
-        double        time; ///< [s] when its last bit is through
+        double        time; ///< [s] when its last bit has arrived
         std::uint8_t  value;
         std::uint16_t divisor;
     };
     struct UsbPacket {
-        double                    time; ///< [s] when the host has it
+        double                    time; ///< [s] when it reaches the host
         std::vector<std::uint8_t> bytes;
     };
 
@@ -92,15 +92,15 @@ private:
     EmulatedFalcon            falcon_;
     std::vector<LinkTrouble>  troubles_;
     double                    time_           = 0;       ///< [s]
-    std::uint16_t             divisor_        = 0x4138;  ///< the host's
+    std::uint16_t             divisor_        = 0x4138;  ///< of the host's side
     int                       eventCharacter_ = -1;      ///< none
-    double                    latency_        = 16e-3;   ///< [s] as the chip wakes up
+    double                    latency_        = 16e-3;   ///< [s] the chip's initial value
     double                    timer_          = 16e-3;   ///< [s] when the latency timer runs out
     double                    outFree_ = 0, inFree_ = 0; ///< [s] when the wire is free
     std::deque<WireByte>      out_, in_;                 ///< on the wire, to the Falcon and from it
-    std::vector<std::uint8_t> buffer_;                   ///< of the chip, towards the host
+    std::vector<std::uint8_t> buffer_;                   ///< the chip's buffer towards the host
     std::deque<UsbPacket>     packets_;                  ///< on the way to the host
-    std::deque<std::uint8_t>  host_;                     ///< there, without the status bytes
+    std::deque<std::uint8_t>  host_;                     ///< bytes that reached the host, without the status bytes
     std::vector<std::uint8_t> held_;                     ///< an answer kept back: LinkTroubleKind::merged
     std::deque<FalconPacket>  past_;                     ///< for LinkTroubleKind::replay
     std::uint32_t             noise_ = 1;                ///< state of the garbage

@@ -12,12 +12,12 @@ namespace {
 constexpr std::uint8_t kAnswer = 1, kCommand = 2; // numbers of the reports
 constexpr std::uint8_t kMark0 = 'P', kMark1 = 'B';
 constexpr std::uint8_t kEnable = 1, kHome = 2;     // flags of a command
-constexpr std::size_t  kChecked = kBridgeSize - 2; // [byte] the checksum stands behind them
+constexpr std::size_t  kChecked = kBridgeSize - 2; // [byte] before the checksum
 
 constexpr double kMicro = 1e-6, kMilli = 1e-3, kTenthOfMilli = 1e-4; // steps of fields
 constexpr double kUnit = 1.0 / 32767;                                // of a quaternion's parts
 
-/// Puts fields one behind the other, low byte first.
+/// Writes fields one after the other, low byte first.
 class Writer {
 public:
     Writer(std::uint8_t number, std::uint16_t sequence)
@@ -49,7 +49,7 @@ public:
 
     [[nodiscard]] BridgeBytes done()
     {
-        at_ = kChecked; // what is reserved stays 0
+        at_ = kChecked; // reserved bytes stay 0
         put(bridgeChecksum(std::span(bytes_).first(kChecked)));
         return bytes_;
     }
@@ -94,7 +94,7 @@ BridgeVerdict verdictOn(std::span<const std::uint8_t> report, std::uint8_t numbe
 {
     if (report.size() != kBridgeSize || report[0] != number || report[1] != kMark0 || report[2] != kMark1)
         return BridgeVerdict::notOurs;
-    if (report[3] >> 4 != kBridgeMajor) return BridgeVerdict::otherVersion; // its checksum may stand elsewhere
+    if (report[3] >> 4 != kBridgeMajor) return BridgeVerdict::otherVersion; // its checksum may be elsewhere
     const std::uint16_t sum = std::uint16_t(report[kChecked] | report[kChecked + 1] << 8);
     return sum == bridgeChecksum(report.first(kChecked)) ? BridgeVerdict::good : BridgeVerdict::damaged;
 }
@@ -121,7 +121,7 @@ BridgeBytes encode(const BridgeAnswer& answer) noexcept
     out.put<std::int16_t>(answer.gripper, kMilli);
     const glm::dquat& turn = answer.orientation;
     for (double part : {turn.w, turn.x, turn.y, turn.z}) out.put<std::int16_t>(part, kUnit);
-    // The device's clock wraps around; the remainder of what is not finite is none, and put() makes it 0.
+    // The device's clock wraps around. The remainder of a number that is not finite is not finite; put() makes it 0.
     out.put<std::uint32_t>(std::fmod(std::round(answer.deviceTime / kMicro), 4294967296.0) * kMicro, kMicro);
     out.put(answer.command);
     out.put<std::int16_t>(answer.rendered, kMilli);
@@ -138,7 +138,7 @@ BridgeBytes encode(const BridgeCommand& command) noexcept
     Writer out(kCommand, command.sequence);
     out.put(std::uint16_t((command.enable ? kEnable : 0) | (command.home ? kHome : 0)));
     out.put<std::int16_t>(command.enable ? command.force : glm::dvec3(0), kMilli);
-    out.put<std::uint8_t>(std::max(command.watchdog, kMilli), kMilli); // 0 would be none at all
+    out.put<std::uint8_t>(std::max(command.watchdog, kMilli), kMilli); // 0 would mean no watchdog
     out.put(command.lights);
     return out.done();
 }
@@ -167,7 +167,7 @@ BridgeVerdict decode(std::span<const std::uint8_t> report, BridgeAnswer& out) no
     answer.buttonCount      = std::min<unsigned>(in.get<std::uint8_t>(), 32);
     if (answer.has(BridgeFlag::rotates)) {
         const glm::dquat turn(w, x, y, z);
-        if (glm::length(turn) < 0.5) return BridgeVerdict::damaged; // a unit quaternion, or the firmware forgot it
+        if (glm::length(turn) < 0.5) return BridgeVerdict::damaged; // not a unit quaternion: the firmware left it empty
         answer.orientation = glm::normalize(turn);
     }
     out = answer;

@@ -14,16 +14,15 @@
 namespace palp {
 namespace {
 
-constexpr double kSilence = 0.1;  // [s] without an answer: see DeviceFault::silent
-constexpr int    kMissed  = 20;   // [1] exchanges without an answer, likewise
-constexpr double kQuiet   = 0.02; // [s] between the zero commands of a host that does not call: far from flooding
-constexpr double kStep    = 1e-3; // [s] between commands while a force falls, at least
-constexpr double kLongest = 4e-3; // [s] that counts of the time between two commands, as for the governor
-constexpr int    kZeros   = 3;    // [1] commands at the end: one may be lost with its packet, hardly three
-constexpr int    kRestart =
-    20; // [1] answers that go on counting from an old number, until it is a device that started anew
-constexpr int    kMostReports = 64; // [1] per pass: whoever is flooded still writes
-constexpr double kFarOut      = 2;  // [1] times the workspace's radius: no arm gets there
+constexpr double kSilence = 0.1;  // [s] without an answer, see DeviceFault::silent
+constexpr int    kMissed  = 20;   // exchanges without an answer, likewise
+constexpr double kQuiet   = 0.02; // [s] between zero commands while exchange() is not called: far from flooding
+constexpr double kStep    = 1e-3; // [s] at least between commands while a force falls
+constexpr double kLongest = 4e-3; // [s] most time between two commands that is counted, as in the governor
+constexpr int    kZeros   = 3;    // commands at the end: one packet may be lost, hardly three
+constexpr int    kRestart = 20; // answers that count on from an old number before the device is taken to have restarted
+constexpr int    kMostReports = 64; // per pass, so that a flooded host still writes
+constexpr double kFarOut      = 2;  // [1] times the workspace's radius: no arm reaches that far
 
 double secondsSince(std::chrono::steady_clock::time_point then)
 {
@@ -71,7 +70,7 @@ void HidBridgeDevice::open()
     started_ = stopped_ = impossible_ = false;
     seenGood_ = seenGarbled_ = 0;
     state_                   = {};
-    outbox_.take(); // what an earlier opening left behind is forgotten
+    outbox_.take(); // commands of an earlier opening are discarded
 
     const auto deadline = Clock::now() + std::chrono::duration<double>(settings_.openWait);
     try {
@@ -114,7 +113,7 @@ void HidBridgeDevice::describe(const BridgeAnswer& answer)
 
 void HidBridgeDevice::close() noexcept
 {
-    if (thread_.joinable()) { // it says zero at its end
+    if (thread_.joinable()) { // it sends zero at its end
         thread_.request_stop();
         thread_.join();
     } else if (open_) {
@@ -128,10 +127,11 @@ void HidBridgeDevice::close() noexcept
 
 // --- the port: the thread's, or exchange()'s
 
-/// Every report there is. \throws HidLost
+/// Reads every waiting report.
+/// \throws HidLost if the device went away
 void HidBridgeDevice::receive(double wait)
 {
-    std::array<std::uint8_t, kBridgeSize + 1> report{}; // one more, so that one that is too long is seen
+    std::array<std::uint8_t, kBridgeSize + 1> report{}; // one byte more, so that a report that is too long is noticed
     for (int n = 0; n < kMostReports; ++n) {
         const std::size_t size = port_->read(report, n == 0 ? wait : 0);
         if (size == 0) return;
@@ -145,8 +145,8 @@ void HidBridgeDevice::receive(double wait)
     }
 }
 
-/// Only what is newer than the last one, by numbers that wrap around; but a device that goes on counting from an old
-/// number has started anew.
+/// Takes an answer that is newer than the last one, by numbers that wrap around. A device that counts on from an old
+/// number has restarted.
 void HidBridgeDevice::takeAnswer(const BridgeAnswer& answer) noexcept
 {
     const auto ahead = std::int16_t(answer.sequence - seen_.answer.sequence);
@@ -160,7 +160,7 @@ void HidBridgeDevice::takeAnswer(const BridgeAnswer& answer) noexcept
     ++seen_.good;
 }
 
-/// \throws HidLost
+/// \throws HidLost if the device went away
 void HidBridgeDevice::send(BridgeCommand command)
 {
     command.sequence = ++sent_;
@@ -177,7 +177,7 @@ void HidBridgeDevice::sendNewest()
     sendShare(1);
 }
 
-/// The force last asked for, or what of it may go out: at most that, and more by and by after it had to be less.
+/// Returns the part of the last requested force that may be sent; after a reduction it rises gradually.
 void HidBridgeDevice::sendShare(double most)
 {
     BridgeCommand command = outbox_.held()->command;
@@ -188,7 +188,7 @@ void HidBridgeDevice::sendShare(double most)
     send(command);
 }
 
-/// In the name of a host that does not call: less and less force, then zero over and over.
+/// Sends commands while exchange() is not called: a falling force, then zero repeatedly.
 void HidBridgeDevice::letFall()
 {
     const double age = secondsSince(lastAsked_), share = heldShare(age);
@@ -199,7 +199,8 @@ void HidBridgeDevice::letFall()
     }
 }
 
-/// Reads, then writes. \return false: the device is gone
+/// Reads, then writes.
+/// \return false if the device is gone
 bool HidBridgeDevice::readAndWrite(double wait) noexcept
 {
     try {
@@ -216,7 +217,7 @@ bool HidBridgeDevice::readAndWrite(double wait) noexcept
 
 void HidBridgeDevice::run(const std::stop_token& stop) noexcept
 {
-    // Refusal is no news to the user: the servo asked before and said so.
+    // A refusal is not reported: the servo has asked before and reported it.
     if (settings_.asksForRealTime) static_cast<void>(askForRealTime());
     while (!stop.stop_requested() && readAndWrite(settings_.readWait)) {
     }
@@ -228,7 +229,7 @@ void HidBridgeDevice::sayZero() noexcept
     try {
         for (int n = 0; n < kZeros && !seen_.lost; ++n) send({});
     } catch (const HidLost&) {
-        seen_.lost = true; // then its own watchdog stops it
+        seen_.lost = true; // its own watchdog then stops it
     }
 }
 
@@ -262,7 +263,7 @@ HapticState HidBridgeDevice::exchange(const GovernedForce& force, double now) no
     return state_;
 }
 
-/// The servo's clock may start anew: all times go back with it.
+/// Follows a servo's clock that starts anew: all times move back with it.
 void HidBridgeDevice::followClock(double now) noexcept
 {
     if (!started_ || !(now < lastExchange_)) return;
@@ -272,7 +273,7 @@ void HidBridgeDevice::followClock(double now) noexcept
     state_.time -= back;
 }
 
-/// Takes over the newest answer, if there is one.
+/// Takes the newest answer, if there is one.
 void HidBridgeDevice::readInbox(double now) noexcept
 {
     inbox_.take();
@@ -281,7 +282,7 @@ void HidBridgeDevice::readInbox(double now) noexcept
         state_.fault = DeviceFault::unplugged;
         return;
     }
-    if (!started_) lastAnswer_ = now; // what came before is not to be blamed
+    if (!started_) lastAnswer_ = now; // silence before the first exchange does not count
     if (inbox.good == seenGood_) {
         ++state_.missed;
         return;
@@ -300,7 +301,7 @@ void HidBridgeDevice::readInbox(double now) noexcept
     state_.buttons             = answer.buttons;
     state_.gripperAngle        = answer.gripper;
     state_.orientation         = answer.orientation;
-    if (impossible_) return; // the hand stays where it was last seen
+    if (impossible_) return; // the hand stays at its last valid position
     state_.position = answer.position;
     state_.velocity = answer.velocity;
 }
@@ -317,7 +318,7 @@ DeviceFault HidBridgeDevice::faultAt(const GovernedForce& force, double now) con
     return DeviceFault::none;
 }
 
-/// At most what the motors hold, in the same direction: cutting each field apart would turn the force.
+/// Limits a force to what the motors hold, in the same direction: limiting each field alone would turn the force.
 glm::dvec3 HidBridgeDevice::renderable(const glm::dvec3& force) const noexcept
 {
     const double size = glm::length(force);

@@ -12,14 +12,14 @@
 
 namespace palp {
 
-/// Whether a listing can be a bridge; only its reports tell for certain.
+/// Returns whether a listing can be a bridge; only its reports prove it.
 [[nodiscard]] bool isBridge(const HidListing& listing) noexcept;
 
 struct HidBridgeSettings {
-    double  watchdog = 25e-3; ///< [s] the device goes to zero force that long after the last command; 2 ms to 0.255 s
-    double  openWait = 1;     ///< [s] for the first report
-    double  readWait = 1e-3;  ///< [s] the thread waits for a report before it looks for a command again
-    HidPace pace     = HidPace::thread;
+    double  watchdog        = 25e-3; ///< [s] from the last command to the device's zero force; 2 ms to 0.255 s
+    double  openWait        = 1;     ///< [s] for the first report
+    double  readWait        = 1e-3;  ///< [s] for which the thread waits for a report before it looks for a command
+    HidPace pace            = HidPace::thread;
     bool    asksForRealTime = true; ///< for its thread, if it may; without, commands may be late
 };
 
@@ -27,15 +27,15 @@ struct HidBridgeSettings {
 ///
 /// exchange() leaves a command in one three-slot hand-off and takes the newest answer from another; the driver's thread
 /// does the reading and writing. Force flows only while the device is homed and there is no fault: every other command
-/// says zero, and motors off. A force that exchange() does not renew is held for 5 ms and falls to zero in 20 ms more,
-/// where the driver has a thread; then, and on close, several such commands go out. Beyond that the device's own
-/// watchdog is the last line.
+/// has zero force and motors off. Where the driver has a thread, a force that exchange() does not renew is held for 5
+/// ms and falls to zero in 20 ms more; then, and on close, several zero commands are sent. The last safeguard is the
+/// device's own watchdog.
 ///
 /// A fault is shown while its cause lasts; only "unplugged" stays until close().
 /// \thread see HapticDevice
 class HidBridgeDevice : public HapticDevice {
 public:
-    /// \param system  outlives it
+    /// \param system  must outlive this object
     /// \throws Error naming a setting out of its range
     HidBridgeDevice(HidSystem& system, const HidListing& listing, const HidBridgeSettings& settings = {});
     ~HidBridgeDevice() override;
@@ -53,8 +53,8 @@ private:
 
     struct Inbox {
         BridgeAnswer  answer;      ///< the last good one
-        std::uint64_t good    = 0; ///< with a new sequence number
-        std::uint64_t garbled = 0; ///< that make no sense
+        std::uint64_t good    = 0; ///< answers with a new sequence number
+        std::uint64_t garbled = 0; ///< invalid reports
         bool          lost    = false;
     };
 
@@ -63,7 +63,7 @@ private:
         Clock::time_point time;
     };
 
-    // Of the thread, or of exchange() where that sets the pace.
+    // Used by the thread, or by exchange() where that sets the pace.
     void receive(double wait);
     void takeAnswer(const BridgeAnswer& answer) noexcept;
     void send(BridgeCommand command);
@@ -74,7 +74,7 @@ private:
     void run(const std::stop_token& stop) noexcept;
     void sayZero() noexcept;
 
-    // Of exchange().
+    // Used by exchange().
     void                      followClock(double now) noexcept;
     void                      readInbox(double now) noexcept;
     [[nodiscard]] DeviceFault faultAt(const GovernedForce& force, double now) const noexcept;
@@ -91,28 +91,28 @@ private:
     Latest<TimedCommand>      outbox_;
     Latest<Inbox>             inbox_;
 
-    // Of the thread, or of exchange() where that sets the pace.
+    // Used by the thread, or by exchange() where that sets the pace.
     std::unique_ptr<HidPort> port_;
     Inbox                    seen_;
     bool                     wrongVersion_ = false;
-    std::uint16_t            lastRefused_  = 0;     ///< sequence of an answer that was too old
-    int                      goesOn_       = 0;     ///< old answers that follow one another
+    std::uint16_t            lastRefused_  = 0;     ///< sequence of the last answer that was too old
+    int                      goesOn_       = 0;     ///< old answers with consecutive numbers
     std::uint16_t            sent_         = 0;     ///< sequence of the last command
     bool                     hot_          = false; ///< the last command may have had the motors on
-    double                   share_        = 1;     ///< [1] of the force asked for that goes out
+    double                   share_        = 1;     ///< [1] share of the requested force that is sent
     Clock::time_point        lastAsked_, lastSent_;
 
-    // Of exchange().
+    // Used by exchange().
     HapticState   state_;
     bool          open_     = false;
     bool          started_  = false; ///< exchange() has been called since open()
     std::uint64_t seenGood_ = 0, seenGarbled_ = 0;
-    bool          stopped_      = false; ///< the device says so
-    bool          impossible_   = false; ///< its last position
+    bool          stopped_      = false; ///< the device reports it
+    bool          impossible_   = false; ///< the last position was impossible
     double        lastAnswer_   = 0;     ///< [s]
     double        lastExchange_ = 0;     ///< [s]
 
-    std::jthread thread_; ///< last: it ends before what it uses
+    std::jthread thread_; ///< last member: it ends before what it uses
 };
 
 } // namespace palp

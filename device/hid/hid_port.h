@@ -11,15 +11,15 @@
 
 namespace palp {
 
-/// A HID device as the system lists it.
+/// An HID device as the system lists it.
 struct HidListing {
-    std::string   path{}; ///< only good for HidSystem::open()
+    std::string   path{}; ///< only for HidSystem::open()
     std::uint16_t vendor = 0, product = 0;
     std::uint16_t usagePage = 0, usage = 0;
     std::string   manufacturer{}, model{}, serial{}; ///< may be empty
 };
 
-/// A device that cannot be opened: why, and the one line that helps; what() is both.
+/// A device that cannot be opened: the reason and one line that helps; what() has both.
 class HidRefused : public Error {
 public:
     HidRefused(const std::string& reason, const std::string& advice)
@@ -30,7 +30,7 @@ public:
     std::string why, help; ///< help may be empty
 };
 
-/// The device went away while open.
+/// An open device that went away.
 class HidLost : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
@@ -45,21 +45,22 @@ public:
     HidPort& operator=(const HidPort&) = delete;
     virtual ~HidPort()                 = default;
 
-    /// One input report with its number in front; waits up to `timeout` [s].
-    /// \return bytes filled; 0: none came in time
-    /// \throws HidLost
+    /// Reads one input report with its number in front; waits up to `timeout` [s].
+    /// \return bytes filled; 0 if none came in time
+    /// \throws HidLost if the device went away
     virtual std::size_t read(std::span<std::uint8_t> report, double timeout) = 0;
 
     /// Writes one output report with its number in front.
-    /// \throws HidLost
+    /// \throws HidLost if the device went away
     virtual void write(std::span<const std::uint8_t> report) = 0;
 };
 
-/// Who waits for a driver's reports: a thread of its own, or whoever calls exchange(), without waiting. The second is
-/// for tests in virtual time, and for fakes; reading hardware in exchange() would cost system calls there.
+/// The reader of a driver's reports: a thread of its own that waits for them, or the caller of exchange(), which does
+/// not wait. The second is for tests in virtual time and for fakes; with hardware it would cost system calls in
+/// exchange().
 enum class HidPace : std::uint8_t { thread, caller };
 
-/// What lists and opens HID devices: hidapi, or a fake.
+/// The interface that lists and opens HID devices: hidapi, or a fake.
 class HidSystem {
 public:
     HidSystem()                            = default;
@@ -69,7 +70,7 @@ public:
 
     [[nodiscard]] virtual std::vector<HidListing> list() = 0;
 
-    /// \param path  of a listing; anything else is refused
+    /// \param path  path of a listing; any other is refused
     /// \throws HidRefused naming the device and what to do, such as a missing permission
     [[nodiscard]] virtual std::unique_ptr<HidPort> open(const std::string& path) = 0;
 };

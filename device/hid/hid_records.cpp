@@ -13,7 +13,7 @@
 namespace palp {
 namespace {
 
-/// Each device that `modelOf` gives a model; one that lists itself twice appears once.
+/// Lists each device that `modelOf` gives a model; one that is listed twice appears once.
 template <class ModelOf>
 std::vector<DeviceListing> listHid(HidSystem& hid, ModelOf modelOf)
 {
@@ -34,7 +34,7 @@ std::vector<DeviceListing> listHid(HidSystem& hid, ModelOf modelOf)
     return devices;
 }
 
-/// The first device that `modelOf` gives a model, or the one at the path that is asked for.
+/// Finds the first device that `modelOf` gives a model, or the one at the requested path.
 template <class ModelOf>
 HidListing listingFor(const DeviceRequest& request, ModelOf modelOf, const char* what)
 {

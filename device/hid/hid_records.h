@@ -3,7 +3,7 @@
 
 namespace palp {
 
-extern const DeviceRecord kBridgeRecord;     ///< whatever speaks the bridge's report
+extern const DeviceRecord kBridgeRecord;     ///< any device with the bridge's report
 extern const DeviceRecord kSpaceMouseRecord; ///< 3Dconnexion's caps with six axes
 
 } // namespace palp

@@ -13,14 +13,14 @@
 namespace palp {
 namespace {
 
-/// hidapi keeps its start-up and the text of its last failure to open in globals: one thread at a time.
+/// Guards hidapi's globals: its start-up and the text of its last failure to open.
 std::mutex& globals()
 {
     static std::mutex mutex;
     return mutex;
 }
 
-/// hidapi speaks wide strings; a lone surrogate or a number beyond Unicode becomes U+FFFD.
+/// Converts hidapi's wide strings; a lone surrogate or a number beyond Unicode becomes U+FFFD.
 std::string utf8(const wchar_t* wide)
 {
     std::string text;
@@ -46,7 +46,7 @@ public:
 
     std::size_t read(std::span<std::uint8_t> report, double timeout) override
     {
-        // Rounded up, so that a wait of 0.1 ms is none of zero; never -1, which would wait for ever.
+        // Rounded up, so that a wait of 0.1 ms does not become zero; never -1, which would wait for ever.
         const double milliseconds = std::isfinite(timeout) ? std::clamp(std::ceil(timeout * 1e3), 0.0, 60e3) : 0;
         const int    got          = hid_read_timeout(device_, report.data(), report.size(), int(milliseconds));
         if (got < 0) lost("reading");
@@ -94,7 +94,7 @@ bool hasHidSupport() noexcept
     return true;
 }
 
-// No hid_exit(): it would pull the rug from under other systems and their ports, and frees but a few bytes.
+// There is no hid_exit(): it would break other systems and their ports, and frees only a few bytes.
 HidapiSystem::HidapiSystem()  = default;
 HidapiSystem::~HidapiSystem() = default;
 

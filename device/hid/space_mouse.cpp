@@ -13,11 +13,11 @@
 namespace palp {
 namespace {
 
-constexpr double       kFullDeflection = 350; // [counts] by PySpaceMouse's table, for every model
-constexpr double       kWait        = 10e-3; // [s] for a report: how late a light may be, and how long close() may take
-constexpr double       kLongest     = 0.1;   // [s] a later tick moves the point no further than this one
-constexpr std::uint8_t kLight       = 4;     // number of the output report; then 1 or 0
-constexpr int          kMostReports = 64;    // [1] per pass: whoever is flooded still returns
+constexpr double       kFullDeflection = 350;   // [counts] for every model, from PySpaceMouse's table
+constexpr double       kWait           = 10e-3; // [s] for a report: the longest delay of a light and of close()
+constexpr double       kLongest        = 0.1;   // [s] a later tick moves the point no further than after this time
+constexpr std::uint8_t kLight          = 4;     // number of the output report; then 1 or 0
+constexpr int          kMostReports    = 64;    // per pass, so that it returns even when flooded
 
 /// Its z points down and its y to the user: a turn about x by 90 degrees brings y up.
 glm::dvec3 upright(const std::array<std::int16_t, 6>& axes, std::size_t first)
@@ -62,11 +62,11 @@ void SpaceMouse::open()
     seen_        = {};
     state_       = {};
     lastReports_ = 0;
-    lit_         = true; // so that one sees which device it is
+    lit_         = true; // shows which device is in use
     isLit_       = false;
     state_.homed = state_.inBox = true;
     state_.fault                = DeviceFault::none;
-    inbox_.draft()              = seen_; // what an earlier opening left behind is forgotten
+    inbox_.draft()              = seen_; // reports of an earlier opening are discarded
     inbox_.publish();
     if (settings_.pace == HidPace::thread)
         thread_ = std::jthread([this](const std::stop_token& stop) {
@@ -90,14 +90,15 @@ void SpaceMouse::close() noexcept
     state_.velocity = {};
 }
 
-/// Lights, then every report there is. \return false: the device is gone
+/// Writes the lights, then reads every waiting report.
+/// \return false if the device is gone
 bool SpaceMouse::readAndWrite(double wait) noexcept
 {
     if (const bool lit = lit_; lit != isLit_) {
         isLit_ = lit;
         try {
             port_->write(std::array<std::uint8_t, 2>{kLight, std::uint8_t(lit)});
-        } catch (const HidLost&) { // some models have no light and refuse; whether one is gone, reading will tell
+        } catch (const HidLost&) { // models without a light refuse; reading notices a device that is gone
         }
     }
     try {
@@ -127,7 +128,7 @@ HapticState SpaceMouse::exchange(const GovernedForce& /*force*/, double now) noe
         lastReport_  = now;
     }
     SpaceMouseAxes axes{upright(seen.counts.axes, 0), upright(seen.counts.axes, 3), seen.counts.buttons};
-    if (seen.lost || !(now - lastReport_ <= settings_.stale)) axes.push = axes.turn = {}; // nobody says that it is held
+    if (seen.lost || !(now - lastReport_ <= settings_.stale)) axes.push = axes.turn = {}; // not confirmed any more
     camera_.draft() = axes;
     camera_.publish();
     move(axes, now);
@@ -144,7 +145,7 @@ void SpaceMouse::move(const SpaceMouseAxes& axes, double now) noexcept
     const glm::dvec3 before = state_.position;
     glm::dvec3       speed{};
     for (int axis = 0; axis < 3; ++axis) speed[axis] = settings_.speed * beyond(axes.push[axis], settings_.deadZone);
-    if (!std::isfinite(passed)) return; // a clock that is no number: nothing moves
+    if (!std::isfinite(passed)) return; // the clock is unusable: nothing moves
     state_.position += speed * passed;
     const double out = glm::length(state_.position);
     if (out > settings_.reach) state_.position *= settings_.reach / out;

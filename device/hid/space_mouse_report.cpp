@@ -6,7 +6,7 @@
 namespace palp {
 namespace {
 
-constexpr std::uint16_t kLogitech = 0x046d, kOwn = 0x256f; // who makes them, and who did
+constexpr std::uint16_t kLogitech = 0x046d, kOwn = 0x256f; // the former and the present maker
 constexpr std::uint16_t kGenericDesktop = 1, kMultiAxisController = 8;
 
 constexpr SpaceMouseModel kModels[] = {
@@ -56,7 +56,7 @@ bool takeAxes(std::span<const std::uint8_t> report, std::size_t first, std::size
 
 const SpaceMouseModel* spaceMouseModel(const HidListing& listing) noexcept
 {
-    // A receiver also has a keyboard and a mouse. Systems that do not know the usage say 0.
+    // A receiver also has a keyboard and a mouse. Systems that do not know the usage report 0.
     const bool known = listing.usagePage != 0;
     if (known && (listing.usagePage != kGenericDesktop || listing.usage != kMultiAxisController)) return nullptr;
     for (const SpaceMouseModel& model : kModels)

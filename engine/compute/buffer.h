@@ -9,17 +9,17 @@
 
 namespace palp::compute {
 
-/// What a buffer is for, which decides where its memory lies.
+/// The use of a buffer, which decides where its memory lies.
 enum class Intent {
     device,  ///< the processor's own, fastest memory; the host reaches it by copies only
-    upload,  ///< the host writes, in order and without reading back; the processor reads over the bus
-    readback ///< the processor writes, the host reads: cached memory where there is some
+    upload,  ///< the host writes in order and does not read back; the processor reads over the bus
+    readback ///< the processor writes, the host reads: cached memory where available
 };
 
 /// A range of bytes that kernels and copies reach. Its contents are undefined until something writes them.
 ///
 /// Each buffer has memory of its own: a solver needs tens of buffers, Vulkan allows at least 4096 allocations, and an
-/// arena would tie the lives of unrelated buffers together for nothing.
+/// arena would couple the lifetimes of unrelated buffers without need.
 class Buffer {
 public:
     /// \param name   appears in messages of the validation layer and in captures
@@ -31,10 +31,10 @@ public:
     Buffer(Buffer&&) noexcept;
     Buffer& operator=(Buffer&&) noexcept;
 
-    /// The bytes as the host sees them, mapped for good. Null for Intent::device, unless the host computes.
+    /// Returns the bytes as the host sees them, mapped permanently. Null for Intent::device, unless the host computes.
     [[nodiscard]] void* mapped() const noexcept;
 
-    /// The same as an array. Not for Intent::device.
+    /// Returns the same as an array. Not for Intent::device.
     template <class T>
     [[nodiscard]] std::span<T> as() const
     {
@@ -43,14 +43,14 @@ public:
         return {static_cast<T*>(mapped()), bytes() / sizeof(T)};
     }
 
-    /// Has to be called after Context::run() and before a readback buffer is read. It costs nothing where memory is
-    /// coherent.
+    /// Makes the processor's writes visible. Call it after Context::run() and before a readback buffer is read. It
+    /// costs nothing where memory is coherent.
     void makeVisibleToHost() const;
 
     [[nodiscard]] std::size_t        bytes() const noexcept;
     [[nodiscard]] const std::string& name() const noexcept;
 
-    /// For the files of engine/compute.
+    /// Returns the implementation, for the files of engine/compute.
     struct Handles;
     [[nodiscard]] const Handles& handles() const noexcept { return *handles_; }
 

@@ -16,7 +16,7 @@ namespace palp::compute {
 struct Binding {
     static constexpr std::size_t kRest = ~std::size_t(0);
 
-    // A plain buffer may stand where a binding is expected.
+    // A plain buffer converts to a binding.
     Binding(const Buffer& whole) : buffer(&whole) {}
     Binding(const Buffer& part, std::size_t first, std::size_t count = kRest)
         : buffer(&part), offset(first), bytes(count)
@@ -45,8 +45,8 @@ struct Push : std::span<const std::byte> {
     }
 };
 
-/// Commands that are recorded once and run any number of times, one after the other: each sees everything that those
-/// before it wrote. Kernels and buffers that a list names must live until it has run for the last time.
+/// Commands that are recorded once and run any number of times, one after the other: each sees all that the earlier
+/// ones wrote. Kernels and buffers that a list names must live until it has run for the last time.
 class CommandList {
 public:
     explicit CommandList(Context& context);
@@ -56,8 +56,8 @@ public:
 
     void dispatch(const Kernel& kernel, const Bindings& bindings, const Push& push, Groups groups);
 
-    /// Dispatches with the groups, three 32-bit words, that a buffer holds when the list runs. A kernel may have written
-    /// them, and zeroes make the dispatch do nothing at next to no cost.
+    /// Dispatches with the groups, three 32-bit words, that a buffer holds when the list runs. A kernel may have
+    /// written them; with zeroes the dispatch does nothing at almost no cost.
     /// \param offset  of the words [byte], a multiple of 4
     void dispatchIndirect(const Kernel& kernel, const Bindings& bindings, const Push& push, const Buffer& groups,
                           std::size_t offset = 0);
@@ -71,7 +71,7 @@ public:
     /// Fills the whole buffer with a word.
     void fill(const Buffer& buffer, std::uint32_t word);
 
-    /// Notes the time when everything before it is done.
+    /// Records the time when everything before it is done.
     void timestamp();
 
     /// Ends the recording: nothing can be recorded after this, and the list cannot run before it.
@@ -81,10 +81,10 @@ public:
     /// processor has no clock.
     [[nodiscard]] std::vector<double> timestampsMilliseconds() const;
 
-    [[nodiscard]] int  dispatches() const noexcept; ///< how many were recorded, indirect ones included
+    [[nodiscard]] int  dispatches() const noexcept; ///< number recorded, indirect ones included
     [[nodiscard]] bool ended() const noexcept;
 
-    /// For the files of engine/compute.
+    /// Returns the implementation, for the files of engine/compute.
     struct Handles;
     [[nodiscard]] Handles& handles() const noexcept { return *handles_; }
 

@@ -36,7 +36,7 @@ Handles openWanted(const ContextSettings& settings)
     return openHost(settings);
 }
 
-/// Passes over what is broken, for the next best GPU and in the end for the host.
+/// Skips broken GPUs for the next best one, and in the end for the host.
 Handles openBest(const ContextSettings& settings)
 {
     Handles     opened;
@@ -54,7 +54,7 @@ Handles openBest(const ContextSettings& settings)
                 note += (note.empty() ? "" : "; ") + std::string(error.what());
             }
         }
-    } catch (const ProcessorError& error) { // nothing can even be listed
+    } catch (const ProcessorError& error) { // not even listing works
         note = error.what();
     }
     if (!opened) opened = openHost(settings);

@@ -12,31 +12,31 @@ namespace palp::compute {
 
 class CommandList;
 
-/// What Khronos' validation layer looks for. Each includes the one before it, except that gpuAssisted omits
+/// The checks of Khronos' validation layer. Each includes the one before it, except that gpuAssisted omits
 /// synchronization. All need the package vulkan-validationlayers.
 enum class Validation {
     off,
     core,            ///< wrong use of the interface
-    synchronization, ///< and hazards between dispatches, seen only where blocks are readonly or writeonly
-    gpuAssisted      ///< and accesses beyond the ends of buffers, by instrumented shaders: 9 to 23 times slower
+    synchronization, ///< also hazards between dispatches, found only where blocks are readonly or writeonly
+    gpuAssisted      ///< also accesses beyond the ends of buffers, by instrumented shaders: 9 to 23 times slower
 };
 
-/// What a processor is opened for.
+/// The purpose for which a processor is opened.
 enum class Purpose {
     compute, ///< kernels
     draw,    ///< pictures, by engine/tools/render: a queue that also draws; GPUs first, then software, never the host
-    show     ///< the same, in a window
+    show     ///< pictures in a window
 };
 
 struct ContextSettings {
-    std::string processor  = "auto"; ///< see chooseProcessor()
-    Validation  validation = Validation::off;
-    double      patience   = 0; ///< [s] how long a submission may take; 0: 10 s, or 300 s for Vulkan in software
-    Purpose     purpose    = Purpose::compute;
+    std::string              processor  = "auto"; ///< see chooseProcessor()
+    Validation               validation = Validation::off;
+    double                   patience   = 0; ///< [s] limit of a submission; 0: 10 s, or 300 s for Vulkan in software
+    Purpose                  purpose    = Purpose::compute;
     std::vector<std::string> windowExtensions{}; ///< of Vulkan, that windows need on this desktop; with Purpose::show
 };
 
-/// The most that a processor can hold.
+/// The limits of a processor.
 struct Limits {
     std::size_t   buffer       = 0; ///< [byte] one Buffer
     std::uint32_t invocations  = 0; ///< per workgroup
@@ -51,12 +51,12 @@ class Context {
 public:
     /// Opens a processor. Loading drivers takes 30 to 50 ms; the host needs none.
     ///
-    /// For computing, "auto" always opens something: a GPU that fails is passed over for the next best, and where all of
-    /// Vulkan fails the host is taken; note() says so. With validation "auto" finds a GPU or throws, because nothing is
-    /// validated on the host.
-    /// \throws UnknownProcessor if no processor has the name that is asked for
-    /// \throws ProcessorError if the processor cannot be used, or if validation is asked for and is not installed, or is
-    ///         asked for on the host
+    /// For computing, "auto" always opens a processor: a GPU that fails is skipped for the next best, and where all of
+    /// Vulkan fails the host is taken; note() reports it. With validation "auto" finds a GPU or throws, because the
+    /// host has no validation.
+    /// \throws UnknownProcessor if no processor has the requested name
+    /// \throws ProcessorError if the processor cannot be used, or if validation is requested and is not installed, or
+    ///         is requested on the host
     explicit Context(const ContextSettings& settings = {});
     ~Context();
     Context(Context&&) noexcept;
@@ -65,8 +65,8 @@ public:
     /// Submits a finished list and waits until it is done; then its readback buffers may be read.
     ///
     /// A submission that outlasts the patience counts as a hang: drivers reset hardware after about that time, and a
-    /// thread that feeds a hand must not wait for ever. Every later call throws at once then. Memory that the processor
-    /// still uses when its owner is destroyed is leaked, not freed.
+    /// thread that renders forces must not wait for ever. Every later call then throws at once. Memory that the
+    /// processor still uses when its owner is destroyed is leaked, not freed.
     /// \throws ProcessorLost if the processor went away, ran out of memory or hangs
     void run(CommandList& list);
     /// Runs several lists, one after the other in a single submission, with no round trip between them.
@@ -77,20 +77,21 @@ public:
 
     [[nodiscard]] const Processor& processor() const noexcept;
 
-    /// Says what "auto" found broken and passed over, in a sentence without a full stop; else empty. A machine without
-    /// a Vulkan driver, or whose GPUs lack a feature, is not broken: listProcessors() lists those.
+    /// Returns what "auto" found broken and skipped, in a sentence without a full stop; else empty. A machine without a
+    /// Vulkan driver, or whose GPUs lack a feature, is not broken: listProcessors() lists those.
     [[nodiscard]] const std::string& note() const noexcept;
 
     [[nodiscard]] const Limits& limits() const noexcept;
 
-    /// Whether results equal those of C++ without contraction, bit for bit. True for the host, and for lavapipe, whose
-    /// compiler neither fuses nor re-associates and whose division and square root are correctly rounded.
+    /// Returns whether results equal those of C++ without contraction, bit for bit: true for the host, and for
+    /// lavapipe, whose compiler neither fuses nor re-associates and whose division and square root are correctly
+    /// rounded.
     [[nodiscard]] bool bitExact() const noexcept;
 
-    /// The size of all buffers that live now [byte].
+    /// Returns the size of all live buffers [byte].
     [[nodiscard]] std::size_t allocatedBytes() const noexcept;
 
-    /// For the files of engine/compute.
+    /// Returns the implementation, for the files of engine/compute.
     struct Handles;
     [[nodiscard]] Handles& handles() const noexcept { return *handles_; }
 

@@ -8,7 +8,7 @@
 
 namespace palp::compute {
 
-/// A compiled shader and what it expects. Its arrays live as long as the program: see palp_shader() in
+/// A compiled shader and its interface. Its arrays live as long as the program, see palp_shader() in
 /// compute_shaders/CMakeLists.txt.
 struct KernelCode {
     const char*                    name = "";
@@ -19,7 +19,8 @@ struct KernelCode {
 };
 
 /// A shader with its constants fixed, ready to be dispatched. Drivers compile it at construction, lavapipe at its first
-/// dispatch (20 to 150 ms, less than 3 ms when the driver remembers it), so a kernel should run once before it is timed.
+/// dispatch (20 to 150 ms, less than 3 ms when the driver remembers it), so a kernel should run once before it is
+/// timed.
 class Kernel {
 public:
     /// \param workgroup  becomes specialization constants 0, 1 and 2: layout(local_size_x_id = 0, ...) in the shader
@@ -37,7 +38,7 @@ public:
     [[nodiscard]] const KernelCode& code() const noexcept;
     [[nodiscard]] Workgroup         workgroup() const noexcept;
 
-    /// For the files of engine/compute.
+    /// Returns the implementation, for the files of engine/compute.
     struct Handles;
     [[nodiscard]] const Handles& handles() const noexcept { return *handles_; }
 

@@ -11,7 +11,7 @@ namespace {
 
 using Processors = std::vector<Processor>;
 
-/// What "auto" takes, best first. Not what drivers call "other", of which nothing is known, nor software.
+/// The kinds that "auto" takes, best first. It takes neither the unspecified kind "other" nor software.
 constexpr std::array<std::string_view, 3> kGpus{"discrete", "integrated", "virtual"};
 
 constexpr const char* kExpected = "expected auto, host, lavapipe, an index or part of a name";
@@ -46,7 +46,7 @@ std::string withProcessors(const std::string& sentence, const Processors& proces
     throw ProcessorError(withProcessors(sentence, processors));
 }
 
-/// Refuses a word; where no GPU can be used, the machine is to blame and not the word.
+/// Refuses a word. Where no GPU can be used, the error names the machine as the cause, not the word.
 [[noreturn]] void refuseWord(const Processors& processors, const std::string& sentence)
 {
     if (std::ranges::none_of(processors, [](const Processor& one) { return one.refusals.empty(); }))

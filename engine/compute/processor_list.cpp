@@ -30,7 +30,7 @@ std::string versionText(std::uint32_t version)
            std::to_string(VK_API_VERSION_PATCH(version));
 }
 
-/// [byte] of the largest heap that is the device's own.
+/// Returns the size of the largest heap of the device's own [byte].
 std::uint64_t ownMemory(VkPhysicalDevice physical)
 {
     VkPhysicalDeviceMemoryProperties memory;
@@ -42,7 +42,7 @@ std::uint64_t ownMemory(VkPhysicalDevice physical)
     return largest;
 }
 
-/// A family that computes, rather one that does not draw: a viewer cannot get in its way.
+/// Finds a family that computes, preferably one that does not draw, so that a viewer does not delay it.
 void findQueue(Candidate& candidate)
 {
     std::uint32_t count = 0;
@@ -65,7 +65,7 @@ void findQueue(Candidate& candidate)
     candidate.timestampBits = families[*best].timestampValidBits;
 }
 
-/// Asks what only devices from Vulkan 1.2 on can answer.
+/// Queries properties that only devices from Vulkan 1.2 on have.
 void describeModern(Candidate& candidate)
 {
     auto driver = typed<VkPhysicalDeviceDriverProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
@@ -86,7 +86,7 @@ void describeModern(Candidate& candidate)
         candidate.description.refusals.push_back("it does not lay structs out as C++ does (scalarBlockLayout)");
 }
 
-/// Refuses what is too small for the kernels of this project; the smallest devices that Vulkan allows are.
+/// Refuses devices that are too small for the kernels of this project, as the smallest that Vulkan allows are.
 void refuseSmall(Candidate& candidate)
 {
     constexpr std::uint32_t kBuffers = 9, kInvocations = 256, kPushBytes = 128, kSharedBytes = 16 << 10;

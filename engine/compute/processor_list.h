@@ -14,7 +14,7 @@ namespace palp::compute {
 /// list.
 inline constexpr std::string_view kAutoProcessor = "auto", kHostProcessor = "host", kLavapipeProcessor = "lavapipe";
 
-/// Whether `given` is the word, in any case.
+/// Returns whether `given` is the word, in any case.
 [[nodiscard]] bool isProcessorWord(std::string_view given, std::string_view word);
 
 /// One processor: a device as the drivers of Vulkan describe it, or the host.

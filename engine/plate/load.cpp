@@ -8,11 +8,11 @@
 namespace palp {
 namespace {
 
-/// Share of a plate's side by which rounding may put a point outside it [1]: far above the rounding of i * spacing,
-/// far below anything a user could mean.
+/// Share of a plate's side by which rounding may put a point outside it [1]: far above the rounding of i * spacing and
+/// far below any intended distance.
 constexpr double kRounding = 1e-9;
 
-/// A point's cell and its place in it, both along one axis.
+/// A point's cell and its place in the cell, along one axis.
 struct Place {
     int    cell;
     double fraction; ///< [1] 0 at node `cell`, 1 at the next
@@ -43,7 +43,7 @@ void addPointForce(NodeField& forces, const PlateGrid& grid, double force, doubl
     forces(px.cell + 1, pz.cell + 1) += force * u * v;
 }
 
-/// Integrals of the normal density of mean `centre` and deviation `sigma` times each node's hat function.
+/// Integrates the normal density of mean `centre` and deviation `sigma` times each node's hat function.
 ///
 /// With t = (x - centre)/sigma the density integrates to P = erf(t/sqrt 2)/2 and its first moment about the mean is
 /// -sigma^2 times the density, so over one cell [a, b]
@@ -130,8 +130,8 @@ NodeField footprintLoad(const PlateGrid& grid, double force, double x, double z,
         throw Error("the footprint of radius " + std::to_string(radius) + " m is smaller than one spacing of " +
                     std::to_string(spacing) + " m; take more --cells or a larger --footprint");
 
-    // Sub-cells are laid out from the contact, not from the grid: their pattern then slides with the contact, so that
-    // the load changes smoothly, and a contact on a node gets a symmetric one.
+    // Sub-cells are laid out from the contact, not from the grid: their pattern then moves with the contact, so that
+    // the load changes smoothly and a contact on a node gets a symmetric load.
     constexpr double kSubcellsPerSpacing = 4;  // chosen: a finer pattern moves no node's share by more than 1 %
     constexpr double kFewestPerRadius    = 16; // chosen: the same for a footprint of one spacing
     const int        halfCount = int(std::ceil(std::max(kFewestPerRadius, kSubcellsPerSpacing * radius / spacing)));

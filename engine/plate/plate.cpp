@@ -47,16 +47,17 @@ std::optional<std::string> whyRigidityIsBad(const PlateGrid& grid, const NodeFie
                     index / rigidity.nodesZ(), ", ", index % rigidity.nodesZ(), "]");
 }
 
-/// The rigid motions a + b x + c z: one clamped side stops all three, a supported side leaves the turn about itself.
+/// Returns whether the sides stop the rigid motions a + b x + c z: one clamped side stops all three, a supported side
+/// all but the turn about itself.
 bool isHeldBySides(const Plate& plate)
 {
     const std::array sides = {plate.edges.x0, plate.edges.x1, plate.edges.z0, plate.edges.z1};
     return std::ranges::count(sides, Edge::clamped) >= 1 || std::ranges::count(sides, Edge::supported) >= 2;
 }
 
-/// A foundation stops every motion, unless its force vanishes beside the forces of bending between neighbouring nodes:
-/// with less than this share of them (and 2e-16 is the rounding of doubles) answers were found to be off by a tenth
-/// and more.
+/// Returns why the foundation does not hold the plate; empty if it does. A foundation stops every motion, unless its
+/// force vanishes beside the forces of bending between neighbouring nodes: with less than kLeast of them (the rounding
+/// of doubles is 2e-16) answers were found to be off by a tenth and more.
 std::optional<std::string> whyFoundationIsTooSoft(const Plate& plate, const NodeField& rigidity)
 {
     constexpr double kLeast = 1e-14; // [1]

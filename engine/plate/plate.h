@@ -8,7 +8,7 @@
 
 namespace palp {
 
-/// How one side of the plate is held.
+/// The support of one side of the plate.
 enum class Edge {
     clamped,   ///< no deflection, no slope (the paper's only edge)
     supported, ///< no deflection, free to turn
@@ -30,7 +30,7 @@ struct PlateEdges {
 };
 
 /// Reads "free", or "x0=free,z1=supported" with the other sides clamped.
-/// \throws Error naming `what`, the part that is wrong and what is known
+/// \throws Error naming `what`, the wrong part and the known words
 [[nodiscard]] PlateEdges parseEdges(std::string_view text, const std::string& what);
 /// Writes what parseEdges() reads: one name if all sides are alike.
 [[nodiscard]] std::string edgesText(const PlateEdges& edges);
@@ -43,43 +43,43 @@ struct PlateEdges {
 /// \source  Kumari & Chaudhuri 2016, eqs 6 to 8: the equation that minimises E where D is smooth, k = 0 and nu constant
 /// \differs (a) the energy itself is discretised: it is symmetric and positive for every D > 0, however rough; the
 ///          paper's expanded equation in central differences is off by 22 % at a wart of contrast 1000 on 64 cells.
-///          (b) a foundation k, which the paper lacks: without one the size of the window decides what is felt.
-///          (c) supported and free edges beside the paper's clamped ones: an ear lobe could not bend
+///          (b) a foundation k, which the paper lacks: without it the size of the patch window decides what is felt.
+///          (c) supported and free edges beside the paper's clamped ones, without which an ear lobe could not bend
 struct Plate {
     PlateGrid  grid;
     PlateEdges edges;
     double     poissonRatio = 0.3; ///< nu [1], see isPoissonRatio
-    double     foundation   = 0;   ///< k [Pa/m], >= 0; 0 is the paper
+    double     foundation   = 0;   ///< k [Pa/m], >= 0; 0 in the paper
     NodeField  rigidity;           ///< D [N m] at the nodes, > 0
 };
 
-/// Fewest cells a side: with fewer, the conditions of two opposite edges meet in one second difference.
+/// Fewest cells per side: with fewer, the conditions of two opposite edges meet in one second difference.
 inline constexpr int kFewestPlateCells = 4;
 
-/// Whether nu [1] can be a plate's Poisson's ratio: beyond these bounds the energy is not positive, or the material
-/// grows when it is pressed.
+/// Returns whether nu [1] can be a plate's Poisson's ratio: beyond these bounds the energy is not positive, or the
+/// material grows under pressure.
 [[nodiscard]] constexpr bool isPoissonRatio(double nu) noexcept
 {
     return nu > -1 && nu <= 0.5; // false for NaN
 }
 
-/// Says in one sentence why a plate cannot be solved; empty if it can. The shape may be wrong, the rigidity not positive
-/// or Poisson's ratio out of range, or the edges leave the plate free to move as a rigid body on a foundation that
-/// doubles cannot tell from none.
+/// Returns in one sentence why a plate cannot be solved; empty if it can. The shape may be wrong, the rigidity not
+/// positive or Poisson's ratio out of range, or the edges leave the plate free to move as a rigid body on a foundation
+/// that doubles cannot distinguish from none.
 [[nodiscard]] std::optional<std::string> whyUnsolvable(const Plate& plate);
-/// Says the same of the plate with this rigidity [N m] in place of its own.
+/// Returns the same for the plate with this rigidity [N m] in place of its own.
 [[nodiscard]] std::optional<std::string> whyUnsolvable(const Plate& plate, const NodeField& rigidity);
 
-/// What a solver says about one answer. A number that a solver does not have is empty.
+/// A solver's report about one answer. A number that a solver does not have is empty.
 struct SolveReport {
     std::string           solver; ///< "reference", or the processor: "host" or the name of a GPU
     std::optional<int>    iterations;
     std::optional<double> errorEstimate;    ///< [1] relative, in the norm that the solver documents
     std::optional<double> workUnits;        ///< applications of the operator on the finest grid
-    bool                  converged = true; ///< false: the estimate exceeds what was asked for, or may be too low
+    bool                  converged = true; ///< false: the estimate exceeds the tolerance, or may be too low
     double setUpMilliseconds = 0; ///< wall time from the rigidity to a ready solver: a factorisation, coarser grids
     double milliseconds      = 0; ///< wall time of this solve
-    std::optional<double> processorMilliseconds; ///< of it, how long the processor was busy; empty if it has no clock
+    std::optional<double> processorMilliseconds; ///< part of it in which the processor was busy; empty without a clock
 };
 
 struct PlateSolution {

@@ -16,7 +16,8 @@
 namespace palp {
 namespace {
 
-/// Beyond this size, factorising takes a minute and gigabytes: an answer that says that it is not good is better then.
+/// Size beyond which factorising takes a minute and gigabytes: an answer that is reported as not converged is then
+/// better.
 bool fitsReference(const PlateGrid& grid)
 {
     return grid.nodes() <= 513 * 513;
@@ -46,8 +47,9 @@ struct PlateSolver::Multigrid {
     {
     }
 
-    /// How many loads are solved together. A GPU has lanes to fill; on the host the fields of one load fit its cache and
-    /// those of 49 do not: one after the other they take two thirds of the time (65 nodes: 15 in place of 24 ms).
+    /// Returns how many loads are solved together. A GPU has lanes to fill. On the host the fields of one load fit its
+    /// cache and those of 49 do not: one after the other they take two thirds of the time (65 nodes: 15 in place of 24
+    /// ms).
     [[nodiscard]] std::size_t batchOf(std::size_t all) const { return likeTheHost ? 1 : all; }
 
     /// \return milliseconds that it took
@@ -91,7 +93,7 @@ PlateSolver::PlateSolver(std::string_view wanted, double patience, SoftwareBits 
     try {
         multigrid_ = std::make_unique<Multigrid>(settings, bits);
         note_      = multigrid_->context.note();
-    } catch (const std::exception& error) { // the kernels do not compile, or the processor that is asked for is refused
+    } catch (const std::exception& error) { // the kernels do not compile, or the requested processor is refused
         if (!compute::isProcessorWord(wanted, compute::kAutoProcessor)) throw;
         note_              = error.what();
         settings.processor = compute::kHostProcessor;
@@ -142,7 +144,7 @@ std::vector<PlateSolution> PlateSolver::solveAll(const Plate& plate, std::span<c
         solutions.push_back(solver.solve(load));
         SolveReport& report      = solutions.back().report;
         report.setUpMilliseconds = solver.factoriseMilliseconds();
-        // The estimate is of the error before the step of refinement, which removes as large a share again.
+        // The estimate is that of the error before the step of refinement, which removes as large a share again.
         const double before = report.errorEstimate.value_or(0);
         report.converged    = before * before <= tolerance;
     }

@@ -9,28 +9,28 @@
 
 namespace palp {
 
-/// How Vulkan in software solves a plate.
+/// The way in which Vulkan in software solves a plate.
 enum class SoftwareBits {
-    itsOwn,   ///< in the way that is fastest there
-    ofTheHost ///< in the host's way, with the same bits as the host: for replays
+    itsOwn,   ///< the way that is fastest there
+    ofTheHost ///< the host's way, with the same bits as the host: for replays
 };
 
 /// Solves plates: on a GPU or the host by multigrid, or by the reference solver.
 ///
-/// Keeps the solver of the last plate. Another rigidity on the same grid, edges and foundation costs no new memory, nor
-/// does the same number of loads.
+/// It keeps the solver of the last plate. Another rigidity on the same grid, edges and foundation costs no new memory,
+/// nor does the same number of loads.
 /// \thread one at a time
 class PlateSolver {
 public:
     static constexpr std::string_view kReference = "reference";
 
-    /// Opens the processor: 40 ms where that loads drivers. A GPU compiles its kernels at their first use, once per
+    /// Opens the processor, in 40 ms where that loads drivers. A GPU compiles its kernels at their first use, once per
     /// machine.
-    /// \param wanted    kReference, or a word of compute::chooseProcessor(): "auto", "host", "lavapipe", an INDEX or part
-    ///                  of a NAME, in any case; "auto" is the best GPU that works, else the host
+    /// \param wanted    kReference, or a word of compute::chooseProcessor(): "auto", "host", "lavapipe", an INDEX or
+    ///                  part of a NAME, in any case; "auto" is the best GPU that works, else the host
     /// \param patience  see compute::ContextSettings [s]
     /// \throws compute::UnknownProcessor if no processor has that name
-    /// \throws compute::ProcessorError if the processor that is asked for cannot be used
+    /// \throws compute::ProcessorError if the requested processor cannot be used
     explicit PlateSolver(std::string_view wanted = "auto", double patience = 0,
                          SoftwareBits bits = SoftwareBits::itsOwn);
     ~PlateSolver();
@@ -39,28 +39,29 @@ public:
 
     [[nodiscard]] const std::string& name() const noexcept; ///< of the GPU, "host" or "reference"
 
-    /// Says what went wrong last: a GPU that "auto" passed over as broken, or why the reference solved a plate. Empty if
-    /// nothing did.
+    /// Returns what went wrong last: a GPU that "auto" skipped as broken, or why the reference solved a plate; empty if
+    /// nothing went wrong.
     [[nodiscard]] const std::string& note() const noexcept;
 
     /// Solves for the deflection under forces at the nodes [N]; see MultigridPlateSolver and ReferencePlateSolver for
     /// the report.
     ///
     /// The reference solves this and all later plates if the processor is lost or runs out of memory, and this plate
-    /// alone, up to 513 x 513 nodes, if multigrid does not reach the tolerance. note() says so. See report.converged.
+    /// alone, up to 513 x 513 nodes, if multigrid does not reach the tolerance; note() reports it. See
+    /// report.converged.
     /// \param tolerance  of the error estimate, relative [1]; the reference solver is as accurate as doubles allow, and
-    ///                   says whether that is enough
+    ///                   reports whether that suffices
     /// \throws Error if the plate, the load or the tolerance is not acceptable
     [[nodiscard]] PlateSolution solve(const Plate& plate, const NodeField& nodalForce, double tolerance = 1e-4);
 
     /// Solves for several loads on one plate, in their order. They share what is prepared for the rigidity. On a GPU
-    /// they also share every pass and the report, which then is of the worst of them.
+    /// they also share every pass and the report, which is then that of the worst load.
     [[nodiscard]] std::vector<PlateSolution> solveAll(const Plate& plate, std::span<const NodeField> nodalForces,
                                                       double tolerance = 1e-4);
 
 private:
     struct Multigrid;
-    std::unique_ptr<Multigrid> multigrid_; ///< empty: the reference
+    std::unique_ptr<Multigrid> multigrid_; ///< null: the reference solver is used
     std::string                name_{kReference};
     std::string                note_;
 };

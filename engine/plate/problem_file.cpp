@@ -16,7 +16,7 @@
 namespace palp {
 namespace {
 
-constexpr int kMostCells = 4096; // a side: one field of nodes is then 134 MB
+constexpr int kMostCells = 4096; // per side: one field of nodes is then 134 MB
 
 /// The largest problem file that is read [bytes]: some 400 000 probes.
 constexpr std::size_t kLargestFile = std::size_t(16) << 20;
@@ -64,14 +64,14 @@ PlateEdges readEdges(const JsonObject& problem)
     return {readEdge(edges, "x0"), readEdge(edges, "x1"), readEdge(edges, "z0"), readEdge(edges, "z1")};
 }
 
-/// What the laws of a file need to become values at nodes.
+/// The grids and the folder by which the laws of a file become values at nodes.
 struct Setting {
     std::filesystem::path folder;    ///< where paths in the file start
-    PlateGrid             fileGrid;  ///< of the grids the file names
-    PlateGrid             solveGrid; ///< the one that is solved on
+    PlateGrid             fileGrid;  ///< grid of the arrays that the file names
+    PlateGrid             solveGrid; ///< grid of the solution
 };
 
-/// The node values that {"law": "grid", "file": ...} names, on the file's own grid.
+/// Reads the node values that {"law": "grid", "file": ...} names, on the file's own grid.
 NodeField readField(const JsonObject& law, const Setting& setting)
 {
     law.allowOnly({"law", "file"});
@@ -119,7 +119,7 @@ void expectPositive(const NodeField& rigidity, const std::string& where)
             }
 }
 
-/// The larger distance between nodes: a smaller law or load between them is not seen.
+/// Returns the larger distance between nodes: a smaller law or load between them is not seen.
 double spacingOf(const PlateGrid& grid)
 {
     return std::max(grid.spacingX, grid.spacingZ);
@@ -132,7 +132,7 @@ std::string metres(double length)
     return text.str();
 }
 
-/// Warns of a law that the nodes do not show.
+/// Returns a warning of a law that the nodes do not show.
 std::optional<std::string> lostLaw(const JsonObject& law, const SpatialLaw& rule, const NodeField& rigidity,
                                    const PlateGrid& grid)
 {
@@ -202,7 +202,7 @@ NodeField readLoad(const JsonObject& load, const Setting& setting)
     load.refuse("law", "point, uniform, gaussian or grid");
 }
 
-/// Whether there is a load, and an edge holds every node that gets a share of it.
+/// Returns whether there is a load and an edge holds every node that gets a share of it.
 bool isHeld(const NodeField& nodalForce, const PlateEdges& edges)
 {
     const int lastX = nodalForce.nodesX() - 1, lastZ = nodalForce.nodesZ() - 1;

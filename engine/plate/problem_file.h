@@ -8,7 +8,7 @@
 
 namespace palp {
 
-/// A place whose deflection is asked for, measured from the corner node (0, 0).
+/// A place whose deflection is requested, measured from the corner node (0, 0).
 struct Probe {
     double x = 0; ///< [m]
     double z = 0; ///< [m]
@@ -19,13 +19,13 @@ struct PlateProblem {
     Plate                    plate;
     NodeField                nodalForce; ///< [N], see load.h
     std::vector<Probe>       probes;
-    std::vector<std::string> warnings{}; ///< one sentence for each thing that is legal and hardly meant
+    std::vector<std::string> warnings{}; ///< one sentence for each input that is legal but probably unintended
 };
 
 /// Reads a problem file: JSON, in SI units, with comments allowed.
 ///
 ///     {"size": [1, 1.5],                          // [m] along x and z
-///      "cells": [128, 192],                       // 4 to 4096 a side
+///      "cells": [128, 192],                       // 4 to 4096 per side
 ///      "poisson": 0.3,
 ///      "edges": {"x0": "clamped", "x1": "free", "z0": "supported", "z1": "clamped"},   // absent: clamped
 ///      "foundation": 0,                           // [Pa/m], absent: 0

@@ -1,5 +1,5 @@
-// The whole loop in virtual time: force law, tank, governor, arm and hand. The object is flat, z = 0 with the outside
-// above; only its stiffness varies.
+// Tests of the whole loop in virtual time: force law, tank, governor, arm and hand. The object is flat, z = 0 with the
+// outside above; only its stiffness varies.
 #include <algorithm>
 #include <array>
 #include <chrono>

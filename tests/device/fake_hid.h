@@ -15,7 +15,8 @@
 
 namespace palp {
 
-/// One device of a FakeHidSystem, as the test sees it. \thread any
+/// One device of a FakeHidSystem, as the test sees it.
+/// \thread any
 class FakeHidDevice {
 public:
     using Report = std::vector<std::uint8_t>;

@@ -1,5 +1,5 @@
-// Stands in for libusb-1.0: the functions that the link to the Falcon calls, so that its own code runs without
-// hardware, with any fault. As in libusb, callbacks come from inside the calls that handle events, on the caller's
+// A stand-in for libusb-1.0 with the functions that the link to the Falcon calls, so that its own code runs without
+// hardware and with any fault. As in libusb, callbacks come from inside the calls that handle events, on the caller's
 // thread.
 #include "tests/device/fake_libusb.h"
 
@@ -90,7 +90,8 @@ std::optional<libusb_transfer_status> outcomeOf(libusb_transfer* transfer, bool 
     return LIBUSB_TRANSFER_COMPLETED;
 }
 
-/// Completes what can be completed. \return whether there was anything
+/// Completes all transfers that can be completed.
+/// \return whether there was one
 bool complete(libusb_context* context)
 {
     std::vector<libusb_transfer*> done;

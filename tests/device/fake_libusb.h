@@ -13,7 +13,7 @@
 namespace palp {
 
 /// A device at the stand-in of libusb: what it does, and what was done to it.
-/// \thread whoever holds the lock of fakeUsb(), or the only one
+/// \thread one that holds the lock of fakeUsb(), or the only one
 struct FakeUsbDevice {
     std::uint16_t             vendor = 0x0403, product = 0xCB48;
     std::uint8_t              bus = 1;

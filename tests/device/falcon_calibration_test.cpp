@@ -1,4 +1,4 @@
-// Weighing a known mass on an emulated Falcon whose motors are not what its driver takes them for.
+// Tests of weighing a known mass on an emulated Falcon whose motors differ from the driver's setting.
 #include "device/falcon/falcon_calibration.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// A Falcon's driver on the emulated one, in virtual time.
+// Tests of the Falcon's driver on the emulated Falcon, in virtual time.
 #include "device/falcon/falcon_device.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Starting a Falcon, in the emulator's virtual time.
+// Tests of starting a Falcon, in the emulator's virtual time.
 #include "device/falcon/falcon_driver.h"
 
 #include <array>

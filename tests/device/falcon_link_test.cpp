@@ -1,4 +1,4 @@
-// This machine's own USB, with the real libusb or without any; no Falcon need be plugged in.
+// Tests of this machine's own USB, with the real libusb or without any; no Falcon need be plugged in.
 #include "device/falcon/detail/libusb_link.h"
 
 #include <string>

@@ -1,4 +1,4 @@
-// Listing and opening Falcons by libusb, against a stand-in of the library.
+// Tests of listing and opening Falcons by libusb, against a stand-in for the library.
 #include <chrono>
 #include <string>
 

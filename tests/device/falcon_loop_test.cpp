@@ -1,4 +1,4 @@
-// The conversation with a Falcon, in the emulator's virtual time: what it does when its host, its link or its encoders
+// Tests of the conversation with a Falcon, in the emulator's virtual time, when its host, its link or its encoders
 // fail.
 #include "device/falcon/falcon_loop.h"
 

@@ -1,5 +1,5 @@
-// A Falcon's own thread, in real time: what waits for whom, and what happens when one side stops. No test here asks
-// how fast it goes, beyond what a busy machine allows.
+// Tests of a Falcon's own thread in real time: which side waits, and what happens when one side stops. None of them
+// demands more speed than a busy machine allows.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -101,7 +101,8 @@ struct Servo {
         device                   = std::make_unique<FalconDevice>([this] { return falcon.connect(); }, settings);
     }
 
-    /// Ticks until it is so. \return whether it came to be within 5 s, which is ages
+    /// Ticks until the condition holds.
+    /// \return whether it held within 5 s, which is long
     bool until(const std::function<bool()>& isSo)
     {
         for (const double end = falcon.now() + 5; falcon.now() < end;) {

@@ -1,4 +1,4 @@
-// The link to the Falcon over libusb, against a stand-in of the library.
+// Tests of the link to the Falcon over libusb, against a stand-in for the library.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -188,7 +188,7 @@ TEST_F(FalconUsb, ADeviceThatTakesNothingIsLostAfterATenthOfASecond)
     EXPECT_LT(took, kSoon);
 }
 
-/// Whether it is lost, and not for the reason that the device is gone.
+/// Returns whether it is lost although the device is not gone.
 bool isBroken(const auto& act)
 {
     try {

@@ -1,4 +1,4 @@
-// The emulated Falcon as its driver meets it, and the chip's timing.
+// Tests of the emulated Falcon as its driver sees it, and of the chip's timing.
 #include "device/falcon/ft232_emulator.h"
 
 #include <array>

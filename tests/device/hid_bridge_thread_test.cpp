@@ -1,4 +1,4 @@
-// The bridge's own thread, in real time: what waits for whom, and what it does when nobody calls.
+// Tests of the bridge's own thread in real time: which side waits, and what happens when exchange() is not called.
 #include "device/hid/hid_bridge.h"
 
 #include <chrono>

@@ -1,6 +1,6 @@
-// Stands in for libhidapi-hidraw: what a program defines itself wins over a shared library, so the adapter's own code
-// runs without hardware. Like hidapi it keeps a global text without a lock, so that a thread sanitizer sees whoever
-// forgets to take turns.
+// A stand-in for libhidapi-hidraw: a program's own definitions take precedence over a shared library's, so the
+// adapter's own code runs without hardware. Like hidapi it keeps a global text without a lock, so that a thread
+// sanitizer finds callers that do not take turns.
 #include "tests/device/hidapi_fake.h"
 
 #include <algorithm>

@@ -6,7 +6,8 @@
 
 namespace palp {
 
-/// What the stand-in of hidapi answers, and what it was asked. \thread the test's; the counters any
+/// The answers of the stand-in for hidapi, and the calls that it received.
+/// \thread the test's; the counters any
 struct HidapiFake {
     struct Listed {
         std::string   path;

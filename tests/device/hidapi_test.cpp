@@ -1,4 +1,4 @@
-// The adapter on hidapi, against a stand-in of the library: see hidapi_fake.cpp.
+// Tests of the adapter on hidapi, against a stand-in for the library, see hidapi_fake.cpp.
 #include "device/hid/hidapi_system.h"
 
 #include <array>

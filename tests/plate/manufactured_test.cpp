@@ -1,4 +1,4 @@
-// Manufactured solutions: choose w and D, derive the load, and ask for w back.
+// Tests by manufactured solutions: each chooses w and D, derives the load, and solves for w.
 
 #include <cmath>
 #include <numbers>

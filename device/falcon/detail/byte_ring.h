@@ -7,7 +7,7 @@
 
 namespace palp {
 
-/// What came in and was not read yet: the newest `Size` bytes.
+/// A ring of the newest `Size` bytes that came in and were not read yet.
 /// \thread one; fixed memory
 template <std::size_t Size>
 class ByteRing {
@@ -25,7 +25,8 @@ public:
         }
     }
 
-    /// \return how many of `bytes` were filled, the oldest first
+    /// Reads the oldest bytes first.
+    /// \return how many of `bytes` were filled
     std::size_t take(std::span<std::uint8_t> bytes) noexcept
     {
         const std::size_t taken = std::min(bytes.size(), held_);

@@ -18,20 +18,20 @@
 namespace palp {
 namespace {
 
-constexpr std::uint16_t kVendor = 0x0403, kProduct = 0xCB48; ///< FTDI's number, and Novint's of theirs
+constexpr std::uint16_t kVendor = 0x0403, kProduct = 0xCB48; ///< FTDI's vendor number, Novint's product number
 constexpr int           kInterface = 0;
 constexpr unsigned char kIn = 0x81, kOut = 0x02; ///< endpoints, bulk
 constexpr std::uint8_t  kVendorRequest = 0x40;   ///< host to device, vendor, device
 
-constexpr std::size_t kPacket = 64; ///< [bytes] at full speed; each that comes in starts with
+constexpr std::size_t kPacket = 64; ///< [bytes] at full speed; each incoming one starts with the status
 constexpr std::size_t kStatus = 2;  ///< [bytes] of modem and line status
 
-constexpr std::size_t kBuffer = 256;  ///< [bytes] of a transfer: what the chip itself can hold, in whole packets
-constexpr std::size_t kQueued = 4;    ///< transfers that wait: at a latency timer of 1 ms, 4 ms of a host that is away
-constexpr std::size_t kInbox  = 4096; ///< [bytes] that came in and were not read; then the oldest go
+constexpr std::size_t kBuffer = 256;  ///< [bytes] of a transfer: the size of the chip's own buffer, in whole packets
+constexpr std::size_t kQueued = 4;    ///< waiting transfers: 4 ms without reading, at a latency timer of 1 ms
+constexpr std::size_t kInbox  = 4096; ///< [bytes] that came in and were not read; beyond it the oldest are discarded
 
-constexpr double       kWriteTimeout   = 0.1;   ///< [s] FalconLink::write() promises it
-constexpr double       kCancelTime     = 20e-3; ///< [s] for a write that hangs to come back, before another
+constexpr double       kWriteTimeout   = 0.1;   ///< [s] as FalconLink::write() promises
+constexpr double       kCancelTime     = 20e-3; ///< [s] for a hanging write to come back before another is sent
 constexpr double       kCloseTimeout   = 1;     ///< [s] for transfers to come back; the kernel needs a few ms
 constexpr unsigned int kControlTimeout = 100;   ///< [ms]
 constexpr double       kLongestWait    = 3600;  ///< [s] of a read, so that it fits the system's clock
@@ -70,7 +70,7 @@ std::string nameOf(const std::string& path)
     return "Novint Falcon at USB " + path;
 }
 
-/// The devices of a context that are Falcons; good as long as this lives.
+/// The devices of a context that are Falcons; they are valid as long as this object lives.
 class Falcons {
 public:
     explicit Falcons(libusb_context* context)
@@ -96,7 +96,7 @@ private:
     std::vector<libusb_device*> falcons_;
 };
 
-/// Opens a device for us alone; null where that fails. `listing` says what came of it.
+/// Opens a device for exclusive use; returns null if that fails. `listing` receives the outcome.
 Handle claim(libusb_device* device, FalconListing& listing)
 {
     listing.path                = pathOf(device);
@@ -104,7 +104,7 @@ Handle claim(libusb_device* device, FalconListing& listing)
     int                   found = libusb_open(device, &open);
     Handle                handle(found == 0 ? open : nullptr);
     if (handle) {
-        // A serial driver of the kernel may hold it; not every system can detach one, and then the claim tells.
+        // A serial driver of the kernel may hold it. Not every system can detach one; then the claim fails.
         static_cast<void>(libusb_set_auto_detach_kernel_driver(open, 1));
         found = libusb_claim_interface(open, kInterface);
     }
@@ -117,8 +117,8 @@ Handle claim(libusb_device* device, FalconListing& listing)
     return nullptr;
 }
 
-/// See openFalcon(). Once lost_ is set no transfer is submitted any more, but by writeAnyway(); one that is pending
-/// belongs to libusb until its callback, which only comes from inside pump() and the control requests.
+/// The link of openFalcon(). Once lost_ is set, only writeAnyway() still submits transfers. A pending transfer belongs
+/// to libusb until its callback, which is only called from inside pump() and the control requests.
 class LibusbLink final : public FalconLink {
 public:
     LibusbLink(Context context, Handle handle, std::string path)
@@ -138,7 +138,8 @@ public:
             if (transfer.pending) libusb_cancel_transfer(transfer.raw.get());
         if (out_.pending) libusb_cancel_transfer(out_.raw.get());
         settle(idle, kCloseTimeout);
-        // If one still has not come back: libusb forgets it as it closes the handle. So the transfers are freed after.
+        // libusb forgets a transfer that has still not come back when it closes the handle, so they are freed after
+        // that.
         libusb_release_interface(handle_.get(), kInterface);
         handle_.reset();
     }
@@ -173,7 +174,7 @@ public:
     std::size_t read(std::span<std::uint8_t> bytes, double timeout) override
     {
         waitFor([&] { return !inbox_.empty(); }, timeout);
-        if (inbox_.empty()) throwIfLost(); // what came before that is given out first
+        if (inbox_.empty()) throwIfLost(); // bytes that came before the loss are returned first
         return inbox_.take(bytes);
     }
 
@@ -190,11 +191,11 @@ private:
         LibusbLink*                                                link = nullptr;
         std::unique_ptr<libusb_transfer, By<libusb_free_transfer>> raw;
         std::array<unsigned char, kBuffer>                         buffer{};
-        bool pending = false; ///< submitted, and its callback has not come
+        bool pending = false; ///< submitted, and its callback was not called yet
     };
     struct Loss {
-        const char *doing, *reason; ///< of static texts: a callback must not throw
-        bool        isGone;         ///< the device, not only the link
+        const char *doing, *reason; ///< static texts: a callback must not throw
+        bool        isGone;         ///< the device is gone, not only the link
     };
 
     void prepare(Transfer& transfer, unsigned char endpoint, libusb_transfer_cb_fn callback)
@@ -202,7 +203,7 @@ private:
         transfer.link = this;
         transfer.raw.reset(libusb_alloc_transfer(0));
         if (!transfer.raw) throw Error(nameOf(path_) + " cannot be opened: out of memory");
-        // No time limit of libusb's: what waits has one of its own.
+        // libusb's time limit is not used: every wait here has its own.
         libusb_fill_bulk_transfer(transfer.raw.get(), handle_.get(), endpoint, transfer.buffer.data(), int(kBuffer),
                                   callback, &transfer, 0);
     }
@@ -226,11 +227,11 @@ private:
         submitAnyway(out_);
     }
 
-    /// On a link that is lost, to a device that may still listen: see FalconLink::write(). One buffer at most.
+    /// Writes on a lost link to a device that may still listen, see FalconLink::write(); one buffer at most.
     void writeAnyway(std::span<const std::uint8_t> bytes)
     {
         const auto isOut = [this] { return !out_.pending; };
-        if (out_.pending) libusb_cancel_transfer(out_.raw.get()); // the one that hangs
+        if (out_.pending) libusb_cancel_transfer(out_.raw.get()); // the hanging one
         settle(isOut, kCancelTime);
         if (std::exchange(isStalled_, false)) static_cast<void>(libusb_clear_halt(handle_.get(), kOut));
         if (!out_.pending && !bytes.empty()) submitWrite(bytes.first(std::min(bytes.size(), kBuffer)));
@@ -238,7 +239,7 @@ private:
         throwIfLost();
     }
 
-    /// The first cause is kept; that the device is gone may turn out later.
+    /// Records the loss. The first cause is kept; isGone may still be set later.
     void lose(const char* doing, const char* reason, bool isGone = false) noexcept
     {
         if (!lost_) lost_ = Loss{doing, reason, isGone};
@@ -277,7 +278,8 @@ private:
             transfer.link->lose("writing failed: ", "it took only a part");
     }
 
-    /// Handles what has happened; if nothing has, waits for it up to `timeout` [s]. False: that does not work any more.
+    /// Handles pending events, or waits for one up to `timeout` [s].
+    /// \return false if that no longer works
     bool pump(double timeout) noexcept
     {
         const double whole = std::floor(timeout);
@@ -288,7 +290,7 @@ private:
         return works;
     }
 
-    /// Pumps once, and on until it is `done`, the link is lost or `timeout` [s] is over.
+    /// Pumps at least once, until it is `done`, the link is lost or `timeout` [s] is over.
     template <class Done>
     void waitFor(const Done& done, double timeout) noexcept
     {
@@ -297,7 +299,7 @@ private:
         for (double left = end - now(); !done() && !lost_ && left > 0; left = end - now()) pump(left);
     }
 
-    /// The same, even though the link is lost.
+    /// Does the same even if the link is lost.
     template <class Done>
     void settle(const Done& done, double timeout) noexcept
     {

@@ -3,16 +3,18 @@
 
 namespace palp {
 
-/// What libusb's numbers mean to a user. They are ints here: no header of ours names libusb's own types.
+// Explains libusb's numbers to users. They are ints here: no header of Palpate names libusb's own types.
 
-/// \param status  of a transfer that failed \return "it was unplugged", ...; a static text
+/// Explains why a transfer failed.
+/// \param status  of that transfer
+/// \return a static text such as "it was unplugged"
 [[nodiscard]] const char* transferFailure(int status) noexcept;
 
 struct UsbRefusal {
-    std::string why, help; ///< as FalconListing's
+    std::string why, help; ///< as in FalconListing
 };
 
-/// Why a device cannot be opened, and what to do.
+/// Explains why a device cannot be opened, and what to do.
 /// \param error  of the call that opens or claims it
 [[nodiscard]] UsbRefusal refusal(int error);
 

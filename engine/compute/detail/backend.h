@@ -5,8 +5,8 @@
 
 #include "engine/compute/command_list.h"
 
-// What the public classes of engine/compute hold, and what a kind of processor implements: Vulkan in vulkan_*.cpp, this
-// machine's own in host_*.cpp. Internal to the layer.
+// The implementations behind the public classes of engine/compute, for each kind of processor: Vulkan in vulkan_*.cpp,
+// this machine's own in host_*.cpp. Internal to the layer.
 
 namespace palp::compute {
 
@@ -16,7 +16,7 @@ struct Context::Handles {
     Handles(const Handles&)            = delete;
     Handles& operator=(const Handles&) = delete;
 
-    // Arguments have been checked against what the classes' headers ask for, but not against the processor.
+    // Arguments have been checked against the conditions of the classes' headers, but not against the processor.
     virtual std::unique_ptr<Buffer::Handles>      makeBuffer(std::string name, std::size_t bytes, Intent intent) = 0;
     virtual std::unique_ptr<Kernel::Handles>      makeKernel(const KernelCode& code, Workgroup workgroup,
                                                              std::span<const std::uint32_t> constants)           = 0;
@@ -84,7 +84,7 @@ struct CommandList::Handles {
     bool              ran        = false;
 };
 
-/// [byte] that a kernel sees of a buffer.
+/// Returns how much of a buffer a kernel sees [byte].
 [[nodiscard]] inline std::size_t bytesOf(const Binding& binding)
 {
     return binding.bytes == Binding::kRest ? binding.buffer->bytes() - binding.offset : binding.bytes;

@@ -17,9 +17,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kAlignment = 64; ///< of a cache line, and of the widest vector registers [byte]
+constexpr std::size_t kAlignment = 64; ///< size of a cache line, and of the widest vector registers [byte]
 
-/// Before and behind each buffer: kernels work on whole vectors, and may read numbers there that they do not use.
+/// Room before and after each buffer: kernels work on whole vectors, and may read numbers there that they do not use.
 constexpr std::size_t kMargin = kAlignment;
 
 struct HostBuffer : Buffer::Handles {

@@ -5,7 +5,7 @@
 
 namespace palp::compute {
 
-/// This machine's processor: kernels are functions, and lists are walked on the thread that runs them.
+/// The context of this machine's processor: kernels are functions, and lists are walked on the thread that runs them.
 class HostContext : public Context::Handles {
 public:
     HostContext();

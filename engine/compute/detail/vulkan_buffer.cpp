@@ -6,7 +6,7 @@
 namespace palp::compute {
 namespace {
 
-/// The properties that serve an intent, best first.
+/// Returns the properties that serve an intent, best first.
 std::vector<VkMemoryPropertyFlags> wishes(Intent intent)
 {
     constexpr VkMemoryPropertyFlags kVisible  = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
@@ -34,7 +34,7 @@ std::string mebibytes(std::size_t bytes)
 std::optional<std::uint32_t> memoryTypeFor(const VkPhysicalDeviceMemoryProperties& memory, std::uint32_t allowed,
                                            Intent intent)
 {
-    // Memory of special purpose, which must not be taken by chance.
+    // Memory for special purposes, which must not be taken by chance.
     constexpr VkMemoryPropertyFlags kSpecial =
         VK_MEMORY_PROPERTY_LAZILY_ALLOCATED_BIT | VK_MEMORY_PROPERTY_PROTECTED_BIT |
         VK_MEMORY_PROPERTY_DEVICE_COHERENT_BIT_AMD | VK_MEMORY_PROPERTY_DEVICE_UNCACHED_BIT_AMD;

@@ -9,7 +9,7 @@
 namespace palp::compute {
 namespace {
 
-// Hardware: the kernel drivers of AMD, Intel and NVIDIA reset a device that makes no progress for 2 to 10 s; waiting
+// Hardware: the kernel drivers of AMD, Intel and NVIDIA reset a GPU that makes no progress for 2 to 10 s; waiting
 // longer only hides that. Software has no such watchdog and is legitimately slow: a validated multigrid cycle on a
 // large grid lasts tens of seconds.
 constexpr double kPatienceHardware = 10;  // [s]
@@ -121,7 +121,7 @@ void VulkanContext::open(const Instance& entrance, Purpose purpose)
             vkGetInstanceProcAddr(entrance.get(), "vkSetDebugUtilsObjectNameEXT"));
     const auto fenceInfo = typed<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
     if (const VkResult result = vkCreateFence(device, &fenceInfo, nullptr, &fence); result != VK_SUCCESS) {
-        vkDestroyDevice(device, nullptr); // no destructor runs for what was never built
+        vkDestroyDevice(device, nullptr); // no destructor runs for an object that was never built
         check(result, "make a fence");
     }
 }
@@ -133,7 +133,7 @@ void VulkanContext::setName(VkObjectType type, std::uint64_t handle, const std::
     info.objectType   = type;
     info.objectHandle = handle;
     info.pObjectName  = name.c_str();
-    setObjectName(device, &info); // a name that is not kept does no harm
+    setObjectName(device, &info); // a lost name is harmless
 }
 
 void VulkanContext::run(std::span<CommandList* const> lists)

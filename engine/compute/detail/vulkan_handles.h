@@ -13,12 +13,13 @@
 
 namespace palp::compute {
 
-/// \throws ProcessorLost for a lost device or missing memory, Error for any other failure; `what` completes "cannot ..."
+/// \throws ProcessorLost for a lost device or missing memory, Error for any other failure; `what` completes "cannot
+///         ..."
 void check(VkResult result, const char* what);
 
 class VulkanContext : public Context::Handles {
 public:
-    /// \param entrance  is taken over only if the device opens
+    /// \param entrance  taken over only if the device opens
     /// \param patience  see ContextSettings [s]
     /// \throws ProcessorError if the device does not open
     VulkanContext(std::unique_ptr<Instance>& entrance, const Candidate& candidate, double patience,
@@ -33,18 +34,18 @@ public:
     std::vector<std::string>              takeMessages() override;
 
     /// Submits what was recorded and waits, as Context::run() does.
-    /// \throws ProcessorLost as there
+    /// \throws ProcessorLost as Context::run()
     void submit(std::span<const VkCommandBuffer> commands);
 
-    /// The two halves of submit(); in between the host is free.
-    /// \pre what was started has been finished
+    /// Do the two halves of submit(); the host is free in between.
+    /// \pre an earlier submission has been finished
     void start(std::span<const VkCommandBuffer> commands);
     void finish();
 
-    /// Whether an abandoned submission still runs: then nothing may be destroyed, and leaking is better than crashing.
+    /// Returns whether an abandoned submission still runs: then nothing may be destroyed, and leaks replace crashes.
     [[nodiscard]] bool atWork() const { return abandoned && vkGetFenceStatus(device, fence) == VK_NOT_READY; }
 
-    /// Shows up in messages of the validation layer and in captures. Does nothing without VK_EXT_debug_utils.
+    /// Sets the name in messages of the validation layer and in captures. Does nothing without VK_EXT_debug_utils.
     void setName(VkObjectType type, std::uint64_t handle, const std::string& name) const;
 
     std::unique_ptr<Instance>        instance;
@@ -66,7 +67,7 @@ private:
     void open(const Instance& entrance, Purpose purpose);
 };
 
-/// The first memory type that fits the best wish it can; drivers list types from fast to slow.
+/// Returns the first memory type that meets the best possible wish; drivers list types from fast to slow.
 /// \param allowed  the types that the resource may have, a bit each
 [[nodiscard]] std::optional<std::uint32_t> memoryTypeFor(const VkPhysicalDeviceMemoryProperties& memory,
                                                          std::uint32_t allowed, Intent intent);
@@ -134,7 +135,7 @@ public:
     VkCommandBuffer commands = VK_NULL_HANDLE;
 
 private:
-    /// The barrier that every command but the last is followed by: what was written is seen by what comes next.
+    /// Records the barrier after every command but the last: later commands see what earlier ones wrote.
     void            separate() const;
     void            bind(const Kernel& kernel, const Bindings& bindings, const Push& push);
     VkDescriptorSet descriptorSet(const Kernel& kernel);

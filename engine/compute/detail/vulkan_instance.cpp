@@ -69,7 +69,7 @@ Instance::Instance(Validation validation, const std::vector<std::string>& more)
         debugUtils_                            = true; // the layer brings it
         features.enabledValidationFeatureCount = std::uint32_t(enabled.size());
         features.pEnabledValidationFeatures    = enabled.data();
-        features.pNext                         = &toUs; // hears about the instance itself
+        features.pNext                         = &toUs; // receives messages about the instance itself
         info.pNext                             = &features;
     }
     if (debugUtils_) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
@@ -106,7 +106,7 @@ VkDebugUtilsMessengerCreateInfoEXT Instance::messengerInfo()
     auto info = typed<VkDebugUtilsMessengerCreateInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
     info.messageSeverity =
         VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-    // Not GENERAL: the loader tells there of drivers that do not fit this machine.
+    // GENERAL is omitted: there the loader reports drivers that do not fit this machine.
     info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
     info.pfnUserCallback = collect;
     info.pUserData       = this;

@@ -13,7 +13,7 @@
 
 namespace palp::compute {
 
-/// A structure of Vulkan that is zero but for its type and what it is chained to.
+/// Makes a structure of Vulkan that is zero but for its type and its chain.
 template <class Structure>
 [[nodiscard]] Structure typed(VkStructureType type, void* next = nullptr)
 {
@@ -23,11 +23,11 @@ template <class Structure>
     return structure;
 }
 
-/// The entrance to the drivers, with the validation layer if it is asked for.
+/// The entrance to the drivers, with the validation layer if requested.
 class Instance {
 public:
-    /// \param more  extensions beside our own
-    /// \throws ProcessorError if validation is asked for and not installed, or if a driver fails; no driver at all is fine
+    /// \param more  extensions beside the engine's own
+    /// \throws ProcessorError if validation is requested and not installed, or if a driver fails; not if there is none
     explicit Instance(Validation validation, const std::vector<std::string>& more = {});
     ~Instance();
     Instance(const Instance&)            = delete;
@@ -53,7 +53,7 @@ private:
     std::vector<std::string> messages_;
 };
 
-/// A device that could be opened, or why not.
+/// A Vulkan device and, if it cannot be used, why.
 struct Candidate {
     Processor                    description;
     VkPhysicalDevice             physical      = VK_NULL_HANDLE;
@@ -65,7 +65,7 @@ struct Candidate {
     VkDeviceSize                 maxBufferBytes = 0; ///< [byte]
 };
 
-/// Describes every device, in the order of the drivers.
+/// Describes every Vulkan device, in the order of the drivers.
 /// \throws ProcessorError if they cannot be listed
 [[nodiscard]] std::vector<Candidate> candidates(const Instance& instance);
 

@@ -61,7 +61,7 @@ VkPipeline makePipeline(const VulkanContext& gpu, VkPipelineLayout layout, const
     moduleInfo.pCode      = code.spirv.data();
     VkShaderModule module = VK_NULL_HANDLE;
     check(vkCreateShaderModule(gpu.device, &moduleInfo, nullptr, &module), "take a shader");
-    const Owned<VkShaderModule, vkDestroyShaderModule> keeper(gpu, module); // the pipeline keeps what it needs
+    const Owned<VkShaderModule, vkDestroyShaderModule> keeper(gpu, module); // the pipeline needs no module later
 
     std::vector<VkSpecializationMapEntry> entries;
     for (std::uint32_t n = 0; n < constants.size(); ++n) entries.push_back({n, n * 4, 4});

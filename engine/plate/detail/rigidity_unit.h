@@ -5,7 +5,7 @@
 
 namespace palp {
 
-/// Writes rigidities as the shaders are given them: relative to a unit, in 32 bits.
+/// Writes rigidities for the shaders: relative to a unit, in 32 bits.
 /// \param rigidities, unit  [N m], > 0
 /// \return the least and the largest rigidity [N m]
 /// \throws Error if products of three of them and more would not stay finite

@@ -2,9 +2,9 @@
 
 // The coarsest level: coarse_factor.comp and coarse_solve.comp.
 //
-// The shaders update all unknowns within reach of the one that they have just done. Here an unknown is updated by all
-// those before it, which needs its numbers once: they stay in registers. Every number has the same terms subtracted in
-// the same order, so its bits are the same.
+// The shaders update all unknowns within reach of the one that they have just solved. Here an unknown is updated by all
+// those before it, which loads its numbers once: they stay in registers. The same terms are subtracted from every
+// number in the same order, so its bits are the same.
 
 namespace palp::PALPATE_ISA {
 namespace {
@@ -16,8 +16,8 @@ struct Sides {
 #include "compute_shaders/shared/plate_grid.h"
 };
 
-// The size of a register [bytes]. A compiler makes slow code of longer vectors, and columns of at most 35 entries gain nothing
-// by registers of 64.
+// The size of a register [bytes]. Compilers make slow code of longer vectors, and columns of at most 35 entries gain
+// nothing from registers of 64.
 #if defined(__AVX__)
 constexpr int kRegister = 32;
 #else
@@ -38,7 +38,7 @@ struct Lanes {
     }
     static void store(Real* to, Vector v) { __builtin_memcpy(to, &v, sizeof v); }
 
-    /// The lanes up to one, and 0 in the others.
+    /// Keeps the lanes up to one, and sets the others to 0.
     static Vector upTo(int last, Vector v)
     {
         Vector number;
@@ -47,16 +47,16 @@ struct Lanes {
     }
 };
 
-/// Columns of L while they are made, in vectors with zeros behind them.
+/// Columns of L while they are computed, in vectors followed by zeros.
 template <class Real>
 struct Columns : Lanes<Real> {
     using typename Lanes<Real>::Vector;
     using Lanes<Real>::kLanes;
     using Lanes<Real>::load;
     static constexpr int kVectors = (kMostHalfBand + kLanes) / kLanes;
-    static constexpr int kStride  = (kVectors + 1) * kLanes + kMostHalfBand; ///< read from any of its entries on
+    static constexpr int kStride  = (kVectors + 1) * kLanes + kMostHalfBand; ///< readable from any of its entries on
 
-    /// Subtracts from column n what those up to `reach` before it take from it; `column` is L's, n the one asked for.
+    /// Subtracts from column n the contributions of up to `reach` columns before it; `column` is L's.
     ///
     /// The one that is a columns before reaches the first reach + 1 - a entries: those in at most kCount vectors first.
     template <int kCount>
@@ -109,7 +109,7 @@ void forwardTogether(const Real* factor, int reach, int n, Real* y)
     using C         = Lanes<Real>;
     const int slots = reach + 1;
     auto      sums  = C::load(y + n);
-    // The farthest columns reach only the first lanes; what lies behind their end is the next column's.
+    // The farthest columns reach only the first lanes; beyond their end lies the next column.
     for (int last = max(0, reach - n); last < C::kLanes - 1; ++last) {
         const int k = n - reach + last;
         sums -= C::upTo(last, C::load(factor + k * slots + reach - last)) * y[k];
@@ -137,11 +137,11 @@ void forward(const Real* factor, int reach, int unknowns, Real* y)
 }
 
 /// Solves L' w = y, from the last unknown on.
-/// \param w  y, then the result; zeros behind
+/// \param w  y, then the result; followed by zeros
 template <class Real>
 void backward(const Real* factor, int reach, int unknowns, Real* w)
 {
-    // Some side by side, as long as they do not need each other: one alone would wait for each of its sums.
+    // Several unknowns side by side, as long as they are independent: one alone would wait for each of its sums.
     constexpr int kTogether = 8;
     const int     slots     = reach + 1;
     int           n         = unknowns;

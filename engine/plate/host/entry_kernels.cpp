@@ -6,11 +6,11 @@
 // Entries of the operator's matrix: plate_divisor.comp and coarse_assemble.comp. They are the operator's answers to
 // unit deflections, so that there is no second list of them.
 //
-// Where a node's place is a constant, all but one of 13 deflections are a constant 0, and what is left of the operator
-// is the closed form of an entry. A compiler may drop products with 0 and sums with it only if nothing is infinite or
-// not a number and zeros have no sign; this file alone is compiled so (see CMakeLists.txt). Rigidities are finite, so
-// the entries are the same to the bit, but for the sign of an entry of 0, which no divisor and no factor shows; nothing
-// here may test for what is not finite.
+// Where a node's place is a constant, all but one of 13 deflections are a constant 0, and the operator reduces to the
+// closed form of an entry. A compiler may drop products with 0 and sums with it only if no number is infinite or NaN
+// and zeros have no sign; this file alone is compiled so (see CMakeLists.txt). Rigidities are finite, so the entries
+// are the same to the bit, but for the sign of an entry of 0, which affects no divisor and no factor. This file must
+// not test for numbers that are not finite.
 
 namespace palp::PALPATE_ISA {
 namespace {
@@ -22,7 +22,7 @@ struct Row {
 
     const float*   at;
     std::ptrdiff_t stride;
-    int            placeI, placeJ; ///< what the node is called
+    int            placeI, placeJ; ///< the node's name
     int            unitI = 0, unitJ = 0;
 
     real rigidity(int i, int j) const { return real(at[(i - placeI) * stride + (j - placeJ)]); }
@@ -130,7 +130,7 @@ struct Band {
     [[nodiscard]] std::ptrdiff_t unknown(int i, int j) const { return zIsFast ? i * nodesZ + j : j * nodesX + i; }
 };
 
-/// Entries of one name of node, all that are not above the diagonal. Those of held nodes stay as they are.
+/// Writes the entries of the nodes of one name that are not above the diagonal. Those of held nodes are unchanged.
 template <int placeI, int placeJ, class Real>
 [[gnu::flatten]] void assembleRows(const PlateLevel& g, const float* D, const Band<Real>& band)
 {

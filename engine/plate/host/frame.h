@@ -12,8 +12,8 @@
 #include "compute_shaders/shared/transfer_layout.h"
 #include "engine/compute/host_dispatch.h"
 
-// What the kernels of the host have in common. Their files are compiled once per instruction set, each time in another
-// namespace: whatever they define must be in it, or a linker might give a processor code that it does not have.
+// The common parts of the host's kernels. Their files are compiled once per instruction set, each time in another
+// namespace: all definitions must be in it, or a linker might give a processor code that it cannot run.
 //
 // The arithmetic is that of the shaders' headers, node by node and in the same order; contraction is off. So the
 // results are those of the shaders, to the bit (but for the sign of a zero), on every instruction set. Only the loops

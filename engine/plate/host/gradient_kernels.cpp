@@ -11,7 +11,7 @@ struct Scalars {
 #include "compute_shaders/shared/cg_step.h"
 };
 
-/// Partial sum t of the terms t, t + partials, ...: a row of partial sums grows by a row of terms at a time.
+/// Computes partial sum t of the terms t, t + partials, ...: a row of partial sums grows by a row of terms at a time.
 template <class Real, class Term>
 void addTerms(std::ptrdiff_t nodes, std::ptrdiff_t partials, Real* sums, const Term& term)
 {
@@ -23,7 +23,7 @@ void addTerms(std::ptrdiff_t nodes, std::ptrdiff_t partials, Real* sums, const T
     }
 }
 
-/// The partial sums completed in the order of a workgroup of this width.
+/// Completes the partial sums in the order of a workgroup of this width.
 template <class Real>
 Real total(const Real* partials, uint count, uint width)
 {

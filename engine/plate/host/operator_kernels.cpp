@@ -5,13 +5,13 @@
 namespace palp::PALPATE_ISA {
 namespace {
 
-/// Whether all nodes of a row but perhaps its ends are held.
+/// Returns whether all nodes of a row but perhaps its ends are held.
 bool isHeldRow(const PlateLevel& g, int i)
 {
     return Rules<float>{}.isHeld(middleOfZ(g), i, kMiddle);
 }
 
-/// Gives each row of A w to rowTo(i), and value(j, A w) is 0 for held nodes.
+/// Passes each row of A w to rowTo(i); value(j, A w) is 0 for held nodes.
 template <class Real, class Field, class ToRow>
 void forEachRow(const PlateLevel& g, const float* D, Field& field, ToRow&& rowTo)
 {
@@ -71,7 +71,7 @@ void residualOf(const HostDispatch& d)
     }
 }
 
-/// Nodes of one colour from one field, the others from another, row by row.
+/// Takes nodes of one colour from one field and the others from another, row by row.
 struct TwoColours {
     const float* same;
     const float* other;

@@ -2,12 +2,12 @@
 #include "engine/plate/host/frame.h"
 
 // The operator row by row. Moments, and changes from row to row, are computed once per node and cell and kept, where an
-// invocation of a shader computes those around its node anew: the same numbers, with a third of the work.
+// invocation of a shader computes those around its node anew: the numbers are the same, with a third of the work.
 
 namespace palp::PALPATE_ISA {
 
-// Rules of the sides depend on how near a side is. A column far from both is like the middle one of eight cells, which
-// is a constant: so loops along a row have no branch.
+// The rules of the sides depend on the distance to a side. A column far from both is like the middle one of eight
+// cells, which is a constant, so loops along a row have no branch.
 inline constexpr int kMiddle = 4, kMiddleCells = 8;
 
 inline PlateLevel middleOf(PlateLevel g)
@@ -44,7 +44,8 @@ struct ColumnRange {
 
 /// Computes rows of A w in a part of the grid, one after the other: each call of next() gives a row.
 ///
-/// \tparam Field  has `const Real* row(int i)`: row i of the deflection, valid while rows up to i + 2 are asked for. The
+/// \tparam Field  has `const Real* row(int i)`: row i of the deflection, valid while rows up to i + 2 are asked for.
+/// The
 ///                number before its first one may be read.
 template <class Real, class Field>
 class OperatorRows {
@@ -78,8 +79,8 @@ public:
 
     /// Calls to.put(j, to.value(j, A w)) for the wanted nodes of row i; i goes up by 1 from the first row.
     ///
-    /// So that loops begin where the row does and end with a whole vector, put(0, ...) is called twice, at last with
-    /// what is right; it must not change what value() reads elsewhere.
+    /// So that loops begin where the row does and end with a whole vector, put(0, ...) is called twice, the second time
+    /// with the right value; it must not change what value() reads elsewhere.
     template <class To>
     void next(int i, To&& to)
     {
@@ -217,11 +218,11 @@ private:
     Twisting         twisting_;
 };
 
-/// What to do with a row of A w.
+/// The use of a row of A w.
 template <class Value, class Put>
 struct RowTo {
     Value value; ///< (j, A w)
-    Put   put;   ///< (j, what value gave)
+    Put   put;   ///< (j, result of value)
 };
 template <class Value, class Put>
 RowTo(Value, Put) -> RowTo<Value, Put>;

@@ -53,7 +53,7 @@ struct Extremes {
     }
 };
 
-/// A coarse row from a fine one, at nodes of the fine row and their neighbours.
+/// Computes a coarse row from a fine one, at nodes of the fine row and their neighbours.
 struct MeansAlongZ {
     Coarsen rules;
     int     nodes;               ///< of a coarse row
@@ -84,7 +84,7 @@ struct MeansAlongZ {
 
 } // namespace
 
-// The shader takes means along z within means along x; here those along z are made once per fine row.
+// The shader takes means along z within means along x; here those along z are computed once per fine row.
 void coarsen(const HostDispatch& d)
 {
     static thread_local Scratch<int>   placeScratch;
@@ -137,8 +137,8 @@ void jumpMark(const HostDispatch& d)
     float* const                       rows = scratch.of(2 * std::ptrdiff_t(nodes));
     Extremes                           extremes{rows, rows + nodes};
     for (int i = 0; i < tilesX(g); ++i) {
-        // Whether the rigidity varies enough for a jump among all nodes that jumpsInTile() looks at: cheaper, and
-        // mostly no.
+        // A cheaper test first: the rigidity must vary enough for a jump among all nodes that jumpsInTile() visits,
+        // which is rare.
         extremes.over(D, nodes, max(0, i * kTile - 2), min(g.cellsX, (i + 1) * kTile + 1));
         for (int j = 0; j < tilesZ(g); ++j) {
             const bool varies = extremes.vary(max(0, j * kTile - 2), min(g.cellsZ, (j + 1) * kTile + 1));

@@ -1,7 +1,7 @@
 #include "engine/plate/host/operator_rows.h"
 
 // Extra sweeps where the rigidity jumps: plate_relax_tile.comp and plate_copy_tile.comp. Listed tiles that are
-// neighbours along z go together.
+// neighbours along z are processed together.
 
 namespace palp::PALPATE_ISA {
 namespace {

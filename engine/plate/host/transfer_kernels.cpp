@@ -6,7 +6,7 @@
 namespace palp::PALPATE_ISA {
 namespace {
 
-/// The part of a transfer table that is about one of the two levels: per node a first node and weights.
+/// The part of a transfer table for one of the two levels: per node a first node and weights.
 struct Table {
     const float* entries;
     int          count;   ///< nodes
@@ -23,8 +23,8 @@ struct Table {
     }
 };
 
-/// Nodes from begin to before end, of which each has the weights of the one `period` before it, `move` further on; the
-/// first there are.
+/// Nodes from begin to before end, each with the weights of the node `period` before it, `move` further on; the first
+/// such nodes.
 struct Run {
     int begin = 0, end = 0;
 
@@ -33,7 +33,7 @@ struct Run {
         const auto goesOn = [&](int node) {
             return node + period < table.count && table.areAlike(node, node + period, move);
         };
-        int alike = 0; // nodes in a row that are so
+        int alike = 0; // such nodes in a row
         for (; end < table.count && alike < period; ++end) alike = goesOn(end) ? alike + 1 : 0;
         if (alike < period) {
             end = 0;
@@ -110,7 +110,7 @@ private:
 };
 
 /// Interpolates a coarse row at the fine nodes of table z.
-/// \param halves  room for as many numbers, and two
+/// \param halves  room for as many numbers, plus two
 template <class Real, class Coarse>
 void prolongRow(const Table& z, const Run& run, const Coarse* from, Real* halves, Real* to)
 {
@@ -193,7 +193,7 @@ void restrictRow(const Table& z, const Run& run, const float* column, int fineNo
     for (int j = run.end; j < z.count; ++j) one(j);
     if (run.end <= run.begin) return;
 
-    // Every second number has a row of its own, so that what coarse nodes take lies side by side.
+    // Every second number has a row of its own, so that the numbers for coarse nodes lie side by side.
     const float* from = column + z.first(run.begin);
     const int    each = (fineNodes - z.first(run.begin)) / 2, uneven = (fineNodes - z.first(run.begin)) % 2;
     float *      even = halves, *odd = halves + each + 1;

@@ -47,8 +47,8 @@ using Clock = std::chrono::steady_clock;
 constexpr int kStepsPerList = 4;
 constexpr int kMostGroups   = 65535; ///< along x of a dispatch, on every processor
 
-constexpr double kRounding      = 1e-7; ///< of rigidities and answer to floats, twice 6e-8 rounded [1]
-constexpr double kFloatRounding = 5e-5; ///< of conjugate gradients in floats, at contrast 1000 and free sides [1]
+constexpr double kRounding      = 1e-7; ///< error of rigidities and answer in floats, twice 6e-8 rounded [1]
+constexpr double kFloatRounding = 5e-5; ///< error of conjugate gradients in floats, at contrast 1000 and free sides [1]
 
 std::string shortest(double value)
 {
@@ -57,7 +57,7 @@ std::string shortest(double value)
     return text;
 }
 
-/// Memory that the host writes for a buffer: the buffer itself where it is mapped, or else memory that a list copies.
+/// Memory that the host writes for a buffer: the buffer itself where it is mapped, else memory that a list copies.
 class Staging {
 public:
     Staging(compute::Context& context, const Buffer& target) : target_(&target)
@@ -190,7 +190,7 @@ struct MultigridPlateSolver::Impl {
         return list;
     }
 
-    /// Runs a list for the present jumps, recording it if need be.
+    /// Runs a list for the present jumps, recording it if necessary.
     CommandList& run(std::optional<CommandList> Lists::*which, CommandList (Impl::*record)())
     {
         auto& list = lists[std::size_t(jumps)].*which;
@@ -218,7 +218,7 @@ struct MultigridPlateSolver::Impl {
         return most;
     }
 
-    /// Largest force of each load [N].
+    /// Returns the largest force of each load [N].
     [[nodiscard]] std::vector<double> largestForces(std::span<const NodeField> nodalForces) const
     {
         PALP_EXPECT(nodalForces.size() == loads,
@@ -233,7 +233,7 @@ struct MultigridPlateSolver::Impl {
         return all;
     }
 
-    /// Forces in units of each load's largest one.
+    /// Returns forces in units of each load's largest one.
     void upload(std::span<const NodeField> nodalForces)
     {
         const std::vector<double> scales = largestForces(nodalForces);

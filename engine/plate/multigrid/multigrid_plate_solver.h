@@ -12,21 +12,21 @@ namespace compute {
 class Context;
 }
 
-/// How a cycle is cut into dispatches. The answers are the same.
+/// The division of a cycle into dispatches. The answers are the same.
 enum class Schedule {
     automatic,  ///< fused on hardware, pass by pass in software
     passByPass, ///< 7 to 11 dispatches per level: nothing is computed twice
     fused       ///< 3 per level, and one for all levels of up to 64 cells together: few dispatches to wait for
 };
 
-/// What conjugate gradients and the coarsest level compute in.
+/// The precision of conjugate gradients and the coarsest level.
 enum class Precision {
     best,  ///< doubles where the processor has them
     floats ///< as on a processor without doubles
 };
 
-/// What evens out the errors that coarser grids cannot see. Two steps of Chebyshev's iteration do that better than one
-/// sweep in red and black, and worse than two.
+/// The smoother of the errors that coarser grids cannot represent. Two steps of Chebyshev's iteration smooth better
+/// than one sweep in red and black, and worse than two.
 enum class Smoother {
     automatic, ///< Chebyshev's on the host, else red and black
     redBlack,  ///< each colour from the newest values of the other: half the work for an invocation per node
@@ -61,20 +61,21 @@ private:
 /// \thread one at a time, together with its context
 /// \source Brandt 1977 (multigrid, nested iteration); Hestenes & Stiefel 1952; README.md in engine/plate says what was
 ///         measured
-/// \differs the paper iterates by undamped Jacobi, which grows 2.16 times a sweep on this stencil, until the change is
-///          small, which damped is far too early (99 % off at 65 nodes and 1e-3); here an error estimate stops it
+/// \differs the paper uses undamped Jacobi, which grows 2.16 times per sweep on this stencil, until the change is
+///          small; with damping that stops far too early (99 % off at 65 nodes and 1e-3). Here an error estimate stops
+///          it
 class MultigridPlateSolver {
 public:
     struct Settings {
-        double tolerance     = 1e-4; ///< of the error, relative in the energy norm [1]; see SolveReport
-        int    maxIterations = 200;  ///< compared every four steps
+        double tolerance     = 1e-4; ///< relative error in the energy norm [1]; see SolveReport
+        int    maxIterations = 200;  ///< checked every four steps
         int    loads         = 1;    ///< solved together, sharing every pass
     };
 
     /// Allocates, records and prepares everything for grids, edges, foundation and rigidity of this plate.
     /// \param context  must stay where it is
-    /// \throws Error if whyUnsolvable(plate), if the tolerance is below kLeastTolerance (or kLeastFloatTolerance on a
-    ///         processor without doubles), or if the processor cannot hold the grid
+    /// \throws Error if whyUnsolvable(plate) says so, if the tolerance is below kLeastTolerance (or
+    ///         kLeastFloatTolerance on a processor without doubles), or if the processor cannot hold the grid
     /// \throws compute::ProcessorLost if the processor fails
     MultigridPlateSolver(compute::Context& context, const PlateKernels& kernels, const Plate& plate,
                          const Settings& settings);
@@ -86,15 +87,15 @@ public:
     static constexpr double kLeastFloatTolerance = 1e-4; ///< what floats alone reach at contrast 1000 [1]
 
     /// Takes another rigidity [N m] on the same grid.
-    /// \throws Error if whyUnsolvable() with it
+    /// \throws Error if whyUnsolvable() refuses it
     void setRigidity(const NodeField& rigidity);
 
     /// Solves for the deflections under forces at the nodes [N], one field per load.
     ///
-    /// report.errorEstimate: of the error relative to the answer in the energy norm, from the gains of the last steps,
-    /// and of rounding; converged is false after maxIterations, or if rounding hides how a part of the plate is held;
-    /// iterations: steps of conjugate gradients on the finest grid; workUnits include the nested iteration. Every
-    /// solution has the same report, of the whole batch and its worst load.
+    /// report.errorEstimate estimates the error relative to the answer in the energy norm, from the gains of the last
+    /// steps, and includes rounding; converged is false after maxIterations, or if rounding hides how a part of the
+    /// plate is held; iterations counts steps of conjugate gradients on the finest grid; workUnits include the nested
+    /// iteration. Every solution has the same report, of the whole batch and its worst load.
     /// \throws Error if a load is not finite or the deflection is not
     /// \throws compute::ProcessorLost if the processor fails
     [[nodiscard]] std::vector<PlateSolution> solve(std::span<const NodeField> nodalForces);

@@ -3,8 +3,8 @@
 namespace palp {
 namespace {
 
-/// The second difference along one axis at node `index`, which has number `node` and whose neighbours along that axis
-/// are `stride` apart; empty where the edge leaves no moment.
+/// Returns the second difference along one axis at node `index`, which has number `node` and whose neighbours along
+/// that axis are `stride` apart; empty where the edge leaves no moment.
 Difference secondDifference(int index, int cells, Edge first, Edge last, int node, int stride)
 {
     Difference d;

@@ -22,13 +22,13 @@ namespace palp {
 //
 //   clamped            zero slope: the ghost mirrors the first inner node, p = 2 w(1) - 2 w(0)
 //   supported or free  no bending moment, p + nu q hx^2/hz^2 = 0: p is condensed out, which leaves
-//                      (1 - nu^2) kqq q^2 / 2. Along a supported edge w is zero, so that is nothing at all.
+//                      (1 - nu^2) kqq q^2 / 2. Along a supported edge w is zero, so that term is zero.
 //
 // A corner takes the rule of either side for its own direction, and is held if either side holds it:
 //
 //   free/free and free/supported    both differences condensed out: no bending energy
 //   clamped/free                    (1 - nu^2) kpp p^2 / 2 with the mirrored p; w is zero at the corner
-//   all others                      differences along held sides: nothing
+//   all others                      differences along held sides: zero
 
 /// A sum of a few nodal values times small whole numbers.
 struct Difference {
@@ -64,12 +64,12 @@ void visitTerms(const Plate& plate, Visit&& visit)
         }
 }
 
-/// Whether an edge keeps the node where it is.
+/// Returns whether an edge holds the node.
 [[nodiscard]] bool isHeld(const Plate& plate, int i, int j) noexcept;
 
-/// Forces [N] minus the energy's gradient at w [m], in moment form: differences first, products with the rigidity
-/// second. The matrix would lose the small differences of w to the rounding of its own entries. On held nodes the
-/// result is what the edge must bear.
+/// Returns forces [N] minus the energy's gradient at w [m], in moment form: differences first, products with the
+/// rigidity second. The matrix would lose the small differences of w to the rounding of its own entries. On held nodes
+/// the result is the reaction of the edge.
 [[nodiscard]] NodeField energyResidual(const Plate& plate, const NodeField& forces, const NodeField& w);
 
 } // namespace palp

@@ -28,7 +28,7 @@ void visitProducts(const Plate& plate, Visit&& visit)
 
 PlateMatrix::PlateMatrix(const Plate& plate) : nodesX_(plate.grid.nodesX()), nodesZ_(plate.grid.nodesZ())
 {
-    // Unknowns in the order of the nodes: a factorisation finds its own order.
+    // Unknowns are in the order of the nodes: a factorisation finds its own order.
     std::vector<int> numberOf(plate.grid.nodes(), kHeld);
     for (int i = 0; i < nodesX_; ++i)
         for (int j = 0; j < nodesZ_; ++j) {
@@ -37,7 +37,7 @@ PlateMatrix::PlateMatrix(const Plate& plate) : nodesX_(plate.grid.nodesX()), nod
             nodeOf_.push_back(i * nodesZ_ + j);
         }
 
-    // The pattern ...
+    // The pattern.
     std::vector<std::vector<int>> rowsOf(nodeOf_.size());
     visitProducts(plate, [&](int a, int b, double) {
         const int row = numberOf[std::size_t(a)], column = numberOf[std::size_t(b)];
@@ -53,7 +53,7 @@ PlateMatrix::PlateMatrix(const Plate& plate) : nodesX_(plate.grid.nodesX()), nod
     }
     rowsOf = {};
 
-    // ... where in it each product goes, and the values.
+    // The place of each product in the pattern, and the values.
     visitProducts(plate, [&](int a, int b, double) {
         const int row = numberOf[std::size_t(a)], column = numberOf[std::size_t(b)];
         int       place = int(row_.size());

@@ -11,12 +11,12 @@
 #include "engine/core/progress.h"
 #include "engine/plate/reference/plate_matrix.h"
 
-// What the energy is, term by term, stands in plate_energy.h.
+// plate_energy.h defines the energy term by term.
 
 namespace palp {
 namespace {
 
-/// Beyond this a factor takes minutes and gigabytes: measured 1025 x 1025 nodes, 127 s and 2.4 GB.
+/// Most nodes. Beyond this a factor takes minutes and gigabytes: measured 1025 x 1025 nodes, 127 s and 2.4 GB.
 constexpr std::size_t kMostNodes = 1025 * 1025;
 
 using Matrix  = Eigen::SparseMatrix<double>;

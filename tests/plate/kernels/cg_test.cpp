@@ -2,7 +2,7 @@
 
 #include "tests/plate/kernels/plate_shader_test.h"
 
-// Conjugate gradients: cg_dot.comp, cg_scalars.comp, cg_direction.comp and cg_update.comp.
+// Tests of conjugate gradients: cg_dot.comp, cg_scalars.comp, cg_direction.comp and cg_update.comp.
 
 namespace palp {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "tests/plate/kernels/plate_shader_test.h"
 
-// The coarsest level's direct solve: coarse_assemble.comp, coarse_factor.comp and coarse_solve.comp.
+// Tests of the coarsest level's direct solve: coarse_assemble.comp, coarse_factor.comp and coarse_solve.comp.
 
 namespace palp {
 namespace {

@@ -2,7 +2,8 @@
 #include "engine/plate/multigrid/detail/plate_tail.h"
 #include "tests/plate/kernels/plate_shader_test.h"
 
-// The cycle in few dispatches: plate_down.comp, plate_up.comp and plate_tail.comp, against pass after pass in C++.
+// Tests of the cycle in few dispatches: plate_down.comp, plate_up.comp and plate_tail.comp, against single passes in
+// C++.
 
 namespace palp {
 namespace {

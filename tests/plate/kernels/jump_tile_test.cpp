@@ -3,7 +3,8 @@
 #include "compute_shaders/shared/tile_layout.h"
 #include "tests/plate/kernels/plate_shader_test.h"
 
-// Tiles in which the rigidity jumps: jump_mark.comp, jump_list.comp, plate_relax_tile.comp and plate_copy_tile.comp.
+// Tests of tiles in which the rigidity jumps: jump_mark.comp, jump_list.comp, plate_relax_tile.comp,
+// plate_copy_tile.comp.
 
 namespace palp {
 namespace {

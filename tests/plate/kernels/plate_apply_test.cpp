@@ -1,6 +1,6 @@
 #include "tests/plate/kernels/plate_shader_test.h"
 
-// The kernels that apply the operator: plate_apply.comp and the variants of plate_residual.comp.
+// Tests of the kernels that apply the operator: plate_apply.comp and the variants of plate_residual.comp.
 
 namespace palp {
 namespace {

@@ -9,7 +9,7 @@
 #include "tests/plate/kernels/plate_relax_stale_other.spv.h"
 #include "tests/plate/kernels/plate_shader_test.h"
 
-// Relaxation: plate_relax.comp, plate_relax_first.comp and plate_divisor.comp.
+// Tests of relaxation: plate_relax.comp, plate_relax_first.comp and plate_divisor.comp.
 
 namespace palp {
 namespace {

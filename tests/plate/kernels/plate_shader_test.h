@@ -14,8 +14,8 @@
 
 namespace palp {
 
-/// How far a processor that fuses or re-associates may be from C++, relative to the magnitudes that were added up: where
-/// terms cancel, units in the last place of the result say nothing.
+/// How far a processor that fuses or re-associates may be from C++, relative to the magnitudes that were added up:
+/// where terms cancel, units in the last place of the result say nothing.
 struct Rounding {
     double      units;   ///< of half the spacing of floating-point numbers at 1
     const char* because; ///< printed on failure
@@ -127,9 +127,9 @@ protected:
         check(0.0);
     }
 
-    /// Whether a kernel computed what C++ does: to the bit where the processor is bitExact(), else within the rounding.
-    /// The sign of a zero does not count: drivers leave out the addition of 0, which turns -0 into 0. \param sizes  for
-    /// each number the magnitudes that were added up to it, at least its own
+    /// Checks that a kernel computed what C++ does: to the bit where the processor is bitExact(), else within the
+    /// rounding. The sign of a zero does not count: drivers omit the addition of 0, which turns -0 into 0.
+    /// \param sizes  for each number the magnitudes that were added up to it, at least its own
     template <class Real>
     static ::testing::AssertionResult agree(const std::vector<Real>& measured, const std::vector<Real>& expected,
                                             const std::vector<double>& sizes, Rounding rounding)

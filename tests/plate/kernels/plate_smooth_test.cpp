@@ -2,7 +2,7 @@
 
 #include "tests/plate/kernels/plate_shader_test.h"
 
-// Chebyshev's iteration: plate_smooth.comp and plate_smooth_first.comp.
+// Tests of Chebyshev's iteration: plate_smooth.comp and plate_smooth_first.comp.
 
 namespace palp {
 namespace {

@@ -1,6 +1,7 @@
 #include "tests/plate/kernels/plate_shader_test.h"
 
-// Between two levels: plate_restrict.comp, the variants of plate_prolong.comp, and rigidity_coarsen.comp.
+// Tests of the transfers between two levels: plate_restrict.comp, the variants of plate_prolong.comp, and
+// rigidity_coarsen.comp.
 
 namespace palp {
 namespace {

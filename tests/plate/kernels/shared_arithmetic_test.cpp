@@ -8,8 +8,8 @@
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "tests/plate/kernels/host_passes.h"
 
-// Whether the arithmetic that shaders and C++ share is right: against the reference solver, which has no stencil, and
-// against what theory asks of it. No processor has to be opened.
+// Tests of the arithmetic that shaders and C++ share, against the reference solver, which has no stencil, and against
+// theory. No processor has to be opened.
 
 namespace palp {
 namespace {

@@ -121,8 +121,8 @@ private:
     static inline std::optional<PlateKernels> kernels_;
 };
 
-/// 32-bit rigidities and coefficients are off by 6e-8, and the answer is rounded to floats; the bars are those of the
-/// issue that asked for the solver.
+/// 32-bit rigidities and coefficients are off by 6e-8, and the answer is rounded to floats; the bars are those set
+/// for the solver at its design.
 TEST_F(MultigridPlate, AgreesWithTheReferenceSolverForEveryLaw)
 {
     for (const Law& law : kLaws)
@@ -317,7 +317,7 @@ TEST_F(MultigridPlate, TheEstimateIsNeverBelowTheErrorByMoreThanAFactorOfThree)
 }
 
 /// To a true error, not to an estimate: each tolerance stops after one more step, until the error is small enough.
-/// The bars are those of the issue that asked for the solver; measured 3 and 5, 5 and 9, 9 and 13 up to 129 nodes. The
+/// The bars are those set for the solver at its design; measured 3 and 5, 5 and 9, 9 and 13 up to 129 nodes. The
 /// host's steps smooth less, so that very sharp discs take it more of them: 15 and 22.
 TEST_F(MultigridPlate, StepsToATrueErrorAreFewWhateverTheSize)
 {

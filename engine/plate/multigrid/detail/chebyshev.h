@@ -3,9 +3,9 @@
 
 namespace palp {
 
-/// w after = w + ahead (w - w before it) + step (residual of w) / divisor.
+/// One step of Chebyshev's iteration: w after = w + ahead (w - w before it) + step (residual of w) / divisor.
 struct ChebyshevStep {
-    float ahead; ///< [1] 0 in the first
+    float ahead; ///< [1] 0 in the first step
     float step;  ///< [1]
 };
 

@@ -45,7 +45,7 @@ PlateGrid coarser(const PlateGrid& grid)
     const bool       mayX = grid.cellsX >= kFewestCells, mayZ = grid.cellsZ >= kFewestCells;
     bool             x = mayX && grid.spacingX < kUneven * grid.spacingZ;
     bool             z = mayZ && grid.spacingZ < kUneven * grid.spacingX;
-    if (!x && !z) { // the axis that should go first cannot
+    if (!x && !z) { // the axis that should be halved first cannot be
         x = mayX && grid.cellsX > shared::kMostCoarseCells;
         z = mayZ && grid.cellsZ > shared::kMostCoarseCells;
     }

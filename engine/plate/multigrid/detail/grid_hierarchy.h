@@ -13,11 +13,11 @@ namespace palp {
     return std::size_t(g.cellsX + 1) * std::size_t(g.cellsZ + 1);
 }
 
-/// A grid and ever coarser ones over the same rectangle, with what the multigrid kernels need to know of each.
+/// A grid and coarser and coarser ones over the same rectangle, with the multigrid kernels' data of each.
 ///
-/// A step halves the cells along both axes (rounding up), until no side has more than kMostCoarseCells. An axis whose
-/// spacing is 1.5 times the other's or more waits, because point relaxation does not smooth along it; so does one that
-/// is down to 4 to 7 cells.
+/// A step halves the cells along both axes (rounding up), until no side has more than kMostCoarseCells. An axis is not
+/// halved while its spacing is 1.5 times the other's or more, because point relaxation does not smooth along it, or
+/// when it has only 4 to 7 cells.
 struct GridHierarchy {
     struct Level {
         shared::PlateLevel plate;          ///< spacing, sides, scaled coefficients

@@ -12,9 +12,9 @@
 namespace palp {
 namespace {
 
-/// Shapes of workgroups, by their names in plate_kernels.def. Vulkan in software runs 8 invocations side by side, pays
-/// for each more and for idle ones in small levels; hardware wants wide rows for its memory, and hides the waits of
-/// serial kernels behind more invocations.
+/// Shapes of workgroups, by their names in plate_kernels.def. Vulkan in software runs 8 invocations side by side, and
+/// more of them, or idle ones in small levels, cost time. Hardware needs wide rows for its memory, and hides the waits
+/// of serial kernels behind more invocations.
 struct Shapes {
     compute::Workgroup tile;   ///< nodes of a grid
     compute::Workgroup line;   ///< nodes one after the other; 65535 of them hold 2049 x 2049 nodes
@@ -37,7 +37,8 @@ Shapes shapesFor(const compute::Context& context)
     return {{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}, tail};
 }
 
-/// Where an operator row by row costs the same for all nodes as for half of them, half sweeps are dear.
+/// Chooses the smoother. Where an operator row by row costs the same for all nodes as for half of them, half sweeps are
+/// expensive.
 Smoothing smoothingBy(Smoother smoother, Schedule schedule, const compute::Context& context)
 {
     if (smoother == Smoother::automatic) {
@@ -47,7 +48,8 @@ Smoothing smoothingBy(Smoother smoother, Schedule schedule, const compute::Conte
     return smoother == Smoother::redBlack ? Smoothing{smoother, 1, 2, 6, 16} : Smoothing{smoother, 2, 2, 2, 16};
 }
 
-/// Fused passes compute the rims of regions several times: they pay where waiting for a dispatch costs more.
+/// Chooses the schedule. Fused passes compute the rims of regions several times, which pays where waiting for a
+/// dispatch costs more.
 bool isFused(const compute::Context& context, Schedule schedule, Smoother smoother)
 {
     PALP_EXPECT(smoother == Smoother::redBlack || schedule != Schedule::fused, "fused passes smooth in red and black");

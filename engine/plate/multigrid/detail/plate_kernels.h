@@ -7,7 +7,7 @@
 
 namespace palp {
 
-/// How much is smoothed before and after each correction: sweeps in red and black, or steps of Chebyshev's iteration.
+/// The smoothing before and after each correction: sweeps in red and black, or steps of Chebyshev's iteration.
 struct Smoothing {
     Smoother by;          ///< not automatic
     int      nested;      ///< on the coarser levels of the nested iteration
@@ -16,8 +16,8 @@ struct Smoothing {
     int      strongTiles; ///< the same where it varies by more than 3000
 };
 
-/// The kernels of compute_shaders/shared/plate_kernels.def by name, for one processor; those in two precisions compute in
-/// doubles where the processor has them.
+/// The kernels of compute_shaders/shared/plate_kernels.def by name, for one processor; those in two precisions compute
+/// in doubles where the processor has them.
 struct PlateKernels::All {
     /// The cycle in fewer and larger passes; [n] has n + 1 sweeps before and after the correction.
     struct Fused {

@@ -21,15 +21,15 @@ using compute::Groups;
 using compute::Intent;
 using compute::Kernel;
 
-constexpr int           kNestedSteps  = 1;     ///< on each coarser level of the nested iteration but the last
-constexpr int           kLastSteps    = 2;     ///< on that: two further up change the answer by less than its error
+constexpr int           kNestedSteps = 1; ///< on each coarser level of the nested iteration but the last
+constexpr int           kLastSteps = 2; ///< on that one: two on coarser levels change the answer by less than its error
 constexpr std::uint32_t kMostPartials = 16384; ///< sums that a dot product is split into
-constexpr std::uint32_t kTermsPerSum  = 64;    ///< that a sum has at least, unless there are too few partials
+constexpr std::uint32_t kTermsPerSum  = 64;    ///< least terms of a sum, unless there are too few partials
 
-/// Eigenvalues that Chebyshev's iteration damps, relative to the divisor: none is larger (see plate_relax.h), and on
-/// equal spacings those below a sixteenth of the largest a coarser grid represents: (1 - cos(pi/2))^2 to (2 (1 -
-/// cos(pi)))^2. On unequal ones the range is up to 38 wide, and no two steps cover it: made wider the interval gives
-/// one step more, not fewer.
+/// Eigenvalues that Chebyshev's iteration damps, relative to the divisor. None is larger (see plate_relax.h), and on
+/// equal spacings a coarser grid represents those below a sixteenth of the largest: (1 - cos(pi/2))^2 to (2 (1 -
+/// cos(pi)))^2. On unequal spacings the range is up to 38 wide, which two steps cannot cover: a wider interval costs
+/// one step more.
 constexpr double kLargest = 2 / 0.51, kSmallest = kLargest / 16;
 
 std::size_t tilesOf(const shared::PlateLevel& g)

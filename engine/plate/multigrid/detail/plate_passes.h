@@ -15,31 +15,31 @@
 
 namespace palp {
 
-/// Everything that a level keeps on the processor. `real` arrays are doubles where the processor has them.
+/// The memory of a level on the processor. `real` arrays are doubles where the processor has them.
 struct LevelBuffers {
     compute::Buffer rigidity, divisor, tableX, tableZ;
     compute::Buffer force, w[2];  ///< of the cycle, floats
-    compute::Buffer marks, tiles; ///< where the rigidity jumps: a flag per tile; how many tiles, then their numbers
-    compute::Buffer load;         ///< of the nested iteration, floats
+    compute::Buffer marks, tiles; ///< where the rigidity jumps: a flag per tile; number of tiles, then their indices
+    compute::Buffer load;         ///< force of the nested iteration, floats
     compute::Buffer answer, left, direction, forces; ///< x, r, p, A p of conjugate gradients, real
 
-    /// In a cycle A p is not there yet: its memory holds the residual, in floats, or deflections that are set aside.
+    /// In a cycle A p is not computed yet: its memory holds the residual, in floats, or deflections that are set aside.
     [[nodiscard]] const compute::Buffer& residual() const noexcept { return forces; }
 };
 
-/// What recorded passes cost.
+/// The cost of recorded passes.
 struct PlateWork {
-    double           nodes = 0;  ///< to how many the operator was applied
+    double           nodes = 0;  ///< number of nodes to which the operator was applied
     std::vector<int> tileSweeps; ///< per level, sweeps of the tiles where the rigidity jumps
 };
 
-/// How sharply the rigidity varies from node to node.
+/// The sharpness of the rigidity's variation from node to node.
 enum class Jumps { none, some, strong };
 
 /// Records the multigrid method as passes over the levels' memory, which the solver joins to command lists.
 ///
-/// Recording changes nothing but `work` and the table of sizes; the memory changes when a list runs. Whether there are
-/// extra sweeps where the rigidity jumps is decided when a list is recorded; in which tiles, when it runs.
+/// Recording changes only `work` and the table of sizes; the memory changes when a list runs. Recording decides whether
+/// there are extra sweeps where the rigidity jumps; the run decides in which tiles.
 /// \thread as its context
 class PlatePasses {
 public:
@@ -72,9 +72,10 @@ public:
     /// Sets how many extra sweeps the lists recorded from now on have where the rigidity jumps; with fewer, jumps take
     /// more steps.
     void expectJumps(Jumps expected) noexcept { jumps_ = expected; }
-    /// Whether the last prepareRigidity() that ran found jumps on the finest level.
+    /// Returns whether the last prepareRigidity() that ran found jumps on the finest level.
     [[nodiscard]] bool foundJumps() const;
-    /// Whether the last prepareRigidity() that ran found a part of the plate so loosely held that rounding hides it.
+    /// Returns whether the last prepareRigidity() that ran found a part of the plate that is so loosely held that
+    /// rounding hides it.
     [[nodiscard]] bool isTooSoft() const;
     /// Counts the work in applications of the operator on the finest grid, with the tiles of the last
     /// prepareRigidity().
@@ -125,7 +126,7 @@ private:
     GridHierarchy            grids_;
     std::uint32_t            loads_, partials_;
 
-    std::optional<compute::Buffer> zeroes_; ///< a deflection of nothing, for the first sweep in red and black
+    std::optional<compute::Buffer> zeroes_; ///< a deflection of zero, for the first sweep in red and black
     compute::Buffer                band_, factor_, lost_, sums_, arguments_, hostArguments_, hostTiles_;
     std::optional<PlateTail>       tail_; ///< if the schedule is fused
     Jumps                          jumps_              = Jumps::none;

@@ -31,7 +31,7 @@ public:
     [[nodiscard]] std::size_t first() const noexcept { return layout_.first; } ///< level of the hierarchy
     [[nodiscard]] bool        holds(std::size_t level) const noexcept { return level >= layout_.first; }
 
-    /// Copies the rigidity and divisor of one of its levels but the coarsest, which earlier commands of the list made.
+    /// Copies the rigidity and divisor, made by earlier commands of the list, of one of its levels but the coarsest.
     void copyLevel(compute::CommandList& list, std::size_t level, const compute::Buffer& rigidity,
                    const compute::Buffer& divisor) const;
     /// Inverts the coarsest level's matrix, of which `factor` holds the Cholesky factor.

@@ -18,7 +18,8 @@ struct Row {
     std::array<double, shared::kFineWeights> weights{};
 };
 
-/// The four Lagrange weights at a place `t` in [0, 1) between the second and the third of four equidistant nodes.
+/// Returns the four Lagrange weights at a place `t` in [0, 1) between the second and the third of four equidistant
+/// nodes.
 std::array<double, 4> cubicWeights(double t)
 {
     return {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
@@ -27,9 +28,9 @@ std::array<double, 4> cubicWeights(double t)
 
 /// Adds a weight of the node beyond a side to the weights of the nodes on the side, next to it and one further.
 ///
-/// Beyond a clamped side the plate would go on as x^2 (a + b x): 3 w1 - w2/2. (As its mirror image, which is what the
-/// operator takes, b |x|^3 has a kink; the correction then comes out up to 1.7 times too large along the side, and a
-/// solve takes a quarter more steps.) Beyond a supported one it is odd; beyond a free one, straight.
+/// Beyond a clamped side the plate would continue as x^2 (a + b x): 3 w1 - w2/2. (As its mirror image, which is what
+/// the operator takes, b |x|^3 has a kink; the correction then comes out up to 1.7 times too large along the side, and
+/// a solve takes a quarter more steps.) Beyond a supported one it is odd; beyond a free one, straight.
 void addGhost(Edge edge, double weight, double& onSide, double& next, double& further)
 {
     switch (edge) {
