@@ -1,6 +1,5 @@
 #pragma once
-#include <optional>
-#include <string_view>
+#include <numbers>
 
 #include "engine/core/enum_names.h"
 
@@ -23,12 +22,18 @@ constexpr auto namesOf(ForceLaw)
 /// \param footprintRadius  [m]
 /// \param thickness        h [m]
 /// \source Kumari & Chaudhuri 2016, the force law F = (E A / h) depth
-[[nodiscard]] double contactStiffness(double modulus, double footprintRadius, double thickness) noexcept;
+[[nodiscard]] inline double contactStiffness(double modulus, double footprintRadius, double thickness) noexcept
+{
+    return modulus * std::numbers::pi * footprintRadius * footprintRadius / thickness;
+}
 
 /// Returns the stiffness that the hand feels [N/m].
 /// \param contactStiffness  k_c [N/m]
 /// \param compliance        c of the plate under the footprint [m/N]
 /// \differs the paper feels k_c alone, which does not depend on how the neighbourhood bends
-[[nodiscard]] double feltStiffness(ForceLaw law, double contactStiffness, double compliance) noexcept;
+[[nodiscard]] inline double feltStiffness(ForceLaw law, double contactStiffness, double compliance) noexcept
+{
+    return law == ForceLaw::series ? 1 / (1 / contactStiffness + compliance) : contactStiffness;
+}
 
 } // namespace palp
