@@ -137,7 +137,7 @@ std::string jsonOf(const BenchReport& report)
 {
     Json rows = Json::array();
     for (const BenchRow& row : report.rows) rows.push_back(jsonOf(row));
-    const Json all = {{"device", report.device}, {"processor", report.processor},     {"cholmod", report.cholmod},
+    const Json all = {{"solver", report.device}, {"processor", report.processor},     {"cholmod", report.cholmod},
                       {"eigen", report.eigen},   {"nanoflann", report.nanoflann},     {"runs", report.runs},
                       {"quick", report.quick},   {"environment", report.environment}, {"rows", rows}};
     return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -67,17 +67,17 @@ std::string wantedParts(const std::string& only)
 }
 
 /// Returns the processors to time: with auto the host and every usable GPU, else the one that is named.
-std::vector<std::string> timedDevices(const PaperOptions& o, const PlateSolver& device)
+std::vector<std::string> timedSolvers(const PaperOptions& o, const PlateSolver& solver)
 {
     if (!compute::isProcessorWord(o.solver, compute::kAutoProcessor)) return {o.solver};
-    std::vector<std::string> devices;
-    if (!compute::isProcessorWord(device.name(), compute::kHostProcessor)) try {
+    std::vector<std::string> solvers;
+    if (!compute::isProcessorWord(solver.name(), compute::kHostProcessor)) try {
             for (const compute::Processor& d : compute::listProcessors())
-                if (d.refusals.empty() && d.kind != "software") devices.push_back(std::to_string(d.index));
+                if (d.refusals.empty() && d.kind != "software") solvers.push_back(std::to_string(d.index));
         } catch (const compute::ProcessorError&) { // a Vulkan that does not start leaves the host
         }
-    devices.emplace_back(compute::kHostProcessor);
-    return devices;
+    solvers.emplace_back(compute::kHostProcessor);
+    return solvers;
 }
 
 std::string machine()
@@ -108,7 +108,7 @@ void paper(const PaperOptions& o)
         throw Error("--bunny: is used by part b, which --only omits; add b to --only");
     SolverChoice choice;
     choice.solver      = o.solver;
-    PlateSolver device = choice.open();
+    PlateSolver solver = choice.open();
     if (!o.bunny.empty()) {
         static_cast<void>(openForReading(o.bunny)); // before minutes of work
         std::cerr << bunnyTerms() << "\n";
@@ -118,12 +118,12 @@ void paper(const PaperOptions& o)
     for (const Part& part : parts()) {
         if (wanted.find(part.letter) == std::string::npos) continue;
         Progress  progress(std::string(1, part.letter) + " of " + wanted + ": " + part.what);
-        ReportRun run{device, o.quick, timedDevices(o, device),
+        ReportRun run{solver, o.quick, timedSolvers(o, solver),
                       [&](std::size_t done, std::size_t total) { progress.at(done, total); }};
         sections.push_back(part.make(run));
         if (part.letter == 'b' && !o.bunny.empty()) addBunny(sections.back(), o.bunny, run);
     }
-    const Origins               origins{PALPATE_VERSION, PALPATE_COMMIT, PALPATE_LIBRARIES, machine(), device.name(),
+    const Origins               origins{PALPATE_VERSION, PALPATE_COMMIT, PALPATE_LIBRARIES, machine(), solver.name(),
                           o.command,       o.quick};
     const std::filesystem::path folder  = o.out;
     const std::string           numbers = numbersJson(sections, origins), timings = timingsJson(sections, origins);

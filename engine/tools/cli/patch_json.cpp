@@ -84,7 +84,7 @@ Json settingsJson(const Material& material, const PatchSettings& s)
 }
 
 Json patchJson(const Patch& patch, const Material& material, const PatchSettings& settings, double force,
-               PlateSolver& device)
+               PlateSolver& solver)
 {
     Json report{
         {"contact", {{"point", vectorJson(patch.contact.point)}, {"outward", vectorJson(patch.contact.outward)}}},
@@ -103,10 +103,10 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
     report["deflection_at_contact"] = force * patch.response(middle, middle);
     report["max_deflection"] =
         force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
-    report["error"]        = {{"discretisation", orNull(discretisationError(patch, settings, device))},
+    report["error"]        = {{"discretisation", orNull(discretisationError(patch, settings, solver))},
                               {"solver", orNull(patch.report.errorEstimate)}};
-    report["solver"]       = {{"device", patch.report.solver},
-                              {"note", device.note().empty() ? Json(nullptr) : Json(device.note())},
+    report["solver"]       = {{"name", patch.report.solver},
+                              {"note", solver.note().empty() ? Json(nullptr) : Json(solver.note())},
                               {"converged", patch.report.converged},
                               {"iterations", orNull(patch.report.iterations)},
                               {"work_units", orNull(patch.report.workUnits)},

@@ -11,7 +11,7 @@ namespace palp {
 /// Returns every number of a touch, in SI units, for --json and touch.json.
 /// \param force  presses [N]; the patch itself holds responses to 1 N
 [[nodiscard]] nlohmann::json patchJson(const Patch& patch, const Material& material, const PatchSettings& settings,
-                                       double force, PlateSolver& device);
+                                       double force, PlateSolver& solver);
 
 /// Returns the scene constants of a touch.
 [[nodiscard]] nlohmann::json settingsJson(const Material& material, const PatchSettings& settings);

@@ -128,7 +128,7 @@ void printJson(const Solved& s)
         {"max_deflection", s.largest()},
         {"max_deflection_at", {place.x, place.z}},
         {"report",
-         {{"device", report.solver},
+         {{"solver", report.solver},
           {"note", s.note.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(s.note)},
           {"iterations", orNull(report.iterations)},
           {"error_estimate", orNull(report.errorEstimate)},

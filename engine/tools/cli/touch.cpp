@@ -86,7 +86,7 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
                 name(settings.forceLaw));
     std::printf("  error              discretisation %s, solver %s (%s)\n",
                 error["discretisation"].is_null() ? "unknown" : percent(error["discretisation"].get<double>()).c_str(),
-                percent(error["solver"].get<double>()).c_str(), r["solver"]["device"].get<std::string>().c_str());
+                percent(error["solver"].get<double>()).c_str(), r["solver"]["name"].get<std::string>().c_str());
     std::printf("  time               %.1f ms:", r["milliseconds"]["total"].get<double>());
     for (const char* stage : {"gather", "fit", "project", "resample", "prepare", "solve", "lift"})
         std::printf(" %s %.2f", stage, r["milliseconds"][stage].get<double>());

@@ -155,7 +155,7 @@ void addBunny(Section& lobe, const std::filesystem::path& file, const ReportRun&
     for (const auto& [name, edges] :
          {std::pair("clamped all around", PlateEdges{}), std::pair("free but for its root", kFromItsRoot)}) {
         settings.edges    = edges;
-        const Patch patch = deform(skin, {ear.place, ear.frame.normal}, settings, run.device, ear.frame);
+        const Patch patch = deform(skin, {ear.place, ear.frame.normal}, settings, run.solver, ear.frame);
         if (!patch.deformed())
             throw Error(file.string() + ": the points of its highest ear determine no surface; is y up, as in the "
                                         "original?");

@@ -59,7 +59,7 @@ std::vector<double> between(const PointCloud& cloud, const FeltMap& map, double 
 
 } // namespace
 
-FeltMap feltMap(const SoftObject& object, const PatchSettings& settings, std::size_t wanted, PlateSolver& device,
+FeltMap feltMap(const SoftObject& object, const PatchSettings& settings, std::size_t wanted, PlateSolver& solver,
                 const std::function<void(std::size_t, std::size_t)>& onStep)
 {
     PALP_EXPECT(wanted >= 8, std::to_string(wanted) + " places of a map");
@@ -71,7 +71,7 @@ FeltMap feltMap(const SoftObject& object, const PatchSettings& settings, std::si
         if (onStep) onStep(n, places.size());
         try {
             const Contact contact = touchAt(object, object.positions()[places[n]], {}, edge);
-            const Patch   patch   = deform(object, contact, settings, device);
+            const Patch   patch   = deform(object, contact, settings, solver);
             if (!patch.deformed()) throw Error("the points determine no surface");
             map.places.push_back(places[n]);
             map.stiffness.push_back(patch.feltStiffness);

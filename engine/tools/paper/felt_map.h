@@ -23,7 +23,7 @@ struct FeltMap {
 /// \source places: our own; between them the logarithm's mean with Gaussian weights, as wide as half an edge of the
 ///         lattice
 [[nodiscard]] FeltMap feltMap(const SoftObject& object, const PatchSettings& settings, std::size_t wanted,
-                              PlateSolver& device, const std::function<void(std::size_t, std::size_t)>& onStep = {});
+                              PlateSolver& solver, const std::function<void(std::size_t, std::size_t)>& onStep = {});
 
 /// Returns, at every point, the share of right answers when the place is compared with the object's typical one [1]:
 /// 0.5 to 1.

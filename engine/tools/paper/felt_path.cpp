@@ -75,13 +75,13 @@ FeltLine feltLine(const Scene& scene, const SoftObject& object, const std::optio
 }
 
 std::vector<FeltPlace> windowsAlong(const SoftObject& object, const PatchSettings& settings, const FeltLine& line,
-                                    int places, PlateSolver& device)
+                                    int places, PlateSolver& solver)
 {
     PALP_EXPECT(places >= 2, std::to_string(places) + " places of a line");
     std::optional<Frame>   carried;
     std::vector<FeltPlace> result;
     for (const glm::dvec3& place : surfaceAlong(line, object, places)) {
-        const Patch patch = deform(object, {place, line.middle.outward}, settings, device, carried);
+        const Patch patch = deform(object, {place, line.middle.outward}, settings, solver, carried);
         if (!patch.deformed())
             throw Error("the points around a place of the path determine no surface; try a smaller reach");
         carried = patch.chart.frame;
@@ -107,7 +107,7 @@ std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, 
 
     const HandPath        hand = strokingHand(line, script, object);
     Deformation           deformation(object, scene);
-    ScriptedHand            device(hand);
+    ScriptedHand          device(hand);
     std::vector<FeltTick> ticks;
     double                met = std::numeric_limits<double>::infinity(); // [s]
     runVirtual({scene, object, deformation.solver(), device, {}}, script.duration, [&](const TickRecord& s) {

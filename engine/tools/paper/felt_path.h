@@ -36,7 +36,7 @@ struct FeltPlace {
 /// \param places  at least 2
 /// \throws as deform(), and Error where the points determine no surface
 [[nodiscard]] std::vector<FeltPlace> windowsAlong(const SoftObject& object, const PatchSettings& settings,
-                                                  const FeltLine& line, int places, PlateSolver& device);
+                                                  const FeltLine& line, int places, PlateSolver& solver);
 
 /// The stiffness that a sliding finger feels at one tick.
 struct FeltTick {

@@ -108,7 +108,7 @@ std::string reportPage(std::span<const Section> sections, const Origins& origins
                     {{"program", "palpate " + origins.version + ", commit " + origins.commit},
                      {"libraries", origins.libraries},
                      {"machine", origins.machine},
-                     {"plates solved on", origins.device},
+                     {"plates solved on", origins.solver},
                      {"command", origins.command}}});
     html << "</body></html>\n";
     return html.str();

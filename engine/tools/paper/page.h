@@ -9,7 +9,7 @@ namespace palp::report {
 
 /// The origins of a report: how it was made, so that it can be made again.
 struct Origins {
-    std::string version, commit, libraries, machine, device, command;
+    std::string version, commit, libraries, machine, solver, command;
     bool        quick = false;
 };
 

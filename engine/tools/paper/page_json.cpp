@@ -42,7 +42,7 @@ std::string numbersJson(std::span<const Section> sections, const Origins& origin
 {
     Json all;
     all["program"] = {{"version", origins.version}, {"commit", origins.commit}};
-    all["device"]  = origins.device;
+    all["solver"]  = origins.solver;
     all["quick"]   = origins.quick;
     for (const Section& section : sections) {
         Json& part    = all["parts"][std::string(1, section.letter)];
@@ -58,7 +58,7 @@ std::string timingsJson(std::span<const Section> sections, const Origins& origin
 {
     Json all;
     all["machine"] = origins.machine;
-    all["device"]  = origins.device;
+    all["solver"]  = origins.solver;
     for (const Section& section : sections) {
         if (section.timings.empty()) continue;
         Json& part = all["parts"][std::string(1, section.letter)];

@@ -38,7 +38,7 @@ Bent bend(const std::string& name, const PlateEdges& edges, const SoftObject& ob
     PatchSettings settings{
         .window = kWindow, .cells = run.quick ? 32 : 64, .footprintRadius = sample.footprintRadius, .edges = edges};
     const Contact contact = touchAt(object, kPlace, glm::dvec3(0, 0, 1), 5e-3);
-    return {name, settings, deform(object, contact, settings, run.device)};
+    return {name, settings, deform(object, contact, settings, run.solver)};
 }
 
 std::vector<double> alongMiddle(const Bent& bent)

@@ -73,7 +73,7 @@ Dent dentOfCap(Map map, const ReportRun& run)
     const Chart       chart  = chartOf(map);
     const PatchWindow window = capIn(chart, run.quick ? 64 : 128);
     const Plate       plate{window.grid, {}, kSkin.poissonRatio, 0, NodeField(window.grid, kSkin.rigidity(kModulus))};
-    NodeField         w     = run.device.solve(plate, roundPoke(chart, window), kExact).deflection;
+    NodeField         w     = run.solver.solve(plate, roundPoke(chart, window), kExact).deflection;
     const auto        shape = dentShape(chart, window, w);
     return {map, chart, window, std::move(w), shape};
 }
@@ -85,7 +85,7 @@ Dent dentOfWindow(Map map, const SoftObject& object, const ReportRun& run)
     PatchSettings settings{.window = 24e-3, .footprintRadius = 3e-3, .map = map};
     if (run.quick) settings.cells = 32;
     const Patch patch =
-        deform(object, touchAt(object, {0, 0, kRadius}, glm::dvec3(0, 0, 1), 5e-3), settings, run.device);
+        deform(object, touchAt(object, {0, 0, kRadius}, glm::dvec3(0, 0, 1), 5e-3), settings, run.solver);
     return {map, patch.chart, patch.window, patch.response, dentShape(patch.chart, patch.window, patch.response)};
 }
 

@@ -33,12 +33,12 @@ void feel(Felt& felt, Section& section, const ReportRun& run, std::size_t number
     const Scene      scene      = parseScene(withLess(felt.scene, run.quick), felt.name, ".");
     const SoftObject object     = loadObject(scene).object;
     const FeltLine   line       = feltLine(scene, object, {}, felt.reach);
-    felt.perception             = perceive(scene, object, line, run.quick ? 11 : 41, run.device, part(0));
+    felt.perception             = perceive(scene, object, line, run.quick ? 11 : 41, run.solver, part(0));
     section.figures.push_back({"A finger at rest, one that slides, and one that slides over the same points with one "
                                "stiffness: a variation there is an artefact.",
                                pathSvg(felt.perception, scene.patch.forceLaw, "Felt along the path: " + felt.name)});
     if (!felt.map) return;
-    const FeltMap map = feltMap(object, scene.patch, run.quick ? 60 : kMapPlaces, run.device, part(kSteps / 2));
+    const FeltMap map = feltMap(object, scene.patch, run.quick ? 60 : kMapPlaces, run.solver, part(kSteps / 2));
     section.figures.push_back(
         {"How surely a place is told from the object's typical one if 15 % is the smallest change "
          "that is noticed: 0.5 is guessing.",

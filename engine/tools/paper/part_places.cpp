@@ -66,8 +66,8 @@ Series press(const SoftObject& object, const std::string& law, Preset preset, co
     for (const double x : kPlaces) {
         const glm::dvec3 place{x, 0, axes.z * std::sqrt(1 - x * x / (axes.x * axes.x))};
         const Contact    contact = touchAt(object, place, glm::dvec3(0, 0, 1), 5e-3);
-        Touch            touch{x, deform(object, contact, series.settings, run.device), {}};
-        touch.gridError = discretisationError(touch.patch, series.settings, run.device);
+        Touch            touch{x, deform(object, contact, series.settings, run.solver), {}};
+        touch.gridError = discretisationError(touch.patch, series.settings, run.solver);
         series.touches.push_back(std::move(touch));
     }
     return series;

@@ -55,14 +55,14 @@ Trial trialOf(int n, int cells, Uniform& uniform)
     return trial;
 }
 
-void solve(Trial& trial, PlateSolver& device)
+void solve(Trial& trial, PlateSolver& solver)
 {
-    const PlateSolution found = device.solve(trial.plate, trial.load, kTolerance);
+    const PlateSolution found = solver.solve(trial.plate, trial.load, kTolerance);
     const NodeField     truth = ReferencePlateSolver(trial.plate).solve(trial.load).deflection;
     const auto&         w     = found.deflection.values();
     trial.finite              = std::all_of(w.begin(), w.end(), [](double value) { return std::isfinite(value); });
     trial.converged           = found.report.converged;
-    trial.takenOver           = found.report.solver != device.name();
+    trial.takenOver           = found.report.solver != solver.name();
     trial.iterations          = found.report.iterations.value_or(0);
     trial.error               = bench::errorOf(found.deflection, truth);
     trial.plate               = {}; // a thousand of them would be some hundred megabytes
@@ -138,7 +138,7 @@ Section stabilityPart(const ReportRun& run)
     for (int n = 0; n < plates; ++n) {
         run.step(std::size_t(n), std::size_t(plates));
         all.push_back(trialOf(n, cells, uniform));
-        solve(all.back(), run.device);
+        solve(all.back(), run.solver);
         total.add(all.back());
     }
 

@@ -52,7 +52,7 @@ std::vector<double> stagesOf(const StageTimes& t)
 
 /// One grid on one processor.
 struct Timed {
-    std::string           device;
+    std::string           solver;
     int                   cells = 0;
     std::vector<double>   stages;      ///< medians, as kStages [s]
     bench::Quartiles      total;       ///< [s]
@@ -60,25 +60,25 @@ struct Timed {
     std::optional<double> gridError;   ///< see discretisationError() [1]
 };
 
-Timed timeOf(const Setting& setting, int cells, PlateSolver& device, int runs)
+Timed timeOf(const Setting& setting, int cells, PlateSolver& solver, int runs)
 {
     const PatchSettings              settings = setting.with(cells);
     std::vector<std::vector<double>> stages(std::size(kStages));
     std::vector<double>              totals;
     Patch                            patch;
     for (int n = 0; n <= runs; ++n) {
-        patch = deform(setting.object, setting.contact, settings, device);
+        patch = deform(setting.object, setting.contact, settings, solver);
         if (n == 0) continue; // the first turn prepares memory and kernels
         const auto times = stagesOf(patch.times);
         for (std::size_t s = 0; s < times.size(); ++s) stages[s].push_back(1e-3 * times[s]);
         totals.push_back(1e-3 * patch.times.total());
     }
-    Timed timed{device.name(),
+    Timed timed{solver.name(),
                 cells,
                 {},
                 bench::quartiles(totals),
                 patch.report.errorEstimate,
-                discretisationError(patch, settings, device)};
+                discretisationError(patch, settings, solver)};
     for (auto& stage : stages) timed.stages.push_back(bench::quartiles(std::move(stage)).median);
     return timed;
 }
@@ -89,10 +89,10 @@ struct Jacobi {
     double sweeps = 0, seconds = 0, error = 0;
 };
 
-Jacobi jacobiOf(const Setting& setting, int cells, PlateSolver& device)
+Jacobi jacobiOf(const Setting& setting, int cells, PlateSolver& solver)
 {
     const PatchSettings settings = setting.with(cells);
-    const Plate         plate    = deform(setting.object, setting.contact, settings, device).plate;
+    const Plate         plate    = deform(setting.object, setting.contact, settings, solver).plate;
     const NodeField     load     = footprintLoad(plate.grid, 1, settings.window / 2, settings.window / 2,
                                                  std::max(settings.footprintRadius, 1.5 * plate.grid.spacingX));
     const NodeField     truth    = ReferencePlateSolver(plate).solve(load).deflection;
@@ -113,8 +113,8 @@ std::string curves(const std::vector<Timed>& all, const std::vector<Jacobi>& jac
 {
     std::vector<PlotSeries> plot;
     for (const Timed& timed : all) {
-        if (plot.empty() || plot.back().name != timed.device)
-            plot.push_back({timed.device, {}, {}, SeriesStyle::lineAndMarkers});
+        if (plot.empty() || plot.back().name != timed.solver)
+            plot.push_back({timed.solver, {}, {}, SeriesStyle::lineAndMarkers});
         plot.back().x.push_back(timed.cells);
         plot.back().y.push_back(timed.total.median);
     }
@@ -146,22 +146,22 @@ void addTables(Section& section, const std::vector<Timed>& all, const std::vecto
 {
     Table stages{"Medians, wall clock, at " + std::to_string(kPapersCells) + " × " + std::to_string(kPapersCells) +
                      " cells; the paper states no grid.",
-                 {"device"},
+                 {"solver"},
                  {}};
     stages.headings.insert(stages.headings.end(), std::begin(kStages), std::end(kStages));
     stages.headings.push_back("all");
     Table sizes{"The solver's error is its own estimate; the grid's is the change of compliance against half as many "
                 "cells, over 3. Quartiles of the time in brackets.",
-                {"device", "cells a side", "time", "solver's error", "grid's error"},
+                {"solver", "cells a side", "time", "solver's error", "grid's error"},
                 {}};
     for (const Timed& timed : all) {
         if (timed.cells == kPapersCells) {
-            std::vector<std::string> row{timed.device};
+            std::vector<std::string> row{timed.solver};
             for (const double stage : timed.stages) row.push_back(formatQuantity(stage, "s"));
             row.push_back(formatQuantity(timed.total.median, "s"));
             stages.rows.push_back(std::move(row));
         }
-        sizes.rows.push_back({timed.device, std::to_string(timed.cells),
+        sizes.rows.push_back({timed.solver, std::to_string(timed.cells),
                               formatQuantity(timed.total.median, "s") + " (" + formatQuantity(timed.total.lower, "s") +
                                   " to " + formatQuantity(timed.total.upper, "s") + ")",
                               shown(timed.solverError), shown(timed.gridError)});
@@ -175,7 +175,7 @@ void addTables(Section& section, const std::vector<Timed>& all, const std::vecto
 
 void addNumbers(Section& section, const Timed& timed)
 {
-    const std::string stem = timed.device + "/" + std::to_string(timed.cells) + "/";
+    const std::string stem = timed.solver + "/" + std::to_string(timed.cells) + "/";
     section.timings.push_back({stem + "stages", "s", timed.stages});
     section.timings.push_back({stem + "total", "s", {timed.total.median}});
     section.timings.push_back({stem + "total_quartiles", "s", {timed.total.lower, timed.total.upper}});
@@ -189,7 +189,7 @@ Claim claimOf(const std::vector<Timed>& all)
     for (const Timed& timed : all)
         if (timed.cells == kPapersCells && !first) first = &timed;
     Claim claim{"A deformation takes 160 ms.",
-                first ? first->device + ": " + formatQuantity(first->total.median, "s") + " at " +
+                first ? first->solver + ": " + formatQuantity(first->total.median, "s") + " at " +
                             std::to_string(kPapersCells) + " cells a side, solver's error " +
                             shown(first->solverError) + ", grid's " + shown(first->gridError) + "."
                       : "",
@@ -214,21 +214,21 @@ Section timePart(const ReportRun& run)
     const std::vector<int>   cells = run.quick ? std::vector{32, kPapersCells} : std::vector{16, 32, 64, 128, 256, 512};
     const std::vector<int>   slow  = run.quick ? std::vector{16} : std::vector{16, 32, 64};
     const int                runs  = run.quick ? 3 : 11;
-    std::vector<std::string> devices = run.timed;
-    if (devices.empty()) devices = {run.device.name()};
-    const std::size_t   steps = devices.size() * cells.size() + slow.size();
+    std::vector<std::string> solvers = run.timed;
+    if (solvers.empty()) solvers = {run.solver.name()};
+    const std::size_t   steps = solvers.size() * cells.size() + slow.size();
     std::vector<Timed>  all;
     std::vector<Jacobi> jacobis;
-    for (const std::string& name : devices) {
-        PlateSolver device(name);
+    for (const std::string& name : solvers) {
+        PlateSolver solver(name);
         for (const int side : cells) {
             run.step(all.size(), steps);
-            all.push_back(timeOf(setting, side, device, runs));
+            all.push_back(timeOf(setting, side, solver, runs));
         }
     }
     for (const int side : slow) {
         run.step(all.size() + jacobis.size(), steps);
-        jacobis.push_back(jacobiOf(setting, side, run.device));
+        jacobis.push_back(jacobiOf(setting, side, run.solver));
     }
 
     Section section{'c', "Time of a deformation", {}, {}, {}, {}, {}, {}};

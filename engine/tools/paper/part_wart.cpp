@@ -33,7 +33,7 @@ Walk walk(const ReportRun& run)
                 {}};
     const SoftObject object = loadObject(result.scene).object;
     const FeltLine   line   = feltLine(result.scene, object, {}, kReach);
-    result.places           = windowsAlong(object, result.scene.patch, line, run.quick ? 17 : 81, run.device);
+    result.places           = windowsAlong(object, result.scene.patch, line, run.quick ? 17 : 81, run.solver);
     return result;
 }
 

@@ -17,7 +17,7 @@ std::array<NoticedSteps, 3> stepsOf(const FeltRange& felt, const FeltRange& arte
 } // namespace
 
 ScenePerception perceive(const Scene& scene, const SoftObject& object, const FeltLine& line, int places,
-                         PlateSolver& device, const std::function<void(std::size_t, std::size_t)>& onStep)
+                         PlateSolver& solver, const std::function<void(std::size_t, std::size_t)>& onStep)
 {
     constexpr std::size_t kStages = 4;
     const auto            step    = [&](std::size_t done) {
@@ -27,9 +27,9 @@ ScenePerception perceive(const Scene& scene, const SoftObject& object, const Fel
     const ForceLaw   law   = scene.patch.forceLaw;
     ScenePerception  result;
     result.line   = line;
-    result.places = windowsAlong(object, scene.patch, line, places, device);
+    result.places = windowsAlong(object, scene.patch, line, places, solver);
     step(1);
-    const auto rest = windowsAlong(plain, scene.patch, line, places, device);
+    const auto rest = windowsAlong(plain, scene.patch, line, places, solver);
     step(2);
     result.stroke = strokeAlong(object, scene, line);
     step(3);

@@ -39,7 +39,7 @@ struct ScenePerception {
 /// \param onStep  (done, total) of some seconds each; may be empty
 /// \throws as windowsAlong() and strokeAlong()
 [[nodiscard]] ScenePerception perceive(const Scene& scene, const SoftObject& object, const FeltLine& line, int places,
-                                       PlateSolver&                                         device,
+                                       PlateSolver&                                         solver,
                                        const std::function<void(std::size_t, std::size_t)>& onStep = {});
 
 } // namespace palp::report

@@ -64,7 +64,7 @@ struct Section {
 
 /// The input of every part.
 struct ReportRun {
-    PlateSolver&                                  device;
+    PlateSolver&                                  solver;
     bool                                          quick = false; ///< small enough for a test, with larger errors
     std::vector<std::string>                      timed{};       ///< processors to be timed, as PlateSolver names them
     std::function<void(std::size_t, std::size_t)> onStep{};      ///< (done, total); may be empty

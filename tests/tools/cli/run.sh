@@ -72,7 +72,7 @@ cat >plate.json <<'JSON'
  "rigidity":{"law":"constant","value":1}, "load":{"law":"point","force":1,"at":[0.5,0.75]}, "probes":[[0.25,0.25]]}
 JSON
 good 'solve' solve plate.json --json
-for key in '"probes"' '"deflection"' '"max_deflection"' '"report"' '"device"' '"iterations"' '"error_estimate"' '"work_units"' '"milliseconds"' '"square_cells": true' '"poisson": 0.3' '"x1": "free"' '"foundation": 0' \
+for key in '"probes"' '"deflection"' '"max_deflection"' '"report"' '"solver"' '"iterations"' '"error_estimate"' '"work_units"' '"milliseconds"' '"square_cells": true' '"poisson": 0.3' '"x1": "free"' '"foundation": 0' \
     '"rigidity_min": 1' '"rigidity_max": 1' '"total_force": 1' '"max_deflection_at"' '"note": null' '"warnings": []'; do holds "$key"; done
 tr -d ' \n' <out.txt >flat.txt
 grep -qF '"size":[1.0,1.5],"cells":[16,24],"spacing":[0.0625,0.0625]' flat.txt && passed=$((passed + 1)) || complain "the plate of solve --json: $(cat flat.txt)"
@@ -85,9 +85,9 @@ good 'solve, finer' solve plate.json --cells 32 --out w.npy
 [ -s w.npy ] || complain 'solve --out wrote nothing'
 
 good 'solve by the reference' solve plate.json --solver Reference --json
-holds '"device": "reference"'
+holds '"solver": "reference"'
 good 'solve on the host' solve plate.json --solver Host --json --out host.npy
-holds '"device": "host"'
+holds '"solver": "host"'
 cp out.txt host.json
 good 'solve on lavapipe' solve plate.json --solver lavapipe --json
 agree max_deflection host.json out.txt 1e-4
@@ -95,7 +95,7 @@ without() { env VK_DRIVER_FILES="$place/none.json" VK_ICD_FILENAMES="$place/none
 failing() { where=$1; shift; env PALPATE_BROKEN="$where" VK_DRIVER_FILES="$broken" VK_ICD_FILENAMES="$broken" "$@" >out.txt 2>err.txt; }
 without "$palpate" solve plate.json --solver host && [ ! -s err.txt ] && passed=$((passed + 1)) || complain "the host needs a driver: $(cat out.txt err.txt)"
 good 'solve where there is only software' solve plate.json --json --out auto.npy
-holds '"device": "host"'
+holds '"solver": "host"'
 holds '"note": null'
 [ ! -s err.txt ] && cmp -s auto.npy host.npy && passed=$((passed + 1)) || complain "auto is not the host: $(cat err.txt)"
 PALPATE_HOST_ISA=sse9
@@ -195,7 +195,7 @@ code=$?
     complain "a machine without a GPU: exit $code, expected 4: $(cat out.txt err.txt)"
 without "$palpate" devices && grep -qF 'auto takes it' out.txt && [ ! -s err.txt ] && passed=$((passed + 1)) ||
     complain "a machine without a GPU has its host: $(cat out.txt err.txt)"
-without "$palpate" solve plate.json --json && grep -qF '"device": "host"' out.txt && grep -qF '"note": null' out.txt && [ ! -s err.txt ] && passed=$((passed + 1)) ||
+without "$palpate" solve plate.json --json && grep -qF '"solver": "host"' out.txt && grep -qF '"note": null' out.txt && [ ! -s err.txt ] && passed=$((passed + 1)) ||
     complain "solving without a GPU, on the host: $(cat out.txt err.txt)"
 without "$palpate" solve plate.json --solver lavapipe
 code=$?
@@ -204,7 +204,7 @@ code=$?
 for where in start list open; do
     for command in 'solve plate.json' 'touch sample:sheet --points 5000 --cells 16' 'bench --nodes 33 --cases memory'; do
         # shellcheck disable=SC2086  # a command and its arguments
-        failing $where "$palpate" $command --json && grep -qF '"device": "host"' out.txt && [ "$(wc -l <err.txt)" -eq 1 ] &&
+        failing $where "$palpate" $command --json && grep -qE '"(solver|name)": "host"' out.txt && [ "$(wc -l <err.txt)" -eq 1 ] &&
             grep -qF 'palpate: auto takes host: ' err.txt && passed=$((passed + 1)) || complain "$command, Vulkan broken at $where: $(cat out.txt err.txt)"
         case $command in bench*) continue ;; esac
         grep -qE '"note": "(Vulkan|the GPU) ' out.txt && passed=$((passed + 1)) || complain "$command does not report it: $(cat out.txt)"
@@ -302,7 +302,7 @@ bad 'a mass that is none' '--mass' calibrate --emulator --mass '200 N'
 # --- the same numbers every time
 for run in one two; do "$palpate" touch sample:palm --points 8000 --cells 32 --out $run --json >touch.json; done
 "$palpate" touch sample:palm --points 8000 --cells 32 --solver lavapipe --out three --json >lavapipe.json
-grep -qF '"device": "llvmpipe' lavapipe.json && passed=$((passed + 1)) || complain "that was not lavapipe: $(cat lavapipe.json)"
+grep -qF '"name": "llvmpipe' lavapipe.json && passed=$((passed + 1)) || complain "that was not lavapipe: $(cat lavapipe.json)"
 agree compliance touch.json lavapipe.json 1e-4
 cmp -s one/rigidity.npy three/rigidity.npy && passed=$((passed + 1)) || complain 'the host and lavapipe sample differently'
 for file in deformed.ply rigidity.npy deflection.npy rigidity.svg surface.svg; do

@@ -35,10 +35,10 @@ PointCloud ballWithAnEar(double factor, std::size_t points)
 }
 
 struct Lobe {
-    PlateSolver device{"host"};
+    PlateSolver solver{"host"};
     Section     section;
 
-    void bend(const std::filesystem::path& file) { addBunny(section, file, {.device = device, .quick = true}); }
+    void bend(const std::filesystem::path& file) { addBunny(section, file, {.solver = solver, .quick = true}); }
 };
 
 TEST(Bunny, ItsEarIsFoundScaledAndBent)

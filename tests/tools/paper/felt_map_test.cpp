@@ -15,9 +15,9 @@ TEST(FeltMap, ShowsAWartAndNothingElse)
 {
     const Scene      scene  = sheetScene(kWart);
     const SoftObject object = loadObject(scene).object;
-    PlateSolver      device("host");
+    PlateSolver      solver("host");
 
-    const FeltMap map   = feltMap(object, scene.patch, 400, device);
+    const FeltMap map   = feltMap(object, scene.patch, 400, solver);
     const auto    share = detectability(map, kWeberFractions[1]);
 
     EXPECT_GT(map.places.size(), 200u);
@@ -39,8 +39,8 @@ TEST(FeltMap, WhatCannotBeTouchedIsCountedAndNoPlaceAtAllIsRefused)
     std::vector<glm::dvec3> line;
     for (int n = 0; n < 100; ++n) line.push_back({n * 1e-4, 0, 0});
     const SoftObject wire(PointCloud(line, std::vector<double>(100, 1e6), StiffnessKind::modulus));
-    PlateSolver      device("host");
-    EXPECT_THROW((void)feltMap(wire, {.window = 5e-3, .cells = 16, .footprintRadius = 1e-3}, 8, device), Error);
+    PlateSolver      solver("host");
+    EXPECT_THROW((void)feltMap(wire, {.window = 5e-3, .cells = 16, .footprintRadius = 1e-3}, 8, solver), Error);
 }
 
 } // namespace

@@ -22,13 +22,13 @@ struct Felt {
 
     Scene       scene;
     SoftObject  object;
-    PlateSolver device{"host"};
+    PlateSolver solver{"host"};
 };
 
 TEST(FeltPath, AWartIsNoticedAtRestAndSlidingAndTheFloorIsNot)
 {
     Felt                  felt(sheetScene(kWart));
-    const ScenePerception p = perceive(felt.scene, felt.object, felt.line(15e-3), 21, felt.device);
+    const ScenePerception p = perceive(felt.scene, felt.object, felt.line(15e-3), 21, felt.solver);
 
     EXPECT_GT(p.sliding[0].whole, 5) << "ten times as stiff, 3 mm wide: about 9 steps on a fine grid";
     for (std::size_t n = 0; n < 3; ++n) {
@@ -60,7 +60,7 @@ TEST(FeltPath, FollowsItsDirectionAndTheSurface)
 {
     Felt             felt(parseScene(R"({"cloud": "sample:ellipsoid", "points": 8000, "cells": 16})", "a test", "."));
     const FeltLine   line   = felt.line(12e-3, glm::dvec3(0, 3, 0));
-    const auto       places = windowsAlong(felt.object, felt.scene.patch, line, 5, felt.device);
+    const auto       places = windowsAlong(felt.object, felt.scene.patch, line, 5, felt.solver);
     const glm::dvec3 first = places.front().place, last = places.back().place;
 
     EXPECT_NEAR(last.y - first.y, 24e-3, 1e-3) << "the place is the nearest point, a spacing of 1.3 mm off";

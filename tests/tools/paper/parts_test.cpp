@@ -16,13 +16,13 @@ namespace {
 
 PlateSolver& host()
 {
-    static PlateSolver device("host");
-    return device;
+    static PlateSolver solver("host");
+    return solver;
 }
 
 ReportRun quick()
 {
-    return {.device = host(), .quick = true};
+    return {.solver = host(), .quick = true};
 }
 
 TEST(PlacesPart, DeflectionFallsAsOneOverRigidityByBothRecipes)

@@ -45,8 +45,8 @@ double deflectionOf(double contrast, double distance)
     Plate            plate{grid, {}, 0.2, 0, NodeField(grid)};
     for (int i = 0; i < grid.nodesX(); ++i)
         for (int j = 0; j < grid.nodesZ(); ++j) plate.rigidity(i, j) = wart({i * grid.spacingX, 0, j * grid.spacingZ});
-    PlateSolver device("host");
-    return device.solve(plate, gaussianLoad(grid, 1, 0.5, 0.5, 0.05), 1e-6).deflection(kMiddle, kMiddle);
+    PlateSolver solver("host");
+    return solver.solve(plate, gaussianLoad(grid, 1, 0.5, 0.5, 0.05), 1e-6).deflection(kMiddle, kMiddle);
 }
 
 TEST(Perception, AgreesWithAnIndependentScanPastAWart)
