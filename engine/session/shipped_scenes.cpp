@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "engine/core/contract.h"
+#include "engine/session/scene.h"
 
 namespace palp {
 
@@ -21,13 +22,28 @@ fs::path shippedScenesFolder()
                 "; expected ../share/palpate/scenes there; name their folder by --scenes");
 }
 
+namespace {
+
+/// Returns whether the library alone can read the file: a hunt has keys of a tool.
+bool isPlainScene(const fs::path& file)
+{
+    try {
+        static_cast<void>(readScene(file));
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+} // namespace
+
 std::vector<ShippedScene> scenesIn(const fs::path& folder)
 {
     std::vector<ShippedScene> scenes;
     std::error_code           failure;
     for (const auto& entry : fs::directory_iterator(folder, failure)) {
         const fs::path& file = entry.path();
-        if (file.extension() != ".json" || file.stem().extension() == ".schema") continue;
+        if (file.extension() != ".json" || file.stem().extension() == ".schema" || !isPlainScene(file)) continue;
         std::ifstream text(file);
         std::string   line;
         std::getline(text, line);

@@ -17,7 +17,7 @@ struct ShippedScene {
 /// \throws Error naming where they were expected
 [[nodiscard]] std::filesystem::path shippedScenesFolder();
 
-/// Returns the scenes of a folder, by name.
+/// Returns the scenes of a folder by name, without those that only a tool reads, such as hunts.
 /// \throws Error if it cannot be read
 [[nodiscard]] std::vector<ShippedScene> scenesIn(const std::filesystem::path& folder);
 
