@@ -609,8 +609,8 @@ mesh='paint mesh.ply --uniform 1kPa --out no.ply --stroke'
     bad 'beside the cloud' 'from its nearest point' $mesh 'at=1,1,1m radius=1mm smooth'
     bad 'no stroke' '--stroke' paint mesh.ply --out no.ply
     cp mesh.ply itself.ply
-    bad 'the cloud itself' '--out: ./itself.ply is the cloud that is read' paint itself.ply --uniform 1kPa --stroke 'at=1mm,1mm,0 radius=1mm value=2kPa' --out ./itself.ply
-    bad 'the cloud itself, converted' 'TARGET: itself.ply is the cloud that is read' convert itself.ply itself.ply --length-unit mm
+    bad 'the cloud itself' '--out: ./itself.ply is the file of the cloud and would be overwritten' paint itself.ply --uniform 1kPa --stroke 'at=1mm,1mm,0 radius=1mm value=2kPa' --out ./itself.ply
+    bad 'the cloud itself, converted' 'TARGET: itself.ply is the file of the cloud and would be overwritten' convert itself.ply itself.ply --length-unit mm
     cmp -s mesh.ply itself.ply && passed=$((passed + 1)) || complain 'a cloud was written over'
     bad 'another kind of file' '.ply' paint mesh.ply --stroke 'at=1,1,0 radius=1mm smooth' --out no.stl
     bad 'an option of files for a scene of a sample' '--stiffness-range: expected a file' paint scene.json --stiffness-range 1kPa,2kPa --out no.ply --stroke 'at=0,0,0 radius=6mm smooth'
@@ -670,7 +670,7 @@ JSON
     for command in info touch run; do bad "$command, NaN" 'holed.ply' $command holed.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa; done
     good 'without that point' touch holed.ply --drop-invalid --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa $touched
     sed 's/^comment VCGLIB generated/comment length_unit mm/' scan.ply >stated.ply
-    bad 'a place that would be metres' '--at: 5,0,30 has no unit, and would be metres, but the file'\''s lengths are in mm' touch stated.ply --at 5,0,30
+    bad 'a place that would be metres' '--at: 5,0,30 has no unit and would mean metres, but the file'\''s lengths are in mm' touch stated.ply --at 5,0,30
     good 'a place with units' touch stated.ply --at 5mm,0,30mm --window 40mm --cells 32
     good 'in hundredths of that unit' touch stated.ply --length-unit mm --at 5,0,30 --window 40 --cells 32
     good 'the host by the environment' touch scan.json --json
