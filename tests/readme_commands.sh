@@ -130,7 +130,7 @@ falcon=$(build/bin/palpate devices | grep '^falcon  ')
 display= server=
 if command -v Xvfb >/dev/null 2>&1 && command -v xdotool >/dev/null 2>&1; then
     mkfifo number
-    Xvfb -displayfd 3 -noreset -screen 0 1400x900x24 3>number 2>xvfb.log & # -noreset: see window/desktop.sh
+    Xvfb -displayfd 3 -noreset -screen 0 1400x900x24 3>number 2>xvfb.log & # -noreset: see tools/gui/desktop.sh
     server=$!
     trap 'kill $server 2>/dev/null' EXIT
     read -r display <number

@@ -33,7 +33,6 @@ struct Resampled {
 ///
 /// The width s is the spacing of the points, so that some are always near, but no less than half that of the nodes, so
 /// that no point falls between them. Points farther than that outside the window do not matter to its rigidity.
-/// that no point falls between them. Points farther than that outside the window do not matter to its rigidity.
 ///
 /// \param pointSpacing  of the cloud [m]
 /// \param nodeSpacing   of the grid, the larger one [m]

@@ -75,7 +75,7 @@ PlateEdges parseEdges(std::string_view text, const std::string& what)
 {
     const auto edgeOf = [&](std::string_view word) {
         if (const auto edge = valueNamed<Edge>(word)) return *edge;
-        throw Error(what + ": unknown name \"" + std::string(word) + "\"; known: clamped, supported, free");
+        throw Error(what + ": unknown name \"" + std::string(word) + "\"; known: " + wordsOf<Edge>());
     };
     if (text.find('=') == std::string_view::npos) {
         const Edge all = edgeOf(text);

@@ -124,6 +124,17 @@ void readPoisson(S& scene, const V& given)
     scene.material.poissonRatio = given.number();
 }
 
+/// A word for all sides, or an object with a word for each.
+std::string edgesSchema()
+{
+    Json words = Json::array();
+    for (const NamedValue<Edge>& edge : namesOf(Edge{})) words.push_back(edge.name);
+    Json sides = Json::object();
+    for (const char* side : {"x0", "x1", "z0", "z1"}) sides[side] = {{"enum", words}};
+    const Json each{{"type", "object"}, {"additionalProperties", false}, {"properties", sides}};
+    return Json{{"anyOf", {Json{{"type", "string"}}, each}}}.dump();
+}
+
 std::vector<SceneKey> fileKeys()
 {
     std::vector<SceneKey> keys = {
@@ -342,8 +353,8 @@ std::vector<SceneKey> patchKeys()
          .help   = "edges of the window: one name for all, or SIDE=EDGE of the sides x0, x1, z0, z1",
          .group  = kTouch,
          .kind   = Kind::object,
-         .form   = "clamped, supported or free, or a list such as x0=free,z1=supported",
-         .schema = std::string(kEdgesSchema),
+         .form   = wordsOf<Edge>() + ", or a list such as x0=free,z1=supported",
+         .schema = edgesSchema(),
          .read   = [](S& s, const V& v) { s.patch.edges = parseEdges(v.text, v.what); },
          .write  = [](const S& s) { return quotedJson(edgesText(s.patch.edges)); }},
         wordKey(

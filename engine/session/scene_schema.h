@@ -26,11 +26,6 @@ line [m]", "type": "array", "items": {"type": "number"}, "minItems": 3, "maxItem
 {"type": "number"}, "minItems": 3, "maxItems": 3}, "high": {"description": "opposite corner of box
 [m]", "type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}}}]})";
 
-/// The edges of the window, see parseEdges().
-inline constexpr std::string_view kEdgesSchema = R"({"anyOf": [{"type": "string"}, {"type": "object", "additionalProperties": false, "properties":
-{"x0": {"enum": ["clamped", "supported", "free"]}, "x1": {"enum": ["clamped", "supported", "free"]},
-"z0": {"enum": ["clamped", "supported", "free"]}, "z1": {"enum": ["clamped", "supported",
-"free"]}}}]})";
 // clang-format on
 
 } // namespace palp

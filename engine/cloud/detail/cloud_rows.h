@@ -62,8 +62,6 @@ public:
     /// \throws Error naming the row if a number is not finite or the stiffness not above zero
     void add(const CloudRow& row, Place place);
 
-    [[nodiscard]] std::uint64_t rowsRead() const noexcept { return rowsRead_; } ///< dropped ones included
-
     /// Returns the rows that were omitted, rising.
     [[nodiscard]] std::span<const std::uint32_t> droppedRows() const noexcept { return droppedRows_; }
 

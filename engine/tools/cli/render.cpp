@@ -41,11 +41,11 @@ struct RenderOptions {
 };
 
 /// Returns the value of an option with a fixed set of names.
-template <class T>
-T named(const std::optional<T>& value, const std::string& option, const std::string& text, const char* known)
+template <NamedEnum Enum>
+Enum named(const std::string& option, const std::string& word)
 {
-    if (value) return *value;
-    throw Error(option + ": unknown name \"" + text + "\"; known: " + known);
+    if (const auto value = valueNamed<Enum>(word)) return *value;
+    throw Error(option + ": unknown name \"" + word + "\"; known: " + wordsOf<Enum>());
 }
 
 /// Reads "1600x1200" [px].
@@ -63,11 +63,11 @@ PictureSize sizeOf(const std::string& text, int finer)
 TouchLook lookOf(const RenderOptions& o)
 {
     TouchLook look;
-    look.paint           = named(valueNamed<ViewPaint>(o.colour), "--colour", o.colour, "deflection, stiffness, plain");
-    look.map             = named(valueNamed<ColourMap>(o.map), "--colour-map", o.map, "viridis, cividis, grey");
-    look.ground          = o.dark ? Ground::dark : Ground::light;
-    look.overlays.ghost  = o.ghost;
-    look.overlays.sphere = o.sphere;
+    look.paint              = named<ViewPaint>("--colour", o.colour);
+    look.map                = named<ColourMap>("--colour-map", o.map);
+    look.ground             = o.dark ? Ground::dark : Ground::light;
+    look.overlays.ghost     = o.ghost;
+    look.overlays.sphere    = o.sphere;
     look.overlays.projected = o.projected;
     look.exaggeration       = parseQuantity(o.exaggerate, Dimension::none, "--exaggerate");
     if (!(look.exaggeration >= 0 && look.exaggeration <= 1000))
@@ -277,9 +277,9 @@ void addRenderCommand(CLI::App& app)
         ->capture_default_str();
     command->add_option("--force", o->force,
                         "force that presses, such as '1 N' [the force that dents by a third of the thickness]");
-    command->add_option("--colour,--color", o->colour, "quantity in colours: deflection, stiffness or plain")
+    command->add_option("--colour,--color", o->colour, "quantity in colours: " + wordsOf<ViewPaint>())
         ->capture_default_str();
-    command->add_option("--colour-map,--color-map", o->map, "map of colours: viridis, cividis or grey")
+    command->add_option("--colour-map,--color-map", o->map, "map of colours: " + wordsOf<ColourMap>())
         ->capture_default_str();
     command->add_option("--exaggerate", o->exaggerate, "factor on every displacement")->capture_default_str();
     command->add_option("--view", o->view, "patch: the part that bends; whole: the object")->capture_default_str();

@@ -204,7 +204,8 @@ void demandGood(const SessionOptions& options)
 {
     const SessionClock clock   = clockNamed(options.clock);
     const auto         threads = valueNamed<SessionThreads>(options.threads);
-    if (!threads) throw Error("--threads: expected servo or paper, found \"" + options.threads + "\"");
+    if (!threads)
+        throw Error("--threads: expected " + wordsOf<SessionThreads>() + ", found \"" + options.threads + "\"");
     if (*threads == SessionThreads::paper && clock != SessionClock::real)
         throw Error("--threads paper: a virtual clock has no threads; omit one of the two");
 }

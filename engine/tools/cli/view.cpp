@@ -143,8 +143,8 @@ void view(const ViewOptions& o)
     if (!o.hand.seconds.empty()) settings.seconds = secondsOf(o.hand.seconds);
     const auto paint = valueNamed<ViewPaint>(o.colour);
     const auto map   = valueNamed<ColourMap>(o.map);
-    if (!paint) throw Error("--colour: unknown name \"" + o.colour + "\"; known: deflection, stiffness, plain");
-    if (!map) throw Error("--colour-map: unknown name \"" + o.map + "\"; known: viridis, cividis, grey");
+    if (!paint) throw Error("--colour: unknown name \"" + o.colour + "\"; known: " + wordsOf<ViewPaint>());
+    if (!map) throw Error("--colour-map: unknown name \"" + o.map + "\"; known: " + wordsOf<ColourMap>());
     settings.state.look.paint  = *paint;
     settings.state.look.map    = *map;
     settings.state.look.ground = o.dark ? Ground::dark : Ground::light;
@@ -207,9 +207,9 @@ void addViewCommand(CLI::App& app)
                          ", a file, " + deviceHands())
         ->capture_default_str();
     command->add_option("--seconds", o->hand.seconds, "time after which the window closes by itself [never]");
-    command->add_option("--colour,--color", o->colour, "quantity in colours: deflection, stiffness or plain")
+    command->add_option("--colour,--color", o->colour, "quantity in colours: " + wordsOf<ViewPaint>())
         ->capture_default_str();
-    command->add_option("--colour-map,--color-map", o->map, "map of colours: viridis, cividis or grey")
+    command->add_option("--colour-map,--color-map", o->map, "map of colours: " + wordsOf<ColourMap>())
         ->capture_default_str();
     command->add_flag("--dark", o->dark, "draws on a dark ground");
     command->add_option("--size", o->size, "size of the window [px] [its last size]");
