@@ -306,9 +306,10 @@ std::vector<SceneKey> materialKeys()
 
 std::vector<SceneKey> patchKeys()
 {
-    const Control window{Panel::patch, "window", "mm", 1e-3, 5, 200, true, 1};
-    const Control cells{Panel::patch, "cells a side", "", 1, 16, 256, true, 0, 2};
-    const Control fingertip{Panel::patch, "fingertip", "mm", 1e-3, 0.5, 20, true, 2};
+    static const std::string edgesForm = wordsOf<Edge>() + ", or a list such as x0=free,z1=supported";
+    const Control            window{Panel::patch, "window", "mm", 1e-3, 5, 200, true, 1};
+    const Control            cells{Panel::patch, "cells a side", "", 1, 16, 256, true, 0, 2};
+    const Control            fingertip{Panel::patch, "fingertip", "mm", 1e-3, 0.5, 20, true, 2};
     return {
         numberKey(
             {.name      = "window",
@@ -353,7 +354,7 @@ std::vector<SceneKey> patchKeys()
          .help   = "edges of the window: one name for all, or SIDE=EDGE of the sides x0, x1, z0, z1",
          .group  = kTouch,
          .kind   = Kind::object,
-         .form   = wordsOf<Edge>() + ", or a list such as x0=free,z1=supported",
+         .form   = edgesForm,
          .schema = edgesSchema(),
          .read   = [](S& s, const V& v) { s.patch.edges = parseEdges(v.text, v.what); },
          .write  = [](const S& s) { return quotedJson(edgesText(s.patch.edges)); }},

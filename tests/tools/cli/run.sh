@@ -506,8 +506,8 @@ JSON
     bad 'a size beyond devices' '--size' render sample:skin --out no.png --size 5000x100
     bad 'a size with more behind' '--size' render sample:skin --out no.png --size 320x240px
     bad 'another kind of file' '.png' render sample:skin --out no.jpg
-    bad 'an unknown colour' 'deflection, stiffness, plain' render sample:skin --out no.png --colour red
-    bad 'an unknown map' 'viridis, cividis, grey' render sample:skin --out no.png --colour-map jet
+    bad 'an unknown colour' 'deflection, stiffness or plain' render sample:skin --out no.png --colour red
+    bad 'an unknown map' 'viridis, cividis or grey' render sample:skin --out no.png --colour-map jet
     bad 'an unknown view' 'patch, whole' render sample:skin $small --out no.png --view side
     bad 'a negative exaggeration' '--exaggerate' render sample:skin --out no.png --exaggerate -1
     bad 'an unknown sample' 'known' render sample:nose --out no.png
