@@ -69,7 +69,9 @@ events() {
 
 # A window stays open until it is closed: the function waits for it, asks the program to end, and expects 0.
 open_window() { # command
-    DISPLAY=:$display timeout 300 sh -c "exec ${1%%#*}" </dev/null >out 2>err &
+    # --foreground: otherwise timeout passes a signal on twice, to its child and to its group, and the second one ends a
+    # program at once.
+    DISPLAY=:$display timeout --foreground 300 sh -c "exec ${1%%#*}" </dev/null >out 2>err &
     program=$!
     n=0
     while [ -z "$(DISPLAY=:$display xdotool search --onlyvisible --name Palpate 2>/dev/null)" ]; do
