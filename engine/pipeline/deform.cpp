@@ -147,7 +147,7 @@ void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
                     std::to_string(patch.plate.grid.nodes()) + " grid nodes have no point of the cloud nearby" + hint);
 }
 
-void sampleRigidity(Patch& patch, const SoftObject& object, const PatchSettings& settings)
+void fillRigidity(Patch& patch, const SoftObject& object, const PatchSettings& settings)
 {
     const StageClock    clock(patch.times.resample);
     std::vector<double> rigidities;
@@ -230,7 +230,7 @@ Patch deform(const SoftObject& object, const Contact& contact, const PatchSettin
     fitSphereTo(patch, object);                     // 2.2: lie close to a sphere,
     if (!patch.deformed()) return patch;
     layFlat(patch, object, settings, carried); // 2.3: which an equal-area map lays flat,
-    sampleRigidity(patch, object, settings);   // 2.4: where a grid takes over their rigidity
+    fillRigidity(patch, object, settings);     // 2.4: where a grid takes over their rigidity
     bendPlate(patch, settings, solver);        // 2.5: and bends as a plate under a unit force;
     movePoints(patch);                         // 2.6: the plate moves the points,
     findStiffness(patch, object, settings);    //      and with the contact it is what the hand feels.
@@ -253,7 +253,7 @@ PatchWithTable deformWithTable(const SoftObject& object, const Contact& contact,
     fitSphereTo(patch, object);
     if (!patch.deformed()) return result;
     layFlat(patch, object, settings, carried);
-    sampleRigidity(patch, object, settings);
+    fillRigidity(patch, object, settings);
     result.table = bendPlate(patch, settings, lattice, solver);
     movePoints(patch);
     findStiffness(patch, object, settings);

@@ -64,7 +64,7 @@ OpenColumn openColumn(const std::filesystem::path& folder, const SessionColumn& 
     const std::uint64_t         bytes = std::filesystem::file_size(path, failure);
     if (failure) throw Error(path.string() + ": cannot be read: " + failure.message());
     if (extent.rows > (bytes - extent.begin) / column.bytes())
-        throw Error(path.string() + ": the header counts " + std::to_string(extent.rows) + " samples of " +
+        throw Error(path.string() + ": the header counts " + std::to_string(extent.rows) + " ticks of " +
                     std::to_string(column.bytes()) + " bytes, found " + std::to_string(bytes - extent.begin) +
                     " bytes");
     return {std::move(in), path.string(), extent.rows};
@@ -81,10 +81,10 @@ std::vector<TickRecord> readColumns(const std::filesystem::path& folder, std::op
         rows = std::min(rows, open.back().rows);
         if (expected && open.back().rows != *expected)
             throw Error(open.back().name + ": expected the " + std::to_string(*expected) +
-                        " samples that session.json counts, found " + std::to_string(open.back().rows) +
+                        " ticks that session.json counts, found " + std::to_string(open.back().rows) +
                         "; the recording is damaged");
     }
-    std::vector<TickRecord> samples(rows);
+    std::vector<TickRecord> records(rows);
     std::vector<char>       part;
     for (std::size_t k = 0; k < open.size(); ++k) {
         const SessionColumn&  column = sessionColumns()[k];
@@ -95,11 +95,11 @@ std::vector<TickRecord> readColumns(const std::filesystem::path& folder, std::op
             open[k].in.read(part.data(), std::streamsize(part.size()));
             if (!open[k].in) throw Error(open[k].name + ": the file ends within its numbers");
             for (std::size_t i = 0; i < count; ++i)
-                std::memcpy(reinterpret_cast<char*>(&samples[begin + i]) + column.offset,
+                std::memcpy(reinterpret_cast<char*>(&records[begin + i]) + column.offset,
                             part.data() + i * column.bytes(), column.bytes());
         }
     }
-    return samples;
+    return records;
 }
 
 /// Returns the scene of a recording of format 1, whose keys had other names, with the names of today.
@@ -116,9 +116,9 @@ std::string withNamesOfToday(const std::string& scene)
     return today.dump();
 }
 
-const char* bytesOf(const TickRecord& sample, const SessionColumn& column)
+const char* bytesOf(const TickRecord& record, const SessionColumn& column)
 {
-    return reinterpret_cast<const char*>(&sample) + column.offset;
+    return reinterpret_cast<const char*>(&record) + column.offset;
 }
 
 template <class Number>
@@ -204,7 +204,7 @@ RecordedSession readSession(const std::filesystem::path& folder)
         session.hand.maximumForce     = hand.number("maximum_force_N");
         session.hand.maximumStiffness = hand.number("maximum_stiffness_N_per_m");
     }
-    session.samples = readColumns(folder, expected);
+    session.records = readColumns(folder, expected);
     return session;
 }
 
@@ -217,30 +217,30 @@ Scene sceneOf(const RecordedSession& session, const std::vector<SceneKey>* toolK
 
 std::optional<SessionDifference> compareSessions(const RecordedSession& a, const RecordedSession& b)
 {
-    const std::size_t both = std::min(a.samples.size(), b.samples.size());
+    const std::size_t both = std::min(a.records.size(), b.records.size());
     for (std::size_t i = 0; i < both; ++i) {
-        if (std::memcmp(&a.samples[i], &b.samples[i], sizeof(TickRecord)) == 0) continue;
+        if (std::memcmp(&a.records[i], &b.records[i], sizeof(TickRecord)) == 0) continue;
         for (const SessionColumn& column : sessionColumns()) {
             if (column.measured) continue;
-            if (auto difference = differenceIn(column, a.samples[i], b.samples[i])) {
-                difference->sample = i;
+            if (auto difference = differenceIn(column, a.records[i], b.records[i])) {
+                difference->tick = i;
                 return difference;
             }
         }
     }
-    if (a.samples.size() == b.samples.size()) return {};
-    const auto& longer = (a.samples.size() > both ? a : b).samples;
+    if (a.records.size() == b.records.size()) return {};
+    const auto& longer = (a.records.size() > both ? a : b).records;
     return SessionDifference{
-        both, longer[both].time, "", 0, std::to_string(a.samples.size()), std::to_string(b.samples.size())};
+        both, longer[both].time, "", 0, std::to_string(a.records.size()), std::to_string(b.records.size())};
 }
 
 std::string describe(const SessionDifference& d, const RecordedSession& a, const RecordedSession& b)
 {
     const std::string first = a.folder.string(), second = b.folder.string();
-    if (d.column.empty()) return first + " has " + d.first + " samples and " + second + " has " + d.second;
+    if (d.column.empty()) return first + " has " + d.first + " ticks and " + second + " has " + d.second;
     const auto column   = std::ranges::find(sessionColumns(), d.column, &SessionColumn::name);
     const bool isVector = column != sessionColumns().end() && column->components > 1;
-    return "sample " + std::to_string(d.sample) + " (" + numberText<double>(reinterpret_cast<const char*>(&d.time)) +
+    return "tick " + std::to_string(d.tick) + " (" + numberText<double>(reinterpret_cast<const char*>(&d.time)) +
            " s): " + d.column + (isVector ? std::string(" ") + "xyz"[d.component] : "") + " is " + d.first + " in " +
            first + " and " + d.second + " in " + second;
 }

@@ -37,7 +37,7 @@ struct SessionInfo {
 
 /// The result of a recording.
 struct RecordingReport {
-    std::uint64_t samples    = 0;         ///< on disk
+    std::uint64_t ticks      = 0;         ///< on disk
     std::uint64_t lost       = 0;         ///< pushed and not on disk: the ring was full, or writing had stopped
     double        longestGap = 0;         ///< [s] between two visits of the writer: what a kill would have cost at most
     std::optional<std::string> stopped{}; ///< why writing stopped early: a sentence
@@ -69,10 +69,10 @@ public:
     Recording& operator=(const Recording&) = delete;
 
     /// Takes one record; if the ring is full it is counted as lost.
-    void push(const TickRecord& sample) noexcept;
+    void push(const TickRecord& record) noexcept;
 
     /// Takes one record and waits for room: for the virtual clock, which is faster than any disk.
-    void pushWaiting(const TickRecord& sample) noexcept;
+    void pushWaiting(const TickRecord& record) noexcept;
 
     /// Writes what is left, marks session.json as finished, and ends the writer. Later calls return the same.
     RecordingReport finish();

@@ -166,7 +166,7 @@ Written still(const RenderOptions& o, Stage& stage)
 }
 
 /// Returns the session's records at evenly spread times, from the first to the last tick.
-std::vector<TickRecord> samplesOf(const RenderOptions& o, Stage& stage, int frames)
+std::vector<TickRecord> recordsOf(const RenderOptions& o, Stage& stage, int frames)
 {
     HandOptions hand;
     hand.hand          = o.hand;
@@ -179,10 +179,10 @@ std::vector<TickRecord> samplesOf(const RenderOptions& o, Stage& stage, int fram
     std::vector<TickRecord> all;
     static_cast<void>(runVirtual(parts, source.seconds, [&](const TickRecord& s) { all.push_back(s); }));
     if (all.empty()) throw Error("--seconds: expected a hand of at least a millisecond");
-    std::vector<TickRecord> samples;
+    std::vector<TickRecord> records;
     for (int n = 0; n < frames; ++n)
-        samples.push_back(all[std::size_t(std::llround(double(all.size() - 1) * (n + 1) / frames))]);
-    return samples;
+        records.push_back(all[std::size_t(std::llround(double(all.size() - 1) * (n + 1) / frames))]);
+    return records;
 }
 
 /// Returns "film_0003.png" for "film.png", 3.
@@ -198,10 +198,10 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage)
 {
     const Patch        middle  = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
     const Camera       camera  = cameraFor(o, stage, middle);
-    const auto         samples = samplesOf(o, stage, *o.frames);
+    const auto         records = recordsOf(o, stage, *o.frames);
     std::vector<Patch> patches;
     TouchLook          look = stage.look;
-    for (const TickRecord& s : samples) {
+    for (const TickRecord& s : records) {
         const double force = glm::length(s.force);
         if (force > 0) patches.push_back(patchAt(stage, {s.proxy, s.normal}));
         look.strongest = std::max(look.strongest, force);
@@ -210,8 +210,8 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage)
     Progress             progress("drawing");
     std::vector<Written> written;
     auto                 patch = patches.begin();
-    for (std::size_t n = 0; n < samples.size(); ++n) {
-        const TickRecord& s     = samples[n];
+    for (std::size_t n = 0; n < records.size(); ++n) {
+        const TickRecord& s     = records[n];
         const double      force = glm::length(s.force);
         const Patch*      bent  = force > 0 ? &*patch++ : nullptr;
         stage.view.show(bent, force, look, TouchHand{s.hip, s.force});
@@ -220,7 +220,7 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage)
         written.push_back(write(stage, camera, frameFile(o.out, int(n) + 1)));
         written.back().force   = force;
         written.back().deepest = bent ? deepestOf(*bent, force) : 0;
-        progress.at(n + 1, samples.size());
+        progress.at(n + 1, records.size());
     }
     return written;
 }

@@ -70,23 +70,23 @@ SessionSummary playLive(const SessionOptions& o, double seconds, const SessionPa
     Progress             progress("touching");
     TickRing<TickRecord> ring(also ? 4096 : 1); // four seconds; from the servo to this thread
     const auto           drain = [&] {
-        for (auto samples = ring.front(); !samples.empty(); samples = ring.front()) {
-            for (const TickRecord& sample : samples) also(sample);
-            ring.pop(samples.size());
+        for (auto records = ring.front(); !records.empty(); records = ring.front()) {
+            for (const TickRecord& record : records) also(record);
+            ring.pop(records.size());
         }
     };
     RealSessionSettings settings;
     settings.seconds = seconds;
     settings.threads = *valueNamed<SessionThreads>(o.threads);
     settings.stop    = &catchInterrupts();
-    settings.onTick  = [&, heard = bool(also)](const TickRecord& sample) {
-        if (recording) recording->push(sample);
-        if (heard) static_cast<void>(ring.push(sample)); // a reader that stops for four seconds has a gap
+    settings.onTick  = [&, heard = bool(also)](const TickRecord& record) {
+        if (recording) recording->push(record);
+        if (heard) static_cast<void>(ring.push(record)); // a reader that stops for four seconds has a gap
     };
     settings.onView = [&, heard = bool(also)](const SessionView& view) {
         if (heard) drain();
         if (line) showLine(view);
-        if (o.blind) showTime(progress, view.sample.time, seconds);
+        if (o.blind) showTime(progress, view.record.time, seconds);
     };
     std::string          warning;
     const SessionSummary summary = runReal(parts, settings, warning);
@@ -132,8 +132,8 @@ SessionSummary playVirtual(const SessionParts& parts, double seconds, const OnTi
     std::size_t done  = 0;
     return runVirtual(
         parts, seconds,
-        [&](const TickRecord& sample) {
-            if (also) also(sample);
+        [&](const TickRecord& record) {
+            if (also) also(record);
             progress.at(++done, total);
         },
         stop);
@@ -146,14 +146,14 @@ nlohmann::json jsonOf(const SessionRun& run)
     all["solver"]      = run.solver;
     all["warnings"]    = run.warnings;
     if (run.recorded)
-        all["recorded"] = {{"folder", run.folder}, {"samples", run.recorded->samples}, {"lost", run.recorded->lost}};
+        all["recorded"] = {{"folder", run.folder}, {"samples", run.recorded->ticks}, {"lost", run.recorded->lost}};
     return all;
 }
 
 void printText(const SessionRun& run)
 {
     printText(run.summary, run.solver, run.hand);
-    if (run.recorded) std::cout << "  " << run.recorded->samples << " samples in " << run.folder << "\n";
+    if (run.recorded) std::cout << "  " << run.recorded->ticks << " ticks in " << run.folder << "\n";
 }
 
 void demandWhole(const SessionRun& run)
@@ -161,7 +161,7 @@ void demandWhole(const SessionRun& run)
     if (run.summary.fault != GovernorFault::none || run.summary.deviceFault == DeviceFault::unplugged)
         throw CheckFailed("the force was stopped");
     if (run.recorded && run.recorded->lost > 0)
-        throw CheckFailed(run.folder + ": " + std::to_string(run.recorded->lost) + " samples were lost");
+        throw CheckFailed(run.folder + ": " + std::to_string(run.recorded->lost) + " ticks were lost");
 }
 
 SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const SessionOptions& o, const OnTick& onTick)
@@ -185,9 +185,9 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     const SessionParts parts{scene, loaded.object, deformation.solver(), *hand.device, hand.frame};
     const auto         recording = recordingOf(o, parts, clock, run.solver);
     if (!o.blind) warn(run.warnings);
-    const OnTick each = [&](const TickRecord& sample) {
-        if (recording) recording->pushWaiting(sample);
-        if (onTick) onTick(sample);
+    const OnTick each = [&](const TickRecord& record) {
+        if (recording) recording->pushWaiting(record);
+        if (onTick) onTick(record);
     };
     run.summary = clock == SessionClock::real ? playLive(o, hand.seconds, parts, recording.get(), onTick)
                                               : playVirtual(parts, hand.seconds, each, &stop);

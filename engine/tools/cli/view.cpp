@@ -124,7 +124,7 @@ void view(const ViewOptions& o)
 {
     WorkbenchSettings settings;
     auto              scorer = scorerFor(o.scene);
-    if (scorer) settings.onTick = [&scorer](const TickRecord& sample) { scorer->add(sample); };
+    if (scorer) settings.onTick = [&scorer](const TickRecord& record) { scorer->add(record); };
     settings.what     = o.scene.name;
     settings.values   = o.scene.flags;
     settings.toolKeys = &study::huntKeys();

@@ -274,7 +274,7 @@ python3 -c "
 import sys
 data = bytearray(open('session/force.npy', 'rb').read()); data[-1] ^= 1; open('session/force.npy', 'wb').write(data)" 2>/dev/null && {
     "$palpate" replay session --compare >out.txt 2>err.txt
-    [ $? -eq 1 ] && grep -qF 'sample 499' out.txt && passed=$((passed + 1)) || complain "one changed bit is not found: $(cat out.txt err.txt)"
+    [ $? -eq 1 ] && grep -qF 'tick 499' out.txt && passed=$((passed + 1)) || complain "one changed bit is not found: $(cat out.txt err.txt)"
 }
 
 # --- a Falcon weighs a mass: an emulated one, of 5000 counts per N m and an arm of 210 g

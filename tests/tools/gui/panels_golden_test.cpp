@@ -25,7 +25,7 @@ struct Pressed {
     HandPath     path{{{0, place.point + 2e-3 * place.outward},
                        {0.5, place.point - 1.5e-3 * place.outward},
                        {3, place.point - 1e-3 * place.outward}}};
-    ScriptedHand   device{path};
+    ScriptedHand device{path};
     TouchHistory history;
     std::optional<Patch> patch;
     TouchView            view{object, scene.patch};
@@ -201,12 +201,12 @@ TEST_F(PanelsGolden, ABrushAndTheSheetOfKeys)
 TEST_F(PanelsGolden, NothingFeltYetAndAFault)
 {
     Shown      shown;
-    TickRecord sample;
+    TickRecord record;
     shown.kept    = 460;
-    sample.time   = 1;
-    sample.faults = static_cast<std::uint32_t>(GovernorFault::tooFast);
+    record.time   = 1;
+    record.faults = static_cast<std::uint32_t>(GovernorFault::tooFast);
     pressed_.history.clear();
-    pressed_.history.add(sample);
+    pressed_.history.add(record);
     PanelContent now = pressed_.content();
     now.patch        = nullptr;
     now.force = now.solveTime = now.loopPeriod = 0;

@@ -221,7 +221,7 @@ protected:
 std::vector<double> forcesOf(const std::filesystem::path& folder)
 {
     std::vector<double> forces;
-    for (const TickRecord& sample : readSession(folder).samples) forces.push_back(glm::length(sample.force));
+    for (const TickRecord& record : readSession(folder).records) forces.push_back(glm::length(record.force));
     return forces;
 }
 
