@@ -153,8 +153,9 @@ void fillRigidity(Patch& patch, const SoftObject& object, const PatchSettings& s
     std::vector<double> rigidities;
     rigidities.reserve(patch.points.size());
     for (std::uint32_t point : patch.points) rigidities.push_back(object.rigidity(point));
-    patch.window        = PatchWindow::square(settings.window, settings.cells);
-    Resampled resampled = resampleRigidity(patch.window, patch.positions, rigidities, settings.sampling, patch.spacing);
+    patch.window = PatchWindow::square(settings.window, settings.cells);
+    Resampled resampled =
+        resampleRigidity(patch.window, patch.positions, rigidities, settings.resampling, patch.spacing);
     patch.nodesWithoutPoint = resampled.nodesWithoutPoint;
     patch.plate             = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
                                std::move(resampled.rigidity)};

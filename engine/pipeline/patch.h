@@ -24,7 +24,7 @@ struct PatchSettings {
     int        cells           = 64;    ///< of the grid along that edge, an even number
     double     footprintRadius = 4e-3;  ///< of the fingertip [m]
     Map        map             = Map::lambertAzimuthal;
-    Resampling sampling        = Resampling::logMean;
+    Resampling resampling      = Resampling::logMean;
     PlateEdges edges{}; ///< of the window
     ForceLaw   forceLaw  = ForceLaw::series;
     double     tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]

@@ -348,8 +348,8 @@ std::vector<SceneKey> patchKeys()
             {.name    = "resampling",
              .help    = "how the rigidity comes to the grid's nodes",
              .group   = kTouch,
-             .control = Control{Panel::patch, "sampling"}},
-            [](auto& s) -> auto& { return s.patch.sampling; }),
+             .control = Control{Panel::patch, "resampling"}},
+            [](auto& s) -> auto& { return s.patch.resampling; }),
         {.name   = "edges",
          .help   = "edges of the window: one name for all, or SIDE=EDGE of the sides x0, x1, z0, z1",
          .group  = kTouch,
@@ -399,7 +399,7 @@ std::vector<SceneKey> plateThreadKeys()
             {.name    = "compliance_law",
              .help    = "what the servo takes between two answers of the plate",
              .group   = kSession,
-             .control = Control{Panel::servo, "hand-over"}},
+             .control = Control{Panel::servo, "compliance law"}},
             [](auto& s) -> auto& { return s.complianceLaw; }),
         std::move(size),
         numberKey(
@@ -520,7 +520,7 @@ std::map<std::string, std::string, std::less<>> presetValues(Preset preset)
 {
     const PatchSettings                             set = withPreset({}, preset);
     std::map<std::string, std::string, std::less<>> values{{"map", name(set.map)},
-                                                           {"resampling", name(set.sampling)},
+                                                           {"resampling", name(set.resampling)},
                                                            {"force_law", name(set.forceLaw)},
                                                            {"edges", edgesText(set.edges)}};
     if (preset == Preset::paper) values["foundation"] = plainNumber(set.foundation);

@@ -80,7 +80,7 @@ TEST(RecordedSession, OneOfFormat1IsReadWithTheNamesThatItsKeysHaveToday)
     EXPECT_EQ(session.records.size(), 5u);
     EXPECT_EQ(scene.solver, "lavapipe");
     EXPECT_EQ(scene.complianceLaw, ComplianceLaw::blend);
-    EXPECT_EQ(scene.patch.sampling, Resampling::nearest);
+    EXPECT_EQ(scene.patch.resampling, Resampling::nearest);
     EXPECT_EQ(scene.material.thickness, 0.004);
 
     description("2");
