@@ -54,8 +54,9 @@ Quartiles quartiles(std::vector<double> values)
 
 Clock clockOf(const compute::Context& context)
 {
-    const std::string& kind = context.processor().kind;
-    return kind == "software" || kind == compute::kHostProcessor ? Clock::processor : Clock::wall;
+    const compute::ProcessorKind kind = context.processor().kind;
+    return kind == compute::ProcessorKind::software || kind == compute::ProcessorKind::host ? Clock::processor
+                                                                                            : Clock::wall;
 }
 
 std::vector<Timing> takeTurns(const std::vector<Contestant>& contestants, int runs)

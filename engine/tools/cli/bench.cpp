@@ -134,7 +134,7 @@ BenchReport measure(const BenchOptions& o)
     {
         compute::Context context(compute::ContextSettings{.processor = o.solver});
         sayPassedOver(context.processor().name, context.note());
-        report.device = context.processor().name;
+        report.solver = context.processor().name;
         if (wants(plateCases())) {
             const PlateKernels kernels(context, scheduleNamed(o.schedule));
             report.rows = measurePlates(context, kernels, plates, onStep);

@@ -81,12 +81,12 @@ struct Stage {
         : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.processor = o.drawOn}),
           loaded(o.scene.loadObject(scene)), solver(openSolver(scene.solver)), view(loaded.object, scene.patch)
     {
-        sayPassedOver(renderer.device().name, renderer.note());
+        sayPassedOver(renderer.processor().name, renderer.note());
     }
     PictureSize     size;
     TouchLook       look;
     Scene           scene;
-    SurfaceRenderer renderer; // before the cloud, so that a missing device is reported at once
+    SurfaceRenderer renderer; // before the cloud, so that a missing processor is reported at once
     LoadedObject    loaded;
     PlateSolver     solver;
     TouchView       view;
@@ -232,7 +232,7 @@ void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>
         all["scene"]     = o.scene.name;
         all["points"]    = stage.loaded.object.cloud().size();
         all["size"]      = {stage.size.width, stage.size.height};
-        all["drawn_on"]  = stage.renderer.device().name;
+        all["drawn_on"]  = stage.renderer.processor().name;
         all["solved_on"] = stage.solver.name();
         for (const Written& w : written)
             all["pictures"].push_back({{"file", w.file},
@@ -244,7 +244,7 @@ void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>
     }
     for (const Written& w : written)
         std::printf("%s: %s, %s deep, drawn in %.0f ms on %s\n", w.file.c_str(), formatQuantity(w.force, "N").c_str(),
-                    formatQuantity(w.deepest, "m").c_str(), w.milliseconds, stage.renderer.device().name.c_str());
+                    formatQuantity(w.deepest, "m").c_str(), w.milliseconds, stage.renderer.processor().name.c_str());
 }
 
 void render(const RenderOptions& o)
@@ -290,7 +290,7 @@ void addRenderCommand(CLI::App& app)
     command->add_option("--frames", o->frames, "number of pictures along the path of --hand, in virtual time");
     command->add_option("--hand", o->hand, "hand for --frames: press, circle, scan or a file")->capture_default_str();
     command->add_option("--seconds", o->seconds, "time that the hand moves, for --frames")->capture_default_str();
-    command->add_option("--draw-on", o->drawOn, "Vulkan device that draws, as \"palpate devices\" names it")
+    command->add_option("--draw-on", o->drawOn, "Vulkan processor that draws, as \"palpate devices\" names it")
         ->capture_default_str();
     command->add_flag("--json", o->json, "machine-readable, SI units");
     o->scene.addTo(*command, SceneKey::Group::session);

@@ -70,12 +70,12 @@ void tell(const ViewOptions& o, const WorkbenchReport& report, const SurfaceRend
                            {"frame_p99_s", slow},
                            {"draw_p50_s", quantileOf(report.drawTimes, 0.5)},
                            {"real_time", report.realTime},
-                           {"drawn_on", renderer.device().name}};
+                           {"drawn_on", renderer.processor().name}};
         if (score) all["hunt"] = jsonOf(*score);
         std::cout << jsonText(all);
         return;
     }
-    std::cout << report.frames << " pictures on " << renderer.device().name;
+    std::cout << report.frames << " pictures on " << renderer.processor().name;
     if (median > 0)
         std::cout << "; while touching one every " << formatQuantity(median, "s") << " (99 % within "
                   << formatQuantity(slow, "s") << ")";
@@ -214,7 +214,7 @@ void addViewCommand(CLI::App& app)
     command->add_flag("--dark", o->dark, "draws on a dark ground");
     command->add_option("--size", o->size, "size of the window [px] [its last size]");
     command->add_flag("--no-panels", o->noPanels, "shows no panels; keys and mouse still work");
-    command->add_option("--draw-on", o->drawOn, "Vulkan device that draws, as \"palpate devices\" names it")
+    command->add_option("--draw-on", o->drawOn, "Vulkan processor that draws, as \"palpate devices\" names it")
         ->capture_default_str();
     command->add_flag("--validate", o->validate,
                       "runs under Vulkan's validation layer; exit code 1 if it has a message");

@@ -324,8 +324,8 @@ PanelContent Workbench::content(const SessionView* view) const
     }
     now.frameTime       = pictures_.frameTime();
     now.solvedOn        = stage.solvedOn();
-    now.drawnOn         = screen_.device().name;
-    now.drawnInSoftware = screen_.device().kind == "software";
+    now.drawnOn         = screen_.processor().name;
+    now.drawnInSoftware = screen_.processor().kind == compute::ProcessorKind::software;
     now.replaying       = session_.replaying();
     now.recording       = session_.recorder().recording() ? session_.recorder().folder() : "";
     now.title           = object_.fileName();

@@ -178,7 +178,7 @@ doctor FALCON_FIRMWARE=image.bin -- 'ok falcon firmware 8000 byte'
 grep -qF 'image.bin' out.txt && complain 'a report names a file of the user' || passed=$((passed + 1))
 doctor PALPATE_HOST_ISA=portable -- 'code for portable'
 doctor PALPATE_HOST_ISA=sse9 -- '-> unset PALPATE_HOST_ISA'
-doctor VK_DRIVER_FILES=none.json VK_ICD_FILENAMES=none.json -- 'warning vulkan no device'
+doctor VK_DRIVER_FILES=none.json VK_ICD_FILENAMES=none.json -- 'warning vulkan no processor'
 doctor -- 'warning vulkan only in software: '
 good 'doctor, for scripts' doctor --json
 for key in '"palpate": "0.' '"compiler"' '"libraries"' '"system"' '"part": "real time"' '"verdict": "' '"found"' '"help"' '"name": "arm"'; do holds "$key"; done
@@ -522,7 +522,7 @@ JSON
     [ ! -e no.png ] && passed=$((passed + 1)) || complain 'a refused picture was written'
     without "$palpate" render sample:skin $small --out no.png
     code=$?
-    [ $code -eq 4 ] && grep -qF 'no Vulkan device can draw' err.txt && grep -qF 'mesa-vulkan-drivers' err.txt && [ ! -s out.txt ] && [ ! -e no.png ] && passed=$((passed + 1)) ||
+    [ $code -eq 4 ] && grep -qF 'no Vulkan processor can draw' err.txt && grep -qF 'mesa-vulkan-drivers' err.txt && [ ! -s out.txt ] && [ ! -e no.png ] && passed=$((passed + 1)) ||
         complain "render without Vulkan: exit $code, expected 4: $(cat err.txt)"
     "$palpate" render sample:skin $small --draw-on host --out no.png >out.txt 2>err.txt
     code=$?

@@ -116,7 +116,7 @@ protected:
     void expectGolden(const std::string& name, const Shown& shown, const PanelContent& now)
     {
         PanelFrame      frame(shown.scale);
-        SurfaceRenderer renderer({.processor = deviceOfTests(), .validation = validation()});
+        SurfaceRenderer renderer({.processor = processorOfTests(), .validation = validation()});
         const Image     image = pictureOf(shown, now, renderer, frame);
         palp::expectGolden(PALPATE_GOLDEN, name + ".png", leftOf(image, shown.kept), renderer);
     }
@@ -143,7 +143,7 @@ TEST_F(PanelsGolden, DarkAndLargeAtTwiceTheScale)
     now.recording           = "recordings/2016-05-20";
 
     PanelFrame      frame;
-    SurfaceRenderer renderer({.processor = deviceOfTests(), .validation = validation()});
+    SurfaceRenderer renderer({.processor = processorOfTests(), .validation = validation()});
     Shown           before = shown;
     before.size            = {960, 540, 1, Detail::fast};
     before.scale           = 1;
@@ -164,7 +164,7 @@ TEST_F(PanelsGolden, TheOtherSectionsOpenAtAClick)
     mixed.plate.edges      = {Edge::clamped, Edge::free, Edge::supported, Edge::clamped};
     now.patch              = &mixed;
     PanelFrame      frame;
-    SurfaceRenderer renderer({.processor = deviceOfTests(), .validation = validation()});
+    SurfaceRenderer renderer({.processor = processorOfTests(), .validation = validation()});
     const auto      at = [&](double y) { click({60, y}, shown, now, frame); };
 
     static_cast<void>(pictureOf(shown, now, renderer, frame));
