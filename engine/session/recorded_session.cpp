@@ -12,6 +12,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/json_object.h"
+#include "engine/session/scene_keys.h"
 
 namespace palp {
 namespace {
@@ -108,11 +109,7 @@ std::string withNamesOfToday(const std::string& scene)
     using Json       = nlohmann::ordered_json;
     const Json then  = Json::parse(scene);
     Json       today = Json::object();
-    for (const auto& [name, value] : then.items())
-        today[name == "device"      ? "solver"
-              : name == "hand_over" ? "compliance_law"
-              : name == "sampling"  ? "resampling"
-                                    : name] = value;
+    for (const auto& [name, value] : then.items()) today[std::string(keyNamedOnce(name).value_or(name))] = value;
     return today.dump();
 }
 
@@ -173,6 +170,13 @@ std::optional<SessionDifference> differenceIn(const SessionColumn& column, const
 
 } // namespace
 
+SessionClock clockOf(const JsonObject& file, const std::filesystem::path& path)
+{
+    const std::string word = file.text("clock");
+    if (const auto clock = valueNamed<SessionClock>(word)) return *clock;
+    throw Error(path.string() + ": key \"clock\": expected " + wordsOf<SessionClock>() + ", found \"" + word + "\"");
+}
+
 RecordedSession readSession(const std::filesystem::path& folder)
 {
     const std::filesystem::path path = folder / "session.json";
@@ -190,7 +194,7 @@ RecordedSession readSession(const std::filesystem::path& folder)
                     (format > 0 ? std::to_string(format) + "; a later palpate wrote it" : "none"));
     RecordedSession session;
     session.folder  = folder;
-    session.clock   = file.text("clock");
+    session.clock   = clockOf(file, path);
     session.solver  = file.text(format == 1 ? "device" : "solver");
     session.command = file.text("command");
     session.scene   = format == 1 ? withNamesOfToday(file.json("scene")) : file.json("scene");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "device/haptic_device.h"
+#include "engine/session/recording.h"
 #include "engine/session/scene.h"
 #include "engine/session/tick_record.h"
 
@@ -14,7 +15,7 @@ namespace palp {
 /// A session that was read from its folder.
 struct RecordedSession {
     std::filesystem::path   folder;
-    std::string             clock;            ///< "real", "virtual"
+    SessionClock            clock = SessionClock::real;
     std::string             solver;           ///< of the plate, as it was called then
     std::string             command;          ///< that recorded it
     std::string             scene;            ///< JSON for parseScene()

@@ -501,6 +501,14 @@ const SceneKey& sceneKey(std::string_view name)
     return *found;
 }
 
+std::optional<std::string_view> keyNamedOnce(std::string_view name) noexcept
+{
+    if (name == "device") return "solver";
+    if (name == "hand_over") return "compliance_law";
+    if (name == "sampling") return "resampling";
+    return {};
+}
+
 std::string flagOf(std::string_view key)
 {
     if (key == "place") return "--at";

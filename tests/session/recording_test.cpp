@@ -68,7 +68,7 @@ TEST(Recording, WhatIsPushedIsReadBackByteForByte)
     ASSERT_EQ(session.records.size(), 20'000u);
     for (int i = 0; i < 20'000; ++i) ASSERT_TRUE(sameBytes(session.records[std::size_t(i)], recordNumber(i))) << i;
     EXPECT_TRUE(session.finished);
-    EXPECT_EQ(session.clock, "virtual");
+    EXPECT_EQ(session.clock, SessionClock::virtualTime);
 }
 
 TEST(Recording, TheDescriptionSaysWhatWasRunAndHow)

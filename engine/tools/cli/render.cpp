@@ -19,6 +19,7 @@
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/hand_source.h"
+#include "engine/tools/cli/named_option.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/solver_choice.h"
 #include "engine/tools/render/annotation.h"
@@ -30,23 +31,23 @@
 namespace palp {
 namespace {
 
+/// What the camera of a picture sees.
+enum class Shot { patch, whole };
+constexpr auto namesOf(Shot)
+{
+    using enum Shot;
+    return std::to_array<NamedValue<Shot>>({{patch, "patch"}, {whole, "whole"}});
+}
+
 struct RenderOptions {
     SceneSource        scene;
     std::string        force, size = "1600x1200", out;
     std::string        colour = "deflection", map = "viridis", exaggerate = "1";
-    std::string        drawOn = "auto", view = "patch", hand = "scan", seconds = "2 s";
+    std::string        drawOn = "auto", view = name(Shot::patch), hand = name(HandMotion::scan), seconds = "2 s";
     std::optional<int> frames;
     int                finer = 2;
     bool               dark = false, json = false, ghost = false, sphere = false, projected = false;
 };
-
-/// Returns the value of an option with a fixed set of names.
-template <NamedEnum Enum>
-Enum named(const std::string& option, const std::string& word)
-{
-    if (const auto value = valueNamed<Enum>(word)) return *value;
-    throw Error(option + ": unknown name \"" + word + "\"; known: " + wordsOf<Enum>());
-}
 
 /// Reads "1600x1200" [px].
 PictureSize sizeOf(const std::string& text, int finer)
@@ -63,8 +64,8 @@ PictureSize sizeOf(const std::string& text, int finer)
 TouchLook lookOf(const RenderOptions& o)
 {
     TouchLook look;
-    look.paint              = named<ViewPaint>("--colour", o.colour);
-    look.map                = named<ColourMap>("--colour-map", o.map);
+    look.paint              = optionNamed<ViewPaint>("--colour", o.colour);
+    look.map                = optionNamed<ColourMap>("--colour-map", o.map);
     look.ground             = o.dark ? Ground::dark : Ground::light;
     look.overlays.ghost     = o.ghost;
     look.overlays.sphere    = o.sphere;
@@ -106,8 +107,7 @@ Camera cameraFor(const RenderOptions& o, const Stage& stage, const Patch& patch)
 {
     const double aspect = double(stage.size.width) / stage.size.height;
     const Camera camera = cameraAt(patch, aspect);
-    if (o.view == "patch") return camera;
-    if (o.view != "whole") throw Error("--view: unknown name \"" + o.view + "\"; known: patch, whole");
+    if (optionNamed<Shot>("--view", o.view) == Shot::patch) return camera;
     const Bounds& bounds = stage.loaded.object.cloud().bounds();
     return framed(camera, bounds.centre(), 0.5 * bounds.diagonal(), aspect);
 }
@@ -282,13 +282,17 @@ void addRenderCommand(CLI::App& app)
     command->add_option("--colour-map,--color-map", o->map, "map of colours: " + wordsOf<ColourMap>())
         ->capture_default_str();
     command->add_option("--exaggerate", o->exaggerate, "factor on every displacement")->capture_default_str();
-    command->add_option("--view", o->view, "patch: the part that bends; whole: the object")->capture_default_str();
+    command
+        ->add_option("--view", o->view,
+                     std::string(name(Shot::patch)) + ": the part that bends; " + name(Shot::whole) + ": the object")
+        ->capture_default_str();
     command->add_flag("--dark", o->dark, "draws on a dark ground");
     command->add_flag("--ghost", o->ghost, "adds dots where the dented points are at rest");
     command->add_flag("--sphere", o->sphere, "adds the near half of the fitted sphere");
     command->add_flag("--projected", o->projected, "adds dots where the points lie on that sphere");
     command->add_option("--frames", o->frames, "number of pictures along the path of --hand, in virtual time");
-    command->add_option("--hand", o->hand, "hand for --frames: press, circle, scan or a file")->capture_default_str();
+    command->add_option("--hand", o->hand, "hand for --frames: " + generatedHands() + ", or a file")
+        ->capture_default_str();
     command->add_option("--seconds", o->seconds, "time that the hand moves, for --frames")->capture_default_str();
     command->add_option("--draw-on", o->drawOn, "Vulkan processor that draws, as \"palpate devices\" names it")
         ->capture_default_str();

@@ -51,7 +51,7 @@ void run(RunOptions o)
 void replay(const ReplayOptions& o)
 {
     const RecordedSession session = readSession(o.folder);
-    if (session.clock != "virtual")
+    if (session.clock != SessionClock::virtualTime)
         throw Error(o.folder + ": recorded in real time, which no replay can repeat; expected clock \"virtual\"");
     Scene scene  = sceneOf(session, &study::huntKeys());
     scene.solver = o.solver.empty() ? session.solver : o.solver;

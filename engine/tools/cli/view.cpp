@@ -17,6 +17,7 @@
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/hand_source.h"
 #include "engine/tools/cli/hunt_report.h"
+#include "engine/tools/cli/named_option.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/gui/glfw_window.h"
 #include "engine/tools/gui/panel_frame.h"
@@ -141,12 +142,8 @@ void view(const ViewOptions& o)
     settings.assumed    = assumptions;
     settings.complained = [](const std::string& sentence) { std::cerr << "palpate: " << sentence << "\n"; };
     if (!o.hand.seconds.empty()) settings.seconds = secondsOf(o.hand.seconds);
-    const auto paint = valueNamed<ViewPaint>(o.colour);
-    const auto map   = valueNamed<ColourMap>(o.map);
-    if (!paint) throw Error("--colour: unknown name \"" + o.colour + "\"; known: " + wordsOf<ViewPaint>());
-    if (!map) throw Error("--colour-map: unknown name \"" + o.map + "\"; known: " + wordsOf<ColourMap>());
-    settings.state.look.paint  = *paint;
-    settings.state.look.map    = *map;
+    settings.state.look.paint  = optionNamed<ViewPaint>("--colour", o.colour);
+    settings.state.look.map    = optionNamed<ColourMap>("--colour-map", o.map);
     settings.state.look.ground = o.dark ? Ground::dark : Ground::light;
     settings.stop              = &catchInterrupts();
 

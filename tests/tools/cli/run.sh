@@ -508,7 +508,7 @@ JSON
     bad 'another kind of file' '.png' render sample:skin --out no.jpg
     bad 'an unknown colour' 'deflection, stiffness or plain' render sample:skin --out no.png --colour red
     bad 'an unknown map' 'viridis, cividis or grey' render sample:skin --out no.png --colour-map jet
-    bad 'an unknown view' 'patch, whole' render sample:skin $small --out no.png --view side
+    bad 'an unknown view' 'patch or whole' render sample:skin $small --out no.png --view side
     bad 'a negative exaggeration' '--exaggerate' render sample:skin --out no.png --exaggerate -1
     bad 'an unknown sample' 'known' render sample:nose --out no.png
     bad 'a scene that is not there' 'nowhere.json' render nowhere.json --out no.png
