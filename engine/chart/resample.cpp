@@ -42,7 +42,7 @@ bool areFinite(std::span<const ChartPoint> positions)
 
 PatchWindow PatchWindow::square(double size, int cells)
 {
-    PALP_EXPECT(size > 0 && std::isfinite(size), "window size " + std::to_string(size) + " m");
+    PALP_EXPECT(size > 0 && std::isfinite(size), "size of the patch window " + std::to_string(size) + " m");
     PALP_EXPECT(cells >= 2 && cells % 2 == 0, std::to_string(cells) + " cells; the contact must be a node");
     return {{cells, cells, size / cells, size / cells}, {-size / 2, -size / 2}};
 }

@@ -31,7 +31,8 @@ public:
     Buffer(Buffer&&) noexcept;
     Buffer& operator=(Buffer&&) noexcept;
 
-    /// Returns the bytes as the host sees them, mapped permanently. Null for Intent::processor, unless the host computes.
+    /// Returns the bytes as the host sees them, mapped permanently. Null for Intent::processor, unless the host
+    /// computes.
     [[nodiscard]] void* mapped() const noexcept;
 
     /// Returns the same as an array. Not for Intent::processor.

@@ -43,8 +43,8 @@ struct Processor {
     std::vector<std::string> refusals;        ///< why it cannot be used; empty: it can
 };
 
-/// Lists every Vulkan processor of this machine, or nothing if there is no driver. It loads every driver, which takes tens
-/// of milliseconds.
+/// Lists every Vulkan processor of this machine, or nothing if there is no driver. It loads every driver, which takes
+/// tens of milliseconds.
 /// \throws ProcessorError if Vulkan does not start, or cannot tell
 [[nodiscard]] std::vector<Processor> listProcessors();
 

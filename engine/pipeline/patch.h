@@ -25,7 +25,7 @@ struct PatchSettings {
     double     footprintRadius = 4e-3;  ///< of the fingertip [m]
     Map        map             = Map::lambertAzimuthal;
     Resampling resampling      = Resampling::logMean;
-    PlateEdges edges{}; ///< of the window
+    PlateEdges edges{}; ///< of the patch window
     ForceLaw   forceLaw  = ForceLaw::series;
     double     tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
 };

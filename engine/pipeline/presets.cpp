@@ -27,7 +27,7 @@ std::vector<std::string> differencesFromPaper(const PatchSettings& settings)
     if (settings.edges != PlateEdges{}) lines.push_back("edges other than clamped, the paper's are clamped");
     if (settings.foundation != 0)
         lines.push_back("elastic foundation of " + formatQuantity(settings.foundation, "Pa/m") +
-                        ", the paper has none: its window is felt");
+                        ", the paper has none: its patch window is felt");
     if (settings.forceLaw != ForceLaw::paper)
         lines.push_back(std::string("force law ") + name(settings.forceLaw) +
                         ", the paper's is E A/h: the plate is not felt");

@@ -26,8 +26,8 @@ struct HandPose {
 /// A scripted hand: straight lines between waypoints.
 ///
 /// They are lines, not a cubic through the waypoints: a cubic overshoots, into the object if it must, and is faster in
-/// places than the hand was; a line is never faster than fastest(), and at the time of a waypoint it gives that waypoint
-/// bit for bit.
+/// places than the hand was; a line is never faster than fastest(), and at the time of a waypoint it gives that
+/// waypoint bit for bit.
 /// Invariant: at least two waypoints, all finite, times rising.
 /// \thread immutable; pure
 class HandPath {
@@ -119,8 +119,8 @@ struct HandScript {
 /// \throws Error naming what is not positive
 [[nodiscard]] HandPath makeHand(const HandScript& script, const HandPlace& place);
 
-/// Makes a hand that keeps its depth over a curved object: each waypoint moves along `outward` by the height of the cloud
-/// above the plane through the place, there.
+/// Makes a hand that keeps its depth over a curved object: each waypoint moves along `outward` by the height of the
+/// cloud above the plane through the place, there.
 ///
 /// The height is the weighted mean of the near points' heights, weights (1 - r^2/R^2)^2 by their distance r in the
 /// plane, R three spacings of the cloud: smooth where the hand is, for any points. Where the cloud ends the last

@@ -346,7 +346,7 @@ struct Recording::Impl {
     void describeEnd()
     {
         description["finished"]      = true;
-        description["samples"]       = report.ticks;
+        description["samples"]       = report.ticks; // the format's word, as in samples.csv
         description["lost"]          = report.lost;
         description["longest_gap_s"] = report.longestGap;
         description["stopped"]       = report.stopped ? nlohmann::ordered_json(*report.stopped) : nullptr;

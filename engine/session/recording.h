@@ -43,7 +43,8 @@ struct RecordingReport {
     std::optional<std::string> stopped{}; ///< why writing stopped early: a sentence
 };
 
-/// Writes a session while it runs: a folder with session.json, a .npy file per column, and samples.csv.
+/// Writes a session while it runs: a folder with session.json, a .npy file per column, and samples.csv. What the
+/// format calls a sample is the record of a tick.
 ///
 ///     servo ---push()---> ring of 4096 records (4 s) ---writer thread, every 2 ms---> data, then headers
 ///

@@ -307,13 +307,13 @@ std::vector<SceneKey> materialKeys()
 std::vector<SceneKey> patchKeys()
 {
     static const std::string edgesForm = wordsOf<Edge>() + ", or a list such as x0=free,z1=supported";
-    const Control            window{Panel::patch, "window", "mm", 1e-3, 5, 200, true, 1};
+    const Control            window{Panel::patch, "patch window", "mm", 1e-3, 5, 200, true, 1};
     const Control            cells{Panel::patch, "cells a side", "", 1, 16, 256, true, 0, 2};
     const Control            fingertip{Panel::patch, "fingertip", "mm", 1e-3, 0.5, 20, true, 2};
     return {
         numberKey(
             {.name      = "window",
-             .help      = "edge of the square of surface that bends with the finger",
+             .help      = "edge of the patch window, the square of surface that bends with the finger",
              .group     = kTouch,
              .unit      = "m",
              .example   = "70 mm",
@@ -323,7 +323,7 @@ std::vector<SceneKey> patchKeys()
             [](auto& s) -> auto& { return s.patch.window; }),
         countKey(
             {.name    = "cells",
-             .help    = "cells of the plate's grid along a side of the window",
+             .help    = "cells of the plate's grid along a side of the patch window",
              .group   = kTouch,
              .bounds  = KeyBounds{.least = 8, .most = 1024, .multipleOf = 2},
              .control = cells},
@@ -351,7 +351,7 @@ std::vector<SceneKey> patchKeys()
              .control = Control{Panel::patch, "resampling"}},
             [](auto& s) -> auto& { return s.patch.resampling; }),
         {.name   = "edges",
-         .help   = "edges of the window: one name for all, or SIDE=EDGE of the sides x0, x1, z0, z1",
+         .help   = "edges of the patch window: one name for all, or SIDE=EDGE of the sides x0, x1, z0, z1",
          .group  = kTouch,
          .kind   = Kind::object,
          .form   = edgesForm,

@@ -9,7 +9,8 @@
 #include "engine/compute/detail/backend.h"
 #include "engine/compute/detail/vulkan_instance.h"
 
-// Processors that Vulkan offers. Internal to the layer: no other header names a type of Vulkan, except vulkan_instance.h.
+// Processors that Vulkan offers. Internal to the layer: no other header names a type of Vulkan, except
+// vulkan_instance.h.
 
 namespace palp::compute {
 

@@ -155,7 +155,7 @@ void drawOverlays(SvgDrawing& svg, const PlotFrame& frame, const HeatMapSettings
             ++shown;
         }
         drawDots(svg, dots);
-        legend.push_back({"points in the window: " + std::to_string(shown),
+        legend.push_back({"points in the patch window: " + std::to_string(shown),
                           [](SvgDrawing& to, glm::dvec2 at) { drawDots(to, SvgPath().dotAt(at)); }});
     }
     if (!s.contact) return;
