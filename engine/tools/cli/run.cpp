@@ -35,6 +35,7 @@ void run(RunOptions o)
     o.session.hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, scene);
     demandGood(o.session);
     if (o.printConfig) {
+        warn(unusedVariables());
         std::cout << printConfig(scene, o.json ? ConfigFormat::json : ConfigFormat::text);
         return;
     }
@@ -78,7 +79,7 @@ void replay(const ReplayOptions& o)
     }
     const auto difference = compareSessions(session, again);
     const auto sentence   = difference ? describe(*difference, session, again) : "all ticks are equal to the bit";
-    if (o.json)
+    if (o.json) // "samples" is the word of session.json
         std::cout << jsonText(
             nlohmann::json{{"equal", !difference}, {"samples", again.records.size()}, {"says", sentence}});
     else

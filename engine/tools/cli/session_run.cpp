@@ -118,7 +118,7 @@ nlohmann::json jsonOf(const SessionRun& run)
     all["hand"]        = run.hand;
     all["solver"]      = run.solver;
     all["warnings"]    = run.warnings;
-    if (run.recorded)
+    if (run.recorded) // "samples" is the word of session.json
         all["recorded"] = {{"folder", run.folder}, {"samples", run.recorded->ticks}, {"lost", run.recorded->lost}};
     return all;
 }

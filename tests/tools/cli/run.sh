@@ -679,6 +679,24 @@ JSON
     printf '{"cloud": "sample:sheet", "hunt": {"nodules": [{"at": [0, 0, 0], "radius": "6 mm", "modulus": "3 MPa"}]}}' >hidden.json
     good 'what touch does with a hunt' touch hidden.json --json
     holds 'has hidden 1 nodule in this stiffness; palpate hunt and palpate view score'
+    unused() { # unused COMMAND...: it tells of variables that nothing reads, one of each kind, and of no others
+        env PALPATE_CELS=8 PALPATE_HAND_OVER=hold PALPATE_ODD=1 PALPATE_EMPTY= PALPATE_CELLS=32 PALPATE_HOST_ISA=portable "$palpate" "$@" >out.txt 2>err.txt ||
+            complain "unused variables, $1: exit $? $(cat err.txt)"
+        cat err.txt >>out.txt
+        holds "environment's PALPATE_CELS is not used; did you mean PALPATE_CELLS?"
+        holds "environment's PALPATE_HAND_OVER is not used; the key is compliance_law now: PALPATE_COMPLIANCE_LAW"
+        holds "environment's PALPATE_ODD is not used; palpate info --keys lists the keys"
+        grep -qE 'PALPATE_(CELLS|EMPTY|HOST_ISA) is not used' out.txt && complain "$1 tells of variables that are used: $(cat out.txt)"
+    }
+    unused info scan.json
+    unused convert scan.json unused.ply
+    unused paint scan.json --stroke 'at=0,0,30 radius=5 value=1MPa' --out unused.ply
+    unused touch scan.json
+    unused render scan.json --size 64x48 --out unused.png
+    unused perceive scan.json --places 5 --reach 8mm
+    unused run scan.json --clock virtual --seconds 0.05
+    unused run scan.json --print-config
+    unused hunt hidden.json --clock virtual --seconds 0.05
     good 'keys of scenes' info --keys
     holds '| `compliance_law` |'
     good 'their schema' info --schema
