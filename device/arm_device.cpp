@@ -17,8 +17,8 @@ constexpr double kLongest   = 1;   // [s] the arm moves on by at most this in on
 ArmDevice::ArmDevice(const SimulatedArmSettings& settings, const glm::dvec3& start)
     : settings_(settings), start_(start), arm_(settings, start)
 {
-    if (settings.delaySamples < 1)
-        throw Error("arm: delaySamples must be from 1 to 7, found " + std::to_string(settings.delaySamples));
+    if (settings.delayTicks < 1)
+        throw Error("arm: delayTicks must be from 1 to 7, found " + std::to_string(settings.delayTicks));
     info_.model            = "simulated arm";
     info_.workspaceRadius  = settings.boxRadius;
     info_.maximumForce     = 8;    // N: CHAI3D's value for the Falcon, which the arm is modelled on
@@ -57,15 +57,15 @@ HapticState ArmDevice::exchange(const GovernedForce& force, double now) noexcept
     state_.fault    = !good ? DeviceFault::badForce : late ? DeviceFault::hostTooSlow : DeviceFault::none;
     // A step holds the force of the step before: the force of the last exchange has acted until now.
     if (late) arm_.step({}, kHostStall);
-    const double   left   = std::min(passed, kLongest) - (late ? kHostStall : 0);
-    const ArmState sample = arm_.step(state_.fault == DeviceFault::none ? wanted : glm::dvec3(0), left);
-    ticked_               = true;
-    last_                 = now;
-    state_.time           = now;
-    state_.position       = sample.position;
-    state_.velocity       = sample.velocity;
-    state_.inBox          = sample.inBox;
-    state_.missed         = 0;
+    const double   left     = std::min(passed, kLongest) - (late ? kHostStall : 0);
+    const ArmState armState = arm_.step(state_.fault == DeviceFault::none ? wanted : glm::dvec3(0), left);
+    ticked_                 = true;
+    last_                   = now;
+    state_.time             = now;
+    state_.position         = armState.position;
+    state_.velocity         = armState.velocity;
+    state_.inBox            = armState.inBox;
+    state_.missed           = 0;
     ++state_.sequence;
     return state_;
 }

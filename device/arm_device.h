@@ -6,7 +6,7 @@ namespace palp {
 
 /// A SimulatedArm, and the hand that holds it, as a device: exchange() moves both on to `now` by the caller's clock,
 /// virtual or real. Its frame is the arm's. The force of an exchange acts from then on, after the delay of the
-/// settings: the arm's delay of n samples is n - 1 beyond that, so it must be at least 1.
+/// settings: the arm's delay of n ticks is n - 1 beyond that, so it must be at least 1.
 ///
 /// If exchange() is not called, the force acts for 100 ms, then none; time beyond one second is omitted.
 class ArmDevice : public HapticDevice {

@@ -26,26 +26,26 @@ SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, const glm::dvec
     demandRange("simulated arm", "velocityWindow", settings.velocityWindow, 0, 1);
     demandRange("simulated arm", "halfWorkspace", settings.halfWorkspace, 1e-3, 1e3);
     demandRange("simulated arm", "boxRadius", settings.boxRadius, 0, 1e3);
-    demandRange("simulated arm", "delaySamples", settings.delaySamples, 0, int(kDelays) - 1);
+    demandRange("simulated arm", "delayTicks", settings.delayTicks, 0, int(kDelays) - 1);
     velocityFilter_.add(time_, encoded());
 }
 
 ArmState SimulatedArm::step(const glm::dvec3& force, double period) noexcept
 {
-    if (!(period > 0) || !std::isfinite(period)) return sample();
+    if (!(period > 0) || !std::isfinite(period)) return state();
     const double whole       = force.x + force.y + force.z;
     forces_[tick_ % kDelays] = std::isfinite(whole) ? force : glm::dvec3(0);
-    const glm::dvec3 held    = forces_[(tick_ + kDelays - std::size_t(settings_.delaySamples)) % kDelays];
+    const glm::dvec3 held    = forces_[(tick_ + kDelays - std::size_t(settings_.delayTicks)) % kDelays];
     ++tick_;
 
     const double pieces = std::ceil(period / kPiece * (1 - 1e-12));
     for (double piece = 0; piece < pieces; ++piece) move(held, period / pieces);
     time_ += period;
     velocityFilter_.add(time_, encoded());
-    return sample();
+    return state();
 }
 
-ArmState SimulatedArm::sample() const noexcept
+ArmState SimulatedArm::state() const noexcept
 {
     const glm::dvec3 place = encoded();
     return {time_, place, velocityFilter_.velocity(), glm::length(place) <= settings_.boxRadius};

@@ -19,7 +19,7 @@ struct SimulatedArmSettings {
     double velocityWindow = 15e-3; ///< [s] over which positions are differenced; drivers use 15 to 20 ms
     double halfWorkspace  = 0.05;  ///< [m] per axis; the arm stops dead there
     double boxRadius      = 0.045; ///< [m] of the sphere about the origin in which ArmState::inBox is true
-    int    delaySamples   = 1;     ///< from a force to its effect, 0 to 7; in addition to the hold over a tick
+    int    delayTicks     = 1;     ///< from a force to its effect, 0 to 7; in addition to the hold over a tick
 };
 
 /// A hand that pulls the grip by a spring and a damper to a place that moves at constant velocity.
@@ -62,7 +62,7 @@ public:
     /// \return the state at the end of the period
     ArmState step(const glm::dvec3& force, double period) noexcept;
 
-    [[nodiscard]] ArmState          sample() const noexcept;
+    [[nodiscard]] ArmState          state() const noexcept;
     [[nodiscard]] const glm::dvec3& position() const noexcept { return position_; } ///< [m] true, between encoder steps
     [[nodiscard]] const glm::dvec3& velocity() const noexcept { return velocity_; } ///< [m/s] true
 

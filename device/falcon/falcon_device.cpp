@@ -28,7 +28,7 @@ FalconDevice::FalconDevice(FalconLinkOpener open, const FalconDeviceSettings& se
     info_.serial           = settings.serial;
     info_.workspaceRadius  = settings.loop.workspaceRadius;
     info_.maximumForce     = 8;    // CHAI3D's table; 4095 counts at 4200 hold 11.4 N at the worst place of the sphere
-    info_.maximumStiffness = 1000; // half of where the released arm starts to swing, at 1 kHz and a sample of delay
+    info_.maximumStiffness = 1000; // half of where the released arm starts to swing, at 1 kHz and a tick of delay
     info_.maximumDamping   = 1.5;  // so that 1000 N/m (T/2 + delay) and it stay below the arm's own 3.2
     info_.buttons          = 4;
     info_.needsHoming      = true;

@@ -281,9 +281,9 @@ struct Axis {
 /// on it.
 [[nodiscard]] double survey(std::span<const ChartPoint> points, Axis& x, Axis& z)
 {
-    constexpr std::size_t kSamples = 1000;
-    const std::size_t     stride   = (points.size() + kSamples - 1) / kSamples;
-    std::size_t           inside   = 0;
+    constexpr std::size_t kSurveyed = 1000;
+    const std::size_t     stride    = (points.size() + kSurveyed - 1) / kSurveyed;
+    std::size_t           inside    = 0;
     for (std::size_t p = 0; p < points.size(); p += stride) {
         x.include(points[p].x);
         z.include(points[p].z);

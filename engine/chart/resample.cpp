@@ -42,7 +42,7 @@ bool areFinite(std::span<const ChartPoint> positions)
 
 PatchWindow PatchWindow::square(double size, int cells)
 {
-    PALP_EXPECT(size > 0 && std::isfinite(size), "window size " + std::to_string(size) + " m");
+    PALP_EXPECT(size > 0 && std::isfinite(size), "size of the patch window " + std::to_string(size) + " m");
     PALP_EXPECT(cells >= 2 && cells % 2 == 0, std::to_string(cells) + " cells; the contact must be a node");
     return {{cells, cells, size / cells, size / cells}, {-size / 2, -size / 2}};
 }
@@ -54,28 +54,28 @@ bool PatchWindow::holds(const ChartPoint& p) const noexcept
 
 double kernelReach(double pointSpacing, double nodeSpacing) noexcept
 {
-    return kSamplingReach * samplingWidth(pointSpacing, nodeSpacing);
+    return kResamplingReach * resamplingWidth(pointSpacing, nodeSpacing);
 }
 
 Resampled resampleRigidity(const PatchWindow& window, std::span<const ChartPoint> positions,
-                           std::span<const double> rigidities, Resampling sampling, double pointSpacing)
+                           std::span<const double> rigidities, Resampling resampling, double pointSpacing)
 {
     PALP_EXPECT(!positions.empty() && positions.size() == rigidities.size(),
                 std::to_string(positions.size()) + " positions, " + std::to_string(rigidities.size()) + " rigidities");
     const PlateGrid& grid  = window.grid;
-    const double     width = samplingWidth(pointSpacing, std::max(grid.spacingX, grid.spacingZ));
+    const double     width = resamplingWidth(pointSpacing, std::max(grid.spacingX, grid.spacingZ));
 
     PALP_EXPECT(areFinite(positions), "a point is not finite");
 
     Resampled result{NodeField(grid, std::numeric_limits<double>::quiet_NaN()), 0};
-    if (sampling == Resampling::logMean) {
+    if (resampling == Resampling::logMean) {
         const LogMeanSums sums(window, positions, rigidities, width);
         const auto        nodes = std::size_t(grid.nodesZ());
         for (int i = 0; i < grid.nodesX(); ++i)
             sums.means(i, std::span(result.rigidity.values()).subspan(std::size_t(i) * nodes, nodes));
         if (surelyCovered(window, positions, width)) return result;
     }
-    takeNearest(window, positions, rigidities, kSamplingNearby * width, result);
+    takeNearest(window, positions, rigidities, kResamplingNearby * width, result);
     return result;
 }
 

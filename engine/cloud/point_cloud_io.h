@@ -10,6 +10,7 @@
 
 #include "engine/cloud/point_cloud.h"
 #include "engine/cloud/triangle.h"
+#include "engine/core/enum_names.h"
 
 namespace palp {
 
@@ -21,6 +22,12 @@ enum class CloudFormat {
 
 /// The form of numbers in a written PLY or PCD file; text files are always text.
 enum class CloudEncoding { binaryLittleEndian, binaryBigEndian, ascii };
+constexpr auto namesOf(CloudEncoding)
+{
+    using enum CloudEncoding;
+    return std::to_array<NamedValue<CloudEncoding>>(
+        {{binaryLittleEndian, "binary"}, {binaryBigEndian, "binary-big-endian"}, {ascii, "ascii"}});
+}
 
 enum class RangeScale { linear, logarithmic };
 

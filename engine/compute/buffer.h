@@ -11,9 +11,9 @@ namespace palp::compute {
 
 /// The use of a buffer, which decides where its memory lies.
 enum class Intent {
-    device,  ///< the processor's own, fastest memory; the host reaches it by copies only
-    upload,  ///< the host writes in order and does not read back; the processor reads over the bus
-    readback ///< the processor writes, the host reads: cached memory where available
+    processor, ///< its own, fastest memory; the host reaches it by copies only
+    upload,    ///< the host writes in order and does not read back; the processor reads over the bus
+    readback   ///< the processor writes, the host reads: cached memory where available
 };
 
 /// A range of bytes that kernels and copies reach. Its contents are undefined until something writes them.
@@ -31,10 +31,11 @@ public:
     Buffer(Buffer&&) noexcept;
     Buffer& operator=(Buffer&&) noexcept;
 
-    /// Returns the bytes as the host sees them, mapped permanently. Null for Intent::device, unless the host computes.
+    /// Returns the bytes as the host sees them, mapped permanently. Null for Intent::processor, unless the host
+    /// computes.
     [[nodiscard]] void* mapped() const noexcept;
 
-    /// Returns the same as an array. Not for Intent::device.
+    /// Returns the same as an array. Not for Intent::processor.
     template <class T>
     [[nodiscard]] std::span<T> as() const
     {

@@ -23,7 +23,7 @@ Handles openHost(const ContextSettings& settings)
 {
     if (settings.validation != Validation::off)
         throw ProcessorError(
-            "validation was asked for, and the host has no shaders; name a Vulkan device, such as lavapipe");
+            "validation was asked for, and the host has no shaders; name a Vulkan processor, such as lavapipe");
     return std::make_unique<HostContext>();
 }
 
@@ -65,7 +65,8 @@ Handles openBest(const ContextSettings& settings)
 /// Finds the first usable one of these kinds, in their order.
 std::optional<std::size_t> bestToDraw(const std::vector<Processor>& list)
 {
-    for (const char* kind : {"discrete", "integrated", "virtual", "software"})
+    using enum ProcessorKind;
+    for (const ProcessorKind kind : {discrete, integrated, virtualGpu, software})
         for (std::size_t n = 0; n < list.size(); ++n)
             if (list[n].kind == kind && list[n].refusals.empty()) return n;
     return std::nullopt;
@@ -73,7 +74,7 @@ std::optional<std::size_t> bestToDraw(const std::vector<Processor>& list)
 
 [[noreturn]] void refuseToDraw(const std::vector<Processor>& list)
 {
-    std::string sentence = "no Vulkan device can draw";
+    std::string sentence = "no Vulkan processor can draw";
     if (list.empty())
         sentence += ", for none was found: install the vendor's driver, or mesa-vulkan-drivers for one in software";
     for (const Processor& one : list)
@@ -85,7 +86,7 @@ std::optional<std::size_t> bestToDraw(const std::vector<Processor>& list)
 Handles openToDraw(const ContextSettings& settings)
 {
     if (isProcessorWord(settings.processor, kHostProcessor))
-        throw ProcessorError("the host computes and cannot draw; name a Vulkan device, such as lavapipe");
+        throw ProcessorError("the host computes and cannot draw; name a Vulkan processor, such as lavapipe");
     auto                         instance = std::make_unique<Instance>(settings.validation, settings.windowExtensions);
     const std::vector<Candidate> found    = candidates(*instance);
     std::vector<Processor>       list     = descriptionsOf(found);

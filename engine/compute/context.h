@@ -43,7 +43,7 @@ struct Limits {
     std::size_t   sharedMemory = 0; ///< [byte] per workgroup
 };
 
-/// A processor that is open for computing, with one queue: a device of Vulkan, or the host, whose kernels are functions
+/// A processor that is open for computing, with one queue: one of Vulkan, or the host, whose kernels are functions
 /// and whose lists run on the calling thread. Buffers, kernels and command lists are made from a context and must be
 /// destroyed before it. It may be moved meanwhile.
 /// \thread one at a time, together with everything made from it

@@ -11,8 +11,8 @@ namespace {
 
 using Processors = std::vector<Processor>;
 
-/// The kinds that "auto" takes, best first. It takes neither the unspecified kind "other" nor software.
-constexpr std::array<std::string_view, 3> kGpus{"discrete", "integrated", "virtual"};
+/// The kinds that "auto" takes, best first. It takes neither the unspecified kind nor software.
+constexpr std::array kGpus{ProcessorKind::discrete, ProcessorKind::integrated, ProcessorKind::virtualGpu};
 
 constexpr const char* kExpected = "expected auto, host, lavapipe, an index or part of a name";
 
@@ -34,9 +34,10 @@ std::string withProcessors(const std::string& sentence, const Processors& proces
 {
     std::string text = sentence;
     if (processors.empty())
-        text += "; no Vulkan device was found: install the vendor's driver, or mesa-vulkan-drivers for one in software";
+        text +=
+            "; no Vulkan processor was found: install the vendor's driver, or mesa-vulkan-drivers for one in software";
     for (const Processor& one : processors)
-        text += "\n  " + std::to_string(one.index) + "  " + one.name + " (" + one.kind +
+        text += "\n  " + std::to_string(one.index) + "  " + one.name + " (" + name(one.kind) +
                 "): " + (one.refusals.empty() ? "usable" : joined(one.refusals));
     return text + "\n  host  (this machine's processor): usable";
 }
@@ -55,7 +56,7 @@ std::string withProcessors(const std::string& sentence, const Processors& proces
 }
 
 /// Finds the first usable processor of a kind.
-std::optional<std::size_t> firstOf(const Processors& processors, std::string_view kind)
+std::optional<std::size_t> firstOf(const Processors& processors, ProcessorKind kind)
 {
     for (std::size_t n = 0; n < processors.size(); ++n)
         if (processors[n].kind == kind && processors[n].refusals.empty()) return n;
@@ -100,12 +101,12 @@ std::optional<std::size_t> chooseProcessor(const Processors& processors, std::st
 {
     if (isProcessorWord(wanted, kHostProcessor)) return std::nullopt;
     if (isProcessorWord(wanted, kAutoProcessor)) {
-        for (const std::string_view kind : kGpus)
+        for (const ProcessorKind kind : kGpus)
             if (const auto found = firstOf(processors, kind)) return found;
         return std::nullopt;
     }
     if (isProcessorWord(wanted, kLavapipeProcessor)) {
-        if (const auto found = firstOf(processors, "software")) return found;
+        if (const auto found = firstOf(processors, ProcessorKind::software)) return found;
         refuse(processors, "no GPU in software can be used (package mesa-vulkan-drivers)");
     }
     if (wanted.empty()) refuseWord(processors, std::string("an empty word names no processor; ") + kExpected);

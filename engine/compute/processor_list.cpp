@@ -8,19 +8,20 @@
 namespace palp::compute {
 namespace {
 
-std::string kindOf(VkPhysicalDeviceType type)
+ProcessorKind kindOf(VkPhysicalDeviceType type)
 {
+    using enum ProcessorKind;
     switch (type) {
     case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
-        return "discrete";
+        return discrete;
     case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
-        return "integrated";
+        return integrated;
     case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
-        return "virtual";
+        return virtualGpu;
     case VK_PHYSICAL_DEVICE_TYPE_CPU:
-        return "software";
+        return software;
     default:
-        return "other";
+        return other;
     }
 }
 
@@ -30,7 +31,7 @@ std::string versionText(std::uint32_t version)
            std::to_string(VK_API_VERSION_PATCH(version));
 }
 
-/// Returns the size of the largest heap of the device's own [byte].
+/// Returns the size of the largest heap of the processor's own [byte].
 std::uint64_t ownMemory(VkPhysicalDevice physical)
 {
     VkPhysicalDeviceMemoryProperties memory;
@@ -65,7 +66,7 @@ void findQueue(Candidate& candidate)
     candidate.timestampBits = families[*best].timestampValidBits;
 }
 
-/// Queries properties that only devices from Vulkan 1.2 on have.
+/// Queries properties that only processors from Vulkan 1.2 on have.
 void describeModern(Candidate& candidate)
 {
     auto driver = typed<VkPhysicalDeviceDriverProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES);
@@ -86,7 +87,7 @@ void describeModern(Candidate& candidate)
         candidate.description.refusals.push_back("it does not lay structs out as C++ does (scalarBlockLayout)");
 }
 
-/// Refuses devices that are too small for the kernels of this project, as the smallest that Vulkan allows are.
+/// Refuses processors that are too small for the kernels of this project, as the smallest that Vulkan allows are.
 void refuseSmall(Candidate& candidate)
 {
     constexpr std::uint32_t kBuffers = 9, kInvocations = 256, kPushBytes = 128, kSharedBytes = 16 << 10;
@@ -136,7 +137,7 @@ std::vector<Candidate> candidates(const Instance& instance)
     std::vector<VkPhysicalDevice> devices(count);
     if (result == VK_SUCCESS && count) result = vkEnumeratePhysicalDevices(instance.get(), &count, devices.data());
     if (result != VK_SUCCESS)
-        throw ProcessorError("Vulkan cannot list its devices (error " + std::to_string(result) +
+        throw ProcessorError("Vulkan cannot list its processors (error " + std::to_string(result) +
                              "); does vulkaninfo run?");
     for (std::uint32_t n = 0; n < count; ++n) found.push_back(describe(devices[n], int(n)));
     return found;

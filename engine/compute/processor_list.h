@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/compute/processor_error.h"
+#include "engine/core/enum_names.h"
 
 namespace palp::compute {
 
@@ -17,11 +18,24 @@ inline constexpr std::string_view kAutoProcessor = "auto", kHostProcessor = "hos
 /// Returns whether `given` is the word, in any case.
 [[nodiscard]] bool isProcessorWord(std::string_view given, std::string_view word);
 
-/// One processor: a device as the drivers of Vulkan describe it, or the host.
+/// What sort of processor it is. Vulkan's drivers say it of theirs, and the host is a kind of its own.
+enum class ProcessorKind { discrete, integrated, virtualGpu, software, other, host };
+constexpr auto namesOf(ProcessorKind)
+{
+    using enum ProcessorKind;
+    return std::to_array<NamedValue<ProcessorKind>>({{discrete, "discrete"},
+                                                     {integrated, "integrated"},
+                                                     {virtualGpu, "virtual"},
+                                                     {software, "software"}, // Vulkan on this machine's own processor
+                                                     {other, "other"},       // of a sort that the driver does not name
+                                                     {host, "host"}});
+}
+
+/// One processor: one of Vulkan, as its driver describes it, or the host.
 struct Processor {
-    int                      index = 0;       ///< place in the list of this machine; of the host: -1
-    std::string              name;            ///< as the driver spells it, or kHostProcessor
-    std::string              kind;            ///< discrete, integrated, virtual, software, other or kHostProcessor
+    int                      index = 0; ///< place in the list of this machine; of the host: -1
+    std::string              name;      ///< as the driver spells it, or kHostProcessor
+    ProcessorKind            kind = ProcessorKind::other;
     std::string              driver;          ///< name and version; of the host: empty
     std::string              api;             ///< Vulkan version, such as 1.3.230; of the host: empty
     bool                     float64 = false; ///< shaders may use double
@@ -29,8 +43,8 @@ struct Processor {
     std::vector<std::string> refusals;        ///< why it cannot be used; empty: it can
 };
 
-/// Lists every Vulkan device of this machine, or nothing if there is no driver. It loads every driver, which takes tens
-/// of milliseconds.
+/// Lists every Vulkan processor of this machine, or nothing if there is no driver. It loads every driver, which takes
+/// tens of milliseconds.
 /// \throws ProcessorError if Vulkan does not start, or cannot tell
 [[nodiscard]] std::vector<Processor> listProcessors();
 

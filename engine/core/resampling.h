@@ -16,11 +16,11 @@ constexpr auto namesOf(Resampling)
     return std::to_array<NamedValue<Resampling>>({{logMean, "log-mean"}, {nearest, "nearest"}});
 }
 
-inline constexpr double kSamplingReach  = 4.0; ///< of the Gaussian; the weight there is 3e-4 [standard deviations]
-inline constexpr double kSamplingNearby = 2.5; ///< beyond it a node counts as without a point [standard deviations]
+inline constexpr double kResamplingReach  = 4.0; ///< of the Gaussian; the weight there is 3e-4 [standard deviations]
+inline constexpr double kResamplingNearby = 2.5; ///< beyond it a node counts as without a point [standard deviations]
 
 /// Returns the Gaussian's standard deviation [m], from the points' mean distance and the grid's larger spacing [m].
-[[nodiscard]] inline double samplingWidth(double pointSpacing, double nodeSpacing) noexcept
+[[nodiscard]] inline double resamplingWidth(double pointSpacing, double nodeSpacing) noexcept
 {
     return std::max(pointSpacing, nodeSpacing / 2);
 }

@@ -6,19 +6,19 @@ namespace palp {
 
 void RecentMotion::add(double time, const glm::dvec3& position) noexcept
 {
-    if (count_ > 0 && !(time > samples_[newest_].time)) return;
-    newest_           = (newest_ + 1) % kSamples;
-    samples_[newest_] = {time, position};
-    if (count_ < kSamples) ++count_;
+    if (count_ > 0 && !(time > past_[newest_].time)) return;
+    newest_        = (newest_ + 1) % kMost;
+    past_[newest_] = {time, position};
+    if (count_ < kMost) ++count_;
 }
 
 glm::dvec3 RecentMotion::velocity() const noexcept
 {
-    constexpr double kRounding = 1e-9; // [s] of sums of milliseconds
-    const Sample&    newest    = samples_[newest_];
-    const Sample*    oldest    = &newest;
+    constexpr double     kRounding = 1e-9; // [s] of sums of milliseconds
+    const TimedPosition& newest    = past_[newest_];
+    const TimedPosition* oldest    = &newest;
     for (std::size_t n = 1; n < count_; ++n) {
-        const Sample& before = samples_[(newest_ + kSamples - n) % kSamples];
+        const TimedPosition& before = past_[(newest_ + kMost - n) % kMost];
         if (newest.time - before.time > kSpan + kRounding && oldest != &newest) break;
         oldest = &before;
         if (newest.time - before.time > kSpan) break; // a slow clock: only the last two positions count

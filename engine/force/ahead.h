@@ -23,15 +23,15 @@ public:
     [[nodiscard]] glm::dvec3 velocity() const noexcept;
 
 private:
-    struct Sample {
+    struct TimedPosition {
         double     time = 0;
         glm::dvec3 position{};
     };
-    static constexpr std::size_t kSamples = 32; // at 1 kHz three times the span; if faster, the span shrinks
+    static constexpr std::size_t kMost = 32; // at 1 kHz three times the span; if faster, the span shrinks
 
-    std::array<Sample, kSamples> samples_{}; // a ring
-    std::size_t                  newest_ = 0;
-    std::size_t                  count_  = 0;
+    std::array<TimedPosition, kMost> past_{}; // a ring
+    std::size_t                      newest_ = 0;
+    std::size_t                      count_  = 0;
 };
 
 /// Returns the centre of the next patch window [m]: contact + 1.5 period velocity, the middle of the time during

@@ -52,7 +52,7 @@ void check(const GovernorSettings& s)
     demand("engageTime", s.engageTime, 0.1, 10);
     demand("maximumStiffness", s.maximumStiffness, 0, 1e4);
     demand("stiffnessAtOneMillisecond", s.stiffnessAtOneMillisecond, 0, 2000);
-    demand("delaySamples", s.delaySamples, 0, 7);
+    demand("delayTicks", s.delayTicks, 0, 7);
 }
 
 } // namespace
@@ -128,7 +128,7 @@ ForceGovernor::Elapsed ForceGovernor::elapsed(double dt) const noexcept
 double ForceGovernor::capFor(double period) const noexcept
 {
     if (!(period > 0) || !std::isfinite(period)) return 0;
-    const double lag = period * (0.5 + settings_.delaySamples);
+    const double lag = period * (0.5 + settings_.delayTicks);
     return std::min(settings_.maximumStiffness, settings_.stiffnessAtOneMillisecond * 1.5e-3 / lag);
 }
 
@@ -173,7 +173,7 @@ void ForceGovernor::observeEnergy(const GovernorInput& in, double dt) noexcept
         energy_ = 0;
     } else if (known && hasPosition_) {
         // Energy of the force that acted on the way here, plus what the arm's damping and the tank account for.
-        const std::size_t acting = tick_ + kDelays - 1 - std::size_t(settings_.delaySamples);
+        const std::size_t acting = tick_ + kDelays - 1 - std::size_t(settings_.delayTicks);
         energy_ -= glm::dot(sent_[acting % kDelays], in.position - lastPosition_);
         energy_ += settings_.creditedDamping * glm::dot(in.velocity, in.velocity) * dt + in.admittedEnergy;
         if (in.force == glm::dvec3(0)) energy_ -= energy_ * std::min(1.0, dt / settings_.passivityLeak);

@@ -45,10 +45,10 @@ struct GovernorSettings {
     double engageTime = 1.5; ///< [s] from zero force to all of it; 1 to 2
 
     double maximumStiffness = 1000; ///< [N/m] where the loop is not the limit
-    /// [N/m] at a period of 1 ms and one sample of delay. The released arm is stable there up to 2137 and passive up to
+    /// [N/m] at a period of 1 ms and one tick of delay. The released arm is stable there up to 2137 and passive up to
     /// 2133, so this is a margin of two.
     double stiffnessAtOneMillisecond = 1000;
-    int    delaySamples              = 1; ///< from a position to the effect of its force, beside the hold; 0 to 7
+    int    delayTicks                = 1; ///< from a position to the effect of its force, beside the hold; 0 to 7
 };
 
 /// Reasons for which no force flows. The numbers are recorded: never reuse one.
@@ -158,7 +158,7 @@ public:
     void reset() noexcept;
 
     /// Returns the most that a force law may render [N/m], for the loop period of the last tick:
-    /// min(maximum, stiffnessAtOneMillisecond 1.5 ms / (T/2 + delaySamples T)); 0 if that period makes no sense. It
+    /// min(maximum, stiffnessAtOneMillisecond 1.5 ms / (T/2 + delayTicks T)); 0 if that period makes no sense. It
     /// falls and rises at once: pass the result through the tank, which pays for a rise.
     [[nodiscard]] double stiffnessCap() const noexcept { return cap_; }
 

@@ -67,7 +67,7 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
     const double     wanted  = 2 * (shape.side / 2 + 1) * shape.radius + spacing,
                  found       = std::min(grid.sizeX(), grid.sizeZ());
     if (found < wanted)
-        throw Error("the window of " + formatQuantity(found, "m") + " does not hold a table of " +
+        throw Error("the patch window of " + formatQuantity(found, "m") + " does not hold a table of " +
                     std::to_string(shape.side) + " x " + std::to_string(shape.side) + " footprints of radius " +
                     formatQuantity(shape.radius, "m") + "; expected at least " + formatQuantity(wanted, "m"));
 

@@ -136,7 +136,7 @@ void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
     constexpr double         kMostUncovered = 0.9; // of the nodes: a corner of a sheet leaves three quarters [1]
     const auto               held           = std::count_if(patch.positions.begin(), patch.positions.end(),
                                                             [&](const ChartPoint& p) { return patch.window.holds(p); });
-    const std::string        what           = "touch: the window of " + formatQuantity(settings.window, "m");
+    const std::string        what           = "touch: the patch window of " + formatQuantity(settings.window, "m");
     const char* const        hint           = "; check --length-unit and --window";
     if (held < kFewestPoints)
         throw Error(what + " holds " + std::to_string(held) + " points of the cloud, which are " +
@@ -147,14 +147,15 @@ void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
                     std::to_string(patch.plate.grid.nodes()) + " grid nodes have no point of the cloud nearby" + hint);
 }
 
-void sampleRigidity(Patch& patch, const SoftObject& object, const PatchSettings& settings)
+void fillRigidity(Patch& patch, const SoftObject& object, const PatchSettings& settings)
 {
     const StageClock    clock(patch.times.resample);
     std::vector<double> rigidities;
     rigidities.reserve(patch.points.size());
     for (std::uint32_t point : patch.points) rigidities.push_back(object.rigidity(point));
-    patch.window        = PatchWindow::square(settings.window, settings.cells);
-    Resampled resampled = resampleRigidity(patch.window, patch.positions, rigidities, settings.sampling, patch.spacing);
+    patch.window = PatchWindow::square(settings.window, settings.cells);
+    Resampled resampled =
+        resampleRigidity(patch.window, patch.positions, rigidities, settings.resampling, patch.spacing);
     patch.nodesWithoutPoint = resampled.nodesWithoutPoint;
     patch.plate             = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
                                std::move(resampled.rigidity)};
@@ -230,7 +231,7 @@ Patch deform(const SoftObject& object, const Contact& contact, const PatchSettin
     fitSphereTo(patch, object);                     // 2.2: lie close to a sphere,
     if (!patch.deformed()) return patch;
     layFlat(patch, object, settings, carried); // 2.3: which an equal-area map lays flat,
-    sampleRigidity(patch, object, settings);   // 2.4: where a grid takes over their rigidity
+    fillRigidity(patch, object, settings);     // 2.4: where a grid takes over their rigidity
     bendPlate(patch, settings, solver);        // 2.5: and bends as a plate under a unit force;
     movePoints(patch);                         // 2.6: the plate moves the points,
     findStiffness(patch, object, settings);    //      and with the contact it is what the hand feels.
@@ -253,7 +254,7 @@ PatchWithTable deformWithTable(const SoftObject& object, const Contact& contact,
     fitSphereTo(patch, object);
     if (!patch.deformed()) return result;
     layFlat(patch, object, settings, carried);
-    sampleRigidity(patch, object, settings);
+    fillRigidity(patch, object, settings);
     result.table = bendPlate(patch, settings, lattice, solver);
     movePoints(patch);
     findStiffness(patch, object, settings);

@@ -24,8 +24,8 @@ struct PatchSettings {
     int        cells           = 64;    ///< of the grid along that edge, an even number
     double     footprintRadius = 4e-3;  ///< of the fingertip [m]
     Map        map             = Map::lambertAzimuthal;
-    Resampling sampling        = Resampling::logMean;
-    PlateEdges edges{}; ///< of the window
+    Resampling resampling      = Resampling::logMean;
+    PlateEdges edges{}; ///< of the patch window
     ForceLaw   forceLaw  = ForceLaw::series;
     double     tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
 };

@@ -71,15 +71,16 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
         0.05; // of the window: surfaces then slope by a tenth and more against the sphere [1]
     if (patch.sphere.fit.misfit > kFarOffSphere * settings.window)
         result.push_back("the points lie " + formatQuantity(patch.sphere.fit.misfit, "m") +
-                         " (rms) off the fitted sphere, more than 5 % of the window: a smaller window follows the "
+                         " (rms) off the fitted sphere, more than 5 % of the patch window: a smaller one follows the "
                          "surface better");
     if (const double moving = edgeDeflection(patch.response) / largest(patch.response); moving > 0.02)
-        result.push_back("the window's edge moves by " + std::to_string(std::lround(100 * moving)) +
+        result.push_back("the patch window's edge moves by " + std::to_string(std::lround(100 * moving)) +
                          " % of the largest deflection and nothing moves beyond it: the deformed cloud is torn there");
     if (settings.foundation == 0)
-        result.push_back("there is no foundation, so the size of the window decides: compliance grows with its area");
+        result.push_back(
+            "there is no foundation, so the size of the patch window decides: compliance grows with its area");
     if (const auto width = windowWanted(patch.plate); width && settings.window < *width)
-        result.push_back("the window of " + formatQuantity(settings.window, "m") + " is narrower than the " +
+        result.push_back("the patch window of " + formatQuantity(settings.window, "m") + " is narrower than the " +
                          formatQuantity(*width, "m") +
                          " that this rigidity and foundation ask for: its edges are felt");
     return result;

@@ -6,11 +6,11 @@ namespace palp {
 
 PatchSettings withPreset(PatchSettings settings, Preset preset)
 {
-    const bool paper  = preset == Preset::paper;
-    settings.map      = paper ? Map::gallPeters : Map::lambertAzimuthal;
-    settings.sampling = paper ? Resampling::nearest : Resampling::logMean;
-    settings.forceLaw = paper ? ForceLaw::paper : ForceLaw::series;
-    settings.edges    = {};
+    const bool paper    = preset == Preset::paper;
+    settings.map        = paper ? Map::gallPeters : Map::lambertAzimuthal;
+    settings.resampling = paper ? Resampling::nearest : Resampling::logMean;
+    settings.forceLaw   = paper ? ForceLaw::paper : ForceLaw::series;
+    settings.edges      = {};
     if (paper) settings.foundation = 0;
     return settings;
 }
@@ -21,13 +21,13 @@ std::vector<std::string> differencesFromPaper(const PatchSettings& settings)
     if (settings.map != Map::gallPeters)
         lines.push_back(std::string("map ") + name(settings.map) +
                         ", the paper's is gall-peters: it stretches by sqrt 2 at the contact");
-    if (settings.sampling != Resampling::nearest)
-        lines.push_back(std::string("rigidity by ") + name(settings.sampling) +
+    if (settings.resampling != Resampling::nearest)
+        lines.push_back(std::string("rigidity by ") + name(settings.resampling) +
                         ", the paper's by nearest: it jitters while the grid slides");
     if (settings.edges != PlateEdges{}) lines.push_back("edges other than clamped, the paper's are clamped");
     if (settings.foundation != 0)
         lines.push_back("elastic foundation of " + formatQuantity(settings.foundation, "Pa/m") +
-                        ", the paper has none: its window is felt");
+                        ", the paper has none: its patch window is felt");
     if (settings.forceLaw != ForceLaw::paper)
         lines.push_back(std::string("force law ") + name(settings.forceLaw) +
                         ", the paper's is E A/h: the plate is not felt");

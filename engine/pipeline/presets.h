@@ -19,7 +19,7 @@ constexpr auto namesOf(Preset)
     return std::to_array<NamedValue<Preset>>({{palpate, "palpate"}, {paper, "paper"}});
 }
 
-/// Returns these settings with the preset's map, sampling, edges, foundation and force law.
+/// Returns these settings with the preset's map, resampling, edges, foundation and force law.
 /// `palpate` leaves the foundation as it is, `paper` removes it.
 [[nodiscard]] PatchSettings withPreset(PatchSettings settings, Preset preset);
 

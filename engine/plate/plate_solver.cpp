@@ -40,8 +40,9 @@ struct PlateSolver::Multigrid {
     std::size_t                         loads     = 0; ///< that the solver takes together
 
     Multigrid(const compute::ContextSettings& settings, SoftwareBits bits)
-        : context(settings), likeTheHost(context.processor().kind == compute::kHostProcessor ||
-                                         (bits == SoftwareBits::ofTheHost && context.processor().kind == "software")),
+        : context(settings), likeTheHost(context.processor().kind == compute::ProcessorKind::host ||
+                                         (bits == SoftwareBits::ofTheHost &&
+                                          context.processor().kind == compute::ProcessorKind::software)),
           kernels(context, Schedule::automatic, Precision::best,
                   likeTheHost ? Smoother::chebyshev : Smoother::automatic)
     {

@@ -28,7 +28,7 @@ SimulatedHand GrippingHand::at(double time) const noexcept
 
 void GrippingHand::demandWithin(double radius) const
 {
-    for (const HandPose& s : path.samples())
+    for (const HandPose& s : path.waypoints())
         if (const double away = glm::length(s.position - frame.origin); away > radius)
             throw Error("the hand: at " + formatQuantity(s.time, "s") + " it is " + formatQuantity(away, "m") +
                         " from the middle of the arm's workspace, whose radius is " + formatQuantity(radius, "m") +

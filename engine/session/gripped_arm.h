@@ -12,7 +12,7 @@ extern const DeviceRecord kArmRecord;
 /// A scripted hand that grips a simulated device by a spring and a damper while it moves along a path: forces move the
 /// grip, as they would with a person.
 struct GrippingHand {
-    const HandPath& path; ///< [m] of the scene, its first sample is where the hand is at time 0; outlives the device
+    const HandPath& path; ///< [m] of the scene, its first waypoint is where the hand is at time 0; outlives the device
     SimulatedHand   grip; ///< stiffness and damping: 150 N/m is relaxed, 500 firm; its target is ignored
     DeviceFrame     frame{};
 

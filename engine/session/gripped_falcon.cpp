@@ -44,8 +44,8 @@ std::optional<double> homingPlace(double time)
 SimulatedArmSettings bareArm()
 {
     SimulatedArmSettings arm;
-    arm.encoderStep  = 0;
-    arm.delaySamples = 0;
+    arm.encoderStep = 0;
+    arm.delayTicks  = 0;
     return arm;
 }
 

@@ -19,8 +19,8 @@
 namespace palp {
 namespace {
 
-constexpr double      kTick        = 1e-3;       // [s] of generated hands: the servo's period
-constexpr std::size_t kMostSamples = 10'000'000; // 2.8 hours at 1 kHz; a larger file is no hand
+constexpr double      kTick          = 1e-3;       // [s] of generated hands: the servo's period
+constexpr std::size_t kMostWaypoints = 10'000'000; // 2.8 hours at 1 kHz; a larger file is no hand
 
 std::string text(double value)
 {
@@ -29,32 +29,33 @@ std::string text(double value)
     return buffer;
 }
 
-/// Takes samples one by one and refuses the first that no hand can make.
+/// Takes waypoints one by one and refuses the first that no hand can make.
 class Checked {
 public:
-    /// Adds a sample.
+    /// Adds a waypoint.
     /// \param where  "line 4", "row 3", for complaints
-    void add(const HandPose& sample, const std::string& where)
+    void add(const HandPose& waypoint, const std::string& where)
     {
-        const std::array<double, 4> numbers = {sample.time, sample.position.x, sample.position.y, sample.position.z};
+        const std::array<double, 4> numbers = {waypoint.time, waypoint.position.x, waypoint.position.y,
+                                               waypoint.position.z};
         for (const double number : numbers)
             if (!std::isfinite(number))
                 throw Error(where + ": expected finite numbers, time [s] and x, y, z [m], found " +
                             (std::isnan(number) ? "NaN" : "infinity"));
-        if (samples.size() >= kMostSamples)
-            throw Error(where + ": expected at most " + std::to_string(kMostSamples) + " samples; cut the file");
-        if (!samples.empty()) step(samples.back(), sample, where);
-        samples.push_back(sample);
+        if (waypoints.size() >= kMostWaypoints)
+            throw Error(where + ": expected at most " + std::to_string(kMostWaypoints) + " waypoints; cut the file");
+        if (!waypoints.empty()) step(waypoints.back(), waypoint, where);
+        waypoints.push_back(waypoint);
     }
 
     void finish(const std::string& name) const
     {
-        if (samples.size() < 2)
-            throw Error(name + ": expected at least two samples time, x, y, z, found " +
-                        std::to_string(samples.size()));
+        if (waypoints.size() < 2)
+            throw Error(name + ": expected at least two waypoints time, x, y, z, found " +
+                        std::to_string(waypoints.size()));
     }
 
-    std::vector<HandPose> samples;
+    std::vector<HandPose> waypoints;
     double                fastest = 0; ///< [m/s]
 
 private:
@@ -62,7 +63,7 @@ private:
     {
         if (!(to.time > from.time))
             throw Error(where + ": expected a time after " + text(from.time) + " s, found " + text(to.time) +
-                        " s: time must rise from sample to sample");
+                        " s: time must rise from waypoint to waypoint");
         const double speed = glm::length(to.position - from.position) / (to.time - from.time);
         if (!(speed <= HandPath::kFastest))
             throw Error(where + ": expected a hand slower than " + text(HandPath::kFastest) + " m/s, found " +
@@ -138,7 +139,7 @@ std::uint32_t buttonsOf(std::string_view word, const std::string& where)
     return std::uint32_t(*bits);
 }
 
-HandPose sampleOf(const std::array<std::string_view, 4>& words, const std::string& where)
+HandPose waypointOf(const std::array<std::string_view, 4>& words, const std::string& where)
 {
     std::array<double, 4> numbers{};
     for (std::size_t k = 0; k < 4; ++k) {
@@ -166,9 +167,9 @@ HandPath handOf(const NodeField& rows, const std::string& name)
     if (rows.nodesZ() < 4)
         throw Error(name + ": expected an array of four columns, time [s], x, y, z [m], found " +
                     std::to_string(rows.nodesZ()));
-    std::vector<HandPose> samples;
-    for (int i = 0; i < rows.nodesX(); ++i) samples.push_back({rows(i, 0), {rows(i, 1), rows(i, 2), rows(i, 3)}});
-    return HandPath(std::move(samples), name);
+    std::vector<HandPose> waypoints;
+    for (int i = 0; i < rows.nodesX(); ++i) waypoints.push_back({rows(i, 0), {rows(i, 1), rows(i, 2), rows(i, 3)}});
+    return HandPath(std::move(waypoints), name);
 }
 
 /// Returns the integral of the smooth step u^2 (3 - 2u) from 0 to u, for u clamped to [0, 1]; beyond 1 it rises by 1
@@ -224,22 +225,22 @@ private:
 
 } // namespace
 
-HandPath::HandPath(std::vector<HandPose> samples, const std::string& name)
+HandPath::HandPath(std::vector<HandPose> waypoints, const std::string& name)
 {
     Checked checked;
-    checked.samples.reserve(samples.size());
-    for (const HandPose& sample : samples)
-        checked.add(sample, name + ": row " + std::to_string(checked.samples.size()));
+    checked.waypoints.reserve(waypoints.size());
+    for (const HandPose& waypoint : waypoints)
+        checked.add(waypoint, name + ": row " + std::to_string(checked.waypoints.size()));
     checked.finish(name);
-    samples_ = std::move(checked.samples);
-    fastest_ = checked.fastest;
+    waypoints_ = std::move(checked.waypoints);
+    fastest_   = checked.fastest;
 }
 
 glm::dvec3 HandPath::position(double time) const noexcept
 {
-    if (!(time > samples_.front().time)) return samples_.front().position; // NaN too
-    if (time >= samples_.back().time) return samples_.back().position;
-    const auto      next = std::ranges::upper_bound(samples_, time, {}, &HandPose::time);
+    if (!(time > waypoints_.front().time)) return waypoints_.front().position; // NaN too
+    if (time >= waypoints_.back().time) return waypoints_.back().position;
+    const auto      next = std::ranges::upper_bound(waypoints_, time, {}, &HandPose::time);
     const HandPose &b = *next, &a = *(next - 1);
     if (time == a.time) return a.position; // bit for bit: -0 + 0 would be 0
     return a.position + (time - a.time) / (b.time - a.time) * (b.position - a.position);
@@ -247,8 +248,8 @@ glm::dvec3 HandPath::position(double time) const noexcept
 
 std::uint32_t HandPath::buttons(double time) const noexcept
 {
-    if (!(time >= samples_.front().time)) return 0; // NaN too
-    return (std::ranges::upper_bound(samples_, time, {}, &HandPose::time) - 1)->buttons;
+    if (!(time >= waypoints_.front().time)) return 0; // NaN too
+    return (std::ranges::upper_bound(waypoints_, time, {}, &HandPose::time) - 1)->buttons;
 }
 
 HandPath parseHand(std::istream& in, const std::string& name)
@@ -264,21 +265,21 @@ HandPath parseHand(std::istream& in, const std::string& name)
         if (number == 1 && rest.starts_with(kMark)) rest.remove_prefix(kMark.size());
         const Words words = wordsOf(rest);
         if (words.count == 0 || words.first[0].starts_with('#')) continue;
-        if (checked.samples.empty() && isHeader(words.first, where)) {
+        if (checked.waypoints.empty() && isHeader(words.first, where)) {
             columns = std::max(words.count, columns);
             buttons = buttonsIn(rest, columns);
             continue;
         }
         demandColumns(words, columns, where);
-        HandPose sample = sampleOf(words.first, where);
-        if (buttons > 0) sample.buttons = buttonsOf(wordAt(rest, buttons), where);
-        checked.add(sample, where);
+        HandPose waypoint = waypointOf(words.first, where);
+        if (buttons > 0) waypoint.buttons = buttonsOf(wordAt(rest, buttons), where);
+        checked.add(waypoint, where);
     }
     if (!in.eof())
         throw Error(name + ": expected lines of numbers, found one longer than " + std::to_string(kLongestLine) +
                     " bytes; is it a text file?");
     checked.finish(name);
-    return HandPath(std::move(checked.samples), name);
+    return HandPath(std::move(checked.waypoints), name);
 }
 
 HandPath readHand(const std::filesystem::path& path)
@@ -316,28 +317,28 @@ HandPath makeHand(const HandScript& script, const HandPlace& place)
     const Frame           frame = Frame::about(place.outward);
     const Script          motion(script);
     const double          ticks = std::ceil(script.duration / kTick);
-    std::vector<HandPose> samples;
-    if (!(ticks < double(kMostSamples)))
-        throw Error("hand: duration: expected at most " + text(double(kMostSamples) * kTick) + " s, found " +
+    std::vector<HandPose> waypoints;
+    if (!(ticks < double(kMostWaypoints)))
+        throw Error("hand: duration: expected at most " + text(double(kMostWaypoints) * kTick) + " s, found " +
                     text(script.duration) + " s");
-    samples.reserve(std::size_t(ticks) + 1);
+    waypoints.reserve(std::size_t(ticks) + 1);
     for (std::size_t i = 0; i <= std::size_t(ticks); ++i) {
         const double     t = double(i) * kTick;
         const glm::dvec3 p = motion.at(t);
-        samples.push_back({t, place.point + p.x * frame.east + p.y * frame.north + p.z * frame.normal});
+        waypoints.push_back({t, place.point + p.x * frame.east + p.y * frame.north + p.z * frame.normal});
     }
-    return HandPath(std::move(samples), std::string("hand ") + name(script.motion));
+    return HandPath(std::move(waypoints), std::string("hand ") + name(script.motion));
 }
 
 HandPath draped(const HandPath& hand, const HandPlace& place, const SoftObject& object)
 {
-    constexpr double           kReach  = 3; // [1] spacings: some 28 points, so that the height is smooth
-    const double               spacing = object.spacing();
-    const double               radius  = kReach * spacing;
-    std::vector<HandPose>      samples = hand.samples();
+    constexpr double           kReach    = 3; // [1] spacings: some 28 points, so that the height is smooth
+    const double               spacing   = object.spacing();
+    const double               radius    = kReach * spacing;
+    std::vector<HandPose>      waypoints = hand.waypoints();
     std::vector<std::uint32_t> near;
     // Heights are looked for around the last one: where the hand has come from, the surface is known. The search starts
-    // at the place and walks to the first sample in steps of a spacing.
+    // at the place and walks to the first waypoint in steps of a spacing.
     double     height = 0; // [m] above the plane through the place
     const auto follow = [&](const glm::dvec3& inPlane) {
         object.index().gather(place.point + inPlane + height * place.outward, radius, near);
@@ -357,14 +358,14 @@ HandPath draped(const HandPath& hand, const HandPlace& place, const SoftObject& 
         const glm::dvec3 d = p - place.point;
         return d - glm::dot(d, place.outward) * place.outward;
     };
-    const glm::dvec3 first = inPlaneOf(samples.front().position);
+    const glm::dvec3 first = inPlaneOf(waypoints.front().position);
     const double     steps = radius > 0 ? std::ceil(glm::length(first) / spacing) : 0;
     for (int i = 0; i < int(steps); ++i) follow(double(i) / steps * first);
-    for (HandPose& sample : samples) {
-        if (radius > 0) follow(inPlaneOf(sample.position));
-        sample.position += height * place.outward;
+    for (HandPose& waypoint : waypoints) {
+        if (radius > 0) follow(inPlaneOf(waypoint.position));
+        waypoint.position += height * place.outward;
     }
-    return HandPath(std::move(samples), "hand");
+    return HandPath(std::move(waypoints), "hand");
 }
 
 } // namespace palp

@@ -23,12 +23,12 @@ struct HandPose {
     std::uint32_t buttons = 0; ///< that are down from here on, as HapticState::buttons
 };
 
-/// A scripted hand: straight lines between samples.
+/// A scripted hand: straight lines between waypoints.
 ///
-/// They are lines, not a cubic through the samples: a cubic overshoots, into the object if it must, and is faster in
-/// places than the hand was; a line is never faster than fastest(), and at the time of a sample it gives that sample
-/// bit for bit.
-/// Invariant: at least two samples, all finite, times rising.
+/// They are lines, not a cubic through the waypoints: a cubic overshoots, into the object if it must, and is faster in
+/// places than the hand was; a line is never faster than fastest(), and at the time of a waypoint it gives that
+/// waypoint bit for bit.
+/// Invariant: at least two waypoints, all finite, times rising.
 /// \thread immutable; pure
 class HandPath {
 public:
@@ -36,22 +36,22 @@ public:
     static constexpr double kFastest = 100;
 
     /// \param name  opens complaints
-    /// \throws Error naming the first sample that is wrong (counted from 0)
-    explicit HandPath(std::vector<HandPose> samples, const std::string& name = "hand");
+    /// \throws Error naming the first waypoint that is wrong (counted from 0)
+    explicit HandPath(std::vector<HandPose> waypoints, const std::string& name = "hand");
 
-    /// Returns the hand at a time [s]: at rest at the first sample before it begins, at the last after it has ended.
+    /// Returns the hand at a time [s]: at rest at the first waypoint before it begins, at the last after it has ended.
     [[nodiscard]] glm::dvec3 position(double time) const noexcept;
 
-    /// Returns the buttons that are down at a time [s]: those of the last sample up to then.
+    /// Returns the buttons that are down at a time [s]: those of the last waypoint up to then.
     [[nodiscard]] std::uint32_t buttons(double time) const noexcept;
 
-    [[nodiscard]] double begin() const noexcept { return samples_.front().time; }             ///< [s]
-    [[nodiscard]] double duration() const noexcept { return samples_.back().time - begin(); } ///< [s]
-    [[nodiscard]] double fastest() const noexcept { return fastest_; }                        ///< [m/s]
-    [[nodiscard]] const std::vector<HandPose>& samples() const noexcept { return samples_; }
+    [[nodiscard]] double begin() const noexcept { return waypoints_.front().time; }             ///< [s]
+    [[nodiscard]] double duration() const noexcept { return waypoints_.back().time - begin(); } ///< [s]
+    [[nodiscard]] double fastest() const noexcept { return fastest_; }                          ///< [m/s]
+    [[nodiscard]] const std::vector<HandPose>& waypoints() const noexcept { return waypoints_; }
 
 private:
-    std::vector<HandPose> samples_;
+    std::vector<HandPose> waypoints_;
     double                fastest_ = 0; ///< [m/s]
 };
 
@@ -59,7 +59,7 @@ private:
 /// too, so that samples.csv of a recorded session is a hand; in text, one that is called "buttons" is read: a whole
 /// number, whose bit i is set if button i is down.
 ///
-/// .npy: an array of shape (n, 4) or wider. Any other extension: text, one sample a line, numbers between commas,
+/// .npy: an array of shape (n, 4) or wider. Any other extension: text, one waypoint a line, numbers between commas,
 /// semicolons, blanks or tabs; lines that start with '#' are comments; a header line is skipped if its first name
 /// begins with "t", as in "time".
 /// \throws Error naming the file and the line: NaN, infinity, time that does not rise, too few columns, a hand faster
@@ -108,7 +108,7 @@ struct HandScript {
     double     duration = 5;     ///< [s]
 };
 
-/// Makes a hand in the plane through the place, perpendicular to its outward direction: sampled every millisecond
+/// Makes a hand in the plane through the place, perpendicular to its outward direction: a waypoint every millisecond
 /// from time 0 on, without a jump in velocity, never faster than the script's speed. The same script gives the
 /// same bits.
 ///
@@ -119,8 +119,8 @@ struct HandScript {
 /// \throws Error naming what is not positive
 [[nodiscard]] HandPath makeHand(const HandScript& script, const HandPlace& place);
 
-/// Makes a hand that keeps its depth over a curved object: each sample moves along `outward` by the height of the cloud
-/// above the plane through the place, there.
+/// Makes a hand that keeps its depth over a curved object: each waypoint moves along `outward` by the height of the
+/// cloud above the plane through the place, there.
 ///
 /// The height is the weighted mean of the near points' heights, weights (1 - r^2/R^2)^2 by their distance r in the
 /// plane, R three spacings of the cloud: smooth where the hand is, for any points. Where the cloud ends the last

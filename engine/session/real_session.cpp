@@ -29,7 +29,7 @@ struct TimedHand {
 
 /// The servo's output for the caller.
 struct Shown {
-    TickRecord    sample;
+    TickRecord    record;
     double        loopPeriod = 0; ///< [s]
     std::uint32_t buttons    = 0;
 };
@@ -114,13 +114,13 @@ void RealSession::servoThread()
         summary_.period.add(dt);
         const double      began  = threadSeconds();
         const HapticState state  = parts_.device.exchange(force, time);
-        TickRecord        sample = tick({time, dt, period}, state);
+        TickRecord        record = tick({time, dt, period}, state);
         force                    = parts_.frame.toDevice(force_.governor().force());
-        sample.tickTime          = threadSeconds() - began;
-        shared_.shown.draft()    = {sample, period, state.buttons};
+        record.tickTime          = threadSeconds() - began;
+        shared_.shown.draft()    = {record, period, state.buttons};
         shared_.shown.publish();
-        summary_.add(sample);
-        if (settings_.onTick) settings_.onTick(sample);
+        summary_.add(record);
+        if (settings_.onTick) settings_.onTick(record);
         if (state.fault == DeviceFault::unplugged) break; // it does not come back without close() and open()
     }
 }
@@ -242,7 +242,7 @@ void RealSession::watch()
         const ShownPatch* const patch = shared_.patch.held();
         if (shared_.shown.take()) {
             const Shown& shown = *shared_.shown.held();
-            settings_.onView({shown.sample, shown.loopPeriod, patch ? patch->solveTime : 0, shown.buttons,
+            settings_.onView({shown.record, shown.loopPeriod, patch ? patch->solveTime : 0, shown.buttons,
                               patch && patch->patch ? &*patch->patch : nullptr,
                               warning_}); // written before the first `shown`
         }

@@ -12,7 +12,7 @@ namespace palp {
 
 /// Shows a session while it runs. It is valid during the call that hands it over.
 struct SessionView {
-    TickRecord       sample;          ///< the newest
+    TickRecord       record;          ///< the newest
     double           loopPeriod = 0;  ///< of the servo, a mean over 0.1 s [s]
     double           solveTime  = 0;  ///< of the last patch [s]; 0: none yet
     std::uint32_t    buttons    = 0;  ///< of the device

@@ -12,6 +12,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/json_object.h"
+#include "engine/session/scene_keys.h"
 
 namespace palp {
 namespace {
@@ -64,7 +65,7 @@ OpenColumn openColumn(const std::filesystem::path& folder, const SessionColumn& 
     const std::uint64_t         bytes = std::filesystem::file_size(path, failure);
     if (failure) throw Error(path.string() + ": cannot be read: " + failure.message());
     if (extent.rows > (bytes - extent.begin) / column.bytes())
-        throw Error(path.string() + ": the header counts " + std::to_string(extent.rows) + " samples of " +
+        throw Error(path.string() + ": the header counts " + std::to_string(extent.rows) + " ticks of " +
                     std::to_string(column.bytes()) + " bytes, found " + std::to_string(bytes - extent.begin) +
                     " bytes");
     return {std::move(in), path.string(), extent.rows};
@@ -81,10 +82,10 @@ std::vector<TickRecord> readColumns(const std::filesystem::path& folder, std::op
         rows = std::min(rows, open.back().rows);
         if (expected && open.back().rows != *expected)
             throw Error(open.back().name + ": expected the " + std::to_string(*expected) +
-                        " samples that session.json counts, found " + std::to_string(open.back().rows) +
+                        " ticks that session.json counts, found " + std::to_string(open.back().rows) +
                         "; the recording is damaged");
     }
-    std::vector<TickRecord> samples(rows);
+    std::vector<TickRecord> records(rows);
     std::vector<char>       part;
     for (std::size_t k = 0; k < open.size(); ++k) {
         const SessionColumn&  column = sessionColumns()[k];
@@ -95,11 +96,11 @@ std::vector<TickRecord> readColumns(const std::filesystem::path& folder, std::op
             open[k].in.read(part.data(), std::streamsize(part.size()));
             if (!open[k].in) throw Error(open[k].name + ": the file ends within its numbers");
             for (std::size_t i = 0; i < count; ++i)
-                std::memcpy(reinterpret_cast<char*>(&samples[begin + i]) + column.offset,
+                std::memcpy(reinterpret_cast<char*>(&records[begin + i]) + column.offset,
                             part.data() + i * column.bytes(), column.bytes());
         }
     }
-    return samples;
+    return records;
 }
 
 /// Returns the scene of a recording of format 1, whose keys had other names, with the names of today.
@@ -108,17 +109,13 @@ std::string withNamesOfToday(const std::string& scene)
     using Json       = nlohmann::ordered_json;
     const Json then  = Json::parse(scene);
     Json       today = Json::object();
-    for (const auto& [name, value] : then.items())
-        today[name == "device"      ? "solver"
-              : name == "hand_over" ? "compliance_law"
-              : name == "sampling"  ? "resampling"
-                                    : name] = value;
+    for (const auto& [name, value] : then.items()) today[std::string(keyNamedOnce(name).value_or(name))] = value;
     return today.dump();
 }
 
-const char* bytesOf(const TickRecord& sample, const SessionColumn& column)
+const char* bytesOf(const TickRecord& record, const SessionColumn& column)
 {
-    return reinterpret_cast<const char*>(&sample) + column.offset;
+    return reinterpret_cast<const char*>(&record) + column.offset;
 }
 
 template <class Number>
@@ -173,6 +170,13 @@ std::optional<SessionDifference> differenceIn(const SessionColumn& column, const
 
 } // namespace
 
+SessionClock clockOf(const JsonObject& file, const std::filesystem::path& path)
+{
+    const std::string word = file.text("clock");
+    if (const auto clock = valueNamed<SessionClock>(word)) return *clock;
+    throw Error(path.string() + ": key \"clock\": expected " + wordsOf<SessionClock>() + ", found \"" + word + "\"");
+}
+
 RecordedSession readSession(const std::filesystem::path& folder)
 {
     const std::filesystem::path path = folder / "session.json";
@@ -190,7 +194,7 @@ RecordedSession readSession(const std::filesystem::path& folder)
                     (format > 0 ? std::to_string(format) + "; a later palpate wrote it" : "none"));
     RecordedSession session;
     session.folder  = folder;
-    session.clock   = file.text("clock");
+    session.clock   = clockOf(file, path);
     session.solver  = file.text(format == 1 ? "device" : "solver");
     session.command = file.text("command");
     session.scene   = format == 1 ? withNamesOfToday(file.json("scene")) : file.json("scene");
@@ -204,7 +208,7 @@ RecordedSession readSession(const std::filesystem::path& folder)
         session.hand.maximumForce     = hand.number("maximum_force_N");
         session.hand.maximumStiffness = hand.number("maximum_stiffness_N_per_m");
     }
-    session.samples = readColumns(folder, expected);
+    session.records = readColumns(folder, expected);
     return session;
 }
 
@@ -217,30 +221,30 @@ Scene sceneOf(const RecordedSession& session, const std::vector<SceneKey>* toolK
 
 std::optional<SessionDifference> compareSessions(const RecordedSession& a, const RecordedSession& b)
 {
-    const std::size_t both = std::min(a.samples.size(), b.samples.size());
+    const std::size_t both = std::min(a.records.size(), b.records.size());
     for (std::size_t i = 0; i < both; ++i) {
-        if (std::memcmp(&a.samples[i], &b.samples[i], sizeof(TickRecord)) == 0) continue;
+        if (std::memcmp(&a.records[i], &b.records[i], sizeof(TickRecord)) == 0) continue;
         for (const SessionColumn& column : sessionColumns()) {
             if (column.measured) continue;
-            if (auto difference = differenceIn(column, a.samples[i], b.samples[i])) {
-                difference->sample = i;
+            if (auto difference = differenceIn(column, a.records[i], b.records[i])) {
+                difference->tick = i;
                 return difference;
             }
         }
     }
-    if (a.samples.size() == b.samples.size()) return {};
-    const auto& longer = (a.samples.size() > both ? a : b).samples;
+    if (a.records.size() == b.records.size()) return {};
+    const auto& longer = (a.records.size() > both ? a : b).records;
     return SessionDifference{
-        both, longer[both].time, "", 0, std::to_string(a.samples.size()), std::to_string(b.samples.size())};
+        both, longer[both].time, "", 0, std::to_string(a.records.size()), std::to_string(b.records.size())};
 }
 
 std::string describe(const SessionDifference& d, const RecordedSession& a, const RecordedSession& b)
 {
     const std::string first = a.folder.string(), second = b.folder.string();
-    if (d.column.empty()) return first + " has " + d.first + " samples and " + second + " has " + d.second;
+    if (d.column.empty()) return first + " has " + d.first + " ticks and " + second + " has " + d.second;
     const auto column   = std::ranges::find(sessionColumns(), d.column, &SessionColumn::name);
     const bool isVector = column != sessionColumns().end() && column->components > 1;
-    return "sample " + std::to_string(d.sample) + " (" + numberText<double>(reinterpret_cast<const char*>(&d.time)) +
+    return "tick " + std::to_string(d.tick) + " (" + numberText<double>(reinterpret_cast<const char*>(&d.time)) +
            " s): " + d.column + (isVector ? std::string(" ") + "xyz"[d.component] : "") + " is " + d.first + " in " +
            first + " and " + d.second + " in " + second;
 }

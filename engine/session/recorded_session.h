@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "device/haptic_device.h"
+#include "engine/session/recording.h"
 #include "engine/session/scene.h"
 #include "engine/session/tick_record.h"
 
@@ -14,14 +15,14 @@ namespace palp {
 /// A session that was read from its folder.
 struct RecordedSession {
     std::filesystem::path   folder;
-    std::string             clock;            ///< "real", "virtual"
+    SessionClock            clock = SessionClock::real;
     std::string             solver;           ///< of the plate, as it was called then
     std::string             command;          ///< that recorded it
     std::string             scene;            ///< JSON for parseScene()
     std::string             cloud;            ///< fingerprint() of what was touched
     HapticDeviceInfo        hand;             ///< its model and limits
     bool                    finished = false; ///< false: killed, or still running
-    std::vector<TickRecord> samples;
+    std::vector<TickRecord> records;
 };
 
 /// The number of the format that Recording writes. Format 1 had other names of three keys of the scene and of the
@@ -39,8 +40,8 @@ inline constexpr int kSessionFormat = 2;
 
 /// The first place where two sessions differ.
 struct SessionDifference {
-    std::size_t sample = 0;    ///< counted from 0
-    double      time   = 0;    ///< of that record [s]
+    std::size_t tick = 0;      ///< counted from 0
+    double      time = 0;      ///< of that record [s]
     std::string column;        ///< empty: one session ends here
     std::size_t component = 0; ///< of a vector: 0, 1, 2
     std::string first;         ///< value in the first session; its bits too where the values print alike
@@ -51,7 +52,7 @@ struct SessionDifference {
 /// Columns measured by the wall clock (SessionColumn::measured) are omitted. Empty if nothing differs.
 [[nodiscard]] std::optional<SessionDifference> compareSessions(const RecordedSession& a, const RecordedSession& b);
 
-/// Describes a difference in one sentence: "sample 412 (0.412 s): force z is 0.8312 in run1 and 0.8313 in run2".
+/// Describes a difference in one sentence: "tick 412 (0.412 s): force z is 0.8312 in run1 and 0.8313 in run2".
 [[nodiscard]] std::string describe(const SessionDifference& difference, const RecordedSession& a,
                                    const RecordedSession& b);
 

@@ -145,9 +145,9 @@ void appendNumber(std::string& text, const SessionColumn& column, const char* by
     }
 }
 
-void appendLine(std::string& text, const TickRecord& sample)
+void appendLine(std::string& text, const TickRecord& record)
 {
-    const char* const bytes = reinterpret_cast<const char*>(&sample);
+    const char* const bytes = reinterpret_cast<const char*>(&record);
     for (const SessionColumn& column : sessionColumns())
         for (std::size_t k = 0; k < column.components; ++k) {
             appendNumber(text, column, bytes + column.offset + k * column.bytes() / column.components);
@@ -157,9 +157,9 @@ void appendLine(std::string& text, const TickRecord& sample)
 }
 
 /// The column files of a folder, which always end together.
-class SampleFiles {
+class TickFiles {
 public:
-    explicit SampleFiles(const std::filesystem::path& folder) : csv_(folder / "samples.csv")
+    explicit TickFiles(const std::filesystem::path& folder) : csv_(folder / "samples.csv")
     {
         buffer_.reserve(kBatch * kMostOfLine);
         for (const SessionColumn& column : sessionColumns())
@@ -171,21 +171,21 @@ public:
 
     /// Appends all of the records, at most kBatch, or none.
     /// \throws Error naming the file and the reason
-    void append(std::span<const TickRecord> samples)
+    void append(std::span<const TickRecord> records)
     {
         try {
             for (std::size_t k = 0; k < columns_.size(); ++k) {
                 const SessionColumn& column = sessionColumns()[k];
                 buffer_.clear();
-                for (const TickRecord& sample : samples)
-                    buffer_.append(reinterpret_cast<const char*>(&sample) + column.offset, column.bytes());
+                for (const TickRecord& record : records)
+                    buffer_.append(reinterpret_cast<const char*>(&record) + column.offset, column.bytes());
                 columns_[k].append(buffer_);
             }
             buffer_.clear();
-            for (const TickRecord& sample : samples) appendLine(buffer_, sample);
+            for (const TickRecord& record : records) appendLine(buffer_, record);
             csv_.append(buffer_);
             for (std::size_t k = 0; k < columns_.size(); ++k)
-                columns_[k].write(npyHeader(sessionColumns()[k], rows_ + samples.size()), 0);
+                columns_[k].write(npyHeader(sessionColumns()[k], rows_ + records.size()), 0);
         } catch (const Error&) {
             // A header lies within blocks that the file has, so usually data found no room; but if not:
             for (std::size_t k = 0; k < columns_.size(); ++k) {
@@ -198,7 +198,7 @@ public:
             csv_.undo();
             throw;
         }
-        rows_ += samples.size();
+        rows_ += records.size();
         accept();
     }
 
@@ -323,7 +323,7 @@ struct Recording::Impl {
         try {
             files.append(batch);
         } catch (const std::exception& error) {
-            why = "recording stopped after " + std::to_string(files.rows()) + " samples: " + error.what();
+            why = "recording stopped after " + std::to_string(files.rows()) + " ticks: " + error.what();
             stopped.store(true, std::memory_order_release);
             if (complain)
                 complain(*why);
@@ -346,7 +346,7 @@ struct Recording::Impl {
     void describeEnd()
     {
         description["finished"]      = true;
-        description["samples"]       = report.samples;
+        description["samples"]       = report.ticks; // the format's word, as in samples.csv
         description["lost"]          = report.lost;
         description["longest_gap_s"] = report.longestGap;
         description["stopped"]       = report.stopped ? nlohmann::ordered_json(*report.stopped) : nullptr;
@@ -361,7 +361,7 @@ struct Recording::Impl {
     nlohmann::ordered_json     description;
     Complain                   complain;
     TickRing<TickRecord>       ring;
-    SampleFiles                files;
+    TickFiles                  files;
     std::uint64_t              pushed = 0; ///< by the producer; read after finish() only
     std::atomic<bool>          finishing{false};
     std::atomic<bool>          stopped{false};
@@ -389,16 +389,16 @@ Recording::~Recording()
     impl_->finish();
 }
 
-void Recording::push(const TickRecord& sample) noexcept
+void Recording::push(const TickRecord& record) noexcept
 {
     ++impl_->pushed;
-    if (!impl_->stopped.load(std::memory_order_relaxed)) static_cast<void>(impl_->ring.push(sample));
+    if (!impl_->stopped.load(std::memory_order_relaxed)) static_cast<void>(impl_->ring.push(record));
 }
 
-void Recording::pushWaiting(const TickRecord& sample) noexcept
+void Recording::pushWaiting(const TickRecord& record) noexcept
 {
     ++impl_->pushed;
-    while (!impl_->stopped.load(std::memory_order_acquire) && !impl_->ring.push(sample)) std::this_thread::yield();
+    while (!impl_->stopped.load(std::memory_order_acquire) && !impl_->ring.push(record)) std::this_thread::yield();
 }
 
 RecordingReport Recording::finish()

@@ -37,13 +37,14 @@ struct SessionInfo {
 
 /// The result of a recording.
 struct RecordingReport {
-    std::uint64_t samples    = 0;         ///< on disk
+    std::uint64_t ticks      = 0;         ///< on disk
     std::uint64_t lost       = 0;         ///< pushed and not on disk: the ring was full, or writing had stopped
     double        longestGap = 0;         ///< [s] between two visits of the writer: what a kill would have cost at most
     std::optional<std::string> stopped{}; ///< why writing stopped early: a sentence
 };
 
-/// Writes a session while it runs: a folder with session.json, a .npy file per column, and samples.csv.
+/// Writes a session while it runs: a folder with session.json, a .npy file per column, and samples.csv. What the
+/// format calls a sample is the record of a tick.
 ///
 ///     servo ---push()---> ring of 4096 records (4 s) ---writer thread, every 2 ms---> data, then headers
 ///
@@ -69,10 +70,10 @@ public:
     Recording& operator=(const Recording&) = delete;
 
     /// Takes one record; if the ring is full it is counted as lost.
-    void push(const TickRecord& sample) noexcept;
+    void push(const TickRecord& record) noexcept;
 
     /// Takes one record and waits for room: for the virtual clock, which is faster than any disk.
-    void pushWaiting(const TickRecord& sample) noexcept;
+    void pushWaiting(const TickRecord& record) noexcept;
 
     /// Writes what is left, marks session.json as finished, and ends the writer. Later calls return the same.
     RecordingReport finish();

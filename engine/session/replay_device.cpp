@@ -6,8 +6,8 @@
 
 namespace palp {
 
-ReplayDevice::ReplayDevice(const std::vector<TickRecord>& samples, const HapticDeviceInfo& limits)
-    : samples_(samples), info_(limits)
+ReplayDevice::ReplayDevice(const std::vector<TickRecord>& records, const HapticDeviceInfo& limits)
+    : records_(records), info_(limits)
 {
     info_.model           = "recorded hand";
     info_.workspaceRadius = std::numeric_limits<double>::infinity();
@@ -18,20 +18,20 @@ HapticState ReplayDevice::exchange(const GovernedForce& /*force*/, double now) n
 {
     HapticState state;
     state.time = now;
-    if (next_ == samples_.size()) {
+    if (next_ == records_.size()) {
         state.fault = DeviceFault::unplugged;
         return state;
     }
-    const TickRecord& sample = samples_[next_];
+    const TickRecord& record = records_[next_];
     Hand              hand;
-    hand.setBits(sample.device);
+    hand.setBits(record.device);
     state.sequence = ++next_;
-    state.position = sample.hip;
-    state.velocity = sample.hipVelocity;
+    state.position = record.hip;
+    state.velocity = record.hipVelocity;
     state.buttons  = hand.buttons;
     state.homed    = hand.homed;
     state.inBox    = hand.inBox;
-    state.missed   = sample.missed;
+    state.missed   = record.missed;
     state.fault    = hand.device;
     return state;
 }

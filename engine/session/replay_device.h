@@ -12,9 +12,9 @@ namespace palp {
 /// \thread as HapticDevice
 class ReplayDevice : public HapticDevice {
 public:
-    /// \param samples  of RecordedSession; outlive this
+    /// \param records  of RecordedSession; outlive this
     /// \param limits   of the device that was held then
-    explicit ReplayDevice(const std::vector<TickRecord>& samples, const HapticDeviceInfo& limits = {});
+    explicit ReplayDevice(const std::vector<TickRecord>& records, const HapticDeviceInfo& limits = {});
 
     [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }
 
@@ -23,7 +23,7 @@ public:
     HapticState exchange(const GovernedForce& force, double now) noexcept override;
 
 private:
-    const std::vector<TickRecord>& samples_;
+    const std::vector<TickRecord>& records_;
     HapticDeviceInfo               info_;
     std::size_t                    next_ = 0;
 };

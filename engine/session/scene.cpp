@@ -194,7 +194,7 @@ void refuseContradictions(const Scene& scene, const std::map<std::string, std::s
     };
     if (!(2 * scene.patch.footprintRadius < scene.patch.window))
         refuse(whatSays("footprint_radius"),
-               "a fingertip within the window of " + plainNumber(scene.patch.window) + " m",
+               "a fingertip within the patch window of " + plainNumber(scene.patch.window) + " m",
                "a radius of " + plainNumber(scene.patch.footprintRadius) + " m");
     if (scene.dynamicFriction > scene.staticFriction)
         refuse(whatSays("dynamic_friction"), "at most static_friction, " + plainNumber(scene.staticFriction),

@@ -307,13 +307,13 @@ std::vector<SceneKey> materialKeys()
 std::vector<SceneKey> patchKeys()
 {
     static const std::string edgesForm = wordsOf<Edge>() + ", or a list such as x0=free,z1=supported";
-    const Control            window{Panel::patch, "window", "mm", 1e-3, 5, 200, true, 1};
+    const Control            window{Panel::patch, "patch window", "mm", 1e-3, 5, 200, true, 1};
     const Control            cells{Panel::patch, "cells a side", "", 1, 16, 256, true, 0, 2};
     const Control            fingertip{Panel::patch, "fingertip", "mm", 1e-3, 0.5, 20, true, 2};
     return {
         numberKey(
             {.name      = "window",
-             .help      = "edge of the square of surface that bends with the finger",
+             .help      = "edge of the patch window, the square of surface that bends with the finger",
              .group     = kTouch,
              .unit      = "m",
              .example   = "70 mm",
@@ -323,7 +323,7 @@ std::vector<SceneKey> patchKeys()
             [](auto& s) -> auto& { return s.patch.window; }),
         countKey(
             {.name    = "cells",
-             .help    = "cells of the plate's grid along a side of the window",
+             .help    = "cells of the plate's grid along a side of the patch window",
              .group   = kTouch,
              .bounds  = KeyBounds{.least = 8, .most = 1024, .multipleOf = 2},
              .control = cells},
@@ -348,10 +348,10 @@ std::vector<SceneKey> patchKeys()
             {.name    = "resampling",
              .help    = "how the rigidity comes to the grid's nodes",
              .group   = kTouch,
-             .control = Control{Panel::patch, "sampling"}},
-            [](auto& s) -> auto& { return s.patch.sampling; }),
+             .control = Control{Panel::patch, "resampling"}},
+            [](auto& s) -> auto& { return s.patch.resampling; }),
         {.name   = "edges",
-         .help   = "edges of the window: one name for all, or SIDE=EDGE of the sides x0, x1, z0, z1",
+         .help   = "edges of the patch window: one name for all, or SIDE=EDGE of the sides x0, x1, z0, z1",
          .group  = kTouch,
          .kind   = Kind::object,
          .form   = edgesForm,
@@ -399,7 +399,7 @@ std::vector<SceneKey> plateThreadKeys()
             {.name    = "compliance_law",
              .help    = "what the servo takes between two answers of the plate",
              .group   = kSession,
-             .control = Control{Panel::servo, "hand-over"}},
+             .control = Control{Panel::servo, "compliance law"}},
             [](auto& s) -> auto& { return s.complianceLaw; }),
         std::move(size),
         numberKey(
@@ -501,6 +501,14 @@ const SceneKey& sceneKey(std::string_view name)
     return *found;
 }
 
+std::optional<std::string_view> keyNamedOnce(std::string_view name) noexcept
+{
+    if (name == "device") return "solver";
+    if (name == "hand_over") return "compliance_law";
+    if (name == "sampling") return "resampling";
+    return {};
+}
+
 std::string flagOf(std::string_view key)
 {
     if (key == "place") return "--at";
@@ -520,7 +528,7 @@ std::map<std::string, std::string, std::less<>> presetValues(Preset preset)
 {
     const PatchSettings                             set = withPreset({}, preset);
     std::map<std::string, std::string, std::less<>> values{{"map", name(set.map)},
-                                                           {"resampling", name(set.sampling)},
+                                                           {"resampling", name(set.resampling)},
                                                            {"force_law", name(set.forceLaw)},
                                                            {"edges", edgesText(set.edges)}};
     if (preset == Preset::paper) values["foundation"] = plainNumber(set.foundation);

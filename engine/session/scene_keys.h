@@ -110,6 +110,9 @@ struct WrittenValue {
 /// \pre there is one
 [[nodiscard]] const SceneKey& sceneKey(std::string_view name);
 
+/// Returns today's name of a key that was called `name` until recordings had format 2; empty for any other name.
+[[nodiscard]] std::optional<std::string_view> keyNamedOnce(std::string_view name) noexcept;
+
 /// Returns the names of a key's flag, "--max-force", and of its variable, "PALPATE_MAX_FORCE".
 [[nodiscard]] std::string flagOf(std::string_view key);
 [[nodiscard]] std::string variableOf(std::string_view key);

@@ -9,7 +9,7 @@ namespace palp {
 /// \thread as HapticDevice
 class ScriptedHand : public HapticDevice {
 public:
-    /// \param hand  outlives this; its first sample is where the hand is at time 0
+    /// \param hand  outlives this; its first waypoint is where the hand is at time 0
     explicit ScriptedHand(const HandPath& hand);
 
     [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }

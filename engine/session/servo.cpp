@@ -13,14 +13,14 @@ std::uint32_t flag(SessionFlag which, bool set) noexcept
     return set ? static_cast<std::uint32_t>(which) : 0U;
 }
 
-/// Returns what the sampled spring at a cap takes of the arm's damping, K (T/2 + delay), with one sample of delay
+/// Returns what the sampled spring at a cap takes of the arm's damping, K (T/2 + delay), with one tick of delay
 /// [N s/m].
 double spentDamping(double cap)
 {
     return cap * 1.5e-3;
 }
 
-/// Returns the delay in samples; with a thread of its own the proxy's answer is up to two more ticks old.
+/// Returns the delay in ticks; with a thread of its own the proxy's answer is up to two more ticks old.
 int delayOf(SessionThreads threads)
 {
     return threads == SessionThreads::paper ? 3 : 1;
@@ -33,14 +33,14 @@ double lower(double wanted, double possible)
 }
 
 /// Sets the governor. The longer the delay, the lower the cap at a period of 1 ms: the spring then spends what it does
-/// with a delay of one sample.
+/// with a delay of one tick.
 GovernorSettings governorOf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads)
 {
     GovernorSettings settings;
     settings.maximumForce              = lower(scene.maxForce, limits.maximumForce);
     settings.maximumStiffness          = lower(scene.stiffnessCap, limits.maximumStiffness);
     settings.stiffnessAtOneMillisecond = settings.maximumStiffness;
-    settings.delaySamples              = delayOf(threads);
+    settings.delayTicks                = delayOf(threads);
     settings.creditedDamping           = spentDamping(settings.maximumStiffness);
     return settings;
 }

@@ -27,8 +27,8 @@ constexpr double kWide = 5;
 /// Returns the diagonal of the box that the hand stays in [m].
 double widthOf(const HandPath& path)
 {
-    glm::dvec3 low = path.samples().front().position, high = low;
-    for (const HandPose& s : path.samples()) {
+    glm::dvec3 low = path.waypoints().front().position, high = low;
+    for (const HandPose& s : path.waypoints()) {
         low  = glm::min(low, s.position);
         high = glm::max(high, s.position);
     }

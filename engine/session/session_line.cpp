@@ -10,7 +10,7 @@ namespace palp {
 
 void showLine(const SessionView& view)
 {
-    const TickRecord& s     = view.sample;
+    const TickRecord& s     = view.record;
     const auto        fault = static_cast<GovernorFault>(s.faults & 0xFFU);
     const bool        stale = (s.faults & static_cast<std::uint32_t>(SessionFlag::stalePatch)) != 0;
     std::fprintf(stderr, "\r%6.1f s  %8s  %8s deep  a tick every %8s  a patch in %8s%s%s%s\033[K", s.time,

@@ -27,7 +27,7 @@ struct SessionSummary {
     DurationHistogram period;                                  ///< from tick to tick [s]; empty on a virtual clock
 
     /// Counts a record in.
-    void add(const TickRecord& sample) noexcept;
+    void add(const TickRecord& record) noexcept;
 };
 
 /// Receives each record of a session as it is made.

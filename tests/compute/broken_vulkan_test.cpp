@@ -33,7 +33,7 @@ TEST_F(BrokenVulkan, AutoTakesTheHostWhereVulkanDoesNotStart)
 {
     fail("start");
     const Context context;
-    EXPECT_EQ(context.processor().kind, kHostProcessor);
+    EXPECT_EQ(context.processor().kind, ProcessorKind::host);
     EXPECT_TRUE(holds(context.note(), {"Vulkan does not start", "vulkaninfo"})) << context.note();
     EXPECT_TRUE(holds(refusal("lavapipe"), {"Vulkan does not start"}));
     EXPECT_THROW((void)listProcessors(), ProcessorError);
@@ -43,7 +43,7 @@ TEST_F(BrokenVulkan, AutoTakesTheHostWhereADriverCannotListItsDevices)
 {
     fail("list");
     const Context context;
-    EXPECT_EQ(context.processor().kind, kHostProcessor);
+    EXPECT_EQ(context.processor().kind, ProcessorKind::host);
     EXPECT_TRUE(holds(context.note(), {"cannot list", "vulkaninfo"})) << context.note();
     EXPECT_TRUE(holds(refusal("0"), {"cannot list"}));
 }
@@ -55,7 +55,7 @@ TEST_F(BrokenVulkan, AutoPassesOverAGpuThatDoesNotOpen)
     const auto                   best = chooseProcessor(list, "auto");
     ASSERT_TRUE(best && list[*best].name == "Broken Large") << "it looks like a good one";
     const Context context;
-    EXPECT_EQ(context.processor().kind, kHostProcessor);
+    EXPECT_EQ(context.processor().kind, ProcessorKind::host);
     EXPECT_TRUE(holds(context.note(), {"Broken Large cannot be opened", "; the GPU Broken Small cannot"}))
         << "the next best one is tried: " << context.note();
     EXPECT_TRUE(holds(refusal("large"), {"Broken Large", "cannot be opened"})) << "who names it is told";
@@ -67,7 +67,7 @@ TEST_F(BrokenVulkan, TheHostIsTakenWithoutLookingAtVulkan)
     for (const char* where : {"start", "list", "open"}) {
         fail(where);
         const Context context({.processor = "host"});
-        EXPECT_EQ(context.processor().kind, kHostProcessor);
+        EXPECT_EQ(context.processor().kind, ProcessorKind::host);
         EXPECT_EQ(context.note(), "") << where;
     }
 }
@@ -77,7 +77,7 @@ TEST_F(BrokenVulkan, AMachineWithoutADriverIsNotBroken)
     setenv("VK_DRIVER_FILES", "/nowhere.json", 1);
     setenv("VK_ICD_FILENAMES", "/nowhere.json", 1);
     const Context context;
-    EXPECT_EQ(context.processor().kind, kHostProcessor);
+    EXPECT_EQ(context.processor().kind, ProcessorKind::host);
     EXPECT_EQ(context.note(), "");
 }
 
@@ -95,9 +95,10 @@ TEST_F(BrokenVulkan, AutoDoesNotTakeSoftwareInPlaceOfABrokenGpu)
     fail("open", PALPATE_LAVAPIPE_MANIFEST);
     ASSERT_EQ(listProcessors().size(), 3u);
     const Context context;
-    EXPECT_EQ(context.processor().kind, kHostProcessor);
+    EXPECT_EQ(context.processor().kind, ProcessorKind::host);
     EXPECT_TRUE(holds(context.note(), {"Broken Large"})) << context.note();
-    EXPECT_EQ(Context({.processor = "lavapipe"}).processor().kind, "software") << "but where it is asked for";
+    EXPECT_EQ(Context({.processor = "lavapipe"}).processor().kind, ProcessorKind::software)
+        << "but where it is asked for";
 }
 #endif
 

@@ -30,8 +30,8 @@ protected:
     }
 
     compute::Buffer         up_{context(), "up", kBytes, compute::Intent::upload};
-    compute::Buffer         source_{context(), "source", kBytes, compute::Intent::device};
-    compute::Buffer         sum_{context(), "sum", kBytes, compute::Intent::device};
+    compute::Buffer         source_{context(), "source", kBytes, compute::Intent::processor};
+    compute::Buffer         sum_{context(), "sum", kBytes, compute::Intent::processor};
     compute::Buffer         down_{context(), "down", kBytes, compute::Intent::readback};
     compute::Kernel         accumulate_{context(), kAccumulate, {8, 8, 1}};
     const compute::Groups   groups_ = accumulate_.groupsOver(kSide, kSide);
@@ -126,7 +126,7 @@ TEST_F(CommandListTest, AnIndirectDispatchTakesItsGroupsFromABuffer)
 
 TEST_F(CommandListTest, PartOfABufferCanBeBound)
 {
-    const compute::Buffer wide(context(), "wide", 256 + kBytes, compute::Intent::device);
+    const compute::Buffer wide(context(), "wide", 256 + kBytes, compute::Intent::processor);
     compute::CommandList  list(context());
     list.fill(wide, 0);
     list.copy(up_, 0, wide, 256, kBytes);

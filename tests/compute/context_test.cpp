@@ -25,10 +25,10 @@ TEST_F(ContextTest, TheOpenedDeviceIsOneOfTheList)
 
 TEST_F(ContextTest, ShadersAreTestedInSoftwareUnlessAnotherDeviceIsNamed)
 {
-    EXPECT_TRUE(!compute::isProcessorWord(deviceOfTests(), compute::kLavapipeProcessor) ||
-                context().processor().kind == "software");
-    EXPECT_FALSE(compute::isProcessorWord(deviceOfTests(), compute::kAutoProcessor)) << "which may be the host";
-    EXPECT_EQ(onHost(), compute::isProcessorWord(deviceOfTests(), compute::kHostProcessor));
+    EXPECT_TRUE(!compute::isProcessorWord(processorOfTests(), compute::kLavapipeProcessor) ||
+                context().processor().kind == compute::ProcessorKind::software);
+    EXPECT_FALSE(compute::isProcessorWord(processorOfTests(), compute::kAutoProcessor)) << "which may be the host";
+    EXPECT_EQ(onHost(), compute::isProcessorWord(processorOfTests(), compute::kHostProcessor));
 }
 
 TEST_F(ContextTest, ADeviceThatIsNotThereIsRefusedAndEachDeviceNamed)
@@ -63,15 +63,16 @@ TEST_F(ContextTest, AMovedContextStillServesWhatWasMadeFromIt)
 
 TEST_F(ContextTest, ASubmissionThatOutlastsThePatienceIsALostDevice)
 {
-    if (context().processor().kind != "software") GTEST_SKIP() << "Vulkan in software is slow enough";
+    if (context().processor().kind != compute::ProcessorKind::software)
+        GTEST_SKIP() << "Vulkan in software is slow enough";
     compute::ContextSettings settings;
     settings.processor = std::to_string(context().processor().index);
     settings.patience  = 1e-9;
     compute::Context        hasty(settings);
     const compute::Kernel   smooth(hasty, kSmooth, {64, 1, 1});
     constexpr std::uint32_t kSide = 512;
-    const compute::Buffer   from(hasty, "from", kSide * kSide * 4, compute::Intent::device);
-    const compute::Buffer   to(hasty, "to", kSide * kSide * 4, compute::Intent::device);
+    const compute::Buffer   from(hasty, "from", kSide * kSide * 4, compute::Intent::processor);
+    const compute::Buffer   to(hasty, "to", kSide * kSide * 4, compute::Intent::processor);
     compute::CommandList    list(hasty);
     list.dispatch(smooth, {from, to}, shared::PlanePush{kSide, kSide, 1}, smooth.groupsOver(kSide, kSide));
     list.end();
@@ -101,8 +102,8 @@ TEST_F(ContextTest, GpuAssistedValidationReportsAWriteBeyondTheBuffer)
 {
     if (validation() != compute::Validation::gpuAssisted) GTEST_SKIP() << "GPU-assisted validation is off";
     const compute::Kernel broken(context(), kSmoothPastEnd, {8, 8, 1});
-    const compute::Buffer from(context(), "from", 7 * 7 * 4, compute::Intent::device);
-    const compute::Buffer to(context(), "to", 7 * 7 * 4, compute::Intent::device);
+    const compute::Buffer from(context(), "from", 7 * 7 * 4, compute::Intent::processor);
+    const compute::Buffer to(context(), "to", 7 * 7 * 4, compute::Intent::processor);
     compute::CommandList  list(context());
     list.fill(from, 0);
     list.dispatch(broken, {from, to}, shared::PlanePush{7, 7, 1}, broken.groupsOver(7, 7));

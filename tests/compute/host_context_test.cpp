@@ -36,7 +36,7 @@ protected:
 
 TEST_F(HostDeviceTest, ListsRunInOrderAsOftenAsTheyAreRun)
 {
-    const Buffer other(context, "other", 32, Intent::device);
+    const Buffer other(context, "other", 32, Intent::processor);
     CommandList  start(context), step(context);
     start.fill(other, 5);
     start.copy(other, 0, words, 4, 28);

@@ -10,21 +10,23 @@ using Processors = std::vector<Processor>;
 
 constexpr std::optional<std::size_t> kHost{};
 
-Processor processor(int index, std::string name, std::string kind, std::vector<std::string> refusals = {})
+Processor processor(int index, std::string name, ProcessorKind kind, std::vector<std::string> refusals = {})
 {
     Processor description;
     description.index    = index;
     description.name     = std::move(name);
-    description.kind     = std::move(kind);
+    description.kind     = kind;
     description.refusals = std::move(refusals);
     return description;
 }
 
 Processors desk()
 {
-    return {processor(0, "llvmpipe (LLVM 15)", "software"), processor(1, "Intel UHD 770", "integrated"),
-            processor(2, "Intel Arc A770", "discrete", {"it speaks Vulkan 1.1.0, and 1.2 is needed"}),
-            processor(3, "GeForce RTX 4090", "discrete"), processor(4, "Virtio", "virtual")};
+    return {processor(0, "llvmpipe (LLVM 15)", ProcessorKind::software),
+            processor(1, "Intel UHD 770", ProcessorKind::integrated),
+            processor(2, "Intel Arc A770", ProcessorKind::discrete, {"it speaks Vulkan 1.1.0, and 1.2 is needed"}),
+            processor(3, "GeForce RTX 4090", ProcessorKind::discrete),
+            processor(4, "Virtio", ProcessorKind::virtualGpu)};
 }
 
 std::string refusal(const Processors& processors, std::string_view wanted)
@@ -32,7 +34,7 @@ std::string refusal(const Processors& processors, std::string_view wanted)
     return refusalOf([&] { (void)chooseProcessor(processors, wanted); });
 }
 
-TEST(DeviceChoice, AutoTakesTheFirstUsableGpuOfTheBestKind)
+TEST(ProcessorChoice, AutoTakesTheFirstUsableGpuOfTheBestKind)
 {
     Processors processors = desk();
     EXPECT_EQ(chooseProcessor(processors, "auto"), 3u);
@@ -44,39 +46,42 @@ TEST(DeviceChoice, AutoTakesTheFirstUsableGpuOfTheBestKind)
     EXPECT_EQ(chooseProcessor(processors, "auto"), kHost) << "what is left is in software, or cannot be used";
 }
 
-TEST(DeviceChoice, AutoTakesTheHostWhereThereIsNoGpu)
+TEST(ProcessorChoice, AutoTakesTheHostWhereThereIsNoGpu)
 {
-    const Processor software = processor(0, "llvmpipe", "software");
+    const Processor software = processor(0, "llvmpipe", ProcessorKind::software);
     EXPECT_EQ(chooseProcessor({}, "auto"), kHost);
     EXPECT_EQ(chooseProcessor({software}, "auto"), kHost);
-    EXPECT_EQ(chooseProcessor({processor(0, "Venus", "other")}, "auto"), kHost) << "only when asked for";
-    EXPECT_EQ(chooseProcessor({software, processor(1, "Old", "discrete", {"it is too old"})}, "auto"), kHost);
-    EXPECT_EQ(chooseProcessor({software, processor(1, "Intel UHD 770", "integrated")}, "auto"), 1u);
+    EXPECT_EQ(chooseProcessor({processor(0, "Venus", ProcessorKind::other)}, "auto"), kHost) << "only when asked for";
+    EXPECT_EQ(chooseProcessor({software, processor(1, "Old", ProcessorKind::discrete, {"it is too old"})}, "auto"),
+              kHost);
+    EXPECT_EQ(chooseProcessor({software, processor(1, "Intel UHD 770", ProcessorKind::integrated)}, "auto"), 1u);
 }
 
-TEST(DeviceChoice, TheHostAndSoftwareAreThereWhenAskedFor)
+TEST(ProcessorChoice, TheHostAndSoftwareAreThereWhenAskedFor)
 {
     EXPECT_EQ(chooseProcessor(desk(), "host"), kHost);
     EXPECT_EQ(chooseProcessor({}, "host"), kHost);
     for (const char* wanted : {"lavapipe", "0", "llvmpipe"}) EXPECT_EQ(chooseProcessor(desk(), wanted), 0u) << wanted;
 }
 
-TEST(DeviceChoice, LavapipeIsTheDeviceInSoftware)
+TEST(ProcessorChoice, LavapipeIsTheDeviceInSoftware)
 {
     EXPECT_EQ(chooseProcessor(desk(), "lavapipe"), 0u);
-    EXPECT_TRUE(holds(refusal({processor(0, "GeForce", "discrete")}, "lavapipe"), {"mesa-vulkan-drivers", "GeForce"}));
+    EXPECT_TRUE(holds(refusal({processor(0, "GeForce", ProcessorKind::discrete)}, "lavapipe"),
+                      {"mesa-vulkan-drivers", "GeForce"}));
 }
 
-TEST(DeviceChoice, WordsAreKnownInAnyCase)
+TEST(ProcessorChoice, WordsAreKnownInAnyCase)
 {
     EXPECT_EQ(chooseProcessor(desk(), "Lavapipe"), 0u);
     EXPECT_EQ(chooseProcessor(desk(), "AUTO"), 3u);
     EXPECT_EQ(chooseProcessor(desk(), "Host"), kHost);
 }
 
-TEST(DeviceChoice, AWrongWordIsBadUsageUnlessNoOtherWouldDo)
+TEST(ProcessorChoice, AWrongWordIsBadUsageUnlessNoOtherWouldDo)
 {
-    const Processors useless{processor(0, "Old", "discrete", {"it speaks Vulkan 1.1.0, and 1.2 is needed"})};
+    const Processors useless{
+        processor(0, "Old", ProcessorKind::discrete, {"it speaks Vulkan 1.1.0, and 1.2 is needed"})};
 
     for (const char* wrong : {"voodoo", "99", "", "e"}) { // the last one is part of several names
         EXPECT_THROW((void)chooseProcessor(desk(), wrong), UnknownProcessor) << wrong;
@@ -87,7 +92,7 @@ TEST(DeviceChoice, AWrongWordIsBadUsageUnlessNoOtherWouldDo)
     EXPECT_THROW((void)chooseProcessor(desk(), "2"), ProcessorError) << "it is there and cannot be used";
 }
 
-TEST(DeviceChoice, AnIndexIsThatOfTheListNotThePlaceInIt)
+TEST(ProcessorChoice, AnIndexIsThatOfTheListNotThePlaceInIt)
 {
     Processors processors = desk();
     EXPECT_EQ(chooseProcessor(processors, "1"), 1u);
@@ -95,7 +100,7 @@ TEST(DeviceChoice, AnIndexIsThatOfTheListNotThePlaceInIt)
     EXPECT_EQ(chooseProcessor(processors, "1"), 0u);
 }
 
-TEST(DeviceChoice, PartOfANameFitsWhateverItsCase)
+TEST(ProcessorChoice, PartOfANameFitsWhateverItsCase)
 {
     EXPECT_EQ(chooseProcessor(desk(), "geforce"), 3u);
     EXPECT_EQ(chooseProcessor(desk(), "LLVM"), 0u);
@@ -103,30 +108,31 @@ TEST(DeviceChoice, PartOfANameFitsWhateverItsCase)
     EXPECT_EQ(chooseProcessor(desk(), "intel"), 1u) << "the other one cannot be used anyway";
 }
 
-TEST(DeviceChoice, SeveralFittingNamesAreRefused)
+TEST(ProcessorChoice, SeveralFittingNamesAreRefused)
 {
-    const Processors two{processor(0, "RTX 4090", "discrete"), processor(1, "RTX 4090", "discrete")};
+    const Processors two{processor(0, "RTX 4090", ProcessorKind::discrete),
+                         processor(1, "RTX 4090", ProcessorKind::discrete)};
     EXPECT_TRUE(holds(refusal(two, "rtx"), {"several", "'rtx'", "index", "\n  0  RTX", "\n  1  RTX"}));
 }
 
-TEST(DeviceChoice, ARefusedDeviceIsRefusedWithItsReason)
+TEST(ProcessorChoice, ARefusedDeviceIsRefusedWithItsReason)
 {
     EXPECT_TRUE(holds(refusal(desk(), "2"), {"GPU 2", "Vulkan 1.1.0"}));
     EXPECT_TRUE(holds(refusal(desk(), "Arc"), {"'Arc'", "Vulkan 1.1.0"}));
 }
 
-TEST(DeviceChoice, AnUnknownNameNamesEveryDevice)
+TEST(ProcessorChoice, AnUnknownNameNamesEveryDevice)
 {
     const std::string sentence = refusal(desk(), "voodoo");
     EXPECT_TRUE(holds(sentence, {"'voodoo'", "auto, host, lavapipe", "an index or part of a name", "\n  host  "}))
         << sentence;
-    for (const Processor& one : desk()) EXPECT_TRUE(holds(sentence, {one.name, one.kind})) << sentence;
+    for (const Processor& one : desk()) EXPECT_TRUE(holds(sentence, {one.name, palp::name(one.kind)})) << sentence;
     EXPECT_NE(refusal(desk(), ""), "");
     EXPECT_NE(refusal(desk(), "99"), "");
     EXPECT_NE(refusal(desk(), "-1"), "");
 }
 
-TEST(DeviceChoice, WithoutAnyGpuThePackageIsNamed)
+TEST(ProcessorChoice, WithoutAnyGpuThePackageIsNamed)
 {
     for (const char* wanted : {"lavapipe", "0", "geforce"})
         EXPECT_TRUE(holds(refusal({}, wanted), {"mesa-vulkan-drivers", "\n  host  "})) << wanted;

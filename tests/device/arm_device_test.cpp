@@ -28,11 +28,11 @@ TEST(ArmDevice, IsTheSimulatedArmTickForTick)
     for (int n = 0; n < 500; ++n) {
         const double last = now;
         now += kTick;
-        const HapticState state  = device.exchange(push, now);
-        const ArmState    sample = arm.step({1, -2, 0.5}, now - last);
-        ASSERT_EQ(state.position, sample.position) << "the same bits, tick " << n;
-        ASSERT_EQ(state.velocity, sample.velocity);
-        ASSERT_EQ(state.inBox, sample.inBox);
+        const HapticState state    = device.exchange(push, now);
+        const ArmState    armState = arm.step({1, -2, 0.5}, now - last);
+        ASSERT_EQ(state.position, armState.position) << "the same bits, tick " << n;
+        ASSERT_EQ(state.velocity, armState.velocity);
+        ASSERT_EQ(state.inBox, armState.inBox);
         ASSERT_EQ(state.time, now);
     }
     EXPECT_GT(glm::length(device.arm().position()), 1e-3) << "it moved";
@@ -40,7 +40,7 @@ TEST(ArmDevice, IsTheSimulatedArmTickForTick)
 
 TEST(ArmDevice, AForceActsFromItsExchangeOn)
 {
-    ArmDevice device({.encoderStep = 0, .delaySamples = 1});
+    ArmDevice device({.encoderStep = 0, .delayTicks = 1});
     device.open();
     device.exchange({}, 0);
     EXPECT_EQ(device.exchange(governed({1, 0, 0}), kTick).position, glm::dvec3(0)) << "none acted until now";
@@ -99,7 +99,7 @@ TEST(ArmDevice, OpensAtItsStart)
     EXPECT_EQ(device.exchange({}, 1).fault, DeviceFault::closed);
     device.open();
     EXPECT_NEAR(device.exchange({}, 7).position.x, 0.0096, 1e-12) << "200 encoder steps of 48 um; rounding";
-    EXPECT_THROW(ArmDevice({.delaySamples = 0}), Error);
+    EXPECT_THROW(ArmDevice({.delayTicks = 0}), Error);
 }
 
 } // namespace

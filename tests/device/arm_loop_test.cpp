@@ -60,12 +60,12 @@ struct Loop {
         in.loopPeriod = kDt;
     }
 
-    void tick() { touch(arm.sample(), law(arm.sample().position), arm.sample().velocity); }
+    void tick() { touch(arm.state(), law(arm.state().position), arm.state().velocity); }
 
     /// One tick with a stiffness and a velocity of the caller's choice.
-    void touch(const ArmState& sample, double stiffness, const glm::dvec3& velocity)
+    void touch(const ArmState& armState, double stiffness, const glm::dvec3& velocity)
     {
-        const double     depth   = std::max(0.0, -sample.position.z);
+        const double     depth   = std::max(0.0, -armState.position.z);
         const double     wanted  = capped ? std::min(stiffness, governor.stiffnessCap()) : stiffness;
         const glm::dvec3 along   = {velocity.x, velocity.y, 0};
         const double     sliding = glm::length(along);
@@ -74,9 +74,9 @@ struct Loop {
 
         in.force = {0, 0, spring.stiffness * depth};
         if (spring.brake > 0) in.force -= along * (spring.brake / sliding);
-        in.position       = sample.position;
+        in.position       = armState.position;
         in.velocity       = velocity;
-        in.inBox          = sample.inBox;
+        in.inBox          = armState.inBox;
         in.admittedEnergy = spring.used;
         in.storedEnergy   = spring.stored;
         in.time += kDt;
@@ -178,7 +178,7 @@ double workPerCycle(Loop loop, double depth, double speed)
             for (int n = 0; n < ticks; ++n) {
                 const glm::dvec3 acts = loop.governed ? loop.out.force : loop.in.force, from = loop.arm.position();
                 loop.tick();
-                work += glm::dot(acts, loop.arm.position() - from); // of the tick before: one sample late
+                work += glm::dot(acts, loop.arm.position() - from); // of the tick before: one tick late
             }
         }
         most = std::max(most, work);
@@ -217,7 +217,7 @@ double crossedOnce()
     loop.arm.holdBy(kReaching);
     Swing swing;
     for (int n = 0; n < 15000; ++n) {
-        loop.touch(loop.arm.sample(), n / 5000 == 1 ? 100 : 1000, loop.arm.sample().velocity);
+        loop.touch(loop.arm.state(), n / 5000 == 1 ? 100 : 1000, loop.arm.state().velocity);
         if (n >= 5000) swing.add(loop.arm.position().z);
     }
     return swing.half();
@@ -237,19 +237,19 @@ double shaken(Loop& loop, double frequency, int late, Sideways sideways)
     Swing swing;
     for (int n = 0; n < 8000; ++n) {
         const double  x = 3e-3 * std::sin(w * n * kDt), v = 3e-3 * w * std::cos(w * n * kDt);
-        SimulatedHand hand   = kReaching;
-        ArmState      sample = loop.arm.sample();
+        SimulatedHand hand     = kReaching;
+        ArmState      armState = loop.arm.state();
         if (sideways == Sideways::forced) {
-            sample.position.x = x;
-            sample.velocity.x = v;
+            armState.position.x = x;
+            armState.velocity.x = v;
         } else {
             hand.target.x         = x;
             hand.targetVelocity.x = v;
         }
         loop.arm.holdBy(hand);
-        past[std::size_t(n) % past.size()] = sample.position.x;
+        past[std::size_t(n) % past.size()] = armState.position.x;
         const double known                 = past[std::size_t(std::max(0, n - late)) % past.size()];
-        loop.touch(sample, step({known, 0, 0}), sample.velocity);
+        loop.touch(armState, step({known, 0, 0}), armState.velocity);
         if (n >= 4000) swing.add(loop.arm.position().z);
     }
     return swing.half();

@@ -43,9 +43,9 @@ struct Weighing {
     static SimulatedArmSettings like(double friction)
     {
         SimulatedArmSettings settings;
-        settings.friction     = friction;
-        settings.encoderStep  = 0;
-        settings.delaySamples = 0;
+        settings.friction    = friction;
+        settings.encoderStep = 0;
+        settings.delayTicks  = 0;
         return settings;
     }
 

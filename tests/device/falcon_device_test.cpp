@@ -542,7 +542,7 @@ TEST(FalconDevice, AWallIsFeltThroughTheWholeChain)
 {
     // A hand of 150 N/m pulls 5 mm into a wall of 500 N/m at z = 0: it rests where 500 d = 150 (5 mm - d).
     SimulatedArmSettings of;
-    of.encoderStep = 0, of.delaySamples = 0;
+    of.encoderStep = 0, of.delayTicks = 0;
     SimulatedArm arm(of, {0, 0, 0.01});
     arm.holdBy({.stiffness = 150, .damping = 3, .target = {0, 0, 0.01}});
     FalconBench   bench(runningFalcon(), [&](const glm::dvec3& force, double dt) {

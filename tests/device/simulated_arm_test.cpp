@@ -26,9 +26,9 @@ SimulatedArmSettings frictionless()
 
 TEST(SimulatedArm, FallsFromAForceAsTheExactSolutionSays)
 {
-    // m v' = F - b v from rest, F = 1 N, after 0.1 s; the delay of one sample is taken off.
+    // m v' = F - b v from rest, F = 1 N, after 0.1 s; the delay of one tick is taken off.
     SimulatedArmSettings settings = frictionless();
-    settings.delaySamples         = 0;
+    settings.delayTicks           = 0;
     SimulatedArm arm(settings);
 
     for (int n = 0; n < 100; ++n) static_cast<void>(arm.step({1, 0, 0}, 1e-3));
@@ -67,11 +67,11 @@ TEST(SimulatedArm, FollowsAHandThatMovesEvenly)
     EXPECT_NEAR(arm.position().x, 0.02 * 4 - 3.2 * 0.02 / 500, 1e-9) << "behind by what drags the arm's own damper";
 }
 
-TEST(SimulatedArm, AForceActsOneSampleLateAndIsHeld)
+TEST(SimulatedArm, AForceActsOneTickLateAndIsHeld)
 {
     for (int delay : {0, 1, 2}) {
         SimulatedArmSettings settings = frictionless();
-        settings.delaySamples         = delay;
+        settings.delayTicks           = delay;
         SimulatedArm arm(settings);
 
         static_cast<void>(arm.step({1, 0, 0}, 1e-3));
@@ -86,20 +86,20 @@ TEST(SimulatedArm, AForceActsOneSampleLateAndIsHeld)
 TEST(SimulatedArm, TheEncoderRoundsAndTheVelocityIsOverItsWindow)
 {
     SimulatedArm arm({}, {0.1e-3, -0.1e-3, 0});
-    EXPECT_NEAR(arm.sample().position.x, 2 * 48e-6, 1e-12);
-    EXPECT_NEAR(arm.sample().position.y, -2 * 48e-6, 1e-12);
-    EXPECT_EQ(arm.sample().velocity, glm::dvec3(0)) << "of one sample";
+    EXPECT_NEAR(arm.state().position.x, 2 * 48e-6, 1e-12);
+    EXPECT_NEAR(arm.state().position.y, -2 * 48e-6, 1e-12);
+    EXPECT_EQ(arm.state().velocity, glm::dvec3(0)) << "of one tick";
 
     SimulatedArmSettings settings;
     settings.damping = 0;
     SimulatedArm moving(settings, {}, {0.1, 0, 0});
-    ArmState     sample;
+    ArmState     armState;
     for (int n = 0; n < 200; ++n) {
-        sample = moving.step({}, 1e-3);
+        armState = moving.step({}, 1e-3);
         if (n < 15) continue;
-        EXPECT_NEAR(sample.velocity.x, 0.1, 48e-6 / 15e-3 + 1e-12) << "one encoder step in the window";
+        EXPECT_NEAR(armState.velocity.x, 0.1, 48e-6 / 15e-3 + 1e-12) << "one encoder step in the window";
     }
-    EXPECT_NEAR(sample.time, 0.2, 1e-12);
+    EXPECT_NEAR(armState.time, 0.2, 1e-12);
 }
 
 TEST(SimulatedArm, FrictionHoldsAndStops)
@@ -129,8 +129,8 @@ TEST(SimulatedArm, StopsAtTheEndOfItsWorkspaceAndSaysWhenItLeavesTheBox)
 
     EXPECT_EQ(arm.position().x, 0.05);
     EXPECT_EQ(arm.velocity().x, 0);
-    EXPECT_FALSE(arm.sample().inBox);
-    EXPECT_TRUE(SimulatedArm().sample().inBox);
+    EXPECT_FALSE(arm.state().inBox);
+    EXPECT_TRUE(SimulatedArm().state().inBox);
 }
 
 TEST(SimulatedArm, WhatIsNotFiniteMovesNothing)
@@ -144,7 +144,7 @@ TEST(SimulatedArm, WhatIsNotFiniteMovesNothing)
     static_cast<void>(arm.step({1, 0, 0}, -1));
 
     EXPECT_EQ(arm.position(), glm::dvec3(0));
-    EXPECT_NEAR(arm.sample().time, 2e-3, 1e-15) << "two ticks had a period";
+    EXPECT_NEAR(arm.state().time, 2e-3, 1e-15) << "two ticks had a period";
 }
 
 TEST(SimulatedArm, RefusesSettingsOutOfRangeByName)
@@ -161,7 +161,7 @@ TEST(SimulatedArm, RefusesSettingsOutOfRangeByName)
     };
 
     EXPECT_NE(complaint([](auto& s) { s.mass = 0; }).find("mass"), std::string::npos);
-    EXPECT_NE(complaint([](auto& s) { s.delaySamples = 8; }).find("delaySamples"), std::string::npos);
+    EXPECT_NE(complaint([](auto& s) { s.delayTicks = 8; }).find("delayTicks"), std::string::npos);
     EXPECT_NE(complaint([](auto& s) { s.encoderStep = kNan; }).find("encoderStep"), std::string::npos);
 }
 
@@ -170,7 +170,7 @@ double stiffnessLimit(double period, int delay, double damping, double low, doub
 {
     SimulatedArmSettings settings = frictionless();
     settings.mass                 = 0.459;
-    settings.delaySamples         = delay;
+    settings.delayTicks           = delay;
     const auto dies               = [&](double stiffness) {
         SimulatedArm arm(settings, {1e-3, 0, 0});
         double       last = 1e-3, early = 0, late = 0;
@@ -196,7 +196,7 @@ TEST(SimulatedArm, StabilityLimitsAreThoseOfTheDiscreteEigenvalues)
     // 2137 where the table says 2120, and 537 where it says 520.
     struct Row {
         double period;                 // [s]
-        double none, one, two, damped; // delays of 0, 1, 2 samples; delay 1 with B = 5 N s/m
+        double none, one, two, damped; // delays of 0, 1, 2 ticks; delay 1 with B = 5 N s/m
     };
     double worst = 0;
     for (const Row& row : {Row{0.5e-3, 12800, 4260, 2560, 10860}, Row{1e-3, 6400, 2120, 1280, 5400},

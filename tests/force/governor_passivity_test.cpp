@@ -11,7 +11,7 @@ TEST(ForceGovernor, TheEnergyIsTheWorkOfTheForceThatActed)
 {
     for (int delay : {0, 1, 3}) {
         GovernorSettings settings = strictObserver();
-        settings.delaySamples     = delay;
+        settings.delayTicks       = delay;
         Servo servo(settings);
         servo.pushing({0, 0, 2});
 

@@ -479,9 +479,9 @@ TEST(ForceGovernor, TheStiffnessCapFollowsTheLoopPeriod)
     for (double senseless : {0.0, -1e-3, kNan, kInfinity}) EXPECT_EQ(cap(senseless), 0) << senseless;
 
     GovernorSettings late;
-    late.delaySamples = 2;
+    late.delayTicks = 2;
     EXPECT_NEAR(ForceGovernor(late).stiffnessCap(), 600, 1e-9) << "1.5 of 2.5 ms";
-    late.delaySamples     = 1;
+    late.delayTicks       = 1;
     late.maximumStiffness = 5000;
     Servo fast(late);
     fast.in.loopPeriod = 0.5e-3;

@@ -1,4 +1,4 @@
-// An arm with a law's force held for a tick and one sample late, in virtual time.
+// An arm with a law's force held for a tick and a tick late, in virtual time.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -13,7 +13,7 @@ namespace palp {
 namespace {
 
 constexpr double kMass = 0.46, kDamping = 3.2; // of a Falcon's arm, as our own prototype has it [kg], [N s/m]
-constexpr double kTick = 1e-3;                 // the force is held so long, and one sample late [s]
+constexpr double kTick = 1e-3;                 // the force is held so long, and is as late [s]
 constexpr double kCap  = 1000;                 // what the governor lets through at this damping [N/m]
 
 /// A mass that is let go 2 mm deep, or pressed there by `hand` [N/m] without damping: largest depth [m] in the last

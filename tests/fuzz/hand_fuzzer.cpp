@@ -20,8 +20,9 @@ void expect(bool holds)
 /// What must hold of every hand that is accepted: finite, forwards in time, no faster than it says.
 void check(const palp::HandPath& hand)
 {
-    expect(hand.samples().size() >= 2 && hand.duration() > 0 && hand.fastest() <= palp::HandPath::kFastest);
-    for (const palp::HandPose& s : hand.samples()) expect(std::isfinite(s.time) && hand.position(s.time) == s.position);
+    expect(hand.waypoints().size() >= 2 && hand.duration() > 0 && hand.fastest() <= palp::HandPath::kFastest);
+    for (const palp::HandPose& s : hand.waypoints())
+        expect(std::isfinite(s.time) && hand.position(s.time) == s.position);
     for (const double t : {-1.0, 0.0, 0.3, 1e9}) expect(std::isfinite(glm::length(hand.position(hand.begin() + t))));
 }
 

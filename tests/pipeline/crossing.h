@@ -37,7 +37,7 @@ private:
 
 /// sd 4 mm, in the middle.
 [[nodiscard]] Sheet::Factor wart(double contrast);
-/// Stiff where x > 0. ln D as the pipeline's sampling sees it where points are 1 mm apart: evened out by a Gaussian.
+/// Stiff where x > 0. ln D as the pipeline's resampling sees it where points are 1 mm apart: evened out by a Gaussian.
 [[nodiscard]] Sheet::Factor step(double contrast);
 
 /// A hand in virtual time at constant depth: the servo ticks at 1 kHz and tables arrive at some rate, one period late.

@@ -114,14 +114,14 @@ TEST_P(TenMinutes, NothingEverGoesWrong)
     std::uint32_t    faults = 0, device = 0;
     double           most = 0, step = 0; // [N]
     glm::dvec3       last{};
-    const auto       summary = s.run(kSeconds, [&](const TickRecord& sample) {
-        const double force = glm::length(sample.force);
-        finite = finite && std::isfinite(force + glm::length(sample.hip) + glm::length(sample.hipVelocity));
-        faults |= sample.faults & 0xFFU;
-        device |= sample.device & 0xFFU;
+    const auto       summary = s.run(kSeconds, [&](const TickRecord& record) {
+        const double force = glm::length(record.force);
+        finite = finite && std::isfinite(force + glm::length(record.hip) + glm::length(record.hipVelocity));
+        faults |= record.faults & 0xFFU;
+        device |= record.device & 0xFFU;
         most = std::max(most, force);
-        step = std::max(step, glm::length(sample.force - last));
-        last = sample.force;
+        step = std::max(step, glm::length(record.force - last));
+        last = record.force;
     });
     std::printf("  %.0f s: in contact %.0f %%, force up to %.2f N, largest step %.3f N, a tick %.0f us\n", kSeconds,
                 100.0 * double(summary.contactTicks) / double(summary.ticks), most, step,
@@ -171,14 +171,14 @@ TEST(FalconSession, EveryTroubleOfTheWireEndsAtZeroForceWithAReasonOrIsBorne)
         s.falcon.emulator().cause({trouble.kind, from, from + trouble.lasts});
         double        pushed = 0, before = 0, last = from, after = 0; // [s] in the trouble; [N]; [s]; [N]
         std::uint32_t reason = 0;
-        (void)s.run(3.3 + trouble.lasts + 0.5, [&](const TickRecord& sample) {
+        (void)s.run(3.3 + trouble.lasts + 0.5, [&](const TickRecord& record) {
             const double now = s.falcon.emulator().now();
-            after            = glm::length(sample.force);
+            after            = glm::length(record.force);
             if (now < from) before = after;
             if (now < from || now > from + trouble.lasts) return;
             if (s.falcon.emulator().falcon().motors() != std::array<std::int16_t, 3>{}) pushed += now - last;
             last = now;
-            reason |= sample.device & 0xFFU;
+            reason |= record.device & 0xFFU;
         });
         EXPECT_GT(before, 0.3) << trouble.name << ": there must be a force to lose [N]";
         if (trouble.ends == Ends::notAtAll) {
@@ -198,7 +198,7 @@ TEST(FalconSession, TheForceAtTheGripIsTheGovernors)
     Session    s(kWart, exploring(6), 60);
     double     worst = 0; // [rad]
     glm::dvec3 sent{};    // [N] of the tick before
-    (void)s.run(6, [&](const TickRecord& sample) {
+    (void)s.run(6, [&](const TickRecord& record) {
         const auto&            motors = s.falcon.emulator().falcon().motors();
         const int              most   = std::max({std::abs(motors[0]), std::abs(motors[1]), std::abs(motors[2])});
         const FalconKinematics kinematics;
@@ -220,7 +220,7 @@ TEST(FalconSession, TheForceAtTheGripIsTheGovernors)
             const double     cosine = glm::dot(felt, wanted) / (glm::length(felt) * glm::length(wanted));
             worst                   = std::max(worst, std::acos(std::min(1.0, cosine)));
         }
-        sent = sample.force;
+        sent = record.force;
     });
     std::printf("  largest angle %.3f degrees\n", worst * 180 / std::numbers::pi);
     EXPECT_GT(worst, 0) << "something was compared";

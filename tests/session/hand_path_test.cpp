@@ -38,29 +38,30 @@ TEST(HandPath, ReadsNumbersBetweenAnythingUsualWithOrWithoutAHeader)
           "# a comment\nt,hip_x,hip_y,hip_z,proxy_x\r\n0,1e-3,2e-3,3e-3,9\r\n0.5,2e-3,2e-3,3e-3,9\r\n"}) {
         const HandPath hand = parsed(text);
 
-        EXPECT_EQ(hand.samples().size(), 2u) << text;
+        EXPECT_EQ(hand.waypoints().size(), 2u) << text;
         EXPECT_EQ(hand.duration(), 0.5);
         EXPECT_DOUBLE_EQ(hand.position(0.25).x, 1.5e-3);
         EXPECT_DOUBLE_EQ(hand.fastest(), 2e-3);
     }
 }
 
-TEST(HandPath, AtTheTimeOfASampleItIsThatSampleBitForBitAndBeyondTheEndsItRests)
+TEST(HandPath, AtTheTimeOfAWaypointItIsThatWaypointBitForBitAndBeyondTheEndsItRests)
 {
-    std::vector<HandPose> samples;
+    std::vector<HandPose> waypoints;
     for (int i = 0; i < 1000; ++i) {
         const double t = 0.1 + i * 1e-3;
-        samples.push_back({t, {std::sin(t) / 3, std::cos(t) / 7, t / 11}});
+        waypoints.push_back({t, {std::sin(t) / 3, std::cos(t) / 7, t / 11}});
     }
-    const HandPath hand(samples);
+    const HandPath hand(waypoints);
 
-    for (const HandPose& sample : samples) EXPECT_EQ(hand.position(sample.time), sample.position) << sample.time;
-    EXPECT_EQ(hand.position(-1), samples.front().position);
-    EXPECT_EQ(hand.position(99), samples.back().position);
-    EXPECT_EQ(hand.position(std::nan("")), samples.front().position);
+    for (const HandPose& waypoint : waypoints)
+        EXPECT_EQ(hand.position(waypoint.time), waypoint.position) << waypoint.time;
+    EXPECT_EQ(hand.position(-1), waypoints.front().position);
+    EXPECT_EQ(hand.position(99), waypoints.back().position);
+    EXPECT_EQ(hand.position(std::nan("")), waypoints.front().position);
 }
 
-TEST(HandPath, AColumnOfButtonsIsPressedFromItsSampleOn)
+TEST(HandPath, AColumnOfButtonsIsPressedFromItsWaypointOn)
 {
     const HandPath hand = parsed("time,x,y,z,force,buttons\n0,0,0,0,9,0\n1,0,0,0,9,2\n2,0,0,0,9,0\n");
 
@@ -107,7 +108,7 @@ TEST(HandPath, WhatNoHandCanDoIsRefusedWithItsLine)
     EXPECT_TRUE(holds(refusal("x,y,z,time\n0,0,0,0\n"), {"line 1", "\"x\"", "time, x, y, z"}));
     EXPECT_TRUE(holds(refusal(good + "0.001,5,0,0\n"), {"line 3", "5000 m/s", "metres"}));
     EXPECT_TRUE(holds(refusal(good + "1,0,\x1b[2J,0\n"), {"found \"?[2J\""})) << "no commands for a terminal";
-    EXPECT_TRUE(holds(refusal(good), {"hand.csv", "two samples", "found 1"}));
+    EXPECT_TRUE(holds(refusal(good), {"hand.csv", "two waypoints", "found 1"}));
     EXPECT_TRUE(holds(refusal(""), {"found 0"}));
     EXPECT_TRUE(holds(refusal(good + std::string(100'000, '1')), {"hand.csv", "longer than 65536 bytes"}));
     EXPECT_TRUE(holds(refusal(good + "1,1e308,0,0\n"), {"line 3", "m/s"})) << "beyond what doubles can square";
@@ -151,7 +152,7 @@ TEST(GeneratedHand, NeverExceedsItsSpeedAndHasNoJumpInVelocity)
         EXPECT_LE(hand.fastest(), 0.05 * (1 + 1e-9)) << name(motion);
         EXPECT_GT(hand.fastest(), 0.049) << name(motion);
         EXPECT_DOUBLE_EQ(hand.duration(), 3);
-        const auto& s = hand.samples();
+        const auto& s = hand.waypoints();
         for (std::size_t i = 1; i + 1 < s.size(); ++i) {
             const glm::dvec3 change = s[i + 1].position - 2.0 * s[i].position + s[i - 1].position;
             // The sharpest turn: from fall to rest, speed pi^2 / (4 * 7 mm) * 2 speed, 0.9 m/s2; a jump would be 50.
@@ -192,8 +193,8 @@ TEST(GeneratedHand, TheSameScriptGivesTheSameBits)
     const HandPath one = makeHand(script(HandMotion::circle), kPlace),
                    two = makeHand(script(HandMotion::circle), kPlace);
 
-    for (std::size_t i = 0; i < one.samples().size(); ++i)
-        EXPECT_EQ(one.samples()[i].position, two.samples()[i].position);
+    for (std::size_t i = 0; i < one.waypoints().size(); ++i)
+        EXPECT_EQ(one.waypoints()[i].position, two.waypoints()[i].position);
 }
 
 TEST(GeneratedHand, SenselessScriptsAreRefused)

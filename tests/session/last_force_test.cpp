@@ -121,7 +121,7 @@ TEST_F(LastForce, IsZeroWhenWhoLooksOnThrows)
     expectZeroAfterAForce();
 }
 
-TEST_F(LastForce, IsZeroWhenWhoTakesSamplesThrows)
+TEST_F(LastForce, IsZeroWhenWhoTakesRecordsThrows)
 {
     const RealSessionSettings settings{.seconds = 1000, .onTick = [](const TickRecord& s) {
                                            if (glm::length(s.force) > kPushes) throw std::runtime_error("no");

@@ -97,7 +97,7 @@ TEST_P(RealSessions, AnInterruptEndsIt)
     settings.seconds    = 3600;
     settings.stop       = &stop;
     settings.viewPeriod = 0.01;
-    settings.onView     = [&](const SessionView& view) { stop = view.sample.time > 0.05; };
+    settings.onView     = [&](const SessionView& view) { stop = view.record.time > 0.05; };
     EXPECT_LT(run(session, deformation.solver(), settings).ticks, 3600000U);
 }
 
@@ -133,7 +133,7 @@ TEST_P(RealSessions, ADeformationThatThrowsFailsAPatchAndTheTouchGoesOn)
     EXPECT_EQ(summary.why, "lost");
 }
 
-TEST_P(RealSessions, WhoTakesSamplesMustNotThrowAndEndsTheSessionIfItDoes)
+TEST_P(RealSessions, WhoTakesRecordsMustNotThrowAndEndsTheSessionIfItDoes)
 {
     const SheetSession  session(sheetScene(kWart));
     Deformation         deformation(session.object, session.scene);
@@ -149,7 +149,7 @@ TEST_P(RealSessions, AStalledDeformationLeavesAFiniteSmoothForceAndAFlag)
 {
     const SheetSession  session(sheetScene(kWart));
     const HandPath      rests({{0, {0, 0, 2e-3}}, {0.1, {0, 0, -1.5e-3}}, {20, {0, 0, -1.5e-3}}}); // and stays there
-    ScriptedHand          device(rests);
+    ScriptedHand        device(rests);
     Deformation         deformation(session.object, session.scene);
     RealSessionSettings settings;
     bool                stalled = false;

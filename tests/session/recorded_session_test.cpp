@@ -19,7 +19,7 @@ RecordedSession made(const std::string& name, int count)
 {
     RecordedSession session;
     session.folder = name;
-    for (int i = 0; i < count; ++i) session.samples.push_back(sampleNumber(i));
+    for (int i = 0; i < count; ++i) session.records.push_back(recordNumber(i));
     return session;
 }
 
@@ -29,21 +29,21 @@ TEST(RecordedSession, EqualSessionsDoNotDiffer)
     EXPECT_FALSE(compareSessions(made("a", 0), made("b", 0)));
 }
 
-TEST(RecordedSession, TheLastBitOfAnyColumnIsFoundWithSampleColumnAndValues)
+TEST(RecordedSession, TheLastBitOfAnyColumnIsFoundWithTickColumnAndValues)
 {
     const RecordedSession a = made("a", 100);
     for (const SessionColumn& column : sessionColumns()) {
         const std::size_t each = column.bytes() / column.components;
         for (std::size_t k = 0; k < column.components; ++k) {
             RecordedSession b     = made("b", 100);
-            char* const     place = reinterpret_cast<char*>(&b.samples[42]) + column.offset + k * each;
+            char* const     place = reinterpret_cast<char*>(&b.records[42]) + column.offset + k * each;
             *place                = char(*place ^ 1);
 
             const auto difference = compareSessions(a, b);
 
             ASSERT_EQ(difference.has_value(), !column.measured) << column.name;
             if (!difference) continue;
-            EXPECT_EQ(difference->sample, 42u);
+            EXPECT_EQ(difference->tick, 42u);
             EXPECT_EQ(difference->column, column.name);
             EXPECT_EQ(difference->component, k);
             EXPECT_NE(difference->first, difference->second);
@@ -56,7 +56,7 @@ TEST(RecordedSession, OneOfFormat1IsReadWithTheNamesThatItsKeysHaveToday)
     const TemporaryFolder folder;
     {
         Recording recording(folder / "old", someInfo());
-        for (int i = 0; i < 5; ++i) recording.push(sampleNumber(i));
+        for (int i = 0; i < 5; ++i) recording.push(recordNumber(i));
     }
     const auto description = [&](const std::string& format) { // as format 1 was written
         static_cast<void>(
@@ -77,10 +77,10 @@ TEST(RecordedSession, OneOfFormat1IsReadWithTheNamesThatItsKeysHaveToday)
     const Scene           scene   = sceneOf(session);
 
     EXPECT_EQ(session.solver, "llvmpipe");
-    EXPECT_EQ(session.samples.size(), 5u);
+    EXPECT_EQ(session.records.size(), 5u);
     EXPECT_EQ(scene.solver, "lavapipe");
     EXPECT_EQ(scene.complianceLaw, ComplianceLaw::blend);
-    EXPECT_EQ(scene.patch.sampling, Resampling::nearest);
+    EXPECT_EQ(scene.patch.resampling, Resampling::nearest);
     EXPECT_EQ(scene.material.thickness, 0.004);
 
     description("2");
@@ -95,27 +95,27 @@ TEST(RecordedSession, TheFirstDifferenceWinsAndIsDescribedInOneSentence)
 {
     const RecordedSession a = made("run1", 100);
     RecordedSession       b = made("run2", 100);
-    b.samples[50].force.y   = 0.25;
-    b.samples[60].time      = 9;
+    b.records[50].force.y   = 0.25;
+    b.records[60].time      = 9;
 
     const auto difference = compareSessions(a, b);
 
     ASSERT_TRUE(difference);
-    EXPECT_EQ(describe(*difference, a, b), "sample 50 (0.05 s): force y is 0 in run1 and 0.25 in run2");
+    EXPECT_EQ(describe(*difference, a, b), "tick 50 (0.05 s): force y is 0 in run1 and 0.25 in run2");
 }
 
 TEST(RecordedSession, BitsCountNotValues)
 {
     const RecordedSession a = made("a", 10);
     RecordedSession       b = made("b", 10);
-    b.samples[3].hip.z      = 0.0; // was -0
+    b.records[3].hip.z      = 0.0; // was -0
     EXPECT_EQ(compareSessions(a, b)->column, "hip");
     EXPECT_EQ(compareSessions(a, b)->first, "-0");
 
     RecordedSession c = made("c", 10), d = made("d", 10);
-    c.samples[3].rigidity = d.samples[3].rigidity = std::numeric_limits<double>::quiet_NaN();
+    c.records[3].rigidity = d.records[3].rigidity = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(compareSessions(c, d)) << "the same NaN";
-    char* const bits = reinterpret_cast<char*>(&d.samples[3].rigidity);
+    char* const bits = reinterpret_cast<char*>(&d.records[3].rigidity);
     bits[0]          = char(bits[0] ^ 1);
     const auto nans  = compareSessions(c, d);
     ASSERT_TRUE(nans);
@@ -130,19 +130,19 @@ TEST(RecordedSession, AShorterSessionDiffersWhereItEnds)
     const auto difference = compareSessions(a, b);
 
     ASSERT_TRUE(difference);
-    EXPECT_EQ(difference->sample, 90u);
+    EXPECT_EQ(difference->tick, 90u);
     EXPECT_EQ(difference->column, "");
-    EXPECT_EQ(describe(*difference, a, b), "a has 100 samples and b has 90");
+    EXPECT_EQ(describe(*difference, a, b), "a has 100 ticks and b has 90");
     EXPECT_TRUE(compareSessions(b, a));
 }
 
-/// A folder with a finished session of 100 samples.
+/// A folder with a finished session of 100 records.
 class SessionFolder : public testing::Test {
 protected:
     SessionFolder()
     {
         Recording recording(run, someInfo());
-        for (int i = 0; i < 100; ++i) recording.pushWaiting(sampleNumber(i));
+        for (int i = 0; i < 100; ++i) recording.pushWaiting(recordNumber(i));
         static_cast<void>(recording.finish());
     }
 
@@ -164,17 +164,17 @@ TEST_F(SessionFolder, ItsSceneAndItsHandComeBack)
     const RecordedSession session = readSession(run);
 
     const Scene  scene = sceneOf(session);
-    ReplayDevice hand(session.samples);
+    ReplayDevice hand(session.records);
 
     EXPECT_EQ(sceneJson(scene), sceneJson(someInfo().scene));
     EXPECT_EQ(session.command, someInfo().command);
     for (int i = 0; i < 100; ++i) {
-        const TickRecord  sample = sampleNumber(i);
+        const TickRecord  record = recordNumber(i);
         const HapticState there  = hand.exchange({}, 0);
-        EXPECT_EQ(std::memcmp(&there.position, &sample.hip, sizeof sample.hip), 0) << i;
-        EXPECT_EQ(there.velocity, sample.hipVelocity) << i;
-        EXPECT_EQ(there.buttons, sample.device >> 16U) << i;
-        EXPECT_EQ(there.missed, sample.missed) << i;
+        EXPECT_EQ(std::memcmp(&there.position, &record.hip, sizeof record.hip), 0) << i;
+        EXPECT_EQ(there.velocity, record.hipVelocity) << i;
+        EXPECT_EQ(there.buttons, record.device >> 16U) << i;
+        EXPECT_EQ(there.missed, record.missed) << i;
         EXPECT_TRUE(there.homed && !there.inBox) << i;
     }
     EXPECT_EQ(hand.exchange({}, 0).fault, DeviceFault::unplugged) << "there is no more";
@@ -186,18 +186,18 @@ TEST_F(SessionFolder, ColumnsThatAKillLeftLongerAreCutToTheShortest)
     force.replace(force.find("(100, 3)"), 8, "(98, 3) ");
     put("force.npy", force);
 
-    EXPECT_TRUE(holds(refusal(), {"force.npy", "100 samples", "found 98", "damaged"})) << "it was finished";
+    EXPECT_TRUE(holds(refusal(), {"force.npy", "100 ticks", "found 98", "damaged"})) << "it was finished";
     std::string description = contentsOf(run / "session.json");
     description.replace(description.find("\"finished\": true"), 16, "\"finished\": false");
     put("session.json", description);
-    EXPECT_EQ(readSession(run).samples.size(), 98u);
+    EXPECT_EQ(readSession(run).records.size(), 98u);
 }
 
 TEST_F(SessionFolder, DataBeyondWhatTheHeaderCountsIsIgnored)
 {
     put("time.npy", contentsOf(run / "time.npy") + "half");
 
-    EXPECT_EQ(readSession(run).samples.size(), 100u);
+    EXPECT_EQ(readSession(run).records.size(), 100u);
 }
 
 TEST_F(SessionFolder, BrokenFilesAreNamed)

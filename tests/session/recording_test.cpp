@@ -42,11 +42,11 @@ bool sameBytes(const TickRecord& a, const TickRecord& b)
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-/// Records this many samples and ends.
+/// Records this many records and ends.
 RecordingReport recorded(const std::filesystem::path& folder, int count)
 {
     Recording recording(folder, someInfo());
-    for (int i = 0; i < count; ++i) recording.pushWaiting(sampleNumber(i));
+    for (int i = 0; i < count; ++i) recording.pushWaiting(recordNumber(i));
     return recording.finish();
 }
 
@@ -62,13 +62,13 @@ TEST(Recording, WhatIsPushedIsReadBackByteForByte)
     const RecordingReport report  = recorded(folder / "run", 20'000);
     const RecordedSession session = readSession(folder / "run");
 
-    EXPECT_EQ(report.samples, 20'000u);
+    EXPECT_EQ(report.ticks, 20'000u);
     EXPECT_EQ(report.lost, 0u);
     EXPECT_FALSE(report.stopped) << *report.stopped;
-    ASSERT_EQ(session.samples.size(), 20'000u);
-    for (int i = 0; i < 20'000; ++i) ASSERT_TRUE(sameBytes(session.samples[std::size_t(i)], sampleNumber(i))) << i;
+    ASSERT_EQ(session.records.size(), 20'000u);
+    for (int i = 0; i < 20'000; ++i) ASSERT_TRUE(sameBytes(session.records[std::size_t(i)], recordNumber(i))) << i;
     EXPECT_TRUE(session.finished);
-    EXPECT_EQ(session.clock, "virtual");
+    EXPECT_EQ(session.clock, SessionClock::virtualTime);
 }
 
 TEST(Recording, TheDescriptionSaysWhatWasRunAndHow)
@@ -108,13 +108,13 @@ TEST(Recording, TheTableHoldsTheSameNumbersAsTheColumns)
         std::vector<double> numbers;
         for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
         ASSERT_EQ(numbers.size(), 26u);
-        EXPECT_EQ(numbers[1], sampleNumber(i).hip.x);
-        EXPECT_EQ(numbers[12], sampleNumber(i).force.z);
-        EXPECT_EQ(numbers[22], sampleNumber(i).iterations);
-        EXPECT_EQ(numbers[23], sampleNumber(i).faults);
+        EXPECT_EQ(numbers[1], recordNumber(i).hip.x);
+        EXPECT_EQ(numbers[12], recordNumber(i).force.z);
+        EXPECT_EQ(numbers[22], recordNumber(i).iterations);
+        EXPECT_EQ(numbers[23], recordNumber(i).faults);
     }
     EXPECT_FALSE(std::getline(csv, line));
-    EXPECT_EQ(readHand(folder / "run" / "samples.csv").position(0.05), sampleNumber(50).hip) << "a hand again";
+    EXPECT_EQ(readHand(folder / "run" / "samples.csv").position(0.05), recordNumber(50).hip) << "a hand again";
 }
 
 TEST(Recording, NoSessionIsOverwritten)
@@ -138,45 +138,45 @@ TEST(Recording, FilesAreWholeAtEveryMoment)
 {
     const TemporaryFolder folder;
     Recording             recording(folder / "run", someInfo());
-    EXPECT_EQ(readSession(folder / "run").samples.size(), 0u) << "before the first sample";
+    EXPECT_EQ(readSession(folder / "run").records.size(), 0u) << "before the first record";
 
     for (int i = 0; i < 20'000; ++i) {
-        recording.pushWaiting(sampleNumber(i));
+        recording.pushWaiting(recordNumber(i));
         if (i % 1000 != 0) continue;
         const RecordedSession session = readSession(folder / "run");
-        ASSERT_LE(session.samples.size(), std::size_t(i) + 1);
-        for (std::size_t k = 0; k < session.samples.size(); ++k)
-            ASSERT_TRUE(sameBytes(session.samples[k], sampleNumber(int(k)))) << k;
+        ASSERT_LE(session.records.size(), std::size_t(i) + 1);
+        for (std::size_t k = 0; k < session.records.size(); ++k)
+            ASSERT_TRUE(sameBytes(session.records[k], recordNumber(int(k)))) << k;
         ASSERT_FALSE(session.finished);
     }
 }
 
-TEST(Recording, EverySampleIsOnDiskOrCountedAsLost)
+TEST(Recording, EveryTickIsOnDiskOrCountedAsLost)
 {
     const TemporaryFolder folder;
     Recording             recording(folder / "run", someInfo());
 
     constexpr int kFlood = 200'000; // far more than the ring takes at once
-    for (int i = 0; i < kFlood; ++i) recording.push(sampleNumber(i));
+    for (int i = 0; i < kFlood; ++i) recording.push(recordNumber(i));
     const RecordingReport report  = recording.finish();
     const RecordedSession session = readSession(folder / "run");
 
-    EXPECT_EQ(report.samples + report.lost, std::uint64_t(kFlood));
-    EXPECT_EQ(session.samples.size(), report.samples);
+    EXPECT_EQ(report.ticks + report.lost, std::uint64_t(kFlood));
+    EXPECT_EQ(session.records.size(), report.ticks);
     EXPECT_GT(report.lost, 0u) << "or the test pushes too slowly";
-    for (std::size_t k = 1; k < session.samples.size(); ++k)
-        ASSERT_GT(session.samples[k].time, session.samples[k - 1].time);
-    EXPECT_EQ(recording.finish().samples, report.samples) << "a second end is the same end";
+    for (std::size_t k = 1; k < session.records.size(); ++k)
+        ASSERT_GT(session.records[k].time, session.records[k - 1].time);
+    EXPECT_EQ(recording.finish().ticks, report.ticks) << "a second end is the same end";
 }
 
 TEST(Recording, PushingAllocatesNothing)
 {
     const TemporaryFolder folder;
     Recording             recording(folder / "run", someInfo());
-    const TickRecord      sample = sampleNumber(3);
+    const TickRecord      record = recordNumber(3);
 
     const std::size_t before = allocationsOfThisThread();
-    for (int i = 0; i < 10'000; ++i) recording.push(sample);
+    for (int i = 0; i < 10'000; ++i) recording.push(record);
     EXPECT_EQ(allocationsOfThisThread(), before);
 }
 
@@ -211,7 +211,7 @@ std::filesystem::path childFolder()
 
 /// What a child tells its parent, in a file that both map.
 struct Shared {
-    std::atomic<int>                              pushed; ///< samples [1]
+    std::atomic<int>                              pushed; ///< records [1]
     std::array<std::atomic<std::int64_t>, 20'000> times;  ///< of each push, by the steady clock [ns]
 };
 
@@ -237,28 +237,28 @@ TEST(RecordingChild, DISABLED_PushesUntilItIsKilled)
     Recording         recording(childFolder() / "run", someInfo());
     Clock::time_point next = Clock::now();
     for (int i = 0; i < int(shared->times.size()); ++i) {
-        recording.push(sampleNumber(i));
+        recording.push(recordNumber(i));
         shared->times[std::size_t(i)] = nanoseconds();
         shared->pushed                = i + 1;
         std::this_thread::sleep_until(next += std::chrono::milliseconds(1));
     }
 }
 
-/// Milliseconds of pushed samples that a kill costs.
-double lossOfAKill(const std::filesystem::path& place, int afterSamples)
+/// Milliseconds of pushed records that a kill costs.
+double lossOfAKill(const std::filesystem::path& place, int afterTicks)
 {
     std::filesystem::create_directory(place);
     Shared* const shared = sharedIn(place);
     const pid_t   child  = start("RecordingChild.DISABLED_PushesUntilItIsKilled", place);
-    while (shared->pushed < afterSamples) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    while (shared->pushed < afterTicks) std::this_thread::sleep_for(std::chrono::microseconds(200));
     const std::int64_t killed = nanoseconds();
     ::kill(child, SIGKILL);
     EXPECT_EQ(exitOf(child), -SIGKILL);
 
     const RecordedSession session = readSession(place / "run");
     EXPECT_FALSE(session.finished);
-    const std::size_t kept = session.samples.size();
-    for (std::size_t k = 0; k < kept; ++k) EXPECT_TRUE(sameBytes(session.samples[k], sampleNumber(int(k)))) << k;
+    const std::size_t kept = session.records.size();
+    for (std::size_t k = 0; k < kept; ++k) EXPECT_TRUE(sameBytes(session.records[k], recordNumber(int(k)))) << k;
     const std::string csv = contentsOf(place / "run" / "samples.csv");
     EXPECT_TRUE(csv.ends_with('\n')) << "no half line";
     EXPECT_GE(lines(csv), kept);
@@ -290,23 +290,23 @@ void recordUntilFull(const std::filesystem::path& folder, const char* reason)
     std::vector<std::string> said;
     Recording     recording(folder, someInfo(), [&](const std::string& sentence) { said.push_back(sentence); });
     constexpr int kFar = 100'000; // 16 MB
-    for (int i = 0; i < kFar; ++i) recording.pushWaiting(sampleNumber(i));
+    for (int i = 0; i < kFar; ++i) recording.pushWaiting(recordNumber(i));
     const RecordingReport report = recording.finish();
 
     ASSERT_EQ(said.size(), 1u);
-    EXPECT_TRUE(holds(said[0], {"recording stopped after", "samples", ".npy", reason}) ||
-                holds(said[0], {"recording stopped after", "samples", ".csv", reason}))
+    EXPECT_TRUE(holds(said[0], {"recording stopped after", "ticks", ".npy", reason}) ||
+                holds(said[0], {"recording stopped after", "ticks", ".csv", reason}))
         << said[0];
     EXPECT_EQ(report.stopped, said[0]);
-    EXPECT_EQ(report.samples + report.lost, std::uint64_t(kFar));
-    EXPECT_GT(report.samples, 0u);
+    EXPECT_EQ(report.ticks + report.lost, std::uint64_t(kFar));
+    EXPECT_GT(report.ticks, 0u);
     const RecordedSession session = readSession(folder);
-    ASSERT_EQ(session.samples.size(), report.samples) << "all columns end together";
-    for (std::size_t k = 0; k < session.samples.size(); ++k)
-        ASSERT_TRUE(sameBytes(session.samples[k], sampleNumber(int(k)))) << k;
+    ASSERT_EQ(session.records.size(), report.ticks) << "all columns end together";
+    for (std::size_t k = 0; k < session.records.size(); ++k)
+        ASSERT_TRUE(sameBytes(session.records[k], recordNumber(int(k)))) << k;
     const std::string csv = contentsOf(folder / "samples.csv");
     EXPECT_TRUE(csv.ends_with('\n'));
-    EXPECT_EQ(lines(csv), report.samples + 1);
+    EXPECT_EQ(lines(csv), report.ticks + 1);
 }
 
 TEST(RecordingChild, DISABLED_MeetsTheLimitOnSizes)

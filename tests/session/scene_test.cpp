@@ -125,7 +125,7 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
     EXPECT_EQ(scene.patch.foundation, 2e6);
     EXPECT_EQ(scene.patch.cells, 32);
     EXPECT_EQ(scene.patch.map, Map::gallPeters);
-    EXPECT_EQ(scene.patch.sampling, Resampling::nearest);
+    EXPECT_EQ(scene.patch.resampling, Resampling::nearest);
     EXPECT_EQ(scene.patch.edges, (PlateEdges{.x0 = Edge::free}));
     EXPECT_EQ(scene.patch.forceLaw, ForceLaw::paper);
     EXPECT_EQ(scene.patch.tolerance, 1e-6);
@@ -393,7 +393,7 @@ TEST(Scene, APresetStandsBelowTheKeysOfItsOwnSourceAndAboveWeakerSources)
 
     const Scene back = parsed(file, overrides({{"preset", "palpate"}}, {{"PALPATE_MAP", "gall-peters"}}));
     EXPECT_EQ(back.patch.map, Map::lambertAzimuthal) << "a flag's preset wins over the environment";
-    EXPECT_EQ(back.patch.sampling, Resampling::logMean);
+    EXPECT_EQ(back.patch.resampling, Resampling::logMean);
     EXPECT_EQ(back.patch.foundation, 0) << "palpate leaves the foundation to the file's preset";
     EXPECT_EQ(sceneJson(parsed(sceneJson(own))), sceneJson(own));
     EXPECT_TRUE(says(refusal(R"("preset": "papre")"), {"palpate or paper", "did you mean \"paper\"?"}));

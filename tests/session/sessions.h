@@ -5,8 +5,8 @@
 
 namespace palp {
 
-/// A sample whose every number tells its place.
-inline TickRecord sampleNumber(int i)
+/// A record whose every number tells its place.
+inline TickRecord recordNumber(int i)
 {
     TickRecord s;
     s.time          = i * 1e-3;

@@ -38,12 +38,12 @@ struct SheetSession {
 
     std::vector<TickRecord> run(double seconds) const
     {
-        std::vector<TickRecord> samples;
+        std::vector<TickRecord> records;
         Deformation             deformation(object, scene);
-        ScriptedHand              device(hand);
+        ScriptedHand            device(hand);
         runVirtual({scene, object, deformation.solver(), device, {}}, seconds,
-                   [&](const TickRecord& s) { samples.push_back(s); });
-        return samples;
+                   [&](const TickRecord& s) { records.push_back(s); });
+        return records;
     }
 };
 

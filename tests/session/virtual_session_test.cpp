@@ -17,25 +17,25 @@
 namespace palp {
 namespace {
 
-bool has(const TickRecord& sample, SessionFlag flag)
+bool has(const TickRecord& record, SessionFlag flag)
 {
-    return (sample.faults & static_cast<std::uint32_t>(flag)) != 0;
+    return (record.faults & static_cast<std::uint32_t>(flag)) != 0;
 }
 
-RecordedSession asRecorded(std::vector<TickRecord> samples)
+RecordedSession asRecorded(std::vector<TickRecord> records)
 {
     RecordedSession session;
-    session.samples = std::move(samples);
+    session.records = std::move(records);
     return session;
 }
 
 TEST(VirtualSession, TheWartIsFeltWhereItIs)
 {
     const SheetSession      session(sheetScene(kWart));
-    std::vector<TickRecord> samples = session.run(1.5);
+    std::vector<TickRecord> records = session.run(1.5);
     double                  on = 0, off = std::numeric_limits<double>::infinity();
     glm::dvec3              last{};
-    for (const TickRecord& s : samples) {
+    for (const TickRecord& s : records) {
         ASSERT_TRUE(std::isfinite(s.force.x + s.force.y + s.force.z));
         EXPECT_LE(glm::length(s.force - last), 1 + 1e-9) << "the governor's slew: 1 N a tick; at " << s.time;
         EXPECT_LE(glm::length(s.force), session.scene.maxForce + 1e-9);
@@ -62,7 +62,7 @@ TEST(VirtualSession, TheHostAndLavapipeGiveTheSameBits)
     const auto         first = asRecorded(here.run(0.4)), second = asRecorded(there.run(0.4));
     const auto         difference = compareSessions(first, second);
     EXPECT_FALSE(difference.has_value()) << describe(*difference, first, second);
-    EXPECT_GT(glm::length(first.samples.back().force), 0) << "there is something to compare";
+    EXPECT_GT(glm::length(first.records.back().force), 0) << "there is something to compare";
 }
 
 /// On a homogeneous object nothing that the points do may be felt: J below 0.5 for the best Weber fraction, 0.07.
@@ -245,13 +245,13 @@ TEST(Servo, AStalledDeformationIsFlaggedAndTheForceStaysSmooth)
     for (int n = 0; n < 6000; ++n) { // one patch at the first touch, then none for more than five seconds
         const double     time   = 1e-3 * n;
         const glm::dvec3 hip    = session.hand.position(std::min(time, 0.055));
-        const auto       sample = servo.tick({time, 1e-3, 1e-3}, {hip, {}}, news ? &*news : nullptr);
+        const auto       record = servo.tick({time, 1e-3, 1e-3}, {hip, {}}, news ? &*news : nullptr);
         if (!news && servo.touch().touching) news = deformation.solve(servo.touch(), 1.0 / 60).update;
-        ASSERT_TRUE(std::isfinite(glm::length(sample.force)));
-        EXPECT_LE(glm::length(sample.force - last), 1 + 1e-9);
-        last    = sample.force;
-        flagged = flagged || has(sample, SessionFlag::stalePatch);
-        most    = std::max(most, glm::length(sample.force));
+        ASSERT_TRUE(std::isfinite(glm::length(record.force)));
+        EXPECT_LE(glm::length(record.force - last), 1 + 1e-9);
+        last    = record.force;
+        flagged = flagged || has(record, SessionFlag::stalePatch);
+        most    = std::max(most, glm::length(record.force));
     }
     EXPECT_TRUE(flagged);
     EXPECT_GT(most, 0.1) << "the hand rests in the sheet and feels it";
@@ -262,10 +262,10 @@ TEST(Servo, AHandThatIsNotANumberEndsAtZeroForceWithAReason)
     const SheetSession session(sheetScene(kWart));
     Servo              servo(session.object, session.scene);
     (void)servo.tick({0, 1e-3, 1e-3}, {session.hand.position(0), {}}, nullptr);
-    TickRecord sample;
-    for (int n = 1; n <= 20; ++n) sample = servo.tick({1e-3 * n, 1e-3, 1e-3}, {glm::dvec3(std::nan("")), {}}, nullptr);
-    EXPECT_EQ(sample.force, glm::dvec3(0));
-    EXPECT_EQ(sample.faults & 0xFFU, static_cast<std::uint32_t>(GovernorFault::positionNotFinite));
+    TickRecord record;
+    for (int n = 1; n <= 20; ++n) record = servo.tick({1e-3 * n, 1e-3, 1e-3}, {glm::dvec3(std::nan("")), {}}, nullptr);
+    EXPECT_EQ(record.force, glm::dvec3(0));
+    EXPECT_EQ(record.faults & 0xFFU, static_cast<std::uint32_t>(GovernorFault::positionNotFinite));
 }
 
 } // namespace

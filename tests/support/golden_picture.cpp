@@ -50,7 +50,7 @@ void expectGolden(const std::filesystem::path& folder, const std::string& name, 
                   SurfaceRenderer& renderer)
 {
     const std::filesystem::path file   = folder / name;
-    const std::string           driver = renderer.device().name + ", " + renderer.device().driver + "\n";
+    const std::string           driver = renderer.processor().name + ", " + renderer.processor().driver + "\n";
     for (const std::string& message : renderer.takeMessages()) ADD_FAILURE() << "validation: " << message;
     if (std::getenv("PALPATE_GOLDEN_WRITE")) {
         std::filesystem::create_directories(folder);

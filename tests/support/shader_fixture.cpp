@@ -47,7 +47,7 @@ public:
     {
         if (!context_) {
             compute::ContextSettings settings;
-            settings.processor  = deviceOfTests();
+            settings.processor  = processorOfTests();
             settings.validation = wantedValidation();
             context_            = std::make_unique<compute::Context>(settings);
         }
@@ -66,7 +66,7 @@ public:
     GuardedArray(compute::Context& context, const ShaderArray& array, std::size_t number)
         : array_(array), name_("array " + std::to_string(number)), all_(kFrontBytes + array.bytes + kBackBytes),
           up_(context, name_ + " up", all_, compute::Intent::upload),
-          on_(context, name_, all_, compute::Intent::device),
+          on_(context, name_, all_, compute::Intent::processor),
           down_(context, name_ + " down", all_, compute::Intent::readback)
     {
         std::ranges::fill(up_.as<std::uint32_t>(), kGuardWord);
@@ -147,7 +147,7 @@ template <class T>
 
 } // namespace
 
-std::string deviceOfTests()
+std::string processorOfTests()
 {
     const std::string wanted = environment("PALPATE_SOLVER");
     return wanted.empty() ? std::string(compute::kLavapipeProcessor) : wanted;
@@ -211,14 +211,14 @@ void ShaderTest::dispatchOnce(const compute::Kernel& kernel, std::initializer_li
 ::testing::AssertionResult ShaderTest::agree(const std::vector<float>& measured, const std::vector<float>& expected,
                                              UlpTolerance tolerance)
 {
-    if (context().bitExact()) return compare(measured, expected, 0, "this device computes as C++ does");
+    if (context().bitExact()) return compare(measured, expected, 0, "this processor computes as C++ does");
     return compare(measured, expected, tolerance.ulps, tolerance.because);
 }
 
 ::testing::AssertionResult ShaderTest::agree(const std::vector<double>& measured, const std::vector<double>& expected,
                                              UlpTolerance tolerance)
 {
-    if (context().bitExact()) return compare(measured, expected, 0, "this device computes as C++ does");
+    if (context().bitExact()) return compare(measured, expected, 0, "this processor computes as C++ does");
     return compare(measured, expected, tolerance.ulps, tolerance.because);
 }
 

@@ -60,11 +60,11 @@ struct UlpTolerance {
 
 /// Returns the processor that PALPATE_SOLVER names; lavapipe if it is not set. It is never the choice of "auto", which
 /// may be the host, which runs no shader.
-[[nodiscard]] std::string deviceOfTests();
+[[nodiscard]] std::string processorOfTests();
 
 /// A test of one shader. The processor is opened once per process; any message of the validation layer fails the test.
 ///
-/// Environment: PALPATE_SOLVER, see deviceOfTests() and compute::chooseProcessor(); PALPATE_VALIDATION off, core,
+/// Environment: PALPATE_SOLVER, see processorOfTests() and compute::chooseProcessor(); PALPATE_VALIDATION off, core,
 /// synchronization or gpu.
 class ShaderTest : public ::testing::Test {
 protected:
@@ -72,7 +72,7 @@ protected:
     static compute::Context& context();
 
     /// Returns true if the processor is the host, which has functions for the plate's kernels only.
-    static bool onHost() { return context().processor().kind == compute::kHostProcessor; }
+    static bool onHost() { return context().processor().kind == compute::ProcessorKind::host; }
 
     /// Returns the validation that PALPATE_VALIDATION names.
     static compute::Validation validation();

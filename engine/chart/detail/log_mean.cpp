@@ -66,7 +66,7 @@ struct Reach {
     PALPATE_PART void find(std::span<const ChartPoint> positions, double ChartPoint::*axis, double corner, double width,
                            double spacing, int nodes)
     {
-        const double reach = kSamplingReach * width;
+        const double reach = kResamplingReach * width;
         for (std::size_t n = 0; n < first.size(); ++n) {
             const double position = positions[n].*axis - corner;
             const double low      = std::max(0.0, std::ceil((position - reach) / spacing));
@@ -107,7 +107,7 @@ struct Task {
 
 std::vector<double> tableOf(double spacing, double width, int nodes)
 {
-    const int           most = std::min(nodes, int(2 * kSamplingReach * width / spacing) + 2);
+    const int           most = std::min(nodes, int(2 * kResamplingReach * width / spacing) + 2);
     std::vector<double> table(std::size_t(most + kLanes));
     for (int m = 0; m < most; ++m)
         table[std::size_t(m)] = std::exp(-(m * spacing) * (m * spacing) / (2 * width * width));
@@ -294,7 +294,7 @@ bool surelyCovered(const PatchWindow& window, std::span<const ChartPoint> positi
 {
     constexpr double       kCertain = 1 - 1e-9; // of a distance: far more than rounding [1]
     const PlateGrid&       grid     = window.grid;
-    const std::vector<int> across   = reaches(grid, kCertain * kSamplingNearby * width);
+    const std::vector<int> across   = reaches(grid, kCertain * kResamplingNearby * width);
     if (across.empty()) return false;
     const int reachX = int(across.size()) - 1, reachZ = across.front();
 

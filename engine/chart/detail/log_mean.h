@@ -7,7 +7,7 @@
 
 namespace palp {
 
-/// Gaussian-weighted sums at the nodes of a window, of the points in the square of half side kSamplingReach widths
+/// Gaussian-weighted sums at the nodes of a window, of the points in the square of half side kResamplingReach widths
 /// about each; see resampleRigidity().
 class LogMeanSums {
 public:

@@ -120,7 +120,7 @@ Processor describeHost()
     Processor host;
     host.index   = -1;
     host.name    = std::string(kHostProcessor);
-    host.kind    = std::string(kHostProcessor);
+    host.kind    = ProcessorKind::host;
     host.float64 = true;
     host.memory  = std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE));
     return host;

@@ -13,7 +13,7 @@ std::vector<VkMemoryPropertyFlags> wishes(Intent intent)
     constexpr VkMemoryPropertyFlags kCoherent = VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     constexpr VkMemoryPropertyFlags kCached   = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
     switch (intent) {
-    case Intent::device:
+    case Intent::processor:
         return {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0};
     case Intent::upload:
         return {kVisible | kCoherent}; // every driver has it
@@ -92,7 +92,7 @@ std::unique_ptr<Buffer::Handles> VulkanContext::makeBuffer(std::string name, std
     check(vkBindBufferMemory(device, buffer, given, 0), "bind memory to a buffer");
 
     h.coherent = memory.memoryTypes[*type].propertyFlags & VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    if (intent != Intent::device) check(vkMapMemory(device, given, 0, VK_WHOLE_SIZE, 0, &h.mapped), "map a buffer");
+    if (intent != Intent::processor) check(vkMapMemory(device, given, 0, VK_WHOLE_SIZE, 0, &h.mapped), "map a buffer");
     return made;
 }
 

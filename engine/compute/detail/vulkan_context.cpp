@@ -21,9 +21,9 @@ const char* nameOf(VkResult result)
     case VK_ERROR_OUT_OF_HOST_MEMORY:
         return "no host memory left";
     case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-        return "no device memory left";
+        return "no memory of the processor left";
     case VK_ERROR_DEVICE_LOST:
-        return "the device is lost";
+        return "the processor is lost";
     case VK_ERROR_INITIALIZATION_FAILED:
         return "initialization failed";
     case VK_ERROR_MEMORY_MAP_FAILED:
@@ -59,7 +59,7 @@ VulkanContext::VulkanContext(std::unique_ptr<Instance>& entrance, const Candidat
                              Purpose purpose)
 {
     describe(candidate, purpose);
-    const double usual = description.kind == "software" ? kPatienceSoftware : kPatienceHardware;
+    const double usual = description.kind == ProcessorKind::software ? kPatienceSoftware : kPatienceHardware;
     patience           = wantedPatience > 0 ? wantedPatience : usual;
     open(*entrance, purpose);
     instance = std::move(entrance);

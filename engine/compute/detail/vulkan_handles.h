@@ -9,19 +9,20 @@
 #include "engine/compute/detail/backend.h"
 #include "engine/compute/detail/vulkan_instance.h"
 
-// Devices that Vulkan offers. Internal to the layer: no other header names a type of Vulkan, except vulkan_instance.h.
+// Processors that Vulkan offers. Internal to the layer: no other header names a type of Vulkan, except
+// vulkan_instance.h.
 
 namespace palp::compute {
 
-/// \throws ProcessorLost for a lost device or missing memory, Error for any other failure; `what` completes "cannot
+/// \throws ProcessorLost for a lost processor or missing memory, Error for any other failure; `what` completes "cannot
 ///         ..."
 void check(VkResult result, const char* what);
 
 class VulkanContext : public Context::Handles {
 public:
-    /// \param entrance  taken over only if the device opens
+    /// \param entrance  taken over only if the processor opens
     /// \param patience  see ContextSettings [s]
-    /// \throws ProcessorError if the device does not open
+    /// \throws ProcessorError if the processor does not open
     VulkanContext(std::unique_ptr<Instance>& entrance, const Candidate& candidate, double patience,
                   Purpose purpose = Purpose::compute);
     ~VulkanContext() override;
@@ -72,7 +73,7 @@ private:
 [[nodiscard]] std::optional<std::uint32_t> memoryTypeFor(const VkPhysicalDeviceMemoryProperties& memory,
                                                          std::uint32_t allowed, Intent intent);
 
-/// A handle that is destroyed with its owner, unless the device hangs and is still using it.
+/// A handle that is destroyed with its owner, unless the processor hangs and is still using it.
 template <class Handle, auto Destroy>
 class Owned {
 public:

@@ -53,7 +53,7 @@ private:
     std::vector<std::string> messages_;
 };
 
-/// A Vulkan device and, if it cannot be used, why.
+/// A Vulkan processor and, if it cannot be used, why.
 struct Candidate {
     Processor                    description;
     VkPhysicalDevice             physical      = VK_NULL_HANDLE;
@@ -65,7 +65,7 @@ struct Candidate {
     VkDeviceSize                 maxBufferBytes = 0; ///< [byte]
 };
 
-/// Describes every Vulkan device, in the order of the drivers.
+/// Describes every Vulkan processor, in the order of the drivers.
 /// \throws ProcessorError if they cannot be listed
 [[nodiscard]] std::vector<Candidate> candidates(const Instance& instance);
 

@@ -110,13 +110,13 @@ double SurfacePlane::height(const glm::dvec3& place) const noexcept
 
 PlaneFitter::PlaneFitter(NearPoints& points) : points_(points)
 {
-    samples_.reserve(NearPoints::kMost);
+    seen_.reserve(NearPoints::kMost);
     squares_.reserve(NearPoints::kMost);
 }
 
 void PlaneFitter::collect(const Frame& frame, double radius)
 {
-    samples_.clear();
+    seen_.clear();
     owned_ = 0;
     points_.inside(frame.place, radius, frame.spacing, [&](const NearPoint& point, double d2) {
         const glm::dvec3 d = point.position - frame.place;
@@ -126,7 +126,7 @@ void PlaneFitter::collect(const Frame& frame, double radius)
         for (const SurfacePlane& other : frame.others)
             own = own && (glm::dot(other.normal, frame.normal) >= kSameSurface ||
                           std::abs(other.height(point.position)) >= std::abs(h) + kBetween * frame.spacing);
-        samples_.push_back({glm::dot(frame.u, d), glm::dot(frame.v, d), h, d2, point.spacing, own});
+        seen_.push_back({glm::dot(frame.u, d), glm::dot(frame.v, d), h, d2, point.spacing, own});
         owned_ += own;
     });
 }
@@ -141,8 +141,8 @@ double PlaneFitter::collectEnough(const Frame& frame)
     if (owned_ < kEnoughPoints) return most;
 
     squares_.clear();
-    for (const Sample& sample : samples_)
-        if (sample.own) squares_.push_back(sample.d2);
+    for (const Seen& s : seen_)
+        if (s.own) squares_.push_back(s.d2);
     const auto twelfth = squares_.begin() + (kEnoughPoints - 1);
     std::nth_element(squares_.begin(), twelfth, squares_.end());
     const double radius = std::clamp(kEnoughReach * std::sqrt(*twelfth), least, most);
@@ -159,18 +159,18 @@ std::optional<PlaneFit> PlaneFitter::fit(const glm::dvec3& place, const glm::dve
     if (owned_ < kFewestPoints) return {};
 
     Moments    m;
-    const auto fall = [&](const Sample& s) {
+    const auto fall = [&](const Seen& s) {
         const double share = std::max(0.0, 1 - s.d2 / (r * r));
         return share * share;
     };
-    const auto weightOf = [&](const Sample& s) {
+    const auto weightOf = [&](const Seen& s) {
         // Where points are closer than half the usual spacing here, they count by the area they stand for, or a step in
         // density would look like a border.
         const double area = std::min(1.0, kCrowded * s.spacing / spacing);
         return area * area * fall(s) * heightWeight(std::abs(s.h) / spacing);
     };
     Centroid all;
-    for (const Sample& s : samples_) {
+    for (const Seen& s : seen_) {
         const double w   = weightOf(s);
         const double own = std::min(s.spacing / spacing, kCrowded);
         all.add(own * own * fall(s) * heightWeight(std::abs(s.h) / spacing), s.a, s.b);
@@ -178,7 +178,7 @@ std::optional<PlaneFit> PlaneFitter::fit(const glm::dvec3& place, const glm::dve
     }
     if (!(m.weight > 0)) return {};
     m.toMeans();
-    for (const Sample& s : samples_)
+    for (const Seen& s : seen_)
         if (s.own) m.addSecond(weightOf(s), s.a, s.b, s.h);
     m.aa += kSlopeRidge * spacing * spacing;
     m.bb += kSlopeRidge * spacing * spacing;

@@ -55,7 +55,7 @@ public:
 
 private:
     /// A point near the plane, as seen from the place.
-    struct Sample {
+    struct Seen {
         double a = 0, b = 0, h = 0; ///< [m]
         double d2      = 0;         ///< [m^2]
         double spacing = 0;         ///< [m]
@@ -71,8 +71,8 @@ private:
     [[nodiscard]] double collectEnough(const Frame& frame);
 
     NearPoints&         points_;
-    std::vector<Sample> samples_;
-    std::size_t         owned_ = 0; ///< number of own samples
+    std::vector<Seen>   seen_;
+    std::size_t         owned_ = 0; ///< number of own points
     std::vector<double> squares_;   ///< [m^2] scratch of collectEnough
 };
 

@@ -113,7 +113,7 @@ struct MultigridPlateSolver::Impl {
         : context(processor), k(kernels), plate(withoutRigidity(given)), settings(rounded(wanted)),
           unitRigidity(largest(given.rigidity)), loads(std::uint32_t(wanted.loads)), stiffness(grids.stiffness),
           passes(processor, kernels, std::move(grids), loads),
-          units(context, "metres per unit", 4 * std::size_t(loads), Intent::device),
+          units(context, "metres per unit", 4 * std::size_t(loads), Intent::processor),
           hostRigidity(context, passes.levels[0].rigidity), hostLoads(context, passes.levels[0].load),
           hostUnits(context, units), hostState(context, "state for the host", passes.state.bytes(), Intent::readback),
           result(context, "deflection", 4 * plate.grid.nodes() * loads, Intent::readback)

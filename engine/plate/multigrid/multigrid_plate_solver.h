@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/enum_names.h"
 #include "engine/plate/plate.h"
 
 namespace palp {
@@ -18,6 +19,12 @@ enum class Schedule {
     passByPass, ///< 7 to 11 dispatches per level: nothing is computed twice
     fused       ///< 3 per level, and one for all levels of up to 64 cells together: few dispatches to wait for
 };
+constexpr auto namesOf(Schedule)
+{
+    using enum Schedule;
+    return std::to_array<NamedValue<Schedule>>(
+        {{automatic, "automatic"}, {passByPass, "pass-by-pass"}, {fused, "fused"}});
+}
 
 /// The precision of conjugate gradients and the coarsest level.
 enum class Precision {

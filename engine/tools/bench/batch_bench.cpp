@@ -33,8 +33,8 @@ std::optional<double> copyBandwidth(compute::Context& context)
 {
     constexpr std::size_t kBytes  = 64 << 20; // beyond most caches
     constexpr int         kCopies = 8;
-    const compute::Buffer from(context, "copied", kBytes, compute::Intent::device),
-        to(context, "copy", kBytes, compute::Intent::device);
+    const compute::Buffer from(context, "copied", kBytes, compute::Intent::processor),
+        to(context, "copy", kBytes, compute::Intent::processor);
     compute::CommandList list(context);
     list.fill(from, 1);
     list.copy(from, to);
@@ -59,13 +59,13 @@ std::vector<BenchRow> measureBatches(compute::Context& context, const PlateKerne
         const std::vector<NodeField> loads = fingertips(plate.grid, count);
         MultigridPlateSolver         solver(context, kernels, plate, {.tolerance = kTolerance, .loads = count});
         SolveReport                  report;
-        std::vector<double>          device; // [ms]
+        std::vector<double>          processor; // [ms]
         const Timing                 timing = takeTurns({{"Palpate",
                                                           {[&] { solver.setRigidity(plate.rigidity); },
                                                            [&] {
                                                report = solver.solve(loads).front().report;
                                                if (report.processorMilliseconds)
-                                                   device.push_back(*report.processorMilliseconds);
+                                                   processor.push_back(*report.processorMilliseconds);
                                            }},
                                                           clockOf(context)}},
                                                         runs)
@@ -84,9 +84,9 @@ std::vector<BenchRow> measureBatches(compute::Context& context, const PlateKerne
         row.dispatchesPerCycle = solver.dispatchesPerCycle();
         row.copyGigabytes      = copy;
         for (const Quartiles& part : timing.parts) row.palpatePartsMs.push_back(part.median);
-        if (!device.empty())
-            row.movedGigabytes =
-                *report.workUnits * double(plate.grid.nodes()) * count * kBytesPerNode / quartiles(device).median / 1e6;
+        if (!processor.empty())
+            row.movedGigabytes = *report.workUnits * double(plate.grid.nodes()) * count * kBytesPerNode /
+                                 quartiles(processor).median / 1e6;
         rows.push_back(std::move(row));
     }
     return rows;

@@ -113,7 +113,7 @@ std::string lineOf(const BenchRow& r)
 
 void printText(std::ostream& out, const BenchReport& report)
 {
-    out << "Palpate on " << report.device << "; " << report.processor << "\n"
+    out << "Palpate on " << report.solver << "; " << report.processor << "\n"
         << "CHOLMOD: " << report.cholmod << "\nEigen: " << report.eigen << "; nanoflann: " << report.nanoflann << "\n"
         << "medians (quartiles) in ms of processor time, one thread each, " << report.runs
         << " runs in turns; ratio = peer / Palpate\n\n";
@@ -137,7 +137,7 @@ std::string jsonOf(const BenchReport& report)
 {
     Json rows = Json::array();
     for (const BenchRow& row : report.rows) rows.push_back(jsonOf(row));
-    const Json all = {{"solver", report.device}, {"processor", report.processor},     {"cholmod", report.cholmod},
+    const Json all = {{"solver", report.solver}, {"processor", report.processor},     {"cholmod", report.cholmod},
                       {"eigen", report.eigen},   {"nanoflann", report.nanoflann},     {"runs", report.runs},
                       {"quick", report.quick},   {"environment", report.environment}, {"rows", rows}};
     return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

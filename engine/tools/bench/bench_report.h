@@ -11,7 +11,7 @@ namespace palp::bench {
 
 /// The measurements, and the machine and libraries on which they were made.
 struct BenchReport {
-    std::string              device, processor, cholmod, eigen, nanoflann;
+    std::string              solver, processor, cholmod, eigen, nanoflann;
     int                      runs  = 0;
     bool                     quick = false;
     std::vector<std::string> environment; ///< NAME=value, variables that keep libraries to one thread

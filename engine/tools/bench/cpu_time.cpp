@@ -54,21 +54,22 @@ Quartiles quartiles(std::vector<double> values)
 
 Clock clockOf(const compute::Context& context)
 {
-    const std::string& kind = context.processor().kind;
-    return kind == "software" || kind == compute::kHostProcessor ? Clock::processor : Clock::wall;
+    const compute::ProcessorKind kind = context.processor().kind;
+    return kind == compute::ProcessorKind::software || kind == compute::ProcessorKind::host ? Clock::processor
+                                                                                            : Clock::wall;
 }
 
 std::vector<Timing> takeTurns(const std::vector<Contestant>& contestants, int runs)
 {
-    struct Samples {
+    struct Turns {
         std::vector<std::vector<double>> parts;
         std::vector<double>              total;
         double                           thread = 0, process = 0;
     };
-    std::vector<Samples> samples(contestants.size());
+    std::vector<Turns> turns(contestants.size());
     for (int run = -1; run < runs; ++run)
         for (std::size_t c = 0; c < contestants.size(); ++c) {
-            Samples& s = samples[c];
+            Turns& s = turns[c];
             s.parts.resize(contestants[c].parts.size());
             const double thread = threadMilliseconds(), process = processMilliseconds();
             double       total = 0;
@@ -85,7 +86,7 @@ std::vector<Timing> takeTurns(const std::vector<Contestant>& contestants, int ru
             s.process += processMilliseconds() - process;
         }
     std::vector<Timing> timings;
-    for (const Samples& s : samples) {
+    for (const Turns& s : turns) {
         Timing timing{quartiles(s.total), {}, s.process > 0 ? std::max(0.0, 1 - s.thread / s.process) : 0};
         for (const auto& part : s.parts) timing.parts.push_back(quartiles(part));
         timings.push_back(std::move(timing));

@@ -16,6 +16,7 @@
 #include "engine/tools/bench/plate_bench.h"
 #include "engine/tools/bench/point_bench.h"
 #include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/named_option.h"
 #include "engine/tools/cli/solver_choice.h"
 
 namespace palp {
@@ -25,7 +26,7 @@ using namespace bench;
 
 struct BenchOptions {
     bool                     quick = false, json = false;
-    std::string              solver = "auto", schedule = "automatic", out;
+    std::string              solver = "auto", schedule = name(Schedule::automatic), out;
     std::vector<std::string> cases, maps;
     std::vector<int>         nodes;
     int                      runs = 11;
@@ -57,19 +58,16 @@ void checkNames(const char* option, const std::vector<std::string>& names, const
             throw Error(std::string(option) + ": unknown name \"" + name + "\"; known: " + list);
 }
 
-Schedule scheduleNamed(const std::string& name)
+Schedule scheduleOf(const BenchOptions& o)
 {
-    if (name == "automatic") return Schedule::automatic;
-    if (name == "pass-by-pass") return Schedule::passByPass;
-    if (name == "fused") return Schedule::fused;
-    throw Error("--schedule: expected automatic, pass-by-pass or fused, found \"" + name + "\"");
+    return optionNamed<Schedule>("--schedule", o.schedule);
 }
 
 void check(const BenchOptions& o)
 {
     checkNames("--cases", o.cases, allCases());
     checkNames("--maps", o.maps, allMaps());
-    (void)scheduleNamed(o.schedule);
+    (void)scheduleOf(o);
     for (const int nodes : o.nodes)
         if (nodes < kFewestNodes || nodes > kMostNodes || nodes % 4 != 1)
             throw Error("--nodes: expected " + std::to_string(kFewestNodes) + " to " + std::to_string(kMostNodes) +
@@ -134,9 +132,9 @@ BenchReport measure(const BenchOptions& o)
     {
         compute::Context context(compute::ContextSettings{.processor = o.solver});
         sayPassedOver(context.processor().name, context.note());
-        report.device = context.processor().name;
+        report.solver = context.processor().name;
         if (wants(plateCases())) {
-            const PlateKernels kernels(context, scheduleNamed(o.schedule));
+            const PlateKernels kernels(context, scheduleOf(o));
             report.rows = measurePlates(context, kernels, plates, onStep);
         }
     }
@@ -200,7 +198,7 @@ void addBenchCommand(CLI::App& app)
         ->delimiter(',');
     bench
         ->add_option("--schedule", o->schedule,
-                     "how a cycle is divided into dispatches: automatic (fused on hardware), pass-by-pass or fused")
+                     "how a cycle is divided into dispatches; automatic is fused on hardware: " + wordsOf<Schedule>())
         ->capture_default_str();
     bench->add_option("--runs", o->runs, "timed turns of each measurement, at least 11")->capture_default_str();
     bench->add_option("--out", o->out, "folder for plate.json, plate.txt and pictures of the curves");

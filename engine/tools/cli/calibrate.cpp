@@ -181,7 +181,7 @@ struct EmulatedBench {
     static constexpr glm::dvec3 kHeld{0, 0.004, -0.006}; ///< [m] the place where the user first holds the grip
 
     explicit EmulatedBench(double countsPerTorque)
-        : arm({.friction = 0.05, .encoderStep = 0, .delaySamples = 0}, kHeld),
+        : arm({.friction = 0.05, .encoderStep = 0, .delayTicks = 0}, kHeld),
           emulator(motors(), [this](const glm::dvec3& force, double dt) { return moved(force, dt); }),
           falcon([this] { return emulator.connect(); }, stepped(countsPerTorque))
     {

@@ -12,6 +12,7 @@
 #include "engine/core/quantity.h"
 #include "engine/core/spatial_law.h"
 #include "engine/tools/cli/counted.h"
+#include "engine/tools/cli/scene_source.h"
 #include "engine/tools/study/hunt_scene.h"
 
 namespace palp {
@@ -46,7 +47,7 @@ std::string placeText(const glm::dvec3& place, double diagonal, double metresPer
 
 std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& report)
 {
-    std::vector<std::string> said;
+    std::vector<std::string> said = unusedVariables();
     if (report.lengthUnitAssumed)
         said.emplace_back(
             "assumed metres: no length_unit is set and the file has no comment on its unit; set --length-unit");

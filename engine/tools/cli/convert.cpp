@@ -6,6 +6,7 @@
 #include "engine/core/contract.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/named_option.h"
 #include "engine/tools/cli/scene_source.h"
 
 namespace palp {
@@ -13,21 +14,13 @@ namespace {
 
 struct ConvertOptions {
     SceneSource source;
-    std::string target, encoding = "binary";
+    std::string target, encoding = name(CloudEncoding::binaryLittleEndian);
     bool        json = false;
 };
 
-CloudEncoding encodingNamed(const std::string& name)
-{
-    if (name == "binary") return CloudEncoding::binaryLittleEndian;
-    if (name == "binary-big-endian") return CloudEncoding::binaryBigEndian;
-    if (name == "ascii") return CloudEncoding::ascii;
-    throw Error("--encoding: unknown encoding \"" + name + "\"; known: binary, binary-big-endian, ascii");
-}
-
 void convert(const ConvertOptions& options)
 {
-    const CloudEncoding encoding = encodingNamed(options.encoding);
+    const CloudEncoding encoding = optionNamed<CloudEncoding>("--encoding", options.encoding);
     const Scene         scene    = options.source.load();
     refuseSourceAsTarget("TARGET", scene.cloud, options.target);
     const LoadedCloud loaded = options.source.loadCloud(scene);
@@ -60,7 +53,7 @@ void addConvertCommand(CLI::App& app)
     const auto options = std::make_shared<ConvertOptions>();
     options->source.addTo(*command, SceneKey::Group::object);
     command->add_option("TARGET", options->target, "a .ply, .pcd, .xyz, .txt or .csv file")->required();
-    command->add_option("--encoding", options->encoding, "encoding of PLY and PCD: binary, binary-big-endian or ascii")
+    command->add_option("--encoding", options->encoding, "encoding of PLY and PCD: " + wordsOf<CloudEncoding>())
         ->capture_default_str();
     command->add_flag("--json", options->json, "machine-readable report");
     command->footer("Examples:\n"

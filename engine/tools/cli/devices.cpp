@@ -43,10 +43,10 @@ nlohmann::ordered_json orNull(const std::string& text)
 
 nlohmann::ordered_json jsonOf(const compute::Processor& unit, const Machine& machine)
 {
-    const bool isHost = unit.kind == compute::kHostProcessor;
+    const bool isHost = unit.kind == compute::ProcessorKind::host;
     return {{"index", isHost ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(unit.index)},
             {"name", unit.name},
-            {"kind", unit.kind},
+            {"kind", name(unit.kind)},
             {"driver", orNull(unit.driver)},
             {"api", orNull(unit.api)},
             {"processor", orNull(isHost ? machine.processor : "")},
@@ -68,9 +68,9 @@ nlohmann::ordered_json jsonOf(const Machine& machine)
 
 void printText(const compute::Processor& unit, const Machine& machine)
 {
-    const bool isHost = unit.kind == compute::kHostProcessor;
+    const bool isHost = unit.kind == compute::ProcessorKind::host;
     std::cout << (isHost ? unit.name + "  " + machine.processor : std::to_string(unit.index) + "  " + unit.name)
-              << "\n   kind     " << unit.kind << "\n   "
+              << "\n   kind     " << name(unit.kind) << "\n   "
               << (isHost ? "code     native, for " + machine.instructionSet
                          : "driver   " + unit.driver + ", Vulkan " + unit.api);
     std::cout << "\n   memory   " << (unit.memory >> 20) << " MiB\n   float64  " << (unit.float64 ? "yes" : "no")

@@ -31,14 +31,15 @@ Finding vulkan()
         std::string                           software   = "none";
         for (const compute::Processor& processor : processors) {
             if (!processor.refusals.empty()) continue;
-            if (processor.kind != "software")
-                return {"vulkan", Verdict::ok, processor.name + " (" + processor.kind + "), Vulkan " + processor.api};
+            if (processor.kind != compute::ProcessorKind::software)
+                return {"vulkan", Verdict::ok,
+                        processor.name + " (" + name(processor.kind) + "), Vulkan " + processor.api};
             software = processor.name;
         }
         if (software != "none")
             return {"vulkan", Verdict::warning, "only in software: " + software,
                     "install the driver of the graphics card" + host};
-        return {"vulkan", Verdict::warning, processors.empty() ? "no device" : "no device that can be used",
+        return {"vulkan", Verdict::warning, processors.empty() ? "no processor" : "no processor that can be used",
                 "install the driver of the graphics card" + host};
     } catch (const compute::ProcessorError& error) {
         return {"vulkan", Verdict::warning, error.what(), "install the driver of the graphics card" + host};

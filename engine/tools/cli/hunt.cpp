@@ -68,7 +68,7 @@ void scoreRecorded(const HuntOptions& o)
     if (!session.cloud.empty() && session.cloud != fingerprint(object.cloud()))
         throw Error(o.score + ": expected the cloud of the recording, found another one: " + scene.cloud +
                     " has changed");
-    for (const TickRecord& sample : session.samples) scorer.add(sample);
+    for (const TickRecord& record : session.records) scorer.add(record);
     tell(o, scene, object, scorer.score(), {});
 }
 
@@ -82,7 +82,7 @@ void hunt(HuntOptions o)
     const LoadedObject loaded           = o.scene.loadObject(scene);
     o.session.hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, scene);
     study::HuntScorer scorer(scene, loaded.object.cloud());
-    const SessionRun  run = runSession(scene, loaded, o.session, [&](const TickRecord& sample) { scorer.add(sample); });
+    const SessionRun  run = runSession(scene, loaded, o.session, [&](const TickRecord& record) { scorer.add(record); });
     tell(o, scene, loaded.object, scorer.score(), run);
     demandWhole(run);
 }

@@ -73,7 +73,8 @@ std::vector<std::string> timedSolvers(const PaperOptions& o, const PlateSolver& 
     std::vector<std::string> solvers;
     if (!compute::isProcessorWord(solver.name(), compute::kHostProcessor)) try {
             for (const compute::Processor& d : compute::listProcessors())
-                if (d.refusals.empty() && d.kind != "software") solvers.push_back(std::to_string(d.index));
+                if (d.refusals.empty() && d.kind != compute::ProcessorKind::software)
+                    solvers.push_back(std::to_string(d.index));
         } catch (const compute::ProcessorError&) { // a Vulkan that does not start leaves the host
         }
     solvers.emplace_back(compute::kHostProcessor);

@@ -77,7 +77,7 @@ Json settingsJson(const Material& material, const PatchSettings& s)
             {"cells", s.cells},
             {"footprint_radius", s.footprintRadius},
             {"map", name(s.map)},
-            {"resampling", name(s.sampling)},
+            {"resampling", name(s.resampling)},
             {"force_law", name(s.forceLaw)},
             {"edges",
              {{"x0", name(s.edges.x0)}, {"x1", name(s.edges.x1)}, {"z0", name(s.edges.z0)}, {"z1", name(s.edges.z1)}}}};

@@ -19,6 +19,7 @@
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/hand_source.h"
+#include "engine/tools/cli/named_option.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/solver_choice.h"
 #include "engine/tools/render/annotation.h"
@@ -30,23 +31,23 @@
 namespace palp {
 namespace {
 
+/// What the camera of a picture sees.
+enum class Shot { patch, whole };
+constexpr auto namesOf(Shot)
+{
+    using enum Shot;
+    return std::to_array<NamedValue<Shot>>({{patch, "patch"}, {whole, "whole"}});
+}
+
 struct RenderOptions {
     SceneSource        scene;
     std::string        force, size = "1600x1200", out;
     std::string        colour = "deflection", map = "viridis", exaggerate = "1";
-    std::string        drawOn = "auto", view = "patch", hand = "scan", seconds = "2 s";
+    std::string        drawOn = "auto", view = name(Shot::patch), hand = name(HandMotion::scan), seconds = "2 s";
     std::optional<int> frames;
     int                finer = 2;
     bool               dark = false, json = false, ghost = false, sphere = false, projected = false;
 };
-
-/// Returns the value of an option with a fixed set of names.
-template <NamedEnum Enum>
-Enum named(const std::string& option, const std::string& word)
-{
-    if (const auto value = valueNamed<Enum>(word)) return *value;
-    throw Error(option + ": unknown name \"" + word + "\"; known: " + wordsOf<Enum>());
-}
 
 /// Reads "1600x1200" [px].
 PictureSize sizeOf(const std::string& text, int finer)
@@ -63,8 +64,8 @@ PictureSize sizeOf(const std::string& text, int finer)
 TouchLook lookOf(const RenderOptions& o)
 {
     TouchLook look;
-    look.paint              = named<ViewPaint>("--colour", o.colour);
-    look.map                = named<ColourMap>("--colour-map", o.map);
+    look.paint              = optionNamed<ViewPaint>("--colour", o.colour);
+    look.map                = optionNamed<ColourMap>("--colour-map", o.map);
     look.ground             = o.dark ? Ground::dark : Ground::light;
     look.overlays.ghost     = o.ghost;
     look.overlays.sphere    = o.sphere;
@@ -81,12 +82,12 @@ struct Stage {
         : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.processor = o.drawOn}),
           loaded(o.scene.loadObject(scene)), solver(openSolver(scene.solver)), view(loaded.object, scene.patch)
     {
-        sayPassedOver(renderer.device().name, renderer.note());
+        sayPassedOver(renderer.processor().name, renderer.note());
     }
     PictureSize     size;
     TouchLook       look;
     Scene           scene;
-    SurfaceRenderer renderer; // before the cloud, so that a missing device is reported at once
+    SurfaceRenderer renderer; // before the cloud, so that a missing processor is reported at once
     LoadedObject    loaded;
     PlateSolver     solver;
     TouchView       view;
@@ -106,8 +107,7 @@ Camera cameraFor(const RenderOptions& o, const Stage& stage, const Patch& patch)
 {
     const double aspect = double(stage.size.width) / stage.size.height;
     const Camera camera = cameraAt(patch, aspect);
-    if (o.view == "patch") return camera;
-    if (o.view != "whole") throw Error("--view: unknown name \"" + o.view + "\"; known: patch, whole");
+    if (optionNamed<Shot>("--view", o.view) == Shot::patch) return camera;
     const Bounds& bounds = stage.loaded.object.cloud().bounds();
     return framed(camera, bounds.centre(), 0.5 * bounds.diagonal(), aspect);
 }
@@ -166,7 +166,7 @@ Written still(const RenderOptions& o, Stage& stage)
 }
 
 /// Returns the session's records at evenly spread times, from the first to the last tick.
-std::vector<TickRecord> samplesOf(const RenderOptions& o, Stage& stage, int frames)
+std::vector<TickRecord> recordsOf(const RenderOptions& o, Stage& stage, int frames)
 {
     HandOptions hand;
     hand.hand          = o.hand;
@@ -179,10 +179,10 @@ std::vector<TickRecord> samplesOf(const RenderOptions& o, Stage& stage, int fram
     std::vector<TickRecord> all;
     static_cast<void>(runVirtual(parts, source.seconds, [&](const TickRecord& s) { all.push_back(s); }));
     if (all.empty()) throw Error("--seconds: expected a hand of at least a millisecond");
-    std::vector<TickRecord> samples;
+    std::vector<TickRecord> records;
     for (int n = 0; n < frames; ++n)
-        samples.push_back(all[std::size_t(std::llround(double(all.size() - 1) * (n + 1) / frames))]);
-    return samples;
+        records.push_back(all[std::size_t(std::llround(double(all.size() - 1) * (n + 1) / frames))]);
+    return records;
 }
 
 /// Returns "film_0003.png" for "film.png", 3.
@@ -198,10 +198,10 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage)
 {
     const Patch        middle  = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
     const Camera       camera  = cameraFor(o, stage, middle);
-    const auto         samples = samplesOf(o, stage, *o.frames);
+    const auto         records = recordsOf(o, stage, *o.frames);
     std::vector<Patch> patches;
     TouchLook          look = stage.look;
-    for (const TickRecord& s : samples) {
+    for (const TickRecord& s : records) {
         const double force = glm::length(s.force);
         if (force > 0) patches.push_back(patchAt(stage, {s.proxy, s.normal}));
         look.strongest = std::max(look.strongest, force);
@@ -210,8 +210,8 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage)
     Progress             progress("drawing");
     std::vector<Written> written;
     auto                 patch = patches.begin();
-    for (std::size_t n = 0; n < samples.size(); ++n) {
-        const TickRecord& s     = samples[n];
+    for (std::size_t n = 0; n < records.size(); ++n) {
+        const TickRecord& s     = records[n];
         const double      force = glm::length(s.force);
         const Patch*      bent  = force > 0 ? &*patch++ : nullptr;
         stage.view.show(bent, force, look, TouchHand{s.hip, s.force});
@@ -220,7 +220,7 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage)
         written.push_back(write(stage, camera, frameFile(o.out, int(n) + 1)));
         written.back().force   = force;
         written.back().deepest = bent ? deepestOf(*bent, force) : 0;
-        progress.at(n + 1, samples.size());
+        progress.at(n + 1, records.size());
     }
     return written;
 }
@@ -232,7 +232,7 @@ void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>
         all["scene"]     = o.scene.name;
         all["points"]    = stage.loaded.object.cloud().size();
         all["size"]      = {stage.size.width, stage.size.height};
-        all["drawn_on"]  = stage.renderer.device().name;
+        all["drawn_on"]  = stage.renderer.processor().name;
         all["solved_on"] = stage.solver.name();
         for (const Written& w : written)
             all["pictures"].push_back({{"file", w.file},
@@ -244,7 +244,7 @@ void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>
     }
     for (const Written& w : written)
         std::printf("%s: %s, %s deep, drawn in %.0f ms on %s\n", w.file.c_str(), formatQuantity(w.force, "N").c_str(),
-                    formatQuantity(w.deepest, "m").c_str(), w.milliseconds, stage.renderer.device().name.c_str());
+                    formatQuantity(w.deepest, "m").c_str(), w.milliseconds, stage.renderer.processor().name.c_str());
 }
 
 void render(const RenderOptions& o)
@@ -282,15 +282,19 @@ void addRenderCommand(CLI::App& app)
     command->add_option("--colour-map,--color-map", o->map, "map of colours: " + wordsOf<ColourMap>())
         ->capture_default_str();
     command->add_option("--exaggerate", o->exaggerate, "factor on every displacement")->capture_default_str();
-    command->add_option("--view", o->view, "patch: the part that bends; whole: the object")->capture_default_str();
+    command
+        ->add_option("--view", o->view,
+                     std::string(name(Shot::patch)) + ": the part that bends; " + name(Shot::whole) + ": the object")
+        ->capture_default_str();
     command->add_flag("--dark", o->dark, "draws on a dark ground");
     command->add_flag("--ghost", o->ghost, "adds dots where the dented points are at rest");
     command->add_flag("--sphere", o->sphere, "adds the near half of the fitted sphere");
     command->add_flag("--projected", o->projected, "adds dots where the points lie on that sphere");
     command->add_option("--frames", o->frames, "number of pictures along the path of --hand, in virtual time");
-    command->add_option("--hand", o->hand, "hand for --frames: press, circle, scan or a file")->capture_default_str();
+    command->add_option("--hand", o->hand, "hand for --frames: " + generatedHands() + ", or a file")
+        ->capture_default_str();
     command->add_option("--seconds", o->seconds, "time that the hand moves, for --frames")->capture_default_str();
-    command->add_option("--draw-on", o->drawOn, "Vulkan device that draws, as \"palpate devices\" names it")
+    command->add_option("--draw-on", o->drawOn, "Vulkan processor that draws, as \"palpate devices\" names it")
         ->capture_default_str();
     command->add_flag("--json", o->json, "machine-readable, SI units");
     o->scene.addTo(*command, SceneKey::Group::session);

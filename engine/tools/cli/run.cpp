@@ -35,6 +35,7 @@ void run(RunOptions o)
     o.session.hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, scene);
     demandGood(o.session);
     if (o.printConfig) {
+        warn(unusedVariables());
         std::cout << printConfig(scene, o.json ? ConfigFormat::json : ConfigFormat::text);
         return;
     }
@@ -51,14 +52,14 @@ void run(RunOptions o)
 void replay(const ReplayOptions& o)
 {
     const RecordedSession session = readSession(o.folder);
-    if (session.clock != "virtual")
+    if (session.clock != SessionClock::virtualTime)
         throw Error(o.folder + ": recorded in real time, which no replay can repeat; expected clock \"virtual\"");
     Scene scene  = sceneOf(session, &study::huntKeys());
     scene.solver = o.solver.empty() ? session.solver : o.solver;
-    if (session.samples.empty()) throw Error(o.folder + ": it has no samples, so there is nothing to replay");
+    if (session.records.empty()) throw Error(o.folder + ": it has no ticks, so there is nothing to replay");
     if (!session.finished)
-        warn({o.folder + " is not complete: its first " + std::to_string(session.samples.size()) +
-              " samples are replayed"});
+        warn({o.folder + " is not complete: its first " + std::to_string(session.records.size()) +
+              " ticks are replayed"});
     const SoftObject object = loadObject(scene).object;
     if (!session.cloud.empty() && session.cloud != fingerprint(object.cloud()))
         warn({"the cloud is not the recorded one: " + scene.cloud + " has changed"});
@@ -66,23 +67,23 @@ void replay(const ReplayOptions& o)
 
     RecordedSession again = session;
     again.folder          = "the replay";
-    again.samples.clear();
-    const double         seconds = double(session.samples.size()) * 1e-3;
-    ReplayDevice         hand(session.samples, session.hand);
+    again.records.clear();
+    const double         seconds = double(session.records.size()) * 1e-3;
+    ReplayDevice         hand(session.records, session.hand);
     const SessionSummary summary = playVirtual({scene, object, deformation.solver(), hand, {}}, seconds,
-                                               [&](const TickRecord& sample) { again.samples.push_back(sample); });
+                                               [&](const TickRecord& record) { again.records.push_back(record); });
     if (!o.compare) {
         o.json ? void(std::cout << jsonText(jsonOf(summary)))
                : printText(summary, deformation.plateSolver().name(), hand.info().model);
         return;
     }
     const auto difference = compareSessions(session, again);
-    const auto sentence   = difference ? describe(*difference, session, again) : "all samples are equal to the bit";
-    if (o.json)
+    const auto sentence   = difference ? describe(*difference, session, again) : "all ticks are equal to the bit";
+    if (o.json) // "samples" is the word of session.json
         std::cout << jsonText(
-            nlohmann::json{{"equal", !difference}, {"samples", again.samples.size()}, {"says", sentence}});
+            nlohmann::json{{"equal", !difference}, {"samples", again.records.size()}, {"says", sentence}});
     else
-        std::cout << again.samples.size() << " samples: " << sentence << "\n";
+        std::cout << again.records.size() << " ticks: " << sentence << "\n";
     if (difference) throw CheckFailed(sentence);
 }
 
@@ -115,7 +116,7 @@ void addRunCommand(CLI::App& app)
     again->add_option("DIR", r->folder, "folder of a session that was recorded in virtual time")->required();
     again->add_option("--solver", r->solver, "where the plate is solved [as in the session]");
     again->add_flag("--compare", r->compare,
-                    "compares both sessions; exit code 1 and the first sample that differs, if one does");
+                    "compares both sessions; exit code 1 and the first tick that differs, if one does");
     again->add_flag("--json", r->json, "machine-readable");
     again->footer("Examples:\n  palpate replay session --compare\n  palpate replay session --json");
     again->callback([again, r] {

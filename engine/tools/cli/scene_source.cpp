@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <span>
+
+#include <unistd.h>
 
 #include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
+#include "engine/core/nearest_name.h"
 #include "engine/tools/study/hunt_scene.h"
 
 namespace palp {
@@ -39,6 +43,16 @@ std::string helpOf(const SceneKey& key)
                   "  box: from, to, low, high\n"
                   "  checker: from, to, edge\n"
                   "such as linear:from=2e4,to=2e6,axis=x or gaussian:from=3e5,to=3e6,centre=0;0;0,sigma=0.003";
+}
+
+/// Returns the end of the sentence on a variable that nothing reads.
+/// \param key  what follows the prefix, in small letters
+std::string adviceOn(const std::string& key, std::span<const std::string_view> known)
+{
+    if (const auto today = keyNamedOnce(key))
+        return "; the key is " + std::string(*today) + " now: " + variableOf(*today);
+    if (const auto meant = nearestName(key, known)) return "; did you mean " + variableOf(*meant) + "?";
+    return "; palpate info --keys lists the keys";
 }
 
 /// Returns whether the text holds a number other than zero without a unit.
@@ -125,6 +139,23 @@ LoadedCloud SceneSource::loadCloud(const Scene& scene) const
 std::string SceneSource::title() const
 {
     return name.starts_with(kSamplePrefix) ? name : std::filesystem::path(name).stem().string();
+}
+
+std::vector<std::string> unusedVariables()
+{
+    constexpr std::string_view    kPrefix = "PALPATE_", kHostIsa = "PALPATE_HOST_ISA"; // which hostVariant() reads
+    std::vector<std::string_view> known;
+    for (const SceneKey* key : sceneKeysWith(&study::huntKeys())) known.push_back(key->name);
+    std::vector<std::string> said;
+    for (char** entry = environ; *entry; ++entry) {
+        const std::string_view text(*entry), name = text.substr(0, text.find('='));
+        if (!name.starts_with(kPrefix) || name == kHostIsa || text.size() <= name.size() + 1) continue;
+        std::string key;
+        for (const char c : name.substr(kPrefix.size())) key += c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+        if (std::ranges::find(known, key) != known.end() && variableOf(key) == name) continue;
+        said.push_back("the environment's " + std::string(name) + " is not used" + adviceOn(key, known));
+    }
+    return said;
 }
 
 double metresPerPlainNumber(const SceneSource& source, const Scene& scene)

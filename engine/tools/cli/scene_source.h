@@ -1,6 +1,7 @@
 #pragma once
 #include <map>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -35,6 +36,10 @@ struct SceneSource {
 
 /// Returns the scene of a scene file, cloud file or sample, with the flags and the environment's values over it.
 [[nodiscard]] Scene sceneFrom(const std::string& name, const std::map<std::string, std::string, std::less<>>& flags);
+
+/// Returns, in sentences, the variables PALPATE_* of the environment that nothing reads: slips, keys' former names and
+/// others. Variables without a value count as none.
+[[nodiscard]] std::vector<std::string> unusedVariables();
 
 /// Returns the metres that a plain number 1 means as a length on the command line.
 [[nodiscard]] double metresPerPlainNumber(const SceneSource& source, const Scene& scene);

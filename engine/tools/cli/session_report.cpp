@@ -39,10 +39,10 @@ nlohmann::json jsonOf(const SessionSummary& s)
             {"solve", durations(s.solve)}};
 }
 
-void printText(const SessionSummary& s, const std::string& device, const std::string& hand)
+void printText(const SessionSummary& s, const std::string& solver, const std::string& hand)
 {
     const auto seconds = [](double t) { return formatQuantity(t, "s"); };
-    std::cout << s.ticks << " ticks, " << s.contactTicks << " in contact; " << s.patches << " patches on " << device
+    std::cout << s.ticks << " ticks, " << s.contactTicks << " in contact; " << s.patches << " patches on " << solver
               << "; in the hand: " << hand << "\n";
     if (s.contactTicks > 0)
         std::cout << "  force at most " << formatQuantity(s.mostForce, "N") << ", depth at most "

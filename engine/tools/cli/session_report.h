@@ -12,9 +12,9 @@ namespace palp {
 [[nodiscard]] nlohmann::json jsonOf(const SessionSummary& summary);
 
 /// Prints the same on standard output.
-/// \param device  solved the plate
+/// \param solver  solved the plate
 /// \param hand    the kind of hand
-void printText(const SessionSummary& summary, const std::string& device, const std::string& hand);
+void printText(const SessionSummary& summary, const std::string& solver, const std::string& hand);
 
 /// Returns, in sentences, what was not as it should be; empty if nothing was.
 [[nodiscard]] std::vector<std::string> warningsOf(const SessionSummary& summary);

@@ -6,10 +6,7 @@
 #include <iostream>
 #include <memory>
 
-#include <unistd.h>
-
 #include "engine/core/contract.h"
-#include "engine/core/nearest_name.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/patch_warnings.h"
@@ -20,28 +17,11 @@
 #include "engine/session/virtual_session.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
-#include "engine/tools/cli/scene_source.h"
+#include "engine/tools/cli/named_option.h"
 #include "engine/tools/cli/session_report.h"
-#include "engine/tools/study/hunt_scene.h"
 
 namespace palp {
 namespace {
-
-/// Returns warnings on variables of the environment that were likely meant for a key.
-std::vector<std::string> strangeVariables()
-{
-    std::vector<std::string> variables, said;
-    for (const SceneKey* key : sceneKeysWith(&study::huntKeys())) variables.push_back(variableOf(key->name));
-    const std::vector<std::string_view> known(variables.begin(), variables.end());
-    for (char** entry = environ; *entry; ++entry) {
-        const std::string_view name = std::string_view(*entry).substr(0, std::string_view(*entry).find('='));
-        if (!name.starts_with("PALPATE_") || std::ranges::find(known, name) != known.end()) continue;
-        if (const auto meant = nearestName(name, known))
-            said.push_back("the environment's " + std::string(name) + " is not used; did you mean " +
-                           std::string(*meant) + "?");
-    }
-    return said;
-}
 
 /// Returns warnings before touching, from the plate at the scene's place, solved on the host, which needs no GPU.
 std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object)
@@ -70,23 +50,23 @@ SessionSummary playLive(const SessionOptions& o, double seconds, const SessionPa
     Progress             progress("touching");
     TickRing<TickRecord> ring(also ? 4096 : 1); // four seconds; from the servo to this thread
     const auto           drain = [&] {
-        for (auto samples = ring.front(); !samples.empty(); samples = ring.front()) {
-            for (const TickRecord& sample : samples) also(sample);
-            ring.pop(samples.size());
+        for (auto records = ring.front(); !records.empty(); records = ring.front()) {
+            for (const TickRecord& record : records) also(record);
+            ring.pop(records.size());
         }
     };
     RealSessionSettings settings;
     settings.seconds = seconds;
     settings.threads = *valueNamed<SessionThreads>(o.threads);
     settings.stop    = &catchInterrupts();
-    settings.onTick  = [&, heard = bool(also)](const TickRecord& sample) {
-        if (recording) recording->push(sample);
-        if (heard) static_cast<void>(ring.push(sample)); // a reader that stops for four seconds has a gap
+    settings.onTick  = [&, heard = bool(also)](const TickRecord& record) {
+        if (recording) recording->push(record);
+        if (heard) static_cast<void>(ring.push(record)); // a reader that stops for four seconds has a gap
     };
     settings.onView = [&, heard = bool(also)](const SessionView& view) {
         if (heard) drain();
         if (line) showLine(view);
-        if (o.blind) showTime(progress, view.sample.time, seconds);
+        if (o.blind) showTime(progress, view.record.time, seconds);
     };
     std::string          warning;
     const SessionSummary summary = runReal(parts, settings, warning);
@@ -94,13 +74,6 @@ SessionSummary playLive(const SessionOptions& o, double seconds, const SessionPa
     if (line) clearLine();
     if (!warning.empty() && !o.blind) warn({warning});
     return summary;
-}
-
-SessionClock clockNamed(const std::string& text)
-{
-    for (const SessionClock clock : {SessionClock::real, SessionClock::virtualTime})
-        if (text == name(clock)) return clock;
-    throw Error("--clock: expected real or virtual, found \"" + text + "\"");
 }
 
 std::unique_ptr<Recording> recordingOf(const SessionOptions& o, const SessionParts& parts, SessionClock clock,
@@ -132,8 +105,8 @@ SessionSummary playVirtual(const SessionParts& parts, double seconds, const OnTi
     std::size_t done  = 0;
     return runVirtual(
         parts, seconds,
-        [&](const TickRecord& sample) {
-            if (also) also(sample);
+        [&](const TickRecord& record) {
+            if (also) also(record);
             progress.at(++done, total);
         },
         stop);
@@ -145,15 +118,15 @@ nlohmann::json jsonOf(const SessionRun& run)
     all["hand"]        = run.hand;
     all["solver"]      = run.solver;
     all["warnings"]    = run.warnings;
-    if (run.recorded)
-        all["recorded"] = {{"folder", run.folder}, {"samples", run.recorded->samples}, {"lost", run.recorded->lost}};
+    if (run.recorded) // "samples" is the word of session.json
+        all["recorded"] = {{"folder", run.folder}, {"samples", run.recorded->ticks}, {"lost", run.recorded->lost}};
     return all;
 }
 
 void printText(const SessionRun& run)
 {
     printText(run.summary, run.solver, run.hand);
-    if (run.recorded) std::cout << "  " << run.recorded->samples << " samples in " << run.folder << "\n";
+    if (run.recorded) std::cout << "  " << run.recorded->ticks << " ticks in " << run.folder << "\n";
 }
 
 void demandWhole(const SessionRun& run)
@@ -161,13 +134,13 @@ void demandWhole(const SessionRun& run)
     if (run.summary.fault != GovernorFault::none || run.summary.deviceFault == DeviceFault::unplugged)
         throw CheckFailed("the force was stopped");
     if (run.recorded && run.recorded->lost > 0)
-        throw CheckFailed(run.folder + ": " + std::to_string(run.recorded->lost) + " samples were lost");
+        throw CheckFailed(run.folder + ": " + std::to_string(run.recorded->lost) + " ticks were lost");
 }
 
 SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const SessionOptions& o, const OnTick& onTick)
 {
     demandGood(o);
-    const SessionClock clock = clockNamed(o.clock);
+    const SessionClock clock = optionNamed<SessionClock>("--clock", o.clock);
     Deformation        deformation(loaded.object, scene); // what can fail fails before a folder is made
     SessionHand        hand = handFor(o.hand, scene, loaded.object);
     if (hand.isHeldByPerson() && clock != SessionClock::real)
@@ -177,7 +150,7 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     run.solver   = deformation.plateSolver().name();
     run.folder   = o.record;
     run.warnings = assumptions(scene, loaded.report);
-    for (const auto& more : {strangeVariables(), warningsOf(scene, loaded.object), hand.warnings})
+    for (const auto& more : {warningsOf(scene, loaded.object), hand.warnings})
         run.warnings.insert(run.warnings.end(), more.begin(), more.end());
     const std::atomic<bool>& stop = catchInterrupts();
     waitForHoming(*hand.device, stop);
@@ -185,9 +158,9 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     const SessionParts parts{scene, loaded.object, deformation.solver(), *hand.device, hand.frame};
     const auto         recording = recordingOf(o, parts, clock, run.solver);
     if (!o.blind) warn(run.warnings);
-    const OnTick each = [&](const TickRecord& sample) {
-        if (recording) recording->pushWaiting(sample);
-        if (onTick) onTick(sample);
+    const OnTick each = [&](const TickRecord& record) {
+        if (recording) recording->pushWaiting(record);
+        if (onTick) onTick(record);
     };
     run.summary = clock == SessionClock::real ? playLive(o, hand.seconds, parts, recording.get(), onTick)
                                               : playVirtual(parts, hand.seconds, each, &stop);
@@ -202,11 +175,9 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
 
 void demandGood(const SessionOptions& options)
 {
-    const SessionClock clock   = clockNamed(options.clock);
-    const auto         threads = valueNamed<SessionThreads>(options.threads);
-    if (!threads)
-        throw Error("--threads: expected " + wordsOf<SessionThreads>() + ", found \"" + options.threads + "\"");
-    if (*threads == SessionThreads::paper && clock != SessionClock::real)
+    const auto clock   = optionNamed<SessionClock>("--clock", options.clock);
+    const auto threads = optionNamed<SessionThreads>("--threads", options.threads);
+    if (threads == SessionThreads::paper && clock != SessionClock::real)
         throw Error("--threads paper: a virtual clock has no threads; omit one of the two");
 }
 
@@ -220,7 +191,7 @@ void addSessionOptions(CLI::App& command, SessionOptions& options)
                         deviceHands() + " (palpate devices lists those connected; NAME@PATH selects one of several)")
         ->capture_default_str();
     command.add_option("--seconds", options.hand.seconds, "duration [5 s, or a file's own length]");
-    command.add_option("--speed", options.hand.speed, "largest speed of press, circle and scan")->capture_default_str();
+    command.add_option("--speed", options.hand.speed, "largest speed of a generated hand")->capture_default_str();
     command.add_option("--press-depth", options.hand.depth,
                        "depth of the hand below the surface [40 % of the thickness, within plate theory]");
     command.add_option("--reach", options.hand.reach, "radius of the circle, half the length of the scan")

@@ -16,7 +16,7 @@ namespace palp {
 /// The options of a session apart from the scene, shared by run, hunt and study.
 struct SessionOptions {
     HandOptions hand;
-    std::string clock = "real", threads = "servo";
+    std::string clock = name(SessionClock::real), threads = name(SessionThreads::servo);
     std::string record;        ///< a new folder; empty: nothing is recorded
     std::string command;       ///< the command line, quoted for a shell
     bool        json  = false; ///< prints JSON, and so no live line

@@ -93,10 +93,10 @@ struct ForceTally {
     double        sum = 0, peak = 0; ///< [N]
     std::uint64_t ticks = 0;
 
-    void add(const TickRecord& sample)
+    void add(const TickRecord& record)
     {
-        if (sample.normal == glm::dvec3(0)) return;
-        const double force = glm::length(sample.force);
+        if (record.normal == glm::dvec3(0)) return;
+        const double force = glm::length(record.force);
         sum += force, ++ticks;
         peak = std::max(peak, force);
     }
@@ -278,7 +278,7 @@ std::string Sitting::touch(std::size_t condition, const std::string& name, Force
     options.record           = (folder_ / fresh).string();
     options.blind            = true;
     const SessionRun session = runSession(plan_.conditions[condition].scene, felt_[condition].loaded, options,
-                                          [&](const TickRecord& sample) { force.add(sample); });
+                                          [&](const TickRecord& record) { force.add(record); });
     if (session.interrupted) throw Paused();
     try {
         demandWhole(session);

@@ -72,10 +72,10 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
     std::printf("  sphere             %s, radius %s, misfit %s\n", r["sphere"]["outcome"].get<std::string>().c_str(),
                 r["sphere"]["radius"].is_null() ? "infinite" : formatQuantity(r["sphere"]["radius"], "m").c_str(),
                 formatQuantity(r["sphere"]["misfit"], "m").c_str());
-    std::printf("  window             %s, %d x %d cells, %zu points, %zu nodes without a point nearby\n",
+    std::printf("  patch window       %s, %d x %d cells, %zu points, %zu nodes without a point nearby\n",
                 formatQuantity(settings.window, "m").c_str(), settings.cells, settings.cells,
                 window["points_near_side"].get<std::size_t>(), window["nodes_without_point"].get<std::size_t>());
-    std::printf("  rigidity           %s at the contact, %s to %s in the window\n",
+    std::printf("  rigidity           %s at the contact, %s to %s in the patch window\n",
                 quantity("rigidity_at_contact", "N m").c_str(), formatQuantity(window["rigidity_min"], "N m").c_str(),
                 formatQuantity(window["rigidity_max"], "N m").c_str());
     std::printf("  deflection         %s at the contact, %s at most\n", quantity("deflection_at_contact", "m").c_str(),

@@ -17,6 +17,7 @@
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/hand_source.h"
 #include "engine/tools/cli/hunt_report.h"
+#include "engine/tools/cli/named_option.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/gui/glfw_window.h"
 #include "engine/tools/gui/panel_frame.h"
@@ -70,12 +71,12 @@ void tell(const ViewOptions& o, const WorkbenchReport& report, const SurfaceRend
                            {"frame_p99_s", slow},
                            {"draw_p50_s", quantileOf(report.drawTimes, 0.5)},
                            {"real_time", report.realTime},
-                           {"drawn_on", renderer.device().name}};
+                           {"drawn_on", renderer.processor().name}};
         if (score) all["hunt"] = jsonOf(*score);
         std::cout << jsonText(all);
         return;
     }
-    std::cout << report.frames << " pictures on " << renderer.device().name;
+    std::cout << report.frames << " pictures on " << renderer.processor().name;
     if (median > 0)
         std::cout << "; while touching one every " << formatQuantity(median, "s") << " (99 % within "
                   << formatQuantity(slow, "s") << ")";
@@ -124,7 +125,7 @@ void view(const ViewOptions& o)
 {
     WorkbenchSettings settings;
     auto              scorer = scorerFor(o.scene);
-    if (scorer) settings.onTick = [&scorer](const TickRecord& sample) { scorer->add(sample); };
+    if (scorer) settings.onTick = [&scorer](const TickRecord& record) { scorer->add(record); };
     settings.what     = o.scene.name;
     settings.values   = o.scene.flags;
     settings.toolKeys = &study::huntKeys();
@@ -141,12 +142,8 @@ void view(const ViewOptions& o)
     settings.assumed    = assumptions;
     settings.complained = [](const std::string& sentence) { std::cerr << "palpate: " << sentence << "\n"; };
     if (!o.hand.seconds.empty()) settings.seconds = secondsOf(o.hand.seconds);
-    const auto paint = valueNamed<ViewPaint>(o.colour);
-    const auto map   = valueNamed<ColourMap>(o.map);
-    if (!paint) throw Error("--colour: unknown name \"" + o.colour + "\"; known: " + wordsOf<ViewPaint>());
-    if (!map) throw Error("--colour-map: unknown name \"" + o.map + "\"; known: " + wordsOf<ColourMap>());
-    settings.state.look.paint  = *paint;
-    settings.state.look.map    = *map;
+    settings.state.look.paint  = optionNamed<ViewPaint>("--colour", o.colour);
+    settings.state.look.map    = optionNamed<ColourMap>("--colour-map", o.map);
     settings.state.look.ground = o.dark ? Ground::dark : Ground::light;
     settings.stop              = &catchInterrupts();
 
@@ -214,7 +211,7 @@ void addViewCommand(CLI::App& app)
     command->add_flag("--dark", o->dark, "draws on a dark ground");
     command->add_option("--size", o->size, "size of the window [px] [its last size]");
     command->add_flag("--no-panels", o->noPanels, "shows no panels; keys and mouse still work");
-    command->add_option("--draw-on", o->drawOn, "Vulkan device that draws, as \"palpate devices\" names it")
+    command->add_option("--draw-on", o->drawOn, "Vulkan processor that draws, as \"palpate devices\" names it")
         ->capture_default_str();
     command->add_flag("--validate", o->validate,
                       "runs under Vulkan's validation layer; exit code 1 if it has a message");

@@ -23,7 +23,7 @@ std::function<OpenedObject()> ObjectSource::opener(const std::string& what, cons
     if (stage_ && !stage_->painting().changed()) now = stage_->scene();
     return [what, now, toolKeys = settings_.toolKeys, solver = stage_ ? stage_->scene().solver : "auto"] {
         RecordedSession session = readSession(what);
-        if (session.samples.empty()) throw Error(what + ": it has no samples, so there is nothing to replay");
+        if (session.records.empty()) throw Error(what + ": it has no ticks, so there is nothing to replay");
         Scene scene  = palp::sceneOf(session, toolKeys);
         scene.solver = solver;
         auto stage   = now && haveSameCloud(scene, *now) ? nullptr : std::make_unique<Stage>(scene);

@@ -7,7 +7,7 @@
 #include <imgui.h>
 
 #include "engine/core/quantity.h"
-#include "engine/tools/gui/chart_samples.h"
+#include "engine/tools/gui/coarse_field.h"
 #include "engine/tools/gui/panel_parts.h"
 #include "engine/tools/plot/colour_map.h"
 
@@ -18,9 +18,9 @@ constexpr double kWide = 10; ///< a larger ratio of rigidities is shown on a log
 
 /// One of the two maps.
 struct ChartMap {
-    std::string  title; ///< with the unit
-    ChartSamples samples;
-    Axis         axis;
+    std::string title; ///< with the unit
+    CoarseField coarse;
+    Axis        axis;
 };
 
 Tone toneOf(Edge edge)
@@ -52,14 +52,14 @@ void drawSide(const PanelDesk& desk, ImVec2 from, ImVec2 to, Edge edge)
 void drawField(const PanelDesk& desk, const ChartMap& map, ImVec2 corner, float side)
 {
     ImDrawList* const   draw = ImGui::GetWindowDrawList();
-    const int           nx = map.samples.nodesX, nz = map.samples.nodesZ;
+    const int           nx = map.coarse.nodesX, nz = map.coarse.nodesZ;
     const ImVec2        white = ImGui::GetFontTexUvWhitePixel();
     const std::uint32_t none  = packed(kUndefinedColour);
     draw->PrimReserve(6 * (nx - 1) * (nz - 1), nx * nz);
     const unsigned first = draw->_VtxCurrentIdx;
     for (int i = 0; i < nx; ++i)
         for (int j = 0; j < nz; ++j) {
-            const double value = map.samples.at(i, j);
+            const double value = map.coarse.at(i, j);
             draw->PrimWriteVtx(
                 ImVec2(corner.x + side * float(i) / float(nx - 1), corner.y + side * (1 - float(j) / float(nz - 1))),
                 white,
@@ -155,13 +155,13 @@ void drawReadOut(const PanelDesk& desk, const Patch& patch, const std::optional<
 /// Explains how each kind of side is drawn.
 void drawKeyOfSides(const PanelDesk& desk)
 {
-    const float sample = 16 * desk.scale, gap = 4 * desk.scale;
+    const float mark = 16 * desk.scale, gap = 4 * desk.scale;
     for (const Edge edge : {Edge::clamped, Edge::supported, Edge::free}) {
         if (edge != Edge::clamped) ImGui::SameLine(0, 3 * gap);
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float  y  = at.y + 0.55F * ImGui::GetFontSize();
-        drawSide(desk, {at.x, y}, {at.x + sample, y}, edge);
-        ImGui::Dummy(ImVec2(sample, ImGui::GetFontSize()));
+        drawSide(desk, {at.x, y}, {at.x + mark, y}, edge);
+        ImGui::Dummy(ImVec2(mark, ImGui::GetFontSize()));
         ImGui::SameLine(0, gap);
         toned(desk, Tone::faint, name(edge));
     }
@@ -169,20 +169,20 @@ void drawKeyOfSides(const PanelDesk& desk)
 
 ChartMap rigidityMap(const Patch& patch)
 {
-    ChartSamples samples = chartSamples(patch.plate.rigidity, 1);
-    const auto   range   = rangeOf(samples.values, Scale::logarithmic).value_or(ValueRange{1, 1});
-    const Scale  scale   = range.high > kWide * range.low ? Scale::logarithmic : Scale::linear;
-    const Axis   axis(range, scale, "N m", 3);
-    return {axis.title("D"), std::move(samples), axis};
+    CoarseField coarse = coarseField(patch.plate.rigidity, 1);
+    const auto  range  = rangeOf(coarse.values, Scale::logarithmic).value_or(ValueRange{1, 1});
+    const Scale scale  = range.high > kWide * range.low ? Scale::logarithmic : Scale::linear;
+    const Axis  axis(range, scale, "N m", 3);
+    return {axis.title("D"), std::move(coarse), axis};
 }
 
 ChartMap dentMap(const Patch& patch, double force)
 {
-    constexpr double kFlat   = 0.01;                                      // [mm] smaller dents have the colour of none
-    ChartSamples     samples = chartSamples(patch.response, 1e3 * force); // [mm]
-    const auto       range   = rangeOf(samples.values, Scale::linear).value_or(ValueRange{0, 1});
+    constexpr double kFlat  = 0.01;                                     // [mm] smaller dents have the colour of none
+    CoarseField      coarse = coarseField(patch.response, 1e3 * force); // [mm]
+    const auto       range  = rangeOf(coarse.values, Scale::linear).value_or(ValueRange{0, 1});
     const Axis       axis({std::min(0.0, range.low), std::max(range.high, kFlat)}, Scale::linear, "", 3);
-    return {axis.unit().empty() ? "w [mm]" : "w [" + axis.unit() + " mm]", std::move(samples), axis};
+    return {axis.unit().empty() ? "w [mm]" : "w [" + axis.unit() + " mm]", std::move(coarse), axis};
 }
 
 } // namespace

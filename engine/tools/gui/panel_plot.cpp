@@ -139,13 +139,13 @@ void PanelPlot::mark(double x, Tone tone)
 
 void PanelPlot::legend(const char* text, Tone tone, Stroke stroke)
 {
-    const float s = desk_.scale, font = ImGui::GetFontSize(), wide = ImGui::CalcTextSize(text).x, sample = 16 * s;
+    const float s = desk_.scale, font = ImGui::GetFontSize(), wide = ImGui::CalcTextSize(text).x, mark = 16 * s;
     const float y = low_.y + 1 + 0.55F * font;
     ImGui::GetWindowDrawList()->AddText(ImVec2(legendEnd_ - wide, low_.y + 1), packed(inkOn(desk_.state.look.ground)),
                                         text);
     legendEnd_ -= wide + 4 * s;
-    line({legendEnd_ - sample, y}, {legendEnd_, y}, tone, stroke);
-    legendEnd_ -= sample + 8 * s;
+    line({legendEnd_ - mark, y}, {legendEnd_, y}, tone, stroke);
+    legendEnd_ -= mark + 8 * s;
 }
 
 std::optional<glm::dvec2> PanelPlot::pointed() const

@@ -53,7 +53,7 @@ void drawPlate(const PanelDesk& desk)
     readingOfAge(desk, Half::right, "patch age");
 }
 
-void drawDevice(const PanelDesk& desk, const char* role, const std::string& device, bool software)
+void drawProcessor(const PanelDesk& desk, const char* role, const std::string& processor, bool software)
 {
     ImGui::AlignTextToFramePadding();
     toned(desk, Tone::faint, role);
@@ -63,8 +63,8 @@ void drawDevice(const PanelDesk& desk, const char* role, const std::string& devi
         tip("This machine draws without a GPU, which slows pictures but not forces");
         ImGui::SameLine();
     }
-    ImGui::TextUnformatted(device.empty() ? "\u2013" : device.c_str()); // cut off at the panel's edge
-    tip(device.c_str());
+    ImGui::TextUnformatted(processor.empty() ? "\u2013" : processor.c_str()); // cut off at the panel's edge
+    tip(processor.c_str());
 }
 
 } // namespace
@@ -81,8 +81,8 @@ void drawTimingSection(PanelDesk& desk)
     const bool draws = content.frameTime > 0;
     reading(desk, Half::left, "frame", orDash(draws, formatted("%.1f ms", 1e3 * content.frameTime)));
     reading(desk, Half::right, "frames", orDash(draws, formatted("%.0f per s", draws ? 1 / content.frameTime : 0)));
-    drawDevice(desk, "plate on", content.solvedOn, false);
-    drawDevice(desk, "drawn on", content.drawnOn, content.drawnInSoftware);
+    drawProcessor(desk, "plate on", content.solvedOn, false);
+    drawProcessor(desk, "drawn on", content.drawnOn, content.drawnInSoftware);
 }
 
 } // namespace palp

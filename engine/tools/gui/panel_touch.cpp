@@ -39,9 +39,9 @@ void drawFaults(PanelDesk& desk)
 }
 
 /// Returns the depth of the hand below the proxy [m]; 0 out of contact.
-double penetration(const TickRecord& sample)
+double penetration(const TickRecord& record)
 {
-    return std::max(0.0, glm::dot(sample.proxy - sample.hip, sample.normal));
+    return std::max(0.0, glm::dot(record.proxy - record.hip, record.normal));
 }
 
 void drawNumbers(const PanelDesk& desk)

@@ -44,7 +44,7 @@ public:
     /// \throws Error if it cannot be drawn or written
     std::string saveWindow(const ViewScene& scene, const Camera& camera, const Overlay* texts);
 
-    [[nodiscard]] const compute::Processor& device() const { return screen_.device(); }
+    [[nodiscard]] const compute::Processor& processor() const { return screen_.processor(); }
     [[nodiscard]] glm::ivec2                size() const { return {size_.width, size_.height}; } ///< of the last [px]
     [[nodiscard]] double                    frameTime() const { return frameTime_; }             ///< a mean [s]
     [[nodiscard]] WorkbenchReport&          report() { return report_; }

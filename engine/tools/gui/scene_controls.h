@@ -12,7 +12,7 @@ namespace palp {
 struct SceneControls {
     std::vector<const SceneKey*> sliders;
     std::vector<const SceneKey*> lists;
-    bool                         edges = false; ///< the edges of the window belong here
+    bool                         edges = false; ///< the edges of the patch window belong here
 };
 
 /// Returns all controls of values that may change during a touch, except for the law of stiffness, which is a text,

@@ -18,7 +18,7 @@ public:
     virtual void  takePanels()                                                              = 0;
     virtual Image draw(const ViewScene&, const Camera&, const PictureSize&, const Overlay*) = 0;
 
-    [[nodiscard]] virtual const compute::Processor& device() const noexcept = 0;
+    [[nodiscard]] virtual const compute::Processor& processor() const noexcept = 0;
 };
 
 /// The screen of a window, through a renderer that was made with the window and outlives this.
@@ -36,7 +36,7 @@ public:
     {
         return renderer_.draw(scene, camera, size, overlay);
     }
-    [[nodiscard]] const compute::Processor& device() const noexcept override { return renderer_.device(); }
+    [[nodiscard]] const compute::Processor& processor() const noexcept override { return renderer_.processor(); }
 
 private:
     SurfaceRenderer& renderer_;

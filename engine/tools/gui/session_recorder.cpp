@@ -28,7 +28,7 @@ void SessionRecorder::end()
     if (report.stopped)
         notices_.complain(*report.stopped);
     else if (report.lost > 0)
-        notices_.complain(folder_ + ": " + std::to_string(report.lost) + " samples were lost");
+        notices_.complain(folder_ + ": " + std::to_string(report.lost) + " ticks were lost");
 }
 
 } // namespace palp

@@ -32,12 +32,12 @@ FaultAdvice adviceOn(GovernorFault fault) noexcept
     return {"", ""};
 }
 
-GovernorFault governorFault(const TickRecord& sample) noexcept
+GovernorFault governorFault(const TickRecord& record) noexcept
 {
-    return static_cast<GovernorFault>(sample.faults & 0xFFU);
+    return static_cast<GovernorFault>(record.faults & 0xFFU);
 }
 
-std::vector<std::string> notesOn(const TickRecord& sample)
+std::vector<std::string> notesOn(const TickRecord& record)
 {
     struct Note {
         SessionFlag flag;
@@ -52,7 +52,7 @@ std::vector<std::string> notesOn(const TickRecord& sample)
     };
     std::vector<std::string> notes;
     for (const Note& note : kNotes)
-        if (sample.faults & static_cast<std::uint32_t>(note.flag)) notes.emplace_back(note.text);
+        if (record.faults & static_cast<std::uint32_t>(note.flag)) notes.emplace_back(note.text);
     return notes;
 }
 

@@ -18,10 +18,10 @@ struct FaultAdvice {
 [[nodiscard]] FaultAdvice adviceOn(GovernorFault fault) noexcept;
 
 /// Returns the governor's fault of a record; see TickRecord::faults.
-[[nodiscard]] GovernorFault governorFault(const TickRecord& sample) noexcept;
+[[nodiscard]] GovernorFault governorFault(const TickRecord& record) noexcept;
 
 /// Returns the meanings of the other bits that are set in a record's faults, each a sentence with its remedy.
-[[nodiscard]] std::vector<std::string> notesOn(const TickRecord& sample);
+[[nodiscard]] std::vector<std::string> notesOn(const TickRecord& record);
 
 /// Returns whether anything needs the user's attention: a fault of the session, or one that the window has found.
 [[nodiscard]] bool needsAttention(const PanelContent& content) noexcept;

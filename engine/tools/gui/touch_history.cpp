@@ -7,10 +7,10 @@
 
 namespace palp {
 
-void TouchHistory::add(const TickRecord& sample) noexcept
+void TouchHistory::add(const TickRecord& record) noexcept
 {
-    if (ticks_ > 0 && sample.time < newest_.time) clear();
-    const auto step = std::int64_t(std::floor(sample.time / kStep));
+    if (ticks_ > 0 && record.time < newest_.time) clear();
+    const auto step = std::int64_t(std::floor(record.time / kStep));
     if (step != step_ && step_ >= 0) {
         std::shift_left(forces_.begin(), forces_.end(), 1);
         std::shift_left(depths_.begin(), depths_.end(), 1);
@@ -20,14 +20,14 @@ void TouchHistory::add(const TickRecord& sample) noexcept
         count_          = std::min(kSteps, count_ + 1);
     }
     step_  = step;
-    force_ = std::max(force_, float(glm::length(sample.force)));
-    depth_ = std::max(depth_, float(std::max(0.0, glm::dot(sample.proxy - sample.hip, sample.normal))));
+    force_ = std::max(force_, float(glm::length(record.force)));
+    depth_ = std::max(depth_, float(std::max(0.0, glm::dot(record.proxy - record.hip, record.normal))));
     if (ticks_ > 0) {
-        const double share = std::log((sample.time - newest_.time) / kShortest) / std::log(kLongest / kShortest);
+        const double share = std::log((record.time - newest_.time) / kShortest) / std::log(kLongest / kShortest);
         periods_[std::size_t(std::clamp(share * double(kBins), 0.0, double(kBins) - 1))] += 1;
     }
     ++ticks_;
-    newest_ = sample;
+    newest_ = record;
 }
 
 } // namespace palp

@@ -18,7 +18,7 @@ public:
     static constexpr double      kShortest = 0.5e-3, kLongest = 8e-3; ///< its ends, on a logarithmic scale [s]
 
     /// Adds each record of a session, in order. A time that goes back is a new session: the earlier one is forgotten.
-    void add(const TickRecord& sample) noexcept;
+    void add(const TickRecord& record) noexcept;
     void clear() noexcept { *this = {}; }
 
     /// Return equally many values, oldest first; the last is the newest whole step.

@@ -89,8 +89,8 @@ void TouchSession::resume()
 
 void TouchSession::startReplay(const RecordedSession& session)
 {
-    replay_        = std::make_unique<ReplayDevice>(session.samples, session.hand);
-    replaySeconds_ = double(session.samples.size()) * 1e-3;
+    replay_        = std::make_unique<ReplayDevice>(session.records, session.hand);
+    replaySeconds_ = double(session.records.size()) * 1e-3;
 }
 
 void TouchSession::toggleRecording()

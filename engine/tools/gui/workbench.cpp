@@ -20,7 +20,7 @@ using Seconds = std::chrono::duration<double>;
 
 bool inContact(const SessionView* view)
 {
-    return view && glm::length(view->sample.normal) > 0;
+    return view && glm::length(view->record.normal) > 0;
 }
 
 } // namespace
@@ -276,9 +276,9 @@ void Workbench::showTouch(const SessionView* view)
 {
     Stage& stage = object_.stage();
     if (view) {
-        const double force = glm::length(view->sample.force);
+        const double force = glm::length(view->record.force);
         stage.view().show(inContact(view) || force > 0 ? view->patch : nullptr, force, state_.look,
-                          TouchHand{view->sample.hip, view->sample.force, view->sample.proxy});
+                          TouchHand{view->record.hip, view->record.force, view->record.proxy});
     } else {
         stage.view().show(nullptr, 0, state_.look);
     }
@@ -302,7 +302,7 @@ std::string Workbench::note(const SessionView* view) const
 {
     if (!notices_.current().empty()) return notices_.current();
     if (!notices_.faults().empty()) return notices_.faults().back();
-    if (const double force = view ? glm::length(view->sample.force) : 0; force > 0) return formatQuantity(force, "N");
+    if (const double force = view ? glm::length(view->record.force) : 0; force > 0) return formatQuantity(force, "N");
     return state_.blind ? "hold Space and move: touch.  M: declare a nodule here"
                         : "hold Space and move: touch.  F1: keys";
 }
@@ -314,7 +314,7 @@ PanelContent Workbench::content(const SessionView* view) const
     now.faults = notices_.faults();
     if (view) {
         now.patch      = view->patch;
-        now.force      = glm::length(view->sample.force);
+        now.force      = glm::length(view->record.force);
         now.loopPeriod = view->loopPeriod;
         now.solveTime  = view->solveTime;
         now.touching   = inContact(view);
@@ -324,8 +324,8 @@ PanelContent Workbench::content(const SessionView* view) const
     }
     now.frameTime       = pictures_.frameTime();
     now.solvedOn        = stage.solvedOn();
-    now.drawnOn         = screen_.device().name;
-    now.drawnInSoftware = screen_.device().kind == "software";
+    now.drawnOn         = screen_.processor().name;
+    now.drawnInSoftware = screen_.processor().kind == compute::ProcessorKind::software;
     now.replaying       = session_.replaying();
     now.recording       = session_.recorder().recording() ? session_.recorder().folder() : "";
     now.title           = object_.fileName();

@@ -149,7 +149,7 @@ void addBunny(Section& lobe, const std::filesystem::path& file, const ReportRun&
     const SoftObject skin = skinOf(all, ear);
     PatchSettings    settings{.window = kWindow, .cells = run.quick ? 32 : 64, .footprintRadius = 2e-3};
     Table            table{"The outer skin of an ear of the bunny under " + formatQuantity(kForce, "N") +
-                    ", 300 kPa throughout, window 18 mm.",
+                    ", 300 kPa throughout, patch window 18 mm.",
                 {"edges", "under the finger", "at the ear's tip", "felt stiffness"},
                 {}};
     for (const auto& [name, edges] :

@@ -20,7 +20,7 @@ double halfWay(const PatchWindow& window, const NodeField& field, bool east)
         const double here   = east ? field(i0 + n, j0) : field(i0, j0 + n);
         if (here <= half) return spacing * (n - 1 + (before - half) / (before - here));
     }
-    throw Error("the dent does not fall to half its depth within the window");
+    throw Error("the dent does not fall to half its depth within the patch window");
 }
 
 } // namespace

@@ -26,7 +26,7 @@ std::vector<glm::dvec3> surfaceAlong(const FeltLine& line, const SoftObject& obj
     }
     const HandPath          path = draped(HandPath(std::move(flat), "line"), line.middle, object);
     std::vector<glm::dvec3> points;
-    for (const HandPose& sample : path.samples()) points.push_back(sample.position);
+    for (const HandPose& waypoint : path.waypoints()) points.push_back(waypoint.position);
     return points;
 }
 
@@ -40,14 +40,15 @@ HandPath strokingHand(const FeltLine& line, const HandScript& script, const Soft
 {
     const Frame           from  = Frame::about(line.middle.outward);
     const glm::dvec3      north = glm::cross(from.normal, line.direction);
-    std::vector<HandPose> samples;
+    std::vector<HandPose> waypoints;
     const HandPath        flat = makeHand(script, line.middle);
-    for (const HandPose& sample : flat.samples()) {
-        const glm::dvec3 d = sample.position - line.middle.point;
-        samples.push_back({sample.time, line.middle.point + glm::dot(d, from.east) * line.direction +
-                                            glm::dot(d, from.north) * north + glm::dot(d, from.normal) * from.normal});
+    for (const HandPose& waypoint : flat.waypoints()) {
+        const glm::dvec3 d = waypoint.position - line.middle.point;
+        waypoints.push_back({waypoint.time, line.middle.point + glm::dot(d, from.east) * line.direction +
+                                                glm::dot(d, from.north) * north +
+                                                glm::dot(d, from.normal) * from.normal});
     }
-    return draped(HandPath(std::move(samples), "stroke"), line.middle, object);
+    return draped(HandPath(std::move(waypoints), "stroke"), line.middle, object);
 }
 
 FeltRange rangeOf(const std::vector<double>& along, const std::vector<double>& logarithms)

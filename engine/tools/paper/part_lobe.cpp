@@ -124,7 +124,7 @@ Section lobePart(const ReportRun& run)
                                {"cantilever beam", formatQuantity(beam[std::size_t(middle)], "m"),
                                 formatQuantity(beam.front(), "m"), "-"}}});
     section.figures.push_back(
-        {"The clamped dip ends where the window ends; the free lobe bends as a whole.", profileOf(all, beam)});
+        {"The clamped dip ends where the patch window ends; the free lobe bends as a whole.", profileOf(all, beam)});
     addFigures(section, object.cloud(), all);
     section.claims.push_back(
         {"A thin lobe gets a realistic dip, with all edges of the neighbourhood fixed.",

@@ -159,18 +159,18 @@ Section mapsPart(const ReportRun& run)
         "dent. The maps all preserve areas. Gall-Peters shrinks by the square root of 2 one way and "
         "stretches by it the other, right under the finger, and the plate equation knows nothing of that.",
         "Same cap: the square from -10 to 10 degrees is clamped at its rim, and the poke is round on the "
-        "sphere. Own window: the pipeline's, 24 mm of chart in every map, so that the plate is the same and "
+        "sphere. Own patch window: the pipeline's, 24 mm of chart in every map, so that the plate is the same and "
         "with it the depth; on the object the dent is still oblong."};
-    Table table{
-        "Half widths are where the dent is half as deep, along the sphere. Elongation 1 is round.",
-        {"window", "map", "depth per newton", "of the azimuthal", "half width east", "half width north", "elongation"},
-        {}};
+    Table table{"Half widths are where the dent is half as deep, along the sphere. Elongation 1 is round.",
+                {"patch window", "map", "depth per newton", "of the azimuthal", "half width east", "half width north",
+                 "elongation"},
+                {}};
     for (const Dent& dent : caps) {
         addRow(table, "same cap", dent, caps.back());
         addNumbers(section, "cap", dent, caps.back());
     }
     for (const Dent& dent : windows) {
-        addRow(table, "own window", dent, windows.back());
+        addRow(table, "own patch window", dent, windows.back());
         addNumbers(section, "window", dent, windows.back());
     }
     double deepest = 0;
@@ -185,7 +185,7 @@ Section mapsPart(const ReportRun& run)
         {"The Gall-Peters map lays the surface flat for the plate equation because it preserves area.",
          "Same cap: the dent is " + fixed(gall.elongation(), 2) + " times as long as wide and " +
              fixed(100 * (1 - gall.deepest / caps.back().shape.deepest), 0) +
-             " % too shallow. Own window: right depth, " + fixed(own.elongation(), 2) + " times as long as wide.",
+             " % too shallow. Own patch window: right depth, " + fixed(own.elongation(), 2) + " times as long as wide.",
          "the same plate, poke and sphere in three maps", Verdict::inPart,
          "It preserves area and distorts shape; Lambert's azimuthal map preserves area too and its dent is round "
          "(elongation " +

@@ -155,7 +155,7 @@ void drawOverlays(SvgDrawing& svg, const PlotFrame& frame, const HeatMapSettings
             ++shown;
         }
         drawDots(svg, dots);
-        legend.push_back({"points in the window: " + std::to_string(shown),
+        legend.push_back({"points in the patch window: " + std::to_string(shown),
                           [](SvgDrawing& to, glm::dvec2 at) { drawDots(to, SvgPath().dotAt(at)); }});
     }
     if (!s.contact) return;
@@ -252,7 +252,7 @@ std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings)
                   barHeight);
     const double width  = std::max(barLeft + kColourBarWidth, kFrameLeft + textWidth(settings.title, 16) + 10);
     double       bottom = top + std::max(frame.size.y + kFrameBelow, barHeight) + 6;
-    bottom += drawLegend(svg, legend, {kFrameLeft - kLegendSampleWidth / 2, bottom}, width - kFrameLeft);
+    bottom += drawLegend(svg, legend, {kFrameLeft - kLegendMarkWidth / 2, bottom}, width - kFrameLeft);
     return svg.finish({width, bottom + 10}, settings.title.empty() ? settings.quantity : settings.title);
 }
 

@@ -43,10 +43,10 @@ double drawLegend(SvgDrawing& svg, const std::vector<LegendEntry>& entries, glm:
     if (entries.empty()) return 0;
     double x = 0, y = kRow / 2;
     for (const LegendEntry& entry : entries) {
-        const double needed = kLegendSampleWidth + kGap + textWidth(entry.text, kSize);
+        const double needed = kLegendMarkWidth + kGap + textWidth(entry.text, kSize);
         if (x > 0 && x + needed > width) x = 0, y += kRow;
-        entry.draw(svg, corner + glm::dvec2(x + kLegendSampleWidth / 2, y));
-        svg.text(corner + glm::dvec2(x + kLegendSampleWidth + kGap, y + 0.36 * kSize), entry.text, {.size = kSize});
+        entry.draw(svg, corner + glm::dvec2(x + kLegendMarkWidth / 2, y));
+        svg.text(corner + glm::dvec2(x + kLegendMarkWidth + kGap, y + 0.36 * kSize), entry.text, {.size = kSize});
         x += needed + kBetween;
     }
     return y + kRow / 2;

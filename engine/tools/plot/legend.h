@@ -15,12 +15,11 @@ enum class Symbol { circle, square, triangleUp, triangleDown, diamond, cross, pl
 void drawSymbol(SvgDrawing& svg, Symbol symbol, glm::dvec2 at, double radius, std::string_view colour);
 
 struct LegendEntry {
-    std::string text;
-    std::function<void(SvgDrawing&, glm::dvec2)>
-        draw; ///< draws the sample, kLegendSampleWidth px wide, around a centre
+    std::string                                  text;
+    std::function<void(SvgDrawing&, glm::dvec2)> draw; ///< draws the mark, kLegendMarkWidth px wide, around a centre
 };
 
-inline constexpr double kLegendSampleWidth = 26; ///< [px]
+inline constexpr double kLegendMarkWidth = 26; ///< [px]
 
 /// Writes entries in rows from left to right.
 /// \return the height used [px]

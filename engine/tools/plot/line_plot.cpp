@@ -136,7 +136,7 @@ LegendEntry legendEntry(const PlotSeries& s, const Look& look, std::size_t undra
     const SeriesStyle style = s.style;
     return {s.name + (undrawable > 0 ? " (" + std::to_string(undrawable) + " not drawn)" : ""),
             [look, style](SvgDrawing& svg, glm::dvec2 at) {
-                const glm::dvec2 half = {kLegendSampleWidth / 2, 0};
+                const glm::dvec2 half = {kLegendMarkWidth / 2, 0};
                 if (style != SeriesStyle::markers) svg.line(at - half, at + half, {look.colour, look.width, look.dash});
                 if (style == SeriesStyle::markers || style == SeriesStyle::lineAndMarkers)
                     drawSymbol(svg, look.symbol, at, kMarkerRadius, look.colour);

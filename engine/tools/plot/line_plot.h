@@ -9,9 +9,9 @@
 namespace palp {
 
 enum class SeriesStyle {
-    line,           ///< densely sampled: a line with its own colour and dashes
-    lineAndMarkers, ///< sparsely sampled: a line, and markers of its own shape at the samples (some, if many)
-    markers,        ///< a marker at every sample
+    line,           ///< of many points: a line with its own colour and dashes
+    lineAndMarkers, ///< of few points: a line, and markers of its own shape at the points (some, if many)
+    markers,        ///< a marker at every point
     reference,      ///< reference for the others: a thin dark line beneath them
 };
 

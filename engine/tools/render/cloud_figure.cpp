@@ -51,7 +51,7 @@ ValueRange rangeOf(std::span<const double> values, const CloudFigure& figure)
 }
 
 /// Draws the cloud alone.
-/// \throws Error if it has no surface, compute::ProcessorError if no device can draw
+/// \throws Error if it has no surface, compute::ProcessorError if no processor can draw
 Image imageOf(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now, std::span<const double> values,
               const CloudFigure& figure, const Camera& camera)
 {

@@ -29,8 +29,9 @@ struct CloudFigure {
 /// Draws a cloud as a lit, closed surface in the colours of a value per point, by parallel projection: a self-contained
 /// SVG file around a picture of SurfaceRenderer, with title, colour bar and scale bar.
 ///
-/// Points without a value (NaN) are grey and counted. Without a Vulkan device that can draw, and for a cloud that has
-/// no surface (see CloudSkin), the figure is a sentence that says so, because a command's other output is still useful.
+/// Points without a value (NaN) are grey and counted. Without a Vulkan processor that can draw, and for a cloud that
+/// has no surface (see CloudSkin), the figure is a sentence that says so, because a command's other output is still
+/// useful.
 /// \param rest    positions at rest, from which neighbours are found [m]
 /// \param now     as many positions, which are drawn [m]
 /// \param values  as many [figure.unit]

@@ -274,7 +274,7 @@ void SurfaceRenderer::takePanels()
     impl_->surface->takePanels();
 }
 
-const compute::Processor& SurfaceRenderer::device() const noexcept
+const compute::Processor& SurfaceRenderer::processor() const noexcept
 {
     return impl_->context.processor();
 }

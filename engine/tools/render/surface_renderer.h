@@ -32,7 +32,7 @@ struct WindowLink {
     std::function<std::uint64_t(void*)> makeSurface; ///< from Vulkan's instance to a surface of the window; may throw
 };
 
-/// Draws scenes, with or without a window, on a Vulkan device of its own: a picture never delays a solve.
+/// Draws scenes, with or without a window, on a Vulkan processor of its own: a picture never delays a solve.
 ///
 /// Points become round discs in their tangent planes that melt into a closed, lit surface; hollows are darker and humps
 /// lighter, so that a slight dent shows. Shapes behind the surface shine through. On lavapipe the same scene gives the
@@ -40,8 +40,8 @@ struct WindowLink {
 /// \thread one
 class SurfaceRenderer {
 public:
-    /// \param settings  of the device; their purpose is always drawing
-    /// \throws compute::ProcessorError if no device can draw, compute::UnknownProcessor for a wrong name
+    /// \param settings  of the processor; their purpose is always drawing
+    /// \throws compute::ProcessorError if no processor can draw, compute::UnknownProcessor for a wrong name
     explicit SurfaceRenderer(compute::ContextSettings settings = {});
     /// Makes a renderer that shows pictures in a window too.
     /// \throws as above, and what makeSurface throws
@@ -52,7 +52,7 @@ public:
 
     /// Draws the scene, without texts unless an overlay has them; see annotate().
     /// \pre sides from 1 px, as many normals and radii as positions, everything finite
-    /// \throws Error if the device cannot draw that large, compute::ProcessorLost
+    /// \throws Error if the processor cannot draw that large, compute::ProcessorLost
     [[nodiscard]] Image draw(const ViewScene& scene, const Camera& camera, const PictureSize& size,
                              const Overlay* overlay = nullptr);
 
@@ -72,7 +72,7 @@ public:
     /// \throws Error in a build without Dear ImGui
     void takePanels();
 
-    [[nodiscard]] const compute::Processor& device() const noexcept;
+    [[nodiscard]] const compute::Processor& processor() const noexcept;
     [[nodiscard]] const std::string&        note() const noexcept; ///< see compute::Context::note()
     /// Returns the validation layer's messages since the last call.
     [[nodiscard]] std::vector<std::string> takeMessages();

@@ -34,7 +34,7 @@ VkDeviceMemory memoryFor(const compute::VulkanContext& context, VkImage image, c
 {
     VkMemoryRequirements needs;
     vkGetImageMemoryRequirements(context.device, image, &needs);
-    const auto type = compute::memoryTypeFor(context.memory, needs.memoryTypeBits, compute::Intent::device);
+    const auto type = compute::memoryTypeFor(context.memory, needs.memoryTypeBits, compute::Intent::processor);
     if (!type) throw Error("the GPU " + context.description.name + " has no memory for the image '" + name + "'");
     auto allocation            = typed<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
     allocation.allocationSize  = needs.size;

@@ -7,7 +7,7 @@
 
 namespace palp {
 
-/// A picture in the device's own memory. Destroyed in the order from the last member to the first.
+/// A picture in the processor's own memory. Destroyed in the order from the last member to the first.
 struct VulkanImage {
     compute::Owned<VkDeviceMemory, vkFreeMemory>    memory;
     compute::Owned<VkImage, vkDestroyImage>         image;
@@ -16,7 +16,7 @@ struct VulkanImage {
 };
 
 /// \param name   appears in messages of the validation layer
-/// \throws Error if the device cannot hold such an image, compute::ProcessorLost if memory runs out
+/// \throws Error if the processor cannot hold such an image, compute::ProcessorLost if memory runs out
 [[nodiscard]] VulkanImage makeImage(const compute::VulkanContext& context, const char* name, VkExtent2D size,
                                     VkFormat format, VkImageUsageFlags usage);
 

@@ -73,7 +73,7 @@ VulkanSurface::~VulkanSurface()
 {
     try {
         finish();
-    } catch (const Error&) { // a device that hangs leaks its objects
+    } catch (const Error&) { // a processor that hangs leaks its objects
     }
 }
 

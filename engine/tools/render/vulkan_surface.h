@@ -21,7 +21,7 @@ class VulkanPanels;
 /// \thread one
 class VulkanSurface {
 public:
-    /// \throws compute::ProcessorError if the device lacks a format
+    /// \throws compute::ProcessorError if the processor lacks a format
     /// \param picture  format of the pictures, of eight bits a channel
     explicit VulkanSurface(compute::Context& context, VkFormat picture = VK_FORMAT_R8G8B8A8_UNORM);
     ~VulkanSurface();

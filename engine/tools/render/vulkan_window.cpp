@@ -23,7 +23,7 @@ VkSurfaceFormatKHR formatOf(const compute::VulkanContext& context, VkSurfaceKHR 
         for (const VkSurfaceFormatKHR& format : formats)
             if (format.format == wanted) return format;
     throw Error("the GPU " + context.description.name +
-                " shows windows in none of the 8 bit formats; try another device with --draw-on");
+                " shows windows in none of the 8 bit formats; try another processor with --draw-on");
 }
 
 } // namespace
@@ -32,10 +32,10 @@ VulkanWindow::VulkanWindow(compute::VulkanContext& context, VkSurfaceKHR surface
 {
     VkBool32 shows = VK_FALSE;
     check(vkGetPhysicalDeviceSurfaceSupportKHR(context.physical, context.family, surface, &shows),
-          "ask whether a device shows a window");
+          "ask whether a processor shows a window");
     if (!shows)
         throw Error("the GPU " + context.description.name +
-                    " draws and cannot show windows; try another device with --draw-on");
+                    " draws and cannot show windows; try another processor with --draw-on");
     format_         = formatOf(context, surface);
     const auto info = typed<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
     VkFence    fence{};

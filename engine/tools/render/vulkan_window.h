@@ -13,7 +13,7 @@ namespace palp {
 class VulkanWindow {
 public:
     /// \param surface  of the window; is destroyed with this
-    /// \throws Error if the device cannot show pictures there
+    /// \throws Error if the processor cannot show pictures there
     VulkanWindow(compute::VulkanContext& context, VkSurfaceKHR surface);
     ~VulkanWindow();
     VulkanWindow(const VulkanWindow&)            = delete;

@@ -113,14 +113,14 @@ std::vector<LegendEntry> legendOf(const HuntScore& score)
         return [symbol, ink](SvgDrawing& svg, glm::dvec2 at) { drawSymbol(svg, symbol, at, kSymbol, ink); };
     };
     const auto count = [](std::size_t n) { return " (" + std::to_string(n) + ")"; };
-    return {{"nodule found" + count(score.found), ring(true)},
-            {"nodule missed" + count(score.nodules.size() - score.found), ring(false)},
-            {"declared, a find", mark(Symbol::triangleUp, foundInk())},
-            {"declared, nothing there" + count(score.falseAlarms), mark(Symbol::cross, missedInk())},
-            {"way of the contact", [](SvgDrawing& svg, glm::dvec2 at) {
-                 svg.line(at - glm::dvec2(kLegendSampleWidth / 2, 0), at + glm::dvec2(kLegendSampleWidth / 2, 0),
-                          {kWay, 1});
-             }}};
+    return {
+        {"nodule found" + count(score.found), ring(true)},
+        {"nodule missed" + count(score.nodules.size() - score.found), ring(false)},
+        {"declared, a find", mark(Symbol::triangleUp, foundInk())},
+        {"declared, nothing there" + count(score.falseAlarms), mark(Symbol::cross, missedInk())},
+        {"way of the contact", [](SvgDrawing& svg, glm::dvec2 at) {
+             svg.line(at - glm::dvec2(kLegendMarkWidth / 2, 0), at + glm::dvec2(kLegendMarkWidth / 2, 0), {kWay, 1});
+         }}};
 }
 
 } // namespace

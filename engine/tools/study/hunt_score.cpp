@@ -41,44 +41,44 @@ HuntScorer::HuntScorer(const Scene& scene, const PointCloud& cloud)
     edges_.resize(score_.nodules.size());
 }
 
-void HuntScorer::add(const TickRecord& sample)
+void HuntScorer::add(const TickRecord& record)
 {
     constexpr double kLost = 0.1; // [s] a touch cannot be followed across a longer gap
-    if (sample.time < last_) begun_ += last_, last_ = -1, held_ = 0;
-    const double dt  = last_ < 0 || sample.time - last_ > kLost ? 0 : sample.time - last_;
-    last_            = sample.time;
-    const double now = begun_ + sample.time, force = glm::length(sample.force);
-    const bool   touching = sample.normal != glm::dvec3(0);
+    if (record.time < last_) begun_ += last_, last_ = -1, held_ = 0;
+    const double dt  = last_ < 0 || record.time - last_ > kLost ? 0 : record.time - last_;
+    last_            = record.time;
+    const double now = begun_ + record.time, force = glm::length(record.force);
+    const bool   touching = record.normal != glm::dvec3(0);
     score_.duration       = now;
     score_.peakForce      = std::max(score_.peakForce, force);
     score_.impulse += force * dt;
-    press(sample, now);
+    press(record, now);
     if (touching) {
         score_.contact += dt;
         score_.meanForce += force * dt; // a sum until score()
         if (force > hunt_.tooHard) tooHard_ += dt;
         if (force >= hunt_.pressForce) {
-            trace(sample);
-            cover(sample.proxy);
+            trace(record);
+            cover(record.proxy);
         }
-        draw(sample);
+        draw(record);
     }
     touching_ = touching;
 }
 
-void HuntScorer::press(const TickRecord& sample, double now)
+void HuntScorer::press(const TickRecord& record, double now)
 {
     Hand hand;
-    hand.setBits(sample.device);
-    const bool stopped = (sample.faults & 0xFFU) != 0;
+    hand.setBits(record.device);
+    const bool stopped = (record.faults & 0xFFU) != 0;
     if (hand.buttons == 0 || stopped || hand.device != DeviceFault::none) {
         held_ = 0;
         return;
     }
     if (held_++ == 0) {
         pressedAt_       = now;
-        pressedOn_       = sample.proxy;
-        pressedTouching_ = sample.normal != glm::dvec3(0);
+        pressedOn_       = record.proxy;
+        pressedTouching_ = record.normal != glm::dvec3(0);
     }
     if (held_ != ForceHalf::kPressTicks) return;
     if (pressedTouching_)
@@ -110,15 +110,15 @@ void HuntScorer::declare(double time, const glm::dvec3& place)
         ++score_.unkept;
 }
 
-void HuntScorer::trace(const TickRecord& sample)
+void HuntScorer::trace(const TickRecord& record)
 {
     for (std::size_t i = 0; i < edges_.size(); ++i) {
         const Nodule&    nodule = score_.nodules[i].nodule;
         const double     band   = std::max(nodule.radius / 4, footprint_ / 2);
-        const glm::dvec3 from   = sample.proxy - nodule.centre;
+        const glm::dvec3 from   = record.proxy - nodule.centre;
         if (glm::length(from) > nodule.radius + 2 * band) continue;
         Edge& edge = edges_[i];
-        if (!edge.known) edge = {Frame::about(sample.normal), 0, true}; // the normal changes little across a nodule
+        if (!edge.known) edge = {Frame::about(record.normal), 0, true}; // the normal changes little across a nodule
         const double east = glm::dot(from, edge.frame.east), north = glm::dot(from, edge.frame.north);
         if (std::abs(std::hypot(east, north) - nodule.radius) > band) continue;
         const double turn = std::atan2(north, east) / (2 * std::numbers::pi); // [1] -1/2 to 1/2
@@ -137,14 +137,14 @@ void HuntScorer::cover(const glm::dvec3& place)
     for (const std::uint32_t point : near_) covered_[point] = true;
 }
 
-void HuntScorer::draw(const TickRecord& sample)
+void HuntScorer::draw(const TickRecord& record)
 {
     constexpr double      kStep = 0.1;     // share of the footprint's radius, finer than a picture shows [1]
     constexpr std::size_t kMost = 200'000; // places; more would fill an area in a large file
     auto&                 path  = score_.path;
     if (!touching_ || path.empty()) path.emplace_back();
-    if (!path.back().empty() && glm::distance(path.back().back(), sample.proxy) < kStep * footprint_) return;
-    if (drawn_++ < kMost) path.back().push_back(sample.proxy);
+    if (!path.back().empty() && glm::distance(path.back().back(), record.proxy) < kStep * footprint_) return;
+    if (drawn_++ < kMost) path.back().push_back(record.proxy);
 }
 
 HuntScore HuntScorer::score() const

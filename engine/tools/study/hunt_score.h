@@ -69,7 +69,7 @@ public:
     HuntScorer(const Scene& scene, const PointCloud& cloud);
 
     /// Adds the record of the next tick; an earlier time than the last one begins another session of the same hunt.
-    void add(const TickRecord& sample);
+    void add(const TickRecord& record);
 
     [[nodiscard]] HuntScore score() const;
 
@@ -80,11 +80,11 @@ private:
         bool          known  = false;
     };
 
-    void press(const TickRecord& sample, double now);
+    void press(const TickRecord& record, double now);
     void declare(double time, const glm::dvec3& place);
-    void trace(const TickRecord& sample);
+    void trace(const TickRecord& record);
     void cover(const glm::dvec3& place);
-    void draw(const TickRecord& sample);
+    void draw(const TickRecord& record);
 
     Hunt                       hunt_;
     double                     footprint_; ///< radius [m]

@@ -68,21 +68,21 @@ void add(Group& group, const TrialRow& row)
 
 Interval bootstrap(const std::map<std::string, Rated>& byParticipant)
 {
-    constexpr int      kSamples = 2000;
+    constexpr int      kDraws = 2000;
     std::vector<Rated> all;
     for (const auto& [name, rated] : byParticipant) all.push_back(rated);
     Uniform             random(1);
     std::vector<double> means;
-    for (int k = 0; k < kSamples; ++k) {
-        Rated sample;
+    for (int k = 0; k < kDraws; ++k) {
+        Rated drawn;
         for (std::size_t i = 0; i < all.size(); ++i) {
             const Rated& one = all[std::min(std::size_t(random() * double(all.size())), all.size() - 1)];
-            sample.sum += one.sum, sample.n += one.n;
+            drawn.sum += one.sum, drawn.n += one.n;
         }
-        means.push_back(sample.sum / double(sample.n));
+        means.push_back(drawn.sum / double(drawn.n));
     }
     std::ranges::sort(means);
-    return {means[kSamples / 40], means[kSamples - 1 - kSamples / 40]};
+    return {means[kDraws / 40], means[kDraws - 1 - kDraws / 40]};
 }
 
 double medianOf(std::vector<double> values)

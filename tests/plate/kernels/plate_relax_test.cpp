@@ -130,7 +130,7 @@ TEST_F(PlateRelaxTest, ASweepInTwoBuffersIsTwoHalfSweeps)
     const auto                   onDevice = [&](const std::vector<float>& values) {
         staging.emplace_back(context(), "from the host", 4 * values.size(), compute::Intent::upload);
         std::memcpy(staging.back().mapped(), values.data(), 4 * values.size());
-        compute::Buffer there(context(), "field", 4 * values.size(), compute::Intent::device);
+        compute::Buffer there(context(), "field", 4 * values.size(), compute::Intent::processor);
         list.copy(staging.back(), there);
         return there;
     };

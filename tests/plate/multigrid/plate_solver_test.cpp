@@ -36,7 +36,7 @@ double difference(const NodeField& a, const NodeField& b)
 
 TEST(PlateSolver, SolvesOnTheDeviceOneGridAfterTheOther)
 {
-    PlateSolver solver(deviceOfTests());
+    PlateSolver solver(processorOfTests());
     EXPECT_EQ(solver.note(), "");
     for (const int cells : {20, 30, 20}) {
         const Plate         plate = plateOf(cells, 10);
@@ -50,8 +50,8 @@ TEST(PlateSolver, SolvesOnTheDeviceOneGridAfterTheOther)
 
 TEST(PlateSolver, ADeviceThatIsLostIsReplacedByTheReference)
 {
-    if (deviceOfTests() == compute::kHostProcessor) GTEST_SKIP() << "the host is not lost";
-    PlateSolver         solver(deviceOfTests(), 1e-9); // [s] of patience: every submission counts as a hang
+    if (processorOfTests() == compute::kHostProcessor) GTEST_SKIP() << "the host is not lost";
+    PlateSolver         solver(processorOfTests(), 1e-9); // [s] of patience: every submission counts as a hang
     const Plate         plate = plateOf(64, 10);
     const NodeField     load  = pointLoad(plate.grid, 1, 0.5, 0.5);
     const PlateSolution found = solver.solve(plate, load);
@@ -64,7 +64,7 @@ TEST(PlateSolver, ADeviceThatIsLostIsReplacedByTheReference)
 
 TEST(PlateSolver, WhatTheDeviceCannotConvergeTheReferenceSolves)
 {
-    PlateSolver         solver(deviceOfTests());
+    PlateSolver         solver(processorOfTests());
     const Plate         plate = plateOf(64, 1e9);
     const NodeField     load  = pointLoad(plate.grid, 1, 0.5, 0.5);
     const PlateSolution found = solver.solve(plate, load);
@@ -77,7 +77,7 @@ TEST(PlateSolver, WhatTheDeviceCannotConvergeTheReferenceSolves)
 /// As many as the table of a moving contact has, on every processor and by the reference alone.
 TEST(PlateSolver, SeveralLoadsOfOnePlateAreThoseOfEachAlone)
 {
-    for (const std::string& name : {deviceOfTests(), std::string(PlateSolver::kReference)}) {
+    for (const std::string& name : {processorOfTests(), std::string(PlateSolver::kReference)}) {
         PlateSolver            solver(name);
         const Plate            plate = plateOf(20, 10);
         std::vector<NodeField> loads;

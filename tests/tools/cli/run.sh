@@ -178,7 +178,7 @@ doctor FALCON_FIRMWARE=image.bin -- 'ok falcon firmware 8000 byte'
 grep -qF 'image.bin' out.txt && complain 'a report names a file of the user' || passed=$((passed + 1))
 doctor PALPATE_HOST_ISA=portable -- 'code for portable'
 doctor PALPATE_HOST_ISA=sse9 -- '-> unset PALPATE_HOST_ISA'
-doctor VK_DRIVER_FILES=none.json VK_ICD_FILENAMES=none.json -- 'warning vulkan no device'
+doctor VK_DRIVER_FILES=none.json VK_ICD_FILENAMES=none.json -- 'warning vulkan no processor'
 doctor -- 'warning vulkan only in software: '
 good 'doctor, for scripts' doctor --json
 for key in '"palpate": "0.' '"compiler"' '"libraries"' '"system"' '"part": "real time"' '"verdict": "' '"found"' '"help"' '"name": "arm"'; do holds "$key"; done
@@ -274,7 +274,7 @@ python3 -c "
 import sys
 data = bytearray(open('session/force.npy', 'rb').read()); data[-1] ^= 1; open('session/force.npy', 'wb').write(data)" 2>/dev/null && {
     "$palpate" replay session --compare >out.txt 2>err.txt
-    [ $? -eq 1 ] && grep -qF 'sample 499' out.txt && passed=$((passed + 1)) || complain "one changed bit is not found: $(cat out.txt err.txt)"
+    [ $? -eq 1 ] && grep -qF 'tick 499' out.txt && passed=$((passed + 1)) || complain "one changed bit is not found: $(cat out.txt err.txt)"
 }
 
 # --- a Falcon weighs a mass: an emulated one, of 5000 counts per N m and an arm of 210 g
@@ -508,7 +508,7 @@ JSON
     bad 'another kind of file' '.png' render sample:skin --out no.jpg
     bad 'an unknown colour' 'deflection, stiffness or plain' render sample:skin --out no.png --colour red
     bad 'an unknown map' 'viridis, cividis or grey' render sample:skin --out no.png --colour-map jet
-    bad 'an unknown view' 'patch, whole' render sample:skin $small --out no.png --view side
+    bad 'an unknown view' 'patch or whole' render sample:skin $small --out no.png --view side
     bad 'a negative exaggeration' '--exaggerate' render sample:skin --out no.png --exaggerate -1
     bad 'an unknown sample' 'known' render sample:nose --out no.png
     bad 'a scene that is not there' 'nowhere.json' render nowhere.json --out no.png
@@ -522,7 +522,7 @@ JSON
     [ ! -e no.png ] && passed=$((passed + 1)) || complain 'a refused picture was written'
     without "$palpate" render sample:skin $small --out no.png
     code=$?
-    [ $code -eq 4 ] && grep -qF 'no Vulkan device can draw' err.txt && grep -qF 'mesa-vulkan-drivers' err.txt && [ ! -s out.txt ] && [ ! -e no.png ] && passed=$((passed + 1)) ||
+    [ $code -eq 4 ] && grep -qF 'no Vulkan processor can draw' err.txt && grep -qF 'mesa-vulkan-drivers' err.txt && [ ! -s out.txt ] && [ ! -e no.png ] && passed=$((passed + 1)) ||
         complain "render without Vulkan: exit $code, expected 4: $(cat err.txt)"
     "$palpate" render sample:skin $small --draw-on host --out no.png >out.txt 2>err.txt
     code=$?
@@ -679,6 +679,24 @@ JSON
     printf '{"cloud": "sample:sheet", "hunt": {"nodules": [{"at": [0, 0, 0], "radius": "6 mm", "modulus": "3 MPa"}]}}' >hidden.json
     good 'what touch does with a hunt' touch hidden.json --json
     holds 'has hidden 1 nodule in this stiffness; palpate hunt and palpate view score'
+    unused() { # unused COMMAND...: it tells of variables that nothing reads, one of each kind, and of no others
+        env PALPATE_CELS=8 PALPATE_HAND_OVER=hold PALPATE_ODD=1 PALPATE_EMPTY= PALPATE_CELLS=32 PALPATE_HOST_ISA=portable "$palpate" "$@" >out.txt 2>err.txt ||
+            complain "unused variables, $1: exit $? $(cat err.txt)"
+        cat err.txt >>out.txt
+        holds "environment's PALPATE_CELS is not used; did you mean PALPATE_CELLS?"
+        holds "environment's PALPATE_HAND_OVER is not used; the key is compliance_law now: PALPATE_COMPLIANCE_LAW"
+        holds "environment's PALPATE_ODD is not used; palpate info --keys lists the keys"
+        grep -qE 'PALPATE_(CELLS|EMPTY|HOST_ISA) is not used' out.txt && complain "$1 tells of variables that are used: $(cat out.txt)"
+    }
+    unused info scan.json
+    unused convert scan.json unused.ply
+    unused paint scan.json --stroke 'at=0,0,30 radius=5 value=1MPa' --out unused.ply
+    unused touch scan.json
+    unused render scan.json --size 64x48 --out unused.png
+    unused perceive scan.json --places 5 --reach 8mm
+    unused run scan.json --clock virtual --seconds 0.05
+    unused run scan.json --print-config
+    unused hunt hidden.json --clock virtual --seconds 0.05
     good 'keys of scenes' info --keys
     holds '| `compliance_law` |'
     good 'their schema' info --schema

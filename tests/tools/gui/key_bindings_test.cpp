@@ -34,7 +34,7 @@ protected:
         {
             return Image(size.width, size.height, {});
         }
-        [[nodiscard]] const compute::Processor& device() const noexcept override { return processor_; }
+        [[nodiscard]] const compute::Processor& processor() const noexcept override { return processor_; }
 
     private:
         compute::Processor processor_{};

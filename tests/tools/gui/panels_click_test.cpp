@@ -266,9 +266,9 @@ TEST_F(PanelsClick, OnADisplayOfTwiceTheScalePanelsAreTwiceAsLargeAndBackAsBefor
 
 TEST_F(PanelsClick, AFaultIsLeftByItsButton)
 {
-    TickRecord sample;
-    sample.faults = static_cast<std::uint32_t>(GovernorFault::tooFast);
-    history_.add(sample);
+    TickRecord record;
+    record.faults = static_cast<std::uint32_t>(GovernorFault::tooFast);
+    history_.add(record);
     settle();
     click({48, 347});
 

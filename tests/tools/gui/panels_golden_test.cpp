@@ -25,7 +25,7 @@ struct Pressed {
     HandPath     path{{{0, place.point + 2e-3 * place.outward},
                        {0.5, place.point - 1.5e-3 * place.outward},
                        {3, place.point - 1e-3 * place.outward}}};
-    ScriptedHand   device{path};
+    ScriptedHand device{path};
     TouchHistory history;
     std::optional<Patch> patch;
     TouchView            view{object, scene.patch};
@@ -116,7 +116,7 @@ protected:
     void expectGolden(const std::string& name, const Shown& shown, const PanelContent& now)
     {
         PanelFrame      frame(shown.scale);
-        SurfaceRenderer renderer({.processor = deviceOfTests(), .validation = validation()});
+        SurfaceRenderer renderer({.processor = processorOfTests(), .validation = validation()});
         const Image     image = pictureOf(shown, now, renderer, frame);
         palp::expectGolden(PALPATE_GOLDEN, name + ".png", leftOf(image, shown.kept), renderer);
     }
@@ -143,7 +143,7 @@ TEST_F(PanelsGolden, DarkAndLargeAtTwiceTheScale)
     now.recording           = "recordings/2016-05-20";
 
     PanelFrame      frame;
-    SurfaceRenderer renderer({.processor = deviceOfTests(), .validation = validation()});
+    SurfaceRenderer renderer({.processor = processorOfTests(), .validation = validation()});
     Shown           before = shown;
     before.size            = {960, 540, 1, Detail::fast};
     before.scale           = 1;
@@ -164,7 +164,7 @@ TEST_F(PanelsGolden, TheOtherSectionsOpenAtAClick)
     mixed.plate.edges      = {Edge::clamped, Edge::free, Edge::supported, Edge::clamped};
     now.patch              = &mixed;
     PanelFrame      frame;
-    SurfaceRenderer renderer({.processor = deviceOfTests(), .validation = validation()});
+    SurfaceRenderer renderer({.processor = processorOfTests(), .validation = validation()});
     const auto      at = [&](double y) { click({60, y}, shown, now, frame); };
 
     static_cast<void>(pictureOf(shown, now, renderer, frame));
@@ -201,12 +201,12 @@ TEST_F(PanelsGolden, ABrushAndTheSheetOfKeys)
 TEST_F(PanelsGolden, NothingFeltYetAndAFault)
 {
     Shown      shown;
-    TickRecord sample;
+    TickRecord record;
     shown.kept    = 460;
-    sample.time   = 1;
-    sample.faults = static_cast<std::uint32_t>(GovernorFault::tooFast);
+    record.time   = 1;
+    record.faults = static_cast<std::uint32_t>(GovernorFault::tooFast);
     pressed_.history.clear();
-    pressed_.history.add(sample);
+    pressed_.history.add(record);
     PanelContent now = pressed_.content();
     now.patch        = nullptr;
     now.force = now.solveTime = now.loopPeriod = 0;

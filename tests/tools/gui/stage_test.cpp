@@ -57,7 +57,7 @@ TEST(Stage, ValuesThatCannotBeSolvedChangeNothing)
     Stage        stage(sceneOf());
     const double before = complianceAt(stage);
     Scene        broken = stage.scene();
-    broken.solver       = "no such device";
+    broken.solver       = "no such processor";
     EXPECT_THROW(stage.change(broken), Error);
     EXPECT_EQ(complianceAt(stage), before);
     EXPECT_EQ(stage.scene().solver, "host");

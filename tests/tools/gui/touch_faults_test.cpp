@@ -23,15 +23,15 @@ TEST(TouchFaults, EveryFaultOfTheGovernorHasAReasonAndARemedy)
 
 TEST(TouchFaults, NotesAreOfTheBitsThatAreSet)
 {
-    TickRecord sample;
-    EXPECT_TRUE(notesOn(sample).empty());
-    sample.faults = static_cast<std::uint32_t>(SessionFlag::beyondTheory) |
+    TickRecord record;
+    EXPECT_TRUE(notesOn(record).empty());
+    record.faults = static_cast<std::uint32_t>(SessionFlag::beyondTheory) |
                     static_cast<std::uint32_t>(SessionFlag::governed) | // shown as the force, not as a fault
                     static_cast<std::uint32_t>(GovernorFault::tooFast);
 
-    ASSERT_EQ(notesOn(sample).size(), 1U);
-    EXPECT_NE(notesOn(sample).front().find("half the thickness"), std::string::npos);
-    EXPECT_EQ(governorFault(sample), GovernorFault::tooFast);
+    ASSERT_EQ(notesOn(record).size(), 1U);
+    EXPECT_NE(notesOn(record).front().find("half the thickness"), std::string::npos);
+    EXPECT_EQ(governorFault(record), GovernorFault::tooFast);
 }
 
 } // namespace

@@ -39,7 +39,7 @@ public:
     {
         return Image(size.width, size.height, {});
     }
-    [[nodiscard]] const compute::Processor& device() const noexcept override { return device_; }
+    [[nodiscard]] const compute::Processor& processor() const noexcept override { return processor_; }
 
     [[nodiscard]] bool said_(const std::string& words) const { return notes.find(words) != std::string::npos; }
 
@@ -49,7 +49,7 @@ public:
     std::string said, notes; ///< now; all of it
 
 private:
-    compute::Processor device_{};
+    compute::Processor processor_{};
 };
 
 /// A hand that stays where it is, inside of the object, and remembers what it was given.
@@ -221,7 +221,7 @@ protected:
 std::vector<double> forcesOf(const std::filesystem::path& folder)
 {
     std::vector<double> forces;
-    for (const TickRecord& sample : readSession(folder).samples) forces.push_back(glm::length(sample.force));
+    for (const TickRecord& record : readSession(folder).records) forces.push_back(glm::length(record.force));
     return forces;
 }
 

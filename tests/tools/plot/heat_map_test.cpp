@@ -206,7 +206,7 @@ TEST(HeatMap, OverlaysOutsideTheChartAreLeftOut)
     const std::string svg = heatMapSvg(NodeField(grid, 1), settings);
 
     EXPECT_TRUE(hasText(svg, "contact: outside"));
-    EXPECT_TRUE(hasText(svg, "points in the window: 1"));
+    EXPECT_TRUE(hasText(svg, "points in the patch window: 1"));
     settings.contact = ChartPoint{2e-3, 2e-3};
     EXPECT_TRUE(hasText(heatMapSvg(NodeField(grid, 1), settings), "footprint, radius 1.00 mm"));
     EXPECT_THROW((void)heatMapSvg(NodeField(PlateGrid{3, 4, 1, 1}), settings), ContractViolation);

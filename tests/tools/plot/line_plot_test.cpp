@@ -24,10 +24,10 @@ LinePlotSettings forceAxes()
     return settings;
 }
 
-PlotSeries ramp(const std::string& name, int samples, double slope)
+PlotSeries ramp(const std::string& name, int points, double slope)
 {
     PlotSeries s{name, {}, {}, SeriesStyle::lineAndMarkers};
-    for (int n = 0; n < samples; ++n) s.x.push_back(1e-3 * n / samples), s.y.push_back(slope * s.x.back());
+    for (int n = 0; n < points; ++n) s.x.push_back(1e-3 * n / points), s.y.push_back(slope * s.x.back());
     return s;
 }
 

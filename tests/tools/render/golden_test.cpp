@@ -59,7 +59,7 @@ Image pictureOf(const GoldenCase& one, SurfaceRenderer& renderer)
 
 TEST_P(GoldenTest, ThePictureIsTheOneThatWasLookedAt)
 {
-    SurfaceRenderer renderer({.processor = deviceOfTests(), .validation = validation()});
+    SurfaceRenderer renderer({.processor = processorOfTests(), .validation = validation()});
     expectGolden(PALPATE_GOLDEN, GetParam().file(), pictureOf(GetParam(), renderer), renderer);
 }
 

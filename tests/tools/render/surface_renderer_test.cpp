@@ -65,7 +65,7 @@ protected:
     {
         if (onHost()) GTEST_SKIP() << "the host does not draw";
         ShaderTest::SetUp();
-        renderer.emplace(compute::ContextSettings{.processor = deviceOfTests(), .validation = validation()});
+        renderer.emplace(compute::ContextSettings{.processor = processorOfTests(), .validation = validation()});
     }
     void TearDown() override
     {
@@ -122,7 +122,7 @@ TEST_P(SurfaceRendererTest, TheSamePictureTwiceIsTheSameToTheBit)
 /// Pictures of a touch that goes on, each drawn over the one before, are those of a renderer that begins anew.
 TEST_P(SurfaceRendererTest, APictureDrawnOverTheOneBeforeIsTheOneDrawnAnew)
 {
-    SurfaceRenderer   anew({.processor = deviceOfTests(), .validation = validation()});
+    SurfaceRenderer   anew({.processor = processorOfTests(), .validation = validation()});
     const PictureSize size{160, 120, 1, GetParam()};
     const Triangle    faces[] = {{0, 59, 3540}, {59, 3540, 3599}, {100, 1900, 2000}};
     for (int step = 0; step < 24; ++step) {

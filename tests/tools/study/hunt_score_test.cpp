@@ -191,12 +191,12 @@ TEST(Hunt, AScriptedHandIsScoredEndToEnd)
     const Scene                 scene  = readScene(folder / "nodule_hunt.json", {.toolKeys = &huntKeys()});
     const SoftObject            object = loadObject(scene).object;
     const HandPath              path   = readHand(folder / "nodule_hunt_hand.csv");
-    ScriptedHand                  hand(path);
+    ScriptedHand                hand(path);
     Deformation                 deformation(object, scene);
     HuntScorer                  scorer(scene, object.cloud());
 
     runVirtual({scene, object, deformation.solver(), hand, {}}, path.duration(),
-               [&](const TickRecord& sample) { scorer.add(sample); });
+               [&](const TickRecord& record) { scorer.add(record); });
 
     const HuntScore score = scorer.score();
     EXPECT_EQ(score.found, 3u);

@@ -60,7 +60,7 @@ TEST(Analysis, SumsUpRatingsOverParticipants)
     EXPECT_EQ(*all[0].median, 4);
     EXPECT_EQ(all[0].share.k, 3u);
     EXPECT_EQ(all[0].participants, 3u);
-    // A sample may be all P01 (mean 1.5) or all P03 (5), each in 1 of 27 samples: beyond 2.5 % at either end.
+    // A draw may be all P01 (mean 1.5) or all P03 (5), each in 1 of 27 draws: beyond 2.5 % at either end.
     EXPECT_EQ(all[0].meanInterval->low, 1.5);
     EXPECT_EQ(all[0].meanInterval->high, 5);
     EXPECT_FALSE(analyse({rows[0], rows[1]}, {})[0].meanInterval) << "one participant says nothing of others";
@@ -75,8 +75,7 @@ TEST(Analysis, TheBootstrapIsAsWideAsTheStandardErrorSays)
 
     const AnswerSummary s = analyse(rows, {})[0];
 
-    const double expected =
-        2 * 1.96 / std::sqrt(40.0); // sd 1; 2000 samples know a percentile to some 5 %, ties add 0.05
+    const double expected = 2 * 1.96 / std::sqrt(40.0); // sd 1; 2000 draws know a percentile to some 5 %, ties add 0.05
     EXPECT_NEAR(s.meanInterval->high - s.meanInterval->low, expected, 0.15 * expected);
     EXPECT_EQ(*s.mean, 3);
 }

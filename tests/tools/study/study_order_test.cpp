@@ -154,7 +154,7 @@ TEST(StudyPlan, APresetAndValuesLieOverTheScene)
     const Scene& scene = study.conditions[0].scene;
     EXPECT_EQ(scene.patch.forceLaw, ForceLaw::paper);
     EXPECT_EQ(scene.patch.map, Map::gallPeters);
-    EXPECT_EQ(scene.patch.sampling, Resampling::logMean) << "values win over the preset";
+    EXPECT_EQ(scene.patch.resampling, Resampling::logMean) << "values win over the preset";
     EXPECT_EQ(scene.patch.foundation, 0);
     EXPECT_EQ(scene.maxForce, 3);
     EXPECT_EQ(scene.points, 5000u);

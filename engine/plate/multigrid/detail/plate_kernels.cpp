@@ -27,7 +27,8 @@ struct Shapes {
 
 bool isHardware(const compute::Context& context)
 {
-    return context.processor().kind != "software" && context.processor().kind != compute::kHostProcessor;
+    return context.processor().kind != compute::ProcessorKind::software &&
+           context.processor().kind != compute::ProcessorKind::host;
 }
 
 Shapes shapesFor(const compute::Context& context)
@@ -42,7 +43,7 @@ Shapes shapesFor(const compute::Context& context)
 Smoothing smoothingBy(Smoother smoother, Schedule schedule, const compute::Context& context)
 {
     if (smoother == Smoother::automatic) {
-        const bool byRows = context.processor().kind == compute::kHostProcessor && schedule != Schedule::fused;
+        const bool byRows = context.processor().kind == compute::ProcessorKind::host && schedule != Schedule::fused;
         smoother          = byRows ? Smoother::chebyshev : Smoother::redBlack;
     }
     return smoother == Smoother::redBlack ? Smoothing{smoother, 1, 2, 6, 16} : Smoothing{smoother, 2, 2, 2, 16};
@@ -53,7 +54,7 @@ Smoothing smoothingBy(Smoother smoother, Schedule schedule, const compute::Conte
 bool isFused(const compute::Context& context, Schedule schedule, Smoother smoother)
 {
     PALP_EXPECT(smoother == Smoother::redBlack || schedule != Schedule::fused, "fused passes smooth in red and black");
-    if (schedule == Schedule::fused && context.processor().kind == compute::kHostProcessor)
+    if (schedule == Schedule::fused && context.processor().kind == compute::ProcessorKind::host)
         throw Error("the host has no fused passes: they spare dispatches, of which it has none");
     const bool fits = context.limits().sharedMemory >= sizeof(float) * shared::kTailPool &&
                       context.limits().invocations >= Shapes{}.region.x;

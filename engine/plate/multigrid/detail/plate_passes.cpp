@@ -46,11 +46,11 @@ std::uint32_t partialsFor(std::size_t nodes)
 
 PlatePasses::PlatePasses(compute::Context& context, const PlateKernels::All& kernels, GridHierarchy grids,
                          std::uint32_t loads)
-    : state(context, "state", kernels.realBytes() * shared::kStateWords * loads, Intent::device), context_(context),
+    : state(context, "state", kernels.realBytes() * shared::kStateWords * loads, Intent::processor), context_(context),
       k(kernels), grids_(std::move(grids)), loads_(loads), partials_(partialsFor(nodesOf(level(0)))),
       band_(reals("band", bandSize())), factor_(reals("factor", bandSize())), lost_(floats("lost pivots", 1)),
       sums_(reals("partial sums", 2 * std::size_t(loads_) * partials_)),
-      arguments_(context, "groups of dispatches", argumentBytes(), Intent::device),
+      arguments_(context, "groups of dispatches", argumentBytes(), Intent::processor),
       hostArguments_(context, "groups from the host", argumentBytes(), Intent::upload),
       hostTiles_(context, "numbers of tiles for the host", 4 * grids_.levels.size(), Intent::readback)
 {
@@ -81,12 +81,12 @@ std::size_t PlatePasses::bandSize() const
 
 Buffer PlatePasses::floats(const std::string& name, std::size_t count) const
 {
-    return {context_, name, 4 * count, Intent::device};
+    return {context_, name, 4 * count, Intent::processor};
 }
 
 Buffer PlatePasses::reals(const std::string& name, std::size_t count) const
 {
-    return {context_, name, k.realBytes() * count, Intent::device};
+    return {context_, name, k.realBytes() * count, Intent::processor};
 }
 
 std::vector<LevelBuffers> PlatePasses::makeLevels() const

@@ -71,14 +71,14 @@ PlateTail::PlateTail(compute::Context& context, const PlateKernels::All& kernels
                      std::uint32_t loads)
     : k(kernels), layout_(tailLayout(grids)), loads_(loads),
       coarsestNodes_(std::uint32_t(nodesOf(grids.levels.back().plate))),
-      levels_(context, "levels of the tail", sizeof(shared::TailLevel) * layout_.levels.size(), Intent::device),
-      rigidity_(context, "rigidity of the tail", 4 * std::size_t(layout_.nodes), Intent::device),
-      divisor_(context, "divisor of the tail", 4 * std::size_t(layout_.nodes), Intent::device),
-      tableX_(context, "tables x of the tail", bytesOf(layout_.tablesX), Intent::device),
-      tableZ_(context, "tables z of the tail", bytesOf(layout_.tablesZ), Intent::device),
-      units_(context, "unit forces", 4 * std::size_t(coarsestNodes_) * coarsestNodes_, Intent::device),
-      inverse_(context, "inverse of the coarsest level", units_.bytes(), Intent::device),
-      aside_(context, "deflections put aside", 4 * std::size_t(layout_.nodes) * loads, Intent::device)
+      levels_(context, "levels of the tail", sizeof(shared::TailLevel) * layout_.levels.size(), Intent::processor),
+      rigidity_(context, "rigidity of the tail", 4 * std::size_t(layout_.nodes), Intent::processor),
+      divisor_(context, "divisor of the tail", 4 * std::size_t(layout_.nodes), Intent::processor),
+      tableX_(context, "tables x of the tail", bytesOf(layout_.tablesX), Intent::processor),
+      tableZ_(context, "tables z of the tail", bytesOf(layout_.tablesZ), Intent::processor),
+      units_(context, "unit forces", 4 * std::size_t(coarsestNodes_) * coarsestNodes_, Intent::processor),
+      inverse_(context, "inverse of the coarsest level", units_.bytes(), Intent::processor),
+      aside_(context, "deflections put aside", 4 * std::size_t(layout_.nodes) * loads, Intent::processor)
 {
     std::vector<Buffer> staging;
     CommandList         list(context);

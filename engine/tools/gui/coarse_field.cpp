@@ -1,4 +1,4 @@
-#include "engine/tools/gui/chart_samples.h"
+#include "engine/tools/gui/coarse_field.h"
 
 #include <algorithm>
 
@@ -24,12 +24,12 @@ Nodes nodesOf(int n, int coarse, int cells)
 
 } // namespace
 
-ChartSamples chartSamples(const NodeField& field, double factor)
+CoarseField coarseField(const NodeField& field, double factor)
 {
-    const int    cellsX = field.nodesX() - 1, cellsZ = field.nodesZ() - 1;
-    const int    coarseX = std::min(kMostCells, cellsX), coarseZ = std::min(kMostCells, cellsZ);
-    ChartSamples samples{coarseX + 1, coarseZ + 1, {}};
-    samples.values.reserve(std::size_t(samples.nodesX) * std::size_t(samples.nodesZ));
+    const int   cellsX = field.nodesX() - 1, cellsZ = field.nodesZ() - 1;
+    const int   coarseX = std::min(kMostCells, cellsX), coarseZ = std::min(kMostCells, cellsZ);
+    CoarseField coarse{coarseX + 1, coarseZ + 1, {}};
+    coarse.values.reserve(std::size_t(coarse.nodesX) * std::size_t(coarse.nodesZ));
     for (int i = 0; i <= coarseX; ++i) {
         const Nodes x = nodesOf(i, coarseX, cellsX);
         for (int j = 0; j <= coarseZ; ++j) {
@@ -37,10 +37,10 @@ ChartSamples chartSamples(const NodeField& field, double factor)
             double      sum = 0, count = 0;
             for (int a = x.first; a <= x.last; a += x.step)
                 for (int b = z.first; b <= z.last; b += z.step, ++count) sum += field(a, b);
-            samples.values.push_back(factor * sum / count);
+            coarse.values.push_back(factor * sum / count);
         }
     }
-    return samples;
+    return coarse;
 }
 
 } // namespace palp
