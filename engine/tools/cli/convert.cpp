@@ -38,7 +38,7 @@ void convert(const ConvertOptions& options)
         warnings.push_back("the " + std::to_string(loaded.faces.size()) +
                            " triangles were not written: only PLY holds faces; name a .ply file to keep them");
     if (options.json) {
-        nlohmann::json report = cloudJson(options.source.name, loaded);
+        nlohmann::json report = cloudJson(options.source.name, loaded.cloud, loaded.faces, loaded.report);
         report["written"]     = options.target;
         report["faces"]       = faces ? loaded.faces.size() : 0;
         report["warnings"]    = warnings;

@@ -45,7 +45,7 @@ void printInfo(const InfoOptions& options)
     const Scene          scene  = options.source.load();
     const LoadedCloud    loaded = options.source.loadCloud(scene);
     const NeighbourIndex index(loaded.cloud.positions());
-    nlohmann::json       report = cloudJson(options.source.name, loaded);
+    nlohmann::json       report = cloudJson(options.source.name, loaded.cloud, loaded.faces, loaded.report);
     report["point_spacing"]     = index.spacing();
 
     const std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);

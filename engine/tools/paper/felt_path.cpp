@@ -82,8 +82,7 @@ std::vector<FeltPlace> windowsAlong(const SoftObject& object, const PatchSetting
     std::vector<FeltPlace> result;
     for (const glm::dvec3& place : surfaceAlong(line, object, places)) {
         const Patch patch = deform(object, {place, line.middle.outward}, settings, solver, carried);
-        if (!patch.deformed())
-            throw Error("the points around a place of the path determine no surface; try a smaller reach");
+        demandDeformed(patch, "try a smaller reach");
         carried = patch.chart.frame;
         result.push_back({alongOf(line, place), place, patch.contactStiffness, patch.compliance});
     }
