@@ -43,8 +43,8 @@ void check(const GovernorSettings& s)
     demand("energyReserve", s.energyReserve, 0, 0.1);
     demand("energyLimit", s.energyLimit, 0, 10);
     demand("energyTolerance", s.energyTolerance, 0, 0.01);
-    demand("maximumForce", s.maximumForce, 0, 8);
-    demand("slew", s.slew, 8 / 0.02, 1e5); // slower, and 8 N would not be gone in 20 ms
+    demand("maximumForce", s.maximumForce, 0, s.kMostForce);
+    demand("slew", s.slew, s.kMostForce / 0.02, 1e5); // slower, and the most force would not be gone in 20 ms
     demand("maximumSpeed", s.maximumSpeed, 0, 5);
     demand("faultRamp", s.faultRamp, 1e-3, 0.02);
     demand("calmForce", s.calmForce, 0, 1);

@@ -35,7 +35,11 @@ struct GovernorSettings {
     /// [J] E may be below zero by this without being called active: an encoder step of 48 um against 6 N.
     double energyTolerance = 0.3e-3;
 
-    double maximumForce = 6;     ///< [N] at most 8, what the Falcon holds (published: more than 8.9 N for short)
+    /// [N] the bound of every force that a scene may ask for: what the Falcon holds (published: 8.9 N and more for
+    /// short)
+    static constexpr double kMostForce = 8;
+
+    double maximumForce = 6;     ///< [N] at most kMostForce
     double slew         = 1000;  ///< [N/s] an honest contact of 1000 N/m at 0.5 m/s needs 500
     double maximumSpeed = 1.2;   ///< [m/s] beyond it is a fault (OpenHaptics: 1.2)
     double faultRamp    = 20e-3; ///< [s] from a fault to zero force, at the latest
