@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "engine/core/contract.h"
+#include "engine/core/quantity.h"
 
 namespace palp {
 
@@ -10,6 +11,14 @@ void demandSvg(const std::string& option, const std::string& file)
 {
     if (!file.empty() && std::filesystem::path(file).extension() != ".svg")
         throw Error(option + ": expected a file that ends in .svg, found \"" + file + "\"");
+}
+
+double forceOf(const std::string& text)
+{
+    constexpr double kMost = 1e6; // [N] far beyond what a hand can feel, and far below what could overflow a result
+    const double     force = parseQuantity(text, Dimension::force, "--force");
+    if (force >= 0 && force <= kMost) return force;
+    throw Error("--force: expected a force from 0 to 1e6 N, found \"" + text + "\"");
 }
 
 std::string commandOf(const CLI::App& command)

@@ -38,6 +38,10 @@ void refuseEmptyValues(const CLI::App& command);
 /// \throws Error unless the file's name ends in .svg, or is empty: no picture
 void demandSvg(const std::string& option, const std::string& file);
 
+/// Reads the force that presses [N].
+/// \throws Error naming --force
+[[nodiscard]] double forceOf(const std::string& text);
+
 /// Returns the command line with a command's options, quoted for a shell.
 [[nodiscard]] std::string commandOf(const CLI::App& command);
 

@@ -133,8 +133,10 @@ void view(const ViewOptions& o)
     SessionHand source;
     if (deviceNamed(o.hand.hand) != &kMouseRecord)
         settings.hand = [&](const Stage& stage, const HandWait& wait) -> WorkbenchHand {
-            source = {}; // a device can be open only once
-            source = handFor(o.hand, stage.scene(), stage.object());
+            source                    = {}; // a device can be open only once
+            HandOptions hand          = o.hand;
+            hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, stage.scene());
+            source                    = handFor(hand, stage.scene(), stage.object());
             waitForHoming(*source.device, wait.givenUp, wait.tell);
             return {source.device.get(), source.frame, source.isHeldByPerson() ? 1e9 : source.seconds};
         };
@@ -219,13 +221,13 @@ void addViewCommand(CLI::App& app)
     command->add_flag("--validate", o->validate,
                       "runs under Vulkan's validation layer; exit code 1 if it has a message");
     command->add_flag("--json", o->json, "machine-readable, SI units");
-    addDeviceOptions(*command, o->hand.device, deviceRecords());
+    addHandOptions(*command, o->hand, deviceRecords());
     command->footer("Hold Space over the object and move to touch it; the wheel sets the depth. F1 shows all keys.\n"
                     "Examples:\n"
                     "  palpate view\n"
                     "  palpate view samples/scenes/skin_wart.json --colour stiffness\n"
                     "  palpate view samples/scenes/nodule_hunt.json --hunt-seed 7     hidden nodules: M declares one\n"
-                    "  palpate view scan.ply --length-unit mm --at 12,0,30\n"
+                    "  palpate view scan.ply --length-unit mm --place 12,0,30\n"
                     "  palpate view sample:ellipsoid --hand circle --seconds 10 --json");
     command->callback([command, o] {
         refuseEmptyValues(*command);
