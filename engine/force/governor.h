@@ -103,7 +103,6 @@ struct GovernorInput {
     glm::dvec3 velocity{};          ///< [m/s] of the grip, filtered
     bool       homed      = false;  ///< the position is known
     bool       inBox      = false;  ///< the grip is where the device's kinematics are good, and they could be solved
-    double     time       = 0;      ///< [s] of this tick; only noted with a fault
     double     dt         = 0;      ///< [s] since the last tick
     double     loopPeriod = 0;      ///< [s] measured, as a mean over some 0.1 s; sets stiffnessCap()
     int        missedExchanges = 0; ///< with the device, in a row
@@ -167,7 +166,6 @@ public:
     [[nodiscard]] double stiffnessCap() const noexcept { return cap_; }
 
     [[nodiscard]] GovernorFault           fault() const noexcept { return fault_; }
-    [[nodiscard]] double                  faultTime() const noexcept { return faultTime_; } ///< [s] GovernorInput::time
     [[nodiscard]] const GovernorSettings& settings() const noexcept { return settings_; }
 
 private:
@@ -182,7 +180,7 @@ private:
 
     [[nodiscard]] Elapsed    elapsed(double dt) const noexcept;
     [[nodiscard]] double     capFor(double period) const noexcept;
-    void                     latch(GovernorFault fault, double time) noexcept;
+    void                     latch(GovernorFault fault) noexcept;
     void                     release() noexcept;
     void                     checkInput(const GovernorInput& in) noexcept;
     [[nodiscard]] double     freshness(double age) const noexcept;
@@ -196,7 +194,6 @@ private:
     GovernorSettings                settings_;
     double                          cap_;
     GovernorFault                   fault_        = GovernorFault::none;
-    double                          faultTime_    = 0;
     double                          faultGain_    = 1;
     Engagement                      engagement_   = Engagement::waiting;
     double                          engageGain_   = 0;

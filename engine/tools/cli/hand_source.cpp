@@ -52,6 +52,7 @@ HandChoice choiceOf(const HandOptions& o)
     choice.speed   = metresPerSecond(o.speed, "--speed");
     choice.radius  = reachOf(o.reach, o.metresPerPlainNumber);
     choice.options = o.device;
+    choice.cancel  = o.cancel;
     if (!o.depth.empty()) choice.depth = metres(o.depth, "--press-depth", o.metresPerPlainNumber);
     if (!o.grip.empty()) choice.grip = gripOf(o.grip);
     if (!o.seconds.empty()) choice.seconds = secondsOf(o.seconds);

@@ -16,6 +16,8 @@ struct HandOptions {
     std::string        grip{};    ///< of a scripted hand on a simulated device; empty: forces do not move the hand
     DeviceOptionValues device{};  ///< options of the device
     std::string        seconds{}; ///< "5 s"; empty: 5 s, or a file's own length
+
+    const std::atomic<bool>* cancel = nullptr; ///< see DeviceRequest
 };
 
 /// Returns "press, circle, scan": the hands that Palpate generates.
