@@ -29,10 +29,6 @@ struct CheckFailed : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Refuses options that are given an empty value.
-/// \throws Error naming the first such option of the command
-void refuseEmptyValues(const CLI::App& command);
-
 /// Refuses other files, so that no slip writes a picture over a scene, a hand or a table.
 /// \param option  opens the complaint
 /// \throws Error unless the file's name ends in .svg, or is empty: no picture

@@ -68,10 +68,7 @@ void addConvertCommand(CLI::App& app)
                     "  palpate convert scan.pcd scan.ply --length-unit mm --stiffness-property intensity \\\n"
                     "    --stiffness-range 20kPa,2MPa\n"
                     "  palpate convert scan.ply ramp.csv --stiffness linear:from=2e4,to=2e6,axis=z");
-    command->callback([command, options] {
-        refuseEmptyValues(*command);
-        convert(*options);
-    });
+    command->callback([options] { convert(*options); });
 }
 
 } // namespace palp

@@ -100,8 +100,7 @@ void addInfoCommand(CLI::App& app)
                     "  palpate info scan.ply --length-unit mm\n"
                     "  palpate info painted.ply --stiffness-property quality --stiffness-range 20kPa,2MPa\n"
                     "  palpate info --samples");
-    command->callback([command, options, list, keys, schema] {
-        refuseEmptyValues(*command);
+    command->callback([options, list, keys, schema] {
         if (*list) return printSamples(options->json);
         if (*keys) return void(std::cout << sceneKeyTable(&study::huntKeys()));
         if (*schema) return void(std::cout << sceneSchema(&study::huntKeys()));

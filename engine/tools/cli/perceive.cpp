@@ -151,9 +151,10 @@ void perceive(const PerceiveOptions& o)
     if (!o.out.empty())
         write(o.out, pathSvg(found, felt.scene.patch.forceLaw, "Felt stiffness along the path: " + o.scene.title()));
     constexpr double kTypicalWeber = kWeberFractions[1];
+    FigureRenderer   renderer;
     if (map)
         write(o.picture, mapSvg(felt.object.cloud(), *map, kTypicalWeber, line.middle.outward,
-                                "What is noticed if 15 % is the smallest change: " + o.scene.title()));
+                                "What is noticed if 15 % is the smallest change: " + o.scene.title(), renderer));
     if (o.json)
         std::cout << jsonText(jsonOf(o, felt, found, map));
     else
@@ -190,10 +191,7 @@ void addPerceiveCommand(CLI::App& app)
                     "  palpate perceive samples/scenes/skin_wart.json --picture wart.svg\n"
                     "J is the number of just noticeable steps between two stiffnesses, for people whose\n"
                     "smallest noticed change is 7, 15 or 22 %. The floor is J on the same points with one stiffness.");
-    command->callback([command, o] {
-        refuseEmptyValues(*command);
-        perceive(*o);
-    });
+    command->callback([o] { perceive(*o); });
 }
 
 } // namespace palp

@@ -295,10 +295,7 @@ void addRenderCommand(CLI::App& app)
                     "  palpate render samples/scenes/skin_wart.json --force '1 N' --colour stiffness --out wart.png\n"
                     "  palpate render scan.ply --length-unit mm --place 12,0,30 --size 800x600 --dark --out scan.png\n"
                     "  palpate render samples/scenes/palm.json --frames 50 --out film.png");
-    command->callback([command, o] {
-        refuseEmptyValues(*command);
-        render(*o);
-    });
+    command->callback([o] { render(*o); });
 }
 
 } // namespace palp

@@ -104,7 +104,6 @@ void addRunCommand(CLI::App& app)
                  "  palpate run scan.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa\n"
                  "  palpate run samples/scenes/skin_wart.json --print-config");
     run_->callback([run_, o] {
-        refuseEmptyValues(*run_);
         o->session.command = commandOf(*run_);
         o->session.json    = o->json;
         run(*o);
@@ -118,10 +117,7 @@ void addRunCommand(CLI::App& app)
                     "compares both sessions; exit code 1 and the first sample that differs, if one does");
     again->add_flag("--json", r->json, "machine-readable");
     again->footer("Examples:\n  palpate replay session --compare\n  palpate replay session --json");
-    again->callback([again, r] {
-        refuseEmptyValues(*again);
-        replay(*r);
-    });
+    again->callback([r] { replay(*r); });
 }
 
 } // namespace palp

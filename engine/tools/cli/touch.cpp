@@ -93,6 +93,7 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
 std::vector<std::string> writePictures(const std::filesystem::path& folder, const PointCloud& cloud, const Patch& patch,
                                        const PatchSettings& settings, double force)
 {
+    FigureRenderer    renderer;
     const std::string newtons = formatQuantity(force, "N");
     const double deepest = force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
     const PressedPatch pressed[] = {{&patch, force, newtons}};
@@ -102,9 +103,9 @@ std::vector<std::string> writePictures(const std::filesystem::path& folder, cons
         return factor == 1 ? std::string() : ", displacement x " + std::to_string(int(factor));
     };
     const std::pair<const char*, std::string> pictures[] = {
-        {"surface.svg", surfaceSvg(cloud, pressed, {"Under " + newtons + times(far), far, {}, false})},
+        {"surface.svg", surfaceSvg(cloud, pressed, {"Under " + newtons + times(far), far, {}, false}, renderer)},
         {"close_up.svg",
-         surfaceSvg(cloud, pressed, {"Around the contact under " + newtons + times(near), near, {}, true})},
+         surfaceSvg(cloud, pressed, {"Around the contact under " + newtons + times(near), near, {}, true}, renderer)},
         {"rigidity.svg",
          rigidityChartSvg(patch, settings, std::string("Rigidity in the ") + name(patch.chart.map) + " chart")},
         {"deflection.svg", deflectionChartSvg(patch, settings, force, "Deflection under " + newtons)},
@@ -208,10 +209,7 @@ void addTouchCommand(CLI::App& app)
         "12,0,30\n"
         "Without --place a cloud from a file is touched where it comes nearest to the viewer. Plain numbers of\n"
         "lengths are in the unit of --length-unit, else metres.");
-    command->callback([command, o] {
-        refuseEmptyValues(*command);
-        touch(*o);
-    });
+    command->callback([o] { touch(*o); });
 }
 
 } // namespace palp

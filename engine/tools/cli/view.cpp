@@ -136,6 +136,7 @@ void view(const ViewOptions& o)
             source                    = {}; // a device can be open only once
             HandOptions hand          = o.hand;
             hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, stage.scene());
+            hand.cancel               = &wait.givenUp;
             source                    = handFor(hand, stage.scene(), stage.object());
             waitForHoming(*source.device, wait.givenUp, wait.tell);
             return {source.device.get(), source.frame, source.isHeldByPerson() ? 1e9 : source.seconds};
@@ -230,7 +231,6 @@ void addViewCommand(CLI::App& app)
                     "  palpate view scan.ply --length-unit mm --place 12,0,30\n"
                     "  palpate view sample:ellipsoid --hand circle --seconds 10 --json");
     command->callback([command, o] {
-        refuseEmptyValues(*command);
         o->command = commandOf(*command);
         view(*o);
     });

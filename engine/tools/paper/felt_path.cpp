@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/extremes.h"
 #include "engine/session/deformation.h"
 #include "engine/session/scripted_hand.h"
 #include "engine/session/virtual_session.h"
@@ -121,9 +122,7 @@ std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, 
 
 SoftObject homogeneous(const SoftObject& object)
 {
-    double sum = 0;
-    for (const double stiffness : object.cloud().stiffness()) sum += std::log(stiffness);
-    return object.repainted(std::vector<double>(object.size(), std::exp(sum / double(object.size()))));
+    return object.repainted(std::vector<double>(object.size(), geometricMean(object.cloud().stiffness())));
 }
 
 FeltRange rangeOf(const std::vector<FeltPlace>& places, ForceLaw law)
