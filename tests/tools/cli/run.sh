@@ -424,6 +424,7 @@ bad 'an unknown rigidity law' 'checker, grid' solve odd.json
 # --- values beyond all sense
 bad 'a window beyond the world' '--window: expected a length from 1e-6 to 100 m' touch sample:sheet --window 1e300m --footprint-radius 1e299m
 for option in --thickness --footprint-radius --window; do bad "nothing of $option" "$option" touch sample:sheet $option 1e-12m; done
+bad 'a force that pulls' '--force: expected a force from 0 to 1e6 N' touch sample:sheet --force=-1N
 bad 'a force beyond the world' '--force' touch sample:sheet --force 1e308 --thickness 0.001mm
 bad 'a foundation beyond the world' '--foundation' touch sample:sheet --foundation 1e300
 bad 'a place beyond the world' '--place' touch sample:sheet --place 1e300,0,0
@@ -498,6 +499,8 @@ JSON
     good 'a picture of a bare file' render bare.csv --place 0,0,0 --window 20m --cells 32 --size 64x48 --footprint-radius 2m --thickness 0.5 --out bare.png
     grep -q 'assumed metres' err.txt && grep -q '300 kPa assumed' err.txt && passed=$((passed + 1)) || complain "render does not say what it assumed: $(cat err.txt)"
     good 'pictures along a hand' render soft.json --size 64x48 --frames 3 --hand press --seconds 0.3 --out film.png --json
+    good 'pictures along a hand by its options' render soft.json --size 64x48 --frames 1 --hand press --speed 20mm/s --press-depth 0.5mm --seconds 0.3 --out slow.png
+    bad 'no speed at all' '--speed' render soft.json --frames 1 --speed 0 --out no.png
     for n in 1 2 3; do png film_000$n.png 64 48; done
     [ ! -e film.png ] && passed=$((passed + 1)) || complain 'render --frames wrote a picture without a number'
     env -u DISPLAY -u WAYLAND_DISPLAY "$palpate" render sample:sheet $small --out dark.png >out.txt 2>err.txt && passed=$((passed + 1)) || complain "render needs a display: $(cat err.txt)"
@@ -703,6 +706,8 @@ bad 'a path that leaves the surface' 'along the surface' perceive soft.json --al
 bad 'a path without a direction' 'expected a vector' perceive soft.json --along 0,0,0
 bad 'a reach of nothing' '--reach' perceive soft.json --reach 0
 bad 'a reach of infinity' '--reach' perceive soft.json --reach inf
+bad 'a reach beyond a metre' '--reach: expected a length above 0 and up to 1 m' perceive soft.json --reach 2m
+bad 'the same for a hand' '--reach: expected a length above 0 and up to 1 m' run soft.json --reach 2m
 bad 'a picture of another kind' '.svg' perceive soft.json --out path.png
 bad 'an object of another kind' '.svg' perceive soft.json --picture object.png
 bad 'a scene that is not there' 'nowhere.json' perceive nowhere.json
