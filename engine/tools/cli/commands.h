@@ -1,8 +1,12 @@
 #pragma once
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/enum_names.h"
 
 namespace palp {
 
@@ -37,6 +41,19 @@ void demandSvg(const std::string& option, const std::string& file);
 /// Reads the force that presses [N].
 /// \throws Error naming --force
 [[nodiscard]] double forceOf(const std::string& text);
+
+/// Reads a size such as "1600x1200" [px], each side within the bounds.
+/// \throws Error naming --size
+[[nodiscard]] std::pair<int, int> pixelsOf(const std::string& text, int least, int most);
+
+/// Returns the value of an option with a fixed set of names.
+/// \throws Error naming the option and the names
+template <NamedEnum Enum>
+[[nodiscard]] Enum named(const std::string& option, const std::string& word)
+{
+    if (const auto value = valueNamed<Enum>(word)) return *value;
+    throw Error(option + ": unknown name \"" + word + "\"; known: " + wordsOf<Enum>());
+}
 
 /// Returns the command line with a command's options, quoted for a shell.
 [[nodiscard]] std::string commandOf(const CLI::App& command);

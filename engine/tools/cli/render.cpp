@@ -41,24 +41,10 @@ struct RenderOptions {
     bool               dark = false, json = false, ghost = false, sphere = false, projected = false;
 };
 
-/// Returns the value of an option with a fixed set of names.
-template <NamedEnum Enum>
-Enum named(const std::string& option, const std::string& word)
+PictureSize sizeOf(const RenderOptions& o)
 {
-    if (const auto value = valueNamed<Enum>(word)) return *value;
-    throw Error(option + ": unknown name \"" + word + "\"; known: " + wordsOf<Enum>());
-}
-
-/// Reads "1600x1200" [px].
-PictureSize sizeOf(const std::string& text, int finer)
-{
-    constexpr int kLeast = 16, kMost = 4096; // [px]
-    int           width = 0, height = 0, end = 0;
-    const bool    read =
-        std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &end) == 2 && std::size_t(end) == text.size();
-    if (!read || width < kLeast || height < kLeast || width > kMost || height > kMost)
-        throw Error("--size: expected WIDTHxHEIGHT of 16 to 4096 px each, such as 1600x1200, found \"" + text + "\"");
-    return {width, height, finer};
+    const auto [width, height] = pixelsOf(o.size, 16, 4096);
+    return {width, height, o.finer};
 }
 
 TouchLook lookOf(const RenderOptions& o)
@@ -79,7 +65,7 @@ TouchLook lookOf(const RenderOptions& o)
 /// The touched and drawn object with its renderer, made once.
 struct Stage {
     explicit Stage(const RenderOptions& o)
-        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.processor = o.drawOn}),
+        : size(sizeOf(o)), look(lookOf(o)), scene(o.scene.load()), renderer({.processor = o.drawOn}),
           loaded(o.scene.loadObject(scene)), solver(openSolver(scene.solver)), view(loaded.object, scene.patch)
     {
         sayPassedOver(renderer.device().name, renderer.note());

@@ -38,16 +38,11 @@ struct ViewOptions {
 
 #ifdef PALPATE_WINDOW
 
-/// Reads "1280x720" [px], or returns the window's last size.
+/// Returns the size that is asked for, or the window's last one [px].
 glm::ivec2 sizeOf(const std::string& text)
 {
     if (text.empty()) return rememberedSize();
-    constexpr int kLeast = 320, kMost = 8192; // [px]
-    int           width = 0, height = 0, end = 0;
-    const bool    read =
-        std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &end) == 2 && std::size_t(end) == text.size();
-    if (!read || width < kLeast || height < kLeast || width > kMost || height > kMost)
-        throw Error("--size: expected WIDTHxHEIGHT of 320 to 8192 px each, such as 1280x720, found \"" + text + "\"");
+    const auto [width, height] = pixelsOf(text, 320, 8192);
     return {width, height};
 }
 
@@ -144,12 +139,8 @@ void view(const ViewOptions& o)
     settings.assumed    = assumptions;
     settings.complained = [](const std::string& sentence) { std::cerr << "palpate: " << sentence << "\n"; };
     if (!o.hand.seconds.empty()) settings.seconds = secondsOf(o.hand.seconds);
-    const auto paint = valueNamed<ViewPaint>(o.colour);
-    const auto map   = valueNamed<ColourMap>(o.map);
-    if (!paint) throw Error("--colour: unknown name \"" + o.colour + "\"; known: " + wordsOf<ViewPaint>());
-    if (!map) throw Error("--colour-map: unknown name \"" + o.map + "\"; known: " + wordsOf<ColourMap>());
-    settings.state.look.paint  = *paint;
-    settings.state.look.map    = *map;
+    settings.state.look.paint  = named<ViewPaint>("--colour", o.colour);
+    settings.state.look.map    = named<ColourMap>("--colour-map", o.map);
     settings.state.look.ground = o.dark ? Ground::dark : Ground::light;
     settings.stop              = &catchInterrupts();
 
