@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -71,6 +72,7 @@ struct DeviceRequest {
     std::string                                   path{};         ///< path of a listing; empty: the first usable device
     const GrippingHand*                           hand = nullptr; ///< of DeviceHolder::scriptedHand; outlives make()
     std::function<void(std::size_t, std::size_t)> onUpload{};     ///< bytes of firmware sent so far, bytes in all
+    const std::atomic<bool>* cancel = nullptr; ///< once true, opening may end with an error; outlives the device
 };
 
 /// All that a program must know of one kind of device.

@@ -59,10 +59,7 @@ void MouseDevice::close() noexcept
 HapticState MouseDevice::exchange(const GovernedForce& force, double now) noexcept
 {
     if (state_.fault == DeviceFault::closed) return state_;
-    const bool good = isFinite(force.newtons());
-    shown_.draft()  = good ? force.newtons() : glm::dvec3(0);
-    state_.fault    = good ? DeviceFault::none : DeviceFault::badForce;
-    shown_.publish();
+    state_.fault = isFinite(force.newtons()) ? DeviceFault::none : DeviceFault::badForce;
     target_.take();
     const Target& target = *target_.held(); // the constructor has set one
 
@@ -90,12 +87,6 @@ void MouseDevice::target(const glm::dvec3& point, std::uint32_t buttons) noexcep
     if (!isFinite(point)) return;
     target_.draft() = {within(point, settings_.reach), buttons};
     target_.publish();
-}
-
-glm::dvec3 MouseDevice::shownForce() noexcept
-{
-    shown_.take();
-    return shown_.held() ? *shown_.held() : glm::dvec3(0);
 }
 
 } // namespace palp

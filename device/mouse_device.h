@@ -20,8 +20,8 @@ struct MouseDeviceSettings {
 
 /// A pointer in a window as a device: a point on a critically damped spring to the window's target. The target moves
 /// once per picture, the point smoothly and, for any tick, exactly along the solution of x'' = -(x - target)/s² - 2
-/// x'/s. Forces move nothing; they are kept for the window to show.
-/// \thread see HapticDevice; target(), release() and shownForce() on one more thread, the window's
+/// x'/s. Forces move nothing.
+/// \thread see HapticDevice; target() and release() on one more thread, the window's
 class MouseDevice : public HapticDevice {
 public:
     /// \throws Error naming a setting out of its range
@@ -40,9 +40,6 @@ public:
     /// Lets the point return to its rest, for the window, with all buttons up. Wait-free.
     void release() noexcept { target(settings_.rest); }
 
-    /// Returns, for the window, the force of the newest exchange [N]. Wait-free.
-    [[nodiscard]] glm::dvec3 shownForce() noexcept;
-
 private:
     struct Target {
         glm::dvec3    point{};     ///< [m]
@@ -53,7 +50,6 @@ private:
     HapticDeviceInfo    info_;
     HapticState         state_;
     Latest<Target>      target_;
-    Latest<glm::dvec3>  shown_; ///< [N]
 };
 
 } // namespace palp

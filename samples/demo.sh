@@ -53,8 +53,8 @@ say "== what the paper's figures show"
 draw contact 'The contact: the proxy stays on the surface, the HIP is in it; the force on the hand is along the normal' sample:ellipsoid --window 16mm --footprint-radius 3mm --colour plain
 draw sphere 'The points near the contact projected (blue) to the sphere fitted to them; black: the surface at rest' sample:ellipsoid --sphere --projected --ghost
 for law in linear hyperbolic; do
-    draw $law-soft "Rigidity $law along the object: 0.25 N at its soft end, displacements four times as large" samples/scenes/ellipsoid_$law.json --at=-30mm,0,30mm --force 0.25N --exaggerate 4 --view whole
-    draw $law-stiff "Rigidity $law: the same force at its stiff end" samples/scenes/ellipsoid_$law.json --at=30mm,0,30mm --force 0.25N --exaggerate 4 --view whole
+    draw $law-soft "Rigidity $law along the object: 0.25 N at its soft end, displacements four times as large" samples/scenes/ellipsoid_$law.json --place=-30mm,0,30mm --force 0.25N --exaggerate 4 --view whole
+    draw $law-stiff "Rigidity $law: the same force at its stiff end" samples/scenes/ellipsoid_$law.json --place=30mm,0,30mm --force 0.25N --exaggerate 4 --view whole
 done
 say
 say '== the paper, computed again: one to two minutes on two cores'
@@ -74,5 +74,5 @@ HTML
 say
 say "pictures: $out/index.html; the paper's claims: $out/paper/index.html; the wart: $out/skin"
 say "next: $build/bin/palpate view   (a window; hold Space over the object and move)"
-say "      $build/bin/palpate touch sample:palm --at 14mm,5mm,0 --out touch"
+say "      $build/bin/palpate touch sample:palm --place 14mm,5mm,0 --out touch"
 say "      your own cloud: $build/bin/palpate info FILE --length-unit mm"

@@ -93,8 +93,8 @@ void run(Options& o)
     Deformation        deformation(loaded.object, scene);
     std::printf("scene   %s\n", file.stem().c_str());
     o.hand.hand     = kFalconRecord.name;
+    o.hand.cancel   = &interrupted;
     o.hand.onUpload = [](std::size_t done, std::size_t total) {
-        if (interrupted) throw Error("the upload was interrupted");
         if (done == total) std::printf("upload  %zu of %zu bytes, each came back as it was sent\n", done, total);
     };
     if (o.emulator || !isRealUsable()) {
@@ -129,8 +129,14 @@ int main(int argumentCount, char** arguments)
     app.add_flag("--emulator", o.emulator, "the emulated Falcon even if a real one is plugged in");
     app.add_flag("--list", o.list, "lists the scenes, and what to feel in each");
     app.add_option("--scenes", o.scenes, "folder of the scenes [../share/palpate/scenes from here, or samples/scenes]");
-    for (const DeviceOption& option : {kFalconFirmware, kFalconCounts})
-        app.add_option(std::string(option.flag), o.hand.options[std::string(option.flag)], std::string(option.help));
+    for (const DeviceOption& option : kFalconRecord.options) {
+        std::string& text = o.hand.options[std::string(option.flag)];
+        if (option.kind == DeviceOption::Kind::flag)
+            app.add_flag_callback(
+                std::string(option.flag), [&text] { text = "true"; }, std::string(option.help));
+        else
+            app.add_option(std::string(option.flag), text, std::string(option.help));
+    }
     app.footer("Example:\n  falcon_demo skin_wart --emulator --seconds 10");
     std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ); // each line at once, also into a file
     try {

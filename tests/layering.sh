@@ -48,6 +48,11 @@ for folder in $(for file in $files; do dirname "$file"; done | sort -u); do
     done
 done
 
+# What lies in X/detail is for X and the folders below it.
+strangers=$(grep -rnE '^ *# *include *"[^"]*/detail/' engine device samples --include='*.h' --include='*.cpp' |
+    awk -F'[:"]' '{ owner = $4; sub("/detail/.*", "/", owner); if (index($1, owner) != 1) print $1 " includes " $4 }')
+[ -z "$strangers" ] || complain "a folder detail/ is used from outside its folder: $strangers"
+
 # The reference solver shares no code with the solver that it judges.
 shared=$(grep -rnE '^ *# *include *"(engine/plate/(multigrid|host)|engine/compute|compute_shaders)/' engine/plate/reference)
 [ -z "$shared" ] || complain "the reference solver shares code with the solver that it judges: $shared"
@@ -65,7 +70,7 @@ wall Embree 'embree[34]/' 'cloud/(detail/embree\.h|neighbour_index\.cpp)'
 wall Eigen 'Eigen/' '(chart|chart/detail|plate/reference|plate/multigrid|plate/multigrid/detail)/[a-z_]*\.cpp|tools/bench/eigen_solver\.cpp'
 wall nlohmann-json 'nlohmann/' '[a-z/]*/[a-z_]*\.cpp|tools/cli/[a-z_]*\.h'
 wall CLI11 'CLI/' 'tools/cli/[a-z_]*\.(h|cpp)'
-wall Vulkan 'vulkan/' '(compute/detail|tools/render)/vulkan_[a-z_]*\.(h|cpp)|tools/gui/glfw_window\.cpp'
+wall Vulkan 'vulkan/' '(compute|compute/detail|tools/render)/vulkan_[a-z_]*\.(h|cpp)|tools/gui/glfw_window\.cpp'
 wall GLFW 'GLFW/' 'tools/gui/glfw_[a-z]*\.cpp'
 wall ImGui '(imgui|backends/imgui)' 'tools/(render/vulkan_panels|gui/(panel[a-z_]*|glfw_[a-z]*))\.cpp'
 wall CHOLMOD '(suitesparse/)?cholmod' 'tools/bench/cholmod_solver\.cpp'
@@ -76,7 +81,7 @@ wall hidapi 'hidapi' 'hid/hidapi_[a-z]*\.cpp'
 
 # Public headers name no type of a wrapped library.
 grep -rnE 'RTC[A-Z]|Eigen::|nlohmann::|stbi_|Vk[A-Z]|VK_|libusb_[a-z]|hid_[a-z]*\(' engine device --include='*.h' |
-    grep -vE '^engine/(cloud/detail/embree\.h|(compute/detail|tools/render)/vulkan_[a-z]*\.h|tools/cli/)' | grep -vE ':[0-9]+: *//' &&
+    grep -vE '^engine/(cloud/detail/embree\.h|(compute|tools/render)/vulkan_[a-z]*\.h|tools/cli/)' | grep -vE ':[0-9]+: *//' &&
     complain 'a header names a type of a wrapped library'
 
 [ $bad -eq 0 ] && echo 'every include points downward'

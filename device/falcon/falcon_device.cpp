@@ -37,11 +37,7 @@ FalconDevice::FalconDevice(FalconLinkOpener open, const FalconDeviceSettings& se
 void FalconDevice::open()
 {
     if (line_) return;
-    struct Rearm {
-        std::atomic<bool>& cancel;
-        ~Rearm() { cancel = false; }
-    } rearm{cancel_};
-    StartedFalcon started = startFalcon(open_, settings_.firmware, settings_.start, &cancel_);
+    StartedFalcon started = startFalcon(open_, settings_.firmware, settings_.start);
     auto          line = std::make_unique<Line>(std::make_unique<FalconLoop>(std::move(started.link), settings_.loop));
     if (settings_.pace == FalconPace::thread)
         line->thread = std::thread(converse, std::ref(*line), settings_.asksForRealTime);
@@ -53,8 +49,7 @@ void FalconDevice::close() noexcept
     if (!line_) return;
     line_->isOver = true;
     if (line_->thread.joinable()) line_->thread.join();
-    line_.reset();   // its FalconLoop ends with zero force
-    cancel_ = false; // it was meant for the start that is over
+    line_.reset(); // its FalconLoop ends with zero force
 }
 
 HapticState FalconDevice::exchange(const GovernedForce& force, double now) noexcept

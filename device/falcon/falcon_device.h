@@ -46,14 +46,10 @@ public:
     ~FalconDevice() override { close(); }
 
     [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }
-    void                                  open() override; ///< \throws Error also after cancelOpen()
+    void                                  open() override;
     void                                  close() noexcept override;
     HapticState                           exchange(const GovernedForce& force, double now) noexcept override;
     void light(std::uint8_t lights) noexcept override { lights_ = lights; } ///< if settings.loop.showsState is off
-
-    /// Makes a running open(), or the next one, give up. It has no effect while the device is open.
-    /// \thread any
-    void cancelOpen() noexcept { cancel_ = true; }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -88,7 +84,6 @@ private:
     FalconDeviceSettings  settings_;
     HapticDeviceInfo      info_;
     std::uint8_t          lights_ = 0;
-    std::atomic<bool>     cancel_ = false;
     std::unique_ptr<Line> line_; ///< null: closed
 };
 

@@ -64,8 +64,8 @@ std::optional<FalconReply> listen(FalconLink& link, FalconParser& parser)
 /// One start of a Falcon. The reason why an attempt failed is a string, empty if it did not fail.
 class Start {
 public:
-    Start(std::span<const std::uint8_t> firmware, const FalconStartSettings& settings, const std::atomic<bool>* cancel)
-        : firmware_(firmware), settings_(settings), cancel_(cancel)
+    Start(std::span<const std::uint8_t> firmware, const FalconStartSettings& settings)
+        : firmware_(firmware), settings_(settings)
     {
     }
 
@@ -120,7 +120,7 @@ private:
 
     void heedCancel() const
     {
-        if (cancel_ && cancel_->load()) throw Error("the start of the Falcon was cancelled");
+        if (settings_.cancel && settings_.cancel->load()) throw Error("the start of the Falcon was cancelled");
     }
 
     /// Waits in steady time, because there is no link with a clock.
@@ -214,7 +214,6 @@ private:
 
     std::span<const std::uint8_t> firmware_;
     FalconStartSettings           settings_;
-    const std::atomic<bool>*      cancel_;
     double                        end_ = 0;                      ///< [s] by the link's clock
     std::string                   lost_;                         ///< why asking failed, if it did
     std::string                   reason_ = "it gave no answer"; ///< why the last attempt failed
@@ -223,9 +222,9 @@ private:
 } // namespace
 
 StartedFalcon startFalcon(const FalconLinkOpener& open, std::span<const std::uint8_t> firmware,
-                          const FalconStartSettings& settings, const std::atomic<bool>* cancel)
+                          const FalconStartSettings& settings)
 {
-    return Start(firmware, settings, cancel).run(open);
+    return Start(firmware, settings).run(open);
 }
 
 FalconReadiness askFalcon(FalconLink& link)

@@ -29,6 +29,9 @@ struct FalconStartSettings {
 
     /// Called for each piece of the firmware that was echoed correctly: bytes so far, bytes in all. It may take 20 ms.
     std::function<void(std::size_t, std::size_t)> onUpload{};
+
+    /// Ends the start within 0.1 s once it is true; any thread may set it. Null: nothing does.
+    const std::atomic<bool>* cancel = nullptr;
 };
 
 /// The state of a Falcon before forces can flow.
@@ -54,14 +57,13 @@ struct StartedFalcon {
 /// uploads, in attempts that start from nothing; an attempt succeeds only if answers follow. The motors get zero only.
 ///
 /// \param firmware  bytes to upload; if empty, the firmware must be running
-/// \param cancel    may become true on another thread, which ends the call within 0.1 s
 /// \throws Error saying in one sentence why and what to try; or what the first call of `open` throws
 /// \source   libnifalcon (BSD-3), src/comm/FalconCommLibUSB.cpp: steps, divisors, lines, echo
 /// \differs  libnifalcon uploads without asking, reads only the answer's length, and does not check whether the
 ///           firmware then answers. One author's driver found that asking spoils the upload, so the link is reopened in
 ///           between
 StartedFalcon startFalcon(const FalconLinkOpener& open, std::span<const std::uint8_t> firmware,
-                          const FalconStartSettings& settings = {}, const std::atomic<bool>* cancel = nullptr);
+                          const FalconStartSettings& settings = {});
 
 /// Sends three packets of zero force, each even if the one before failed, unless the device is gone.
 /// \param command  the lights of these packets

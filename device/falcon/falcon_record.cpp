@@ -104,6 +104,7 @@ FalconDeviceSettings falconSettings(const DeviceRequest& request)
         settings.loop.countsPerTorque = numberOf(kFalconCounts, counts);
     settings.start.eventCharacter = !textOf(request.options, kFalconEventCharacter).empty();
     settings.start.onUpload       = request.onUpload;
+    settings.start.cancel         = request.cancel;
     return settings;
 }
 

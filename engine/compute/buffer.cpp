@@ -1,6 +1,6 @@
 #include "engine/compute/buffer.h"
 
-#include "engine/compute/detail/backend.h"
+#include "engine/compute/backend.h"
 
 namespace palp::compute {
 

@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "engine/compute/detail/backend.h"
+#include "engine/compute/backend.h"
 #include "engine/compute/detail/host_context.h"
-#include "engine/compute/detail/vulkan_handles.h"
+#include "engine/compute/vulkan_handles.h"
 #include "engine/core/contract.h"
 
 namespace palp::compute {

@@ -91,7 +91,7 @@ public:
     /// Returns the size of all live buffers [byte].
     [[nodiscard]] std::size_t allocatedBytes() const noexcept;
 
-    /// Returns the implementation, for the files of engine/compute.
+    /// Returns the implementation, see backend.h; for Vulkan it is the VulkanContext of vulkan_handles.h.
     struct Handles;
     [[nodiscard]] Handles& handles() const noexcept { return *handles_; }
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "engine/compute/detail/backend.h"
+#include "engine/compute/backend.h"
 
 namespace palp::compute {
 namespace {

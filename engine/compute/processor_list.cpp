@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "engine/compute/detail/vulkan_instance.h"
+#include "engine/compute/vulkan_instance.h"
 
 namespace palp::compute {
 namespace {

@@ -39,12 +39,6 @@ constexpr double kShorter     = 0.35; // [1] it is taken again with this share
 constexpr double kLeastShare  = 0.05; // [1] bounds of b
 constexpr double kMostShare   = 3;    // [1]
 
-glm::dvec3 capped(const glm::dvec3& step, double longest) noexcept
-{
-    const double length = glm::length(step);
-    return length <= longest ? step : step * (longest / length);
-}
-
 class HybridProxy final : public Proxy::Impl {
 public:
     HybridProxy(const SoftObject& object, const ProxySettings& settings)

@@ -21,12 +21,6 @@ constexpr double kSlideGain  = 0.1;  // [1]
 constexpr double kTolerance  = 1e-5; // [spacings]
 constexpr double kTinyNormal = 1e-9; // [radius] mean overshoot of a sphere that is buried evenly: keep the last normal
 
-glm::dvec3 capped(const glm::dvec3& step, double longest) noexcept
-{
-    const double length = glm::length(step);
-    return length <= longest ? step : step * (longest / length);
-}
-
 class SphereProxy final : public Proxy::Impl {
 public:
     SphereProxy(const SoftObject& object, const ProxySettings& settings)

@@ -1,5 +1,6 @@
 #include "engine/core/extremes.h"
 
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -10,7 +11,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The loop works on pairs, for which every processor of the last twenty years has a register. Compilers leave loops of
 // plain minima scalar, because of NaN.
-constexpr std::size_t kPair = 2;
+constexpr std::size_t kPair                             = 2;
 using Pair [[gnu::vector_size(kPair * sizeof(double))]] = double;
 
 struct Running {
@@ -33,6 +34,13 @@ struct Running {
 };
 
 } // namespace
+
+double geometricMean(std::span<const double> values) noexcept
+{
+    double sum = 0; // of logarithms
+    for (const double value : values) sum += std::log(value);
+    return std::exp(sum / double(values.size()));
+}
 
 Extremes extremesOf(std::span<const double> values) noexcept
 {

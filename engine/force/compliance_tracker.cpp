@@ -52,19 +52,11 @@ std::optional<LocalCompliance> ComplianceTracker::tick(const ComplianceTick& now
     for (Carried* carried : {&compliance_, &contact_})
         carried->offset =
             std::copysign(std::max(0.0, std::abs(carried->offset) - carried->rate * now.dt), carried->offset);
-    if (now.newest && now.newest->sequence != (hasTable_ ? table_.sequence : 0) && now.newest->sequence != refused_) {
-        if (now.newest->usable()) {
-            adopt(now);
-        } else {
-            refused_ = now.newest->sequence;
-            ++refusedTables_;
-        }
-    }
+    if (now.newest && now.newest->sequence != (hasTable_ ? table_.sequence : 0) && now.newest->usable()) adopt(now);
     if (!hasTable_) return {};
 
     const ComplianceTable::Values here = lookUp(now.contact);
     inContact_                         = true;
-    clampedTicks_ += here.clamped;
     return LocalCompliance{hand(compliance_, here.lnCompliance, now.time),
                            hand(contact_, here.lnContactStiffness, now.time), here.clamped, now.time - table_.time};
 }

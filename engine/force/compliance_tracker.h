@@ -58,11 +58,7 @@ public:
     /// Ends a contact, when the finger left the surface: the next one starts without an offset.
     void restart() noexcept;
 
-    [[nodiscard]] ComplianceLaw law() const noexcept { return law_; }
-    [[nodiscard]] std::uint64_t clampedTicks() const noexcept { return clampedTicks_; }   ///< since construction
-    [[nodiscard]] std::uint64_t refusedTables() const noexcept { return refusedTables_; } ///< not usable()
-    [[nodiscard]] double        period() const noexcept { return period_; }            ///< of the tables, smoothed [s]
-    [[nodiscard]] double        offset() const noexcept { return compliance_.offset; } ///< still carried, of ln c [1]
+    [[nodiscard]] double period() const noexcept { return period_; } ///< of the tables, smoothed [s]
 
 private:
     /// One of the two logarithms on its way to the hand.
@@ -85,8 +81,6 @@ private:
     double          adopted_   = 0;        // when the table came [s]
     double          period_    = 1.0 / 30; // [s] the slowest deformation thread that is planned for
     Carried         compliance_, contact_;
-    std::uint64_t   refused_      = 0; // sequence number of the last table that was not usable
-    std::uint64_t   clampedTicks_ = 0, refusedTables_ = 0;
 };
 
 } // namespace palp

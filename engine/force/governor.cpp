@@ -43,8 +43,8 @@ void check(const GovernorSettings& s)
     demand("energyReserve", s.energyReserve, 0, 0.1);
     demand("energyLimit", s.energyLimit, 0, 10);
     demand("energyTolerance", s.energyTolerance, 0, 0.01);
-    demand("maximumForce", s.maximumForce, 0, 8);
-    demand("slew", s.slew, 8 / 0.02, 1e5); // slower, and 8 N would not be gone in 20 ms
+    demand("maximumForce", s.maximumForce, 0, s.kMostForce);
+    demand("slew", s.slew, s.kMostForce / 0.02, 1e5); // slower, and the most force would not be gone in 20 ms
     demand("maximumSpeed", s.maximumSpeed, 0, 5);
     demand("faultRamp", s.faultRamp, 1e-3, 0.02);
     demand("calmForce", s.calmForce, 0, 1);
@@ -89,7 +89,7 @@ GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
     slewTo(force, passed, out);       // 6
 
     const bool slow = glm::length(in.velocity) <= settings_.maximumSpeed; // 7; while waiting, engage() checks it
-    if (!slow && engagement_ != Engagement::waiting) latch(GovernorFault::tooFast, in.time);
+    if (!slow && engagement_ != Engagement::waiting) latch(GovernorFault::tooFast);
     if (fault_ != GovernorFault::none) faultGain_ = std::max(0.0, faultGain_ - passed.fall / settings_.faultRamp);
 
     engage(in, passed.rise, out); // 8
@@ -132,11 +132,10 @@ double ForceGovernor::capFor(double period) const noexcept
     return std::min(settings_.maximumStiffness, settings_.stiffnessAtOneMillisecond * 1.5e-3 / lag);
 }
 
-void ForceGovernor::latch(GovernorFault fault, double time) noexcept
+void ForceGovernor::latch(GovernorFault fault) noexcept
 {
     if (fault_ != GovernorFault::none) return; // the first one is the cause
-    fault_     = fault;
-    faultTime_ = time;
+    fault_ = fault;
     release();
 }
 
@@ -149,14 +148,14 @@ void ForceGovernor::release() noexcept
 void ForceGovernor::checkInput(const GovernorInput& in) noexcept
 {
     if (!finite(in.force) || !std::isfinite(in.admittedEnergy) || std::isnan(in.storedEnergy))
-        latch(GovernorFault::forceNotFinite, in.time);
-    if (!finite(in.position)) latch(GovernorFault::positionNotFinite, in.time);
-    if (!finite(in.velocity)) latch(GovernorFault::velocityNotFinite, in.time);
-    if (!std::isfinite(in.dt)) latch(GovernorFault::clockNotFinite, in.time);
-    if (in.dt > settings_.stall) latch(GovernorFault::loopStalled, in.time);
+        latch(GovernorFault::forceNotFinite);
+    if (!finite(in.position)) latch(GovernorFault::positionNotFinite);
+    if (!finite(in.velocity)) latch(GovernorFault::velocityNotFinite);
+    if (!std::isfinite(in.dt)) latch(GovernorFault::clockNotFinite);
+    if (in.dt > settings_.stall) latch(GovernorFault::loopStalled);
     stoppedTicks_ = in.dt > 0 ? 0 : std::min(stoppedTicks_ + 1, settings_.missedTicks + 1);
-    if (stoppedTicks_ > settings_.missedTicks) latch(GovernorFault::clockStopped, in.time);
-    if (in.missedExchanges > settings_.missedTicks) latch(GovernorFault::deviceLost, in.time);
+    if (stoppedTicks_ > settings_.missedTicks) latch(GovernorFault::clockStopped);
+    if (in.missedExchanges > settings_.missedTicks) latch(GovernorFault::deviceLost);
 }
 
 double ForceGovernor::freshness(double age) const noexcept

@@ -35,7 +35,11 @@ struct GovernorSettings {
     /// [J] E may be below zero by this without being called active: an encoder step of 48 um against 6 N.
     double energyTolerance = 0.3e-3;
 
-    double maximumForce = 6;     ///< [N] at most 8, what the Falcon holds (published: more than 8.9 N for short)
+    /// [N] the bound of every force that a scene may ask for: what the Falcon holds (published: 8.9 N and more for
+    /// short)
+    static constexpr double kMostForce = 8;
+
+    double maximumForce = 6;     ///< [N] at most kMostForce
     double slew         = 1000;  ///< [N/s] an honest contact of 1000 N/m at 0.5 m/s needs 500
     double maximumSpeed = 1.2;   ///< [m/s] beyond it is a fault (OpenHaptics: 1.2)
     double faultRamp    = 20e-3; ///< [s] from a fault to zero force, at the latest
@@ -99,7 +103,6 @@ struct GovernorInput {
     glm::dvec3 velocity{};          ///< [m/s] of the grip, filtered
     bool       homed      = false;  ///< the position is known
     bool       inBox      = false;  ///< the grip is where the device's kinematics are good, and they could be solved
-    double     time       = 0;      ///< [s] of this tick; only noted with a fault
     double     dt         = 0;      ///< [s] since the last tick
     double     loopPeriod = 0;      ///< [s] measured, as a mean over some 0.1 s; sets stiffnessCap()
     int        missedExchanges = 0; ///< with the device, in a row
@@ -163,7 +166,6 @@ public:
     [[nodiscard]] double stiffnessCap() const noexcept { return cap_; }
 
     [[nodiscard]] GovernorFault           fault() const noexcept { return fault_; }
-    [[nodiscard]] double                  faultTime() const noexcept { return faultTime_; } ///< [s] GovernorInput::time
     [[nodiscard]] const GovernorSettings& settings() const noexcept { return settings_; }
 
 private:
@@ -178,7 +180,7 @@ private:
 
     [[nodiscard]] Elapsed    elapsed(double dt) const noexcept;
     [[nodiscard]] double     capFor(double period) const noexcept;
-    void                     latch(GovernorFault fault, double time) noexcept;
+    void                     latch(GovernorFault fault) noexcept;
     void                     release() noexcept;
     void                     checkInput(const GovernorInput& in) noexcept;
     [[nodiscard]] double     freshness(double age) const noexcept;
@@ -192,7 +194,6 @@ private:
     GovernorSettings                settings_;
     double                          cap_;
     GovernorFault                   fault_        = GovernorFault::none;
-    double                          faultTime_    = 0;
     double                          faultGain_    = 1;
     Engagement                      engagement_   = Engagement::waiting;
     double                          engageGain_   = 0;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/core/contract.h"
+#include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
 #include "engine/plate/load.h"
 
@@ -46,11 +47,11 @@ ComplianceTable::Entry contactOf(const FootprintLattice& lattice, std::size_t n,
 FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings& settings, int side,
                                   PlateSolver& solver)
 {
-    double logarithm = 0;
-    for (std::size_t point = 0; point < object.size(); ++point) logarithm += std::log(object.rigidity(point));
+    std::vector<double> rigidities(object.size());
+    for (std::size_t point = 0; point < object.size(); ++point) rigidities[point] = object.rigidity(point);
     const PlateGrid grid = PatchWindow::square(settings.window, settings.cells).grid;
     const Plate     homogeneous{grid, settings.edges, object.material().poissonRatio, settings.foundation,
-                            NodeField(grid, std::exp(logarithm / double(object.size())))};
+                            NodeField(grid, geometricMean(rigidities))};
     const double    perRigidity =
         contactStiffness(object.material().modulus(1), settings.footprintRadius, object.material().thickness);
     return solveLattice(homogeneous, {settings.footprintRadius, side, perRigidity}, solver, settings.tolerance);

@@ -136,8 +136,8 @@ void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
     constexpr double         kMostUncovered = 0.9; // of the nodes: a corner of a sheet leaves three quarters [1]
     const auto               held           = std::count_if(patch.positions.begin(), patch.positions.end(),
                                                             [&](const ChartPoint& p) { return patch.window.holds(p); });
-    const std::string        what           = "touch: the patch window of " + formatQuantity(settings.window, "m");
-    const char* const        hint           = "; check --length-unit and --window";
+    const std::string what = placeText(patch.contact) + ": the patch window of " + formatQuantity(settings.window, "m");
+    const char* const hint = "; check --length-unit and --window";
     if (held < kFewestPoints)
         throw Error(what + " holds " + std::to_string(held) + " points of the cloud, which are " +
                     formatQuantity(patch.spacing, "m") + " apart; expected at least " + std::to_string(kFewestPoints) +

@@ -2,7 +2,23 @@
 
 #include <cstdio>
 
+#include "engine/core/contract.h"
+
 namespace palp {
+
+std::string placeText(const Contact& contact)
+{
+    char text[96];
+    std::snprintf(text, sizeof text, "at (%.4g, %.4g, %.4g) m", contact.point.x, contact.point.y, contact.point.z);
+    return text;
+}
+
+void demandDeformed(const Patch& patch, const char* hint)
+{
+    if (patch.deformed()) return;
+    throw Error(placeText(patch.contact) + ": the " + std::to_string(patch.gathered.size()) +
+                " points nearby do not determine a surface (" + name(patch.sphere.outcome) + "); " + hint);
+}
 
 std::string directionText(const glm::dvec3& direction)
 {

@@ -68,6 +68,13 @@ struct Patch {
     [[nodiscard]] glm::dvec3 forceDirection() const noexcept { return -chart.frame.normal; }
 };
 
+/// Returns "at (0.012, 0, 0.03) m", which opens complaints about a touch there.
+[[nodiscard]] std::string placeText(const Contact& contact);
+
+/// Refuses a patch whose points determine no surface.
+/// \throws Error naming the place, unless patch.deformed()
+void demandDeformed(const Patch& patch, const char* hint = "try a larger --window, or check --length-unit");
+
 /// Returns a unit vector as complaints and warnings show it: "0.00,0.60,0.80".
 [[nodiscard]] std::string directionText(const glm::dvec3& direction);
 

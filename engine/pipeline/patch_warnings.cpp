@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
 
 namespace palp {
@@ -16,11 +17,9 @@ namespace {
 std::optional<double> windowWanted(const Plate& plate)
 {
     if (plate.foundation <= 0) return {};
-    double logarithm = 0;
-    for (double d : plate.rigidity.values()) logarithm += std::log(d);
-    const double mean        = std::exp(logarithm / double(plate.rigidity.values().size()));
-    const auto [least, most] = std::minmax_element(plate.rigidity.values().begin(), plate.rigidity.values().end());
-    return (*most > 10 * *least ? 12 : 10) * std::pow(mean / plate.foundation, 0.25);
+    const Extremes found = extremesOf(plate.rigidity.values());
+    return (found.most > 10 * found.least ? 12 : 10) *
+           std::pow(geometricMean(plate.rigidity.values()) / plate.foundation, 0.25);
 }
 
 double largest(const NodeField& field)

@@ -52,7 +52,8 @@ std::optional<std::string> whyRigidityIsBad(const PlateGrid& grid, const NodeFie
 bool isHeldBySides(const Plate& plate)
 {
     const std::array sides = {plate.edges.x0, plate.edges.x1, plate.edges.z0, plate.edges.z1};
-    return std::ranges::count(sides, Edge::clamped) >= 1 || std::ranges::count(sides, Edge::supported) >= 2;
+    return std::ranges::count_if(sides, holdsNodes) >= 2 ||
+           std::ranges::any_of(sides, [](Edge edge) { return holdsNodes(edge) && holdsSlope(edge); });
 }
 
 /// Returns why the foundation does not hold the plate; empty if it does. A foundation stops every motion, unless its

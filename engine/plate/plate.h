@@ -19,6 +19,16 @@ constexpr auto namesOf(Edge)
     using enum Edge;
     return std::to_array<NamedValue<Edge>>({{clamped, "clamped"}, {supported, "supported"}, {free, "free"}});
 }
+/// Returns whether the nodes of such a side stay where they are.
+[[nodiscard]] constexpr bool holdsNodes(Edge edge) noexcept
+{
+    return edge != Edge::free;
+}
+/// Returns whether such a side keeps the plate from turning about it; one that does not has no bending moment.
+[[nodiscard]] constexpr bool holdsSlope(Edge edge) noexcept
+{
+    return edge == Edge::clamped;
+}
 
 struct PlateEdges {
     Edge x0 = Edge::clamped; ///< side x = 0
@@ -52,6 +62,14 @@ struct Plate {
     double     foundation   = 0;   ///< k [Pa/m], >= 0; 0 in the paper
     NodeField  rigidity;           ///< D [N m] at the nodes, > 0
 };
+
+/// Returns whether a side holds the node of column i, row j.
+[[nodiscard]] inline bool isHeld(const Plate& plate, int i, int j) noexcept
+{
+    const PlateEdges& e = plate.edges;
+    return (i == 0 && holdsNodes(e.x0)) || (i == plate.grid.cellsX && holdsNodes(e.x1)) ||
+           (j == 0 && holdsNodes(e.z0)) || (j == plate.grid.cellsZ && holdsNodes(e.z1));
+}
 
 /// Fewest cells per side: with fewer, the conditions of two opposite edges meet in one second difference.
 inline constexpr int kFewestPlateCells = 4;

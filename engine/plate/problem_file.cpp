@@ -202,17 +202,14 @@ NodeField readLoad(const JsonObject& load, const Setting& setting)
     load.refuse("law", "point, uniform, gaussian or grid");
 }
 
-/// Returns whether there is a load and an edge holds every node that gets a share of it.
-bool isHeld(const NodeField& nodalForce, const PlateEdges& edges)
+/// Returns whether there is a load and a side holds every node that gets a share of it.
+bool isLoadHeld(const NodeField& nodalForce, const Plate& plate)
 {
-    const int lastX = nodalForce.nodesX() - 1, lastZ = nodalForce.nodesZ() - 1;
-    bool      loaded = false;
-    for (int i = 0; i <= lastX; ++i)
-        for (int j = 0; j <= lastZ; ++j) {
+    bool loaded = false;
+    for (int i = 0; i < plate.grid.nodesX(); ++i)
+        for (int j = 0; j < plate.grid.nodesZ(); ++j) {
             if (nodalForce(i, j) == 0) continue;
-            if (!((i == 0 && edges.x0 != Edge::free) || (i == lastX && edges.x1 != Edge::free) ||
-                  (j == 0 && edges.z0 != Edge::free) || (j == lastZ && edges.z1 != Edge::free)))
-                return false;
+            if (!isHeld(plate, i, j)) return false;
             loaded = true;
         }
     return loaded;
@@ -225,7 +222,7 @@ std::vector<std::string> warningsOf(const JsonObject& load, const PlateProblem& 
         warnings.push_back(load.where() + ": sigma of " + metres(load.number("sigma")) + " is below the spacing of " +
                            metres(spacingOf(problem.plate.grid)) +
                            ", so the load acts as a point force does; take more cells or a larger sigma");
-    if (isHeld(problem.nodalForce, problem.plate.edges))
+    if (isLoadHeld(problem.nodalForce, problem.plate))
         warnings.push_back(load.where() + ": acts only where a clamped or supported edge holds the plate, and bends "
                                           "nothing");
     return warnings;

@@ -7,6 +7,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/spatial_law.h"
+#include "engine/force/governor.h"
 #include "engine/plate/multigrid/multigrid_plate_solver.h"
 #include "engine/session/scene_schema.h"
 
@@ -447,13 +448,13 @@ std::vector<SceneKey> servoKeys()
              .unit      = "N",
              .example   = "4 N",
              .dimension = D::force,
-             .bounds    = KeyBounds{0.01, 8},
-             .control   = Control{Panel::servo, "most force", "N", 1, 0.1, 8, false, 1}},
+             .bounds    = KeyBounds{0.01, GovernorSettings::kMostForce},
+             .control   = Control{Panel::servo, "most force", "N", 1, 0.1, GovernorSettings::kMostForce, false, 1}},
             [](auto& s) -> auto& { return s.maxForce; }),
         numberKey(
             {.name    = "stiffness_cap",
              .help    = "largest stiffness that is rendered at a servo period of 1 ms; a released arm swings from "
-                        "2120 N/m on",
+                        "2137 N/m on",
              .group   = kSession,
              .unit    = "N/m",
              .bounds  = KeyBounds{1, 2000},
@@ -511,7 +512,6 @@ std::optional<std::string_view> keyNamedOnce(std::string_view name) noexcept
 
 std::string flagOf(std::string_view key)
 {
-    if (key == "place") return "--at";
     std::string flag = "--" + std::string(key);
     std::ranges::replace(flag, '_', '-');
     return flag;

@@ -77,8 +77,11 @@ void makeDevice(SessionHand& hand, const HandChoice& choice, const Scene& scene,
                     record.support().help);
     hand.hid   = std::make_unique<HidapiSystem>();
     hand.frame = frameOf(hand, scene, object);
-    DeviceRequest request{
-        .hid = *hand.hid, .options = choice.options, .path = devicePath(choice.hand), .onUpload = choice.onUpload};
+    DeviceRequest request{.hid      = *hand.hid,
+                          .options  = choice.options,
+                          .path     = devicePath(choice.hand),
+                          .onUpload = choice.onUpload,
+                          .cancel   = choice.cancel};
     if (!hand.path) {
         hand.device = record.make(request);
         return;

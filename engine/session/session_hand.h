@@ -24,7 +24,8 @@ struct HandChoice {
     DeviceOptionValues           options{};       ///< of the device
     std::optional<double>        seconds{};       ///< empty: 5 s, or a file's own length
 
-    std::function<void(std::size_t, std::size_t)> onUpload{}; ///< see DeviceRequest
+    std::function<void(std::size_t, std::size_t)> onUpload{};       ///< see DeviceRequest
+    const std::atomic<bool>*                      cancel = nullptr; ///< see DeviceRequest
 };
 
 /// The hand of a session, with its device open.

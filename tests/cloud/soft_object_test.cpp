@@ -35,6 +35,8 @@ TEST(SoftObject, AnotherMaterialSharesEverythingElseAndGivesAnotherRigidity)
     const SoftObject object = square();
     const SoftObject thick  = object.withMaterial({.thickness = 4e-3, .poissonRatio = 0.3});
     EXPECT_EQ(&thick.index(), &object.index());
+    EXPECT_EQ(thick.positions().data(), object.positions().data());
+    EXPECT_EQ(thick.faces().data(), object.faces().data());
     EXPECT_DOUBLE_EQ(object.rigidity(1), 2 * 8e-9 / (12 * 0.91)) << "E h^3 / (12 (1 - nu^2)) by hand";
     EXPECT_DOUBLE_EQ(thick.rigidity(1), 8 * object.rigidity(1));
 }

@@ -33,12 +33,12 @@ TEST(Quantity, AnythingElseIsRefusedWithTheKnownUnits)
 
 TEST(Quantity, PointComponentsMayCarryUnits)
 {
-    const glm::dvec3 point = parsePoint("10,0.02m,-3cm", "--at", 1e-3);
+    const glm::dvec3 point = parsePoint("10,0.02m,-3cm", "--place", 1e-3);
     EXPECT_DOUBLE_EQ(point.x, 10e-3);
     EXPECT_DOUBLE_EQ(point.y, 0.02);
     EXPECT_DOUBLE_EQ(point.z, -0.03);
     for (const char* text : {"1,2", "1,2,3,4", "1,,3", "a,b,c", ""})
-        EXPECT_THROW((void)parsePoint(text, "--at"), Error) << text;
+        EXPECT_THROW((void)parsePoint(text, "--place"), Error) << text;
 }
 
 TEST(Quantity, PeopleReadThreeDigitsAndAPrefix)

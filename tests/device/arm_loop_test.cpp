@@ -79,7 +79,6 @@ struct Loop {
         in.inBox          = armState.inBox;
         in.admittedEnergy = spring.used;
         in.storedEnergy   = spring.stored;
-        in.time += kDt;
         if (governed) out = governor.step(in);
         static_cast<void>(arm.step(governed ? out.force : in.force, kDt));
         leastEnergy = std::min(leastEnergy, out.energy);

@@ -64,7 +64,6 @@ struct Weighing {
         in.velocity   = bench.state.velocity;
         in.homed      = bench.state.homed;
         in.inBox      = bench.state.inBox;
-        in.time       = bench.now;
         in.dt         = 1e-3;
         in.loopPeriod = 1e-3;
         gain          = governor.step(in).gain;

@@ -476,19 +476,6 @@ TEST(FalconDevice, WithoutPowerItIsSilentAndOpensAgainByUpload)
     EXPECT_FALSE(bench.state.homed) << "it has to be homed anew";
 }
 
-TEST(FalconDevice, CancellingWhileItIsOpenDoesNotSpoilTheNextOpening)
-{
-    FalconBench bench;
-    bench.device->cancelOpen();
-    bench.device->close();
-    EXPECT_NO_THROW(bench.device->open());
-
-    bench.device->close();
-    bench.device->cancelOpen();
-    EXPECT_THROW(bench.device->open(), Error) << "the next one, where none is open";
-    EXPECT_NO_THROW(bench.device->open()) << "and no other";
-}
-
 TEST(FalconDevice, ButtonsAndLightsPassThrough)
 {
     FalconDeviceSettings settings;
@@ -557,7 +544,6 @@ TEST(FalconDevice, AWallIsFeltThroughTheWholeChain)
         in.velocity   = bench.state.velocity;
         in.homed      = bench.state.homed;
         in.inBox      = bench.state.inBox;
-        in.time       = bench.now;
         in.dt         = 1e-3;
         in.loopPeriod = 1e-3;
         governor.step(in);

@@ -33,7 +33,7 @@ struct Start {
     FalconStartSettings settings{};
     std::atomic<bool>   cancel = false;
 
-    explicit Start(const Ft232EmulatorSettings& how = {}) : emulator(how) {}
+    explicit Start(const Ft232EmulatorSettings& how = {}) : emulator(how) { settings.cancel = &cancel; }
 
     StartedFalcon run(const std::vector<std::uint8_t>& image)
     {
@@ -43,7 +43,7 @@ struct Start {
                 emulator.waitUntil(emulator.now() + 10e-3); // a plug that was loose for less is in again
                 return emulator.connect();
             },
-            image, settings, &cancel);
+            image, settings);
     }
 
     /// What it complains of; empty: it starts.
@@ -209,7 +209,7 @@ TEST(FalconDriver, CancelEndsItWithinATenthOfASecond)
         try {
             static_cast<void>(
                 startFalcon([&] { return std::make_unique<Watching>(start.emulator, start, when, &cancelled); },
-                            firmware(), {}, &start.cancel));
+                            firmware(), start.settings));
         } catch (const Error& error) {
             complaint = error.what();
         }
@@ -259,7 +259,7 @@ TEST(FalconDriver, WaitingToReopenItHeedsTheCancelling)
                 start.cancel = true;
                 throw Error("it is busy");
             },
-            firmware(), start.settings, &start.cancel));
+            firmware(), start.settings));
     });
 
     EXPECT_NE(complaint.find("cancelled"), std::string::npos) << complaint;

@@ -216,7 +216,9 @@ TEST(FalconThread, AnotherThreadCancelsTheStart)
 {
     Servo                servo(Ft232EmulatorSettings{}); // without firmware
     FalconDeviceSettings settings;
-    settings.firmware = std::vector<std::uint8_t>(8492, 7);
+    std::atomic<bool>    cancel = false;
+    settings.firmware           = std::vector<std::uint8_t>(8492, 7);
+    settings.start.cancel       = &cancel;
     servo.falcon.with([](Ft232Emulator& it) { it.cause({LinkTroubleKind::silence, 0}); });
     FalconDevice device([&] { return servo.falcon.connect(); }, settings);
 
@@ -230,7 +232,7 @@ TEST(FalconThread, AnotherThreadCancelsTheStart)
     });
     std::this_thread::sleep_for(50ms);
     const double cancelled = servo.falcon.now();
-    device.cancelOpen();
+    cancel                 = true;
     opener.join();
 
     EXPECT_NE(complaint.find("cancelled"), std::string::npos) << complaint;

@@ -14,12 +14,10 @@ namespace palp {
     in.homed = in.inBox = true;
     in.dt = in.loopPeriod = 1e-3;
     for (int n = 0; n < 1600; ++n) { // 10 ticks of calm, then 1.5 s
-        in.time += in.dt;
         governor.step(in);
     }
     in.force = newtons;
     for (int n = 0; n < 10; ++n) { // 1 N a tick
-        in.time += in.dt;
         governor.step(in);
     }
     return governor.force();

@@ -67,7 +67,6 @@ TEST(ComplianceTracker, LooksUpThePlaceOfTheContactInTheTablesOwnAxes)
     EXPECT_NEAR(std::log(handed->compliance), -6 + 50 * 3e-3, 1e-12);
     EXPECT_FALSE(handed->clamped);
     EXPECT_TRUE(handOver.tick({{0.1, 0.205, 0.3}, 0, kTick, &table})->clamped);
-    EXPECT_EQ(handOver.clampedTicks(), 1u);
 }
 
 /// Along a great circle the azimuthal map's radius is the chord: 2 r sin(angle/2).
@@ -92,7 +91,6 @@ TEST(ComplianceTracker, AJumpBetweenTablesDiesAtOnePerCentPerMillisecond)
     EXPECT_NEAR(servo.tick(second), -6, 1e-12) << "continuous where the table changes";
     for (int n = 1; n <= 10; ++n) EXPECT_NEAR(servo.tick(second), -6 - 0.01 * n, 1e-9) << n;
     EXPECT_NEAR(servo.tick(second), -6.1, 1e-12) << "and then none is left";
-    EXPECT_EQ(servo.handOver.offset(), 0);
 }
 
 TEST(ComplianceTracker, TheOffsetDiesInTimeAndNotInTicks)
@@ -104,8 +102,8 @@ TEST(ComplianceTracker, TheOffsetDiesInTimeAndNotInTicks)
     (void)fine.tick(second);
     (void)coarse.tick(second);
     for (int n = 0; n < 12; ++n) (void)fine.tick(second, kTick / 4);
-    EXPECT_NEAR(fine.tick(second, 0), coarse.tick(second, 3 * kTick), 1e-12);
-    EXPECT_NEAR(fine.handOver.offset(), -0.07, 1e-12);
+    EXPECT_NEAR(fine.tick(second, 0), -5.97, 1e-12) << "0.03 of 0.1 in 3 ms";
+    EXPECT_NEAR(coarse.tick(second, 3 * kTick), -5.97, 1e-12);
 }
 
 TEST(ComplianceTracker, ALargeJumpIsGoneWithinOnePeriodOfTheTables)
@@ -133,7 +131,6 @@ TEST(ComplianceTracker, OffsetsAddUpWhenTablesDisagreeInARow)
     (void)servo.tick(tableOf(1, -6));
     (void)servo.tick(tableOf(2, -5.95));
     EXPECT_NEAR(servo.tick(tableOf(3, -5.9)), -5.99, 1e-9) << "0.01 died, the rest is carried on";
-    EXPECT_NEAR(servo.handOver.offset(), -0.09, 1e-9);
 }
 
 TEST(ComplianceTracker, HoldStepsAndBlendTakesAPeriod)
@@ -149,7 +146,6 @@ TEST(ComplianceTracker, HoldStepsAndBlendTakesAPeriod)
     const double period = blend.handOver.period();
     EXPECT_NEAR(blend.tick(second, period / 4), -6.25, 1e-12);
     EXPECT_NEAR(blend.tick(second, period), -7, 1e-12);
-    EXPECT_EQ(blend.handOver.clampedTicks(), 0u);
 }
 
 TEST(ComplianceTracker, ATouchAfterALiftStartsWithoutAnOffset)
@@ -162,14 +158,13 @@ TEST(ComplianceTracker, ATouchAfterALiftStartsWithoutAnOffset)
     }
 }
 
-TEST(ComplianceTracker, WhatIsNotUsableIsNotTakenAndCountedOnce)
+TEST(ComplianceTracker, WhatIsNotUsableIsNotTaken)
 {
     Servo servo;
     (void)servo.tick(tableOf(1, -6));
     auto bad                = tableOf(2, -7);
     bad.compliance[4].value = std::numeric_limits<double>::quiet_NaN();
     for (int n = 0; n < 5; ++n) EXPECT_NEAR(servo.tick(bad), -6, 1e-12);
-    EXPECT_EQ(servo.handOver.refusedTables(), 1u);
     EXPECT_NEAR(servo.tick(tableOf(3, -6)), -6, 1e-12);
 }
 
@@ -184,7 +179,7 @@ TEST(ComplianceTracker, AContactThatIsNotANumberOrRoundTheBackKeepsWhatWasFelt)
     EXPECT_EQ(servo.tick(table), felt);
     servo.contact = {0, 0, -39e-3}; // beyond the centre, 20 mm below
     EXPECT_EQ(servo.tick(table), felt);
-    EXPECT_EQ(servo.handOver.clampedTicks(), 2u);
+    EXPECT_TRUE(servo.handOver.tick({servo.contact, servo.time, 0, &table})->clamped);
 }
 
 TEST(ComplianceTracker, AStalledDeformationThreadLeavesAFiniteForceAndAnAge)

@@ -23,11 +23,7 @@ struct Servo {
         in.dt = in.loopPeriod = 1e-3;
     }
 
-    GovernorOutput tick()
-    {
-        in.time += in.dt > 0 && in.dt < 10 ? in.dt : 0;
-        return governor.step(in);
-    }
+    GovernorOutput tick() { return governor.step(in); }
 
     GovernorOutput ticks(int count)
     {

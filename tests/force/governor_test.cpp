@@ -78,15 +78,13 @@ TEST(ForceGovernor, AFaultStaysUntilTheOperatorResetsItAndThenEngagesAnew)
 {
     Servo servo;
     servo.pushing({0, 0, 5});
-    servo.in.force.x  = kNan;
-    const double when = servo.in.time + 1e-3;
+    servo.in.force.x = kNan;
     servo.tick();
     servo.in.force = {0, 0, 5};
 
     EXPECT_EQ(servo.ticks(5000).force, glm::dvec3(0)) << "the cause has gone, the fault has not";
     servo.in.force = {};
     EXPECT_EQ(servo.ticks(5000).fault, GovernorFault::forceNotFinite);
-    EXPECT_NEAR(servo.governor.faultTime(), when, 1e-9);
 
     servo.governor.reset();
     EXPECT_EQ(servo.governor.fault(), GovernorFault::none);

@@ -240,7 +240,7 @@ TEST(DeformWithTable, AHandThatSlidesOverAHomogeneousEllipsoidFeelsNothing)
         motion.add(time, hand);
         if (time >= double(sequence) * kPeriod) {
             published          = coming;
-            const Contact next = {aheadOf(handOver.law(), hand, motion.velocity(), kPeriod), {0, 0, 1}, true};
+            const Contact next = {aheadOf(ComplianceLaw::table, hand, motion.velocity(), kPeriod), {0, 0, 1}, true};
             const auto    both = deformWithTable(object, next, settings, lattice, solver, carried);
             ASSERT_TRUE(both.table.has_value());
             carried          = both.patch.chart.frame;
@@ -249,13 +249,13 @@ TEST(DeformWithTable, AHandThatSlidesOverAHomogeneousEllipsoidFeelsNothing)
             coming->time     = time;
         }
         const auto handed = handOver.tick({hand, time, kTick, published ? &*published : nullptr});
+        EXPECT_FALSE(handed && handed->clamped) << time;
         if (handed)
             stiffness.push_back(
                 std::log(feltStiffness(ForceLaw::series, handed->contactStiffness, handed->compliance)));
     }
 
     ASSERT_GT(stiffness.size(), 150u);
-    EXPECT_EQ(handOver.clampedTicks(), 0u);
     double     worst  = 0; // range within 5 mm
     const auto window = std::size_t(5e-3 / (kSpeed * kTick));
     for (std::size_t n = 0; n + window <= stiffness.size(); ++n) {

@@ -224,6 +224,7 @@ TEST(Pipeline, WhatIsNoSurfaceIsAnOutcomeAndNotACrash)
     const Object wire(PointCloud(line, std::vector<double>(100, 1e6), StiffnessKind::modulus));
     const Patch  patch = wire.touch({5e-3, 0, 0}, {0, 0, 1}, kCoarse);
     EXPECT_FALSE(patch.deformed());
+    EXPECT_THROW(demandDeformed(patch), Error);
     EXPECT_EQ(displaced(wire.cloud(), patch, 1)[3], line[3]);
 
     EXPECT_THROW((void)wire.touch({1, 0, 0}, {0, 0, 1}, kCoarse), Error) << "a contact far from the cloud";

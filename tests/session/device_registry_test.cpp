@@ -40,6 +40,12 @@ TEST(DeviceRegistry, EachRecordSaysWhatItsReadersNeed)
     }
 }
 
+TEST(DeviceRegistry, KnowsEveryDeviceThatIsBuiltIn)
+{
+    for (const char* name : {"falcon", "bridge", "spacemouse", "mouse", "arm", "falcon-emulator"})
+        EXPECT_NE(deviceNamed(name), nullptr) << name;
+}
+
 TEST(DeviceRegistry, ANameMayHaveThePathOfADeviceThatIsPluggedIn)
 {
     EXPECT_EQ(deviceNamed("falcon@1-2.3"), &kFalconRecord);

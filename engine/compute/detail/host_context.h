@@ -1,7 +1,7 @@
 #pragma once
 #include <string_view>
 
-#include "engine/compute/detail/backend.h"
+#include "engine/compute/backend.h"
 
 namespace palp::compute {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <string>
 
-#include "engine/compute/detail/vulkan_handles.h"
+#include "engine/compute/vulkan_handles.h"
 
 namespace palp::compute {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "engine/compute/command_list.h"
-#include "engine/compute/detail/vulkan_handles.h"
+#include "engine/compute/vulkan_handles.h"
 #include "engine/core/contract.h"
 
 namespace palp::compute {

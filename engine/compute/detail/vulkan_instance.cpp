@@ -1,10 +1,10 @@
-#include "engine/compute/detail/vulkan_instance.h"
+#include "engine/compute/vulkan_instance.h"
 
 #include <algorithm>
 #include <cstring>
 #include <utility>
 
-#include "engine/compute/detail/vulkan_handles.h"
+#include "engine/compute/vulkan_handles.h"
 
 namespace palp::compute {
 namespace {

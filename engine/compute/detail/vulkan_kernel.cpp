@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/compute/detail/vulkan_handles.h"
+#include "engine/compute/vulkan_handles.h"
 
 namespace palp::compute {
 namespace {

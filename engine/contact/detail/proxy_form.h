@@ -3,9 +3,18 @@
 
 #include <glm/vec3.hpp>
 
+#include <glm/geometric.hpp>
+
 #include "engine/contact/proxy.h"
 
 namespace palp {
+
+/// Returns the step, shortened to `longest` [m] if it is longer.
+[[nodiscard]] inline glm::dvec3 capped(const glm::dvec3& step, double longest) noexcept
+{
+    const double length = glm::length(step);
+    return length <= longest ? step : step * (longest / length);
+}
 
 /// One form of the proxy. Internal to the contact layer.
 /// \thread one; step and reset allocate nothing

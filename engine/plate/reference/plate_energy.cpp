@@ -12,7 +12,7 @@ Difference secondDifference(int index, int cells, Edge first, Edge last, int nod
         d.add(node - stride, 1);
         d.add(node, -2);
         d.add(node + stride, 1);
-    } else if ((index == 0 ? first : last) == Edge::clamped) {
+    } else if (holdsSlope(index == 0 ? first : last)) {
         d.add(node, -2);
         d.add(index == 0 ? node + stride : node - stride, 2);
     }
@@ -78,13 +78,6 @@ EnergyTerm foundationTerm(const Plate& plate, int i, int j)
     term.p.add(i * plate.grid.nodesZ() + j, 1);
     term.kpp = plate.foundation * nodeArea(plate.grid, i, j);
     return term;
-}
-
-bool isHeld(const Plate& plate, int i, int j) noexcept
-{
-    const PlateEdges& e = plate.edges;
-    return (i == 0 && e.x0 != Edge::free) || (i == plate.grid.cellsX && e.x1 != Edge::free) ||
-           (j == 0 && e.z0 != Edge::free) || (j == plate.grid.cellsZ && e.z1 != Edge::free);
 }
 
 NodeField energyResidual(const Plate& plate, const NodeField& forces, const NodeField& w)

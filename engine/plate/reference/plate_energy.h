@@ -64,9 +64,6 @@ void visitTerms(const Plate& plate, Visit&& visit)
         }
 }
 
-/// Returns whether an edge holds the node.
-[[nodiscard]] bool isHeld(const Plate& plate, int i, int j) noexcept;
-
 /// Returns forces [N] minus the energy's gradient at w [m], in moment form: differences first, products with the
 /// rigidity second. The matrix would lose the small differences of w to the rounding of its own entries. On held nodes
 /// the result is the reaction of the edge.

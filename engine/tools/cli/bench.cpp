@@ -213,10 +213,7 @@ void addBenchCommand(CLI::App& app)
         "  palpate bench --quick\n"
         "  palpate bench --out bench\n"
         "  palpate bench --cases new_map,new_load --nodes 129,257 --json");
-    bench->callback([bench, o] {
-        refuseEmptyValues(*bench);
-        runBench(*o);
-    });
+    bench->callback([o] { runBench(*o); });
 }
 
 } // namespace palp

@@ -134,7 +134,6 @@ void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrati
         in.velocity        = state.velocity;
         in.homed           = state.homed && state.fault == DeviceFault::none;
         in.inBox           = state.inBox;
-        in.time            = now;
         in.dt              = dt;
         in.loopPeriod      = period;
         in.missedExchanges = state.missed;
@@ -249,7 +248,8 @@ void print(const CalibrateOptions& o, double mass, const FalconCalibration& cali
     if (o.emulator)
         std::printf("true values      %.0f and %.0f g: this Falcon is emulated, do not use its numbers with another\n",
                     kEmulatedCounts, 1000 * kEmulatedArm);
-    std::printf("use it           palpate run SCENE --hand falcon --falcon-counts %.0f\n", counts);
+    std::printf("use it           palpate run SCENE --hand %s %s %.0f\n", kFalconRecord.name.data(),
+                kFalconCounts.flag.data(), counts);
 }
 
 void calibrate(const CalibrateOptions& o)
@@ -282,10 +282,7 @@ void addCalibrateCommand(CLI::App& app)
         "  palpate calibrate --mass '200 g'\n"
         "  palpate calibrate --mass 0.1 --falcon-firmware falcon.bin\n"
         "  palpate calibrate --emulator --json");
-    command->callback([command, o] {
-        refuseEmptyValues(*command);
-        calibrate(*o);
-    });
+    command->callback([o] { calibrate(*o); });
 }
 
 } // namespace palp

@@ -32,14 +32,13 @@ void refuseSourceAsTarget(const std::string& option, const std::string& source, 
     throw Error(option + ": " + target + " is the file of the cloud and would be overwritten; name another file");
 }
 
-std::string placeText(const glm::dvec3& place, double diagonal, double metresPerUnit)
+std::string placeText(const glm::dvec3& place, double diagonal)
 {
-    // A thousandth of the cloud, in decimals of the unit.
-    const int   decimals = std::max(0, int(std::ceil(3 - std::log10(diagonal / metresPerUnit))));
+    const int   decimals = std::max(0, int(std::ceil(3 - std::log10(diagonal)))); // a thousandth of the cloud
     std::string text;
     for (int k = 0; k < 3; ++k) {
         char number[64];
-        std::snprintf(number, sizeof number, "%.*f", std::min(decimals, 12), place[k] / metresPerUnit);
+        std::snprintf(number, sizeof number, "%.*f", std::min(decimals, 12), place[k]);
         text += std::string(k ? "," : "") + number;
     }
     return text;
@@ -83,21 +82,21 @@ std::vector<std::string> cloudWarnings(const Scene& scene, const PointCloud& clo
     return said;
 }
 
-nlohmann::json cloudJson(const std::string& name, const LoadedCloud& loaded)
+nlohmann::json cloudJson(const std::string& name, const PointCloud& cloud, std::span<const Triangle> faces,
+                         const CloudFileReport& report)
 {
-    const PointCloud& cloud = loaded.cloud;
-    const Extremes    found = extremesOf(cloud.stiffness());
+    const Extremes found = extremesOf(cloud.stiffness());
     return {{"name", name},
-            {"format", loaded.report.format},
+            {"format", report.format},
             {"points", cloud.size()},
-            {"dropped_points", loaded.report.droppedPoints},
-            {"duplicate_positions", loaded.report.duplicatePositions},
-            {"faces", loaded.faces.size()},
-            {"degenerate_faces", loaded.report.degenerateFaces},
-            {"dropped_faces", loaded.report.droppedFaces},
-            {"properties", loaded.report.properties},
-            {"length_unit_source", loaded.report.lengthUnitSource},
-            {"stiffness_source", loaded.report.stiffnessSource},
+            {"dropped_points", report.droppedPoints},
+            {"duplicate_positions", report.duplicatePositions},
+            {"faces", faces.size()},
+            {"degenerate_faces", report.degenerateFaces},
+            {"dropped_faces", report.droppedFaces},
+            {"properties", report.properties},
+            {"length_unit_source", report.lengthUnitSource},
+            {"stiffness_source", report.stiffnessSource},
             {"stiffness_unit", unitOf(cloud.kind())},
             {"stiffness_min", found.least},
             {"stiffness_max", found.most},

@@ -1,20 +1,21 @@
 #pragma once
+#include <span>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "engine/cloud/point_cloud_io.h"
 #include "engine/session/scene.h"
 
 namespace palp {
 
 /// Returns what was read, for --json: points, bounds, units, and where the stiffness came from.
 /// \param name  of the cloud or scene, as the user wrote it
-[[nodiscard]] nlohmann::json cloudJson(const std::string& name, const LoadedCloud& loaded);
+[[nodiscard]] nlohmann::json cloudJson(const std::string& name, const PointCloud& cloud,
+                                       std::span<const Triangle> faces, const CloudFileReport& report);
 
-/// Returns "x,y,z" as --at takes it, to about a thousandth of a cloud of that diagonal [m].
-[[nodiscard]] std::string placeText(const glm::dvec3& place, double diagonal, double metresPerUnit = 1);
+/// Returns "x,y,z" [m] as --place takes it, to about a thousandth of a cloud of that diagonal [m].
+[[nodiscard]] std::string placeText(const glm::dvec3& place, double diagonal);
 
 /// Returns, in sentences, what was assumed of a cloud's file because nothing states it, and unusedVariables(): what
 /// every command that takes a scene tells.

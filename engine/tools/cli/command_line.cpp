@@ -1,8 +1,11 @@
 #include "engine/tools/cli/commands.h"
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 #include "engine/core/contract.h"
+#include "engine/core/quantity.h"
 
 namespace palp {
 
@@ -10,6 +13,24 @@ void demandSvg(const std::string& option, const std::string& file)
 {
     if (!file.empty() && std::filesystem::path(file).extension() != ".svg")
         throw Error(option + ": expected a file that ends in .svg, found \"" + file + "\"");
+}
+
+double forceOf(const std::string& text)
+{
+    constexpr double kMost = 1e6; // [N] far beyond what a hand can feel, and far below what could overflow a result
+    const double     force = parseQuantity(text, Dimension::force, "--force");
+    if (force >= 0 && force <= kMost) return force;
+    throw Error("--force: expected a force from 0 to 1e6 N, found \"" + text + "\"");
+}
+
+std::pair<int, int> pixelsOf(const std::string& text, int least, int most)
+{
+    int        width = 0, height = 0, end = 0;
+    const bool read =
+        std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &end) == 2 && std::size_t(end) == text.size();
+    if (read && std::min(width, height) >= least && std::max(width, height) <= most) return {width, height};
+    throw Error("--size: expected WIDTHxHEIGHT of " + std::to_string(least) + " to " + std::to_string(most) +
+                " px each, such as 1280x720, found \"" + text + "\"");
 }
 
 std::string commandOf(const CLI::App& command)

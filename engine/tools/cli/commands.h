@@ -1,8 +1,12 @@
 #pragma once
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <CLI/CLI.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/enum_names.h"
 
 namespace palp {
 
@@ -29,14 +33,27 @@ struct CheckFailed : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Refuses options that are given an empty value.
-/// \throws Error naming the first such option of the command
-void refuseEmptyValues(const CLI::App& command);
-
 /// Refuses other files, so that no slip writes a picture over a scene, a hand or a table.
 /// \param option  opens the complaint
 /// \throws Error unless the file's name ends in .svg, or is empty: no picture
 void demandSvg(const std::string& option, const std::string& file);
+
+/// Reads the force that presses [N].
+/// \throws Error naming --force
+[[nodiscard]] double forceOf(const std::string& text);
+
+/// Reads a size such as "1600x1200" [px], each side within the bounds.
+/// \throws Error naming --size
+[[nodiscard]] std::pair<int, int> pixelsOf(const std::string& text, int least, int most);
+
+/// Returns the value of an option with a fixed set of names.
+/// \throws Error naming the option and the names
+template <NamedEnum Enum>
+[[nodiscard]] Enum named(const std::string& option, const std::string& word)
+{
+    if (const auto value = valueNamed<Enum>(word)) return *value;
+    throw Error(option + ": unknown name \"" + word + "\"; known: " + wordsOf<Enum>());
+}
 
 /// Returns the command line with a command's options, quoted for a shell.
 [[nodiscard]] std::string commandOf(const CLI::App& command);

@@ -31,7 +31,7 @@ void convert(const ConvertOptions& options)
         warnings.push_back("the " + std::to_string(loaded.faces.size()) +
                            " triangles were not written: only PLY holds faces; name a .ply file to keep them");
     if (options.json) {
-        nlohmann::json report = cloudJson(options.source.name, loaded);
+        nlohmann::json report = cloudJson(options.source.name, loaded.cloud, loaded.faces, loaded.report);
         report["written"]     = options.target;
         report["faces"]       = faces ? loaded.faces.size() : 0;
         report["warnings"]    = warnings;
@@ -61,10 +61,7 @@ void addConvertCommand(CLI::App& app)
                     "  palpate convert scan.pcd scan.ply --length-unit mm --stiffness-property intensity \\\n"
                     "    --stiffness-range 20kPa,2MPa\n"
                     "  palpate convert scan.ply ramp.csv --stiffness linear:from=2e4,to=2e6,axis=z");
-    command->callback([command, options] {
-        refuseEmptyValues(*command);
-        convert(*options);
-    });
+    command->callback([options] { convert(*options); });
 }
 
 } // namespace palp

@@ -10,11 +10,12 @@
 namespace palp {
 namespace {
 
+/// Reads a length above zero and up to a metre, more than any hand reaches [m].
 double metres(const std::string& text, const std::string& option, double metresPerPlainNumber)
 {
     const double value = parseQuantity(text, Dimension::length, option, metresPerPlainNumber);
-    if (value > 0) return value;
-    throw Error(option + ": expected a length above 0, found \"" + text + "\"");
+    if (value > 0 && value <= 1) return value;
+    throw Error(option + ": expected a length above 0 and up to 1 m, found \"" + text + "\"");
 }
 
 /// Reads "50 mm/s" or "0.05" [m/s].
@@ -49,8 +50,9 @@ HandChoice choiceOf(const HandOptions& o)
     HandChoice choice;
     choice.hand    = o.hand;
     choice.speed   = metresPerSecond(o.speed, "--speed");
-    choice.radius  = metres(o.reach, "--reach", o.metresPerPlainNumber);
+    choice.radius  = reachOf(o.reach, o.metresPerPlainNumber);
     choice.options = o.device;
+    choice.cancel  = o.cancel;
     if (!o.depth.empty()) choice.depth = metres(o.depth, "--press-depth", o.metresPerPlainNumber);
     if (!o.grip.empty()) choice.grip = gripOf(o.grip);
     if (!o.seconds.empty()) choice.seconds = secondsOf(o.seconds);
@@ -78,6 +80,11 @@ void addOption(CLI::App& command, DeviceOptionValues& values, const DeviceOption
 
 } // namespace
 
+double reachOf(const std::string& text, double metresPerPlainNumber)
+{
+    return metres(text, "--reach", metresPerPlainNumber);
+}
+
 double secondsOf(const std::string& text)
 {
     constexpr double kMost  = 86400; // [s] a day
@@ -101,6 +108,20 @@ std::string deviceHands()
     for (const DeviceRecord* record : deviceRecords())
         if (record->holder != DeviceHolder::pointer) hands += (hands.empty() ? "" : ", ") + std::string(record->name);
     return hands;
+}
+
+void addHandOptions(CLI::App& command, HandOptions& options, std::span<const DeviceRecord* const> records)
+{
+    command.add_option("--speed", options.speed, "largest speed of press, circle and scan")->capture_default_str();
+    command.add_option("--press-depth", options.depth,
+                       "depth of the hand below the surface [40 % of the thickness, within plate theory]");
+    command.add_option("--reach", options.reach, "radius of the circle, half the length of the scan")
+        ->capture_default_str();
+    command.add_option(
+        "--arm", options.grip,
+        "stiffness with which the hand grips a simulated device, so that forces move it (relaxed '150 N/m', "
+        "firm '500 N/m')");
+    addDeviceOptions(command, options.device, records);
 }
 
 void addDeviceOptions(CLI::App& command, DeviceOptionValues& values, std::span<const DeviceRecord* const> records)

@@ -11,11 +11,13 @@ namespace palp {
 /// The options of the hand, as the command line gives them.
 struct HandOptions {
     std::string        hand  = "scan"; ///< as HandChoice::hand
-    std::string        speed = "50 mm/s", depth, reach = "10 mm";
-    double             metresPerPlainNumber = 1; ///< of depth and reach, as of all lengths on the command line
-    std::string        grip;    ///< of a scripted hand on a simulated device; empty: forces do not move the hand
-    DeviceOptionValues device;  ///< options of the device
-    std::string        seconds; ///< "5 s"; empty: 5 s, or a file's own length
+    std::string        speed = "50 mm/s", depth{}, reach = "10 mm";
+    double             metresPerPlainNumber = 1; ///< of depth and reach, see metresPerPlainNumber()
+    std::string        grip{};    ///< of a scripted hand on a simulated device; empty: forces do not move the hand
+    DeviceOptionValues device{};  ///< options of the device
+    std::string        seconds{}; ///< "5 s"; empty: 5 s, or a file's own length
+
+    const std::atomic<bool>* cancel = nullptr; ///< see DeviceRequest
 };
 
 /// Returns "press, circle, scan": the hands that Palpate generates.
@@ -24,8 +26,15 @@ struct HandOptions {
 /// Returns "falcon, bridge, ...": the devices that a command without a window can use.
 [[nodiscard]] std::string deviceHands();
 
+/// Adds the options of generated hands (--speed, --press-depth, --reach, --arm) and those of these devices.
+void addHandOptions(CLI::App& command, HandOptions& options, std::span<const DeviceRecord* const> records);
+
 /// Adds every option of these devices.
 void addDeviceOptions(CLI::App& command, DeviceOptionValues& values, std::span<const DeviceRecord* const> records);
+
+/// Reads the length of a path to either side of the place [m].
+/// \throws Error naming --reach
+[[nodiscard]] double reachOf(const std::string& text, double metresPerPlainNumber);
 
 /// Reads "5 s" or "5" [s].
 /// \throws Error naming --seconds

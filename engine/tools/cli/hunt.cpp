@@ -109,7 +109,6 @@ void addHuntCommand(CLI::App& app)
         "virtual\n"
         "  palpate hunt --score session --json");
     command->callback([command, o] {
-        refuseEmptyValues(*command);
         o->session.command = commandOf(*command);
         o->session.json    = o->json;
         hunt(*o);

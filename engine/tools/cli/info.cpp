@@ -45,7 +45,7 @@ void printInfo(const InfoOptions& options)
     const Scene          scene  = options.source.load();
     const LoadedCloud    loaded = options.source.loadCloud(scene);
     const NeighbourIndex index(loaded.cloud.positions());
-    nlohmann::json       report = cloudJson(options.source.name, loaded);
+    nlohmann::json       report = cloudJson(options.source.name, loaded.cloud, loaded.faces, loaded.report);
     report["point_spacing"]     = index.spacing();
 
     const std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
@@ -100,8 +100,7 @@ void addInfoCommand(CLI::App& app)
                     "  palpate info scan.ply --length-unit mm\n"
                     "  palpate info painted.ply --stiffness-property quality --stiffness-range 20kPa,2MPa\n"
                     "  palpate info --samples");
-    command->callback([command, options, list, keys, schema] {
-        refuseEmptyValues(*command);
+    command->callback([options, list, keys, schema] {
         if (*list) return printSamples(options->json);
         if (*keys) return void(std::cout << sceneKeyTable(&study::huntKeys()));
         if (*schema) return void(std::cout << sceneSchema(&study::huntKeys()));

@@ -12,17 +12,6 @@
 #include "engine/core/contract.h"
 #include "engine/tools/cli/commands.h"
 
-namespace palp {
-
-void refuseEmptyValues(const CLI::App& command)
-{
-    for (const CLI::Option* option : command.get_options())
-        for (const std::string& value : option->results())
-            if (value.empty()) throw Error(option->get_name() + ": expected a value, found \"\"");
-}
-
-} // namespace palp
-
 namespace {
 
 constexpr int kBadInput    = 2;
@@ -55,6 +44,14 @@ void refuseUnknownCommand(const CLI::App& app, const std::string& name)
         known += (known.empty() ? "" : ", ") + command->get_name();
     }
     throw palp::Error("unknown command \"" + name + "\"; known: " + known + "; see --help");
+}
+
+/// Refuses options that are given an empty value.
+void refuseEmptyValues(const CLI::App& command)
+{
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& value : option->results())
+            if (value.empty()) throw palp::Error(option->get_name() + ": expected a value, found \"\"");
 }
 
 /// Turns "help solve" into "solve --help".
@@ -122,6 +119,8 @@ int main(int argumentCount, char** arguments)
     palp::addPaperCommand(app);
     palp::addCalibrateCommand(app);
     palp::addBenchCommand(app);
+    for (CLI::App* command : app.get_subcommands({}))
+        command->parse_complete_callback([command] { refuseEmptyValues(*command); });
     std::signal(SIGXFSZ, SIG_IGN); // a file beyond the size limit then fails as a write, with a sentence
     try {
         const std::vector<const char*> words = wordsOf(argumentCount, arguments);

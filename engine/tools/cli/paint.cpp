@@ -156,10 +156,7 @@ void addPaintCommand(CLI::App& app)
         "strength=0.5' \\\n"
         "    --stroke 'at=12,0,30 radius=8 smooth' --out painted.ply\n"
         "  palpate paint samples/scenes/palm.json --stroke 'at=0,0,0 radius=1cm smooth' --out smoother.ply --json");
-    command->callback([command, options] {
-        refuseEmptyValues(*command);
-        paint(*options);
-    });
+    command->callback([options] { paint(*options); });
 }
 
 } // namespace palp

@@ -116,10 +116,11 @@ void paper(const PaperOptions& o)
     }
     makeFolder(o.out);
     std::vector<Section> sections;
+    FigureRenderer       renderer;
     for (const Part& part : parts()) {
         if (wanted.find(part.letter) == std::string::npos) continue;
         Progress  progress(std::string(1, part.letter) + " of " + wanted + ": " + part.what);
-        ReportRun run{solver, o.quick, timedSolvers(o, solver),
+        ReportRun run{solver, renderer, o.quick, timedSolvers(o, solver),
                       [&](std::size_t done, std::size_t total) { progress.at(done, total); }};
         sections.push_back(part.make(run));
         if (part.letter == 'b' && !o.bunny.empty()) addBunny(sections.back(), o.bunny, run);
@@ -177,8 +178,7 @@ void addPaperCommand(CLI::App& app)
         "  palpate paper --out report\n"
         "  palpate paper --out report --only a,f,g --solver host\n"
         "  palpate paper --out report --only b --bunny bun_zipper.ply");
-    command->callback([command, o] {
-        refuseEmptyValues(*command);
+    command->callback([o] {
         o->command = commandOf(*o);
         paper(*o);
     });

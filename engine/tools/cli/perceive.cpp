@@ -13,6 +13,7 @@
 #include "engine/core/quantity.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/hand_source.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/solver_choice.h"
 #include "engine/tools/paper/perception_figures.h"
@@ -49,14 +50,10 @@ struct Felt {
 };
 
 /// Returns the length of the path to either side of the middle [m].
-double reachOf(const PerceiveOptions& o, const Scene& scene)
+double eachSide(const PerceiveOptions& o, const Scene& scene)
 {
-    constexpr double kShare = 1.0 / 3, kMost = 1; // of the window, beyond which the middle is not felt; [m]
-    if (o.reach.empty()) return kShare * scene.patch.window;
-    const double reach = parseQuantity(o.reach, Dimension::length, "--reach", metresPerPlainNumber(o.scene, scene));
-    if (!(reach > 0 && reach <= kMost))
-        throw Error("--reach: expected more than 0 and at most 1 m, found \"" + o.reach + "\"");
-    return reach;
+    constexpr double kShare = 1.0 / 3; // of the window, beyond which the middle is not felt [1]
+    return o.reach.empty() ? kShare * scene.patch.window : reachOf(o.reach, metresPerPlainNumber(o.scene, scene));
 }
 
 void write(const std::string& file, const std::string& text)
@@ -145,7 +142,7 @@ void perceive(const PerceiveOptions& o)
     Felt                   felt(o);
     const FeltLine         line = feltLine(felt.scene, felt.object,
                                    o.along.empty() ? std::optional<glm::dvec3>() : parsePoint(o.along, "--along"),
-                                           reachOf(o, felt.scene));
+                                           eachSide(o, felt.scene));
     Progress               progress("feeling");
     const auto             onStep = [&](std::size_t done, std::size_t total) { progress.at(done, total); };
     const ScenePerception  found  = perceive(felt.scene, felt.object, line, o.places, felt.solver, onStep);
@@ -154,9 +151,10 @@ void perceive(const PerceiveOptions& o)
     if (!o.out.empty())
         write(o.out, pathSvg(found, felt.scene.patch.forceLaw, "Felt stiffness along the path: " + o.scene.title()));
     constexpr double kTypicalWeber = kWeberFractions[1];
+    FigureRenderer   renderer;
     if (map)
         write(o.picture, mapSvg(felt.object.cloud(), *map, kTypicalWeber, line.middle.outward,
-                                "What is noticed if 15 % is the smallest change: " + o.scene.title()));
+                                "What is noticed if 15 % is the smallest change: " + o.scene.title(), renderer));
     if (o.json)
         std::cout << jsonText(jsonOf(o, felt, found, map));
     else
@@ -193,10 +191,7 @@ void addPerceiveCommand(CLI::App& app)
                     "  palpate perceive samples/scenes/skin_wart.json --picture wart.svg\n"
                     "J is the number of just noticeable steps between two stiffnesses, for people whose\n"
                     "smallest noticed change is 7, 15 or 22 %. The floor is J on the same points with one stiffness.");
-    command->callback([command, o] {
-        refuseEmptyValues(*command);
-        perceive(*o);
-    });
+    command->callback([o] { perceive(*o); });
 }
 
 } // namespace palp

@@ -43,22 +43,17 @@ struct RenderOptions {
     SceneSource        scene;
     std::string        force, size = "1600x1200", out;
     std::string        colour = "deflection", map = "viridis", exaggerate = "1";
-    std::string        drawOn = "auto", view = name(Shot::patch), hand = name(HandMotion::scan), seconds = "2 s";
+    std::string        drawOn = "auto", view = name(Shot::patch);
+    HandOptions        hand{.seconds = "2 s"};
     std::optional<int> frames;
     int                finer = 2;
     bool               dark = false, json = false, ghost = false, sphere = false, projected = false;
 };
 
-/// Reads "1600x1200" [px].
-PictureSize sizeOf(const std::string& text, int finer)
+PictureSize sizeOf(const RenderOptions& o)
 {
-    constexpr int kLeast = 16, kMost = 4096; // [px]
-    int           width = 0, height = 0, end = 0;
-    const bool    read =
-        std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &end) == 2 && std::size_t(end) == text.size();
-    if (!read || width < kLeast || height < kLeast || width > kMost || height > kMost)
-        throw Error("--size: expected WIDTHxHEIGHT of 16 to 4096 px each, such as 1600x1200, found \"" + text + "\"");
-    return {width, height, finer};
+    const auto [width, height] = pixelsOf(o.size, 16, 4096);
+    return {width, height, o.finer};
 }
 
 TouchLook lookOf(const RenderOptions& o)
@@ -79,7 +74,7 @@ TouchLook lookOf(const RenderOptions& o)
 /// The touched and drawn object with its renderer, made once.
 struct Stage {
     explicit Stage(const RenderOptions& o)
-        : size(sizeOf(o.size, o.finer)), look(lookOf(o)), scene(o.scene.load()), renderer({.processor = o.drawOn}),
+        : size(sizeOf(o)), look(lookOf(o)), scene(o.scene.load()), renderer({.processor = o.drawOn}),
           loaded(o.scene.loadObject(scene)), solver(openSolver(scene.solver)), view(loaded.object, scene.patch)
     {
         sayPassedOver(renderer.processor().name, renderer.note());
@@ -96,10 +91,7 @@ struct Stage {
 Patch patchAt(Stage& stage, const Contact& contact)
 {
     Patch patch = deform(stage.loaded.object, contact, stage.scene.patch, stage.solver);
-    if (!patch.deformed())
-        throw Error("render: the " + std::to_string(patch.gathered.size()) +
-                    " points around the place do not determine a surface (" + name(patch.sphere.outcome) +
-                    "); try a larger --window");
+    demandDeformed(patch);
     return patch;
 }
 
@@ -149,11 +141,8 @@ Written write(Stage& stage, const Camera& camera, const std::filesystem::path& f
 /// Draws a touch at the scene's place.
 Written still(const RenderOptions& o, Stage& stage)
 {
-    const Patch      patch = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
-    constexpr double kMost = 1e6; // [N]
-    const double     force = o.force.empty() ? forceThatShows(patch, stage.scene.material.thickness)
-                                             : parseQuantity(o.force, Dimension::force, "--force");
-    if (!(force >= 0 && force <= kMost)) throw Error("--force: expected 0 to 1e6 N, found \"" + o.force + "\"");
+    const Patch  patch = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
+    const double force = o.force.empty() ? forceThatShows(patch, stage.scene.material.thickness) : forceOf(o.force);
     stage.view.show(&patch, force, stage.look);
     stage.view.scene().title = o.scene.title();
     stage.view.scene().note  = noteOf(stage, patch, force);
@@ -168,12 +157,11 @@ Written still(const RenderOptions& o, Stage& stage)
 /// Returns the session's records at evenly spread times, from the first to the last tick.
 std::vector<TickRecord> recordsOf(const RenderOptions& o, Stage& stage, int frames)
 {
-    HandOptions hand;
-    hand.hand          = o.hand;
-    hand.seconds       = o.seconds;
-    SessionHand source = handFor(hand, stage.scene, stage.loaded.object);
+    HandOptions hand          = o.hand;
+    hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, stage.scene);
+    SessionHand source        = handFor(hand, stage.scene, stage.loaded.object);
     if (source.isHeldByPerson())
-        throw Error("--hand " + o.hand + ": a person holds it; --frames needs a scripted hand");
+        throw Error("--hand " + hand.hand + ": a person holds it; --frames needs a scripted hand");
     Deformation             deformation(stage.loaded.object, stage.scene);
     const SessionParts      parts{stage.scene, stage.loaded.object, deformation.solver(), *source.device, source.frame};
     std::vector<TickRecord> all;
@@ -291,9 +279,10 @@ void addRenderCommand(CLI::App& app)
     command->add_flag("--sphere", o->sphere, "adds the near half of the fitted sphere");
     command->add_flag("--projected", o->projected, "adds dots where the points lie on that sphere");
     command->add_option("--frames", o->frames, "number of pictures along the path of --hand, in virtual time");
-    command->add_option("--hand", o->hand, "hand for --frames: " + generatedHands() + ", or a file")
+    command->add_option("--hand", o->hand.hand, "hand for --frames: " + generatedHands() + ", or a file")
         ->capture_default_str();
-    command->add_option("--seconds", o->seconds, "time that the hand moves, for --frames")->capture_default_str();
+    command->add_option("--seconds", o->hand.seconds, "time that the hand moves, for --frames")->capture_default_str();
+    addHandOptions(*command, o->hand, {});
     command->add_option("--draw-on", o->drawOn, "Vulkan processor that draws, as \"palpate devices\" names it")
         ->capture_default_str();
     command->add_flag("--json", o->json, "machine-readable, SI units");
@@ -301,12 +290,9 @@ void addRenderCommand(CLI::App& app)
     command->footer("Examples:\n"
                     "  palpate render sample:ear-lobe --out lobe.png\n"
                     "  palpate render samples/scenes/skin_wart.json --force '1 N' --colour stiffness --out wart.png\n"
-                    "  palpate render scan.ply --length-unit mm --at 12,0,30 --size 800x600 --dark --out scan.png\n"
+                    "  palpate render scan.ply --length-unit mm --place 12,0,30 --size 800x600 --dark --out scan.png\n"
                     "  palpate render samples/scenes/palm.json --frames 50 --out film.png");
-    command->callback([command, o] {
-        refuseEmptyValues(*command);
-        render(*o);
-    });
+    command->callback([o] { render(*o); });
 }
 
 } // namespace palp

@@ -105,7 +105,6 @@ void addRunCommand(CLI::App& app)
                  "  palpate run scan.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa\n"
                  "  palpate run samples/scenes/skin_wart.json --print-config");
     run_->callback([run_, o] {
-        refuseEmptyValues(*run_);
         o->session.command = commandOf(*run_);
         o->session.json    = o->json;
         run(*o);
@@ -119,10 +118,7 @@ void addRunCommand(CLI::App& app)
                     "compares both sessions; exit code 1 and the first tick that differs, if one does");
     again->add_flag("--json", r->json, "machine-readable");
     again->footer("Examples:\n  palpate replay session --compare\n  palpate replay session --json");
-    again->callback([again, r] {
-        refuseEmptyValues(*again);
-        replay(*r);
-    });
+    again->callback([r] { replay(*r); });
 }
 
 } // namespace palp

@@ -191,16 +191,7 @@ void addSessionOptions(CLI::App& command, SessionOptions& options)
                         deviceHands() + " (palpate devices lists those connected; NAME@PATH selects one of several)")
         ->capture_default_str();
     command.add_option("--seconds", options.hand.seconds, "duration [5 s, or a file's own length]");
-    command.add_option("--speed", options.hand.speed, "largest speed of a generated hand")->capture_default_str();
-    command.add_option("--press-depth", options.hand.depth,
-                       "depth of the hand below the surface [40 % of the thickness, within plate theory]");
-    command.add_option("--reach", options.hand.reach, "radius of the circle, half the length of the scan")
-        ->capture_default_str();
-    command.add_option(
-        "--arm", options.hand.grip,
-        "stiffness with which the hand grips a simulated device, so that forces move it (relaxed '150 N/m', "
-        "firm '500 N/m')");
-    addDeviceOptions(command, options.hand.device, deviceRecords());
+    addHandOptions(command, options.hand, deviceRecords());
     command
         .add_option("--clock", options.clock,
                     "real: one tick per millisecond; virtual: as fast as possible, with equal results every time")

@@ -236,10 +236,7 @@ void addSolveCommand(CLI::App& app)
         "  palpate solve plate.json\n"
         "  palpate solve plate.json --cells 256 --solver host --tolerance 1e-6 --json\n"
         "  palpate solve plate.json --out deflection.npy");
-    command->callback([command, options] {
-        refuseEmptyValues(*command);
-        solveAndPrint(*options);
-    });
+    command->callback([options] { solveAndPrint(*options); });
 }
 
 } // namespace palp

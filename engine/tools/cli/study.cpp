@@ -76,7 +76,6 @@ void addStudyCommand(CLI::App& app)
                     "  palpate study samples/studies/wart_2afc.json --participant P01 --out warts\n"
                     "  palpate study --analyse study --plot shares.svg");
     command->callback([command, hand, o] {
-        refuseEmptyValues(*command);
         o->run.session.command = commandOf(*command);
         study_(*o, hand->count() > 0);
     });

@@ -30,16 +30,6 @@ struct TouchOptions {
     bool        json  = false;
 };
 
-/// Returns the force that presses [N].
-double forceOf(const TouchOptions& options)
-{
-    constexpr double kMost = 1e6; // [N] far beyond what a hand can feel, and far below what could overflow a result
-    const double     force = parseQuantity(options.force, Dimension::force, "--force");
-    if (!(std::abs(force) <= kMost))
-        throw Error("--force: expected a force from -1e6 to 1e6 N, found \"" + options.force + "\"");
-    return force;
-}
-
 constexpr const char* kSummary = "touch.json";
 
 std::string percent(double share)
@@ -103,6 +93,7 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
 std::vector<std::string> writePictures(const std::filesystem::path& folder, const PointCloud& cloud, const Patch& patch,
                                        const PatchSettings& settings, double force)
 {
+    FigureRenderer    renderer;
     const std::string newtons = formatQuantity(force, "N");
     const double deepest = force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
     const PressedPatch pressed[] = {{&patch, force, newtons}};
@@ -112,9 +103,9 @@ std::vector<std::string> writePictures(const std::filesystem::path& folder, cons
         return factor == 1 ? std::string() : ", displacement x " + std::to_string(int(factor));
     };
     const std::pair<const char*, std::string> pictures[] = {
-        {"surface.svg", surfaceSvg(cloud, pressed, {"Under " + newtons + times(far), far, {}, false})},
+        {"surface.svg", surfaceSvg(cloud, pressed, {"Under " + newtons + times(far), far, {}, false}, renderer)},
         {"close_up.svg",
-         surfaceSvg(cloud, pressed, {"Around the contact under " + newtons + times(near), near, {}, true})},
+         surfaceSvg(cloud, pressed, {"Around the contact under " + newtons + times(near), near, {}, true}, renderer)},
         {"rigidity.svg",
          rigidityChartSvg(patch, settings, std::string("Rigidity in the ") + name(patch.chart.map) + " chart")},
         {"deflection.svg", deflectionChartSvg(patch, settings, force, "Deflection under " + newtons)},
@@ -160,34 +151,31 @@ void refuseOverflow(const nlohmann::json& report)
     for (const char* key :
          {"rigidity_at_contact", "compliance", "contact_stiffness", "felt_stiffness", "max_deflection"})
         if (!std::isfinite(report[key].get<double>()))
-            throw Error(std::string("touch: ") + key + " is not finite; check the stiffness, --thickness and --force");
+            throw Error(std::string(key) + " is not finite; check the stiffness, --thickness and --force");
 }
 
 void touch(const TouchOptions& options)
 {
     const Scene          scene    = options.source.load();
     const PatchSettings& settings = scene.patch;
-    const double         force    = forceOf(options);
-    const LoadedCloud    loaded   = options.source.loadCloud(scene);
-    const SoftObject     object(loaded.cloud, scene.material);
-    const Contact        contact = contactOf(scene, object);
-    PlateSolver          solver  = openSolver(scene.solver);
-    const auto           told    = solver.note();
-    const Patch          patch   = deform(object, contact, settings, solver);
+    const double         force    = forceOf(options.force);
+    const LoadedObject   loaded   = options.source.loadObject(scene);
+    const SoftObject&    object   = loaded.object;
+    const Contact        contact  = contactOf(scene, object);
+    PlateSolver          solver   = openSolver(scene.solver);
+    const auto           told     = solver.note();
+    const Patch          patch    = deform(object, contact, settings, solver);
     if (solver.note() != told) std::cerr << "palpate: the reference solver took over: " << solver.note() << "\n";
-    if (!patch.deformed())
-        throw Error("touch: the " + std::to_string(patch.gathered.size()) +
-                    " points around the contact do not determine a surface (" + name(patch.sphere.outcome) +
-                    "); try a larger --window, or check --length-unit");
+    demandDeformed(patch);
 
     nlohmann::json report = patchJson(patch, scene.material, settings, force, solver);
     refuseOverflow(report);
-    report["cloud"] = cloudJson(options.source.name, loaded);
-    for (std::string& line : cloudWarnings(scene, loaded.cloud, loaded.report))
+    report["cloud"] = cloudJson(options.source.name, object.cloud(), object.faces(), loaded.report);
+    for (std::string& line : cloudWarnings(scene, object.cloud(), loaded.report))
         report["warnings"].push_back(std::move(line));
     report["preset"] = name(scene.preset);
     if (!options.out.empty()) {
-        std::vector<std::string> files = writeFiles(options, loaded.cloud, patch, settings, force);
+        std::vector<std::string> files = writeFiles(options, object.cloud(), patch, settings, force);
         files.emplace_back(kSummary);
         report["files"] = files;
         writeFileWhole(std::filesystem::path(options.out) / kSummary,
@@ -216,15 +204,12 @@ void addTouchCommand(CLI::App& app)
     command->footer(
         "Examples:\n"
         "  palpate touch sample:skin --out touch\n"
-        "  palpate touch sample:ellipsoid --at 30mm,0,30mm --force 0.3N --preset paper --json\n"
-        "  palpate touch scan.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa --at "
+        "  palpate touch sample:ellipsoid --place 30mm,0,30mm --force 0.3N --preset paper --json\n"
+        "  palpate touch scan.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa --place "
         "12,0,30\n"
-        "Without --at a cloud from a file is touched where it comes nearest to the viewer. Plain numbers of\n"
+        "Without --place a cloud from a file is touched where it comes nearest to the viewer. Plain numbers of\n"
         "lengths are in the unit of --length-unit, else metres.");
-    command->callback([command, o] {
-        refuseEmptyValues(*command);
-        touch(*o);
-    });
+    command->callback([o] { touch(*o); });
 }
 
 } // namespace palp

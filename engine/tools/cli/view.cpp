@@ -39,16 +39,11 @@ struct ViewOptions {
 
 #ifdef PALPATE_WINDOW
 
-/// Reads "1280x720" [px], or returns the window's last size.
+/// Returns the size that is asked for, or the window's last one [px].
 glm::ivec2 sizeOf(const std::string& text)
 {
     if (text.empty()) return rememberedSize();
-    constexpr int kLeast = 320, kMost = 8192; // [px]
-    int           width = 0, height = 0, end = 0;
-    const bool    read =
-        std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &end) == 2 && std::size_t(end) == text.size();
-    if (!read || width < kLeast || height < kLeast || width > kMost || height > kMost)
-        throw Error("--size: expected WIDTHxHEIGHT of 320 to 8192 px each, such as 1280x720, found \"" + text + "\"");
+    const auto [width, height] = pixelsOf(text, 320, 8192);
     return {width, height};
 }
 
@@ -134,8 +129,11 @@ void view(const ViewOptions& o)
     SessionHand source;
     if (deviceNamed(o.hand.hand) != &kMouseRecord)
         settings.hand = [&](const Stage& stage, const HandWait& wait) -> WorkbenchHand {
-            source = {}; // a device can be open only once
-            source = handFor(o.hand, stage.scene(), stage.object());
+            source                    = {}; // a device can be open only once
+            HandOptions hand          = o.hand;
+            hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, stage.scene());
+            hand.cancel               = &wait.givenUp;
+            source                    = handFor(hand, stage.scene(), stage.object());
             waitForHoming(*source.device, wait.givenUp, wait.tell);
             return {source.device.get(), source.frame, source.isHeldByPerson() ? 1e9 : source.seconds};
         };
@@ -216,16 +214,15 @@ void addViewCommand(CLI::App& app)
     command->add_flag("--validate", o->validate,
                       "runs under Vulkan's validation layer; exit code 1 if it has a message");
     command->add_flag("--json", o->json, "machine-readable, SI units");
-    addDeviceOptions(*command, o->hand.device, deviceRecords());
+    addHandOptions(*command, o->hand, deviceRecords());
     command->footer("Hold Space over the object and move to touch it; the wheel sets the depth. F1 shows all keys.\n"
                     "Examples:\n"
                     "  palpate view\n"
                     "  palpate view samples/scenes/skin_wart.json --colour stiffness\n"
                     "  palpate view samples/scenes/nodule_hunt.json --hunt-seed 7     hidden nodules: M declares one\n"
-                    "  palpate view scan.ply --length-unit mm --at 12,0,30\n"
+                    "  palpate view scan.ply --length-unit mm --place 12,0,30\n"
                     "  palpate view sample:ellipsoid --hand circle --seconds 10 --json");
     command->callback([command, o] {
-        refuseEmptyValues(*command);
         o->command = commandOf(*command);
         view(*o);
     });

@@ -25,7 +25,7 @@ struct ChartMap {
 
 Tone toneOf(Edge edge)
 {
-    return edge == Edge::clamped ? Tone::plain : edge == Edge::supported ? Tone::accent : Tone::second;
+    return !holdsNodes(edge) ? Tone::second : holdsSlope(edge) ? Tone::plain : Tone::accent;
 }
 
 /// Draws clamped sides thick, supported ones thin and free ones dashed, distinct without their colours too.
@@ -34,8 +34,8 @@ void drawSide(const PanelDesk& desk, ImVec2 from, ImVec2 to, Edge edge)
     ImDrawList* const   draw = ImGui::GetWindowDrawList();
     const std::uint32_t ink  = packed(colourOf(toneOf(edge), desk.dark()));
     const float         s    = desk.scale;
-    if (edge != Edge::free) {
-        draw->AddLine(from, to, ink, edge == Edge::clamped ? 4 * s : 1.5F * s);
+    if (holdsNodes(edge)) {
+        draw->AddLine(from, to, ink, holdsSlope(edge) ? 4 * s : 1.5F * s);
         return;
     }
     const float dash = 6 * s, length = std::hypot(to.x - from.x, to.y - from.y);
@@ -156,14 +156,14 @@ void drawReadOut(const PanelDesk& desk, const Patch& patch, const std::optional<
 void drawKeyOfSides(const PanelDesk& desk)
 {
     const float mark = 16 * desk.scale, gap = 4 * desk.scale;
-    for (const Edge edge : {Edge::clamped, Edge::supported, Edge::free}) {
-        if (edge != Edge::clamped) ImGui::SameLine(0, 3 * gap);
+    for (const auto& [edge, word] : namesOf(Edge{})) {
+        if (edge != Edge{}) ImGui::SameLine(0, 3 * gap);
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float  y  = at.y + 0.55F * ImGui::GetFontSize();
         drawSide(desk, {at.x, y}, {at.x + mark, y}, edge);
         ImGui::Dummy(ImVec2(mark, ImGui::GetFontSize()));
         ImGui::SameLine(0, gap);
-        toned(desk, Tone::faint, name(edge));
+        toned(desk, Tone::faint, word);
     }
 }
 

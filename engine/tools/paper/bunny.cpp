@@ -171,7 +171,8 @@ void addBunny(Section& lobe, const std::filesystem::path& file, const ReportRun&
         const PressedPatch pressed{&patch, kForce, ""};
         lobe.figures.push_back(
             {std::string("The outer skin of an ear, its root above: ") + name + ", displacements twice as large.",
-             surfaceSvg(skin.cloud(), {&pressed, 1}, {std::string("The bunny's ear, ") + name, 2, {0, 0, 0}, true})});
+             surfaceSvg(skin.cloud(), {&pressed, 1}, {std::string("The bunny's ear, ") + name, 2, {0, 0, 0}, true},
+                        run.renderer)});
     }
     lobe.numbers.push_back({"bunny/place", "m", {ear.place.x, ear.place.y, ear.place.z}});
     lobe.numbers.push_back({"bunny/normal", "1", {ear.frame.normal.x, ear.frame.normal.y, ear.frame.normal.z}});

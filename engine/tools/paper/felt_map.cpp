@@ -72,7 +72,7 @@ FeltMap feltMap(const SoftObject& object, const PatchSettings& settings, std::si
         try {
             const Contact contact = touchAt(object, object.positions()[places[n]], {}, edge);
             const Patch   patch   = deform(object, contact, settings, solver);
-            if (!patch.deformed()) throw Error("the points determine no surface");
+            demandDeformed(patch);
             map.places.push_back(places[n]);
             map.stiffness.push_back(patch.feltStiffness);
         } catch (const Error& error) { // a place at a rim or a tip: the others still give a map

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/extremes.h"
 #include "engine/session/deformation.h"
 #include "engine/session/scripted_hand.h"
 #include "engine/session/virtual_session.h"
@@ -83,8 +84,7 @@ std::vector<FeltPlace> windowsAlong(const SoftObject& object, const PatchSetting
     std::vector<FeltPlace> result;
     for (const glm::dvec3& place : surfaceAlong(line, object, places)) {
         const Patch patch = deform(object, {place, line.middle.outward}, settings, solver, carried);
-        if (!patch.deformed())
-            throw Error("the points around a place of the path determine no surface; try a smaller reach");
+        demandDeformed(patch, "try a smaller reach");
         carried = patch.chart.frame;
         result.push_back({alongOf(line, place), place, patch.contactStiffness, patch.compliance});
     }
@@ -123,9 +123,7 @@ std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, 
 
 SoftObject homogeneous(const SoftObject& object)
 {
-    double sum = 0;
-    for (const double stiffness : object.cloud().stiffness()) sum += std::log(stiffness);
-    return object.repainted(std::vector<double>(object.size(), std::exp(sum / double(object.size()))));
+    return object.repainted(std::vector<double>(object.size(), geometricMean(object.cloud().stiffness())));
 }
 
 FeltRange rangeOf(const std::vector<FeltPlace>& places, ForceLaw law)

@@ -70,14 +70,15 @@ std::string profileOf(const std::vector<Bent>& all, const std::vector<double>& b
     return linePlotSvg(plot, settings);
 }
 
-void addFigures(Section& section, const PointCloud& cloud, const std::vector<Bent>& all)
+void addFigures(Section& section, const PointCloud& cloud, const std::vector<Bent>& all, const ReportRun& run)
 {
     const double factor = 2;
     for (const Bent& bent : all) {
         const PressedPatch pressed{&bent.patch, kForce, ""};
         section.figures.push_back(
             {"The lobe, " + bent.name + ", displacements twice as large.",
-             surfaceSvg(cloud, {&pressed, 1}, {"Ear lobe, " + bent.name, factor, {0.9, 0.55, -0.55}, false})});
+             surfaceSvg(cloud, {&pressed, 1}, {"Ear lobe, " + bent.name, factor, {0.9, 0.55, -0.55}, false},
+                        run.renderer)});
     }
 }
 
@@ -125,7 +126,7 @@ Section lobePart(const ReportRun& run)
                                 formatQuantity(beam.front(), "m"), "-"}}});
     section.figures.push_back(
         {"The clamped dip ends where the patch window ends; the free lobe bends as a whole.", profileOf(all, beam)});
-    addFigures(section, object.cloud(), all);
+    addFigures(section, object.cloud(), all, run);
     section.claims.push_back(
         {"A thin lobe gets a realistic dip, with all edges of the neighbourhood fixed.",
          "Clamped: " + formatQuantity(held.at(middle), "m") +

@@ -43,7 +43,7 @@ void feel(Felt& felt, Section& section, const ReportRun& run, std::size_t number
         {"How surely a place is told from the object's typical one if 15 % is the smallest change "
          "that is noticed: 0.5 is guessing.",
          mapSvg(object.cloud(), map, kWeberFractions[1], line.middle.outward,
-                "Told from the typical place: " + felt.name)});
+                "Told from the typical place: " + felt.name, run.renderer)});
     section.numbers.push_back({felt.name + "/map/typical", "N/m", {map.typical}});
     section.numbers.push_back({felt.name + "/map/places", "1", {double(map.places.size())}});
 }

@@ -78,13 +78,14 @@ std::string placeName(double x)
     return "x = " + fixed(1e3 * x, 1) + " mm";
 }
 
-Figure surfaceFigure(const PointCloud& cloud, const Series& series)
+Figure surfaceFigure(const PointCloud& cloud, const Series& series, const ReportRun& run)
 {
     std::vector<PressedPatch> pressed;
     for (const Touch& touch : series.touches) pressed.push_back({&touch.patch, kForce, ""});
     return {"The ellipsoid under " + formatQuantity(kForce, "N") + " at five places, displacements twice as large; " +
                 series.title() + ". Softer to the left.",
-            surfaceSvg(cloud, pressed, {"Deflection: " + series.title(), kExaggeration, {0.15, 0.75, -0.65}, false})};
+            surfaceSvg(cloud, pressed, {"Deflection: " + series.title(), kExaggeration, {0.15, 0.75, -0.65}, false},
+                       run.renderer)};
 }
 
 Figure profileFigure(const Series& series)
@@ -217,7 +218,7 @@ Section placesPart(const ReportRun& run)
             run.step(all.size(), 4);
             all.push_back(press(object, law, preset, run));
             addNumbers(section, all.back());
-            surfaces.push_back(surfaceFigure(object.cloud(), all.back()));
+            surfaces.push_back(surfaceFigure(object.cloud(), all.back(), run));
         }
     }
     section.claims.push_back(claimOf(all));

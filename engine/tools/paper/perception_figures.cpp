@@ -41,7 +41,7 @@ std::string pathSvg(const ScenePerception& perception, ForceLaw law, const std::
 }
 
 std::string mapSvg(const PointCloud& cloud, const FeltMap& map, double weber, const glm::dvec3& outward,
-                   const std::string& title)
+                   const std::string& title, FigureRenderer& renderer)
 {
     const Frame frame = Frame::about(outward);
     CloudFigure settings;
@@ -51,7 +51,7 @@ std::string mapSvg(const PointCloud& cloud, const FeltMap& map, double weber, co
     settings.range     = ValueRange{0.5, 1};
     settings.direction = -glm::normalize(0.85 * frame.normal + 0.10 * frame.east - 0.52 * frame.north);
     settings.up        = frame.north;
-    return cloudFigureSvg(cloud.positions(), cloud.positions(), detectability(map, weber), settings);
+    return cloudFigureSvg(cloud.positions(), cloud.positions(), detectability(map, weber), settings, renderer);
 }
 
 } // namespace palp::report

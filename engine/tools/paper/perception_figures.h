@@ -3,6 +3,7 @@
 
 #include "engine/tools/paper/felt_map.h"
 #include "engine/tools/paper/scene_perception.h"
+#include "engine/tools/render/cloud_figure.h"
 
 namespace palp::report {
 
@@ -13,6 +14,6 @@ namespace palp::report {
 /// \param weber    smallest relative change that is noticed [1]
 /// \param outward  unit vector towards the viewer [1]
 [[nodiscard]] std::string mapSvg(const PointCloud& cloud, const FeltMap& map, double weber, const glm::dvec3& outward,
-                                 const std::string& title);
+                                 const std::string& title, FigureRenderer& renderer);
 
 } // namespace palp::report

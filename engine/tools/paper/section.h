@@ -7,6 +7,7 @@
 
 #include "engine/core/enum_names.h"
 #include "engine/plate/plate_solver.h"
+#include "engine/tools/render/cloud_figure.h"
 
 namespace palp::report {
 
@@ -65,6 +66,7 @@ struct Section {
 /// The input of every part.
 struct ReportRun {
     PlateSolver&                                  solver;
+    FigureRenderer&                               renderer;
     bool                                          quick = false; ///< small enough for a test, with larger errors
     std::vector<std::string>                      timed{};       ///< processors to be timed, as PlateSolver names them
     std::function<void(std::size_t, std::size_t)> onStep{};      ///< (done, total); may be empty

@@ -9,7 +9,6 @@
 #include "engine/tools/plot/colour_bar.h"
 #include "engine/tools/plot/svg.h"
 #include "engine/tools/render/cloud_skin.h"
-#include "engine/tools/render/surface_renderer.h"
 
 namespace palp {
 namespace {
@@ -53,7 +52,7 @@ ValueRange rangeOf(std::span<const double> values, const CloudFigure& figure)
 /// Draws the cloud alone.
 /// \throws Error if it has no surface, compute::ProcessorError if no processor can draw
 Image imageOf(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now, std::span<const double> values,
-              const CloudFigure& figure, const Camera& camera)
+              const CloudFigure& figure, const Camera& camera, FigureRenderer& renderer)
 {
     constexpr double kCue = 0.05, kMark = 0.012; // of the picture's height [1]
     if (rest.empty()) throw Error("there are no points");
@@ -75,7 +74,7 @@ Image imageOf(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now,
     scene.colours   = {ColourMap::viridis, Scale::linear, rangeOf(values, figure), figure.quantity, figure.unit};
     scene.cueRadius = kCue * height;
     for (const glm::dvec3& place : figure.marks) scene.dots.push_back({place, kMark * height, kForceColour});
-    return SurfaceRenderer().draw(scene, camera, kSize);
+    return renderer.opened().draw(scene, camera, kSize);
 }
 
 void drawScaleBar(SvgDrawing& svg, double pixelsPerMetre, glm::dvec2 rightEnd)
@@ -102,7 +101,7 @@ glm::dvec3 obliquely(const Frame& frame)
 } // namespace
 
 std::string cloudFigureSvg(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now,
-                           std::span<const double> values, const CloudFigure& figure)
+                           std::span<const double> values, const CloudFigure& figure, FigureRenderer& renderer)
 {
     PALP_EXPECT(rest.size() == now.size() && now.size() == values.size(),
                 "a figure has a value and two positions for each point");
@@ -111,7 +110,7 @@ std::string cloudFigureSvg(std::span<const glm::dvec3> rest, std::span<const glm
     svg.text({corner.x, 25}, figure.title, {.size = 15, .bold = true});
     try {
         const Camera camera = cameraOf(now, figure);
-        svg.image(corner, size, imageOf(rest, now, values, figure, camera));
+        svg.image(corner, size, imageOf(rest, now, values, figure, camera, renderer));
         drawScaleBar(svg, 0.5 * size.y / camera.halfHeight(), corner + size - glm::dvec2(14, 14));
     } catch (const Error& error) {
         const std::string sentence = std::string("this picture could not be drawn: ") + error.what();
@@ -132,7 +131,8 @@ std::string cloudFigureSvg(std::span<const glm::dvec3> rest, std::span<const glm
     return svg.finish({corner.x + size.x + 10 + kColourBarWidth, bottom + 8}, figure.title);
 }
 
-std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> patches, const SurfaceView& view)
+std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> patches, const SurfaceView& view,
+                       FigureRenderer& renderer)
 {
     std::vector<glm::dvec3> positions(cloud.positions().begin(), cloud.positions().end());
     std::vector<double>     depth(cloud.size(), 0.0);
@@ -152,7 +152,7 @@ std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> pa
     figure.up          = given ? glm::dvec3(0, 0, 1) : first.chart.frame.normal;
     figure.direction   = given ? view.direction : obliquely(first.chart.frame);
     if (view.closeUp) figure.window = FigureWindow{first.contact.point, 0.75 * first.window.grid.sizeX()};
-    return cloudFigureSvg(cloud.positions(), positions, depth, figure);
+    return cloudFigureSvg(cloud.positions(), positions, depth, figure, renderer);
 }
 
 double roundExaggeration(double deepest, double size)

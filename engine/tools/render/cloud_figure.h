@@ -5,6 +5,7 @@
 
 #include "engine/tools/plot/axis.h"
 #include "engine/tools/plot/patch_pictures.h"
+#include "engine/tools/render/surface_renderer.h"
 
 namespace palp {
 
@@ -26,6 +27,17 @@ struct CloudFigure {
     std::vector<glm::dvec3>     marks{};                  ///< places with a dot on them [m]
 };
 
+/// The renderer of figures: opened for the first one and kept for the next ones, because opening a device takes longer
+/// than drawing a figure.
+class FigureRenderer {
+public:
+    /// \throws compute::ProcessorError if no device can draw
+    [[nodiscard]] SurfaceRenderer& opened() { return renderer_ ? *renderer_ : renderer_.emplace(); }
+
+private:
+    std::optional<SurfaceRenderer> renderer_;
+};
+
 /// Draws a cloud as a lit, closed surface in the colours of a value per point, by parallel projection: a self-contained
 /// SVG file around a picture of SurfaceRenderer, with title, colour bar and scale bar.
 ///
@@ -36,7 +48,8 @@ struct CloudFigure {
 /// \param now     as many positions, which are drawn [m]
 /// \param values  as many [figure.unit]
 [[nodiscard]] std::string cloudFigureSvg(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now,
-                                         std::span<const double> values, const CloudFigure& figure);
+                                         std::span<const double> values, const CloudFigure& figure,
+                                         FigureRenderer& renderer);
 
 /// The view of a figure of pressed patches.
 struct SurfaceView {
@@ -49,7 +62,7 @@ struct SurfaceView {
 /// Draws the object, dented by each of the patches at once (they are solved one by one: where they overlap,
 /// displacements add), coloured by deflection.
 [[nodiscard]] std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> patches,
-                                     const SurfaceView& view);
+                                     const SurfaceView& view, FigureRenderer& renderer);
 
 /// Returns a round factor that makes the deepest displacement about a thirtieth of the object, at least 1.
 [[nodiscard]] double roundExaggeration(double deepest, double size);

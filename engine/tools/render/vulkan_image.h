@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "engine/compute/detail/vulkan_handles.h"
+#include "engine/compute/vulkan_handles.h"
 
 // Images and the passes that draw into them. Internal to engine/tools/render.
 

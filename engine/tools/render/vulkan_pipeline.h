@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/compute/detail/vulkan_handles.h"
+#include "engine/compute/vulkan_handles.h"
 
 // Internal to engine/tools/render.
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "engine/compute/detail/vulkan_handles.h"
+#include "engine/compute/vulkan_handles.h"
 #include "engine/tools/render/vulkan_image.h"
 
 // Internal to engine/tools/render.

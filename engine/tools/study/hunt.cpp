@@ -12,16 +12,17 @@
 #include "engine/core/json_object.h"
 #include "engine/core/quantity.h"
 #include "engine/core/uniform.h"
+#include "engine/force/governor.h"
 
 namespace palp::study {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kMostNodules = 64;                  ///< more would be a texture
-constexpr double      kLeastRadius = 1e-5, kMost = 1;     ///< of a nodule and of the ground [m]
-constexpr double      kSoftest = 1, kStiffest = 1e12;     ///< moduli [Pa]: softer than any gel, stiffer than diamond
-constexpr double      kLeastForce = 1e-3, kMostForce = 8; ///< a scene cannot ask a device for more than 8 N [N]
+constexpr std::size_t kMostNodules = 64;              ///< more would be a texture
+constexpr double      kLeastRadius = 1e-5, kMost = 1; ///< of a nodule and of the ground [m]
+constexpr double      kSoftest = 1, kStiffest = 1e12; ///< moduli [Pa]: softer than any gel, stiffer than diamond
+constexpr double      kLeastForce = 1e-3;             ///< [N]
 
 struct Limits {
     Dimension   dimension;
@@ -30,7 +31,9 @@ struct Limits {
 };
 constexpr Limits kRadius{Dimension::length, kLeastRadius, kMost, "a length from 1e-5 to 1 m, such as 4 mm"};
 constexpr Limits kModulus{Dimension::pressure, kSoftest, kStiffest, "a modulus from 1 to 1e12 Pa, such as 3 MPa"};
-constexpr Limits kForce{Dimension::force, kLeastForce, kMostForce, "a force from 1e-3 to 8 N, such as 2 N"};
+static_assert(GovernorSettings::kMostForce == 8, "the next sentence and the schema of a hunt say so");
+constexpr Limits kForce{Dimension::force, kLeastForce, GovernorSettings::kMostForce,
+                        "a force from 1e-3 to 8 N, such as 2 N"};
 
 double within(const JsonObject& object, const char* key, const Limits& limits)
 {

@@ -56,9 +56,9 @@ for file in deformed.ply touch.json rigidity.npy deflection.npy rigidity.svg def
 done
 good 'the deformed cloud is a cloud' info 'a folder/deformed.ply'
 holds 'deflection'
-good 'touch a file' touch skin.ply --at 0,0,0.0015 --window 40mm --cells 32
+good 'touch a file' touch skin.ply --place 0,0,0.0015 --window 40mm --cells 32
 holds 'felt stiffness'
-good 'touch as the paper' touch skin.ply --at 0,0,0.0015 --preset paper --window 40mm --cells 32 --json
+good 'touch as the paper' touch skin.ply --place 0,0,0.0015 --preset paper --window 40mm --cells 32 --json
 holds '"differences_from_paper": []'
 # agree KEY FILE FILE SHARE: the number of that key differs by no more than a share, here the tolerance that solves have;
 # devices smooth each in its own way, so only the tests of the solver, which choose the way, compare bits
@@ -320,7 +320,7 @@ bad 'force that is no number' '--force' touch sample:skin --force nan
 bad 'negative window' '--window' touch sample:skin --window -40mm
 bad 'all edges free, nothing below' 'rigid' touch sample:sheet --points 5000 --cells 16 --edges free
 bad 'footprint wider than the window' 'footprint' touch sample:sheet --points 5000 --cells 16 --footprint-radius 50mm
-bad 'contact far from the cloud' 'contact' touch sample:skin --points 5000 --at 1m,0,0
+bad 'contact far from the cloud' 'contact' touch sample:skin --points 5000 --place 1m,0,0
 good 'a file without a place is touched where it comes nearest to the viewer' touch skin.ply --window 40mm --cells 32 --json
 tr -d ' \n' <out.txt >flat.txt
 grep -q '"point":\[-*0.00[0-9]*,-*0.00[0-9]*,0.001[0-9]*\]' flat.txt && passed=$((passed + 1)) || complain "not the top of the wart: $(grep -A4 '"point"' out.txt)"
@@ -424,9 +424,10 @@ bad 'an unknown rigidity law' 'checker, grid' solve odd.json
 # --- values beyond all sense
 bad 'a window beyond the world' '--window: expected a length from 1e-6 to 100 m' touch sample:sheet --window 1e300m --footprint-radius 1e299m
 for option in --thickness --footprint-radius --window; do bad "nothing of $option" "$option" touch sample:sheet $option 1e-12m; done
+bad 'a force that pulls' '--force: expected a force from 0 to 1e6 N' touch sample:sheet --force=-1N
 bad 'a force beyond the world' '--force' touch sample:sheet --force 1e308 --thickness 0.001mm
 bad 'a foundation beyond the world' '--foundation' touch sample:sheet --foundation 1e300
-bad 'a place beyond the world' '--at' touch sample:sheet --at 1e300,0,0
+bad 'a place beyond the world' '--place' touch sample:sheet --place 1e300,0,0
 bad 'a stiffness beyond the world' 'that 32 bits cannot hold' touch sample:sheet --points 5000 --cells 16 --stiffness constant:value=1e307 --thickness 1e-6m
 
 # --- what is assumed is said
@@ -435,12 +436,12 @@ awk 'BEGIN { for (i = -20; i <= 20; ++i) for (j = -20; j <= 20; ++j) print i ","
 good 'a bare file' convert bare.csv bare.ply
 holds 'assumed metres'
 holds '300 kPa assumed'
-good 'a bare file, touched in millimetres' touch bare.csv --length-unit mm --at 0,0,0 --window 20 --thickness 3 --footprint-radius 2mm --cells 32
+good 'a bare file, touched in millimetres' touch bare.csv --length-unit mm --place 0,0,0 --window 20 --thickness 3 --footprint-radius 2mm --cells 32
 holds '300 kPa assumed'
 holds 'mm, from the setting'
 holds 'thickness 3.00 mm'
-bad 'a place beside the cloud' 'nearest point' touch bare.csv --length-unit mm --at 0,0,50 --window 20 --footprint-radius 2
-bad 'no place near the cloud' '--length-unit' touch bare.csv --at 5,5,1000 --window 20 --footprint-radius 2 --thickness 0.5 --cells 16
+bad 'a place beside the cloud' 'nearest point' touch bare.csv --length-unit mm --place 0,0,50 --window 20 --footprint-radius 2
+bad 'no place near the cloud' '--length-unit' touch bare.csv --place 5,5,1000 --window 20 --footprint-radius 2 --thickness 0.5 --cells 16
 good 'a law beside the cloud' info bare.csv --length-unit mm --stiffness disc:from=1,to=2,centre=5\;5\;5,radius=1
 holds 'same stiffness'
 printf '0 0 0 1\n1 0 0 1\n0 1 0 1\n' >three.xyz
@@ -453,7 +454,7 @@ name=$(printf 'caf\351.csv')
 cp bare.csv "$name"
 good 'a name that is not UTF-8' info "$name" --json
 good 'nor in convert' convert bare.csv "$name" --json
-good 'nor in touch' touch "$name" --length-unit mm --at 0,0,0 --window 20 --footprint-radius 2 --cells 16 --json --out "folder $name"
+good 'nor in touch' touch "$name" --length-unit mm --place 0,0,0 --window 20 --footprint-radius 2 --cells 16 --json --out "folder $name"
 
 # --- standard output that cannot be written
 full() { # full DESCRIPTION ARGUMENTS...: exit 2 and a sentence, on a full device and on a closed output
@@ -493,11 +494,13 @@ JSON
     cmp -s skin.png again.png && passed=$((passed + 1)) || complain 'the same picture has other bytes'
     good 'a picture of a scene' render soft.json --size 200x150 --force '0.5 N' --colour stiffness --colour-map cividis --dark --exaggerate 3 --view whole --out soft.png --json
     for key in '"force": 0.5' '"max_deflection"' '"drawn_on"' '"points": 4000'; do holds "$key"; done
-    good 'a picture of a file' render skin.ply --at 0,0,0.0015 --window 40mm --cells 32 --size 64x48 --out file.png
+    good 'a picture of a file' render skin.ply --place 0,0,0.0015 --window 40mm --cells 32 --size 64x48 --out file.png
     png file.png 64 48
-    good 'a picture of a bare file' render bare.csv --at 0,0,0 --window 20m --cells 32 --size 64x48 --footprint-radius 2m --thickness 0.5 --out bare.png
+    good 'a picture of a bare file' render bare.csv --place 0,0,0 --window 20m --cells 32 --size 64x48 --footprint-radius 2m --thickness 0.5 --out bare.png
     grep -q 'assumed metres' err.txt && grep -q '300 kPa assumed' err.txt && passed=$((passed + 1)) || complain "render does not say what it assumed: $(cat err.txt)"
     good 'pictures along a hand' render soft.json --size 64x48 --frames 3 --hand press --seconds 0.3 --out film.png --json
+    good 'pictures along a hand by its options' render soft.json --size 64x48 --frames 1 --hand press --speed 20mm/s --press-depth 0.5mm --seconds 0.3 --out slow.png
+    bad 'no speed at all' '--speed' render soft.json --frames 1 --speed 0 --out no.png
     for n in 1 2 3; do png film_000$n.png 64 48; done
     [ ! -e film.png ] && passed=$((passed + 1)) || complain 'render --frames wrote a picture without a number'
     env -u DISPLAY -u WAYLAND_DISPLAY "$palpate" render sample:sheet $small --out dark.png >out.txt 2>err.txt && passed=$((passed + 1)) || complain "render needs a display: $(cat err.txt)"
@@ -515,7 +518,7 @@ JSON
     bad 'a cloud that is not there' 'nowhere.ply' render nowhere.ply --out no.png
     good 'a cloud without a place' render skin.ply --window 40mm --cells 32 --size 64x48 --out placeless.png
     png placeless.png 64 48
-    bad 'a place off the cloud' '1' render sample:skin $small --at 1,1,1 --out no.png
+    bad 'a place off the cloud' '1' render sample:skin $small --place 1,1,1 --out no.png
     bad 'a force of the hand' '--force' render soft.json --frames 2 --force 1N --out no.png
     bad 'no frames' '--frames' render soft.json --frames 0 --out no.png
     bad 'a folder that is not there' 'nowhere/no.png' render sample:skin $small --out nowhere/no.png
@@ -583,7 +586,7 @@ for key in '"appended": true' '"property": "stiffness"' '"changed_points": 1' '"
 grep -q '^1 1 0 128 1000.0 2000$' appended.ply && grep -q '^comment stiffness_unit Pa$' appended.ply && passed=$((passed + 1)) || complain "nothing appended: $(cat appended.ply)"
 good 'paint a sample' paint sample:skin --points 5000 --stroke 'at=0,0,1.5mm radius=6mm value=2MPa strength=0.5' --stroke 'at=0,0,1.5mm;5mm,0,1.5mm radius=4mm smooth' --out wart.ply --json
 for key in '"dabs": 1' '"smooth": true' '"strength": 0.5' '"original_kept": false' '"written": "wart.ply"'; do holds "$key"; done
-good 'the painted cloud is felt' touch wart.ply --at 0,0,1.5mm --window 40mm --cells 32
+good 'the painted cloud is felt' touch wart.ply --place 0,0,1.5mm --window 40mm --cells 32
 good 'paint the cloud of a scene' paint soft.json --stroke 'at=0,0,1.5mm radius=6mm value=2MPa' --out soft.csv
 holds '4000 points, '
 good 'paint over a law of a scene' paint scene.json --stroke 'at=0,0,0 radius=6mm smooth' --out law.ply
@@ -642,9 +645,9 @@ JSON
     cp out.txt touched.txt
     good 'touch its scene' touch scan.json --json
     agree felt_stiffness touched.txt out.txt 1e-12
-    good 'touch its stiff spot' touch $words $touched --at 5,0,30 --json
+    good 'touch its stiff spot' touch $words $touched --place 5,0,30 --json
     cp out.txt stiff.txt
-    good 'the same place in metres' touch $words $touched --at 5mm,0,0.03m --json
+    good 'the same place in metres' touch $words $touched --place 5mm,0,0.03m --json
     agree felt_stiffness stiff.txt out.txt 1e-12
     good 'run the scan' run $words $touched --clock virtual --seconds 0.3 --record scanned --json
     holds '"fault": "none"'
@@ -670,9 +673,9 @@ JSON
     for command in info touch run; do bad "$command, NaN" 'holed.ply' $command holed.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa; done
     good 'without that point' touch holed.ply --drop-invalid --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa $touched
     sed 's/^comment VCGLIB generated/comment length_unit mm/' scan.ply >stated.ply
-    bad 'a place that would be metres' '--at: 5,0,30 has no unit and would mean metres, but the file'\''s lengths are in mm' touch stated.ply --at 5,0,30
-    good 'a place with units' touch stated.ply --at 5mm,0,30mm --window 40mm --cells 32
-    good 'in hundredths of that unit' touch stated.ply --length-unit mm --at 5,0,30 --window 40 --cells 32
+    bad 'a place that would be metres' '--place: 5,0,30 has no unit and would mean metres, but the file'\''s lengths are in mm' touch stated.ply --place 5,0,30
+    good 'a place with units' touch stated.ply --place 5mm,0,30mm --window 40mm --cells 32
+    good 'in hundredths of that unit' touch stated.ply --length-unit mm --place 5,0,30 --window 40 --cells 32
     good 'the host by the environment' touch scan.json --json
     PALPATE_SOLVER=reference "$palpate" touch scan.json >out.txt 2>err.txt
     holds '(reference)'
@@ -721,6 +724,8 @@ bad 'a path that leaves the surface' 'along the surface' perceive soft.json --al
 bad 'a path without a direction' 'expected a vector' perceive soft.json --along 0,0,0
 bad 'a reach of nothing' '--reach' perceive soft.json --reach 0
 bad 'a reach of infinity' '--reach' perceive soft.json --reach inf
+bad 'a reach beyond a metre' '--reach: expected a length above 0 and up to 1 m' perceive soft.json --reach 2m
+bad 'the same for a hand' '--reach: expected a length above 0 and up to 1 m' run soft.json --reach 2m
 bad 'a picture of another kind' '.svg' perceive soft.json --out path.png
 bad 'an object of another kind' '.svg' perceive soft.json --picture object.png
 bad 'a scene that is not there' 'nowhere.json' perceive nowhere.json

@@ -20,14 +20,15 @@ PlateSolver& host()
     return solver;
 }
 
-ReportRun quick()
-{
-    return {.solver = host(), .quick = true};
-}
+/// A small run with a renderer of its own.
+struct Quick {
+    FigureRenderer renderer;
+    ReportRun      run{.solver = host(), .renderer = renderer, .quick = true};
+};
 
 TEST(PlacesPart, DeflectionFallsAsOneOverRigidityByBothRecipes)
 {
-    const Section section = placesPart(quick());
+    const Section section = placesPart(Quick().run);
     for (const std::string law : {"linear", "hyperbolic"})
         for (const std::string preset : {"paper", "palpate"}) {
             const auto& rigidity   = section.number(law + "/" + preset + "/rigidity");
@@ -46,7 +47,7 @@ TEST(PlacesPart, DeflectionFallsAsOneOverRigidityByBothRecipes)
 /// \source an independent prototype in double precision: a point load on the cap of 10 degrees, the same in three maps
 TEST(MapsPart, TheSameCapIsOblongAndShallowInGallPetersAndRoundInTheAzimuthalMap)
 {
-    const Section section = mapsPart(quick());
+    const Section section = mapsPart(Quick().run);
     const auto    number  = [&](const std::string& name) { return section.number(name).front(); };
 
     // The poke has a tenth of the cap's radius, which rounds the dent off a little, and the grid 64 cells.
@@ -62,7 +63,7 @@ TEST(MapsPart, TheSameCapIsOblongAndShallowInGallPetersAndRoundInTheAzimuthalMap
 
 TEST(LobePart, AFreeLobeBendsLikeACantileverAndAClampedOneDoesNotMoveItsTip)
 {
-    const Section section = lobePart(quick());
+    const Section section = lobePart(Quick().run);
     EXPECT_EQ(section.number("clamped/deflection_along").front(), 0) << "held";
     EXPECT_NEAR(section.number("free/tip_over_contact").front(), 2.5, 0.05)
         << "(3 L - a) / (2 a) of a beam loaded in the middle; the dent under the finger is 1 %";
@@ -86,7 +87,7 @@ TEST(Cantilever, IsTheTextbooksForOneRigidity)
 
 TEST(StabilityPart, NothingDivergesAndEveryAnswerIsRight)
 {
-    const Section section = stabilityPart(quick());
+    const Section section = stabilityPart(Quick().run);
     EXPECT_EQ(section.number("plates").front(), 81) << "every combination of edges once";
     EXPECT_EQ(section.number("not_finite").front(), 0);
     EXPECT_EQ(section.number("not_converged").front(), 0);
@@ -112,7 +113,7 @@ TEST(RandomMaps, EveryKindReachesItsContrastAndIsAnotherEachTime)
 
 TEST(JacobiPart, GrowsUndampedAndStopsTooEarlyDamped)
 {
-    const Section section = jacobiPart(quick());
+    const Section section = jacobiPart(Quick().run);
     EXPECT_NEAR(section.number("undamped/growth_per_sweep").front(), 2.14, 0.05)
         << "a clamped plate of 16 cells, by our own prototype; of large ones 2.2";
     const auto& error = section.number("damped/17/error");
@@ -122,7 +123,7 @@ TEST(JacobiPart, GrowsUndampedAndStopsTooEarlyDamped)
 
 TEST(WartPart, ThePapersLawIsStifferThanADeviceAndOursIsNot)
 {
-    const Section section = wartPart(quick());
+    const Section section = wartPart(Quick().run);
     EXPECT_EQ(section.number("paper/share_below_cap").front(), 0);
     EXPECT_EQ(section.number("series/share_below_cap").front(), 1);
     const auto &paper = section.number("paper/stiffness"), &series = section.number("series/stiffness");
@@ -136,7 +137,7 @@ TEST(Page, NumbersAreTheSameTwiceAndNothingIsFetched)
     const Origins        origins{"1", "abc", "libraries", "a <machine>", "host", "palpate paper --out 'x'", true};
     std::vector<Section> one, two;
     for (std::vector<Section>* sections : {&one, &two})
-        for (const auto part : {placesPart, timePart, mapsPart}) sections->push_back(part(quick()));
+        for (const auto part : {placesPart, timePart, mapsPart}) sections->push_back(part(Quick().run));
 
     EXPECT_EQ(numbersJson(one, origins), numbersJson(two, origins));
     EXPECT_NE(timingsJson(one, origins), timingsJson(two, origins)) << "clocks never agree to the last digit";

@@ -19,6 +19,14 @@ protected:
     }
 };
 
+/// Draws a figure with a renderer of its own.
+std::string figureSvg(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now, std::span<const double> values,
+                      const CloudFigure& figure)
+{
+    FigureRenderer renderer;
+    return cloudFigureSvg(rest, now, values, figure, renderer);
+}
+
 /// A square sheet, 100 mm wide, whose points have their x as a value [m].
 struct Sheet {
     explicit Sheet(int side = 60)
@@ -31,7 +39,7 @@ struct Sheet {
     }
     [[nodiscard]] Image drawn(const CloudFigure& figure) const
     {
-        return test::embeddedImage(cloudFigureSvg(positions, positions, values, figure));
+        return test::embeddedImage(figureSvg(positions, positions, values, figure));
     }
     std::vector<glm::dvec3> positions; // [m]
     std::vector<double>     values;    // [m]
@@ -85,7 +93,7 @@ TEST_F(CloudFigureTest, PointsWithoutAValueAreGrey)
 
     EXPECT_TRUE(grey(image.at(550, 350)));
     EXPECT_FALSE(grey(image.at(350, 350)));
-    EXPECT_TRUE(test::hasText(cloudFigureSvg(sheet.positions, sheet.positions, sheet.values, fromAbove()),
+    EXPECT_TRUE(test::hasText(figureSvg(sheet.positions, sheet.positions, sheet.values, fromAbove()),
                               "1800 points without a value are grey."));
 }
 
@@ -98,7 +106,7 @@ TEST_F(CloudFigureTest, WhatHasNoSurfaceIsASentence)
 
     for (const std::size_t count : {std::size_t(0), std::size_t(3), same.size()}) {
         const std::span<const glm::dvec3> points(same.data(), count);
-        const std::string                 svg = cloudFigureSvg(points, points, std::span(values).first(count), figure);
+        const std::string                 svg = figureSvg(points, points, std::span(values).first(count), figure);
         EXPECT_TRUE(test::elementsOf(svg, "image").empty());
         EXPECT_NE(svg.find("this picture could not be drawn"), std::string::npos) << svg;
         EXPECT_TRUE(test::hasText(svg, "A speck"));
@@ -108,8 +116,17 @@ TEST_F(CloudFigureTest, WhatHasNoSurfaceIsASentence)
 TEST_F(CloudFigureTest, TheSameFigureTwiceIsTheSameToTheByte)
 {
     const Sheet sheet(20);
-    const auto  drawn = [&] { return cloudFigureSvg(sheet.positions, sheet.positions, sheet.values, fromAbove()); };
-    EXPECT_EQ(drawn(), drawn());
+    const auto  fresh = [&] { return figureSvg(sheet.positions, sheet.positions, sheet.values, fromAbove()); };
+    EXPECT_EQ(fresh(), fresh());
+
+    FigureRenderer kept;
+    const auto     next = [&](const Sheet& what) {
+        return cloudFigureSvg(what.positions, what.positions, what.values, fromAbove(), kept);
+    };
+    const SurfaceRenderer* const first = &kept.opened();
+    static_cast<void>(next(Sheet(30)));
+    EXPECT_EQ(next(sheet), fresh()) << "a renderer that has drawn another figure";
+    EXPECT_EQ(&kept.opened(), first) << "opening a device takes longer than a figure";
 }
 
 } // namespace

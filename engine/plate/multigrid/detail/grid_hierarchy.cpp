@@ -26,8 +26,8 @@ shared::PlateLevel levelOf(const PlateGrid& grid, const Plate& plate, double bed
     shared::PlateLevel level{};
     level.cellsX = grid.cellsX;
     level.cellsZ = grid.cellsZ;
-    level.hinged = sides(plate.edges, [](Edge edge) { return edge != Edge::clamped; });
-    level.free   = sides(plate.edges, [](Edge edge) { return edge == Edge::free; });
+    level.hinged = sides(plate.edges, [](Edge edge) { return !holdsSlope(edge); });
+    level.free   = sides(plate.edges, [](Edge edge) { return !holdsNodes(edge); });
     level.kxx    = float(ratio / area);
     level.kzz    = float(1 / ratio / area);
     level.kxz    = float(nu / area);

@@ -50,7 +50,7 @@ void addGhost(Edge edge, double weight, double& onSide, double& next, double& fu
 
 Row rowOf(int fine, int fineCells, int coarseCells, Edge first, Edge last)
 {
-    const bool held = (fine == 0 && first != Edge::free) || (fine == fineCells && last != Edge::free);
+    const bool held = (fine == 0 && holdsNodes(first)) || (fine == fineCells && holdsNodes(last));
     // Whole numbers, so that a fine node on a coarse one is found exactly.
     const int  before = std::min(fine * coarseCells / fineCells, coarseCells - 1);
     const auto cubic  = cubicWeights(double(fine * coarseCells - before * fineCells) / fineCells);
@@ -70,8 +70,8 @@ Row rowOf(int fine, int fineCells, int coarseCells, Edge first, Edge last)
         else
             weight(node) += w;
     }
-    if (row.first == 0 && first != Edge::free) weight(0) = 0;
-    if (row.first + 3 == coarseCells && last != Edge::free) weight(coarseCells) = 0;
+    if (row.first == 0 && holdsNodes(first)) weight(0) = 0;
+    if (row.first + 3 == coarseCells && holdsNodes(last)) weight(coarseCells) = 0;
     return row;
 }
 

@@ -9,7 +9,7 @@
 
 #include "engine/compute/context.h"
 
-// Internal to engine/compute.
+// The entrance to Vulkan, for code that uses Vulkan itself.
 
 namespace palp::compute {
 

@@ -6,7 +6,7 @@
 #include "engine/compute/command_list.h"
 
 // The implementations behind the public classes of engine/compute, for each kind of processor: Vulkan in vulkan_*.cpp,
-// this machine's own in host_*.cpp. Internal to the layer.
+// this machine's own in host_*.cpp.
 
 namespace palp::compute {
 
