@@ -15,6 +15,7 @@ namespace palp {
 namespace {
 
 constexpr std::size_t kPiece = 4096; ///< least points of a thread
+constexpr std::size_t kRun   = 256;  ///< points along the curve that are looked at together
 
 /// Radius of the neighbourhood of a normal [spacings]: 28 points of a random sheet, some thirty.
 constexpr double kReach = 3;
@@ -26,9 +27,13 @@ constexpr double kNarrow = 0.08, kPlanar = 0.3, kGrowth = 1.4;
 /// Deviations up to this share of the spacing need no second look [1]: contact and charts bear them.
 constexpr double kClean = 0.2;
 
-/// Noise is found where the deviation grows by less than this while the ball doubles [1]; that of a plane's edge
-/// doubles.
+/// Noise is found where the deviation grows by less than this while the ball doubles, twice in a row [1]. That of an
+/// edge doubles, but for one ball that just reaches over it.
 constexpr double kSettled = 1.35;
+
+/// Deviations with a smaller kurtosis are those of the two faces of a thin body [1], which has 1 to 1.4; evenly spread
+/// noise has 1.8.
+constexpr double kTwoFaces = 1.6;
 
 constexpr double      kWidest     = 32;  ///< largest ball of a search for noise, and for lines [spacings]
 constexpr std::size_t kTogether   = 8;   ///< points along the curve that share a search for noise
@@ -107,9 +112,12 @@ float SurfaceSurvey::Measuring::noiseAbout(std::uint32_t point)
 {
     const double spacing = survey_.spacings_[point];
     LocalShape   narrow  = shapeWithin(point, kReach * spacing);
+    int          settled = 0;
     for (double radius = 2 * kReach * spacing; radius <= kWidest * spacing; radius *= 2) {
         const LocalShape wide = shapeWithin(point, radius);
-        if (wide.residual < kSettled * narrow.residual) {
+        settled               = wide.residual < kSettled * narrow.residual ? settled + 1 : 0;
+        if (settled > 0 && wide.tails < kTwoFaces) return 0;
+        if (settled == 2 || (settled == 1 && 2 * radius > kWidest * spacing)) {
             survey_.normals_[point] = wide.normal;
             return float(wide.residual);
         }
@@ -134,6 +142,9 @@ void SurfaceSurvey::Measuring::measureNoise(std::span<const std::uint32_t> order
 
 void SurfaceSurvey::Measuring::settleNoise(std::span<const std::uint32_t> order, std::span<const float> raw)
 {
+    if (std::ranges::none_of(order,
+                             [&](std::uint32_t point) { return raw[point] > kClean * survey_.spacings_[point]; }))
+        return;
     const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
     neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near, double) {
         const double r = radius(point);
@@ -163,7 +174,10 @@ SurfaceSurvey::SurfaceSurvey(std::span<const glm::dvec3> positions, const Neighb
     eachPiece([](Measuring& m, auto piece) { m.measureShapes(piece); });
     eachPiece([](Measuring& m, auto piece) { m.measureNoise(piece); });
     const std::vector<float> raw = noises_;
-    eachPiece([&](Measuring& m, auto piece) { m.settleNoise(piece, raw); });
+    eachPiece([&](Measuring& m, auto piece) {
+        for (std::size_t k = 0; k < piece.size(); k += kRun) // a run of clean points needs no median
+            m.settleNoise(piece.subspan(k, std::min(kRun, piece.size() - k)), raw);
+    });
     for (std::size_t i = 0; i < given.size(); ++i) {
         if (!(glm::dot(given[i], given[i]) > 0)) continue;
         // The given one says which side is out; where it is the better normal too is not known, and ours fits the points.

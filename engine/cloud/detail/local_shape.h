@@ -12,7 +12,7 @@ struct LocalShape {
     glm::dvec3 normal{};         ///< [1] unit; 0 if the points determine no plane
     double     narrow   = 0;     ///< [1] the smaller over the larger extent of the points along the surface, squared
     double     residual = 0;     ///< [m] standard deviation of the points about the fitted quadric
-    double     middle   = 0;     ///< [m] height of the quadric over the point, along the normal
+    double     tails    = 3;     ///< [1] kurtosis of the deviations, of more than 40 points: two layers have 1
     bool       sided    = false; ///< the points form two layers, and the normal points away from the other one
 };
 
@@ -35,7 +35,10 @@ private:
         std::size_t point  = 0;
     };
 
-    bool keepOwnLayer(std::span<const glm::dvec3> away, const glm::dvec3& normal, double spacing);
+    std::size_t        cutByHeight(std::span<const glm::dvec3> away, const glm::dvec3& normal);
+    [[nodiscard]] bool areLayers(std::span<const glm::dvec3> away, const glm::dvec3& normal, double spacing,
+                                 std::size_t cut) const;
+    bool               keepOwnLayer(std::span<const glm::dvec3> away, glm::dvec3 normal, double radius, double spacing);
 
     std::vector<glm::dvec3> own_; ///< [m] scratch: the points that count
     std::vector<Height>     heights_;
