@@ -36,7 +36,7 @@ constexpr double kSettled = 1.35;
 constexpr double kTwoFaces = 1.6;
 
 constexpr double      kWidest     = 32;  ///< largest ball of a search for noise, and for lines [spacings]
-constexpr std::size_t kTogether   = 8;   ///< points along the curve that share a search for noise
+constexpr std::size_t kTogether   = 16;   ///< points along the curve that share a search for noise
 constexpr std::size_t kMostOfBall = 512; ///< points of a wide ball that are looked at
 
 } // namespace
