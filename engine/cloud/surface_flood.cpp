@@ -47,10 +47,18 @@ bool SurfaceFlood::connects(std::size_t from, std::size_t to, double distance2) 
     const glm::dvec3     m = survey.normal(q);
     if (glm::dot(m, m) == 0) return true;
     const bool turned = glm::dot(n, m) < 0;
-    if (survey.sided(p) && survey.sided(q) && turned != (glm::dot(n, survey.normal(p)) < 0)) return false;
+    if (survey.sided(q) && inverted_ && turned != *inverted_) return false;
     const glm::dvec3 mean = turned ? n - m : n + m;
     const double     rise = std::abs(glm::dot(mean, places_[to] - places_[from])) / glm::length(mean);
     return rise <= kSteepest * std::sqrt(distance2) + kNoisy * std::max(survey.noise(p), survey.noise(q));
+}
+
+/// Remembers, at the first point whose side is known, whether the carried normals are the outward ones.
+void SurfaceFlood::noteSide(std::size_t reached)
+{
+    const std::uint32_t point = inBall_[reached];
+    if (!inverted_ && object_.survey().sided(point))
+        inverted_ = glm::dot(carried_[reached], object_.survey().normal(point)) < 0;
 }
 
 std::span<const std::uint32_t> SurfaceFlood::reach(const glm::dvec3& centre, double radius,
@@ -76,6 +84,8 @@ std::span<const std::uint32_t> SurfaceFlood::reach(const glm::dvec3& centre, dou
     if (outward && glm::dot(carried_[first], *outward) < 0) carried_[first] = -carried_[first];
     if (outward && carried_[first] == glm::dvec3(0)) carried_[first] = glm::normalize(*outward);
     grid_.build(places_, longest);
+    inverted_.reset();
+    noteSide(first);
 
     // A point that is reached is taken out of the grid, so that all searches together see each point only some times.
     reached_.assign(1, std::uint32_t(first));
@@ -86,6 +96,7 @@ std::span<const std::uint32_t> SurfaceFlood::reach(const glm::dvec3& centre, dou
             if (!connects(from, i, distance2)) return false;
             const glm::dvec3 own = survey.normal(inBall_[i]);
             carried_[i] = glm::dot(own, own) == 0 ? carried_[from] : glm::dot(own, carried_[from]) < 0 ? -own : own;
+            noteSide(i);
             reached_.push_back(std::uint32_t(i));
             return true;
         });

@@ -17,8 +17,8 @@ namespace palp {
 ///
 /// From the point nearest to the middle a flood goes from point to point, inside the ball, over steps of at most
 /// kStep local spacings that run along the surface: a step that rises more steeply than kSteepest over the mean tangent
-/// plane of its ends, noise apart, leads to another sheet. The normals' sign is carried along. Where the survey knows
-/// the side of both ends, the sides must agree too: so layers half a spacing apart are told apart. Around a rim that is
+/// plane of its ends, noise apart, leads to another sheet. The normals' sign is carried along. Points
+/// whose side the survey knows must all face alike: so layers half a spacing apart are told apart. Around a rim that is
 /// inside the ball the flood does reach the other side, whose normals then point away. Beside a tenfold step in density
 /// it passes over one point in some thousand that has no neighbour as near as its spacing tells.
 /// \thread one; allocates only where it has not had as many points before
@@ -53,6 +53,7 @@ public:
 
 private:
     [[nodiscard]] std::optional<std::size_t> start(const glm::dvec3& centre, const std::optional<glm::dvec3>& outward);
+    void                                     noteSide(std::size_t reached);
     [[nodiscard]] bool connects(std::size_t from, std::size_t to, double distance2) const noexcept;
 
     const SoftObject& object_;
@@ -66,6 +67,7 @@ private:
     std::vector<std::uint32_t> points_;
     std::vector<glm::dvec3>    normals_; ///< [1]
     PointGrid                  grid_;
+    std::optional<bool>        inverted_; ///< the carried normals point inwards; empty: no side is known yet
 };
 
 } // namespace palp

@@ -24,6 +24,9 @@ constexpr double kReach = 3;
 /// random sheet one in 10^5 does. The ball then grows by kGrowth until the ratio reaches kPlanar.
 constexpr double kNarrow = 0.08, kPlanar = 0.3, kGrowth = 1.4;
 
+/// A point belongs to a layer whose tangent planes it lies this many times nearer to than to the other's [1].
+constexpr double kOwnLayer = 0.4;
+
 /// Deviations up to this share of the spacing need no second look [1]: contact and charts bear them.
 constexpr double kClean = 0.2;
 
@@ -36,7 +39,7 @@ constexpr double kSettled = 1.35;
 constexpr double kTwoFaces = 1.6;
 
 constexpr double      kWidest     = 32;  ///< largest ball of a search for noise, and for lines [spacings]
-constexpr std::size_t kTogether   = 16;   ///< points along the curve that share a search for noise
+constexpr std::size_t kTogether   = 16;  ///< points along the curve that share a search for noise
 constexpr std::size_t kMostOfBall = 512; ///< points of a wide ball that are looked at
 
 } // namespace
@@ -50,6 +53,7 @@ public:
     }
 
     void measureShapes(std::span<const std::uint32_t> order);
+    void adoptSides(std::span<const std::uint32_t> order, std::span<const std::uint8_t> sided);
     void measureNoise(std::span<const std::uint32_t> order);
     void settleNoise(std::span<const std::uint32_t> order, std::span<const float> raw);
 
@@ -103,6 +107,35 @@ void SurfaceSurvey::Measuring::measureShapes(std::span<const std::uint32_t> orde
         survey_.normals_[point] = shape.normal;
         survey_.noises_[point]  = float(shape.residual);
         survey_.sided_[point]   = shape.sided;
+    });
+}
+
+/// Gives a point whose own layer was not found that of its neighbours: of those on either side, the ones in whose
+/// tangent planes it lies.
+void SurfaceSurvey::Measuring::adoptSides(std::span<const std::uint32_t> order, std::span<const std::uint8_t> sided)
+{
+    if (std::ranges::none_of(order, [&](std::uint32_t point) { return sided[point] != 0; })) return;
+    const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
+    neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near, double) {
+        if (sided[point]) return;
+        double     height[2] = {}, weight[2] = {}; // [m] of the point over the layers along its normal and against it
+        glm::dvec3 normal[2] = {};
+        for (const NearCandidate& candidate : near) {
+            const double share = 1 - candidate.distance2 / (radius(point) * radius(point));
+            if (!sided[candidate.point] || share <= 0) continue;
+            const glm::dvec3 n     = survey_.normals_[candidate.point];
+            const int        layer = glm::dot(n, glm::dvec3(survey_.normals_[point])) < 0;
+            height[layer] += share * std::abs(glm::dot(n, candidate.away));
+            weight[layer] += share;
+            normal[layer] += share * n;
+        }
+        for (const int k : {0, 1})
+            height[k] = weight[k] > 0 ? height[k] / weight[k] : kReach * survey_.spacings_[point];
+        const int own = height[1] < height[0];
+        if (!(weight[own] > 1) || height[own] > kOwnLayer * height[1 - own]) return;
+        survey_.normals_[point] = glm::normalize(normal[own]);
+        survey_.sided_[point]   = 1;
+        survey_.noises_[point]  = 0; // what it deviated by was the other layer
     });
 }
 
@@ -172,12 +205,17 @@ SurfaceSurvey::SurfaceSurvey(std::span<const glm::dvec3> positions, const Neighb
         });
     };
     eachPiece([](Measuring& m, auto piece) { m.measureShapes(piece); });
+    const auto eachRun = [&](auto&& measure) { // most runs along the curve have nothing to do, and say so quickly
+        eachPiece([&](Measuring& m, auto piece) {
+            for (std::size_t k = 0; k < piece.size(); k += kRun)
+                measure(m, piece.subspan(k, std::min(kRun, piece.size() - k)));
+        });
+    };
+    const std::vector<std::uint8_t> layered = sided_;
+    eachRun([&](Measuring& m, auto run) { m.adoptSides(run, layered); });
     eachPiece([](Measuring& m, auto piece) { m.measureNoise(piece); });
     const std::vector<float> raw = noises_;
-    eachPiece([&](Measuring& m, auto piece) {
-        for (std::size_t k = 0; k < piece.size(); k += kRun) // a run of clean points needs no median
-            m.settleNoise(piece.subspan(k, std::min(kRun, piece.size() - k)), raw);
-    });
+    eachRun([&](Measuring& m, auto run) { m.settleNoise(run, raw); });
     for (std::size_t i = 0; i < given.size(); ++i) {
         if (!(glm::dot(given[i], given[i]) > 0)) continue;
         // The given one says which side is out; where it is the better normal too is not known, and ours fits the points.

@@ -209,15 +209,16 @@ void refuseIfFew(const Patch& patch, const PatchSettings& settings)
                     kWindowHint);
 }
 
-/// Refuses a window most of whose nodes have no point nearby.
+/// Refuses a window most of whose nodes have no point nearby, unless a hand feels a surface there: a rim, a wire or the
+/// tip of a cone is narrow, and yet it is touched.
 void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
 {
     constexpr double kMostUncovered = 0.9; // of the nodes: a corner of a sheet leaves three quarters [1]
+    if (patch.contact.felt) return;
     if (double(patch.nodesWithoutPoint) > kMostUncovered * double(patch.plate.grid.nodes()))
-        throw Error("contact: the window of " + formatQuantity(settings.window, "m") +
-                    " is almost empty: " + std::to_string(patch.nodesWithoutPoint) + " of its " +
-                    std::to_string(patch.plate.grid.nodes()) + " grid nodes have no point of the cloud nearby" +
-                    kWindowHint);
+        throw Error("contact: the window of " + formatQuantity(settings.window, "m") + " is almost empty: " +
+                    std::to_string(patch.nodesWithoutPoint) + " of its " + std::to_string(patch.plate.grid.nodes()) +
+                    " grid nodes have no point of the cloud nearby" + kWindowHint);
 }
 
 /// Returns the spacings of the closest and of the sparsest points of the touched surface [m]: the patch's own for both,
@@ -249,7 +250,7 @@ void sampleRigidity(Patch& patch, const SoftObject& object, const PatchSettings&
     std::vector<double> rigidities;
     const auto          touched = std::span(patch.points).first(patch.touched);
     const auto          places  = std::span(patch.positions).first(patch.touched);
-    patch.window = PatchWindow::square(settings.window, settings.cells);
+    patch.window                = PatchWindow::square(settings.window, settings.cells);
     refuseIfFew(patch, settings);
     rigidities.reserve(touched.size());
     for (std::uint32_t point : touched) rigidities.push_back(object.rigidity(point));
