@@ -31,6 +31,21 @@ void takeNearest(const PatchWindow& window, std::span<const ChartPoint> position
         }
 }
 
+/// Fills the nodes that have no mean yet with those over wider squares.
+void fillFromWider(const PatchWindow& window, std::span<const ChartPoint> positions, std::span<const double> rigidities,
+                   double width, Resampled& result)
+{
+    const LogMeanSums   sums(window, positions, rigidities, width);
+    const auto          nodes = std::size_t(window.grid.nodesZ());
+    std::vector<double> row(nodes);
+    for (int i = 0; i < window.grid.nodesX(); ++i) {
+        sums.means(i, row);
+        double* to = &result.rigidity.values()[std::size_t(i) * nodes];
+        for (std::size_t j = 0; j < nodes; ++j)
+            if (std::isnan(to[j])) to[j] = row[j];
+    }
+}
+
 bool areFinite(std::span<const ChartPoint> positions)
 {
     double zero = 0; // not a number as soon as one is not finite
@@ -58,12 +73,15 @@ double kernelReach(double pointSpacing, double nodeSpacing) noexcept
 }
 
 Resampled resampleRigidity(const PatchWindow& window, std::span<const ChartPoint> positions,
-                           std::span<const double> rigidities, Resampling resampling, double pointSpacing)
+                           std::span<const double> rigidities, Resampling resampling, double pointSpacing,
+                           double sparsest)
 {
     PALP_EXPECT(!positions.empty() && positions.size() == rigidities.size(),
                 std::to_string(positions.size()) + " positions, " + std::to_string(rigidities.size()) + " rigidities");
     const PlateGrid& grid  = window.grid;
-    const double     width = resamplingWidth(pointSpacing, std::max(grid.spacingX, grid.spacingZ));
+    const double     cell  = std::max(grid.spacingX, grid.spacingZ);
+    const double     width = resamplingWidth(pointSpacing, cell),
+                 widest    = resamplingWidth(std::max(pointSpacing, sparsest), cell);
 
     PALP_EXPECT(areFinite(positions), "a point is not finite");
 
@@ -74,8 +92,10 @@ Resampled resampleRigidity(const PatchWindow& window, std::span<const ChartPoint
         for (int i = 0; i < grid.nodesX(); ++i)
             sums.means(i, std::span(result.rigidity.values()).subspan(std::size_t(i) * nodes, nodes));
         if (surelyCovered(window, positions, width)) return result;
+        for (double wider = 2 * width; wider < 2 * widest; wider *= 2)
+            fillFromWider(window, positions, rigidities, std::min(wider, widest), result);
     }
-    takeNearest(window, positions, rigidities, kResamplingNearby * width, result);
+    takeNearest(window, positions, rigidities, kResamplingNearby * widest, result);
     return result;
 }
 

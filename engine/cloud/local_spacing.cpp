@@ -5,17 +5,16 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
-#include <utility>
 
-#include <glm/geometric.hpp>
-
-#include "engine/cloud/morton.h"
+#include "engine/cloud/detail/neighbourhoods.h"
 #include "engine/core/contract.h"
+#include "engine/core/parallel.h"
 
 namespace palp {
 namespace {
 
-constexpr std::size_t kNeighbours = 6; ///< besides the point itself
+constexpr std::size_t kNeighbours = 6;    ///< besides the point itself
+constexpr std::size_t kPiece      = 4096; ///< least points of a thread
 
 /// Search radius over the distance of the sixth neighbour of the point before, a near one [1]: holds 15 points where
 /// the density does not vary. Where it holds fewer than seven the exact, slower search follows. (The cloud's usual
@@ -36,27 +35,6 @@ constexpr double kCovered = 0.6;
 
 /// Where points coincide no spacing falls below this share of the cloud's [1]: radii must stay above zero.
 constexpr double kLeast = 0.05;
-
-/// Returns the points in an order in which neighbours follow each other, so that what a search reads is in the cache.
-std::vector<std::uint32_t> alongCurve(std::span<const glm::dvec3> positions)
-{
-    glm::dvec3 low = positions[0], high = positions[0];
-    for (const glm::dvec3& p : positions) {
-        low  = glm::min(low, p);
-        high = glm::max(high, p);
-    }
-    const glm::dvec3 size  = high - low;
-    const double     scale = (kMortonCells - 1) / std::max({size.x, size.y, size.z});
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        const glm::dvec3 cell = scale * (positions[i] - low);
-        keys[i] = {mortonCode(std::uint32_t(cell.x), std::uint32_t(cell.y), std::uint32_t(cell.z)), std::uint32_t(i)};
-    }
-    std::sort(keys.begin(), keys.end());
-    std::vector<std::uint32_t> order(keys.size());
-    std::transform(keys.begin(), keys.end(), order.begin(), [](const auto& key) { return key.second; });
-    return order;
-}
 
 /// Returns the value that half of the others do not exceed; reorders.
 double median(std::vector<double>& values)
@@ -79,6 +57,45 @@ double medianOfArea(std::vector<double>& values, double radius)
     return values.back();
 }
 
+/// Finds the first guess of the spacing around some points, from the distance to the sixth neighbour.
+void guessSpacings(std::span<const glm::dvec3> positions, const NeighbourIndex& index,
+                   std::span<const std::uint32_t> order, std::span<double> guess)
+{
+    const double        usual = index.spacing();
+    double              sixth = usual * std::sqrt(kNeighbours / std::numbers::pi); // [m] of the point before
+    std::vector<double> squares;
+    Neighbourhoods      neighbourhoods(positions, index);
+    const auto          radius = [&](std::uint32_t) { return kLikelyReach * sixth; };
+    neighbourhoods.each(order, radius, [&](std::uint32_t i, std::span<const NearCandidate> near, double complete) {
+        squares.clear();
+        for (const NearCandidate& candidate : near) squares.push_back(candidate.distance2);
+        double found = std::numeric_limits<double>::infinity();
+        if (squares.size() > kNeighbours) {
+            std::nth_element(squares.begin(), squares.begin() + kNeighbours, squares.end());
+            found = std::sqrt(squares[kNeighbours]);
+        }
+        sixth    = found <= complete ? found : index.nearest(positions[i], kNeighbours + 1).back().distance;
+        guess[i] = std::max(sixth * std::sqrt(std::numbers::pi / kNeighbours), kLeast * usual);
+    });
+}
+
+/// Settles the spacing around some points by the median of the guesses near them.
+void settleSpacings(std::span<const glm::dvec3> positions, const NeighbourIndex& index,
+                    std::span<const std::uint32_t> order, std::span<const double> guess, std::span<double> spacings)
+{
+    std::vector<double> values;
+    Neighbourhoods      neighbourhoods(positions, index);
+    const auto          radius = [&](std::uint32_t i) { return kMedianReach * guess[i]; };
+    neighbourhoods.each(order, radius, [&](std::uint32_t i, std::span<const NearCandidate> near, double) {
+        values.clear();
+        for (const NearCandidate& candidate : near)
+            if (candidate.distance2 <= radius(i) * radius(i)) values.push_back(guess[candidate.point]);
+        spacings[i] = median(values);
+        if (guess[i] > kAlone * spacings[i])
+            spacings[i] = std::min(guess[i], medianOfArea(values, kMedianReach * guess[i]));
+    });
+}
+
 } // namespace
 
 std::vector<double> localSpacings(std::span<const glm::dvec3> positions, const NeighbourIndex& index)
@@ -89,33 +106,14 @@ std::vector<double> localSpacings(std::span<const glm::dvec3> positions, const N
         throw Error("the cloud has fewer than seven points or most of them coincide, so there is no surface "
                     "to touch; are there duplicates?");
 
-    std::vector<std::uint32_t> near;
-    std::vector<double>        values;
-    std::vector<double>        guess(positions.size());
-    const auto                 order = alongCurve(positions);
-    double                     sixth = usual * std::sqrt(kNeighbours / std::numbers::pi); // [m] of the point before
-    for (const std::uint32_t i : order) {
-        index.gather(positions[i], kLikelyReach * sixth, near);
-        values.clear();
-        for (const std::uint32_t p : near) values.push_back(glm::length(positions[p] - positions[i]));
-        if (values.size() > kNeighbours) {
-            std::nth_element(values.begin(), values.begin() + kNeighbours, values.end());
-            sixth = values[kNeighbours];
-        } else {
-            sixth = index.nearest(positions[i], kNeighbours + 1).back().distance;
-        }
-        guess[i] = std::max(sixth * std::sqrt(std::numbers::pi / kNeighbours), kLeast * usual);
-    }
-
-    std::vector<double> spacings(positions.size());
-    for (const std::uint32_t i : order) {
-        index.gather(positions[i], kMedianReach * guess[i], near);
-        values.clear();
-        for (const std::uint32_t p : near) values.push_back(guess[p]);
-        spacings[i] = median(values);
-        if (guess[i] > kAlone * spacings[i])
-            spacings[i] = std::min(guess[i], medianOfArea(values, kMedianReach * guess[i]));
-    }
+    const std::vector<std::uint32_t> order = alongCurve(positions);
+    std::vector<double>              guess(positions.size()), spacings(positions.size());
+    inParallel(order.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+        guessSpacings(positions, index, std::span(order).subspan(begin, end - begin), guess);
+    });
+    inParallel(order.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+        settleSpacings(positions, index, std::span(order).subspan(begin, end - begin), guess, spacings);
+    });
     return spacings;
 }
 

@@ -2,11 +2,43 @@
 
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 namespace palp {
 
-SoftObject::SoftObject(PointCloud cloud, const Material& material, std::vector<Triangle> faces)
+namespace {
+
+/// Returns the normals of the faces about each point, by area; 0 for points that lie in none or whose faces disagree.
+std::vector<glm::vec3> normalsOf(std::span<const Triangle> faces, std::span<const glm::dvec3> positions)
+{
+    constexpr double        kAgreeing = 0.3; // [1] length of the sum over the sum of lengths: a sharp cone has more
+    std::vector<glm::dvec3> sums(faces.empty() ? 0 : positions.size());
+    std::vector<double>     lengths(sums.size());
+    for (const Triangle& face : faces) {
+        const glm::dvec3 a = positions[face[0]], b = positions[face[1]], c = positions[face[2]];
+        const glm::dvec3 normal = glm::cross(b - a, c - a);
+        for (const std::uint32_t corner : face) {
+            sums[corner] += normal;
+            lengths[corner] += glm::length(normal);
+        }
+    }
+    std::vector<glm::vec3> normals(sums.size());
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        if (const double length = glm::length(sums[i]); length > kAgreeing * lengths[i])
+            normals[i] = glm::vec3(sums[i] / length);
+    return normals;
+}
+
+} // namespace
+
+SoftObject::SoftObject(PointCloud cloud, const Material& material, std::vector<Triangle> faces,
+                       std::span<const glm::vec3> normals)
     : cloud_(std::move(cloud)), index_(std::make_shared<const NeighbourIndex>(cloud_.positions())),
-      faces_(std::make_shared<const std::vector<Triangle>>(std::move(faces))), material_(material)
+      faces_(std::make_shared<const std::vector<Triangle>>(std::move(faces))),
+      survey_(std::make_shared<const SurfaceSurvey>(
+          cloud_.positions(), *index_,
+          normals.empty() ? std::span<const glm::vec3>(normalsOf(*faces_, cloud_.positions())) : normals)),
+      material_(material)
 {
 }
 

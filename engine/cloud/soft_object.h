@@ -6,6 +6,7 @@
 #include "engine/cloud/material.h"
 #include "engine/cloud/neighbour_index.h"
 #include "engine/cloud/point_cloud.h"
+#include "engine/cloud/surface_survey.h"
 #include "engine/cloud/triangle.h"
 
 namespace palp {
@@ -13,14 +14,16 @@ namespace palp {
 /// A touched object: points with a stiffness, the index over them, perhaps a mesh, and the material of the sheet.
 ///
 /// Nothing of it changes while it is touched; a touch returns its deformation as a field beside the object. Copies,
-/// repainted() and withMaterial() share positions, index and faces: of a million points only the stiffness is copied.
+/// repainted() and withMaterial() share positions, index, survey and faces: of a million points only the stiffness is copied.
 /// It may be moved and copied freely, because the index holds its own copy of the positions.
 /// \thread immutable, so free to share
 class SoftObject {
 public:
-    /// Builds the index, about 0.3 s for a million points.
-    /// \param faces  of the cloud's points; none: the object is a cloud without a mesh
-    explicit SoftObject(PointCloud cloud, const Material& material = {}, std::vector<Triangle> faces = {});
+    /// Builds the index and surveys the surface: about a second of one core for a million points, on all cores.
+    /// \param faces    of the cloud's points; none: the object is a cloud without a mesh
+    /// \param normals  outward, one for each point, 0 where none is known; none: those of the faces, if there are any
+    explicit SoftObject(PointCloud cloud, const Material& material = {}, std::vector<Triangle> faces = {},
+                        std::span<const glm::vec3> normals = {});
 
     /// Returns the same points with other stiffnesses of the same kind [Pa] or [N m].
     /// \throws Error as PointCloud does
@@ -31,6 +34,7 @@ public:
 
     [[nodiscard]] const PointCloud&         cloud() const noexcept { return cloud_; }
     [[nodiscard]] const NeighbourIndex&     index() const noexcept { return *index_; }
+    [[nodiscard]] const SurfaceSurvey&      survey() const noexcept { return *survey_; }
     [[nodiscard]] std::span<const Triangle> faces() const noexcept { return *faces_; } ///< may be empty
     [[nodiscard]] const Material&           material() const noexcept { return material_; }
 
@@ -43,8 +47,9 @@ public:
 
 private:
     PointCloud                                   cloud_;
-    std::shared_ptr<const NeighbourIndex>        index_; ///< never null
-    std::shared_ptr<const std::vector<Triangle>> faces_; ///< never null
+    std::shared_ptr<const NeighbourIndex>        index_;  ///< never null
+    std::shared_ptr<const std::vector<Triangle>> faces_;  ///< never null
+    std::shared_ptr<const SurfaceSurvey>         survey_; ///< never null
     Material                                     material_;
 };
 

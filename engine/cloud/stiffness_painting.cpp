@@ -53,7 +53,7 @@ std::size_t StiffnessPainting::Stroke::bytes() const noexcept
 }
 
 StiffnessPainting::StiffnessPainting(const SoftObject& object, std::size_t historyBytes)
-    : original_(object.cloud()), flood_(object.positions(), object.index()), mostHistory_(historyBytes),
+    : original_(object.cloud()), flood_(object), survey_(object.survey()), mostHistory_(historyBytes),
       stiffness_(original_.stiffness().begin(), original_.stiffness().end()), slot_(object.size(), kNoSlot)
 {
 }
@@ -136,14 +136,14 @@ std::span<const std::uint32_t> StiffnessPainting::smooth(const Brush& brush)
         places_.push_back(original_.positions()[point]);
         befores_.push_back(before(point));
         logarithms_.push_back(std::log(befores_.back()));
-        reach = std::max(reach, smoothingRadius(brush.radius, flood_.spacing(point)));
+        reach = std::max(reach, smoothingRadius(brush.radius, survey_.spacing(point)));
     }
     grid_.build(places_, reach);
     const auto [least, most] = std::minmax_element(befores_.begin(), befores_.end());
     for (std::size_t i = 0; i < smoothed_.size(); ++i) {
         const double coverage = brush.coverage(glm::length(places_[i] - brush.centre));
         if (!(coverage > 0)) continue;
-        const double rise = riseToMean(i, smoothingRadius(brush.radius, flood_.spacing(smoothed_[i])));
+        const double rise = riseToMean(i, smoothingRadius(brush.radius, survey_.spacing(smoothed_[i])));
         cover(smoothed_[i], coverage, std::clamp(befores_[i] * std::exp(rise), *least, *most));
     }
     if (!inStroke_) endStroke();

@@ -87,11 +87,12 @@ private:
     void                           set(std::uint32_t point, double value) noexcept;
     const Stroke&                  swapped(Stroke& stroke);
 
-    const PointCloud&   original_;
-    SurfaceFlood        flood_;
-    std::size_t         mostHistory_;   ///< [bytes]
-    std::vector<double> stiffness_;     ///< [Pa] or [N m]
-    std::size_t         differing_ = 0; ///< points whose stiffness is not that of original_
+    const PointCloud&    original_;
+    SurfaceFlood         flood_;
+    const SurfaceSurvey& survey_;
+    std::size_t          mostHistory_;   ///< [bytes]
+    std::vector<double>  stiffness_;     ///< [Pa] or [N m]
+    std::size_t          differing_ = 0; ///< points whose stiffness is not that of original_
 
     bool                       inStroke_ = false;
     Stroke                     stroke_;   ///< not yet ended

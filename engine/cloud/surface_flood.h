@@ -1,54 +1,73 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
-#include "engine/cloud/neighbour_index.h"
 #include "engine/cloud/point_grid.h"
+#include "engine/cloud/soft_object.h"
 
 namespace palp {
 
-/// Finds the piece of surface in a ball that hangs together with the ball's middle, so that a change to one side of a
-/// thin object is not made to the other.
+/// Finds the piece of surface in a ball that hangs together with the ball's middle, so that what happens to one side of
+/// a thin object does not happen to the other.
 ///
 /// From the point nearest to the middle a flood goes from point to point, inside the ball, over steps of at most
-/// kStep local spacings. Sides three spacings apart are told apart; closer ones may run together. Around a rim that is
-/// inside the ball the flood does reach the other side. Beside a tenfold step in density it passes over one point in
-/// some thousand that has no neighbour as near as its spacing tells.
+/// kStep local spacings that run along the surface: a step that rises more steeply than kSteepest over the mean tangent
+/// plane of its ends, noise apart, leads to another sheet. The normals' sign is carried along. Points
+/// whose side the survey knows must all face alike: so layers half a spacing apart are told apart. Around a rim that is
+/// inside the ball the flood does reach the other side, whose normals then point away. Beside a tenfold step in density
+/// it passes over one point in some thousand that has no neighbour as near as its spacing tells.
 /// \thread one; allocates only where it has not had as many points before
 class SurfaceFlood {
 public:
     /// Longest step in spacings of the sparser of its two points [1]. A disc of that radius holds 13 random points, so
-    /// that one in 300 000 has no neighbour; the two sides of an object must be further apart.
+    /// that one in 300 000 has no neighbour.
     static constexpr double kStep = 2;
 
-    /// Measures the local spacing around every point: 3 s for a million.
-    /// \param positions  [m] those that the index was built from; both must outlive this
+    /// Steepest step over the tangent plane, the sine of its angle [1]: across an edge of 90 degrees enough steps are
+    /// flatter, straight through a sheet's thickness none is.
+    static constexpr double kSteepest = 0.55;
+
+    /// Height over the tangent plane that noise may make of a step [standard deviations].
+    static constexpr double kNoisy = 3;
+
+    /// \param object  outlives this
     /// \throws Error if the cloud has fewer than seven points or most of them coincide
-    SurfaceFlood(std::span<const glm::dvec3> positions, const NeighbourIndex& index);
+    explicit SurfaceFlood(const SoftObject& object);
 
-    /// Finds the points of the piece, in no order; empty if no point is in the ball. Valid until the next call.
-    /// \param centre  [m], finite
-    /// \param radius  [m], >= 0
-    [[nodiscard]] std::span<const std::uint32_t> reach(const glm::dvec3& centre, double radius);
+    /// Finds the points of the piece, in the order in which the flood came to them; empty if no point is in the ball.
+    /// Valid until the next call.
+    /// \param centre   [m], finite
+    /// \param radius   [m], >= 0
+    /// \param outward  roughly away from the side that is wanted, any length; empty: the side of the nearest point
+    [[nodiscard]] std::span<const std::uint32_t> reach(const glm::dvec3& centre, double radius,
+                                                       const std::optional<glm::dvec3>& outward = {});
 
-    [[nodiscard]] double spacing(std::size_t point) const noexcept { return spacings_[point]; } ///< around it [m]
+    /// Returns the normals of the points that reach() found, in the same order, their signs carried from the first one,
+    /// whose normal points along `outward` [1]. A point without a normal has that of the point before it.
+    [[nodiscard]] std::span<const glm::dvec3> normals() const noexcept { return normals_; }
 
 private:
-    std::span<const glm::dvec3> positions_; ///< [m]
-    const NeighbourIndex&       index_;
-    std::vector<double>         spacings_; ///< [m]
+    [[nodiscard]] std::optional<std::size_t> start(const glm::dvec3& centre, const std::optional<glm::dvec3>& outward);
+    void                                     noteSide(std::size_t reached);
+    [[nodiscard]] bool connects(std::size_t from, std::size_t to, double distance2) const noexcept;
+
+    const SoftObject& object_;
 
     // Scratch: the points of the ball, and what the flood has reached and not yet left, as indices among them.
     std::vector<std::uint32_t> inBall_;
-    std::vector<glm::dvec3>    places_; ///< [m]
-    std::vector<double>        steps_;  ///< longest of each [m]
+    std::vector<glm::dvec3>    places_;  ///< [m]
+    std::vector<double>        steps_;   ///< longest of each [m]
+    std::vector<glm::dvec3>    carried_; ///< normals as carried, of those that are reached [1]
     std::vector<std::uint32_t> reached_;
     std::vector<std::uint32_t> points_;
+    std::vector<glm::dvec3>    normals_; ///< [1]
     PointGrid                  grid_;
+    std::optional<bool>        inverted_; ///< the carried normals point inwards; empty: no side is known yet
 };
 
 } // namespace palp

@@ -9,13 +9,8 @@
 #include "engine/compute/backend.h"
 #include "engine/compute/vulkan_instance.h"
 
-<<<<<<< HEAD:engine/compute/detail/vulkan_handles.h
-// Processors that Vulkan offers. Internal to the layer: no other header names a type of Vulkan, except
-// vulkan_instance.h.
-=======
 // Vulkan's objects behind the classes of engine/compute, for code that uses Vulkan itself, such as the renderer. No
 // other header of the library names a type of Vulkan, except vulkan_instance.h.
->>>>>>> w-structure:engine/compute/vulkan_handles.h
 
 namespace palp::compute {
 

@@ -13,6 +13,9 @@ struct Contact {
     glm::dvec3 outward{0, 0, 1}; ///< [1] unit vector roughly from the surface to the hand; only its side counts
     /// The hand is there. If false, `outward` is a guess, and deform() overrules it where it lies along the surface.
     bool outwardKnown = true;
+    /// `outward` is the normal of the surface as the proxy felt it. Where a fit of the neighbourhood disagrees by more
+    /// than 60 degrees, as at the rim of a thin body, it stands in for the fit's.
+    bool felt = false;
 };
 
 /// Finds the touch of a scripted finger: the point of the object nearest to `place`.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/detail/touched_surface.h"
 #include "engine/plate/load.h"
 
 // The paper's section 2. Each step fills in its part of the patch; deform() below gives their order.
@@ -51,19 +53,49 @@ void gatherPoints(Patch& patch, const SoftObject& object, const Contact& contact
 {
     const StageClock clock(patch.times.gather);
     patch.contact   = contact;
-    patch.spacing   = object.spacing();
     patch.thickness = object.material().thickness;
+    patch.spacing   = spacingAt(object, contact.point);
     object.index().gather(contact.point, gatherRadius(settings, patch.spacing), patch.gathered);
+}
+
+/// Keeps, of the ball, the surface that the finger touches; everything, in the paper's way.
+TouchedSurface touchedSurface(Patch& patch, const SoftObject& object, const PatchSettings& settings)
+{
+    if (settings.neighbourhood == Neighbourhood::ball) return {patch.gathered, {}, patch.contact.point, {}, 0, 0};
+    const StageClock clock(patch.times.gather);
+    TouchedSurface   surface = touchedSurface(object, patch.contact, gatherRadius(settings, patch.spacing));
+    patch.noise              = surface.noise;
+    return surface;
 }
 
 // --- 2.2, equations 1 to 3: the sphere near the contact
 
-void fitSphereTo(Patch& patch, const SoftObject& object)
+/// Takes the plane that the proxy felt where the fit is none or disagrees by more than 60 degrees, as at a rim.
+void takeFeltNormal(Patch& patch, const TouchedSurface& surface)
 {
-    const StageClock        clock(patch.times.fit);
+    constexpr double kAgrees = 0.5; // cosine of 60 degrees [1]
+    const Contact&   contact = patch.contact;
+    const bool       agrees  = patch.sphere.usable() &&
+                        std::abs(glm::dot(patch.sphere.fit.normal(surface.anchor), contact.outward)) >= kAgrees;
+    if (!contact.felt || agrees) return;
+    patch.normalFelt           = true;
+    patch.sphere.outcome       = FitOutcome::plane;
+    patch.sphere.fit           = {};
+    patch.sphere.fit.reference = contact.point;
+    patch.sphere.fit.gradient  = contact.outward;
+}
+
+void fitSphereTo(Patch& patch, const SoftObject& object, const TouchedSurface& surface, const PatchSettings& settings)
+{
+    const StageClock clock(patch.times.fit);
+    if (settings.neighbourhood == Neighbourhood::surface) {
+        patch.sphere = fitSphereTo(surface, object, gatherRadius(settings, patch.spacing));
+        takeFeltNormal(patch, surface);
+        return;
+    }
     std::vector<glm::dvec3> points;
-    points.reserve(patch.gathered.size());
-    for (std::uint32_t point : patch.gathered) points.push_back(object.positions()[point]);
+    points.reserve(surface.points.size());
+    for (std::uint32_t point : surface.points) points.push_back(object.positions()[point]);
     patch.sphere = fitSphere(points);
 }
 
@@ -78,10 +110,18 @@ std::string degrees(double cosine)
 bool isClosedBehind(const SoftObject& object, const glm::dvec3& contact, const glm::dvec3& outward)
 {
     const double reach = 3 * object.spacing(); // radius of the tube, and where it begins: some ten points across [m]
-    return std::any_of(object.positions().begin(), object.positions().end(), [&](const glm::dvec3& p) {
-        const double depth = glm::dot(contact - p, outward);
+    const double end   = object.cloud().bounds().diagonal();
+    const auto   holds = [&](std::uint32_t point) {
+        const glm::dvec3& p     = object.positions()[point];
+        const double      depth = glm::dot(contact - p, outward);
         return depth > reach && glm::length(p + depth * outward - contact) < reach;
-    });
+    };
+    std::vector<std::uint32_t> near; // balls about the middles of the tube's pieces, each as long as wide
+    for (double depth = 2 * reach; depth < end + 2 * reach; depth += 2 * reach) {
+        object.index().gather(contact - depth * outward, std::sqrt(2.0) * reach, near);
+        if (std::any_of(near.begin(), near.end(), holds)) return true;
+    }
+    return false;
 }
 
 /// Returns the chart on the hand's side of the surface; sets patch.sideUnsure.
@@ -101,7 +141,7 @@ Chart chartAt(Patch& patch, const SoftObject& object, const PatchSettings& setti
     const auto&  normal = chart.frame.normal;
     const double cosine = glm::dot(normal, contact.outward);
     if (contact.outwardKnown && cosine < kSteep)
-        throw Error("contact: the direction from which the finger comes is " + degrees(cosine) +
+        throw Error(placeText(patch.contact) + ": the direction from which the finger comes is " + degrees(cosine) +
                     " from the surface's normal (" + directionText(normal) +
                     "), expected at most 80, or the side is not clear; try that normal or its opposite");
     if (contact.outwardKnown) return chart;
@@ -114,48 +154,109 @@ Chart chartAt(Patch& patch, const SoftObject& object, const PatchSettings& setti
     return around(patch.contact.outward);
 }
 
-/// Makes the chart, and projects the points on the near side into it.
-void layFlat(Patch& patch, const SoftObject& object, const PatchSettings& settings, const std::optional<Frame>& carried)
+/// Adds those of the points that the sphere's map has a place for.
+void projectPoints(Patch& patch, const SoftObject& object, std::span<const std::uint32_t> points)
 {
-    const StageClock clock(patch.times.project);
-    patch.chart = chartAt(patch, object, settings, carried);
-    for (std::uint32_t point : patch.gathered)
+    for (const std::uint32_t point : points)
         if (const auto position = patch.chart.project(object.positions()[point])) {
             patch.points.push_back(point);
             patch.positions.push_back(*position);
         }
 }
 
+/// Lays the touched surface flat.
+void layTouched(Patch& patch, const SoftObject& object, const TouchedSurface& surface, const PatchSettings& settings)
+{
+    if (settings.neighbourhood == Neighbourhood::ball) return projectPoints(patch, object, surface.points);
+    for (std::size_t k = 0; k < surface.points.size(); ++k)
+        if (glm::dot(surface.normals[k], surface.normal) > 0)
+            projectPoints(patch, object, std::span(surface.points).subspan(k, 1));
+}
+
+/// Makes the chart, and lays the points flat in it, those of the touched surface first.
+void layFlat(Patch& patch, const SoftObject& object, const TouchedSurface& surface, const PatchSettings& settings,
+             const std::optional<Frame>& carried)
+{
+    const StageClock clock(patch.times.project);
+    patch.chart = chartAt(patch, object, settings, carried);
+    layTouched(patch, object, surface, settings);
+    patch.touched = patch.points.size();
+    if (settings.neighbourhood == Neighbourhood::ball) return;
+    // The rest of the ball, the other side of a thin body above all, moves with the touched side but does not count.
+    std::vector<std::uint32_t> rest = patch.gathered, laid = patch.points;
+    std::ranges::sort(rest);
+    std::ranges::sort(laid);
+    std::vector<std::uint32_t> others;
+    std::ranges::set_difference(rest, laid, std::back_inserter(others));
+    projectPoints(patch, object, others);
+}
+
 // --- 2.4: a grid takes over the rigidity of the points
 
-/// Refuses a window that holds next to nothing of the cloud: it would still give an answer, and the usual reason is a
-/// wrong unit.
+constexpr const char* kWindowHint = "; check --length-unit and --window";
+
+/// Refuses a window that holds next to nothing of the touched surface: it would still give an answer, and the usual
+/// reason is a wrong unit.
+void refuseIfFew(const Patch& patch, const PatchSettings& settings)
+{
+    constexpr std::ptrdiff_t kFewestPoints = 9; // 3 by 3: less is no field of rigidity
+    const auto               touched       = std::span(patch.positions).first(patch.touched);
+    const auto held = std::ranges::count_if(touched, [&](const ChartPoint& p) { return patch.window.holds(p); });
+    if (held < kFewestPoints)
+        throw Error(placeText(patch.contact) + ": the patch window of " + formatQuantity(settings.window, "m") +
+                    " holds " + std::to_string(held) + " points of the touched surface, which are " +
+                    formatQuantity(patch.spacing, "m") + " apart; expected at least " + std::to_string(kFewestPoints) +
+                    kWindowHint);
+}
+
+/// Refuses a window most of whose nodes have no point nearby, unless a hand feels a surface there: a rim, a wire or the
+/// tip of a cone is narrow, and yet it is touched.
 void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
 {
-    constexpr std::ptrdiff_t kFewestPoints  = 9;   // 3 by 3: less is no field of rigidity
-    constexpr double         kMostUncovered = 0.9; // of the nodes: a corner of a sheet leaves three quarters [1]
-    const auto               held           = std::count_if(patch.positions.begin(), patch.positions.end(),
-                                                            [&](const ChartPoint& p) { return patch.window.holds(p); });
-    const std::string what = placeText(patch.contact) + ": the patch window of " + formatQuantity(settings.window, "m");
-    const char* const hint = "; check --length-unit and --window";
-    if (held < kFewestPoints)
-        throw Error(what + " holds " + std::to_string(held) + " points of the cloud, which are " +
-                    formatQuantity(patch.spacing, "m") + " apart; expected at least " + std::to_string(kFewestPoints) +
-                    hint);
+    constexpr double kMostUncovered = 0.9; // of the nodes: a corner of a sheet leaves three quarters [1]
+    if (patch.contact.felt) return;
     if (double(patch.nodesWithoutPoint) > kMostUncovered * double(patch.plate.grid.nodes()))
-        throw Error(what + " is almost empty: " + std::to_string(patch.nodesWithoutPoint) + " of its " +
-                    std::to_string(patch.plate.grid.nodes()) + " grid nodes have no point of the cloud nearby" + hint);
+        throw Error(placeText(patch.contact) + ": the patch window of " + formatQuantity(settings.window, "m") +
+                    " is almost empty: " + std::to_string(patch.nodesWithoutPoint) + " of its " +
+                    std::to_string(patch.plate.grid.nodes()) + " grid nodes have no point of the cloud nearby" +
+                    kWindowHint);
+}
+
+/// Returns the spacings of the closest and of the sparsest points of the touched surface [m]: the patch's own for both,
+/// unless the density varies. Each point counts by the area that it stands for, and a twentieth of it may be closer or
+/// sparser still.
+std::pair<double, double> spacingsOf(const Patch& patch, const SoftObject& object)
+{
+    constexpr double    kUneven = 2, kRest = 0.05; // [1] ratio to the patch's own; share of the area
+    std::vector<double> spacings;
+    double              area = 0; // [m^2]
+    for (std::uint32_t point : std::span(patch.points).first(patch.touched)) {
+        spacings.push_back(object.survey().spacing(point));
+        area += spacings.back() * spacings.back();
+    }
+    std::ranges::sort(spacings);
+    double close = spacings.back(), sparse = spacings.back(), sum = 0;
+    for (const double s : spacings) {
+        if (sum <= kRest * area) close = s;
+        if (sum <= (1 - kRest) * area) sparse = s;
+        sum += s * s;
+    }
+    return {close * kUneven < patch.spacing ? close : patch.spacing,
+            sparse > kUneven * patch.spacing ? sparse : patch.spacing};
 }
 
 void fillRigidity(Patch& patch, const SoftObject& object, const PatchSettings& settings)
 {
     const StageClock    clock(patch.times.resample);
     std::vector<double> rigidities;
-    rigidities.reserve(patch.points.size());
-    for (std::uint32_t point : patch.points) rigidities.push_back(object.rigidity(point));
-    patch.window = PatchWindow::square(settings.window, settings.cells);
-    Resampled resampled =
-        resampleRigidity(patch.window, patch.positions, rigidities, settings.resampling, patch.spacing);
+    const auto          touched = std::span(patch.points).first(patch.touched);
+    const auto          places  = std::span(patch.positions).first(patch.touched);
+    patch.window                = PatchWindow::square(settings.window, settings.cells);
+    refuseIfFew(patch, settings);
+    rigidities.reserve(touched.size());
+    for (std::uint32_t point : touched) rigidities.push_back(object.rigidity(point));
+    const auto [finest, sparsest] = spacingsOf(patch, object);
+    Resampled resampled     = resampleRigidity(patch.window, places, rigidities, settings.resampling, finest, sparsest);
     patch.nodesWithoutPoint = resampled.nodesWithoutPoint;
     patch.plate             = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
                                std::move(resampled.rigidity)};
@@ -227,14 +328,15 @@ Patch deform(const SoftObject& object, const Contact& contact, const PatchSettin
              const std::optional<Frame>& carried)
 {
     Patch patch;
-    gatherPoints(patch, object, contact, settings); // 2.1: the points near the contact
-    fitSphereTo(patch, object);                     // 2.2: lie close to a sphere,
+    gatherPoints(patch, object, contact, settings);                         // 2.1: the points near the contact,
+    const TouchedSurface surface = touchedSurface(patch, object, settings); // on the side that is touched,
+    fitSphereTo(patch, object, surface, settings);                          // 2.2: lie close to a sphere,
     if (!patch.deformed()) return patch;
-    layFlat(patch, object, settings, carried); // 2.3: which an equal-area map lays flat,
-    fillRigidity(patch, object, settings);     // 2.4: where a grid takes over their rigidity
-    bendPlate(patch, settings, solver);        // 2.5: and bends as a plate under a unit force;
-    movePoints(patch);                         // 2.6: the plate moves the points,
-    findStiffness(patch, object, settings);    //      and with the contact it is what the hand feels.
+    layFlat(patch, object, surface, settings, carried); // 2.3: which an equal-area map lays flat,
+    fillRigidity(patch, object, settings);            // 2.4: where a grid takes over their rigidity
+    bendPlate(patch, settings, solver);                 // 2.5: and bends as a plate under a unit force;
+    movePoints(patch);                                  // 2.6: the plate moves the points,
+    findStiffness(patch, object, settings);             //      and with the contact it is what the hand feels.
     return patch;
 }
 
@@ -251,9 +353,10 @@ PatchWithTable deformWithTable(const SoftObject& object, const Contact& contact,
     PatchWithTable result;
     Patch&         patch = result.patch;
     gatherPoints(patch, object, contact, settings);
-    fitSphereTo(patch, object);
+    const TouchedSurface surface = touchedSurface(patch, object, settings);
+    fitSphereTo(patch, object, surface, settings);
     if (!patch.deformed()) return result;
-    layFlat(patch, object, settings, carried);
+    layFlat(patch, object, surface, settings, carried);
     fillRigidity(patch, object, settings);
     result.table = bendPlate(patch, settings, lattice, solver);
     movePoints(patch);

@@ -8,26 +8,39 @@
 #include "engine/chart/sphere_fit.h"
 #include "engine/cloud/soft_object.h"
 #include "engine/contact/contact.h"
+#include "engine/core/enum_names.h"
 #include "engine/force/force_law.h"
 #include "engine/plate/plate.h"
 #include "engine/plate/plate_solver.h"
 
 namespace palp {
 
+/// The points near the contact that make the chart and give the plate its rigidity.
+enum class Neighbourhood {
+    surface, ///< the piece of surface that hangs together with the contact, nearer points counting more
+    ball     ///< all points in a ball, alike: the paper's. A thin body's other side takes part
+};
+constexpr auto namesOf(Neighbourhood)
+{
+    using enum Neighbourhood;
+    return std::to_array<NamedValue<Neighbourhood>>({{surface, "surface"}, {ball, "ball"}});
+}
+
 /// The constants of a scene that decide what a touch feels like, apart from the object itself.
 ///
 /// Patch window, footprint and area of contact are lengths that are never derived from the points at the contact. So
 /// the compliance of a homogeneous object is exactly constant, and everything that the hand feels is in the object.
 struct PatchSettings {
-    double     foundation      = 0;     ///< k [Pa/m] of what lies below; 0: nothing (the paper)
-    double     window          = 40e-3; ///< edge of the square of chart that bends [m]
-    int        cells           = 64;    ///< of the grid along that edge, an even number
-    double     footprintRadius = 4e-3;  ///< of the fingertip [m]
-    Map        map             = Map::lambertAzimuthal;
-    Resampling resampling      = Resampling::logMean;
-    PlateEdges edges{}; ///< of the patch window
-    ForceLaw   forceLaw  = ForceLaw::series;
-    double     tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
+    double        foundation      = 0;     ///< k [Pa/m] of what lies below; 0: nothing (the paper)
+    double        window          = 40e-3; ///< edge of the square of chart that bends [m]
+    int           cells           = 64;    ///< of the grid along that edge, an even number
+    double        footprintRadius = 4e-3;  ///< of the fingertip [m]
+    Map           map             = Map::lambertAzimuthal;
+    Neighbourhood neighbourhood   = Neighbourhood::surface;
+    Resampling    resampling      = Resampling::logMean;
+    PlateEdges    edges{}; ///< of the window
+    ForceLaw      forceLaw  = ForceLaw::series;
+    double        tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
 };
 
 /// The milliseconds that each stage of deform() took.
@@ -43,20 +56,25 @@ struct Patch {
     SphereFitResult sphere;
     Chart           chart;
     bool            sideUnsure = false; ///< the finger's side was guessed, and the cloud is open there
-    PatchWindow     window;
-    Plate           plate;                 ///< rigidity at the nodes, edges, foundation
-    double          spacing           = 0; ///< typical distance of neighbouring points of the cloud [m]
-    double          thickness         = 0; ///< of the object at the contact [m]
-    std::size_t     nodesWithoutPoint = 0; ///< see Resampled
-    NodeField       response;              ///< deflection per force at the nodes [m/N]
-    double          compliance       = 0;  ///< c: response averaged over the footprint, work-conjugate [m/N]
-    double          contactStiffness = 0;  ///< k_c [N/m]
-    double          feltStiffness    = 0;  ///< [N/m]
+    bool            normalFelt =
+        false; ///< the points around determine no surface that agrees with the hand's: the proxy's is taken
+    double      unrolled = 0; ///< share of the exponential map in the positions [1]; 0: the sphere follows the surface
+    PatchWindow window;
+    Plate       plate;                 ///< rigidity at the nodes, edges, foundation
+    double      spacing           = 0; ///< typical distance of neighbouring points at the contact [m]
+    double      noise             = 0; ///< standard deviation of the points there about the surface [m]
+    double      thickness         = 0; ///< of the object at the contact [m]
+    std::size_t nodesWithoutPoint = 0; ///< see Resampled
+    NodeField   response;              ///< deflection per force at the nodes [m/N]
+    double      compliance       = 0;  ///< c: response averaged over the footprint, work-conjugate [m/N]
+    double      contactStiffness = 0;  ///< k_c [N/m]
+    double      feltStiffness    = 0;  ///< [N/m]
 
-    std::vector<std::uint32_t> gathered;      ///< points of the cloud around the contact
-    std::vector<std::uint32_t> points;        ///< those on the near side, in the same order as the next two
-    std::vector<ChartPoint>    positions;     ///< of `points` in the chart [m]
-    std::vector<double>        pointResponse; ///< deflection per force of `points` [m/N]; 0 outside the window
+    std::vector<std::uint32_t> gathered;  ///< points of the cloud around the contact
+    std::vector<std::uint32_t> points;    ///< those that may move, in the same order as the next two; first `touched`
+    std::vector<ChartPoint>    positions; ///< of `points` in the chart [m]
+    std::size_t touched = 0; ///< number of `points` on the touched surface, which alone give the plate its rigidity
+    std::vector<double> pointResponse; ///< deflection per force of `points` [m/N]; 0 outside the window
 
     SolveReport report;
     StageTimes  times; ///< [ms]

@@ -6,11 +6,12 @@ namespace palp {
 
 PatchSettings withPreset(PatchSettings settings, Preset preset)
 {
-    const bool paper    = preset == Preset::paper;
-    settings.map        = paper ? Map::gallPeters : Map::lambertAzimuthal;
-    settings.resampling = paper ? Resampling::nearest : Resampling::logMean;
-    settings.forceLaw   = paper ? ForceLaw::paper : ForceLaw::series;
-    settings.edges      = {};
+    const bool paper       = preset == Preset::paper;
+    settings.map           = paper ? Map::gallPeters : Map::lambertAzimuthal;
+    settings.resampling    = paper ? Resampling::nearest : Resampling::logMean;
+    settings.neighbourhood = paper ? Neighbourhood::ball : Neighbourhood::surface;
+    settings.forceLaw      = paper ? ForceLaw::paper : ForceLaw::series;
+    settings.edges         = {};
     if (paper) settings.foundation = 0;
     return settings;
 }
@@ -21,6 +22,9 @@ std::vector<std::string> differencesFromPaper(const PatchSettings& settings)
     if (settings.map != Map::gallPeters)
         lines.push_back(std::string("map ") + name(settings.map) +
                         ", the paper's is gall-peters: it stretches by sqrt 2 at the contact");
+    if (settings.neighbourhood != Neighbourhood::ball)
+        lines.push_back(std::string("neighbourhood ") + name(settings.neighbourhood) +
+                        ", the paper's is a ball: the other side of a thin body takes part in it");
     if (settings.resampling != Resampling::nearest)
         lines.push_back(std::string("rigidity by ") + name(settings.resampling) +
                         ", the paper's by nearest: it jitters while the grid slides");

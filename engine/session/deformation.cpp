@@ -28,8 +28,8 @@ FootprintLattice latticeOf(const Scene& scene, const SoftObject& object, PlateSo
 } // namespace
 
 Deformation::Deformation(const SoftObject& object, const Scene& scene)
-    : object_(&object), law_(scene.complianceLaw), settings_(scene.patch), solver_(scene.solver, 0, SoftwareBits::ofTheHost),
-      lattice_(latticeOf(scene, object, solver_))
+    : object_(&object), law_(scene.complianceLaw), settings_(scene.patch),
+      solver_(scene.solver, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, object, solver_))
 {
 }
 
@@ -52,7 +52,8 @@ DeformationAnswer Deformation::solve(const Touch& touch, double period)
 DeformationAnswer Deformation::solveAt(const glm::dvec3& place, const Touch& touch)
 {
     try {
-        PatchWithTable solved = deformWithTable(*object_, {place, touch.outward}, settings_, lattice_, solver_, frame_);
+        PatchWithTable solved =
+            deformWithTable(*object_, {place, touch.outward, true, true}, settings_, lattice_, solver_, frame_);
         if (!solved.table) return {{}, {}, "the points around the contact determine no surface"};
         Patch& patch = solved.patch;
         frame_       = patch.chart.frame;

@@ -268,7 +268,8 @@ std::vector<SceneKey> materialKeys()
     std::vector<SceneKey> keys = {
         wordKey(
             {.name  = "preset",
-             .help  = "sets map, resampling, edges, foundation and force_law: palpate, or paper as Kumari and "
+             .help  = "sets map, neighbourhood, resampling, edges, foundation and force_law: palpate, or paper as "
+                      "Kumari and "
                       "Chaudhuri published it; keys beside it win over it",
              .group = kTouch},
             [](auto& s) -> auto& { return s.preset; }),
@@ -345,6 +346,12 @@ std::vector<SceneKey> patchKeys()
              .group   = kTouch,
              .control = Control{Panel::patch, "map"}},
             [](auto& s) -> auto& { return s.patch.map; }),
+        wordKey(
+            {.name  = "neighbourhood",
+             .help  = "which points near the contact count: those of the touched surface, or of a ball as in the paper",
+             .group = kTouch,
+             .control = Control{Panel::patch, "neighbourhood"}},
+            [](auto& s) -> auto& { return s.patch.neighbourhood; }),
         wordKey(
             {.name    = "resampling",
              .help    = "how the rigidity comes to the grid's nodes",
@@ -528,6 +535,7 @@ std::map<std::string, std::string, std::less<>> presetValues(Preset preset)
 {
     const PatchSettings                             set = withPreset({}, preset);
     std::map<std::string, std::string, std::less<>> values{{"map", name(set.map)},
+                                                           {"neighbourhood", name(set.neighbourhood)},
                                                            {"resampling", name(set.resampling)},
                                                            {"force_law", name(set.forceLaw)},
                                                            {"edges", edgesText(set.edges)}};

@@ -98,7 +98,7 @@ void smooth(benchmark::State& state)
 
 void flood(benchmark::State& state)
 {
-    palp::SurfaceFlood flood(plate().positions(), stage().object.index());
+    palp::SurfaceFlood flood(stage().object);
     const double       radius = radiusFor(double(state.range(0)));
     Places             places(radius, state.range(1) == 1);
     for (auto _ : state) benchmark::DoNotOptimize(flood.reach(places.next(), radius));

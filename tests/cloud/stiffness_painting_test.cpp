@@ -221,8 +221,7 @@ TEST(StiffnessPainting, SmoothingIsTheStatedMean)
     const auto   places = sheet(16e-3, 0.5e-3, 0);
     Painted      p(places, roughStiffness(places.size()));
     const Brush  brush{places[10], 40e-3, 1}; // all points; an eighth is more than four spacings, which hold therefore
-    SurfaceFlood flood(p.object.positions(), p.object.index());
-    const double radius = 4 * flood.spacing(10);
+    const double radius = 4 * p.object.survey().spacing(10);
 
     p.painting.smooth(brush);
 

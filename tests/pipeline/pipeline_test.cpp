@@ -251,8 +251,8 @@ TEST(Pipeline, PaperPresetHasNoDifferencesAndOursNamesEachOfThem)
 {
     const PatchSettings skin{.foundation = 1e6};
     EXPECT_TRUE(differencesFromPaper(withPreset(skin, Preset::paper)).empty());
-    EXPECT_EQ(differencesFromPaper(withPreset(skin, Preset::palpate)).size(), 4u)
-        << "map, resampling, foundation, force law";
+    EXPECT_EQ(differencesFromPaper(withPreset(skin, Preset::palpate)).size(), 5u)
+        << "map, neighbourhood, resampling, foundation, force law";
 }
 
 TEST(Pipeline, DeepDentsAreCalledOutOfTheory)

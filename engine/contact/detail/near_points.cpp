@@ -4,8 +4,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/cloud/local_spacing.h"
-
 namespace palp {
 namespace {
 
@@ -16,10 +14,16 @@ constexpr double kReserve = 1.4;
 /// A ball kept from a place with a hole is given up when a ball this many times smaller is asked for [1].
 constexpr double kTooLarge = 3;
 
+std::span<const double> spacingsOf(const SoftObject& object)
+{
+    object.survey().expectSurface();
+    return object.survey().spacings();
+}
+
 } // namespace
 
 NearPoints::NearPoints(const SoftObject& object)
-    : spacing_(object.spacing()), tree_(object.positions(), localSpacings(object.positions(), object.index()))
+    : spacing_(object.spacing()), tree_(object.positions(), spacingsOf(object))
 {
     for (Ball& ball : balls_) ball.points.reserve(kMost);
 }

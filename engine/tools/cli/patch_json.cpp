@@ -77,6 +77,7 @@ Json settingsJson(const Material& material, const PatchSettings& s)
             {"cells", s.cells},
             {"footprint_radius", s.footprintRadius},
             {"map", name(s.map)},
+            {"neighbourhood", name(s.neighbourhood)},
             {"resampling", name(s.resampling)},
             {"force_law", name(s.forceLaw)},
             {"edges",

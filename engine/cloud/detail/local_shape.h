@@ -1,0 +1,47 @@
+#pragma once
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace palp {
+
+/// The shape of the surface about a point, from the points around it.
+struct LocalShape {
+    glm::dvec3 normal{};         ///< [1] unit; 0 if the points determine no plane
+    double     narrow   = 0;     ///< [1] the smaller over the larger extent of the points along the surface, squared
+    double     residual = 0;     ///< [m] standard deviation of the points about the fitted quadric
+    double     tails    = 3;     ///< [1] kurtosis of the deviations, of more than 40 points: two layers have 1
+    bool       sided    = false; ///< the points form two layers, and the normal points away from the other one
+};
+
+/// Fits planes and quadrics to the points about a point.
+///
+/// The plane is that of the principal axes, each point weighted (1 - d^2 / r^2)^2. Where the heights of the points fall
+/// into two layers one over the other, as on a body thinner than its points are apart, the point's own layer counts
+/// alone. The residual is that of h ~ alpha + beta a + gamma b + the three second powers, with its degrees of freedom.
+/// \thread one; allocates only where it has not had as many points before
+class ShapeFitter {
+public:
+    /// \param away     [m] of the points from the middle one, which is among them
+    /// \param radius   [m] within which they lie
+    /// \param spacing  [m] around here
+    [[nodiscard]] LocalShape fit(std::span<const glm::dvec3> away, double radius, double spacing);
+
+private:
+    struct Height {
+        double      height = 0; ///< [m]
+        std::size_t point  = 0;
+    };
+
+    std::size_t        cutByHeight(std::span<const glm::dvec3> away, const glm::dvec3& normal);
+    [[nodiscard]] bool areLayers(std::span<const glm::dvec3> away, const glm::dvec3& normal, double spacing,
+                                 std::size_t cut) const;
+    bool               keepOwnLayer(std::span<const glm::dvec3> away, glm::dvec3 normal, double radius, double spacing);
+
+    std::vector<glm::dvec3> own_; ///< [m] scratch: the points that count
+    std::vector<Height>     heights_;
+};
+
+} // namespace palp

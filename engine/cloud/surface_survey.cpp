@@ -1,0 +1,235 @@
+#include "engine/cloud/surface_survey.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "engine/cloud/detail/local_shape.h"
+#include "engine/cloud/detail/neighbourhoods.h"
+#include "engine/cloud/local_spacing.h"
+#include "engine/core/contract.h"
+#include "engine/core/parallel.h"
+
+namespace palp {
+namespace {
+
+constexpr std::size_t kPiece = 4096; ///< least points of a thread
+constexpr std::size_t kRun   = 256;  ///< points along the curve that are looked at together
+
+/// Radius of the neighbourhood of a normal [spacings]: 28 points of a random sheet, some thirty.
+constexpr double kReach = 3;
+
+/// Points lie along a line if their extents along the surface have a smaller ratio, squared [1]: of the 28 points of a
+/// random sheet one in 10^5 does. The ball then grows by kGrowth until the ratio reaches kPlanar.
+constexpr double kNarrow = 0.08, kPlanar = 0.3, kGrowth = 1.4;
+
+/// A point belongs to a layer whose tangent planes it lies this many times nearer to than to the other's [1].
+constexpr double kOwnLayer = 0.4;
+
+/// Deviations up to this share of the spacing need no second look [1]: contact and charts bear them.
+constexpr double kClean = 0.2;
+
+/// Noise is found where the deviation grows by less than this while the ball doubles, twice in a row [1]. That of an
+/// edge doubles, but for one ball that just reaches over it.
+constexpr double kSettled = 1.35;
+
+/// Deviations with a smaller kurtosis are those of the two faces of a thin body [1], which has 1 to 1.4; evenly spread
+/// noise has 1.8.
+constexpr double kTwoFaces = 1.6;
+
+constexpr double      kWidest     = 32;  ///< largest ball of a search for noise, and for lines [spacings]
+constexpr std::size_t kTogether   = 16;  ///< points along the curve that share a search for noise
+constexpr std::size_t kMostOfBall = 512; ///< points of a wide ball that are looked at
+
+} // namespace
+
+/// The survey of some pieces of a cloud: each thread has its own.
+class SurfaceSurvey::Measuring {
+public:
+    Measuring(SurfaceSurvey& survey, std::span<const glm::dvec3> positions, const NeighbourIndex& index)
+        : survey_(survey), positions_(positions), index_(index), neighbourhoods_(positions, index)
+    {
+    }
+
+    void measureShapes(std::span<const std::uint32_t> order);
+    void adoptSides(std::span<const std::uint32_t> order, std::span<const std::uint8_t> sided);
+    void measureNoise(std::span<const std::uint32_t> order);
+    void settleNoise(std::span<const std::uint32_t> order, std::span<const float> raw);
+
+private:
+    LocalShape shapeWithin(std::uint32_t point, double radius);
+    LocalShape widened(std::uint32_t point, LocalShape shape);
+    float      noiseAbout(std::uint32_t point);
+
+    SurfaceSurvey&              survey_;
+    std::span<const glm::dvec3> positions_;
+    const NeighbourIndex&       index_;
+    Neighbourhoods              neighbourhoods_;
+    ShapeFitter                 fitter_;
+    std::vector<glm::dvec3>     away_;
+    std::vector<std::uint32_t>  found_;
+    std::vector<float>          values_;
+};
+
+LocalShape SurfaceSurvey::Measuring::shapeWithin(std::uint32_t point, double radius)
+{
+    index_.gather(positions_[point], radius, found_);
+    const std::size_t step = (found_.size() + kMostOfBall - 1) / kMostOfBall;
+    away_.clear();
+    for (std::size_t k = 0; k < found_.size(); k += step) away_.push_back(positions_[found_[k]] - positions_[point]);
+    return fitter_.fit(away_, radius, survey_.spacings_[point]);
+}
+
+/// Widens the ball of a point on a line until its points span a plane, and takes the spacing of the lines.
+LocalShape SurfaceSurvey::Measuring::widened(std::uint32_t point, LocalShape shape)
+{
+    const double spacing = survey_.spacings_[point];
+    double       radius  = kReach * spacing;
+    while (shape.narrow < kPlanar && radius < kWidest * spacing) {
+        radius *= kGrowth;
+        shape = shapeWithin(point, radius);
+    }
+    if (shape.narrow >= kPlanar) survey_.spacings_[point] = radius / kReach;
+    return shape;
+}
+
+void SurfaceSurvey::Measuring::measureShapes(std::span<const std::uint32_t> order)
+{
+    const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
+    neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near, double) {
+        const double r = radius(point);
+        away_.clear();
+        for (const NearCandidate& candidate : near)
+            if (candidate.distance2 <= r * r) away_.push_back(candidate.away);
+        LocalShape shape = fitter_.fit(away_, r, survey_.spacings_[point]);
+        if (shape.narrow < kNarrow && !shape.sided) shape = widened(point, shape);
+        survey_.normals_[point] = shape.normal;
+        survey_.noises_[point]  = float(shape.residual);
+        survey_.sided_[point]   = shape.sided;
+    });
+}
+
+/// Gives a point whose own layer was not found that of its neighbours: of those on either side, the ones in whose
+/// tangent planes it lies.
+void SurfaceSurvey::Measuring::adoptSides(std::span<const std::uint32_t> order, std::span<const std::uint8_t> sided)
+{
+    if (std::ranges::none_of(order, [&](std::uint32_t point) { return sided[point] != 0; })) return;
+    const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
+    neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near, double) {
+        if (sided[point]) return;
+        double     height[2] = {}, weight[2] = {}; // [m] of the point over the layers along its normal and against it
+        glm::dvec3 normal[2] = {};
+        for (const NearCandidate& candidate : near) {
+            const double share = 1 - candidate.distance2 / (radius(point) * radius(point));
+            if (!sided[candidate.point] || share <= 0) continue;
+            const glm::dvec3 n     = survey_.normals_[candidate.point];
+            const int        layer = glm::dot(n, glm::dvec3(survey_.normals_[point])) < 0;
+            height[layer] += share * std::abs(glm::dot(n, candidate.away));
+            weight[layer] += share;
+            normal[layer] += share * n;
+        }
+        for (const int k : {0, 1})
+            height[k] = weight[k] > 0 ? height[k] / weight[k] : kReach * survey_.spacings_[point];
+        const int own = height[1] < height[0];
+        if (!(weight[own] > 1) || height[own] > kOwnLayer * height[1 - own]) return;
+        survey_.normals_[point] = glm::normalize(normal[own]);
+        survey_.sided_[point]   = 1;
+        survey_.noises_[point]  = 0; // what it deviated by was the other layer
+    });
+}
+
+/// Returns the noise about a point whose neighbours scatter: the deviation that a wider ball does not enlarge; 0 if the
+/// deviation grows with every ball, as that of an edge does.
+float SurfaceSurvey::Measuring::noiseAbout(std::uint32_t point)
+{
+    const double spacing = survey_.spacings_[point];
+    LocalShape   narrow  = shapeWithin(point, kReach * spacing);
+    int          settled = 0;
+    for (double radius = 2 * kReach * spacing; radius <= kWidest * spacing; radius *= 2) {
+        const LocalShape wide = shapeWithin(point, radius);
+        settled               = wide.residual < kSettled * narrow.residual ? settled + 1 : 0;
+        if (settled > 0 && wide.tails < kTwoFaces) return 0;
+        if (settled == 2 || (settled == 1 && 2 * radius > kWidest * spacing)) {
+            survey_.normals_[point] = wide.normal;
+            return float(wide.residual);
+        }
+        narrow = wide;
+    }
+    return 0;
+}
+
+void SurfaceSurvey::Measuring::measureNoise(std::span<const std::uint32_t> order)
+{
+    std::size_t since = kTogether;
+    float       last  = 0;
+    for (const std::uint32_t point : order) {
+        if (survey_.sided_[point] || !(survey_.noises_[point] > kClean * survey_.spacings_[point])) continue;
+        if (++since > kTogether) {
+            last  = noiseAbout(point);
+            since = 1;
+        }
+        survey_.noises_[point] = last;
+    }
+}
+
+void SurfaceSurvey::Measuring::settleNoise(std::span<const std::uint32_t> order, std::span<const float> raw)
+{
+    if (std::ranges::none_of(order,
+                             [&](std::uint32_t point) { return raw[point] > kClean * survey_.spacings_[point]; }))
+        return;
+    const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
+    neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near, double) {
+        const double r = radius(point);
+        values_.clear();
+        for (const NearCandidate& candidate : near)
+            if (candidate.distance2 <= r * r) values_.push_back(raw[candidate.point]);
+        const auto middle = values_.begin() + std::ptrdiff_t(values_.size() / 2);
+        std::nth_element(values_.begin(), middle, values_.end());
+        survey_.noises_[point] = *middle;
+    });
+}
+
+SurfaceSurvey::SurfaceSurvey(std::span<const glm::dvec3> positions, const NeighbourIndex& index,
+                             std::span<const glm::vec3> given)
+    : normals_(positions.size()), noises_(positions.size()), sided_(positions.size())
+{
+    PALP_EXPECT(given.empty() || given.size() == positions.size(), "normals of other points");
+    if (!(index.spacing() > 0)) return;
+    const std::vector<std::uint32_t> order = alongCurve(positions);
+    spacings_                              = localSpacings(positions, index);
+    const auto eachPiece                   = [&](auto&& measure) {
+        inParallel(order.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+            Measuring measuring(*this, positions, index);
+            measure(measuring, std::span(order).subspan(begin, end - begin));
+        });
+    };
+    eachPiece([](Measuring& m, auto piece) { m.measureShapes(piece); });
+    const auto eachRun = [&](auto&& measure) { // most runs along the curve have nothing to do, and say so quickly
+        eachPiece([&](Measuring& m, auto piece) {
+            for (std::size_t k = 0; k < piece.size(); k += kRun)
+                measure(m, piece.subspan(k, std::min(kRun, piece.size() - k)));
+        });
+    };
+    const std::vector<std::uint8_t> layered = sided_;
+    eachRun([&](Measuring& m, auto run) { m.adoptSides(run, layered); });
+    eachPiece([](Measuring& m, auto piece) { m.measureNoise(piece); });
+    const std::vector<float> raw = noises_;
+    eachRun([&](Measuring& m, auto run) { m.settleNoise(run, raw); });
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        if (!(glm::dot(given[i], given[i]) > 0)) continue;
+        // The given one says which side is out; where it is the better normal too is not known, and ours fits the points.
+        if (glm::dot(normals_[i], given[i]) < 0) normals_[i] = -normals_[i];
+        if (glm::dot(normals_[i], normals_[i]) == 0) normals_[i] = glm::normalize(given[i]);
+        sided_[i] = 1;
+    }
+}
+
+void SurfaceSurvey::expectSurface() const
+{
+    if (spacings_.empty())
+        throw Error("the cloud has fewer than seven points or most of them coincide, so there is no surface "
+                    "to touch; are there duplicates?");
+}
+
+} // namespace palp

@@ -1,0 +1,223 @@
+// Real objects: bodies with two faces, uneven points, rims. Lengths are in metres; the clouds are random.
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/presets.h"
+
+namespace palp {
+namespace {
+
+constexpr double kSoft = 0.3e6; ///< [Pa]
+constexpr double kEdge = 60e-3; ///< of the sheets [m]
+
+const PatchSettings kTouch{.window = 30e-3, .cells = 32, .footprintRadius = 4e-3};
+
+using Points = std::vector<glm::dvec3>;
+
+/// Points and stiffnesses that grow sheet by sheet.
+struct Cloud {
+    Points              points;
+    std::vector<double> moduli; ///< [Pa]
+
+    template <class Law>
+    void add(const Points& more, Law&& law)
+    {
+        for (const glm::dvec3& p : more) {
+            points.push_back(p);
+            moduli.push_back(law(p));
+        }
+    }
+    [[nodiscard]] SoftObject object() const { return SoftObject(PointCloud(points, moduli, StiffnessKind::modulus)); }
+};
+
+double uniform(const glm::dvec3&)
+{
+    return kSoft;
+}
+
+/// A tenfold wart of 3 mm (standard deviation) about the z axis.
+double wart(const glm::dvec3& p)
+{
+    return kSoft * (1 + 9 * std::exp(-(p.x * p.x + p.y * p.y) / (2 * 3e-3 * 3e-3)));
+}
+
+/// Returns random points on the square of edge kEdge about (0, 0, z).
+Points sheet(std::size_t count, double z, std::uint64_t seed)
+{
+    std::mt19937_64                  random(seed);
+    std::uniform_real_distribution<> place(-kEdge / 2, kEdge / 2);
+    Points                           points;
+    for (std::size_t n = 0; n < count; ++n) {
+        const double x = place(random);
+        points.emplace_back(x, place(random), z);
+    }
+    return points;
+}
+
+Patch touch(const SoftObject& object, const glm::dvec3& place, const glm::dvec3& from,
+            const PatchSettings& settings = kTouch)
+{
+    return deform(object, {place, from}, settings);
+}
+
+/// Thin bodies are what one touches: the other face moves, but its stiffness is not felt. Gaps in spacings of 0.42 mm:
+/// 7, 2, 1 and a half.
+TEST(TouchedSurface, AWartBeforeAPlainBackFeelsLikeItsOwnSheet)
+{
+    constexpr std::size_t kPoints = 20'000;
+    Cloud                 front, back;
+    front.add(sheet(kPoints, 0, 1), wart);
+    back.add(sheet(kPoints, 0, 2), uniform);
+    const double wartAlone = touch(front.object(), {0, 0, 0}, {0, 0, 1}).feltStiffness;
+    const double backAlone = touch(back.object(), {0, 0, 0}, {0, 0, -1}).feltStiffness;
+    ASSERT_GT(wartAlone, 1.4 * backAlone);
+    for (const double gap : {3e-3, 0.85e-3, 0.42e-3, 0.21e-3}) {
+        Cloud both = front;
+        both.add(sheet(kPoints, -gap, 2), uniform);
+        const SoftObject body = both.object();
+        // A point in a hundred or so has no layer of its own, so one in some hundred of the other face takes part.
+        EXPECT_NEAR(touch(body, {0, 0, 0}, {0, 0, 1}).feltStiffness / wartAlone, 1, 0.01) << gap;
+        EXPECT_NEAR(touch(body, {0, 0, -gap}, {0, 0, -1}).feltStiffness / backAlone, 1, 0.01) << gap;
+    }
+}
+
+TEST(TouchedSurface, BothFacesOfAThinBodyMoveTogether)
+{
+    Cloud both;
+    both.add(sheet(20'000, 0, 1), wart);
+    both.add(sheet(20'000, -1e-3, 2), uniform);
+    const SoftObject    body  = both.object();
+    const Patch         patch = touch(body, {0, 0, 0}, {0, 0, 1});
+    std::vector<double> moved = deflections(body.cloud(), patch, 1);
+    const auto          under = [&](std::size_t begin, std::size_t end) {
+        double sum   = 0;
+        int    count = 0;
+        for (std::size_t n = begin; n < end; ++n)
+            if (std::hypot(both.points[n].x, both.points[n].y) < 3e-3) {
+                sum += moved[n];
+                ++count;
+            }
+        return sum / count;
+    };
+    EXPECT_NEAR(under(20'000, 40'000) / under(0, 20'000), 1, 0.02) << "the mean over a disc of 150 random points";
+}
+
+/// A box with six faces of random points; the 40 by 40 mm faces lie at z = +-10 mm.
+Cloud box(std::size_t count, std::uint64_t seed)
+{
+    std::mt19937_64                  random(seed);
+    std::uniform_real_distribution<> unit(-1, 1), pick(0, 1);
+    Points                           points;
+    const glm::dvec3                 half(20e-3, 20e-3, 10e-3);
+    for (std::size_t n = 0; n < count; ++n) {
+        glm::dvec3   p(unit(random), unit(random), unit(random));
+        const double which = pick(random);
+        const int    axis  = which < 0.5 ? 2 : which < 0.75 ? 0 : 1; // by area: 2 of 4 parts are top and bottom
+        p[axis]            = p[axis] < 0 ? -1 : 1;
+        points.push_back(p * half);
+    }
+    Cloud cloud;
+    cloud.add(points, uniform);
+    return cloud;
+}
+
+/// The sphere through all points of the ball has a radius of 18 mm, and its top lies 12 mm under the finger: a wart of
+/// 5 mm is solved as one of 3 mm.
+TEST(TouchedSurface, TheFlatFaceOfABoxIsFlat)
+{
+    const SoftObject body  = box(60'000, 3).object();
+    const Patch      patch = touch(body, {0, 0, 10e-3}, {0, 0, 1});
+    EXPECT_LT(glm::length(patch.chart.origin - glm::dvec3(0, 0, 10e-3)), 0.02 * kTouch.window);
+    double stretched = 0, inside = 0; // [m^2] of chart over the face
+    for (std::size_t n = 0; n < patch.touched; ++n) {
+        const glm::dvec3& p = body.positions()[patch.points[n]];
+        if (p.z < 9.9e-3 || std::hypot(p.x, p.y) > 10e-3) continue;
+        stretched += std::hypot(patch.positions[n].x, patch.positions[n].z);
+        inside += std::hypot(p.x, p.y);
+    }
+    EXPECT_NEAR(stretched / inside, 1, 0.03) << "a wart keeps its size";
+}
+
+/// The radius of a bumpy ball [m], features of some 8 mm.
+double bumpyRadius(const glm::dvec3& d)
+{
+    return 30e-3 + 3e-3 * std::sin(9 * d.x) * std::sin(8 * d.y + 1) * std::cos(7 * d.z);
+}
+
+TEST(TouchedSurface, TheChartsOriginIsAtTheContact)
+{
+    std::mt19937_64            random(4);
+    std::normal_distribution<> normal;
+    const auto                 direction = [&] {
+        const double x = normal(random), y = normal(random);
+        return glm::normalize(glm::dvec3(x, y, normal(random)));
+    };
+    Cloud  cloud;
+    Points points;
+    for (int n = 0; n < 40'000; ++n) {
+        const glm::dvec3 d = direction();
+        points.push_back(bumpyRadius(d) * d);
+    }
+    cloud.add(points, uniform);
+    const SoftObject    body = cloud.object();
+    std::vector<double> off; // [windows]
+    for (int n = 0; n < 100; ++n) {
+        const glm::dvec3 d = direction(), place = bumpyRadius(d) * d;
+        const Patch      patch = deform(body, {place, d, true, true}, kTouch);
+        ASSERT_TRUE(patch.deformed());
+        off.push_back(glm::length(patch.chart.origin - place) / kTouch.window);
+    }
+    std::ranges::sort(off);
+    EXPECT_LT(off[90], 0.02);
+    EXPECT_LT(off.back(), 0.1);
+}
+
+/// A fifth of the spacing on one side of a line: 20 times as close along it. No place of the sheet is without an answer,
+/// and a homogeneous one answers alike.
+TEST(TouchedSurface, ADensityThatVariesIsNoHole)
+{
+    std::mt19937_64                  random(5);
+    std::uniform_real_distribution<> place(-kEdge / 2, kEdge / 2);
+    Cloud                            cloud;
+    Points                           points;
+    for (int n = 0; n < 200'000; ++n) {
+        const double x = place(random), y = place(random);
+        if (x > 0 || n < 500) points.emplace_back(x, y, 0); // spacings of 0.13 and 2.7 mm
+    }
+    cloud.add(points, uniform);
+    const SoftObject body = cloud.object();
+    const double     here = touch(body, {10e-3, 0, 0}, {0, 0, 1}).compliance;
+    for (const double x : {-12e-3, -6e-3, -2e-3, 0.0, 2e-3, 6e-3}) {
+        const Patch patch = touch(body, {x, 0, 0}, {0, 0, 1});
+        ASSERT_TRUE(patch.deformed()) << x;
+        EXPECT_NEAR(patch.compliance / here, 1, 1e-6) << x << ": homogeneous";
+        EXPECT_LT(double(patch.nodesWithoutPoint), 0.02 * double(patch.plate.grid.nodes())) << x << ": no hole";
+    }
+}
+
+/// At the rim of a thin body the points around determine a surface across the hand's. The proxy's normal stands in.
+TEST(TouchedSurface, TheRimOfAThinBodyIsTouched)
+{
+    Cloud plate;
+    plate.add(sheet(20'000, 0, 6), uniform);
+    plate.add(sheet(20'000, -1e-3, 7), uniform);
+    Points rim;
+    for (const glm::dvec3& p : sheet(700, 0, 8)) rim.emplace_back(kEdge / 2, p.y, -1e-3 * (p.x / kEdge + 0.5));
+    plate.add(rim, uniform);
+    const SoftObject body  = plate.object();
+    const Patch      patch = deform(body, {{kEdge / 2, 0, -0.5e-3}, {1, 0, 0}, true, true}, kTouch);
+    ASSERT_TRUE(patch.deformed());
+    EXPECT_GT(patch.feltStiffness, 0);
+    EXPECT_GT(glm::dot(patch.chart.frame.normal, glm::dvec3(1, 0, 0)), 0.5);
+}
+
+} // namespace
+} // namespace palp
