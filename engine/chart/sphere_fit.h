@@ -13,11 +13,11 @@ namespace palp {
 /// scaled so that |gradient|^2 - 2 curvature offset = 1 (Pratt's normalisation: |grad f| = 1 on the surface).
 /// Nothing here diverges when curvature goes to 0. f < 0 lies inside a sphere of positive curvature.
 struct SphereFit {
-    glm::dvec3 reference{};       ///< [m] centroid of the fitted points
+    glm::dvec3 reference{};       ///< [m] centroid of the fitted points, or the anchor of the fit
     double     curvature = 0;     ///< [1/m] 1/radius, >= 0; 0 is a plane
     glm::dvec3 gradient{0, 0, 1}; ///< [1] of f at the reference
     double     offset = 0;        ///< [m] f at the reference
-    double     misfit = 0;        ///< [m] root mean square distance of the fitted points from the surface
+    double     misfit = 0;        ///< [m] (weighted) root mean square distance of the fitted points from the surface
 
     [[nodiscard]] double     radius() const noexcept;                                ///< [m] infinity for a plane
     [[nodiscard]] glm::dvec3 centre() const noexcept;                                ///< [m] not finite for a plane
@@ -71,5 +71,27 @@ struct SphereFitResult {
 ///                  rounding makes +1e-17 or -1e-17, and no product design^T design that halves the digits when the
 ///                  points fill a narrow band. The tests run QZ beside it.
 [[nodiscard]] SphereFitResult fitSphere(std::span<const glm::dvec3> points);
+
+/// Fits a sphere through an anchor to weighted points by the same algebraic distance.
+///
+/// About the anchor u4 = 0. With x = p - anchor it minimises  sum w (u0 |x|^2 + u . x)^2  subject to |u| = 1, which is
+/// Pratt's constraint there. Whatever u is, u0 = -b . u / a is best, with a = sum w |x|^4 and b = sum w |x|^2 x; so the
+/// normal at the anchor, u, is the eigenvector of  sum w x x^T - b b^T / a  with the smallest eigenvalue. The surface
+/// holds the anchor exactly, and only points that bear weight move it: with weights that fall to zero at a distance r
+/// about a place on a smooth surface, normal and mean curvature there are right up to terms in r^2.
+/// The answer is the same for points moved, turned or scaled, and for weights scaled.
+///
+/// \param anchor   [m], finite
+/// \param points   positions [m], finite, any number and order, repeats allowed (each counts)
+/// \param weights  [1] one for each point, finite, >= 0; points without weight do not count
+/// \return as fitSphere, where the anchor counts as a point; the reference is the anchor, the offset 0, and the misfit
+///         the weighted root mean square distance
+/// \throws ContractViolation naming the first point or weight that is not as above
+/// \thread pure; memory is constant, time linear in the number of points
+/// \source Pratt 1987, "Direct least-squares fitting of algebraic surfaces", with one point interpolated
+/// \differs that matrix is never built. In design = Q R with the column |x|^2 first, the trailing 3x3 block R' of R has
+///          R'^T R' = it, and u is the last right singular vector of R': no product or difference halves the digits.
+[[nodiscard]] SphereFitResult fitSphereThrough(const glm::dvec3& anchor, std::span<const glm::dvec3> points,
+                                               std::span<const double> weights);
 
 } // namespace palp
