@@ -332,8 +332,8 @@ TEST(AnchoredSphereFit, MovesTurnsAndScalesWithThePoints)
     };
     struct {
         double scale, far, weight, tolerance;
-    } const cases[] = {{1, 0, 1, 1e-13},     {1e-150, 0, 1, 1e-13}, {1e150, 0, 1, 1e-13}, {1, 0, 1e-300, 1e-13},
-                       {1, 0, 1e300, 1e-13}, {1, 1, 1, 2e-11}}; // 1500 m are rounded to 2e-13 m, over a sag of 0.05 m
+    } const cases[] = {{1, 0, 1, 1e-13},     {1e-150, 0, 1, 1e-13}, {1e150, 0, 1, 1e-13}, {1, 0, 1e-305, 1e-13},
+                       {1, 0, 1e307, 1e-13}, {1, 1, 1, 2e-11}}; // 1500 m are rounded to 2e-13 m, over a sag of 0.05 m
     for (const auto& [scale, far, weight, tolerance] : cases) {
         const auto changed = [&, s = scale, f = far](const glm::dvec3& p) { return s * turned(p) + f * shift; };
         Scene      other{changed(scene.anchor), {}, {}};
