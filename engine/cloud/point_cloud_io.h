@@ -8,16 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "engine/cloud/cloud_format.h"
 #include "engine/cloud/point_cloud.h"
 #include "engine/cloud/triangle.h"
 
 namespace palp {
-
-enum class CloudFormat {
-    ply, ///< .ply
-    pcd, ///< .pcd
-    text ///< .xyz .txt .csv
-};
 
 /// The form of numbers in a written PLY or PCD file; text files are always text.
 enum class CloudEncoding { binaryLittleEndian, binaryBigEndian, ascii };
@@ -100,14 +95,10 @@ struct NamedField {
 };
 
 struct CloudWriteSettings {
-    CloudEncoding encoding = CloudEncoding::binaryLittleEndian; ///< of PLY and PCD
-    std::span<const Triangle>
-        faces{}; ///< to stand beside the points of a PLY file; other formats have no place for them
+    CloudEncoding             encoding = CloudEncoding::binaryLittleEndian; ///< of PLY and PCD
+    std::span<const Triangle> faces{};         ///< of the cloud's points; formats without a place for them omit them
+    char                      separator = ' '; ///< between the numbers of a text file; writeCloud() puts ',' into .csv
 };
-
-/// Returns true if the format of the path's extension has a place for faces.
-/// \throws Error if no format has the extension
-[[nodiscard]] bool holdsFaces(const std::filesystem::path& path);
 
 /// Writes a cloud, whole or not at all; the format is that of the extension. Numbers are doubles (or as many digits as
 /// bring the same double back), lengths metres, and comments state both units, so that reading gives the same cloud.
@@ -117,9 +108,8 @@ struct CloudWriteSettings {
 void writeCloud(const std::filesystem::path& path, const PointCloud& cloud,
                 std::span<const NamedField> extraFields = {}, const CloudWriteSettings& settings = {});
 
-/// Does the same to a stream; `separator` stands between the numbers of a text file.
+/// Does the same to a stream.
 void formatCloud(std::ostream& stream, CloudFormat format, const PointCloud& cloud,
-                 std::span<const NamedField> extraFields = {}, const CloudWriteSettings& settings = {},
-                 char separator = ' ');
+                 std::span<const NamedField> extraFields = {}, const CloudWriteSettings& settings = {});
 
 } // namespace palp

@@ -260,9 +260,9 @@ LoadedCloud parsePcd(std::istream& stream, std::uint64_t size, const std::string
 }
 
 void formatPcd(std::ostream& stream, const PointCloud& cloud, std::span<const NamedField> extraFields,
-               CloudEncoding encoding)
+               const CloudWriteSettings& settings)
 {
-    if (encoding == CloudEncoding::binaryBigEndian)
+    if (settings.encoding == CloudEncoding::binaryBigEndian)
         throw Error("a PCD file cannot be big-endian: choose little-endian or ascii, or write a PLY file");
     const RowWriter writer(cloud, extraFields);
     const auto      forEachColumn = [&](const char* entry, const auto& valueOf) {
@@ -278,7 +278,7 @@ void formatPcd(std::ostream& stream, const PointCloud& cloud, std::span<const Na
     forEachColumn("TYPE", [](const std::string&) { return 'F'; });
     forEachColumn("COUNT", [](const std::string&) { return 1; });
     stream << "WIDTH " << cloud.size() << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << cloud.size() << '\n';
-    if (encoding == CloudEncoding::ascii) {
+    if (settings.encoding == CloudEncoding::ascii) {
         stream << "DATA ascii\n";
         writer.writeText(stream, ' ');
     } else {

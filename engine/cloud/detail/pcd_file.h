@@ -16,6 +16,6 @@ namespace palp {
 /// Writes a PCD 0.7 file of doubles; see formatCloud.
 /// \throws Error for the big-endian encoding, which the format does not have
 void formatPcd(std::ostream& stream, const PointCloud& cloud, std::span<const NamedField> extraFields,
-               CloudEncoding encoding);
+               const CloudWriteSettings& settings);
 
 } // namespace palp

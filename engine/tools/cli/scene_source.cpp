@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "engine/cloud/cloud_format.h"
 #include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
@@ -60,7 +61,7 @@ bool holdsPlainNumber(const std::string& text)
 void SceneSource::addTo(CLI::App& command, SceneKey::Group upTo)
 {
     auto* const positional = command.add_option(
-        "SCENE", name, "a scene file (.json), a cloud file (.ply, .pcd, .xyz, .txt, .csv) or sample:NAME");
+        "SCENE", name, "a scene file (.json), a cloud file (" + extensionsFor(CloudUse::reading) + "), or sample:NAME");
     if (name.empty())
         positional->required();
     else
