@@ -65,6 +65,7 @@ struct CloudFileReport {
     bool                         lengthUnitAssumed = false; ///< neither the file nor a setting states one: metres
     bool                         stiffnessAssumed  = false; ///< neither the file nor a setting: kDefaultModulus
     std::optional<StiffnessKind> statedKind;                ///< of the property, by the file's comment
+    std::vector<std::string>     warnings;                  ///< sentences on what is odd in the file
 };
 
 struct LoadedCloud {
@@ -77,7 +78,8 @@ struct LoadedCloud {
 ///
 /// PLY: ascii and both binary orders, every scalar type. Lists vertex_indices or vertex_index of an element face become
 /// triangles; other elements and lists are checked and skipped.
-/// PCD: ascii and binary; fields with COUNT > 1 are skipped. Text: one point per line, `x y z [stiffness]` or named by
+/// PCD: ascii, binary and binary_compressed; fields with COUNT > 1 are skipped, and points with NaN, which is its sign
+/// for "no return", are omitted and counted. Bytes after the last row of a binary PLY or PCD file are a warning. Text: one point per line, `x y z [stiffness]` or named by
 /// a header line or by `columns`. Quality, confidence and intensity never become stiffness unless the user names them.
 /// The same position may occur often, but must not be the only one.
 /// \throws Error naming the file, the line or byte, what was expected and what was found

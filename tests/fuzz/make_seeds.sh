@@ -21,7 +21,8 @@ head='FIELDS x y z E\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT
 printf '# .PCD v.7\n# stiffness_unit N_m\nVERSION .7\n'"$head"'DATA ascii\n1 2 3 4\n5 6 7 8\n' >pcd/ascii
 printf 'VERSION .7\n'"$head"'DATA binary\n'"$f1$f1$f1$f1$f2$f2$f1$f2" >pcd/binary
 printf 'VERSION 0.7\nFIELDS x y z _ n\nSIZE 8 8 8 1 2\nTYPE F F F U I\nCOUNT 1 1 1 3 2\nWIDTH 1\nHEIGHT 2\nDATA binary\n'"$d1$d1$d1"'abcdefg'"$d2$d2$d1"'abcdefg' >pcd/padded
-printf 'VERSION .7\n'"$head"'DATA binary_compressed\nabcd' >pcd/compressed
+printf 'VERSION .7\n'"$head"'DATA binary_compressed\n\041\000\000\000\040\000\000\000\037'"$f1$f2$f1$f2$f1$f1$f1$f2" >pcd/compressed
+printf 'VERSION .7\n'"$head"'DATA binary_compressed\n\010\000\000\000\040\000\000\000\003'"$f1"'\340\023\003' >pcd/repeated
 
 printf '1 2 3 4\n5 6 7 8\n' >text/plain
 printf '# length_unit mm\nx,y,z,"E"\n1,2,3,4\n5,6,7,8\n\n' >text/header

@@ -230,6 +230,11 @@ void CloudRows::expect(std::uint64_t points, std::uint64_t leastBytes, Place pla
         reader_.failAtByte("the header promises " + std::to_string(points) + " points of at least " +
                            std::to_string(leastBytes) + " bytes each, but only " + std::to_string(reader_.remaining()) +
                            " bytes follow; the file may have been cut short while it was copied");
+    makeRoom(points);
+}
+
+void CloudRows::makeRoom(std::uint64_t points)
+{
     if (points > kMostPoints)
         reader_.fail("expected at most " + std::to_string(kMostPoints) + " points, found " + std::to_string(points));
     positions_.reserve(points);
@@ -256,7 +261,9 @@ void CloudRows::add(const CloudRow& row, Place place)
 
     if (!usable(used)) {
         const bool finite = std::all_of(used.begin(), used.end(), [](double v) { return std::isfinite(v); });
-        if (finite || !settings_.dropInvalid) refuseRow(used, place);
+        const bool unseen =
+            omitUnseen_ && std::any_of(used.begin(), used.end(), [](double v) { return std::isnan(v); });
+        if (!unseen && (finite || !settings_.dropInvalid)) refuseRow(used, place);
         ++report_.droppedPoints;
         droppedRows_.push_back(std::uint32_t(rowsRead_));
         ++rowsRead_;
@@ -295,7 +302,17 @@ void CloudRows::failAtRow(Place place, const std::string& message) const
 {
     const std::string at = "point " + std::to_string(rowsRead_) + ": " + message;
     if (place == Place::line) reader_.failAtLine(at);
+    if (place == Place::unpacked) reader_.fail(at);
     reader_.fail("before byte " + std::to_string(reader_.offset()) + ": " + at);
+}
+
+void CloudRows::warnOfTail()
+{
+    if (reader_.remaining() > 0)
+        warn(std::to_string(reader_.remaining()) + " bytes after the last row, from byte " +
+             std::to_string(reader_.offset()) +
+             " on, were not read; some programs pad their files, but if the object "
+             "looks wrong, the file may be damaged");
 }
 
 void CloudRows::mapRange()
@@ -339,6 +356,9 @@ LoadedCloud CloudRows::finish()
     } else {
         stiffness_.assign(positions_.size(), uniform_);
     }
+    if (report_.droppedPoints > 0 && !settings_.dropInvalid)
+        warn(std::to_string(report_.droppedPoints) + " of " + std::to_string(rowsRead_) +
+             " points were omitted: they have NaN, with which such files mark what the instrument did not see");
     report_.format             = header_.format;
     report_.points             = positions_.size();
     report_.duplicatePositions = countDuplicates(positions_);

@@ -51,12 +51,24 @@ public:
     /// Returns the slot that a property (an index in CloudHeader::properties) fills; kSlots: none.
     [[nodiscard]] std::size_t slotOf(std::size_t property) const noexcept;
 
-    /// The place of a row: on a line of its own, or at a byte.
-    enum class Place { line, byte };
+    /// The place of a row: on a line of its own, at a byte, or none because it comes of unpacked data.
+    enum class Place { line, byte, unpacked };
 
     /// Checks a promised number of points against the bytes that are left, and only then makes room for them.
     /// \param leastBytes  that one point takes in the file, > 0
     void expect(std::uint64_t points, std::uint64_t leastBytes, Place place);
+
+    /// Makes room for points that other checks have bounded.
+    void makeRoom(std::uint64_t points);
+
+    /// From now on a point with NaN is one that the instrument did not see, and is omitted; its number is a warning.
+    void omitUnseen() noexcept { omitUnseen_ = true; }
+
+    /// Adds a sentence to the warnings of the report.
+    void warn(std::string sentence) { report_.warnings.push_back(std::move(sentence)); }
+
+    /// Adds a warning if bytes are left at the end of a binary file.
+    void warnOfTail();
 
     /// Takes the next row of the file, which is the reader's last line or ends at the reader's offset.
     /// \throws Error naming the row if a number is not finite or the stiffness not above zero
@@ -93,7 +105,8 @@ private:
     double                  metresPerUnit_ = 1; ///< [m]
     double                  uniform_       = 0; ///< [Pa] or [N m]
     PropertyRange           found_;             ///< of the property, in its unit
-    std::uint64_t           rowsRead_ = 0;
+    std::uint64_t           rowsRead_   = 0;
+    bool                    omitUnseen_ = false;
 };
 
 } // namespace palp

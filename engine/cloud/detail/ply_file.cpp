@@ -176,7 +176,8 @@ LoadedCloud parsePly(std::istream& stream, std::uint64_t size, const std::string
 
     BodyParser body(reader, header, rows, faces);
     for (std::size_t i = 0; i < header.elements.size(); ++i) body.parse(header.elements[i], i == header.vertex);
-    if (header.ascii ? !reader.onlyBlanksLeft() : reader.remaining() > 0)
+    if (!header.ascii) rows.warnOfTail();
+    if (header.ascii && !reader.onlyBlanksLeft())
         reader.failAtByte("expected the end of the file after the last element, found " +
                           std::to_string(reader.remaining()) + " more bytes");
     LoadedCloud loaded            = rows.finish();

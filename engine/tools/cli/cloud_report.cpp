@@ -53,6 +53,7 @@ std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& 
     if (report.stiffnessAssumed && scene.stiffness.empty())
         said.push_back("no stiffness in the file: uniform " + formatQuantity(kDefaultModulus, "Pa") +
                        " assumed; set --uniform or --stiffness");
+    said.insert(said.end(), report.warnings.begin(), report.warnings.end());
     return said;
 }
 

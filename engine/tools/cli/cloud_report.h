@@ -16,7 +16,7 @@ namespace palp {
 /// Returns "x,y,z" as --at takes it, to about a thousandth of a cloud of that diagonal [m].
 [[nodiscard]] std::string placeText(const glm::dvec3& place, double diagonal, double metresPerUnit = 1);
 
-/// Returns, in sentences, what was assumed of a cloud's file because nothing states it; empty if nothing was.
+/// Returns, in sentences, what was assumed of a cloud's file because nothing states it, and what is odd in it.
 [[nodiscard]] std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& report);
 
 /// Returns the assumptions, a law that changes nothing, and what a hunt has hidden in the stiffness.
