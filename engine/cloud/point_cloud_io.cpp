@@ -4,6 +4,7 @@
 #include <new>
 #include <ostream>
 
+#include "engine/cloud/detail/coordinate_rounding.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 
@@ -16,7 +17,9 @@ LoadedCloud parseCloud(std::istream& stream, std::uint64_t size, const std::stri
         throw Error(name + ": columns are for text files, but this file names its own properties; name the "
                            "stiffness property instead");
     try {
-        return recordOf(format).parse(stream, size, name, settings);
+        LoadedCloud loaded = recordOf(format).parse(stream, size, name, settings);
+        warnOfRounding(loaded);
+        return loaded;
     } catch (const std::bad_alloc&) {
         throw Error(name + ": the points do not fit into memory; take fewer, such as by CloudCompare's Subsample");
     }

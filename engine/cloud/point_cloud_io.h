@@ -57,7 +57,8 @@ struct CloudFileReport {
     std::size_t                  faces              = 0;    ///< in the file, of any number of corners
     std::size_t                  degenerateFaces    = 0;    ///< omitted: fewer than three corners, or one twice
     std::size_t                  droppedFaces       = 0;    ///< omitted because they lost a point
-    std::size_t                  duplicatePositions = 0;    ///< points that lie exactly where an earlier one lies
+    std::size_t                  duplicatePositions = 0;    ///< merged with an earlier point at exactly the same place
+    double                       coordinateRounding = 0;    ///< step between neighbouring numbers of the file [m]
     std::vector<std::string>     properties;                ///< scalar properties of a point, in file order
     std::string                  lengthUnitSource;          ///< such as "mm, from the file's comment"
     std::string                  stiffnessSource;           ///< which property, its unit, and why
@@ -68,10 +69,19 @@ struct CloudFileReport {
     std::vector<std::string>     warnings;                  ///< sentences on what is odd in the file
 };
 
+inline constexpr std::uint32_t kNoPoint = 0xFFFF'FFFFu; ///< see LoadedCloud::pointOfRow
+
 struct LoadedCloud {
     PointCloud            cloud;
     CloudFileReport       report;
-    std::vector<Triangle> faces{}; ///< of the cloud's points; empty unless a PLY file has faces
+    std::vector<Triangle> faces{}; ///< of the cloud's points; empty unless the file has faces
+
+    /// For each point the outward normal that the file has for it, of unit length; zero where it has none. Empty if it
+    /// has none at all.
+    std::vector<glm::vec3> normals{};
+
+    /// For each row of the file its point, or kNoPoint if it was omitted. Empty if every row is a point of its own.
+    std::vector<std::uint32_t> pointOfRow{};
 };
 
 /// Reads a cloud; the format is that of the file's extension.
@@ -81,7 +91,8 @@ struct LoadedCloud {
 /// PCD: ascii, binary and binary_compressed; fields with COUNT > 1 are skipped, and points with NaN, which is its sign
 /// for "no return", are omitted and counted. Bytes after the last row of a binary PLY or PCD file are a warning. Text: one point per line, `x y z [stiffness]` or named by
 /// a header line or by `columns`. Quality, confidence and intensity never become stiffness unless the user names them.
-/// The same position may occur often, but must not be the only one.
+/// Points at exactly the same place become one, in the place of the first, with the mean of the logarithms of their
+/// stiffness; faces then name that one. The place must not be the only one.
 /// \throws Error naming the file, the line or byte, what was expected and what was found
 [[nodiscard]] LoadedCloud readCloud(const std::filesystem::path& path, const CloudReadSettings& settings = {});
 

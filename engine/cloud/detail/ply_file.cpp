@@ -170,8 +170,7 @@ LoadedCloud parsePly(std::istream& stream, std::uint64_t size, const std::string
     PlyHeader   header = parsePlyHeader(reader);
     PlyElement& vertex = header.elements[header.vertex];
     CloudRows   rows(reader, header.cloud, settings);
-    FaceRows    faces(reader, vertex.count,
-                   settings.dropInvalid ? FaceRows::Points::someDropped : FaceRows::Points::allKept);
+    FaceRows    faces(reader, vertex.count);
     assignSlots(vertex, rows);
 
     BodyParser body(reader, header, rows, faces);
@@ -180,11 +179,8 @@ LoadedCloud parsePly(std::istream& stream, std::uint64_t size, const std::string
     if (header.ascii && !reader.onlyBlanksLeft())
         reader.failAtByte("expected the end of the file after the last element, found " +
                           std::to_string(reader.remaining()) + " more bytes");
-    LoadedCloud loaded            = rows.finish();
-    loaded.faces                  = faces.finish(rows.droppedRows());
-    loaded.report.faces           = faces.faces();
-    loaded.report.degenerateFaces = faces.degenerate();
-    loaded.report.droppedFaces    = faces.dropped();
+    LoadedCloud loaded = rows.finish();
+    faces.finish(loaded);
     return loaded;
 }
 

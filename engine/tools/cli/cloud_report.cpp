@@ -92,6 +92,7 @@ nlohmann::json cloudJson(const std::string& name, const LoadedCloud& loaded)
             {"points", cloud.size()},
             {"dropped_points", loaded.report.droppedPoints},
             {"duplicate_positions", loaded.report.duplicatePositions},
+            {"normals", !loaded.normals.empty()},
             {"faces", loaded.faces.size()},
             {"degenerate_faces", loaded.report.degenerateFaces},
             {"dropped_faces", loaded.report.droppedFaces},
