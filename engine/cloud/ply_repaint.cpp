@@ -1,6 +1,7 @@
 #include "engine/cloud/ply_repaint.h"
 
 #include <algorithm>
+#include <cmath>
 #include <istream>
 #include <limits>
 #include <optional>
@@ -27,8 +28,24 @@ struct Changes {
     RepaintedPly               result;
     std::size_t                column = kNone; ///< of the points' properties: the one whose values are replaced
     ScalarType                 type   = ScalarType::float64; ///< that it has in the new file
-    std::optional<std::string> unit; ///< of a comment stiffness_unit that is added, or stands in place of another
+    std::optional<std::string> unit;      ///< of a comment stiffness_unit that is added, or stands in place of another
+    std::vector<double>        stiffness; ///< of each row in the new file [Pa] or [N m]; NaN: the number it has
 };
+
+/// Returns the stiffness of each row.
+/// \param now  the file's points as they were before
+std::vector<double> stiffnessOfRows(const LoadedCloud& now, const PointCloud& painted, bool rowsHaveOwn)
+{
+    const std::span<const double> stiffness = painted.stiffness();
+    if (now.pointOfRow.empty()) return {stiffness.begin(), stiffness.end()};
+    std::vector<double> ofRows;
+    ofRows.reserve(now.pointOfRow.size());
+    for (const std::uint32_t point : now.pointOfRow) {
+        const bool kept = rowsHaveOwn && stiffness[point] == now.cloud.stiffness()[point];
+        ofRows.push_back(kept ? std::numeric_limits<double>::quiet_NaN() : stiffness[point]);
+    }
+    return ofRows;
+}
 
 /// Returns true if a float can hold the value: smaller ones are rounded more coarsely, or to zero.
 bool fitsFloat(double value)
@@ -97,9 +114,8 @@ Changes changesOf(const std::string& name, const PlyHeader& header, const CloudR
 /// Copies a file, but for the changes. The file has been read before, so an error now means that it changed since.
 class Copier {
 public:
-    Copier(ByteReader& reader, BlockWriter& out, const PlyHeader& header, const Changes& changes,
-           std::span<const double> stiffness)
-        : reader_(reader), out_(out), header_(header), changes_(changes), stiffness_(stiffness),
+    Copier(ByteReader& reader, BlockWriter& out, const PlyHeader& header, const Changes& changes)
+        : reader_(reader), out_(out), header_(header), changes_(changes),
           progress_("writing a copy of " + reader.name())
     {
     }
@@ -112,7 +128,7 @@ public:
             if (header_.elements[i].properties.empty()) continue; // takes no room, however many rows are promised
             for (std::uint64_t row = 0; row < header_.elements[i].count; ++row) {
                 if (row % kRowsPerProgress == 0) progress_.at(reader_.offset(), reader_.size());
-                copyRow(header_.elements[i], isVertex ? std::optional(stiffness_[row]) : std::nullopt);
+                copyRow(header_.elements[i], isVertex ? std::optional(changes_.stiffness[row]) : std::nullopt);
             }
         }
         copyBytes(reader_.remaining());
@@ -167,6 +183,7 @@ private:
     {
         const std::size_t      size  = sizeOf(property.listCount.value_or(property.type));
         const std::byte* const bytes = reader_.take(size);
+        if (value && std::isnan(*value)) value = loadScalar(property.type, bytes, header_.order);
         if (value && changes_.type == ScalarType::float32)
             out_.appendNumber(float(*value), header_.order);
         else if (value)
@@ -203,7 +220,7 @@ private:
         const std::string_view word  = wordOf(element, line, changes_.column);
         const auto             begin = std::size_t(word.data() - line.data());
         out_.append(line.substr(0, begin));
-        if (parseNumber(word) == *stiffness)
+        if (std::isnan(*stiffness) || parseNumber(word) == *stiffness)
             out_.append(word);
         else
             out_.append(changes_.type == ScalarType::float32 ? shown(float(*stiffness)) : shown(*stiffness));
@@ -224,12 +241,11 @@ private:
         }
     }
 
-    ByteReader&             reader_;
-    BlockWriter&            out_;
-    const PlyHeader&        header_;
-    const Changes&          changes_;
-    std::span<const double> stiffness_; ///< [Pa] or [N m]
-    Progress                progress_;
+    ByteReader&      reader_;
+    BlockWriter&     out_;
+    const PlyHeader& header_;
+    const Changes&   changes_;
+    Progress         progress_;
 };
 
 void rewind(std::istream& stream)
@@ -244,18 +260,20 @@ RepaintedPly formatRepaintedPly(std::ostream& stream, std::istream& original, st
                                 const std::string& name, const CloudReadSettings& readAs, const PointCloud& painted)
 {
     rewind(original);
-    refuseOtherPoints(name, parsePly(original, size, name, readAs), painted);
+    const LoadedCloud now = parsePly(original, size, name, readAs);
+    refuseOtherPoints(name, now, painted);
 
     rewind(original);
     ByteReader first(original, size, name);
     PlyHeader  header = parsePlyHeader(first);
     assignSlots(header.elements[header.vertex], CloudRows(first, header.cloud, readAs));
-    Changes changes = changesOf(name, header, readAs, painted);
+    Changes changes   = changesOf(name, header, readAs, painted);
+    changes.stiffness = stiffnessOfRows(now, painted, !readAs.range && !changes.result.appended);
 
     rewind(original);
     ByteReader  reader(original, size, name);
     BlockWriter out(stream);
-    Copier(reader, out, header, changes, painted.stiffness()).copy();
+    Copier(reader, out, header, changes).copy();
     return std::move(changes.result);
 }
 

@@ -16,7 +16,8 @@ struct RepaintedPly {
 
 /// Writes a PLY file again with another stiffness, whole or not at all. Everything else keeps its bytes: encoding,
 /// comments, elements, the other properties with their names, types and order, and also the stiffness of points whose
-/// value is the same.
+/// value is the same. Rows that were merged to one point get its new stiffness, and keep their own if it was not
+/// painted.
 ///
 /// The stiffness keeps its name (MeshLab's "quality", CloudCompare's "scalar_stiffness") and its type, but integers,
 /// and floats that could not hold a value, become doubles. It is appended as a double "stiffness" (of a rigidity

@@ -8,17 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "engine/cloud/cloud_format.h"
 #include "engine/cloud/point_cloud.h"
 #include "engine/cloud/triangle.h"
 #include "engine/core/enum_names.h"
 
 namespace palp {
-
-enum class CloudFormat {
-    ply, ///< .ply
-    pcd, ///< .pcd
-    text ///< .xyz .txt .csv
-};
 
 /// The form of numbers in a written PLY or PCD file; text files are always text.
 enum class CloudEncoding { binaryLittleEndian, binaryBigEndian, ascii };
@@ -63,35 +58,49 @@ struct PropertyRange {
 
 /// The findings in a file and how it was understood, for the user to check.
 struct CloudFileReport {
-    std::string                  format;                    ///< such as "PLY, binary little-endian"
-    std::size_t                  points             = 0;    ///< in the cloud
-    std::size_t                  droppedPoints      = 0;    ///< omitted because of NaN or infinity
-    std::size_t                  faces              = 0;    ///< in the file, of any number of corners
-    std::size_t                  degenerateFaces    = 0;    ///< omitted: fewer than three corners, or one twice
-    std::size_t                  droppedFaces       = 0;    ///< omitted because they lost a point
-    std::size_t                  duplicatePositions = 0;    ///< points that lie exactly where an earlier one lies
-    std::vector<std::string>     properties;                ///< scalar properties of a point, in file order
-    std::string                  lengthUnitSource;          ///< such as "mm, from the file's comment"
-    std::string                  stiffnessSource;           ///< which property, its unit, and why
-    std::optional<PropertyRange> stiffnessProperty;         ///< of the values before a range; empty if uniform
-    bool                         lengthUnitAssumed = false; ///< neither the file nor a setting states one: metres
-    bool                         stiffnessAssumed  = false; ///< neither the file nor a setting: kDefaultModulus
-    std::optional<StiffnessKind> statedKind;                ///< of the property, by the file's comment
+    std::string                  format;                     ///< such as "PLY, binary little-endian"
+    std::size_t                  points             = 0;     ///< in the cloud
+    std::size_t                  droppedPoints      = 0;     ///< omitted because of NaN or infinity
+    std::size_t                  faces              = 0;     ///< in the file, of any number of corners
+    std::size_t                  degenerateFaces    = 0;     ///< omitted: fewer than three corners, or one twice
+    std::size_t                  droppedFaces       = 0;     ///< omitted because they lost a point
+    std::size_t                  duplicatePositions = 0;     ///< merged with an earlier point at exactly the same place
+    bool                         normals            = false; ///< there are some
+    double                       coordinateRounding = 0;     ///< step between neighbouring numbers of the file [m]
+    std::vector<std::string>     properties;                 ///< scalar properties of a point, in file order
+    std::string                  lengthUnitSource;           ///< such as "mm, from the file's comment"
+    std::string                  stiffnessSource;            ///< which property, its unit, and why
+    std::optional<PropertyRange> stiffnessProperty;          ///< of the values before a range; empty if uniform
+    bool                         lengthUnitAssumed = false;  ///< neither the file nor a setting states one: metres
+    bool                         stiffnessAssumed  = false;  ///< neither the file nor a setting: kDefaultModulus
+    std::optional<StiffnessKind> statedKind;                 ///< of the property, by the file's comment
+    std::vector<std::string>     warnings;                   ///< sentences on what is odd in the file
 };
+
+inline constexpr std::uint32_t kNoPoint = 0xFFFF'FFFFu; ///< see LoadedCloud::pointOfRow
 
 struct LoadedCloud {
     PointCloud            cloud;
     CloudFileReport       report;
-    std::vector<Triangle> faces{}; ///< of the cloud's points; empty unless a PLY file has faces
+    std::vector<Triangle> faces{}; ///< of the cloud's points; empty unless the file has faces
+
+    /// For each point the outward normal that the file has for it, of unit length; zero where it has none. Empty if it
+    /// has none at all.
+    std::vector<glm::vec3> normals{};
+
+    /// For each row of the file its point, or kNoPoint if it was omitted. Empty if every row is a point of its own.
+    std::vector<std::uint32_t> pointOfRow{};
 };
 
 /// Reads a cloud; the format is that of the file's extension.
 ///
 /// PLY: ascii and both binary orders, every scalar type. Lists vertex_indices or vertex_index of an element face become
 /// triangles; other elements and lists are checked and skipped.
-/// PCD: ascii and binary; fields with COUNT > 1 are skipped. Text: one point per line, `x y z [stiffness]` or named by
+/// PCD: ascii, binary and binary_compressed; fields with COUNT > 1 are skipped, and points with NaN, which is its sign
+/// for "no return", are omitted and counted. Bytes after the last row of a binary PLY or PCD file are a warning. Text: one point per line, `x y z [stiffness]` or named by
 /// a header line or by `columns`. Quality, confidence and intensity never become stiffness unless the user names them.
-/// The same position may occur often, but must not be the only one.
+/// Points at exactly the same place become one, in the place of the first, with the mean of the logarithms of their
+/// stiffness; faces then name that one. The place must not be the only one.
 /// \throws Error naming the file, the line or byte, what was expected and what was found
 [[nodiscard]] LoadedCloud readCloud(const std::filesystem::path& path, const CloudReadSettings& settings = {});
 
@@ -107,14 +116,10 @@ struct NamedField {
 };
 
 struct CloudWriteSettings {
-    CloudEncoding encoding = CloudEncoding::binaryLittleEndian; ///< of PLY and PCD
-    std::span<const Triangle>
-        faces{}; ///< to stand beside the points of a PLY file; other formats have no place for them
+    CloudEncoding             encoding = CloudEncoding::binaryLittleEndian; ///< of PLY and PCD
+    std::span<const Triangle> faces{};         ///< of the cloud's points; formats without a place for them omit them
+    char                      separator = ' '; ///< between the numbers of a text file; writeCloud() puts ',' into .csv
 };
-
-/// Returns true if the format of the path's extension has a place for faces.
-/// \throws Error if no format has the extension
-[[nodiscard]] bool holdsFaces(const std::filesystem::path& path);
 
 /// Writes a cloud, whole or not at all; the format is that of the extension. Numbers are doubles (or as many digits as
 /// bring the same double back), lengths metres, and comments state both units, so that reading gives the same cloud.
@@ -124,9 +129,8 @@ struct CloudWriteSettings {
 void writeCloud(const std::filesystem::path& path, const PointCloud& cloud,
                 std::span<const NamedField> extraFields = {}, const CloudWriteSettings& settings = {});
 
-/// Does the same to a stream; `separator` stands between the numbers of a text file.
+/// Does the same to a stream.
 void formatCloud(std::ostream& stream, CloudFormat format, const PointCloud& cloud,
-                 std::span<const NamedField> extraFields = {}, const CloudWriteSettings& settings = {},
-                 char separator = ' ');
+                 std::span<const NamedField> extraFields = {}, const CloudWriteSettings& settings = {});
 
 } // namespace palp

@@ -85,7 +85,8 @@ LoadedCloud loadCloud(const Scene& scene)
 LoadedObject loadObject(const Scene& scene)
 {
     LoadedCloud loaded = loadCloud(scene);
-    return {SoftObject(std::move(loaded.cloud), scene.material, std::move(loaded.faces)), std::move(loaded.report)};
+    return {SoftObject(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals),
+            std::move(loaded.report)};
 }
 
 bool haveSameCloud(const Scene& a, const Scene& b)

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/cloud/cloud_format.h"
 #include "engine/core/contract.h"
 #include "engine/core/spatial_law.h"
 #include "engine/force/governor.h"
@@ -202,9 +203,11 @@ std::vector<SceneKey> fileKeys()
 
 std::vector<SceneKey> objectKeys()
 {
+    static const std::string cloudHelp =
+        "what is touched: a " + extensionsFor(CloudUse::reading) + " file, or a procedural sample";
     std::vector<SceneKey> keys = {
         {.name         = "cloud",
-         .help         = "what is touched: a .ply, .pcd, .xyz, .txt or .csv file, or a procedural sample",
+         .help         = cloudHelp,
          .form         = "the path of a cloud file, or sample:NAME",
          .schema       = R"({"type": "string", "minLength": 1, "examples": ["sample:skin", "scan.ply"]})",
          .decidesCloud = true,

@@ -50,6 +50,15 @@ void append(std::string& bytes, T value, std::endian order = std::endian::little
     bytes.append(raw, sizeof(T));
 }
 
+/// Returns the bytes that hexadecimal digits stand for.
+inline std::string bytesOfHex(std::string_view digits)
+{
+    std::string bytes;
+    for (std::size_t i = 0; i + 1 < digits.size(); i += 2)
+        bytes += char(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16));
+    return bytes;
+}
+
 inline CloudReadSettings withProperty(const std::string& name)
 {
     CloudReadSettings settings;

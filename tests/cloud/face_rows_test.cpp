@@ -123,6 +123,22 @@ TEST(FaceRows, AFaceThatLosesAPointIsLeftOutWholeAndTheOthersAreRenumbered)
     EXPECT_EQ(loaded.report.faces, 6u);
 }
 
+TEST(FaceRows, FacesOfMergedPointsNameTheOneThatIsLeft)
+{
+    // Two triangles as STL files hold them, each with corners of its own; then faces that collapse, in part or whole.
+    const std::string header = "ply\nformat ascii 1.0\nelement vertex 7\nproperty float x\nproperty float y\n"
+                               "property float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n";
+    const std::string points = "0 0 0\n1 0 0\n0 1 0\n1 0 0\n1 1 0\n0 1 0\n5 5 5\n";
+
+    const LoadedCloud loaded = ply(header + points + "3 0 1 2\n3 3 4 5\n4 0 1 3 4\n3 1 3 6\n");
+
+    EXPECT_EQ(loaded.cloud.size(), 5u);
+    EXPECT_EQ(loaded.faces, (Triangles{{0, 1, 2}, {1, 3, 2}, {0, 1, 3}}));
+    EXPECT_EQ(loaded.report.faces, 4u);
+    EXPECT_EQ(loaded.report.degenerateFaces, 1u);
+    EXPECT_EQ(loaded.report.droppedFaces, 0u);
+}
+
 TEST(FaceRows, AHeaderThatPromisesMoreFacesThanTheFileHoldsIsRefusedBeforeAnythingIsAllocated)
 {
     std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty uchar x\nproperty uchar y\n"

@@ -107,12 +107,72 @@ TEST(PcdFile, CountPointsAndViewpointMayBeLeftOut)
               2u);
 }
 
-TEST(PcdFile, CompressedFilesAreRefusedWithAWayToConvertThem)
-{
-    Header header;
-    header.data = "binary_compressed";
+/// Columns x, y, z and E of 40 points in rows of eight, x = i mod 8, y = i / 8, z = 0 and E = 1000 + i, as floats,
+/// packed by lzf_compress() of liblzf 3.6.
+constexpr std::string_view kPackedByLiblzf =
+    "010000400001803f20050040200220030080200300a0200300c0200300e020034000e0771fe01300409be0130340d7e0130340f3"
+    "e01303410fe01303e09700037a44004020030080200300c0200301007b200f20030080200300c0200301007c200f200300802003"
+    "00c0200301007d200f20030080200300c0200301007e200f20030080200300c0200301007f200f20030080200300c02003040080"
+    "440020200300402003006020030080200300a0200300c0200300e02003010081201f200300402003006020030080200300a02003"
+    "00c0200302e08144";
 
-    EXPECT_TRUE(contains(pcdRefusal(header.text() + "????"), {"line 11", "binary_compressed is not read", "convert"}));
+std::string compressed(std::uint32_t packed, std::uint32_t unpacked, const std::string& data)
+{
+    std::string bytes =
+        Header{"x y z _ E", "4 4 4 1 4", "F F F U F", "1 1 1 3 1", "8", "5", "40", "binary_compressed"}.text();
+    append(bytes, packed);
+    append(bytes, unpacked);
+    return bytes + data;
+}
+
+TEST(PcdFile, CompressedFilesOfAnotherProgramAreRead)
+{
+    const std::string data = bytesOfHex(kPackedByLiblzf);
+
+    const LoadedCloud loaded = pcd(compressed(216, 640, data));
+
+    ASSERT_EQ(loaded.cloud.size(), 40u) << "padding has a field in the header, but is not stored";
+    for (std::size_t i = 0; i < 40; ++i) {
+        EXPECT_EQ(loaded.cloud.positions()[i], glm::dvec3(double(i % 8), double(i / 8), 0)) << i;
+        EXPECT_EQ(loaded.cloud.stiffness()[i], 1000 + double(i)) << i;
+    }
+    EXPECT_EQ(loaded.report.format, "PCD, binary_compressed");
+    EXPECT_TRUE(loaded.report.warnings.empty());
+    EXPECT_TRUE(contains(pcd(compressed(216, 640, data + "\n")).report.warnings.at(0), {"1 bytes after the last row"}));
+}
+
+TEST(PcdFile, CompressedFilesThatDoNotUnpackAreRefused)
+{
+    const std::string data = bytesOfHex(kPackedByLiblzf);
+    const auto        bad  = [&](std::size_t at, char byte) {
+        std::string damaged = data;
+        damaged[at]         = byte;
+        return pcdRefusal(compressed(216, 640, damaged));
+    };
+
+    EXPECT_TRUE(contains(pcdRefusal(compressed(217, 640, data)), {"byte", "claims 217 bytes", "only 216"}));
+    EXPECT_TRUE(contains(pcdRefusal(compressed(216, 641, data)), {"40 points of 16 bytes", "found 641"}));
+    EXPECT_TRUE(contains(pcdRefusal(compressed(216, 0xFFFFFFFF, data)), {"40 points", "found 4294967295"}));
+    EXPECT_TRUE(contains(pcdRefusal(compressed(215, 640, data.substr(0, 215))), {"packed byte", "beyond the end"}));
+    EXPECT_TRUE(contains(pcdRefusal(compressed(211, 640, data.substr(0, 211))), {"lacks its distance"}));
+    EXPECT_TRUE(contains(pcdRefusal(compressed(3, 640, data.substr(0, 3))),
+                         {"packed byte 3", "expected 640 unpacked bytes, found 2"}));
+    EXPECT_TRUE(contains(bad(3, '\x41'), {"packed byte", "before the first byte"}));
+    EXPECT_TRUE(
+        contains(pcdRefusal(compressed(219, 640, data + bytesOfHex("e0ff00"))), {"more bytes than the file states"}));
+    EXPECT_TRUE(
+        contains(pcdRefusal(compressed(218, 640, data + bytesOfHex("0041"))), {"more bytes than the file states"}));
+    EXPECT_TRUE(contains(pcdRefusal(compressed(216, 640, data).substr(0, 200)), {"only", "cut short"}));
+}
+
+TEST(PcdFile, CompressedDataCannotClaimMoreThanItsFileCanHold)
+{
+    Header      header{"x y z", "4 4 4", "F F F", "1 1 1", "100000000", "1", "100000000", "binary_compressed"};
+    std::string bytes = header.text();
+    append(bytes, std::uint32_t(4));
+    append(bytes, std::uint32_t(1200000000));
+
+    EXPECT_TRUE(contains(pcdRefusal(bytes + "abcd"), {"claims to hold 1200000000 bytes", "100 times"}));
 }
 
 TEST(PcdFile, HeadersThatMakeNoSenseAreRefused)
@@ -157,7 +217,7 @@ TEST(PcdFile, BodiesThatDoNotFitTheHeaderAreRefused)
 
     EXPECT_EQ(pcd(binary).cloud.size(), 2u);
     EXPECT_TRUE(contains(pcdRefusal(binary.substr(0, binary.size() - 1)), {"byte", "2 points", "only 23 bytes"}));
-    EXPECT_TRUE(contains(pcdRefusal(binary + "!"), {"end of the file", "1 more"}));
+    EXPECT_TRUE(contains(pcd(binary + "!").report.warnings.at(0), {"1 bytes after the last row"})) << "no error";
     EXPECT_TRUE(contains(pcdRefusal(ascii + "1 2 3        "), {"expected 2 points, found 1"}));
     EXPECT_TRUE(contains(pcdRefusal(ascii + "1 2 3\n4 5   \n"), {"line 13", "\"z\""}));
     EXPECT_TRUE(contains(pcdRefusal(ascii + "1 2 3\n4 5 six\n"), {"line 13", "\"z\"", "\"six\""}));
@@ -165,19 +225,23 @@ TEST(PcdFile, BodiesThatDoNotFitTheHeaderAreRefused)
     EXPECT_TRUE(contains(pcdRefusal(ascii + kTwoPoints + "7 8 9\n"), {"end of the file"}));
 }
 
-TEST(PcdFile, NanPointsOfAnOrganisedCloudAreDroppedOnlyOnRequest)
+TEST(PcdFile, PointsThatTheInstrumentDidNotSeeAreOmittedAndCounted)
 {
-    const std::string bytes = Header{}.text() + "1 2 3\nnan nan nan\n";
-    Header            three;
+    Header three;
     three.width = three.points = "3";
     CloudReadSettings settings;
     settings.dropInvalid = true;
 
-    const LoadedCloud loaded = pcd(three.text() + "1 2 3\nnan nan nan\n4 5 6\n", settings);
+    const LoadedCloud loaded = pcd(three.text() + "1 2 3\nnan nan nan\n4 5 6\n");
+    const LoadedCloud asked  = pcd(three.text() + "1 2 3\ninf nan nan\n4 5 6\n", settings);
 
-    EXPECT_TRUE(contains(pcdRefusal(bytes), {"line 13", "point 1", "\"x\" nan"}));
     EXPECT_EQ(loaded.cloud.size(), 2u);
     EXPECT_EQ(loaded.report.droppedPoints, 1u);
+    EXPECT_TRUE(contains(loaded.report.warnings.at(0), {"1 of 3 points were omitted", "NaN"}));
+    EXPECT_EQ(asked.report.droppedPoints, 1u);
+    EXPECT_TRUE(asked.report.warnings.empty()) << "it was asked for";
+    EXPECT_TRUE(contains(pcdRefusal(Header{}.text() + "1 2 3\ninf 1 2\n"), {"line 13", "point 1", "\"x\" inf"}));
+    EXPECT_TRUE(contains(pcdRefusal(Header{}.text() + "nan 2 3\nnan 1 2\n"), {"all 2 points"}));
 }
 
 TEST(PcdFile, BigEndianCannotBeWritten)
@@ -185,7 +249,7 @@ TEST(PcdFile, BigEndianCannotBeWritten)
     const PointCloud   cloud({{0, 0, 0}, {1, 1, 1}}, {2, 3}, StiffnessKind::modulus);
     std::ostringstream stream;
 
-    EXPECT_THROW(formatPcd(stream, cloud, {}, CloudEncoding::binaryBigEndian), Error);
+    EXPECT_THROW(formatPcd(stream, cloud, {}, {CloudEncoding::binaryBigEndian}), Error);
 }
 
 } // namespace

@@ -346,14 +346,16 @@ TEST(PlyFile, AnAbsurdlyLongLineIsRefused)
               2u);
 }
 
-TEST(PlyFile, WhatFollowsTheLastElementIsRefusedUnlessItIsBlankText)
+TEST(PlyFile, WhatFollowsTheLastElementIsRefusedInTextAndAWarningInBytes)
 {
     const std::string text = asciiHeader(2) + "1 2 3\n4 5 6\n";
 
     EXPECT_EQ(ply(text + " \n\t\r\n").cloud.size(), 2u);
     EXPECT_TRUE(contains(plyRefusal(text + "7 8 9\n"),
                          {"byte " + std::to_string(text.size()), "end of the file", "6 more bytes"}));
-    EXPECT_TRUE(contains(plyRefusal(binaryXyz() + "\n"), {"end of the file", "1 more bytes"}));
+    EXPECT_TRUE(contains(ply(binaryXyz() + "\n").report.warnings.at(0),
+                         {"1 bytes after the last row, from byte " + std::to_string(binaryXyz().size())}));
+    EXPECT_TRUE(ply(binaryXyz()).report.warnings.empty());
 }
 
 TEST(PlyFile, WordsThatAreNoNumbersAreRefusedWithLineAndName)

@@ -1,8 +1,10 @@
 #include "engine/cloud/ply_repaint.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
+#include "engine/cloud/tokens.h"
 #include "tests/cloud/cloud_parsing.h"
 #include "tests/support/temporary_folder.h"
 
@@ -106,6 +108,50 @@ TEST(PlyRepaint, TheScalarFieldOfCloudCompareStaysOneAndLinesKeepTheirEnds)
     EXPECT_EQ(again.result.property, "scalar_stiffness");
     EXPECT_NEAR(stiffnessOf(again.bytes)[1], 1.0 / 3, 1e-8) << "half a unit in the last place of a float at 1/3 is "
                                                                "1.5e-8";
+}
+
+TEST(PlyRepaint, MergedRowsKeepTheirOwnStiffnessUntilTheirPointIsPainted)
+{
+    // Points 0 and 2 lie at one place, and so do 1 and 4: five rows, three points.
+    const auto file = [](const std::string& format, const std::string& type, const std::vector<double>& stiffness) {
+        std::string bytes = "ply\nformat " + format +
+                            " 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+                            "property float z\nproperty " +
+                            type + " stiffness\nend_header\n";
+        const std::array<float, 5> x = {0, 1, 0, 2, 1};
+        for (std::size_t i = 0; i < 5; ++i) {
+            if (format == "ascii") {
+                bytes += shown(x[i]) + " 0 0 " + shown(stiffness[i]) + "\n";
+                continue;
+            }
+            for (const float v : {x[i], 0.f, 0.f}) append(bytes, v);
+            if (type == "float") append(bytes, float(stiffness[i]));
+            if (type == "double") append(bytes, stiffness[i]);
+            if (type == "int") append(bytes, std::int32_t(stiffness[i]));
+        }
+        return bytes;
+    };
+    for (const std::string format : {"ascii", "binary_little_endian"})
+        for (const std::string type : {"float", "int"}) {
+            const std::string         original = file(format, type, {100, 7, 400, 9, 7});
+            const std::vector<double> was      = stiffnessOf(original);
+            const std::string         kept     = type == "int" ? "double" : type; // integers become doubles
+            ASSERT_EQ(was.size(), 3u);
+
+            EXPECT_EQ(repainted(original, {was[0], was[1], 11}).bytes, file(format, kept, {100, 7, 400, 11, 7}));
+            EXPECT_EQ(repainted(original, {30, was[1], was[2]}).bytes, file(format, kept, {30, 7, 30, 9, 7}));
+        }
+}
+
+TEST(PlyRepaint, MergedRowsGetTheSameAppendedStiffness)
+{
+    const std::string original = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                 "property float z\nend_header\n0 0 0\n1 0 0\n0 0 0\n";
+
+    const Repainted again = repainted(original, {5, 6});
+
+    EXPECT_TRUE(contains(again.bytes, {"0 0 0 5\n1 0 0 6\n0 0 0 5\n"}));
+    EXPECT_EQ(stiffnessOf(again.bytes), (std::vector<double>{5, 6}));
 }
 
 TEST(PlyRepaint, PaintingWhatIsThereGivesTheSameFile)

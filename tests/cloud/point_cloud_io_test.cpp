@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "engine/cloud/tokens.h"
 #include "tests/cloud/cloud_parsing.h"
 #include "tests/support/temporary_folder.h"
 
@@ -385,12 +386,140 @@ TEST(Positions, ThatAllCoincideAreRefused)
     EXPECT_TRUE(contains(textRefusal("0 0 0\n-0 0 0\n"), {"all 2 points coincide"}));
 }
 
-TEST(Positions, ExactDuplicatesAreCountedAndKept)
+TEST(Positions, ExactDuplicatesBecomeOnePointInThePlaceOfTheFirst)
 {
     const LoadedCloud loaded = text("1 2 3\n4 5 6\n1 2 3\n-0 0 0\n0 0 0\n1 2 3\n1 2 3.0000000000000004\n");
 
-    EXPECT_EQ(loaded.cloud.size(), 7u);
+    ASSERT_EQ(loaded.cloud.size(), 4u);
+    EXPECT_EQ(loaded.cloud.positions()[1], glm::dvec3(4, 5, 6));
+    EXPECT_EQ(loaded.cloud.positions()[2], glm::dvec3(0, 0, 0));
+    EXPECT_EQ(loaded.report.points, 4u);
     EXPECT_EQ(loaded.report.duplicatePositions, 3u) << "two of (1 2 3), one of zero";
+    EXPECT_EQ(loaded.pointOfRow, (std::vector<std::uint32_t>{0, 1, 0, 2, 2, 0, 3}));
+    EXPECT_TRUE(contains(loaded.report.warnings.at(0), {"3 points", "merged"}));
+    EXPECT_TRUE(text("1 2 3\n4 5 6\n").pointOfRow.empty());
+}
+
+TEST(Positions, EightCopiesOfEachPointAreTheCloudItself)
+{
+    std::string once, eightTimes;
+    for (int i = 0; i < 30; ++i) {
+        const std::string line =
+            std::to_string(i % 6) + " " + std::to_string(i / 6) + " 0 " + std::to_string(i + 7) + "\n";
+        once += line;
+        for (int copy = 0; copy < 8; ++copy) eightTimes += line;
+    }
+
+    const PointCloud a = text(once).cloud, b = text(eightTimes).cloud;
+
+    EXPECT_TRUE(std::ranges::equal(a.positions(), b.positions()));
+    EXPECT_TRUE(std::ranges::equal(a.stiffness(), b.stiffness())) << "equal values stay to the bit";
+}
+
+TEST(Positions, DuplicatesHaveTheMeanOfTheLogarithmsOfTheirStiffness)
+{
+    const LoadedCloud loaded = text("0 0 0 100\n1 0 0 7\n0 0 0 400\n0 0 0 800\n");
+
+    ASSERT_EQ(loaded.cloud.size(), 2u);
+    EXPECT_NEAR(loaded.cloud.stiffness()[0], std::cbrt(100.0 * 400 * 800), 1e-9) << "rounding of three logarithms";
+    EXPECT_EQ(loaded.cloud.stiffness()[1], 7);
+}
+
+TEST(Positions, RowsThatWereDroppedAndMergedAreMappedToTheirPoints)
+{
+    CloudReadSettings settings;
+    settings.dropInvalid = true;
+
+    const LoadedCloud loaded = text("nan 0 0\n1 0 0\n2 0 0\n1 inf 0\n1 0 0\n3 0 0\n", settings);
+
+    EXPECT_EQ(loaded.pointOfRow, (std::vector<std::uint32_t>{kNoPoint, 0, 1, kNoPoint, 0, 2}));
+}
+
+TEST(Normals, AreReadByTheirUsualNamesAndMadeUnits)
+{
+    for (const std::string names : {"nx ny nz", "normal_x normal_y normal_z", "Nx Ny Nz"}) {
+        const LoadedCloud loaded =
+            text("x y z " + names + "\n0 0 0 0 0 5\n1 0 0 nan 0 1\n2 0 0 0 0 0\n3 0 0 3e200 0 -4e200\n");
+
+        ASSERT_EQ(loaded.normals.size(), 4u) << names;
+        EXPECT_EQ(loaded.normals[0], glm::vec3(0, 0, 1));
+        EXPECT_EQ(loaded.normals[1], glm::vec3(0)) << "NaN counts as missing";
+        EXPECT_EQ(loaded.normals[2], glm::vec3(0)) << "so does zero";
+        EXPECT_EQ(loaded.normals[3], glm::vec3(0.6f, 0, -0.8f)) << "whose square overflows";
+        EXPECT_EQ(loaded.report.droppedPoints, 0u);
+    }
+}
+
+TEST(Normals, AreEmptyWhereAFileHasNone)
+{
+    EXPECT_TRUE(text("x y z nx ny\n0 0 0 0 1\n1 0 0 0 1\n").normals.empty()) << "two components are none";
+    EXPECT_TRUE(text("x y z nx ny nz\n0 0 0 0 0 0\n1 0 0 0 nan 0\n").normals.empty()) << "none has a direction";
+}
+
+TEST(Normals, OfDuplicatesAreAveragedAndDroppedPointsTakeTheirsAlong)
+{
+    CloudReadSettings settings;
+    settings.dropInvalid = true;
+
+    const LoadedCloud loaded = text("x y z nx ny nz\n0 0 0 1 0 0\nnan 0 0 9 9 9\n1 0 0 0 0 1\n0 0 0 0 1 0\n"
+                                    "2 0 0 1 0 0\n2 0 0 -1 0 0\n",
+                                    settings);
+
+    ASSERT_EQ(loaded.normals.size(), 3u);
+    EXPECT_NEAR(loaded.normals[0].x, std::sqrt(0.5), 1e-7) << "rounding of a float";
+    EXPECT_EQ(loaded.normals[0].x, loaded.normals[0].y);
+    EXPECT_EQ(loaded.normals[1], glm::vec3(0, 0, 1));
+    EXPECT_EQ(loaded.normals[2], glm::vec3(0)) << "both faces of a sheet have no common side";
+}
+
+TEST(Normals, AComponentCanBeTheStiffnessToo)
+{
+    const LoadedCloud loaded = text("x y z nx ny nz\n0 0 0 3 0 4\n1 0 0 0 0 1\n", withRange("nz", 1, 7));
+
+    EXPECT_EQ(loaded.cloud.stiffness()[0], 7);
+    EXPECT_EQ(loaded.normals.at(0), glm::vec3(0.6f, 0, 0.8f));
+}
+
+/// A square of 20 x 20 points, `spacing` apart, that begins at (0, north, 0).
+std::string square(double north, double spacing, bool asFloats)
+{
+    std::string bytes;
+    for (int i = 0; i < 400; ++i) {
+        const double x = i % 20 * spacing, y = north + i / 20 * spacing;
+        bytes += shown(asFloats ? double(float(x)) : x) + " " + shown(asFloats ? double(float(y)) : y) + " 0\n";
+    }
+    return bytes;
+}
+
+TEST(Rounding, IsSaidWhereItExceedsAQuarterOfTheSpacing)
+{
+    const CloudFileReport coarse = text(square(5.4e6, 1.7, true)).report;
+    const CloudFileReport lost   = text(square(5.4e6, 0.01, true)).report;
+
+    EXPECT_EQ(coarse.coordinateRounding, 0.5) << "of a float at 5.4e6";
+    EXPECT_TRUE(contains(coarse.warnings.at(0), {"steps of 500 mm", "apart", "single precision"}));
+    EXPECT_TRUE(contains(lost.warnings.back(), {"steps of 500 mm"}));
+}
+
+TEST(Rounding, IsNotSaidWhereItIsFine)
+{
+    const CloudFileReport doubles = text(square(5.4e6, 0.01, false)).report;
+    const CloudFileReport near    = text(square(0, 0.01, true)).report;
+    const CloudFileReport wide    = text(square(5.4e6, 2.5, true)).report;
+
+    EXPECT_LT(doubles.coordinateRounding, 2e-9) << "of a double at 5.4e6";
+    EXPECT_TRUE(doubles.warnings.empty());
+    EXPECT_LT(near.coordinateRounding, 2e-8) << "of a float at 0.2";
+    EXPECT_TRUE(near.warnings.empty());
+    EXPECT_TRUE(wide.warnings.empty()) << "0.5 m is a fifth of the spacing";
+}
+
+TEST(Rounding, IsInMetresWhateverTheUnit)
+{
+    CloudReadSettings settings;
+    settings.lengthUnit = "mm";
+
+    EXPECT_NEAR(text(square(5.4e6, 2.5, true), settings).report.coordinateRounding, 5e-4, 1e-18) << "rounding of 0.001";
 }
 
 TEST(Positions, ThatDifferButShareAHashAreNoDuplicates)

@@ -148,7 +148,9 @@ TEST(TextFile, WrittenTextStatesUnitsAndNames)
     const NamedField          field{"deflection", "m", deflection};
     std::ostringstream        stream;
 
-    formatText(stream, cloud, {&field, 1}, ',');
+    CloudWriteSettings commas;
+    commas.separator = ',';
+    formatText(stream, cloud, {&field, 1}, commas);
 
     EXPECT_EQ(stream.str(), "# length_unit m\n# stiffness_unit Pa\n# unit deflection m\nx,y,z,stiffness,deflection\n"
                             "0,0.1,-1e-300,2,0.25\n1,1,1,3,0.5\n");

@@ -53,6 +53,11 @@ public:
     /// \throws Error if the file ends before
     void skip(std::uint64_t count);
 
+    /// Checks the stated size of unpacked data before anything takes memory for it: up to 4 MiB, or a hundred times the
+    /// file, because an array of equal numbers packs well and stands beside points that do not.
+    /// \throws Error naming both sizes if it is larger
+    void checkUnpacked(std::uint64_t bytes) const;
+
     /// Reads blanks, tabs and line ends; returns true if nothing else was left.
     [[nodiscard]] bool onlyBlanksLeft();
 

@@ -1,14 +1,13 @@
 #include "engine/cloud/detail/cloud_rows.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
-#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
+#include "engine/cloud/detail/places.h"
 #include "engine/cloud/tokens.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
@@ -28,7 +27,14 @@ constexpr std::uint64_t kRowsPerProgress = 1u << 14;
 /// Number of names that a message lists before it states how many are left.
 constexpr std::size_t kLongestList = 40;
 
-constexpr std::array<const char*, kSlots> kSlotNames = {"x", "y", "z", "stiffness"};
+constexpr std::array<const char*, 3> kCoordinateNames = {"x", "y", "z"};
+
+/// The slots of which a number must be finite.
+constexpr std::array kUsedSlots = {kSlotX, kSlotY, kSlotZ, kSlotStiffness};
+
+/// The names of a normal's components: of PLY files, of PCD files, and of CloudCompare's text files.
+constexpr std::array<std::array<std::string_view, 3>, 3> kNormalNames = {
+    {{"nx", "ny", "nz"}, {"normal_x", "normal_y", "normal_z"}, {"Nx", "Ny", "Nz"}}};
 
 std::string listed(const std::vector<std::string>& names)
 {
@@ -69,41 +75,14 @@ std::optional<std::size_t> find(const ByteReader& reader, const std::vector<std:
     return std::size_t(first - properties.begin());
 }
 
-/// Returns a well-mixed 64-bit number of a position's bits.
-std::uint64_t hashOf(const glm::dvec3& p)
+/// Returns the unit vector along a normal; zero for one that has no direction.
+glm::vec3 directionOf(double x, double y, double z)
 {
-    std::uint64_t hash = 0;
-    for (int k = 0; k < 3; ++k) {
-        hash ^= std::bit_cast<std::uint64_t>(p[k] + 0.0); // adding zero makes -0 and 0 the same
-        hash *= 0x9E3779B97F4A7C15u;                      // 2^64 / golden ratio, an odd number without pattern
-        hash ^= hash >> 32;
-    }
-    return hash;
-}
-
-/// Counts the points at a position that an earlier point already has. Sorting, unlike a hash table, stays fast for a
-/// hostile file.
-std::size_t countDuplicates(const std::vector<glm::dvec3>& positions)
-{
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) order[i] = {hashOf(positions[i]), std::uint32_t(i)};
-    std::sort(order.begin(), order.end());
-
-    const auto coordinates = [&](const auto& entry) {
-        const glm::dvec3& p = positions[entry.second];
-        return std::make_tuple(p.x, p.y, p.z);
-    };
-    std::size_t duplicates = 0;
-    for (auto first = order.begin(); first != order.end();) {
-        const auto last = std::find_if(first, order.end(), [&](const auto& e) { return e.first != first->first; });
-        if (last - first > 1) { // different positions may share a hash
-            std::sort(first, last, [&](const auto& a, const auto& b) { return coordinates(a) < coordinates(b); });
-            for (auto entry = first + 1; entry != last; ++entry)
-                duplicates += coordinates(*entry) == coordinates(*(entry - 1)) ? 1 : 0;
-        }
-        first = last;
-    }
-    return duplicates;
+    if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) return glm::vec3(0);
+    const double largest = std::max({std::abs(x), std::abs(y), std::abs(z)});
+    if (!(largest > 0)) return glm::vec3(0);
+    const glm::dvec3 scaled = glm::dvec3(x, y, z) / largest; // whose square neither overflows nor vanishes
+    return glm::vec3(scaled / glm::length(scaled));
 }
 
 void checkPositive(const ByteReader& reader, double value, const char* what)
@@ -136,14 +115,32 @@ CloudRows::CloudRows(const ByteReader& reader, CloudHeader header, const CloudRe
     : reader_(reader), header_(std::move(header)), settings_(settings), progress_("reading " + reader.name())
 {
     for (const std::size_t slot : {kSlotX, kSlotY, kSlotZ}) {
-        columns_[slot] = find(reader_, header_.properties, kSlotNames[slot]);
+        columns_[slot] = find(reader_, header_.properties, kCoordinateNames[slot]);
         if (!columns_[slot])
-            reader_.fail(std::string("expected a number ") + kSlotNames[slot] +
+            reader_.fail(std::string("expected a number ") + kCoordinateNames[slot] +
                          " for each point, found only: " + listed(header_.properties) +
                          (header_.format == "text" ? "; name the columns, such as --columns x,y,z,-,stiffness" : ""));
     }
     chooseLengthUnit();
     chooseStiffness();
+    chooseNormals();
+    // The first slot of a property that has several: the format delivers its number only there.
+    for (std::size_t slot = 0; slot < kSlots; ++slot)
+        if (columns_[slot]) source_[slot] = slotOf(*columns_[slot]);
+}
+
+void CloudRows::chooseNormals()
+{
+    const auto& properties = header_.properties;
+    for (const auto& names : kNormalNames) {
+        std::array<std::optional<std::size_t>, 3> found;
+        for (std::size_t k = 0; k < 3; ++k)
+            if (const auto at = std::find(properties.begin(), properties.end(), names[k]); at != properties.end())
+                found[k] = std::size_t(at - properties.begin());
+        if (!found[0] || !found[1] || !found[2]) continue;
+        std::copy(found.begin(), found.end(), columns_.begin() + kSlotNormalX);
+        return;
+    }
 }
 
 void CloudRows::chooseLengthUnit()
@@ -218,7 +215,6 @@ void CloudRows::chooseStiffness()
 
 std::size_t CloudRows::slotOf(std::size_t property) const noexcept
 {
-    // The first match, so that a coordinate which is the stiffness too stays a coordinate; add() copies it.
     return std::size_t(std::find(columns_.begin(), columns_.end(), property) - columns_.begin());
 }
 
@@ -230,10 +226,16 @@ void CloudRows::expect(std::uint64_t points, std::uint64_t leastBytes, Place pla
         reader_.failAtByte("the header promises " + std::to_string(points) + " points of at least " +
                            std::to_string(leastBytes) + " bytes each, but only " + std::to_string(reader_.remaining()) +
                            " bytes follow; the file may have been cut short while it was copied");
+    makeRoom(points);
+}
+
+void CloudRows::makeRoom(std::uint64_t points)
+{
     if (points > kMostPoints)
         reader_.fail("expected at most " + std::to_string(kMostPoints) + " points, found " + std::to_string(points));
     positions_.reserve(points);
     if (columns_[kSlotStiffness]) stiffness_.reserve(points);
+    if (columns_[kSlotNormalX]) normals_.reserve(points);
 }
 
 bool CloudRows::usable(const CloudRow& row) const noexcept
@@ -247,16 +249,17 @@ bool CloudRows::usable(const CloudRow& row) const noexcept
 void CloudRows::add(const CloudRow& row, Place place)
 {
     if (rowsRead_ % kRowsPerProgress == 0) progress_.at(reader_.offset(), reader_.size());
-    CloudRow used = row;
-    // A coordinate can be the stiffness too; then the format delivers it only once.
+    CloudRow used{};
+    for (std::size_t slot = 0; slot < kSlots; ++slot)
+        if (columns_[slot]) used[slot] = row[source_[slot]];
     const auto& stiffness = columns_[kSlotStiffness];
-    for (const std::size_t slot : {kSlotX, kSlotY, kSlotZ})
-        if (stiffness && stiffness == columns_[slot]) used[kSlotStiffness] = row[slot];
     if (!stiffness) used[kSlotStiffness] = uniform_;
 
     if (!usable(used)) {
-        const bool finite = std::all_of(used.begin(), used.end(), [](double v) { return std::isfinite(v); });
-        if (finite || !settings_.dropInvalid) refuseRow(used, place);
+        const bool finite = std::ranges::all_of(kUsedSlots, [&](RowSlot slot) { return std::isfinite(used[slot]); });
+        const bool unseen =
+            omitUnseen_ && std::ranges::any_of(kUsedSlots, [&](RowSlot slot) { return std::isnan(used[slot]); });
+        if (!unseen && (finite || !settings_.dropInvalid)) refuseRow(used, place);
         ++report_.droppedPoints;
         droppedRows_.push_back(std::uint32_t(rowsRead_));
         ++rowsRead_;
@@ -264,7 +267,11 @@ void CloudRows::add(const CloudRow& row, Place place)
     }
     if (positions_.size() == kMostPoints)
         failAtRow(place, "expected at most " + std::to_string(kMostPoints) + " points, found more");
-    positions_.push_back(metresPerUnit_ * glm::dvec3(used[kSlotX], used[kSlotY], used[kSlotZ]));
+    const glm::dvec3 position(used[kSlotX], used[kSlotY], used[kSlotZ]);
+    rounding_.add(position);
+    positions_.push_back(metresPerUnit_ * position);
+    if (columns_[kSlotNormalX])
+        normals_.push_back(directionOf(used[kSlotNormalX], used[kSlotNormalY], used[kSlotNormalZ]));
     if (stiffness) {
         const double value = used[kSlotStiffness];
         const bool   first = stiffness_.empty();
@@ -276,7 +283,7 @@ void CloudRows::add(const CloudRow& row, Place place)
 
 void CloudRows::refuseRow(const CloudRow& row, Place place) const
 {
-    for (std::size_t slot = 0; slot < kSlots; ++slot) {
+    for (const std::size_t slot : kUsedSlots) {
         const auto& column = columns_[slot];
         if (!column) continue;
         const std::string found = ", found " + inQuotes(header_.properties[*column]) + " " + shown(row[slot]);
@@ -295,7 +302,17 @@ void CloudRows::failAtRow(Place place, const std::string& message) const
 {
     const std::string at = "point " + std::to_string(rowsRead_) + ": " + message;
     if (place == Place::line) reader_.failAtLine(at);
+    if (place == Place::unpacked) reader_.fail(at);
     reader_.fail("before byte " + std::to_string(reader_.offset()) + ": " + at);
+}
+
+void CloudRows::warnOfTail()
+{
+    if (reader_.remaining() > 0)
+        warn(std::to_string(reader_.remaining()) + " bytes after the last row, from byte " +
+             std::to_string(reader_.offset()) +
+             " on, were not read; some programs pad their files, but if the object "
+             "looks wrong, the file may be damaged");
 }
 
 void CloudRows::mapRange()
@@ -323,6 +340,59 @@ void CloudRows::mapRange()
     }
 }
 
+void CloudRows::mergePlaces()
+{
+    std::vector<std::uint32_t> places = placesOf(positions_);
+    if (places.empty()) return;
+    struct Sum {
+        double        logarithms = 0; ///< of the stiffness
+        std::uint32_t points     = 0;
+        bool          differ     = false;
+    };
+    std::vector<Sum> sums;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const std::size_t place = places[i];
+        if (place == sums.size()) { // the first point of a place; never behind i, so that nothing is overwritten
+            sums.emplace_back();
+            positions_[place] = positions_[i];
+            stiffness_[place] = stiffness_[i];
+            if (!normals_.empty()) normals_[place] = normals_[i];
+        } else if (!normals_.empty()) {
+            normals_[place] += normals_[i];
+        }
+        sums[place].logarithms += std::log(stiffness_[i]);
+        sums[place].differ |= stiffness_[i] != stiffness_[place];
+        ++sums[place].points;
+    }
+    for (std::size_t place = 0; place < sums.size(); ++place) {
+        if (sums[place].differ) stiffness_[place] = std::exp(sums[place].logarithms / sums[place].points);
+        if (normals_.empty() || sums[place].points == 1) continue;
+        normals_[place] = directionOf(normals_[place].x, normals_[place].y, normals_[place].z);
+    }
+    report_.duplicatePositions = places.size() - sums.size();
+    positions_.resize(sums.size());
+    stiffness_.resize(sums.size());
+    if (!normals_.empty()) normals_.resize(sums.size());
+    places_ = std::move(places);
+    warn(std::to_string(report_.duplicatePositions) +
+         " points lie exactly where an earlier one lies and were merged with it");
+}
+
+std::vector<std::uint32_t> CloudRows::pointsOfRows() const
+{
+    if (droppedRows_.empty()) return places_;
+    std::vector<std::uint32_t> points(rowsRead_);
+    auto                       dropped = droppedRows_.begin();
+    std::uint32_t              kept    = 0;
+    for (std::size_t row = 0; row < rowsRead_; ++row) {
+        const bool isDropped = dropped != droppedRows_.end() && *dropped == row;
+        if (isDropped) ++dropped;
+        points[row] = isDropped ? kNoPoint : places_.empty() ? kept : places_[kept];
+        if (!isDropped) ++kept;
+    }
+    return points;
+}
+
 LoadedCloud CloudRows::finish()
 {
     if (positions_.empty())
@@ -339,11 +409,20 @@ LoadedCloud CloudRows::finish()
     } else {
         stiffness_.assign(positions_.size(), uniform_);
     }
+    if (report_.droppedPoints > 0 && !settings_.dropInvalid)
+        warn(std::to_string(report_.droppedPoints) + " of " + std::to_string(rowsRead_) +
+             " points were omitted: they have NaN, with which such files mark what the instrument did not see");
+    mergePlaces();
+    if (std::ranges::all_of(normals_, [](const glm::vec3& n) { return n == glm::vec3(0); })) normals_.clear();
     report_.format             = header_.format;
     report_.points             = positions_.size();
-    report_.duplicatePositions = countDuplicates(positions_);
+    report_.coordinateRounding = metresPerUnit_ * rounding_.step();
     for (const std::string& property : header_.properties) report_.properties.push_back(printable(property));
-    return {PointCloud(std::move(positions_), std::move(stiffness_), kind_), std::move(report_)};
+    LoadedCloud loaded{PointCloud(std::move(positions_), std::move(stiffness_), kind_), std::move(report_)};
+    loaded.report.normals = !normals_.empty();
+    loaded.normals        = std::move(normals_);
+    loaded.pointOfRow     = pointsOfRows();
+    return loaded;
 }
 
 } // namespace palp

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/cloud/detail/byte_reader.h"
+#include "engine/cloud/detail/coordinate_rounding.h"
 #include "engine/cloud/point_cloud_io.h"
 #include "engine/core/progress.h"
 
@@ -27,7 +28,16 @@ struct CloudHeader {
 };
 
 /// The meaning of a number of a row.
-enum RowSlot : std::size_t { kSlotX, kSlotY, kSlotZ, kSlotStiffness, kSlots };
+enum RowSlot : std::size_t {
+    kSlotX,
+    kSlotY,
+    kSlotZ,
+    kSlotStiffness,
+    kSlotNormalX, ///< of a normal of any length; zero or NaN: the point has none
+    kSlotNormalY,
+    kSlotNormalZ,
+    kSlots
+};
 
 /// The numbers of one point that matter, in the file's units, indexed by RowSlot.
 using CloudRow = std::array<double, kSlots>;
@@ -51,21 +61,30 @@ public:
     /// Returns the slot that a property (an index in CloudHeader::properties) fills; kSlots: none.
     [[nodiscard]] std::size_t slotOf(std::size_t property) const noexcept;
 
-    /// The place of a row: on a line of its own, or at a byte.
-    enum class Place { line, byte };
+    /// The place of a row: on a line of its own, at a byte, or none because it comes of unpacked data.
+    enum class Place { line, byte, unpacked };
 
     /// Checks a promised number of points against the bytes that are left, and only then makes room for them.
     /// \param leastBytes  that one point takes in the file, > 0
     void expect(std::uint64_t points, std::uint64_t leastBytes, Place place);
 
+    /// Makes room for points that other checks have bounded.
+    void makeRoom(std::uint64_t points);
+
+    /// From now on a point with NaN is one that the instrument did not see, and is omitted; its number is a warning.
+    void omitUnseen() noexcept { omitUnseen_ = true; }
+
+    /// Adds a sentence to the warnings of the report.
+    void warn(std::string sentence) { report_.warnings.push_back(std::move(sentence)); }
+
+    /// Adds a warning if bytes are left at the end of a binary file.
+    void warnOfTail();
+
     /// Takes the next row of the file, which is the reader's last line or ends at the reader's offset.
     /// \throws Error naming the row if a number is not finite or the stiffness not above zero
     void add(const CloudRow& row, Place place);
 
-    /// Returns the rows that were omitted, rising.
-    [[nodiscard]] std::span<const std::uint32_t> droppedRows() const noexcept { return droppedRows_; }
-
-    /// Maps ranges and builds the cloud.
+    /// Maps ranges, makes one point of those at the same place, and builds the cloud.
     [[nodiscard]] LoadedCloud finish();
 
 private:
@@ -76,6 +95,10 @@ private:
     [[noreturn]] void  failAtRow(Place place, const std::string& message) const;
     [[nodiscard]] bool usable(const CloudRow& row) const noexcept;
     void               mapRange();
+    void               chooseNormals();
+    void               mergePlaces();
+
+    [[nodiscard]] std::vector<std::uint32_t> pointsOfRows() const; ///< see LoadedCloud::pointOfRow
 
     const ByteReader&        reader_;
     CloudHeader              header_;
@@ -83,17 +106,22 @@ private:
     CloudFileReport          report_;
     Progress                 progress_;
 
-    std::array<std::optional<std::size_t>, kSlots> columns_; ///< index in CloudHeader::properties; empty: uniform
+    std::array<std::optional<std::size_t>, kSlots> columns_;  ///< index in CloudHeader::properties; empty: none
+    std::array<std::size_t, kSlots>                source_{}; ///< slot that has the number of the same property
 
-    std::vector<std::uint32_t> droppedRows_;
+    std::vector<std::uint32_t> droppedRows_; ///< rising
+    std::vector<std::uint32_t> places_;      ///< point of each row that was not dropped; empty: all differ
 
     std::vector<glm::dvec3> positions_; ///< [m]
     std::vector<double>     stiffness_; ///< [Pa] or [N m], or in the property's unit until mapRange
+    std::vector<glm::vec3>  normals_;   ///< of unit length, or zero
+    CoordinateRounding      rounding_;
     StiffnessKind           kind_          = StiffnessKind::modulus;
     double                  metresPerUnit_ = 1; ///< [m]
     double                  uniform_       = 0; ///< [Pa] or [N m]
     PropertyRange           found_;             ///< of the property, in its unit
-    std::uint64_t           rowsRead_ = 0;
+    std::uint64_t           rowsRead_   = 0;
+    bool                    omitUnseen_ = false;
 };
 
 } // namespace palp

@@ -9,10 +9,7 @@
 
 namespace palp {
 
-FaceRows::FaceRows(const ByteReader& reader, std::uint64_t points, Points kept)
-    : reader_(reader), points_(points), kept_(kept)
-{
-}
+FaceRows::FaceRows(const ByteReader& reader, std::uint64_t points) : reader_(reader), points_(points) {}
 
 void FaceRows::expect(std::uint64_t faces, std::uint64_t leastBytes)
 {
@@ -45,32 +42,41 @@ void FaceRows::endFace()
     if (corners_.size() >= 3 && cornersDiffer()) {
         for (std::size_t k = 2; k < corners_.size(); ++k)
             triangles_.push_back({corners_[0], corners_[k - 1], corners_[k]});
-        if (kept_ == Points::someDropped) fans_.push_back(std::uint32_t(corners_.size() - 2));
+        fans_.push_back(std::uint32_t(corners_.size() - 2));
     } else {
         ++degenerate_;
     }
     corners_.clear();
 }
 
-std::vector<Triangle> FaceRows::finish(std::span<const std::uint32_t> dropped)
+std::vector<Triangle> FaceRows::byPoints(std::span<const std::uint32_t> pointOfRow, CloudFileReport& report)
 {
-    if (dropped.empty()) return std::move(triangles_);
-    const auto isDropped  = [&](std::uint32_t row) { return std::binary_search(dropped.begin(), dropped.end(), row); };
-    const auto renumbered = [&](std::uint32_t row) {
-        return row - std::uint32_t(std::lower_bound(dropped.begin(), dropped.end(), row) - dropped.begin());
-    };
     std::vector<Triangle> left;
     auto                  fan = triangles_.begin();
     for (const std::uint32_t size : fans_) {
-        const bool whole = std::none_of(
-            fan, fan + size, [&](const Triangle& t) { return isDropped(t[0]) || isDropped(t[1]) || isDropped(t[2]); });
-        dropped_ += whole ? 0 : 1;
-        for (auto triangle = fan; whole && triangle != fan + size; ++triangle)
-            left.push_back({renumbered((*triangle)[0]), renumbered((*triangle)[1]), renumbered((*triangle)[2])});
+        const std::size_t before = left.size();
+        bool              whole  = true;
+        for (auto triangle = fan; triangle != fan + size; ++triangle) {
+            const Triangle t = {pointOfRow[(*triangle)[0]], pointOfRow[(*triangle)[1]], pointOfRow[(*triangle)[2]]};
+            whole            = whole && t[0] != kNoPoint && t[1] != kNoPoint && t[2] != kNoPoint;
+            if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) left.push_back(t);
+        }
+        if (!whole) {
+            left.resize(before);
+            ++report.droppedFaces;
+        } else if (left.size() == before) {
+            ++report.degenerateFaces;
+        }
         fan += size;
     }
-    triangles_.clear();
     return left;
+}
+
+void FaceRows::finish(LoadedCloud& loaded)
+{
+    loaded.report.faces           = faces_;
+    loaded.report.degenerateFaces = degenerate_;
+    loaded.faces = loaded.pointOfRow.empty() ? std::move(triangles_) : byPoints(loaded.pointOfRow, loaded.report);
 }
 
 } // namespace palp

@@ -10,16 +10,13 @@
 namespace palp {
 
 /// Makes triangles of the faces of a file: a polygon becomes a fan about its first corner. A face with fewer than three
-/// corners, or with a corner twice, is omitted and counted. Faces may come before the points they are made of.
+/// corners, or with a corner twice, is omitted and counted; so are triangles of points that were merged. Faces may come before the points they are made of.
 /// Use: for each face `addCorner` and then `endFace`; `finish` once all points are read.
 /// \thread one
 class FaceRows {
 public:
-    /// Tells if points may be dropped later, so that faces must be remembered as wholes.
-    enum class Points { allKept, someDropped };
-
     /// \param points  rows of points in the file
-    FaceRows(const ByteReader& reader, std::uint64_t points, Points kept);
+    FaceRows(const ByteReader& reader, std::uint64_t points);
 
     /// Makes room for the triangles of a file; only the bytes that are left bound their number.
     /// \param faces       rows of the element
@@ -32,25 +29,21 @@ public:
     void addCorner(double corner, CloudRows::Place place);
     void endFace();
 
-    /// Returns the triangles by the numbers of the points that are left; a face that lost a point is omitted.
-    /// \param dropped  rows of points, rising
-    [[nodiscard]] std::vector<Triangle> finish(std::span<const std::uint32_t> dropped);
-
-    [[nodiscard]] std::size_t faces() const noexcept { return faces_; }           ///< rows read
-    [[nodiscard]] std::size_t degenerate() const noexcept { return degenerate_; } ///< too few corners, or one twice
-    [[nodiscard]] std::size_t dropped() const noexcept { return dropped_; }       ///< lost a point, after finish()
+    /// Gives the faces to the cloud of their points, and counts them in its report. A face that lost a point is
+    /// omitted.
+    void finish(LoadedCloud& loaded);
 
 private:
-    [[nodiscard]] bool cornersDiffer();
+    [[nodiscard]] bool                  cornersDiffer();
+    [[nodiscard]] std::vector<Triangle> byPoints(std::span<const std::uint32_t> pointOfRow, CloudFileReport& report);
 
     const ByteReader&          reader_;
     std::uint64_t              points_;
-    Points                     kept_;
     std::vector<std::uint32_t> corners_; ///< of the face that is being read, one more than there are points at most
     std::vector<std::uint32_t> sorted_;  ///< scratch
     std::vector<Triangle>      triangles_;
-    std::vector<std::uint32_t> fans_; ///< triangles of each face that is in triangles_; unused with allKept
-    std::size_t                faces_ = 0, degenerate_ = 0, dropped_ = 0;
+    std::vector<std::uint32_t> fans_; ///< triangles of each face that is in triangles_
+    std::size_t                faces_ = 0, degenerate_ = 0;
 };
 
 } // namespace palp

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/cloud/detail/cloud_rows.h"
+#include "engine/cloud/detail/lzf.h"
 #include "engine/cloud/detail/row_writer.h"
 #include "engine/cloud/detail/scalar_type.h"
 #include "engine/cloud/tokens.h"
@@ -24,11 +25,14 @@ struct Field {
     std::size_t   slot  = kSlots; ///< RowSlot that it fills; kSlots: none
 
     std::uint64_t bytes() const { return count * sizeOf(type); }
+    bool          isPadding() const { return name == "_"; }
 };
+
+enum class Encoding { ascii, binary, compressed };
 
 struct PcdHeader {
     CloudHeader        cloud;
-    bool               ascii  = false;
+    Encoding           encoding{};
     std::uint64_t      points = 0;
     std::vector<Field> fields;
 };
@@ -97,12 +101,14 @@ private:
     void parseEncoding(const Words& words)
     {
         const std::string encoding = words.size() == 1 ? words.front() : "";
-        if (encoding == "binary_compressed")
-            reader_.failAtLine("DATA binary_compressed is not read: convert it with the Point Cloud Library's program, "
-                               "pcl_convert_pcd_ascii_binary IN.pcd OUT.pcd 1, or save it as PLY");
-        if (encoding != "ascii" && encoding != "binary")
-            reader_.failAtLine("expected DATA ascii or DATA binary, found " + inQuotes(encoding));
-        header_.ascii        = encoding == "ascii";
+        if (encoding == "ascii")
+            header_.encoding = Encoding::ascii;
+        else if (encoding == "binary")
+            header_.encoding = Encoding::binary;
+        else if (encoding == "binary_compressed")
+            header_.encoding = Encoding::compressed;
+        else
+            reader_.failAtLine("expected DATA ascii, binary or binary_compressed, found " + inQuotes(encoding));
         header_.cloud.format = "PCD, " + encoding;
     }
 
@@ -131,7 +137,7 @@ private:
         if (field.count < 1 || field.count > kMostNumbersPerField)
             reader_.fail("expected a COUNT from 1 to " + std::to_string(kMostNumbersPerField) + " for field " +
                          inQuotes(field.name) + ", found " + inQuotes(counts_[i]));
-        if (field.count == 1 && field.name != "_") header_.cloud.properties.push_back(field.name);
+        if (field.count == 1 && !field.isPadding()) header_.cloud.properties.push_back(field.name);
         header_.fields.push_back(std::move(field));
     }
 
@@ -229,6 +235,49 @@ void parseRecords(ByteReader& reader, const PcdHeader& header, std::uint64_t rec
     }
 }
 
+/// Reads the two sizes before compressed data and unpacks it. Its fields follow each other as wholes, all points of one
+/// and then all of the next.
+/// \param recordBytes  of a point
+std::vector<std::byte> unpacked(ByteReader& reader, std::uint64_t points, std::uint64_t recordBytes)
+{
+    const auto packedSize = loadAs<std::uint32_t>(reader.take(sizeof(std::uint32_t)), std::endian::little);
+    const auto size       = loadAs<std::uint32_t>(reader.take(sizeof(std::uint32_t)), std::endian::little);
+    if (packedSize > reader.remaining())
+        reader.failAtByte("the compressed data claims " + std::to_string(packedSize) + " bytes, but only " +
+                          std::to_string(reader.remaining()) +
+                          " follow; the file may have been cut short while it was copied");
+    if (points > size || points * recordBytes != size)
+        reader.failAtByte("expected compressed data of " + std::to_string(points) + " points of " +
+                          std::to_string(recordBytes) + " bytes, found " + std::to_string(size) + " bytes");
+    reader.checkUnpacked(size);
+    const std::uint64_t    begin = reader.offset();
+    std::vector<std::byte> data(size);
+    if (const auto wrong = unpackLzf({reader.take(packedSize), packedSize}, data))
+        reader.fail("compressed data from byte " + std::to_string(begin) + " on: " + *wrong);
+    return data;
+}
+
+/// Reads `points` rows of compressed data.
+void parseCompressed(ByteReader& reader, PcdHeader& header, CloudRows& rows)
+{
+    if (header.points == 0) rows.expect(0, 1, CloudRows::Place::byte);
+    std::uint64_t recordBytes = 0;
+    std::erase_if(header.fields, [](const Field& field) { return field.isPadding(); }); // is not stored
+    for (const Field& field : header.fields) recordBytes += field.bytes();
+    const std::vector<std::byte> data = unpacked(reader, header.points, recordBytes);
+    rows.makeRoom(header.points);
+    for (std::uint64_t point = 0; point < header.points; ++point) {
+        CloudRow         values{};
+        const std::byte* column = data.data();
+        for (const Field& field : header.fields) {
+            if (field.slot != kSlots)
+                values[field.slot] = loadScalar(field.type, column + point * field.bytes(), std::endian::little);
+            column += header.points * field.bytes();
+        }
+        rows.add(values, CloudRows::Place::unpacked);
+    }
+}
+
 } // namespace
 
 LoadedCloud parsePcd(std::istream& stream, std::uint64_t size, const std::string& name,
@@ -237,32 +286,36 @@ LoadedCloud parsePcd(std::istream& stream, std::uint64_t size, const std::string
     ByteReader reader(stream, size, name);
     PcdHeader  header = HeaderParser(reader).parse();
     CloudRows  rows(reader, header.cloud, settings);
+    rows.omitUnseen();
 
     std::size_t   single      = 0; // index in CloudHeader::properties
     std::uint64_t recordBytes = 0;
     std::uint64_t numbers     = 0;
     for (Field& field : header.fields) {
-        if (field.count == 1 && field.name != "_") field.slot = rows.slotOf(single++);
+        if (field.count == 1 && !field.isPadding()) field.slot = rows.slotOf(single++);
         recordBytes += field.bytes();
         numbers += field.count;
     }
-    if (header.ascii) {
+    if (header.encoding == Encoding::ascii) {
         rows.expect(header.points, 2 * numbers, CloudRows::Place::line); // a digit and a separator
         parseLines(reader, header, rows);
-    } else {
+        if (!reader.onlyBlanksLeft())
+            reader.failAtByte("expected the end of the file after the last point, found " +
+                              std::to_string(reader.remaining()) + " more bytes");
+    } else if (header.encoding == Encoding::binary) {
         rows.expect(header.points, recordBytes, CloudRows::Place::byte);
         parseRecords(reader, header, recordBytes, rows);
+    } else {
+        parseCompressed(reader, header, rows);
     }
-    if (header.ascii ? !reader.onlyBlanksLeft() : reader.remaining() > 0)
-        reader.failAtByte("expected the end of the file after the last point, found " +
-                          std::to_string(reader.remaining()) + " more bytes");
+    if (header.encoding != Encoding::ascii) rows.warnOfTail();
     return rows.finish();
 }
 
 void formatPcd(std::ostream& stream, const PointCloud& cloud, std::span<const NamedField> extraFields,
-               CloudEncoding encoding)
+               const CloudWriteSettings& settings)
 {
-    if (encoding == CloudEncoding::binaryBigEndian)
+    if (settings.encoding == CloudEncoding::binaryBigEndian)
         throw Error("a PCD file cannot be big-endian: choose little-endian or ascii, or write a PLY file");
     const RowWriter writer(cloud, extraFields);
     const auto      forEachColumn = [&](const char* entry, const auto& valueOf) {
@@ -278,7 +331,7 @@ void formatPcd(std::ostream& stream, const PointCloud& cloud, std::span<const Na
     forEachColumn("TYPE", [](const std::string&) { return 'F'; });
     forEachColumn("COUNT", [](const std::string&) { return 1; });
     stream << "WIDTH " << cloud.size() << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << cloud.size() << '\n';
-    if (encoding == CloudEncoding::ascii) {
+    if (settings.encoding == CloudEncoding::ascii) {
         stream << "DATA ascii\n";
         writer.writeText(stream, ' ');
     } else {

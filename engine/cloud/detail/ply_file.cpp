@@ -170,20 +170,17 @@ LoadedCloud parsePly(std::istream& stream, std::uint64_t size, const std::string
     PlyHeader   header = parsePlyHeader(reader);
     PlyElement& vertex = header.elements[header.vertex];
     CloudRows   rows(reader, header.cloud, settings);
-    FaceRows    faces(reader, vertex.count,
-                   settings.dropInvalid ? FaceRows::Points::someDropped : FaceRows::Points::allKept);
+    FaceRows    faces(reader, vertex.count);
     assignSlots(vertex, rows);
 
     BodyParser body(reader, header, rows, faces);
     for (std::size_t i = 0; i < header.elements.size(); ++i) body.parse(header.elements[i], i == header.vertex);
-    if (header.ascii ? !reader.onlyBlanksLeft() : reader.remaining() > 0)
+    if (!header.ascii) rows.warnOfTail();
+    if (header.ascii && !reader.onlyBlanksLeft())
         reader.failAtByte("expected the end of the file after the last element, found " +
                           std::to_string(reader.remaining()) + " more bytes");
-    LoadedCloud loaded            = rows.finish();
-    loaded.faces                  = faces.finish(rows.droppedRows());
-    loaded.report.faces           = faces.faces();
-    loaded.report.degenerateFaces = faces.degenerate();
-    loaded.report.droppedFaces    = faces.dropped();
+    LoadedCloud loaded = rows.finish();
+    faces.finish(loaded);
     return loaded;
 }
 

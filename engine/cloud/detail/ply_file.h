@@ -9,7 +9,7 @@
 namespace palp {
 
 /// Reads a PLY file; see parseCloud. Every element is read to the end of the file, so that a file which was cut short
-/// or has bytes too many is refused even if its points are whole. Numbers that are not used are ignored.
+/// is refused even if its points are whole. Numbers that are not used are ignored.
 /// \source Turk 1994, "The PLY Polygon File Format"
 /// \differs an element's row in an ascii file must stand on one line, and blank lines are skipped
 [[nodiscard]] LoadedCloud parsePly(std::istream& stream, std::uint64_t size, const std::string& name,

@@ -196,16 +196,17 @@ LoadedCloud parseText(std::istream& stream, std::uint64_t size, const std::strin
     return TextParser(reader, settings).parse();
 }
 
-void formatText(std::ostream& stream, const PointCloud& cloud, std::span<const NamedField> extraFields, char separator)
+void formatText(std::ostream& stream, const PointCloud& cloud, std::span<const NamedField> extraFields,
+                const CloudWriteSettings& settings)
 {
     const RowWriter writer(cloud, extraFields);
     for (const std::string& comment : writer.comments()) stream << "# " << comment << '\n';
     for (std::size_t i = 0; i < writer.columns().size(); ++i) {
-        if (i > 0) stream << separator;
+        if (i > 0) stream << settings.separator;
         stream << writer.columns()[i];
     }
     stream << '\n';
-    writer.writeText(stream, separator);
+    writer.writeText(stream, settings.separator);
 }
 
 } // namespace palp

@@ -19,6 +19,7 @@ namespace palp {
                                     const CloudReadSettings& settings);
 
 /// Writes a text file with a header line; see formatCloud.
-void formatText(std::ostream& stream, const PointCloud& cloud, std::span<const NamedField> extraFields, char separator);
+void formatText(std::ostream& stream, const PointCloud& cloud, std::span<const NamedField> extraFields,
+                const CloudWriteSettings& settings);
 
 } // namespace palp

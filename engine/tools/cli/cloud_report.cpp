@@ -53,6 +53,7 @@ std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& 
     if (report.stiffnessAssumed && scene.stiffness.empty())
         said.push_back("no stiffness in the file: uniform " + formatQuantity(kDefaultModulus, "Pa") +
                        " assumed; set --uniform or --stiffness");
+    said.insert(said.end(), report.warnings.begin(), report.warnings.end());
     return said;
 }
 
@@ -91,6 +92,7 @@ nlohmann::json cloudJson(const std::string& name, const PointCloud& cloud, std::
             {"points", cloud.size()},
             {"dropped_points", report.droppedPoints},
             {"duplicate_positions", report.duplicatePositions},
+            {"normals", report.normals},
             {"faces", faces.size()},
             {"degenerate_faces", report.degenerateFaces},
             {"dropped_faces", report.droppedFaces},

@@ -17,8 +17,8 @@ namespace palp {
 /// Returns "x,y,z" [m] as --place takes it, to about a thousandth of a cloud of that diagonal [m].
 [[nodiscard]] std::string placeText(const glm::dvec3& place, double diagonal);
 
-/// Returns, in sentences, what was assumed of a cloud's file because nothing states it, and unusedVariables(): what
-/// every command that takes a scene tells.
+/// Returns, in sentences, what was assumed of a cloud's file because nothing states it, what is odd in it, and
+/// unusedVariables(): what every command that takes a scene tells.
 [[nodiscard]] std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& report);
 
 /// Returns the assumptions, a law that changes nothing, and what a hunt has hidden in the stiffness.

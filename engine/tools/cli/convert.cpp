@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/cloud/cloud_format.h"
 #include "engine/core/contract.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
@@ -21,15 +22,16 @@ struct ConvertOptions {
 void convert(const ConvertOptions& options)
 {
     const CloudEncoding encoding = optionNamed<CloudEncoding>("--encoding", options.encoding);
+    const auto&         target   = formatToWrite(options.target);
     const Scene         scene    = options.source.load();
     refuseSourceAsTarget("TARGET", scene.cloud, options.target);
     const LoadedCloud loaded = options.source.loadCloud(scene);
-    const bool        faces  = holdsFaces(options.target);
+    const bool        faces  = target.holdsFaces;
     writeCloud(options.target, loaded.cloud, {}, {encoding, loaded.faces});
     std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
     if (!faces && !loaded.faces.empty())
-        warnings.push_back("the " + std::to_string(loaded.faces.size()) +
-                           " triangles were not written: only PLY holds faces; name a .ply file to keep them");
+        warnings.push_back("the " + std::to_string(loaded.faces.size()) + " triangles were not written: only " +
+                           extensionsFor(CloudUse::writingFaces) + " files hold faces; name such a file to keep them");
     if (options.json) {
         nlohmann::json report = cloudJson(options.source.name, loaded.cloud, loaded.faces, loaded.report);
         report["written"]     = options.target;
@@ -52,7 +54,7 @@ void addConvertCommand(CLI::App& app)
     CLI::App*  command = app.add_subcommand("convert", "reads a cloud and writes it in metres, with its stiffness");
     const auto options = std::make_shared<ConvertOptions>();
     options->source.addTo(*command, SceneKey::Group::object);
-    command->add_option("TARGET", options->target, "a .ply, .pcd, .xyz, .txt or .csv file")->required();
+    command->add_option("TARGET", options->target, "a " + extensionsFor(CloudUse::writing) + " file")->required();
     command->add_option("--encoding", options->encoding, "encoding of PLY and PCD: " + wordsOf<CloudEncoding>())
         ->capture_default_str();
     command->add_flag("--json", options->json, "machine-readable report");

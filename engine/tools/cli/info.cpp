@@ -29,6 +29,15 @@ std::string span3(const nlohmann::json& low, const nlohmann::json& high)
     return text;
 }
 
+/// "30 mm x 20 mm x 5 mm"
+std::string sizeText(const Bounds& bounds)
+{
+    std::string text;
+    for (int k = 0; k < 3; ++k)
+        text += std::string(k ? " x " : "") + formatQuantity(bounds.high[k] - bounds.low[k], "m");
+    return text;
+}
+
 /// "1200 triangles of 700 faces (2 left out: ...)"
 std::string facesText(const LoadedCloud& loaded)
 {
@@ -62,12 +71,13 @@ void printInfo(const InfoOptions& options)
         properties += (properties.empty() ? "" : ", ") + property;
     std::cout << options.source.name << ": " << loaded.report.format << ", " << loaded.cloud.size() << " points";
     if (loaded.report.droppedPoints) std::cout << " (" << loaded.report.droppedPoints << " dropped: NaN or infinity)";
-    std::cout << "\n  extent      " << span3(report["low"], report["high"]) << "\n  length unit "
-              << loaded.report.lengthUnitSource << "\n  spacing     " << spacing << ", "
-              << loaded.report.duplicatePositions << " exact duplicates\n  stiffness   "
-              << formatQuantity(report["stiffness_min"], unit) << " to "
+    std::cout << "\n  extent      " << span3(report["low"], report["high"]) << "\n  size        "
+              << sizeText(loaded.cloud.bounds()) << "\n  length unit " << loaded.report.lengthUnitSource
+              << "\n  spacing     " << spacing << ", " << loaded.report.duplicatePositions
+              << " exact duplicates merged\n  stiffness   " << formatQuantity(report["stiffness_min"], unit) << " to "
               << formatQuantity(report["stiffness_max"], unit) << ": " << loaded.report.stiffnessSource << "\n";
     if (loaded.report.faces > 0) std::cout << "  faces       " << facesText(loaded) << "\n";
+    if (!loaded.normals.empty()) std::cout << "  normals     in the file\n";
     if (!properties.empty()) std::cout << "  properties  " << properties << "\n";
     for (const std::string& line : warnings) std::cout << "  warning     " << line << "\n";
 }

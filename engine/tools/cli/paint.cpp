@@ -45,7 +45,7 @@ struct Canvas {
 
 bool isPly(const std::string& file)
 {
-    return !file.empty() && holdsFaces(file);
+    return !file.empty() && formatToRead(file).format == CloudFormat::ply;
 }
 
 /// Writes the source's file with the new stiffness, or else a new file.
@@ -72,7 +72,7 @@ nlohmann::json jsonOf(const StrokeOrder& order, const StrokeReport& report)
 
 void paint(const PaintOptions& o)
 {
-    static_cast<void>(holdsFaces(o.out)); // first, refuses a name of no known format
+    static_cast<void>(formatToWrite(o.out)); // first, refuses a name of no known format
     Canvas canvas(o.source);
     refuseSourceAsTarget("--out", canvas.file.empty() ? o.source.name : canvas.file, o.out);
     const SoftObject         object(canvas.loaded.cloud);

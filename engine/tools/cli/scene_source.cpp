@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include "engine/cloud/cloud_format.h"
 #include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
@@ -74,7 +75,7 @@ bool holdsPlainNumber(const std::string& text)
 void SceneSource::addTo(CLI::App& command, SceneKey::Group upTo)
 {
     auto* const positional = command.add_option(
-        "SCENE", name, "a scene file (.json), a cloud file (.ply, .pcd, .xyz, .txt, .csv) or sample:NAME");
+        "SCENE", name, "a scene file (.json), a cloud file (" + extensionsFor(CloudUse::reading) + "), or sample:NAME");
     if (name.empty())
         positional->required();
     else
@@ -116,7 +117,8 @@ Scene SceneSource::load() const
 LoadedObject SceneSource::loadObject(const Scene& scene) const
 {
     LoadedCloud loaded = loadCloud(scene);
-    return {SoftObject(std::move(loaded.cloud), scene.material, std::move(loaded.faces)), std::move(loaded.report)};
+    return {SoftObject(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals),
+            std::move(loaded.report)};
 }
 
 LoadedCloud SceneSource::loadCloud(const Scene& scene) const

@@ -60,10 +60,10 @@ void PaintTool::save(const Stage& stage)
     try {
         const std::string           cloud = stage.scene().cloud;
         const std::filesystem::path source(cloud);
-        const bool                  isPly    = source.extension() == ".ply" && !cloud.starts_with("sample:");
-        const std::string           stem     = cloud.starts_with("sample:") ? cloud.substr(7) : source.stem().string();
-        const auto                  target   = unusedPath(stem + "-painted", ".ply");
-        std::string                 property = "stiffness";
+        const bool        isPly    = !cloud.starts_with("sample:") && formatToRead(source).format == CloudFormat::ply;
+        const std::string stem     = cloud.starts_with("sample:") ? cloud.substr(7) : source.stem().string();
+        const auto        target   = unusedPath(stem + "-painted", ".ply");
+        std::string       property = "stiffness";
         if (isPly) {
             property = repaintPly(source, stage.scene().reading, stage.painted().cloud(), target).property;
         } else {

@@ -572,7 +572,7 @@ holds '5 triangles'
 good 'which has its faces' info mesh2.ply
 holds '5 triangles of 5 faces'
 good 'a mesh as text' convert mesh.ply mesh.csv --json
-holds 'only PLY holds faces'
+holds 'only .ply files hold faces'
 sed 's/^3 3 4 7/3 3 4 9/' mesh.ply >hole.ply
 bad 'a face of a point that is not there' 'hole.ply: line 25: face 2: expected the number of a point from 0 to below 9, found 9' info hole.ply
 
