@@ -10,6 +10,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/chart/exponential_map.h"
+#include "engine/cloud/surface_flood.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/detail/touched_surface.h"
@@ -164,13 +166,57 @@ void projectPoints(Patch& patch, const SoftObject& object, std::span<const std::
         }
 }
 
-/// Lays the touched surface flat.
+/// Unrolls the touched surface onto the chart's plane.
+std::vector<std::optional<ChartPoint>> unroll(const Patch& patch, const SoftObject& object,
+                                              const TouchedSurface& surface, const PatchSettings& settings)
+{
+    std::vector<glm::dvec3> places;
+    std::vector<double>     steps;
+    for (const std::uint32_t point : surface.points) {
+        places.push_back(object.positions()[point]);
+        steps.push_back(SurfaceFlood::kStep * object.survey().spacing(point));
+    }
+    return exponentialMap(patch.chart.origin, patch.chart.frame, places, surface.normals, steps,
+                          gatherRadius(settings, patch.spacing));
+}
+
+/// Returns the share of the exponential map in the positions: none where the sphere follows the surface, all of it on
+/// fingers, edges and folds, and in between a blend, so that no step is felt where one gives way to the other.
+///
+/// A surface that lies off the sphere by a share e of the window slopes against it by some 4 e, which shortens lengths
+/// by 8 e^2: 0.2 % at the first bound, 3 % at the second.
+double unrolledShare(const Patch& patch, const PatchSettings& settings)
+{
+    if (settings.map != Map::lambertAzimuthal) return 0; // the user has chosen how a sphere is laid flat
+    if (patch.normalFelt) return 1;
+    constexpr double kFollows = 0.015, kAstray = 0.06; // misfit over the window [1]
+    const double     misfit = patch.sphere.fit.misfit, noise = patch.noise;
+    const double     shape = std::sqrt(std::max(0.0, misfit * misfit - noise * noise)) / settings.window;
+    const double     t     = std::clamp((shape - kFollows) / (kAstray - kFollows), 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+}
+
+/// Lays the touched surface flat, by the sphere's map, by the exponential map, or by both in parts.
 void layTouched(Patch& patch, const SoftObject& object, const TouchedSurface& surface, const PatchSettings& settings)
 {
     if (settings.neighbourhood == Neighbourhood::ball) return projectPoints(patch, object, surface.points);
-    for (std::size_t k = 0; k < surface.points.size(); ++k)
-        if (glm::dot(surface.normals[k], surface.normal) > 0)
-            projectPoints(patch, object, std::span(surface.points).subspan(k, 1));
+    patch.unrolled = unrolledShare(patch, settings);
+    std::vector<std::optional<ChartPoint>> unrolled(surface.points.size());
+    if (patch.unrolled > 0) unrolled = unroll(patch, object, surface, settings);
+    for (std::size_t k = 0; k < surface.points.size(); ++k) {
+        std::optional<ChartPoint> position = unrolled[k];
+        if (patch.unrolled < 1 && glm::dot(surface.normals[k], surface.normal) > 0) {
+            const auto onSphere = patch.chart.project(object.positions()[surface.points[k]]);
+            if (onSphere && position)
+                position = ChartPoint{std::lerp(onSphere->x, position->x, patch.unrolled),
+                                      std::lerp(onSphere->z, position->z, patch.unrolled)};
+            else if (patch.unrolled == 0)
+                position = onSphere;
+        }
+        if (!position) continue;
+        patch.points.push_back(surface.points[k]);
+        patch.positions.push_back(*position);
+    }
 }
 
 /// Makes the chart, and lays the points flat in it, those of the touched surface first.
@@ -333,7 +379,7 @@ Patch deform(const SoftObject& object, const Contact& contact, const PatchSettin
     fitSphereTo(patch, object, surface, settings);                          // 2.2: lie close to a sphere,
     if (!patch.deformed()) return patch;
     layFlat(patch, object, surface, settings, carried); // 2.3: which an equal-area map lays flat,
-    fillRigidity(patch, object, settings);            // 2.4: where a grid takes over their rigidity
+    fillRigidity(patch, object, settings);              // 2.4: where a grid takes over their rigidity
     bendPlate(patch, settings, solver);                 // 2.5: and bends as a plate under a unit force;
     movePoints(patch);                                  // 2.6: the plate moves the points,
     findStiffness(patch, object, settings);             //      and with the contact it is what the hand feels.

@@ -68,7 +68,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
                          directionText(patch.chart.frame.normal) + "); set --from");
     constexpr double kFarOffSphere =
         0.05; // of the window: surfaces then slope by a tenth and more against the sphere [1]
-    if (patch.sphere.fit.misfit > kFarOffSphere * settings.window)
+    if (settings.neighbourhood == Neighbourhood::ball && patch.sphere.fit.misfit > kFarOffSphere * settings.window)
         result.push_back("the points lie " + formatQuantity(patch.sphere.fit.misfit, "m") +
                          " (rms) off the fitted sphere, more than 5 % of the patch window: a smaller one follows the "
                          "surface better");

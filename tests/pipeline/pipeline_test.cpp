@@ -318,8 +318,9 @@ TEST(Pipeline, WhatTheDataOrTheWindowLimitsIsSaid)
     EXPECT_TRUE(warned(torn, open, 0.1, "torn"));
     EXPECT_FALSE(warned(torn, open, 0.1, "no foundation"));
 
-    const Patch wide = homogeneous("ellipsoid", 15).touch({0, 0, 35e-3}, {0, 0, 1}, {.window = 120e-3, .cells = 32});
-    EXPECT_TRUE(warned(wide, {.window = 120e-3, .cells = 32}, 0.1, "off the fitted sphere"));
+    const PatchSettings wide{.window = 120e-3, .cells = 32, .neighbourhood = Neighbourhood::ball};
+    const Patch         whole = homogeneous("ellipsoid", 15).touch({0, 0, 35e-3}, {0, 0, 1}, wide);
+    EXPECT_TRUE(warned(whole, wide, 0.1, "off the fitted sphere"));
 }
 
 } // namespace
