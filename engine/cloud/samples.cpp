@@ -125,7 +125,8 @@ double skinModulus(const glm::dvec3& p)
 }
 double lobeModulus(const glm::dvec3& p)
 {
-    return 0.4e6 + (1e6 - 0.4e6) * (p.y / kLobe.y + 1) / 2;
+    const double front = 0.4e6 + (1e6 - 0.4e6) * (p.y / kLobe.y + 1) / 2;
+    return p.z < 0 ? 2 * front : front; // the faces differ, so that a touch that confused them would be seen
 }
 double hemisphereModulus(const glm::dvec3& p)
 {
@@ -232,7 +233,7 @@ const std::array<Shape, 8>& shapes()
          [](Uniform& u) { return onHeightField(u, kPalm, palm); },
          palmModulus},
         {{"ear-lobe",
-          "two thin sheets, 28 by 36 mm, 3 mm apart in the middle, 0.4 MPa at the tip to 1 MPa at the root",
+          "two thin sheets, 28 by 36 mm, 3 mm apart in the middle, 0.4 MPa at the tip to 1 MPa at the root, the back twice that",
           20'000,
           {3e-3, 0.45},
           0,
