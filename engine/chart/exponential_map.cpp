@@ -141,12 +141,13 @@ struct Estimate {
     [[nodiscard]] ChartPoint place() const { return {chart.x / weight, chart.z / weight}; }
 };
 
-/// A point, with all that a prediction needs in one place of memory.
-struct Node {
+/// A point, with all that a prediction needs in two lines of cache.
+struct alignas(64) Node {
     glm::dvec3 place;  ///< [m]
     glm::dvec3 normal; ///< [1]
     double     step;   ///< [m]
     Estimate   estimate;
+    bool       placed = false; ///< it has its place in the chart
 };
 
 /// Returns what a prediction counts [1]: less the longer its edge is, and less across the way from the origin.
@@ -168,11 +169,12 @@ public:
         for (std::size_t i = 0; i < positions.size(); ++i) nodes_.push_back({positions[i], normals[i], steps[i], {}});
     }
 
-    /// Lets a site predict the place of a point.
+    /// Lets a site predict the place of a point, unless that has one.
     /// \param siteStep  [m]
     void tell(const Site& site, double siteStep, std::size_t to)
     {
-        Node&        node   = nodes_[to];
+        Node& node = nodes_[to];
+        if (node.placed) return;
         const double cosine = glm::dot(site.frame.normal, node.normal);
         if (cosine <= 0) return;
         const auto [edge, east] = predict(site, node.place, node.normal, cosine);
@@ -204,12 +206,16 @@ public:
         return i;
     }
 
+    /// Keeps the place of a point as it is.
+    void keep(std::size_t i) { nodes_[i].placed = true; }
+
     /// Returns such a point at the mean of its predictions.
     [[nodiscard]] Site siteOf(std::size_t i) const
     {
-        const auto& [place, normal, step, estimate] = nodes_[i];
-        const glm::dvec3 east = glm::normalize(estimate.east - glm::dot(normal, estimate.east) * normal);
-        return {place, {normal, east, glm::cross(normal, east)}, estimate.place()};
+        const Node&      node = nodes_[i];
+        const glm::dvec3 sum  = node.estimate.east;
+        const glm::dvec3 east = glm::normalize(sum - glm::dot(node.normal, sum) * node.normal);
+        return {node.place, {node.normal, east, glm::cross(node.normal, east)}, node.estimate.place()};
     }
 
 private:
@@ -271,8 +277,8 @@ std::vector<std::optional<ChartPoint>> exponentialMap(const glm::dvec3& origin, 
         const Site site = front.siteOf(*i);
         if (std::hypot(site.chart.x, site.chart.z) > reach) continue;
         chart[*i] = site.chart;
-        for (const std::uint32_t j : neighbours.of(*i))
-            if (!chart[j]) front.tell(site, steps[*i], j);
+        front.keep(*i);
+        for (const std::uint32_t j : neighbours.of(*i)) front.tell(site, steps[*i], j);
     }
     return chart;
 }
