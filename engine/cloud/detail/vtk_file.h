@@ -11,7 +11,7 @@ namespace palp {
 /// as versions up to 4.2 and from 5.0 on write them; see parseCloud. Data of points becomes properties; that of cells
 /// and of the whole is checked and skipped.
 /// \source VTK, "VTK File Formats", the simple legacy formats
-/// \differs arrays of strings and of unknown types are refused; a "long" has 8 bytes, as on every system but Windows
+/// Refused, unlike by VTK: arrays of strings and of unknown types; a "long" has 8 bytes, as on every system but Windows
 [[nodiscard]] LoadedCloud parseVtk(std::istream& stream, std::uint64_t size, const std::string& name,
                                    const CloudReadSettings& settings);
 
