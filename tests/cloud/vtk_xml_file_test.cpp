@@ -98,6 +98,8 @@ TEST(VtkXmlFile, NumbersThatDoNotFitAreRefusedWithTheirPlace)
     EXPECT_TRUE(contains(vtkRefusal(replaced(polyData(piece(kPoints, "1 2 3", "0 1 2")), "NumberOfPoints=\"3\"",
                                              "NumberOfPoints=\"900000000000\"")),
                          {"\"points\"", "expected 900000000000 times 3 numbers", "cut short"}));
+    EXPECT_TRUE(contains(vtkRefusal(polyData(piece(kPoints, "1 2 3", "0 1 1.5"))),
+                         {"\"connectivity\"", "a whole number", "found 1.5"}));
     EXPECT_TRUE(contains(vtkRefusal(polyData("")), {"the cloud is empty"}));
 }
 
@@ -131,6 +133,22 @@ TEST(VtkXmlFile, FilesThatWereCutShortAreRefused)
          {std::string(kXmlAppendedBase64), bytesOfHex(kXmlAppendedRaw), std::string(kXmlBinary)})
         for (std::size_t size = 0; size + 2 < bytes.size(); size += 11)
             EXPECT_NE(vtkRefusal(bytes.substr(0, size)), "") << "cut to " << size;
+}
+
+TEST(VtkXmlFile, RawBytesWithoutCompressionAreReadAndTheirSizeIsNotBelieved)
+{
+    const auto file = [](std::uint32_t bytes) {
+        std::string text = replaced(polyData(piece(kPoints, "1 2 3", "0 1 2")), "format=\"ascii\">" + kPoints,
+                                    "format=\"appended\" offset=\"1\">");
+        std::string data = "!"; // the array begins behind it
+        append(data, bytes);
+        for (const float v : {0.f, 0.f, 0.f, 10.f, 0.f, 0.f, 0.f, 60.f, 0.f}) append(data, v);
+        return replaced(text, "</VTKFile>", "<AppendedData encoding=\"raw\">\n _" + data + "</AppendedData></VTKFile>");
+    };
+
+    EXPECT_EQ(vtk(file(36)).cloud.positions()[2], glm::dvec3(0, 60, 0));
+    EXPECT_TRUE(contains(vtkRefusal(file(0xFFFFFFFF)), {"byte", "expected 4294967295 more bytes", "cut short"}));
+    EXPECT_TRUE(contains(vtkRefusal(file(35)), {"\"points\"", "3 times 3 numbers", "room for 8"}));
 }
 
 TEST(VtkXmlFile, DamagedAndDishonestArraysAreRefused)

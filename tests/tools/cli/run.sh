@@ -573,6 +573,34 @@ good 'which has its faces' info mesh2.ply
 holds '5 triangles of 5 faces'
 good 'a mesh as text' convert mesh.ply mesh.csv --json
 holds 'only .ply files hold faces'
+cat >surface.vtk <<'VTK'
+# vtk DataFile Version 3.0
+two triangles, whose corners are their own
+ASCII
+DATASET POLYDATA
+POINTS 6 float
+0 0 0 20 0 0 0 20 0 20 0 0 20 20 0 0 20 0
+POLYGONS 2 8
+3 0 1 2 3 3 4 5
+POINT_DATA 6
+SCALARS E float
+LOOKUP_TABLE default
+1e5 4e5 1e5 1e5 1e5 1e5
+NORMALS up float
+0 0 1 0 0 1 0 0 1 0 0 1 0 0 1 0 0 1
+VTK
+good 'a file of VTK' info surface.vtk --length-unit mm
+holds 'VTK, ascii, 4 points'
+holds 'size        20.0 mm x 20.0 mm x 0 m'
+holds '2 exact duplicates merged'
+holds '100 kPa to 200 kPa'
+holds '2 triangles of 2 faces'
+holds 'warning     2 points lie exactly where an earlier one lies'
+good 'a file of VTK as another' convert surface.vtk surface.ply --length-unit mm
+good 'which keeps faces and normals' info surface.ply
+holds '2 triangles of 2 faces'
+holds 'normals     in the file'
+bad 'a format that is only read' 'surface2.vtk: expected a name that ends with' convert surface.ply surface2.vtk
 sed 's/^3 3 4 7/3 3 4 9/' mesh.ply >hole.ply
 bad 'a face of a point that is not there' 'hole.ply: line 25: face 2: expected the number of a point from 0 to below 9, found 9' info hole.ply
 
