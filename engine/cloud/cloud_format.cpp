@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <vector>
 
+#include "engine/cloud/detail/npy_cloud.h"
 #include "engine/cloud/detail/pcd_file.h"
 #include "engine/cloud/detail/ply_file.h"
 #include "engine/cloud/detail/text_file.h"
+#include "engine/cloud/detail/vtk_file.h"
+#include "engine/cloud/detail/vtk_xml_file.h"
 #include "engine/core/contract.h"
 
 namespace palp {
@@ -18,6 +21,9 @@ constexpr std::array kFormats = {
     CloudFormatRecord{CloudFormat::ply, "PLY", {".ply"}, kFaces, parsePly, formatPly},
     CloudFormatRecord{CloudFormat::pcd, "PCD", {".pcd"}, kNoFaces, parsePcd, formatPcd},
     CloudFormatRecord{CloudFormat::text, "text", {".xyz", ".txt", ".csv"}, kNoFaces, parseText, formatText},
+    CloudFormatRecord{CloudFormat::vtk, "VTK", {".vtk"}, kFaces, parseVtk, nullptr},
+    CloudFormatRecord{CloudFormat::vtkXml, "VTK XML", {".vtp", ".vtu"}, kFaces, parseVtkXml, nullptr},
+    CloudFormatRecord{CloudFormat::npy, "NumPy", {".npy"}, kNoFaces, parseNpyCloud, nullptr},
 };
 
 bool serves(const CloudFormatRecord& record, CloudUse use)

@@ -15,7 +15,7 @@ struct CloudWriteSettings;
 struct LoadedCloud;
 struct NamedField;
 
-enum class CloudFormat { ply, pcd, text };
+enum class CloudFormat { ply, pcd, text, vtk, vtkXml, npy };
 
 /// One format of cloud files. Reading, writing, help texts and errors go by the table of all of them.
 struct CloudFormatRecord {

@@ -135,22 +135,16 @@ std::array<int, 2> shapeOf(const Header& header, const std::string& name)
 }
 
 template <class Number>
-NodeField readNumbers(Bytes& bytes, const std::array<int, 2>& shape, const std::string& name)
+void readRows(Bytes& bytes, const std::array<int, 2>& shape, const NpyRows& to)
 {
-    NodeField           field(shape[0], shape[1]);
     const std::size_t   columns = std::size_t(shape[1]);
-    std::vector<Number> row(columns);
+    std::vector<Number> stored(columns);
+    std::vector<double> row(columns);
     for (int i = 0; i < shape[0]; ++i) {
-        bytes.read(reinterpret_cast<char*>(row.data()), columns * sizeof(Number), "its numbers");
-        for (int j = 0; j < shape[1]; ++j) {
-            const double value = double(row[std::size_t(j)]);
-            if (!std::isfinite(value))
-                throw Error(name + ": the value at [" + std::to_string(i) + ", " + std::to_string(j) + "] is " +
-                            (std::isnan(value) ? "NaN" : "infinite") + "; expected finite numbers");
-            field(i, j) = value;
-        }
+        bytes.read(reinterpret_cast<char*>(stored.data()), columns * sizeof(Number), "its numbers");
+        std::copy(stored.begin(), stored.end(), row.begin());
+        to.row(row);
     }
-    return field;
 }
 
 std::uint64_t headerLength(Bytes& bytes, const std::string& name)
@@ -172,7 +166,7 @@ std::uint64_t headerLength(Bytes& bytes, const std::string& name)
 
 } // namespace
 
-NodeField parseNpy(std::istream& in, std::uint64_t size, const std::string& name)
+void readNpyRows(std::istream& in, std::uint64_t size, const std::string& name, const NpyRows& to)
 {
     Bytes       bytes(in, size, name);
     std::string magic(std::min<std::uint64_t>(size, kMagic.size()), '\0');
@@ -195,8 +189,31 @@ NodeField parseNpy(std::istream& in, std::uint64_t size, const std::string& name
         throw Error(name + ": a shape of " + std::to_string(shape[0]) + " x " + std::to_string(shape[1]) +
                     " asks for " + std::to_string(numbers) + " numbers of " + std::to_string(eachBytes) +
                     " bytes, found " + std::to_string(bytes.left()) + " bytes");
-    return eachBytes == sizeof(double) ? readNumbers<double>(bytes, shape, name)
-                                       : readNumbers<float>(bytes, shape, name);
+    to.begin(std::size_t(shape[0]), std::size_t(shape[1]));
+    if (eachBytes == sizeof(double))
+        readRows<double>(bytes, shape, to);
+    else
+        readRows<float>(bytes, shape, to);
+}
+
+NodeField parseNpy(std::istream& in, std::uint64_t size, const std::string& name)
+{
+    std::optional<NodeField> field;
+    int                      i = 0;
+    readNpyRows(in, size, name,
+                {[&](std::size_t rows, std::size_t columns) { field.emplace(int(rows), int(columns)); },
+                 [&](std::span<const double> row) {
+                     for (int j = 0; j < field->nodesZ(); ++j) {
+                         const double value = row[std::size_t(j)];
+                         if (!std::isfinite(value))
+                             throw Error(name + ": the value at [" + std::to_string(i) + ", " + std::to_string(j) +
+                                         "] is " + (std::isnan(value) ? "NaN" : "infinite") +
+                                         "; expected finite numbers");
+                         (*field)(i, j) = value;
+                     }
+                     ++i;
+                 }});
+    return std::move(*field);
 }
 
 NodeField readNpy(const std::filesystem::path& path)

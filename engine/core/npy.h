@@ -1,7 +1,9 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <iosfwd>
+#include <span>
 #include <string>
 
 #include "engine/core/grid.h"
@@ -16,6 +18,16 @@ namespace palp {
 /// Reads the same from a stream that holds exactly `size` bytes. It allocates no more than these bytes can fill.
 /// \param name  name of the stream in errors
 [[nodiscard]] NodeField parseNpy(std::istream& in, std::uint64_t size, const std::string& name);
+
+/// What readNpyRows() tells its caller.
+struct NpyRows {
+    std::function<void(std::size_t rows, std::size_t columns)> begin; ///< once, before anything is allocated for rows
+    std::function<void(std::span<const double> row)>           row;   ///< each row; its values need not be finite
+};
+
+/// Reads the same row by row, for arrays that are no field of a grid.
+/// \throws Error as parseNpy does, but for values that are not finite; and what the caller throws
+void readNpyRows(std::istream& in, std::uint64_t size, const std::string& name, const NpyRows& to);
 
 /// Writes a field as a float64 .npy array of shape (nodesX, nodesZ), whole or not at all.
 void writeNpy(const std::filesystem::path& path, const NodeField& field);
