@@ -55,6 +55,12 @@ TEST(CloudFormats, ARefusalNamesTheKnownExtensions)
     }
 }
 
+TEST(CloudFormats, AFormatThatIsOnlyReadSaysSoWhenItIsToBeWritten)
+{
+    EXPECT_TRUE(contains(refusalOf([&] { return formatToWrite("a.vtp").format; }),
+                         {"a.vtp", ".ply", "VTK XML files are read but not written"}));
+}
+
 TEST(CloudFormats, ListsNameWhatEachUseCanDo)
 {
     for (const CloudFormatRecord& record : cloudFormats())

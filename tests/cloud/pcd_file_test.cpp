@@ -158,6 +158,8 @@ TEST(PcdFile, CompressedFilesThatDoNotUnpackAreRefused)
     EXPECT_TRUE(contains(pcdRefusal(compressed(3, 640, data.substr(0, 3))),
                          {"packed byte 3", "expected 640 unpacked bytes, found 2"}));
     EXPECT_TRUE(contains(bad(3, '\x41'), {"packed byte", "before the first byte"}));
+    EXPECT_TRUE(contains(pcdRefusal(compressed(4, 640, bytesOfHex("00412001"))), {"before the first byte"}))
+        << "by one byte";
     EXPECT_TRUE(
         contains(pcdRefusal(compressed(219, 640, data + bytesOfHex("e0ff00"))), {"more bytes than the file states"}));
     EXPECT_TRUE(

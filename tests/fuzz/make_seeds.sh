@@ -1,7 +1,7 @@
 #!/bin/sh
 # Writes small files that the readers accept, or nearly, for the fuzzers to start from. Argument: the folder.
 set -eu
-mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/npy" "$1/problem" "$1/scene" "$1/hand"
+mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/npy" "$1/npy_cloud" "$1/vtk" "$1/vtk_xml" "$1/problem" "$1/scene" "$1/hand"
 cd "$1"
 
 # The floats 1 and 2, little and big endian, and the doubles 1 and 2, little endian; printf takes octal.
@@ -33,6 +33,23 @@ printf '1 2 a 3 9\n4 5 b 6 9\n' >text/columns
 head="{'descr': '<f8', 'fortran_order': False, 'shape': (1, 2), }"
 printf '\223NUMPY\001\000\166\000%-117s\n'"$d1$d2" "$head" >npy/double
 printf '\223NUMPY\002\000\166\000\000\000%-117s\n'"$f1$f2" "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 1), }" >npy/float
+
+printf '\223NUMPY\001\000\166\000%-117s\n'"$d1$d2$d1$d2$d2$d1$d1$d1" "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 4), }" >npy_cloud/four
+printf '\223NUMPY\001\000\166\000%-117s\n'"$f1$f2$f1$f2$f1$f2$f1$f2$f2$f1$f1$f1$f1$f1" "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 7), }" >npy_cloud/seven
+
+head='# vtk DataFile Version 5.1\ntitle\n'
+printf "$head"'ASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0 1 0 0 0 1 0\nMETADATA\nCOMPONENT_NAMES\nX\n\nZ\n\nPOLYGONS 1 4\n3 0 1 2\nTRIANGLE_STRIPS 1 4\n3 2 1 0\nPOINT_DATA 3\nSCALARS E int\nLOOKUP_TABLE default\n5 6 7\nNORMALS n float\n0 0 1 0 0 1 0 0 1\nFIELD f 1\na%%20b 1 3 float\n1 2 3\n' >vtk/ascii
+printf "$head"'BINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 2 float\n'"$F1$F1$F2$F2$F1$F1"'\nCELLS 2 2\nOFFSETS unsigned_char\n\000\002\nCONNECTIVITY char\n\000\001\nCELL_TYPES 1\n\000\000\000\007\nPOINT_DATA 2\nSCALARS E float\nLOOKUP_TABLE default\n'"$F1$F2" >vtk/binary
+printf "$head"'ASCII\nDATASET STRUCTURED_GRID\nDIMENSIONS 2 2 1\nPOINTS 4 int\n0 0 0 1 0 0 0 1 0 1 1 0\nPOINT_DATA 4\nCOLOR_SCALARS c 1\n0 0 1 1\n' >vtk/grid
+
+begin='<?xml version="1.0"?><VTKFile type="PolyData" byte_order="LittleEndian" header_type="UInt32"'
+points='<Piece NumberOfPoints="3" NumberOfPolys="1"><PointData Normals="n"><DataArray type="Int8" Name="E" format="ascii">4 5 6</DataArray></PointData><Points><DataArray type="Float32" NumberOfComponents="3"'
+polys='</Points><Polys><DataArray type="UInt8" Name="connectivity" format="ascii">0 1 2</DataArray><DataArray type="UInt8" Name="offsets" format="ascii">3</DataArray></Polys></Piece></PolyData>'
+printf '%s><PolyData>%s format="ascii">0 0 0 1 0 0 0 1 0</DataArray>%s</VTKFile>' "$begin" "$points" "$polys" >vtk_xml/ascii
+printf '%s><PolyData>%s format="binary">JAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAA==</DataArray>%s</VTKFile>' "$begin" "$points" "$polys" >vtk_xml/base64
+printf '%s compressor="vtkZLibDataCompressor"><PolyData>%s format="appended" offset="0"/>%s<AppendedData encoding="base64">_AQAAAACAAAAkAAAAEAAAAA==eJxjYEAGDfYMWPgAFIoBfw==</AppendedData></VTKFile>' "$begin" "$points" "$polys" >vtk_xml/appended
+printf '%s><PolyData>%s format="appended" offset="0"/>%s<AppendedData encoding="raw">_\044\000\000\000'"$f1$f1$f1$f2$f2$f2$f1$f2$f1"'</AppendedData></VTKFile>' "$begin" "$points" "$polys" >vtk_xml/raw
+printf '%s' '<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="2" NumberOfCells="1"><Points><DataArray type="Int8" NumberOfComponents="3" format="ascii">0 0 0 1 1 1</DataArray></Points><Cells><DataArray type="Int8" Name="connectivity" format="ascii">0 1 0</DataArray><DataArray type="Int8" Name="offsets" format="ascii">3</DataArray><DataArray type="UInt8" Name="types" format="ascii">5</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>' >vtk_xml/cells
 
 plate='"size": [1, 1.5], "cells": [4, 4], "poisson": 0.3'
 point='"load": {"law": "point", "force": 2, "at": [0.5, 0.75]}'

@@ -310,9 +310,7 @@ void CloudRows::warnOfTail()
 {
     if (reader_.remaining() > 0)
         warn(std::to_string(reader_.remaining()) + " bytes after the last row, from byte " +
-             std::to_string(reader_.offset()) +
-             " on, were not read; some programs pad their files, but if the object "
-             "looks wrong, the file may be damaged");
+             std::to_string(reader_.offset()) + " on, were not read: padding, or a damaged file");
 }
 
 void CloudRows::mapRange()

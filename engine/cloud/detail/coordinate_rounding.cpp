@@ -27,12 +27,11 @@ void warnOfRounding(LoadedCloud& loaded)
     const double step = loaded.report.coordinateRounding;
     if (step < kFelt / 4 * guessedSpacing(loaded.cloud)) return; // an index over the points takes time
     const double spacing = NeighbourIndex(loaded.cloud.positions()).spacing();
-    if (!(step > kFelt * spacing)) return;
+    if (!(spacing > 0) || !(step > kFelt * spacing)) return;
     loaded.report.warnings.push_back("the file's coordinates are rounded to steps of " + formatQuantity(step, "m") +
-                                     (spacing > 0 ? ", but its points lie " + formatQuantity(spacing, "m") + " apart"
-                                                  : std::string(", and most of its points coincide")) +
-                                     ": single precision far from the origin; move the object to the origin before it "
-                                     "is saved, or save double precision");
+                                     ", but its points lie " + formatQuantity(spacing, "m") +
+                                     " apart: single precision far from the origin; move the object to the origin "
+                                     "before it is saved, or save double precision");
 }
 
 } // namespace palp

@@ -1,3 +1,4 @@
+#include <array>
 #include <iostream>
 #include <memory>
 
@@ -26,15 +27,30 @@ CloudEncoding encodingNamed(const std::string& name)
     throw Error("--encoding: unknown encoding \"" + name + "\"; known: binary, binary-big-endian, ascii");
 }
 
+/// The normals of a cloud as three fields, which all formats can hold.
+struct NormalFields {
+    explicit NormalFields(const std::vector<glm::vec3>& normals)
+    {
+        for (int k = 0; k < 3 && !normals.empty(); ++k) {
+            for (const glm::vec3& normal : normals) values[std::size_t(k)].push_back(double(normal[k]));
+            fields.push_back({std::string("n") + "xyz"[k], "", values[std::size_t(k)]});
+        }
+    }
+
+    std::array<std::vector<double>, 3> values;
+    std::vector<NamedField>            fields; ///< nx, ny, nz, or none
+};
+
 void convert(const ConvertOptions& options)
 {
     const CloudEncoding encoding = encodingNamed(options.encoding);
     const auto&         target   = formatToWrite(options.target);
     const Scene         scene    = options.source.load();
     refuseSourceAsTarget("TARGET", scene.cloud, options.target);
-    const LoadedCloud loaded = options.source.loadCloud(scene);
-    const bool        faces  = target.holdsFaces;
-    writeCloud(options.target, loaded.cloud, {}, {encoding, loaded.faces});
+    const LoadedCloud  loaded = options.source.loadCloud(scene);
+    const bool         faces  = target.holdsFaces;
+    const NormalFields normals(loaded.normals);
+    writeCloud(options.target, loaded.cloud, normals.fields, {encoding, loaded.faces});
     std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
     if (!faces && !loaded.faces.empty())
         warnings.push_back("the " + std::to_string(loaded.faces.size()) + " triangles were not written: only " +

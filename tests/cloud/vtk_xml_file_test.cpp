@@ -1,0 +1,156 @@
+#include "engine/cloud/detail/vtk_xml_file.h"
+
+#include <vector>
+
+#include "tests/cloud/cloud_parsing.h"
+#include "tests/cloud/vtk_written.h"
+
+namespace palp {
+namespace {
+
+using Triangles = std::vector<Triangle>;
+
+LoadedCloud vtk(const std::string& bytes, const CloudReadSettings& settings = {})
+{
+    return parsed(bytes, CloudFormat::vtkXml, settings);
+}
+
+std::string vtkRefusal(const std::string& bytes)
+{
+    return refusalOf(bytes, CloudFormat::vtkXml);
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to)
+{
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+/// A PolyData of pieces.
+std::string polyData(const std::string& pieces)
+{
+    return "<?xml version='1.0'?>\n<!-- of a test -->\n<VTKFile type=\"PolyData\">\n<PolyData>\n" + pieces +
+           "</PolyData>\n</VTKFile>\n";
+}
+
+std::string piece(const std::string& points, const std::string& stiffness, const std::string& polys)
+{
+    return "<Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\"><PointData><DataArray type=\"Float32\" Name=\"E\" "
+           "format=\"ascii\">" +
+           stiffness +
+           "</DataArray></PointData><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">" +
+           points + "</DataArray></Points>\n<Polys><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">" +
+           polys +
+           "</DataArray><DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">3</DataArray></Polys></Piece>\n";
+}
+
+const std::string kPoints = "0 0 0 1 0 0 0 1 0";
+
+TEST(VtkXmlFile, FilesOfOtherProgramsGiveTheSameCloudInEveryForm)
+{
+    for (const std::string& bytes : {std::string(kXmlAscii), std::string(kXmlBinary), std::string(kXmlAppendedBase64),
+                                     bytesOfHex(kXmlAppendedRaw), std::string(kMeshioVtu)}) {
+        SCOPED_TRACE(bytes.substr(0, 120));
+        const LoadedCloud loaded = vtk(bytes);
+
+        ASSERT_EQ(loaded.cloud.size(), 5u);
+        EXPECT_EQ(loaded.cloud.positions()[3], glm::dvec3(0, 1, 0.5));
+        EXPECT_EQ(loaded.cloud.positions()[4], glm::dvec3(0.5, 1.5, 0));
+        for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(loaded.cloud.stiffness()[i], 1000.0 * double(i + 1));
+        EXPECT_EQ(loaded.faces, (Triangles{{0, 1, 2}, {0, 2, 4}, {0, 4, 3}}));
+        ASSERT_EQ(loaded.normals.size(), 5u);
+        EXPECT_EQ(loaded.normals[3], glm::vec3(0, 0, 1));
+        EXPECT_EQ(loaded.normals[4], glm::vec3(0));
+        EXPECT_TRUE(contains(loaded.report.format, {"VTK XML, "}));
+        EXPECT_TRUE(loaded.report.warnings.empty());
+    }
+}
+
+TEST(VtkXmlFile, PiecesFollowEachOther)
+{
+    const LoadedCloud loaded =
+        vtk(polyData(piece(kPoints, "1 2 3", "0 1 2") + piece("5 0 0 6 0 0 5 1 0", "4 5 6", "2 1 0")));
+
+    ASSERT_EQ(loaded.cloud.size(), 6u);
+    EXPECT_EQ(loaded.cloud.stiffness()[5], 6);
+    EXPECT_EQ(loaded.faces, (Triangles{{0, 1, 2}, {5, 4, 3}}));
+}
+
+TEST(VtkXmlFile, EveryPieceMustHaveTheStiffness)
+{
+    EXPECT_TRUE(contains(vtkRefusal(polyData(piece(kPoints, "1 2 3", "0 1 2") +
+                                             replaced(piece("5 0 0 6 0 0 5 1 0", "4 5 6", "2 1 0"), "\"E\"", "\"F\""))),
+                         {"array \"E\"", "every piece"}));
+}
+
+TEST(VtkXmlFile, NumbersThatDoNotFitAreRefusedWithTheirPlace)
+{
+    EXPECT_TRUE(contains(vtkRefusal(polyData(piece("0 0 0 1 0 0 0 1", "1 2 3", "0 1 2"))),
+                         {"line 5", "\"points\"", "3 times 3 numbers", "room for 8"}));
+    EXPECT_TRUE(contains(vtkRefusal(polyData(piece("0 0 0 1 0 0 0 1 0 9", "1 2 3", "0 1 2"))),
+                         {"\"points\"", "expected 9 numbers, found more"}));
+    EXPECT_TRUE(contains(vtkRefusal(polyData(piece(kPoints, "1 2", "0 1 2"))), {"line 5", "\"E\"", "only 2"}));
+    EXPECT_TRUE(contains(vtkRefusal(polyData(piece(kPoints, "1 inf 3", "0 1 2"))), {"point 1", "\"E\" inf"}));
+    EXPECT_TRUE(contains(vtkRefusal(polyData(piece(kPoints, "1 2 x", "0 1 2"))), {"line 5", "\"E\"", "\"x\""}));
+    EXPECT_TRUE(contains(vtkRefusal(polyData(piece(kPoints, "1 2 3", "0 1 3"))),
+                         {"line 6", "\"connectivity\"", "below 3", "found 3"}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(polyData(piece(kPoints, "1 2 3", "0 1 2")), "NumberOfPoints=\"3\"",
+                                             "NumberOfPoints=\"900000000000\"")),
+                         {"\"points\"", "expected 900000000000 times 3 numbers", "cut short"}));
+    EXPECT_TRUE(contains(vtkRefusal(polyData("")), {"the cloud is empty"}));
+}
+
+TEST(VtkXmlFile, XmlThatIsNotWholeIsRefusedWithItsLine)
+{
+    const std::string good = polyData(piece(kPoints, "1 2 3", "0 1 2"));
+    ASSERT_EQ(vtkRefusal(good), "");
+
+    EXPECT_TRUE(
+        contains(vtkRefusal(replaced(good, "</PolyData>", "</Polydata>")), {"line 7", "the end of \"PolyData\""}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(good, "<PolyData>", "<PolyData a=1>")), {"line 4", "in quotes"}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(good, "<PolyData>", "<PolyData a='1' a='2'>")), {"line 4", "\"a\" once"}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(good, "<PolyData>", "<!DOCTYPE x><PolyData>")),
+                         {"line 4", "expected an element"}));
+    EXPECT_TRUE(contains(vtkRefusal(good + "<more/>"), {"the end of the file after its root"}));
+    EXPECT_TRUE(contains(vtkRefusal("solid cube\n"), {"line 1", "expected XML"}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(good, "VTKFile type", "VTKFile kind")),
+                         {"PolyData or UnstructuredGrid", "no type"}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(good, "\"PolyData\"", "\"ImageData\"")),
+                         {"line 3", "ImageData", "Extract Surface"}));
+    std::string deep;
+    for (int i = 0; i < 100; ++i) deep += "<a>";
+    EXPECT_TRUE(contains(vtkRefusal(deep), {"within each other"}));
+    for (std::size_t size = 0; size + 1 < good.size(); size += 3)
+        EXPECT_NE(vtkRefusal(good.substr(0, size)), "") << "cut to " << size;
+}
+
+TEST(VtkXmlFile, FilesThatWereCutShortAreRefused)
+{
+    for (const std::string& bytes :
+         {std::string(kXmlAppendedBase64), bytesOfHex(kXmlAppendedRaw), std::string(kXmlBinary)})
+        for (std::size_t size = 0; size + 2 < bytes.size(); size += 11)
+            EXPECT_NE(vtkRefusal(bytes.substr(0, size)), "") << "cut to " << size;
+}
+
+TEST(VtkXmlFile, DamagedAndDishonestArraysAreRefused)
+{
+    const std::string base64 = std::string(kXmlAppendedBase64), meshio = std::string(kMeshioVtu);
+
+    EXPECT_TRUE(contains(vtkRefusal(replaced(base64, "eF5j", "eF5k")), {"block 0", "zlib", "damaged"}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(base64, "_AgAA", "_A*AA")), {"byte", "base 64", "\"*\""}));
+    EXPECT_TRUE(
+        contains(vtkRefusal(replaced(base64, "offset=\"200\"", "offset=\"999\"")), {"line 13", "an offset of up to"}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(base64, "vtkZLibDataCompressor", "vtkLZ4DataCompressor")),
+                         {"line 2", "vtkLZ4DataCompressor"}));
+    EXPECT_TRUE(
+        contains(vtkRefusal(replaced(base64, "encoding=\"base64\"", "encoding=\"hex\"")), {"raw or base64", "hex"}));
+    // A header of one block of 2^30 bytes, and one of 2^32 - 1 blocks.
+    EXPECT_TRUE(contains(vtkRefusal(replaced(meshio, "AQAAAACAAAA8AAAA", "AQAAAAAAAEAAAABA")),
+                         {"claims to hold 1073741824 bytes", "100 times"}));
+    EXPECT_TRUE(
+        contains(vtkRefusal(replaced(meshio, "AQAAAACAAAA8AAAA", "/////wCAAAA8AAAA")), {"found 4294967295 of"}));
+}
+
+} // namespace
+} // namespace palp
