@@ -4,8 +4,10 @@
 #include <vector>
 
 #include "engine/cloud/detail/npy_cloud.h"
+#include "engine/cloud/detail/obj_file.h"
 #include "engine/cloud/detail/pcd_file.h"
 #include "engine/cloud/detail/ply_file.h"
+#include "engine/cloud/detail/stl_file.h"
 #include "engine/cloud/detail/text_file.h"
 #include "engine/cloud/detail/vtk_file.h"
 #include "engine/cloud/detail/vtk_xml_file.h"
@@ -23,6 +25,8 @@ constexpr std::array kFormats = {
     CloudFormatRecord{CloudFormat::text, "text", {".xyz", ".txt", ".csv"}, kNoFaces, parseText, formatText},
     CloudFormatRecord{CloudFormat::vtk, "VTK", {".vtk"}, kFaces, parseVtk, nullptr},
     CloudFormatRecord{CloudFormat::vtkXml, "VTK XML", {".vtp", ".vtu"}, kFaces, parseVtkXml, nullptr},
+    CloudFormatRecord{CloudFormat::obj, "OBJ", {".obj"}, kFaces, parseObj, nullptr},
+    CloudFormatRecord{CloudFormat::stl, "STL", {".stl"}, kFaces, parseStl, nullptr},
     CloudFormatRecord{CloudFormat::npy, "NumPy", {".npy"}, kNoFaces, parseNpyCloud, nullptr},
 };
 

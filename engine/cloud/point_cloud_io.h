@@ -67,6 +67,8 @@ struct CloudFileReport {
     std::size_t                  duplicatePositions = 0;     ///< merged with an earlier point at exactly the same place
     bool                         normals            = false; ///< there are some
     double                       coordinateRounding = 0;     ///< step between neighbouring numbers of the file [m]
+    std::size_t                  scatteredPoints    = 0;     ///< over the faces, in place of the file's; 0: none were
+    double                       scatterDistance    = 0;     ///< least between two of them [m]
     std::vector<std::string>     properties;                 ///< scalar properties of a point, in file order
     std::string                  lengthUnitSource;           ///< such as "mm, from the file's comment"
     std::string                  stiffnessSource;            ///< which property, its unit, and why

@@ -109,7 +109,8 @@ std::size_t numberSize(const Header& header, const std::string& name)
                 shortened(header.type) + "; save array.astype('<f8')");
 }
 
-std::array<int, 2> shapeOf(const Header& header, const std::string& name)
+/// Returns the sizes of an array of two or three dimensions, each from 1 to below 2^31.
+std::vector<std::uint64_t> shapeOf(const Header& header, std::size_t dimensions, const std::string& name)
 {
     std::vector<std::uint64_t> sizes;
     std::string_view           rest  = header.shape;
@@ -125,25 +126,30 @@ std::array<int, 2> shapeOf(const Header& header, const std::string& name)
         rest.remove_prefix(std::size_t(end - rest.data()));
         sizes.push_back(size);
     }
-    if (good && sizes.size() == 2 && std::max(sizes[0], sizes[1]) > kMost)
+    const bool plane = dimensions == 2;
+    good             = good && sizes.size() == dimensions && std::ranges::min(sizes) >= 1;
+    if (good && std::ranges::max(sizes) > kMost)
         throw Error(name + ": the array is too large: expected at most " + std::to_string(kMost) +
-                    " rows and columns, found shape " + shortened(header.shape));
-    if (!good || sizes.size() != 2 || sizes[0] < 1 || sizes[1] < 1)
-        throw Error(name + ": expected an array of two dimensions, shape (m, n) with m, n >= 1, found shape " +
+                    (plane ? " rows and columns" : " values along each axis") + ", found shape " +
                     shortened(header.shape));
-    return {int(sizes[0]), int(sizes[1])};
+    if (!good)
+        throw Error(name + ": expected an array of " +
+                    (plane ? "two dimensions, shape (m, n) with m, n >= 1" : "three dimensions, shape (l, m, n)") +
+                    ", found shape " + shortened(header.shape));
+    return sizes;
 }
 
+/// Calls to(row) for `rows` rows of `columns` numbers each.
 template <class Number>
-void readRows(Bytes& bytes, const std::array<int, 2>& shape, const NpyRows& to)
+void readRows(Bytes& bytes, std::uint64_t rows, std::size_t columns,
+              const std::function<void(std::span<const double>)>& to)
 {
-    const std::size_t   columns = std::size_t(shape[1]);
     std::vector<Number> stored(columns);
     std::vector<double> row(columns);
-    for (int i = 0; i < shape[0]; ++i) {
+    for (std::uint64_t i = 0; i < rows; ++i) {
         bytes.read(reinterpret_cast<char*>(stored.data()), columns * sizeof(Number), "its numbers");
         std::copy(stored.begin(), stored.end(), row.begin());
-        to.row(row);
+        to(row);
     }
 }
 
@@ -164,11 +170,15 @@ std::uint64_t headerLength(Bytes& bytes, const std::string& name)
     return length;
 }
 
-} // namespace
+/// An array whose header has been read.
+struct OpenArray {
+    std::vector<std::uint64_t> shape;
+    std::size_t                eachBytes = 0; ///< of a number
+    bool                       fortran   = false;
+};
 
-void readNpyRows(std::istream& in, std::uint64_t size, const std::string& name, const NpyRows& to)
+OpenArray openArray(Bytes& bytes, std::uint64_t size, std::size_t dimensions, const std::string& name)
 {
-    Bytes       bytes(in, size, name);
     std::string magic(std::min<std::uint64_t>(size, kMagic.size()), '\0');
     bytes.read(magic.data(), magic.size(), "its first bytes");
     if (magic != kMagic)
@@ -176,24 +186,57 @@ void readNpyRows(std::istream& in, std::uint64_t size, const std::string& name, 
 
     std::string text(headerLength(bytes, name), '\0');
     bytes.read(text.data(), text.size(), "its header");
-    const Header      header    = parseHeader(text, name);
-    const std::size_t eachBytes = numberSize(header, name);
-    if (header.fortran != "False")
+    const Header header = parseHeader(text, name);
+    OpenArray    array;
+    array.eachBytes = numberSize(header, name);
+    array.fortran   = header.fortran == "True";
+    if (header.fortran != "False" && !(array.fortran && dimensions == 3))
         throw Error(name + ": expected C order ('fortran_order': False), found " + shortened(header.fortran) +
                     "; save numpy.ascontiguousarray(array)");
 
-    // Two dimensions below 2^31 and 8 bytes each stay below 2^65: divide instead of multiplying, then compare.
-    const std::array<int, 2> shape   = shapeOf(header, name);
-    const std::uint64_t      numbers = std::uint64_t(shape[0]) * std::uint64_t(shape[1]);
-    if (bytes.left() % eachBytes != 0 || numbers != bytes.left() / eachBytes)
-        throw Error(name + ": a shape of " + std::to_string(shape[0]) + " x " + std::to_string(shape[1]) +
-                    " asks for " + std::to_string(numbers) + " numbers of " + std::to_string(eachBytes) +
-                    " bytes, found " + std::to_string(bytes.left()) + " bytes");
-    to.begin(std::size_t(shape[0]), std::size_t(shape[1]));
-    if (eachBytes == sizeof(double))
-        readRows<double>(bytes, shape, to);
+    array.shape                 = shapeOf(header, dimensions, name);
+    const std::uint64_t all     = bytes.left() / array.eachBytes;
+    std::uint64_t       numbers = 1;
+    std::string         shape;
+    for (const std::uint64_t each : array.shape) {
+        numbers = each > 0 && numbers > std::numeric_limits<std::uint64_t>::max() / each
+                      ? std::numeric_limits<std::uint64_t>::max()
+                      : numbers * each;
+        shape += (shape.empty() ? "" : " x ") + std::to_string(each);
+    }
+    if (bytes.left() % array.eachBytes != 0 || numbers != all)
+        throw Error(name + ": a shape of " + shape + " asks for " + std::to_string(numbers) + " numbers of " +
+                    std::to_string(array.eachBytes) + " bytes, found " + std::to_string(bytes.left()) + " bytes");
+    return array;
+}
+
+void readAll(Bytes& bytes, const OpenArray& array, const std::function<void(std::span<const double>)>& to)
+{
+    const std::uint64_t columns = array.shape.back();
+    std::uint64_t       rows    = 1;
+    for (std::size_t k = 0; k + 1 < array.shape.size(); ++k) rows *= array.shape[k];
+    if (array.eachBytes == sizeof(double))
+        readRows<double>(bytes, rows, std::size_t(columns), to);
     else
-        readRows<float>(bytes, shape, to);
+        readRows<float>(bytes, rows, std::size_t(columns), to);
+}
+
+} // namespace
+
+void readNpyRows(std::istream& in, std::uint64_t size, const std::string& name, const NpyRows& to)
+{
+    Bytes           bytes(in, size, name);
+    const OpenArray array = openArray(bytes, size, 2, name);
+    to.begin(std::size_t(array.shape[0]), std::size_t(array.shape[1]));
+    readAll(bytes, array, to.row);
+}
+
+void readNpyVolume(std::istream& in, std::uint64_t size, const std::string& name, const NpyVolume& to)
+{
+    Bytes           bytes(in, size, name);
+    const OpenArray array = openArray(bytes, size, 3, name);
+    to.begin({int(array.shape[0]), int(array.shape[1]), int(array.shape[2])}, array.fortran);
+    readAll(bytes, array, to.values);
 }
 
 NodeField parseNpy(std::istream& in, std::uint64_t size, const std::string& name)

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -28,6 +29,17 @@ struct NpyRows {
 /// Reads the same row by row, for arrays that are no field of a grid.
 /// \throws Error as parseNpy does, but for values that are not finite; and what the caller throws
 void readNpyRows(std::istream& in, std::uint64_t size, const std::string& name, const NpyRows& to);
+
+/// What readNpyVolume() tells its caller.
+struct NpyVolume {
+    /// Once, before anything is allocated: the sizes, and whether the first axis runs fastest instead of the last.
+    std::function<void(const std::array<int, 3>& shape, bool firstIsFastest)> begin;
+    std::function<void(std::span<const double> values)> values; ///< some that follow each other in the file
+};
+
+/// Reads an array of three dimensions, in C or Fortran order.
+/// \throws Error as readNpyRows does
+void readNpyVolume(std::istream& in, std::uint64_t size, const std::string& name, const NpyVolume& to);
 
 /// Writes a field as a float64 .npy array of shape (nodesX, nodesZ), whole or not at all.
 void writeNpy(const std::filesystem::path& path, const NodeField& field);

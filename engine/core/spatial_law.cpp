@@ -8,9 +8,12 @@
 #include <string>
 
 #include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/file.h"
 #include "engine/core/json_object.h"
+#include "engine/core/volume_grid.h"
 
 namespace palp {
 namespace {
@@ -57,18 +60,19 @@ constexpr std::array kKinds = {NamedKind{"constant", Kind::constant},
                                NamedKind{"gaussian", Kind::gaussian},
                                NamedKind{"disc", Kind::disc},
                                NamedKind{"box", Kind::box},
-                               NamedKind{"checker", Kind::checker}};
+                               NamedKind{"checker", Kind::checker},
+                               NamedKind{"grid", Kind::grid}};
 
 Kind kindOf(const JsonObject& object, SpatialLaw::Space space)
 {
     const std::string name = object.text("law");
     std::string       known;
     for (const NamedKind& entry : kKinds) {
-        if (entry.name == name) return entry.kind;
+        // The grid of a problem file is another one, and its reader knows it.
+        if (entry.name == name && (space == SpatialLaw::Space::volume || entry.kind != Kind::grid)) return entry.kind;
         known += (known.empty() ? "" : ", ") + std::string(entry.name);
     }
-    throw Error(object.where() + ": unknown law \"" + name + "\"; known laws: " + known +
-                (space == SpatialLaw::Space::plane ? ", grid" : "")); // a problem file's; its reader knows it
+    throw Error(object.where() + ": unknown law \"" + name + "\"; known laws: " + known);
 }
 
 /// The region that a law covers, and the form in which its points are written.
@@ -132,6 +136,30 @@ void readBox(SpatialLaw& law, const JsonObject& object, const Region& region)
     law.low  = region.point(object, "low");
     law.high = region.point(object, "high");
     if (!glm::all(glm::lessThanEqual(law.low, law.high))) object.refuse("high", "no coordinate below that of \"low\"");
+}
+
+/// Returns a number for all three axes or one for each, above zero.
+glm::dvec3 spacingOf(const JsonObject& object)
+{
+    constexpr std::string_view kKey = "spacing";
+    if (object.kind(kKey) == JsonObject::Kind::number) return glm::dvec3(object.positiveNumber(kKey));
+    const std::vector<double> given = object.numbers(kKey, 3);
+    if (!(std::ranges::min(given) > 0)) object.refuse(kKey, "metres above zero");
+    return {given[0], given[1], given[2]};
+}
+
+void readGrid(SpatialLaw& law, const JsonObject& object, const Region& region, LawFiles files)
+{
+    object.allowOnly({"law", "file", "factor", "outside", "length_unit", "origin", "spacing"});
+    law.file = object.text("file");
+    if (object.has("outside")) law.outside = object.positiveNumber("outside");
+    VolumeSettings settings;
+    if (object.has("factor")) settings.factor = object.positiveNumber("factor");
+    if (object.has("length_unit")) settings.lengthUnit = object.text("length_unit");
+    if (object.has("origin")) settings.origin = region.point(object, "origin");
+    if (object.has("spacing")) settings.spacing = spacingOf(object);
+    if (files == LawFiles::left) return static_cast<void>(openForReading(law.file));
+    law.volume = std::make_shared<const VolumeGrid>(readVolume(law.file, settings));
 }
 
 /// A translator of the short form into JSON text: NAME:key=value,... with numbers, vectors a;b;c, lists of vectors
@@ -205,6 +233,13 @@ private:
     }
 };
 
+/// Returns a law as JSON, whichever form it has.
+std::string asJson(std::string_view text)
+{
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    return first != std::string_view::npos && text[first] == '{' ? std::string(text) : ShortForm::asJson(text);
+}
+
 } // namespace
 
 double SpatialLaw::operator()(const glm::dvec3& p) const noexcept
@@ -226,12 +261,32 @@ double SpatialLaw::operator()(const glm::dvec3& p) const noexcept
         return isInBox(*this, p) ? to : from;
     case Kind::checker:
         return isInEvenCube(*this, p) ? to : from;
+    case Kind::grid: {
+        const auto found = volume ? volume->at(p) : VolumeGrid::Value{};
+        return found.at == VolumeGrid::At::inside ? found.value : outside.value_or(std::nan(""));
+    }
     }
     return from;
 }
 
+double SpatialLaw::valueAt(const glm::dvec3& p, const std::string& what) const
+{
+    const double value = (*this)(p);
+    if (kind != Kind::grid || !std::isnan(value) || !volume) return value;
+    const auto        found = volume->at(p);
+    const std::string place =
+        what + " at " + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + " m";
+    const std::string advice = "; give the law \"outside\": PASCAL for such places";
+    if (found.at == VolumeGrid::At::unknown)
+        throw Error(file + ": expected a stiffness above zero for " + place + ", found zero at [" +
+                    std::to_string(found.node[0]) + ", " + std::to_string(found.node[1]) + ", " +
+                    std::to_string(found.node[2]) + "], where nothing was measured" + advice);
+    throw Error(file + ": expected a volume that holds " + place + ", found one over " + volume->extent() + advice +
+                ", or check unit and axes: some programs count x and y the other way");
+}
+
 SpatialLaw parseSpatialLaw(const JsonObject& object, const glm::dvec3& low, const glm::dvec3& high,
-                           SpatialLaw::Space space)
+                           SpatialLaw::Space space, LawFiles files)
 {
     const Region region{low, high, space};
     SpatialLaw   law;
@@ -239,6 +294,10 @@ SpatialLaw parseSpatialLaw(const JsonObject& object, const glm::dvec3& low, cons
     if (law.kind == Kind::constant) {
         object.allowOnly({"law", "value"});
         law.from = law.to = object.positiveNumber("value");
+        return law;
+    }
+    if (law.kind == Kind::grid) {
+        readGrid(law, object, region, files);
         return law;
     }
     switch (law.kind) {
@@ -263,12 +322,24 @@ SpatialLaw parseSpatialLaw(const JsonObject& object, const glm::dvec3& low, cons
 }
 
 SpatialLaw parseSpatialLaw(std::string_view text, const glm::dvec3& low, const glm::dvec3& high,
-                           SpatialLaw::Space space)
+                           SpatialLaw::Space space, LawFiles files)
 {
-    const bool isJson =
-        text.find_first_not_of(" \t\r\n") != std::string_view::npos && text[text.find_first_not_of(" \t\r\n")] == '{';
-    return parseSpatialLaw(JsonObject::parse(isJson ? std::string(text) : ShortForm::asJson(text), "law"), low, high,
-                           space);
+    return parseSpatialLaw(JsonObject::parse(asJson(text), "law"), low, high, space, files);
+}
+
+std::string lawWithFileIn(const std::string& text, const std::filesystem::path& folder)
+{
+    if (text.find("grid") == std::string::npos) return text;
+    try {
+        nlohmann::json law = nlohmann::json::parse(asJson(text), nullptr, true, true);
+        if (law.value("law", "") != "grid" || !law.contains("file") || !law["file"].is_string()) return text;
+        law["file"] = (folder / law["file"].get<std::string>()).lexically_normal().string();
+        return law.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    } catch (const nlohmann::json::exception&) { // whoever reads the law says what is wrong
+        return text;
+    } catch (const Error&) {
+        return text;
+    }
 }
 
 } // namespace palp

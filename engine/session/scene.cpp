@@ -14,6 +14,7 @@
 #include "engine/core/file.h"
 #include "engine/core/json_object.h"
 #include "engine/core/quantity.h"
+#include "engine/core/spatial_law.h"
 #include "engine/session/scene_keys.h"
 
 namespace palp {
@@ -253,8 +254,10 @@ Scene sceneOf(const JsonObject& file, const std::filesystem::path& folder, const
     readCloudKey(scene, *cloud, folder);
     if (isSample(scene)) takeSample(scene);
     for (const SceneKey* key : keys) {
-        const auto one = sources.about(*key);
+        auto one = sources.about(*key);
         if (!one) continue;
+        if (key->name == "stiffness" && one->origin.origin == Origin::scene)
+            one->text = lawWithFileIn(one->text, folder); // as the path of the cloud
         const double metres = metresPerPlainNumber(overrides, sources, one->origin.origin);
         // On the command line a length_unit applies to its plain numbers too, also where no file is read.
         if (key->name == "length_unit" && isSample(scene) && overrides.flagsInLengthUnit &&
@@ -294,6 +297,7 @@ std::string sceneJson(const Scene& scene)
 {
     Scene whole = scene;
     if (!isSample(whole)) whole.cloud = std::filesystem::absolute(whole.cloud).string();
+    whole.stiffness = lawWithFileIn(whole.stiffness, std::filesystem::current_path());
     std::string text;
     for (const SceneKey* key : sceneKeysWith(scene.toolKeys))
         if (const std::string value = key->write(whole); !value.empty())

@@ -37,6 +37,18 @@ constexpr auto namesOf(Origin)
         {{standard, "default"}, {sample, "sample"}, {scene, "scene"}, {environment, "environment"}, {flag, "flag"}});
 }
 
+/// The points through which a cloud with faces is touched.
+enum class Scatter {
+    automatic, ///< the cloud's own if they are dense enough for the fingertip, else points on the faces
+    on,        ///< points on the faces
+    off        ///< the cloud's own
+};
+constexpr auto namesOf(Scatter)
+{
+    using enum Scatter;
+    return std::to_array<NamedValue<Scatter>>({{automatic, "auto"}, {on, "on"}, {off, "off"}});
+}
+
 struct ValueOrigin {
     Origin      origin = Origin::standard;
     std::string where; ///< "sample:skin", a file, "PALPATE_THICKNESS", "--preset paper"; empty for a default
@@ -61,10 +73,12 @@ public:
 /// Invariant of what readScene() returns: every value is within the bounds that sceneKeys() state, and a cloud's file
 /// existed when the scene was read.
 struct Scene {
-    std::string       cloud;      ///< "sample:NAME", or the path of a cloud file
-    std::size_t       points = 0; ///< of a sample; 0: a file's own
-    std::uint64_t     seed   = 1; ///< of a sample
-    CloudReadSettings reading;    ///< how a cloud file is read
+    std::string       cloud;                                ///< "sample:NAME", or the path of a cloud file
+    std::size_t       points = 0;                           ///< of a sample; 0: a file's own
+    std::uint64_t     seed   = 1;                           ///< of a sample
+    CloudReadSettings reading;                              ///< how a cloud file is read
+    Scatter           scatter         = Scatter::automatic; ///< of a file with faces
+    double            scatterDistance = 0;                  ///< between points on faces [m]; 0: a part of the fingertip
     std::string stiffness; ///< law of the modulus over the cloud, see parseSpatialLaw [Pa]; empty: the cloud's own
 
     std::optional<glm::dvec3> place{}; ///< [m] on the cloud; empty: nearest to a viewer who looks along -z
@@ -142,10 +156,14 @@ inline constexpr std::string_view kSamplePrefix = "sample:";
     return std::string_view(scene.cloud).substr(kSamplePrefix.size());
 }
 
+/// Returns the opening of a complaint about a key: "--uniform", or "skin.json: key \"uniform\"".
+[[nodiscard]] std::string openingOf(const Scene& scene, const std::string& key);
+
 /// Returns true if two scenes have the same cloud, as far as their keys tell.
 [[nodiscard]] bool haveSameCloud(const Scene& a, const Scene& b);
 
-/// Loads the cloud as the scene states, with the scene's law and overlay, if it has them.
+/// Loads the cloud as the scene states, with the scene's law and overlay, if it has them. A mesh whose vertices are too
+/// far apart for the fingertip is touched through points on its faces, see scene_mesh.h.
 /// \throws Error as readCloud() and CloudOverlay::over() do, and if the file's stiffness contradicts the scene
 [[nodiscard]] LoadedCloud loadCloud(const Scene& scene);
 
@@ -158,7 +176,7 @@ struct LoadedObject {
 /// Loads the cloud by loadCloud(), with its index and the scene's material.
 [[nodiscard]] LoadedObject loadObject(const Scene& scene);
 
-/// Loads the cloud without the overlay.
+/// Does the same without the overlay.
 [[nodiscard]] LoadedCloud loadBareCloud(const Scene& scene);
 
 /// Returns 16 hexadecimal digits that tell clouds apart: FNV-1a over the bits of places and stiffnesses. They do not

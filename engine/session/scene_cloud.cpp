@@ -2,10 +2,12 @@
 #include <bit>
 #include <cstdio>
 
+#include "engine/cloud/cloud_format.h"
 #include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
 #include "engine/core/spatial_law.h"
 #include "engine/session/scene_keys.h"
+#include "engine/session/scene_mesh.h"
 
 // The cloud of a scene.
 
@@ -13,13 +15,14 @@ namespace palp {
 namespace {
 
 /// Applies the scene's law at every place, instead of the stiffness that the cloud has.
-PointCloud withLaw(const PointCloud& cloud, const Scene& scene, StiffnessKind kind)
+/// \param bounds  of the cloud as it is in its file: points on a mesh do not quite reach its corners
+PointCloud withLaw(const PointCloud& cloud, const Bounds& bounds, const Scene& scene, StiffnessKind kind)
 {
-    const Bounds&       bounds = cloud.bounds();
-    const SpatialLaw    law    = parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume);
+    const SpatialLaw    law = parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume);
     std::vector<double> stiffness;
     stiffness.reserve(cloud.size());
-    for (const glm::dvec3& p : cloud.positions()) stiffness.push_back(law(p));
+    for (const glm::dvec3& p : cloud.positions())
+        stiffness.push_back(law.valueAt(p, "point " + std::to_string(stiffness.size())));
     return {{cloud.positions().begin(), cloud.positions().end()}, std::move(stiffness), kind};
 }
 
@@ -29,22 +32,23 @@ LoadedCloud sampleOf(const Scene& scene)
     const Bounds              bounds = boundsOf(sample);
     std::optional<SpatialLaw> law;
     if (!scene.stiffness.empty())
-        law = parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume);
+        law = parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume, LawFiles::left);
     CloudFileReport report;
     report.format           = "procedural sample";
     report.points           = scene.points;
     report.lengthUnitSource = "m, by construction";
     report.stiffnessSource  = law ? "the scene's law [Pa]" : "the sample's own law [Pa]";
+    if (law && law->kind == SpatialLaw::Kind::grid) // may have no value somewhere, and says so
+        return {withLaw(makeSample(sample, scene.points, scene.seed), bounds, scene, StiffnessKind::modulus),
+                std::move(report)};
     return {makeSample(sample, scene.points, scene.seed, law), std::move(report)};
 }
 
-/// Returns the opening of a complaint about a key: "--uniform", or "skin.json: key \"uniform\"".
-std::string openingOf(const Scene& scene, const std::string& key)
+/// Returns true if the distance between points on the faces of a mesh depends on the fingertip.
+bool fingertipDecidesCloud(const Scene& scene)
 {
-    const auto found = scene.origins.find(key);
-    if (found == scene.origins.end()) return "key \"" + key + "\"";
-    const auto& [origin, where] = found->second;
-    return origin == Origin::scene ? where + ": key \"" + key + "\"" : where;
+    return !isSample(scene) && scene.scatter != Scatter::off && scene.scatterDistance == 0 &&
+           formatToRead(scene.cloud).holdsFaces;
 }
 
 /// Refuses a file whose own statement on its stiffness contradicts the user's, or that has one beside a uniform one.
@@ -63,14 +67,24 @@ void refuseContradiction(const Scene& scene, const LoadedCloud& loaded)
 
 } // namespace
 
+std::string openingOf(const Scene& scene, const std::string& key)
+{
+    const auto found = scene.origins.find(key);
+    if (found == scene.origins.end()) return "key \"" + key + "\"";
+    const auto& [origin, where] = found->second;
+    return origin == Origin::scene ? where + ": key \"" + key + "\"" : where;
+}
+
 LoadedCloud loadBareCloud(const Scene& scene)
 {
     if (isSample(scene)) return sampleOf(scene);
     LoadedCloud loaded = readCloud(scene.cloud, scene.reading);
     refuseContradiction(scene, loaded);
+    const Bounds bounds = loaded.cloud.bounds();
+    if (const auto plan = scatterPlan(scene, loaded)) scatterOverFaces(loaded, *plan);
     if (scene.stiffness.empty()) return loaded;
     const StiffnessKind kind      = scene.reading.stiffnessKind.value_or(StiffnessKind::modulus);
-    loaded.cloud                  = withLaw(loaded.cloud, scene, kind);
+    loaded.cloud                  = withLaw(loaded.cloud, bounds, scene, kind);
     loaded.report.stiffnessSource = std::string("the scene's law [") + unitOf(kind) + "]";
     return loaded;
 }
@@ -91,6 +105,7 @@ LoadedObject loadObject(const Scene& scene)
 
 bool haveSameCloud(const Scene& a, const Scene& b)
 {
+    if (fingertipDecidesCloud(a) && a.patch.footprintRadius != b.patch.footprintRadius) return false;
     if (a.toolKeys != b.toolKeys) return false;
     return std::ranges::all_of(sceneKeysWith(a.toolKeys), [&](const SceneKey* key) {
         return !key->decidesCloud || key->write(a) == key->write(b);

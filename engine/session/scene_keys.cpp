@@ -49,7 +49,8 @@ void readLaw(S& scene, const V& given)
 {
     if (given.text == "own") return scene.stiffness.clear();
     try { // across any region: the cloud is not there yet
-        static_cast<void>(parseSpatialLaw(given.text, {-1, -1, -1}, {1, 1, 1}, SpatialLaw::Space::volume));
+        static_cast<void>(
+            parseSpatialLaw(given.text, {-1, -1, -1}, {1, 1, 1}, SpatialLaw::Space::volume, LawFiles::left));
     } catch (const Error& error) {
         throw Error(given.what + ": " + error.what());
     }
@@ -114,6 +115,24 @@ void readStiffnessUnit(S& scene, const V& given)
 {
     scene.reading.stiffnessKind =
         given.word() == unitOf(StiffnessKind::modulus) ? StiffnessKind::modulus : StiffnessKind::rigidity;
+}
+
+/// Reads auto, on, off or a distance.
+void readScatter(S& scene, const V& given)
+{
+    scene.scatterDistance = 0;
+    if (const auto word = valueNamed<Scatter>(given.text)) {
+        scene.scatter = *word;
+    } else {
+        scene.scatter         = Scatter::on;
+        scene.scatterDistance = given.number();
+    }
+}
+
+std::string scatterJson(const S& scene)
+{
+    if (isSample(scene)) return "";
+    return scene.scatterDistance > 0 ? plainNumber(scene.scatterDistance) : quotedJson(name(scene.scatter));
 }
 
 /// Reads Poisson's ratio. The plate's own bound is nu <= 0.5: its equations hold there. A scene is of a material, and
@@ -196,6 +215,17 @@ std::vector<SceneKey> fileKeys()
          .kind  = Kind::yesNo,
          .read  = [](S& s, const V& v) { s.reading.dropInvalid = v.yesNo(); },
          .write = [](const S& s) -> std::string { return s.reading.dropInvalid ? "true" : ""; }},
+        {.name      = "scatter",
+         .help      = "touches a mesh through points on its faces: auto where its vertices are too far apart for the "
+                      "fingertip, on, off, or a distance between them [auto]",
+         .kind      = Kind::number,
+         .unit      = "m",
+         .form      = "auto, on, off, or a distance from 1e-6 to 1 m, such as 0.5 mm",
+         .dimension = D::length,
+         .bounds    = KeyBounds{1e-6, 1},
+         .schema    = R"({"anyOf": [{"type": "number", "minimum": 1e-6, "maximum": 1}, {"type": "string"}]})",
+         .read      = readScatter,
+         .write     = scatterJson},
     };
     for (SceneKey& key : keys) key.cloud = SceneKey::For::file, key.decidesCloud = true;
     return keys;

@@ -9,7 +9,7 @@ namespace palp {
 /// A law of stiffness, see parseSpatialLaw().
 inline constexpr std::string_view kLawSchema = R"({"anyOf": [{"type": "string"}, {"type": "object", "required": ["law"], "additionalProperties":
 false, "properties": {"law": {"enum": ["constant", "linear", "hyperbolic", "exponential",
-"gaussian", "disc", "box", "checker"]}, "value": {"description": "of constant [Pa]", "type":
+"gaussian", "disc", "box", "checker", "grid"]}, "value": {"description": "of constant [Pa]", "type":
 "number", "exclusiveMinimum": 0}, "from": {"description": "[Pa]", "type": "number",
 "exclusiveMinimum": 0}, "to": {"description": "[Pa]", "type": "number", "exclusiveMinimum": 0},
 "axis": {"description": "along which linear, hyperbolic and exponential run across the cloud",
@@ -24,7 +24,15 @@ line [m]", "type": "array", "items": {"type": "number"}, "minItems": 3, "maxItem
 "exclusiveMinimum": 0}, "edge": {"description": "of checker's cubes [m]", "type": "number",
 "exclusiveMinimum": 0}, "low": {"description": "corner of box [m]", "type": "array", "items":
 {"type": "number"}, "minItems": 3, "maxItems": 3}, "high": {"description": "opposite corner of box
-[m]", "type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}}}]})";
+[m]", "type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, "file": {"description": "of grid: a .npy, .nii or
+.nii.gz file", "type": "string"}, "factor": {"description": "of grid: on the values of its file, 1000
+for kPa [1]", "type": "number", "exclusiveMinimum": 0}, "outside": {"description": "of grid: where its
+file has no value [Pa]", "type": "number", "exclusiveMinimum": 0}, "length_unit": {"description": "of
+a grid's .nii file that states none", "enum": ["m", "mm", "cm", "um", "km", "in", "ft"]}, "origin":
+{"description": "of a grid's .npy file: place of the first value [m]", "type": "array", "items":
+{"type": "number"}, "minItems": 3, "maxItems": 3}, "spacing": {"description": "of a grid's .npy file:
+between two values along the axes [m]", "anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"type":
+"array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 3, "maxItems": 3}]}}}]})";
 
 // clang-format on
 

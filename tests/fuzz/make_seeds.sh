@@ -1,7 +1,7 @@
 #!/bin/sh
 # Writes small files that the readers accept, or nearly, for the fuzzers to start from. Argument: the folder.
 set -eu
-mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/npy" "$1/npy_cloud" "$1/vtk" "$1/vtk_xml" "$1/problem" "$1/scene" "$1/hand"
+mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/obj" "$1/stl" "$1/volume" "$1/npy" "$1/npy_cloud" "$1/vtk" "$1/vtk_xml" "$1/problem" "$1/scene" "$1/hand"
 cd "$1"
 
 # The floats 1 and 2, little and big endian, and the doubles 1 and 2, little endian; printf takes octal.
@@ -50,6 +50,19 @@ printf '%s><PolyData>%s format="binary">JAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAA
 printf '%s compressor="vtkZLibDataCompressor"><PolyData>%s format="appended" offset="0"/>%s<AppendedData encoding="base64">_AQAAAACAAAAkAAAAEAAAAA==eJxjYEAGDfYMWPgAFIoBfw==</AppendedData></VTKFile>' "$begin" "$points" "$polys" >vtk_xml/appended
 printf '%s><PolyData>%s format="appended" offset="0"/>%s<AppendedData encoding="raw">_\044\000\000\000'"$f1$f1$f1$f2$f2$f2$f1$f2$f1"'</AppendedData></VTKFile>' "$begin" "$points" "$polys" >vtk_xml/raw
 printf '%s' '<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="2" NumberOfCells="1"><Points><DataArray type="Int8" NumberOfComponents="3" format="ascii">0 0 0 1 1 1</DataArray></Points><Cells><DataArray type="Int8" Name="connectivity" format="ascii">0 1 0</DataArray><DataArray type="Int8" Name="offsets" format="ascii">3</DataArray><DataArray type="UInt8" Name="types" format="ascii">5</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>' >vtk_xml/cells
+
+printf '# length_unit mm\nv 0 0 0\nv 1 0 0 .5 .5 .5\nvt 0 0\nv 1 1 0\nusemtl a\nf 1/1/1 2//1 \\\n3\nf -3 -2 -1\n' >obj/faces
+printf 'v 1 2 3 1\nv 2 3 4\nbevel on\nf 1 2 1\n' >obj/degenerate
+printf 'solid a b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\nendloop\nendfacet\nendsolid a\n' >stl/ascii
+printf '%-80s\001\000\000\000'"$f1$f1$f1$f1$f1$f1$f1$f1$f2$f2$f1$f1"'ab' solid >stl/binary
+
+# A header of NIfTI-1: 2 x 2 x 2 floats, mm, sizes 1.
+zeros() { head -c "$1" /dev/zero; }
+{ printf '\134\001\000\000'; zeros 36; printf '\003\000\002\000\002\000\002\000\001\000\001\000\001\000\001\000'; zeros 14
+  printf '\020\000\040\000'; zeros 2; printf "$f1$f1$f1$f1"; zeros 16; printf '\000\000\260\103'; zeros 11; printf '\002'
+  zeros 220; printf 'n+1\000\000\000\000\000'; printf "$f1$f2$f1$f2$f2$f1$f1$f1"; } >volume/plain
+gzip -n -c volume/plain >volume/packed
+printf '\223NUMPY\001\000\166\000%-117s\n'"$d1$d2$d1$d2$d2$d1$d1$d1" "{'descr': '<f8', 'fortran_order': True, 'shape': (2, 2, 2), }" >volume/npy
 
 plate='"size": [1, 1.5], "cells": [4, 4], "poisson": 0.3'
 point='"load": {"law": "point", "force": 2, "at": [0.5, 0.75]}'

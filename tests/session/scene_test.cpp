@@ -319,11 +319,11 @@ TEST(Scene, EveryKeyForReadingAFileIsRead)
     static_cast<void>(paintedScan(folder));
     const auto file = folder.write("s.json", R"({"cloud": "scan.ply", "length_unit": "mm",
         "stiffness_property": "quality", "stiffness_unit": "N_m", "stiffness_range": [1e-3, 0.1], "log_range": true,
-        "columns": "x,y,z", "drop_invalid": true, "place": ["1mm", 0, 0]})");
+        "columns": "x,y,z", "drop_invalid": true, "scatter": 0.002, "place": ["1mm", 0, 0]})");
     EXPECT_TRUE(says(refusalOf([&] { static_cast<void>(readScene(file)); }), {"key \"place\""}));
     static_cast<void>(folder.write("t.json", R"({"cloud": "scan.ply", "length_unit": "mm",
         "stiffness_property": "quality", "stiffness_unit": "N_m", "stiffness_range": [1e-3, 0.1], "log_range": true,
-        "columns": "x,y,z", "drop_invalid": true})"));
+        "columns": "x,y,z", "drop_invalid": true, "scatter": 0.002})"));
     const Scene scene = readScene(folder / "t.json");
 
     EXPECT_EQ(scene.reading.lengthUnit, "mm");
@@ -333,6 +333,7 @@ TEST(Scene, EveryKeyForReadingAFileIsRead)
     EXPECT_EQ(scene.reading.range->to, 0.1);
     EXPECT_EQ(scene.reading.range->scale, RangeScale::logarithmic);
     EXPECT_EQ(scene.reading.columns, "x,y,z");
+    EXPECT_EQ(scene.scatterDistance, 2e-3);
     EXPECT_TRUE(scene.reading.dropInvalid);
     EXPECT_FALSE(scene.place);
     EXPECT_EQ(sceneJson(parseScene(sceneJson(scene), "again", "/elsewhere")), sceneJson(scene));
@@ -340,6 +341,7 @@ TEST(Scene, EveryKeyForReadingAFileIsRead)
     EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(loadCloud(scene)); }), {"columns are for text files"}));
     Scene binary = scene;
     binary.reading.columns.clear();
+    binary.scatter = Scatter::off; // the points have no faces
     const PointCloud cloud = loadCloud(binary).cloud;
     EXPECT_EQ(cloud.kind(), StiffnessKind::rigidity);
     EXPECT_NEAR(cloud.bounds().high.x, 9e-3, 1e-12);
@@ -369,7 +371,7 @@ TEST(Scene, AStiffnessThatContradictsTheFileIsRefusedUnderItsOwnName)
     EXPECT_TRUE(says(read({{"stiffness_property", "qualty"}}), {"scan.ply", "qualty"}));
     EXPECT_TRUE(says(read({{"uniform", "nan"}}), {"--uniform", "finite"}));
     for (const char* key : {"stiffness_property", "stiffness_unit", "stiffness_range", "uniform", "columns",
-                            "drop_invalid", "length_unit"})
+                            "drop_invalid", "scatter", "length_unit"})
         EXPECT_TRUE(says(refusal("\"" + std::string(key) + "\": \"x\""),
                          {"key \"" + std::string(key) + "\": expected a file as the cloud, found sample:skin"}));
 }

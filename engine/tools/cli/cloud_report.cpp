@@ -73,8 +73,9 @@ std::vector<std::string> cloudWarnings(const Scene& scene, const PointCloud& clo
 
     constexpr double kSame  = 1e-6; // relative: no hand feels a smaller difference [1]
     const Bounds&    bounds = cloud.bounds();
-    const SpatialLaw law    = parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume);
-    const Extremes   found  = extremesOf(cloud.stiffness());
+    const SpatialLaw law =
+        parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume, LawFiles::left);
+    const Extremes found = extremesOf(cloud.stiffness());
     if (law.from != law.to && found.most - found.least <= kSame * found.most)
         said.push_back("the law \"" + scene.stiffness +
                        "\" gives every point the same stiffness: its coordinates are metres, and the cloud's middle is "

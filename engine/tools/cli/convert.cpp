@@ -6,6 +6,7 @@
 
 #include "engine/cloud/cloud_format.h"
 #include "engine/core/contract.h"
+#include "engine/session/scene_mesh.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/named_option.h"
@@ -38,7 +39,7 @@ void convert(const ConvertOptions& options)
 {
     const CloudEncoding encoding = optionNamed<CloudEncoding>("--encoding", options.encoding);
     const auto&         target   = formatToWrite(options.target);
-    const Scene         scene    = options.source.load();
+    const Scene         scene    = withPointsOfFile(options.source.load());
     refuseSourceAsTarget("TARGET", scene.cloud, options.target);
     const LoadedCloud  loaded = options.source.loadCloud(scene);
     const bool         faces  = target.holdsFaces;

@@ -7,6 +7,7 @@
 #include "engine/cloud/neighbour_index.h"
 #include "engine/cloud/samples.h"
 #include "engine/core/quantity.h"
+#include "engine/session/scene_mesh.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/scene_source.h"
@@ -38,6 +39,14 @@ std::string sizeText(const Bounds& bounds)
     return text;
 }
 
+/// Returns a number with two digits that count, because it is estimated: "14000".
+std::string roundCount(std::size_t count)
+{
+    std::size_t unit = 1;
+    while (count / unit >= 100) unit *= 10;
+    return std::to_string((count + unit / 2) / unit * unit);
+}
+
 /// "1200 triangles of 700 faces (2 left out: ...)"
 std::string facesText(const LoadedCloud& loaded)
 {
@@ -49,13 +58,36 @@ std::string facesText(const LoadedCloud& loaded)
     return text;
 }
 
+/// "8 vertices, 49 mm apart, ..."
+std::string scatterText(const LoadedCloud& loaded, const ScatterPlan& plan)
+{
+    return std::to_string(loaded.cloud.size()) + " vertices, " + formatQuantity(plan.spacing, "m") +
+           " apart, with edges up to " + formatQuantity(plan.longestEdge, "m") + ": a fingertip of " +
+           formatQuantity(plan.fingertip, "m") + " touches " + std::to_string(loaded.faces.size()) +
+           " triangles through about " + roundCount(plan.points) + " points at least " +
+           formatQuantity(plan.distance, "m") + " apart, scattered over them";
+}
+
+nlohmann::json scatterJson(const ScatterPlan& plan)
+{
+    return {{"vertex_spacing", plan.spacing},
+            {"longest_edge", plan.longestEdge},
+            {"fingertip", plan.fingertip},
+            {"distance", plan.distance},
+            {"points_about", plan.points}};
+}
+
 void printInfo(const InfoOptions& options)
 {
-    const Scene          scene  = options.source.load();
+    const Scene whole           = options.source.load();
+    Scene       scene           = whole;
+    scene.scatter               = Scatter::off; // the file is shown, and what would become of it
     const LoadedCloud    loaded = options.source.loadCloud(scene);
+    const auto           plan   = scatterPlan(whole, loaded);
     const NeighbourIndex index(loaded.cloud.positions());
     nlohmann::json       report = cloudJson(options.source.name, loaded.cloud, loaded.faces, loaded.report);
     report["point_spacing"]     = index.spacing();
+    report["scatter"]           = plan ? scatterJson(*plan) : nlohmann::json();
 
     const std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
     report["warnings"]                      = warnings;
@@ -77,6 +109,7 @@ void printInfo(const InfoOptions& options)
               << " exact duplicates merged\n  stiffness   " << formatQuantity(report["stiffness_min"], unit) << " to "
               << formatQuantity(report["stiffness_max"], unit) << ": " << loaded.report.stiffnessSource << "\n";
     if (loaded.report.faces > 0) std::cout << "  faces       " << facesText(loaded) << "\n";
+    if (plan) std::cout << "  scattered   " << scatterText(loaded, *plan) << "\n";
     if (!loaded.normals.empty()) std::cout << "  normals     in the file\n";
     if (!properties.empty()) std::cout << "  properties  " << properties << "\n";
     for (const std::string& line : warnings) std::cout << "  warning     " << line << "\n";

@@ -7,7 +7,7 @@
 #include "engine/cloud/ply_repaint.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
-#include "engine/session/scene.h"
+#include "engine/session/scene_mesh.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/scene_source.h"
@@ -28,8 +28,8 @@ struct PaintOptions {
 /// The painted cloud, and how its file was read.
 struct Canvas {
     explicit Canvas(const SceneSource& source)
-        : scene(source.load()), loaded(source.loadCloud(scene)), file(isSample(scene) ? "" : scene.cloud),
-          warnings(cloudWarnings(scene, loaded.cloud, loaded.report))
+        : scene(withPointsOfFile(source.load())), loaded(source.loadCloud(scene)),
+          file(isSample(scene) ? "" : scene.cloud), warnings(cloudWarnings(scene, loaded.cloud, loaded.report))
     {
         if (!scene.stiffness.empty() && source.name.ends_with(".json"))
             warnings.emplace_back(
@@ -48,11 +48,17 @@ bool isPly(const std::string& file)
     return !file.empty() && formatToRead(file).format == CloudFormat::ply;
 }
 
+/// Returns true if the new file is the original with another stiffness.
+bool keepsOriginal(const PaintOptions& o, const Canvas& canvas)
+{
+    return isPly(canvas.file) && isPly(o.out) && canvas.loaded.report.scatteredPoints == 0;
+}
+
 /// Writes the source's file with the new stiffness, or else a new file.
 /// \return how the stiffness is found in it
 RepaintedPly write(const PaintOptions& o, const Canvas& canvas, const PointCloud& painted)
 {
-    if (isPly(canvas.file) && isPly(o.out)) return repaintPly(canvas.file, canvas.scene.reading, painted, o.out);
+    if (keepsOriginal(o, canvas)) return repaintPly(canvas.file, canvas.scene.reading, painted, o.out);
     writeCloud(o.out, painted, {}, {CloudEncoding::binaryLittleEndian, canvas.loaded.faces});
     return {painted.kind() == StiffnessKind::modulus ? "stiffness" : "flexural_rigidity", true};
 }
@@ -99,7 +105,7 @@ void paint(const PaintOptions& o)
     std::size_t        changed = 0;
     for (std::size_t i = 0; i < cloud.size(); ++i) changed += painted.stiffness()[i] != cloud.stiffness()[i] ? 1 : 0;
     if (changed == 0) canvas.warnings.emplace_back("no stroke changed anything");
-    const bool kept = isPly(canvas.file) && isPly(o.out); // what the original had
+    const bool kept = keepsOriginal(o, canvas);
     if (!written.appended && !canvas.scene.reading.stiffnessProperty.empty())
         canvas.warnings.push_back("the stiffness keeps its property: read it with --stiffness-property " +
                                   written.property + ", and without --stiffness-range");

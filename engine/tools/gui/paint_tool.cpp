@@ -60,7 +60,8 @@ void PaintTool::save(const Stage& stage)
     try {
         const std::string           cloud = stage.scene().cloud;
         const std::filesystem::path source(cloud);
-        const bool        isPly    = !cloud.starts_with("sample:") && formatToRead(source).format == CloudFormat::ply;
+        const bool isPly = !cloud.starts_with("sample:") && formatToRead(source).format == CloudFormat::ply &&
+                           stage.report().scatteredPoints == 0;
         const std::string stem     = cloud.starts_with("sample:") ? cloud.substr(7) : source.stem().string();
         const auto        target   = unusedPath(stem + "-painted", ".ply");
         std::string       property = "stiffness";

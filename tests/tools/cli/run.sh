@@ -354,8 +354,8 @@ done
 bad 'missing file' 'No such file' info nowhere.ply
 mkdir folder.ply
 bad 'a folder' 'folder' info folder.ply
-cp plate.json plate.stl
-bad 'unknown extension' '.ply' info plate.stl
+cp plate.json plate.step
+bad 'unknown extension' '.ply' info plate.step
 bad 'a plate is no scene' 'unknown key "load"' info plate.json
 printf 'ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\nabc' >huge.ply
 bad 'a header that lies' 'huge.ply' info huge.ply
@@ -601,6 +601,20 @@ good 'which keeps faces and normals' info surface.ply
 holds '2 triangles of 2 faces'
 holds 'normals     in the file'
 bad 'a format that is only read' 'surface2.vtk: expected a name that ends with' convert surface.ply surface2.vtk
+good 'a mesh of far vertices' info mesh.ply --scatter on
+holds 'a fingertip of 4 mm touches 5 triangles through about'
+good 'a mesh of far vertices, for scripts' info mesh.ply --json --scatter 0.2mm
+holds '"distance": 0.0002'
+good 'a mesh as points' convert mesh.ply points.ply --uniform 1kPa --scatter 0.1mm --json
+holds '"faces": 0'
+bad 'points on what has no faces' '--scatter: expected a cloud with faces' info skin.ply --scatter on
+bad 'a distance that is none' '--scatter: expected auto, on, off, or a distance' info mesh.ply --scatter far
+printf 'v 0 0 0\nv 50 0 0\nv 50 50 0\nv 0 50 0\nf 1 2 3 4\n' >side.obj
+good 'a side of four corners' info side.obj --length-unit mm
+holds '4 vertices, 25 mm apart'
+good 'is touched in its middle' touch side.obj --length-unit mm --place 25,25,0 --from 0,0,1 --window 30 --cells 32 --json
+good 'and keeps its corners' convert side.obj side.ply --length-unit mm
+holds 'side.ply: 4 points, 2 triangles'
 sed 's/^3 3 4 7/3 3 4 9/' mesh.ply >hole.ply
 bad 'a face of a point that is not there' 'hole.ply: line 25: face 2: expected the number of a point from 0 to below 9, found 9' info hole.ply
 

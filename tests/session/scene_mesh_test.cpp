@@ -1,0 +1,210 @@
+#include "engine/session/scene_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "engine/contact/proxy.h"
+#include "engine/session/deformation.h"
+#include "engine/session/scene_keys.h"
+#include "engine/session/scripted_hand.h"
+#include "engine/session/virtual_session.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palp {
+namespace {
+
+/// A cube of 8 corners and 6 quadrangles, 80 mm wide; the stiffness grows tenfold from its low to its high x.
+const char* const kCube = R"(ply
+format ascii 1.0
+comment length_unit mm
+element vertex 8
+property float x
+property float y
+property float z
+property float stiffness
+element face 6
+property list uchar int vertex_indices
+end_header
+-40 -40 -40 1e5
+40 -40 -40 1e6
+40 40 -40 1e6
+-40 40 -40 1e5
+-40 -40 40 1e5
+40 -40 40 1e6
+40 40 40 1e6
+-40 40 40 1e5
+4 0 3 2 1
+4 4 5 6 7
+4 0 1 5 4
+4 1 2 6 5
+4 2 3 7 6
+4 3 0 4 7
+)";
+
+/// A grid of cells in a plane; one more vertex far out makes an edge that is much longer.
+std::string gridPly(int cells, double spacing, bool withLongEdge)
+{
+    const int   n    = cells + 1;
+    std::string text = "ply\nformat ascii 1.0\ncomment length_unit m\nelement vertex " +
+                       std::to_string(n * n + (withLongEdge ? 1 : 0)) +
+                       "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
+                       std::to_string(cells * cells + (withLongEdge ? 1 : 0)) +
+                       "\nproperty list uchar int vertex_indices\nend_header\n";
+    for (int i = 0; i < n * n; ++i)
+        text += std::to_string(i % n * spacing) + " " + std::to_string(i / n * spacing) + " 0\n";
+    if (withLongEdge) text += std::to_string(-20 * spacing) + " 0 0\n";
+    for (int y = 0; y < cells; ++y)
+        for (int x = 0; x < cells; ++x) {
+            const int c = y * n + x;
+            text += "4 " + std::to_string(c) + " " + std::to_string(c + 1) + " " + std::to_string(c + n + 1) + " " +
+                    std::to_string(c + n) + "\n";
+        }
+    if (withLongEdge) text += "3 0 " + std::to_string(n) + " " + std::to_string(n * n) + "\n";
+    return text;
+}
+
+class SceneMesh : public testing::Test {
+protected:
+    Scene sceneOf(const std::string& text, std::map<std::string, std::string, std::less<>> flags = {}) const
+    {
+        flags.try_emplace("cloud", folder_.write("mesh.ply", text).string());
+        flags.try_emplace("footprint_radius", "4mm");
+        flags.try_emplace("solver", "host");
+        flags.try_emplace("cells", "32");
+        return parseScene("{}", "a test", ".", {.flags = std::move(flags)});
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(SceneMesh, AHandThatPressesTheMiddleOfACubesSideMeetsAForceAndDoesNotPassThrough)
+{
+    const Scene      scene  = sceneOf(kCube, {{"place", "0,0,40mm"}, {"from", "0,0,1"}});
+    const SoftObject object = loadObject(scene).object;
+    const HandPath   hand   = makeHand({.motion = HandMotion::press, .depth = 4e-3, .height = 2e-3, .duration = 0.5},
+                                       {{0, 0, 40e-3}, {0, 0, 1}});
+    Deformation      deformation(object, scene);
+    ScriptedHand     device(hand);
+    double           most = 0, deepest = 1, lowest = 1;
+    runVirtual({scene, object, deformation.solver(), device, {}}, 0.5, [&](const TickRecord& tick) {
+        most    = std::max(most, double(tick.force.z));
+        deepest = std::min(deepest, double(tick.hip.z));
+        lowest  = std::min(lowest, double(tick.proxy.z));
+    });
+
+    EXPECT_LT(deepest, 37e-3); // the hand has pressed
+    EXPECT_GT(most, 0.1);      // [N]
+    EXPECT_GT(lowest, 39.9e-3) << "the proxy stays on the side";
+}
+
+TEST_F(SceneMesh, TheHandPassesBetweenTheCornersWithoutThePoints)
+{
+    const SoftObject object = loadObject(sceneOf(kCube, {{"scatter", "off"}})).object;
+    ASSERT_EQ(object.size(), 8u);
+    ASSERT_EQ(object.faces().size(), 12u);
+    Proxy proxy(object, {});
+    for (int tick = 0; tick <= 400; ++tick) proxy.step({0, 0, 60e-3 - 1e-4 * tick});
+
+    EXPECT_FALSE(proxy.state().touching); // what the points are there for
+}
+
+TEST_F(SceneMesh, PointsAreAFifthOfAFingertipApartWithTheStiffnessBetweenTheCorners)
+{
+    const LoadedCloud loaded = loadCloud(sceneOf(kCube));
+
+    EXPECT_EQ(loaded.report.points, 8u);
+    EXPECT_EQ(loaded.report.scatteredPoints, loaded.cloud.size());
+    EXPECT_NEAR(loaded.report.scatterDistance, 0.8e-3, 1e-15);
+    EXPECT_TRUE(loaded.faces.empty());
+    ASSERT_EQ(loaded.normals.size(), loaded.cloud.size());
+    const SoftObject object(loaded.cloud);
+    EXPECT_LE(object.spacing(), 1e-3); // a quarter of the fingertip
+    for (std::size_t n = 0; n < loaded.cloud.size(); ++n) {
+        const glm::dvec3 p = loaded.cloud.positions()[n];
+        ASSERT_NEAR(loaded.cloud.stiffness()[n], 1e5 * std::pow(10, (p.x + 40e-3) / 80e-3), 1); // 1e-6 relative: floats
+        ASSERT_GT(glm::dot(glm::dvec3(loaded.normals[n]), p), 39e-3);                           // outwards
+    }
+}
+
+TEST_F(SceneMesh, AScanAsDenseAsTheFingertipNeedsStaysTheSameToTheBit)
+{
+    const std::string text = gridPly(40, 0.9e-3, false);
+    const LoadedCloud kept = loadCloud(sceneOf(text)), off = loadCloud(sceneOf(text, {{"scatter", "off"}}));
+
+    EXPECT_EQ(kept.report.scatteredPoints, 0u);
+    EXPECT_EQ(kept.faces, off.faces);
+    EXPECT_EQ(fingerprint(kept.cloud), fingerprint(off.cloud));
+    EXPECT_FALSE(scatterPlan(sceneOf(text), kept));
+}
+
+TEST_F(SceneMesh, ItIsScatteredIfTheFingertipIsSmallerOrAnEdgeMuchLonger)
+{
+    const auto scattered = [&](const Scene& scene) { return loadCloud(scene).report.scatteredPoints > 0; };
+    EXPECT_TRUE(scattered(sceneOf(gridPly(40, 0.9e-3, false), {{"footprint_radius", "3mm"}})));
+    EXPECT_TRUE(scattered(sceneOf(gridPly(40, 0.9e-3, true))));
+    EXPECT_TRUE(scattered(sceneOf(gridPly(40, 0.9e-3, false), {{"scatter", "on"}})));
+}
+
+TEST_F(SceneMesh, ADistanceIsTakenAndComesBackFromARecording)
+{
+    const Scene scene = sceneOf(kCube, {{"scatter", "3 mm"}});
+    EXPECT_EQ(loadCloud(scene).report.scatterDistance, 3e-3);
+    for (const char* said : {"auto", "on", "off", "0.002"}) {
+        const Scene before = sceneOf(kCube, {{"scatter", said}});
+        const Scene after  = parseScene(sceneJson(before), "again", ".");
+        EXPECT_EQ(after.scatter, before.scatter) << said;
+        EXPECT_EQ(after.scatterDistance, before.scatterDistance) << said;
+    }
+    for (const char* wrong : {"always", "0", "-1mm", "2 m", "nan", "inf"})
+        EXPECT_TRUE(holds(refusalOf([&] {
+                              static_cast<void>(sceneOf(kCube, {{"scatter", wrong}}));
+                          }),
+                          {"--scatter"}))
+            << wrong;
+}
+
+TEST_F(SceneMesh, PointsWithoutFacesCannotBeScattered)
+{
+    const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
+    const Scene       scene  = parseScene(
+               "{}", "a test", ".", {.flags = {{"cloud", folder_.write("points.xyz", points).string()}, {"scatter", "on"}}});
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(loadCloud(scene)); }),
+                      {"--scatter: expected a cloud with faces", "points.xyz"}));
+}
+
+TEST_F(SceneMesh, TheLawCountsFromTheCornersOfTheFile)
+{
+    const LoadedCloud loaded = loadCloud(sceneOf(kCube, {{"stiffness", "linear:from=1e5,to=9e5,axis=x"}}));
+    for (std::size_t n = 0; n < loaded.cloud.size(); ++n) {
+        const double x = loaded.cloud.positions()[n].x;
+        ASSERT_NEAR(loaded.cloud.stiffness()[n], 1e5 + 8e5 * (x + 40e-3) / 80e-3, 1);
+    }
+}
+
+TEST_F(SceneMesh, TheFingertipDecidesTheCloudOfAMeshOnly)
+{
+    const auto at = [&](const char* radius, const char* scatter) {
+        return sceneOf(kCube, {{"footprint_radius", radius}, {"scatter", scatter}});
+    };
+    EXPECT_FALSE(haveSameCloud(at("4mm", "auto"), at("5mm", "auto")));
+    EXPECT_TRUE(haveSameCloud(at("4mm", "off"), at("5mm", "off")));
+    EXPECT_TRUE(haveSameCloud(at("4mm", "1mm"), at("5mm", "1mm")));
+    const auto sample = [](const char* radius) {
+        return parseScene(R"({"cloud": "sample:skin"})", "a test", ".", {.flags = {{"footprint_radius", radius}}});
+    };
+    EXPECT_TRUE(haveSameCloud(sample("4mm"), sample("3mm")));
+}
+
+TEST_F(SceneMesh, WhatConvertsAFileKeepsItsPointsUnlessAskedToScatter)
+{
+    EXPECT_EQ(loadCloud(withPointsOfFile(sceneOf(kCube))).cloud.size(), 8u);
+    EXPECT_GT(loadCloud(withPointsOfFile(sceneOf(kCube, {{"scatter", "auto"}}))).cloud.size(), 8u);
+}
+
+} // namespace
+} // namespace palp
