@@ -127,9 +127,10 @@ glm::dvec3 ontoLoaded(std::span<const SurfacePlane> planes, const RestPoint& res
 
 SurfaceTracker::VisiblePoints SurfaceTracker::findVisible(const Surfaces& surfaces, const glm::dvec3& place)
 {
+    // Points that a fit of a known surface may still weigh are none of another one.
     const auto isVisible = [&](const NearPoint& point) {
         const bool   sparse = point.spacing > kSparser * surfaces.spacing;
-        const double hidden = kFullHeight * (sparse ? point.spacing : surfaces.spacing);
+        const double hidden = kNoHeight * (sparse ? point.spacing : surfaces.spacing);
         for (const SurfacePlane& plane : surfaces.all())
             if (plane.height(point.position) <= hidden) return false;
         return true;
@@ -240,8 +241,8 @@ bool SurfaceTracker::discover(Surfaces& surfaces, const glm::dvec3& place, const
     return true;
 }
 
-/// Drops the later of two surfaces that contradict each other. Beside a step in density the noise of sparse points can
-/// look like a ceiling; one that has come down to a known floor is none.
+/// Drops the later of two surfaces that contradict each other. Noise can look like a ceiling, and points would then be
+/// split between it and the floor; one that has come down to a known floor is none.
 void SurfaceTracker::dropContradicting(Surfaces& surfaces) noexcept
 {
     for (int j = surfaces.count - 1; j > 0; --j)
@@ -276,7 +277,7 @@ double SurfaceTracker::refresh(Surfaces& surfaces, const glm::dvec3& place) noex
         spacing += found->spacing;
         ++fitted;
     }
-    if (points_.mixed()) dropContradicting(surfaces);
+    dropContradicting(surfaces);
     constexpr double kFollow = 0.5; // [1] share of the way per fit: a step in density must not jump
     if (fitted > 0) surfaces.spacing += kFollow * (spacing / fitted - surfaces.spacing);
     return furthest;
