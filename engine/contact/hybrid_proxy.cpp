@@ -48,7 +48,7 @@ glm::dvec3 capped(const glm::dvec3& step, double longest) noexcept
 class HybridProxy final : public Proxy::Impl {
 public:
     HybridProxy(const SoftObject& object, const ProxySettings& settings)
-        : points_(object), tracker_(points_),
+        : points_(ContactPoints(object)), tracker_(points_),
           travel_(points_, tracker_), friction_{settings.staticFriction, settings.dynamicFriction, false}
     {
     }

@@ -30,7 +30,7 @@ glm::dvec3 capped(const glm::dvec3& step, double longest) noexcept
 class SphereProxy final : public Proxy::Impl {
 public:
     SphereProxy(const SoftObject& object, const ProxySettings& settings)
-        : points_(object), friction_{settings.staticFriction, settings.dynamicFriction, false},
+        : points_(ContactPoints(object)), friction_{settings.staticFriction, settings.dynamicFriction, false},
           regulated_(settings.form == ProxyForm::sphere)
     {
     }
