@@ -42,7 +42,7 @@ constexpr double kMostShare   = 3;    // [1]
 class HybridProxy final : public Proxy::Impl {
 public:
     HybridProxy(const SoftObject& object, const ProxySettings& settings)
-        : points_(object), tracker_(points_),
+        : points_(ContactPoints(object)), tracker_(points_),
           travel_(points_, tracker_), friction_{settings.staticFriction, settings.dynamicFriction, false}
     {
     }

@@ -99,13 +99,16 @@ inline Points ball(Layout layout, double radius, double cap, std::uint64_t seed)
 /// An object and a proxy, spoken to in spacings.
 class Touch {
 public:
-    explicit Touch(const Points& points, const ProxySettings& settings = {}, const glm::dvec3& shift = glm::dvec3(0))
+    /// \param normals  of the points, outward; none: not known
+    explicit Touch(const Points& points, const ProxySettings& settings = {}, const glm::dvec3& shift = glm::dvec3(0),
+                   const std::vector<glm::vec3>& normals = {})
         : shift_(shift)
     {
         Points positions = points; // [m]
         for (glm::dvec3& p : positions) p = kSpacing * (p + shift);
         const std::vector<double> stiffness(positions.size(), 1e6);
-        object_ = std::make_unique<SoftObject>(PointCloud(std::move(positions), stiffness, StiffnessKind::modulus));
+        PointCloud                cloud(std::move(positions), stiffness, StiffnessKind::modulus);
+        object_ = std::make_unique<SoftObject>(std::move(cloud), Material{}, std::vector<Triangle>{}, normals);
         proxy_  = std::make_unique<Proxy>(*object_, settings);
     }
 

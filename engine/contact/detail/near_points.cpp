@@ -14,16 +14,10 @@ constexpr double kReserve = 1.4;
 /// A ball kept from a place with a hole is given up when a ball this many times smaller is asked for [1].
 constexpr double kTooLarge = 3;
 
-std::span<const double> spacingsOf(const SoftObject& object)
-{
-    object.survey().expectSurface();
-    return object.survey().spacings();
-}
-
 } // namespace
 
-NearPoints::NearPoints(const SoftObject& object)
-    : spacing_(object.spacing()), tree_(object.positions(), spacingsOf(object))
+NearPoints::NearPoints(const ContactPoints& points)
+    : spacing_(points.usualSpacing()), tree_(points.positions(), points.spacings(), points.marks())
 {
     for (Ball& ball : balls_) ball.points.reserve(kMost);
 }
@@ -41,7 +35,7 @@ std::span<const NearPoint> NearPoints::cover(const glm::dvec3& centre, double ra
         full = false;
         tree_.inside(ball.centre, ball.radius, level, [&](const NearPoint& point) {
             full = ball.points.size() == kMost;
-            if (!full) ball.points.push_back({point.position, std::max(point.spacing, tree_.cell(level))});
+            if (!full) ball.points.push_back({point.position, std::max(point.spacing, tree_.cell(level)), point.mark});
             return !full;
         });
     }

@@ -6,7 +6,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "engine/cloud/soft_object.h"
+#include "engine/contact/detail/contact_points.h"
 #include "engine/contact/detail/point_tree.h"
 
 namespace palp {
@@ -18,8 +18,8 @@ namespace palp {
 /// \thread one; allocates nothing after construction
 class NearPoints {
 public:
-    /// \param object  outlives this
-    explicit NearPoints(const SoftObject& object);
+    /// \param points  copied
+    explicit NearPoints(const ContactPoints& points);
 
     /// Calls visit(const NearPoint&, squared distance [m^2]) for the points within `radius` [m] of `centre` [m], as a
     /// search with a spacing of `scale` [m] sees them: where points are many times closer, some stand for the others

@@ -12,18 +12,20 @@ namespace {
 // an error of 0.04 in height and of 2 degrees in the normal.
 constexpr double      kLeastRadius  = 3.75;
 constexpr double      kMostRadius   = 8;
-constexpr std::size_t kEnoughPoints = 12;   // the radius is kEnoughReach times the distance of this one
-constexpr double      kEnoughReach  = 1.9;  // [1]
-constexpr std::size_t kFewestPoints = 6;    // four unknowns, and two to spare
-constexpr double      kFullSupport  = 0.34; // [1] centroid's offset over the radius; random clouds have 0.08 (sd), ...
-constexpr double      kNoSupport    = 0.50; // ... a straight border 0.29
-constexpr double      kNoiseCurve   = 0.06; // [1/spacing] K below it is shrunk away
-constexpr double      kMostCurve    = 0.15; // [1/spacing]
-constexpr double      kSlopeRidge   = 0.01; // [spacing^2] added to the variances of a and b
-constexpr double      kCurveRidge   = 0.05; // [spacing^4] added to the variance of q
-constexpr double      kBetween      = 0.2;  // points in a groove nearer to one side by less belong to neither
-constexpr double      kCrowded      = 2;    // [1] points this many times closer than the spacing count less
-constexpr double      kSteepest     = 1;    // [1] slope against the given plane
+constexpr std::size_t kEnoughPoints = 12;    // the radius is kEnoughReach times the distance of this one
+constexpr double      kEnoughReach  = 1.9;   // [1]
+constexpr std::size_t kFewestPoints = 6;     // four unknowns, and two to spare
+constexpr double      kFullSupport  = 0.34;  // [1] centroid's offset over the radius; random clouds have 0.08 (sd), ...
+constexpr double      kNoSupport    = 0.50;  // ... a straight border 0.29
+constexpr double      kNoiseCurve   = 0.06;  // [1/spacing] K below it is shrunk away
+constexpr double      kSmoothCurve  = 0.009; // [1/spacing] the same where all points are smoothed
+constexpr double      kMostCurve    = 0.15;  // [1/spacing]
+constexpr double      kSlopeRidge   = 0.01;  // [spacing^2] added to the variances of a and b
+constexpr double      kCurveRidge   = 0.05;  // [spacing^4] added to the variance of q
+constexpr double      kBetween      = 0.2;   // points in a groove nearer to one side by less belong to neither
+constexpr double      kCrowded      = 2;     // [1] points this many times closer than the spacing count less
+constexpr double      kFacesAway    = 0.2; // [1] cosine to the plane's normal beyond which a point is of the other side
+constexpr double      kSteepest     = 1;   // [1] slope against the given plane
 
 /// Returns the weight of a height: 1 up to kFullHeight, a smoothstep down to 0 at kNoHeight.
 double heightWeight(double height) noexcept
@@ -43,10 +45,10 @@ glm::dvec3 across(const glm::dvec3& n) noexcept
 /// Weighted first and second moments about the mean, of a, b, q and h.
 struct Moments {
     double weight = 0;
-    double a = 0, b = 0, q = 0, h = 0, spacing = 0; // means
+    double a = 0, b = 0, q = 0, h = 0, spacing = 0, smooth = 0; // means
     double aa = 0, ab = 0, aq = 0, bb = 0, bq = 0, qq = 0, ah = 0, bh = 0, qh = 0;
 
-    void addFirst(double w, double ai, double bi, double hi, double si) noexcept
+    void addFirst(double w, double ai, double bi, double hi, double si, double smoothi) noexcept
     {
         weight += w;
         a += w * ai;
@@ -54,10 +56,11 @@ struct Moments {
         q += w * (ai * ai + bi * bi);
         h += w * hi;
         spacing += w * si;
+        smooth += w * smoothi;
     }
     void toMeans() noexcept
     {
-        for (double* sum : {&a, &b, &q, &h, &spacing}) *sum /= weight;
+        for (double* sum : {&a, &b, &q, &h, &spacing, &smooth}) *sum /= weight;
     }
     void addSecond(double w, double ai, double bi, double hi) noexcept
     {
@@ -97,7 +100,8 @@ double curvature(const Moments& m, double spacing) noexcept
     const double cb          = (m.aa * m.bq - m.ab * m.aq) / determinant;
     const double k           = (m.qh - ca * m.ah - cb * m.bh) / (m.qq - ca * m.aq - cb * m.bq);
     const double shown       = k * spacing;
-    const double kept        = shown * shown * shown / (shown * shown + kNoiseCurve * kNoiseCurve);
+    const double noise       = kNoiseCurve + m.smooth * (kSmoothCurve - kNoiseCurve);
+    const double kept        = shown * shown * shown / (shown * shown + noise * noise);
     return std::clamp(kept, -kMostCurve, kMostCurve) / spacing;
 }
 
@@ -122,11 +126,13 @@ void PlaneFitter::collect(const Frame& frame, double radius)
         const glm::dvec3 d = point.position - frame.place;
         const double     h = glm::dot(frame.normal, d);
         if (!(std::abs(h) < kNoHeight * frame.spacing)) return;
+        if (frame.side * point.mark.facing.along(frame.normal) < -kFacesAway) return;
         bool own = true;
         for (const SurfacePlane& other : frame.others)
             own = own && (glm::dot(other.normal, frame.normal) >= kSameSurface ||
                           std::abs(other.height(point.position)) >= std::abs(h) + kBetween * frame.spacing);
-        seen_.push_back({glm::dot(frame.u, d), glm::dot(frame.v, d), h, d2, point.spacing, own});
+        seen_.push_back(
+            {glm::dot(frame.u, d), glm::dot(frame.v, d), h, d2, point.spacing, own, double(point.mark.smoothed)});
         owned_ += own;
     });
 }
@@ -151,11 +157,11 @@ double PlaneFitter::collectEnough(const Frame& frame)
 }
 
 std::optional<PlaneFit> PlaneFitter::fit(const glm::dvec3& place, const glm::dvec3& normal, double spacing,
-                                         std::span<const SurfacePlane> others) noexcept
+                                         std::span<const SurfacePlane> others, int side) noexcept
 {
     const glm::dvec3 u = across(normal);
     const glm::dvec3 v = glm::cross(normal, u);
-    const double     r = collectEnough({place, normal, u, v, spacing, others});
+    const double     r = collectEnough({place, normal, u, v, spacing, others, side});
     if (owned_ < kFewestPoints) return {};
 
     Moments    m;
@@ -174,7 +180,7 @@ std::optional<PlaneFit> PlaneFitter::fit(const glm::dvec3& place, const glm::dve
         const double w   = weightOf(s);
         const double own = std::min(s.spacing / spacing, kCrowded);
         all.add(own * own * fall(s) * heightWeight(std::abs(s.h) / spacing), s.a, s.b);
-        if (s.own) m.addFirst(w, s.a, s.b, s.h, s.spacing);
+        if (s.own) m.addFirst(w, s.a, s.b, s.h, s.spacing, s.smooth);
     }
     if (!(m.weight > 0)) return {};
     m.toMeans();
@@ -203,6 +209,7 @@ std::optional<PlaneFit> PlaneFitter::fit(const glm::dvec3& place, const glm::dve
     fit.plane.foot    = place + fit.raised * fit.plane.normal;
     const double off  = all.offset() / r;
     fit.plane.support = 1 - std::clamp((off - kFullSupport) / (kNoSupport - kFullSupport), 0.0, 1.0);
+    fit.plane.side    = side;
     fit.spacing       = m.spacing;
     return fit;
 }

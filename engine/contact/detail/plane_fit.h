@@ -15,6 +15,7 @@ struct SurfacePlane {
     glm::dvec3 normal{0, 0, 1}; ///< [1] unit, towards the hand
     glm::dvec3 foot{};          ///< [m] a point of the surface
     double     support = 0;     ///< [1] 1: points all around; 0: at or beyond a border
+    int        side    = 0;     ///< 1: of points that face along the normal; -1: against it; 0: of any points
 
     /// Returns the height of a place over the plane [m], negative behind it.
     [[nodiscard]] double height(const glm::dvec3& place) const noexcept;
@@ -35,7 +36,7 @@ struct PlaneFit {
 ///
 /// psi falls from 1 to 0 between two heights, so that a second sheet does not count. With s the spacing, K is shrunk to
 /// K (K s)^2 / ((K s)^2 + k0^2) and clamped, and the rest is solved again: curvature that noise could have made counts
-/// as none. The new normal is that of the given plane, tilted by (beta, gamma): its side cannot flip. The radius r
+/// as none; smoothed points have little noise, and k0 is smaller there. The new normal is that of the given plane, tilted by (beta, gamma): its side cannot flip. The radius r
 /// grows in holes. Support falls where the centroid of the points is off centre, as at a border.
 ///
 /// \thread one; allocates nothing after construction
@@ -49,9 +50,10 @@ public:
     /// \param normal   [1] unit; the plane through `place` that the surface is near to
     /// \param spacing  [m] around here
     /// \param others   a point nearer to one of these than to the given plane is omitted
+    /// \param side     of the surface, see SurfacePlane: points known to face the other way are omitted
     /// \return         empty if fewer than six points are near
     [[nodiscard]] std::optional<PlaneFit> fit(const glm::dvec3& place, const glm::dvec3& normal, double spacing,
-                                              std::span<const SurfacePlane> others) noexcept;
+                                              std::span<const SurfacePlane> others, int side = 0) noexcept;
 
 private:
     /// A point near the plane, as seen from the place.
@@ -60,11 +62,13 @@ private:
         double d2      = 0;         ///< [m^2]
         double spacing = 0;         ///< [m]
         bool   own     = true;      ///< of this surface, not of another known one
+        double smooth  = 0;         ///< [1] 1: of a smoothed point
     };
     struct Frame {
         glm::dvec3                    place, normal, u, v;
         double                        spacing;
         std::span<const SurfacePlane> others;
+        int                           side;
     };
 
     void                 collect(const Frame& frame, double radius);

@@ -54,6 +54,7 @@ struct PointTree::Builder {
     PointTree&                  tree;
     std::span<const glm::dvec3> positions;
     std::span<const double>     spacings;
+    std::span<const PointMark>  marks;
     std::vector<std::uint8_t>   shown; ///< level by point
     std::vector<std::uint32_t>  order;
 
@@ -103,8 +104,9 @@ struct PointTree::Builder {
             tree.nodes_[here].first = std::uint32_t(tree.points_.size());
             tree.nodes_[here].count = std::uint16_t(to - from);
             for (std::size_t k = from; k < to; ++k) {
-                tree.points_.push_back({positions[order[k]], spacings[order[k]]});
-                tree.shownUntil_.push_back(shown[order[k]]);
+                const std::uint32_t i = order[k];
+                tree.points_.push_back({positions[i], spacings[i], marks.empty() ? PointMark() : marks[i]});
+                tree.shownUntil_.push_back(shown[i]);
             }
         } else {
             const int  axis   = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -132,13 +134,15 @@ struct PointTree::Builder {
     }
 };
 
-PointTree::PointTree(std::span<const glm::dvec3> positions, std::span<const double> spacings)
+PointTree::PointTree(std::span<const glm::dvec3> positions, std::span<const double> spacings,
+                     std::span<const PointMark> marks)
 {
     PALP_EXPECT(!positions.empty() && positions.size() == spacings.size(), "one spacing per point");
+    PALP_EXPECT(marks.empty() || marks.size() == positions.size(), "one mark per point");
     least_   = *std::min_element(spacings.begin(), spacings.end());
     largest_ = *std::max_element(spacings.begin(), spacings.end());
     PALP_EXPECT(least_ > 0, "a spacing is not positive");
-    Builder builder{*this, positions, spacings, {}, std::vector<std::uint32_t>(positions.size())};
+    Builder builder{*this, positions, spacings, marks, {}, std::vector<std::uint32_t>(positions.size())};
     builder.setLevels();
     std::iota(builder.order.begin(), builder.order.end(), 0U);
     points_.reserve(positions.size());

@@ -9,10 +9,37 @@
 
 namespace palp {
 
-/// A point of the cloud and the spacing around it.
+/// Which way a point faces, small enough to be kept with every point.
+struct Facing {
+    std::int16_t x = 0, y = 0, z = 0; ///< [1/32767] unit normal that points outward; 0: no side is known
+
+    Facing() = default;
+    explicit Facing(const glm::dvec3& outward) noexcept
+        : x(std::int16_t(kUnit * outward.x)), y(std::int16_t(kUnit * outward.y)), z(std::int16_t(kUnit * outward.z))
+    {
+    }
+    [[nodiscard]] glm::dvec3 normal() const noexcept { return glm::dvec3(x, y, z) / kUnit; } ///< [1]
+    [[nodiscard]] bool       known() const noexcept { return x != 0 || y != 0 || z != 0; }
+    [[nodiscard]] double     along(const glm::dvec3& direction) const noexcept
+    {
+        return (x * direction.x + y * direction.y + z * direction.z) / kUnit;
+    }
+
+private:
+    static constexpr double kUnit = 32767;
+};
+
+/// What else is known of a point.
+struct PointMark {
+    Facing        facing;       ///< its side
+    std::uint16_t smoothed = 0; ///< 1: it stands for noisy points and has little noise itself
+};
+
+/// A point of the surface that is touched.
 struct NearPoint {
     glm::dvec3 position{};  ///< [m]
-    double     spacing = 0; ///< [m]
+    double     spacing = 0; ///< [m] around it
+    PointMark  mark{};
 };
 
 /// Radius of a point's own ball in its spacings [1]: the largest empty circle in a random cloud of 10^4 points has a
@@ -34,7 +61,9 @@ class PointTree {
 public:
     /// \param positions  [m] copied
     /// \param spacings   [m] around each, > 0
-    PointTree(std::span<const glm::dvec3> positions, std::span<const double> spacings);
+    /// \param marks      of each; empty: none is marked
+    PointTree(std::span<const glm::dvec3> positions, std::span<const double> spacings,
+              std::span<const PointMark> marks = {});
 
     /// Returns the level for a search with the spacing `scale` [m]; 0, all points, where the density hardly varies.
     [[nodiscard]] int    level(double scale) const noexcept;

@@ -24,6 +24,9 @@ constexpr double kFromBelow = -0.5;
 /// Least support of a surface seen from afar [1]: points all around. With less it lies past a border or an edge.
 constexpr double kSureSupport = 0.9;
 
+/// Support that a surface of points of both sides has more where one of a single side ends wrongly [1].
+constexpr double kClearlyMore = 0.1;
+
 /// Planes whose Gram matrix has a smaller determinant are too nearly parallel to define an edge or a corner [1].
 constexpr double kParallel = 1e-6;
 
@@ -127,29 +130,36 @@ glm::dvec3 ontoLoaded(std::span<const SurfacePlane> planes, const RestPoint& res
 
 SurfaceTracker::VisiblePoints SurfaceTracker::findVisible(const Surfaces& surfaces, const glm::dvec3& place)
 {
+    // Points that a fit of a known surface may still weigh are none of another one.
     const auto isVisible = [&](const NearPoint& point) {
         const bool   sparse = point.spacing > kSparser * surfaces.spacing;
-        const double hidden = kFullHeight * (sparse ? point.spacing : surfaces.spacing);
+        const double hidden = kNoHeight * (sparse ? point.spacing : surfaces.spacing);
         for (const SurfacePlane& plane : surfaces.all())
             if (plane.height(point.position) <= hidden) return false;
         return true;
     };
+    const auto    faces = [&](const NearPoint& point) { return point.mark.facing.along(place - point.position) >= 0; };
     VisiblePoints visible;
-    double        best = kBall; // [1] distance over the point's spacing
+    double        best   = kBall; // [1] distance over the point's spacing
+    bool          facing = false; // the nearest one does
     points_.holding(place, [&](const NearPoint& point, double d2) {
         const double distance = std::sqrt(d2) / point.spacing;
         visible.sparsest      = std::max(visible.sparsest, point.spacing);
-        if (!(distance < best) || !isVisible(point)) return;
+        const bool better     = faces(point) == facing ? distance < best : !facing;
+        if (!better || !isVisible(point)) return;
         best            = distance;
+        facing          = faces(point);
         visible.nearest = point;
         visible.any     = true;
     });
     if (!visible.any) return visible;
+    if (visible.nearest.mark.facing.known()) visible.side = facing ? 1 : -1;
     const double s = visible.nearest.spacing;
     const double r = s * std::sqrt(best * best + kView * kView);
     points_.inside(place, r, s, [&](const NearPoint& point, double d2) {
         const double distance = std::sqrt(d2);
-        if (distance > 0 && isVisible(point)) visible.outward += (r / distance - 1) * (place - point.position);
+        if (distance > 0 && faces(point) == facing && isVisible(point))
+            visible.outward += (r / distance - 1) * (place - point.position);
     });
     return visible;
 }
@@ -171,17 +181,32 @@ SurfaceTracker::NearbyPoints SurfaceTracker::pointsNear(const TrialPlane& trial)
     return near;
 }
 
-/// Fits a plane, with a larger spacing where the surface goes on with sparser points: an apparent border is none
-/// then. Returns the fit with the most support.
+/// Fits a plane to the points of its side. Where they seem to end and with the others they do not, sides are ignored:
+/// faces of a file may be flipped.
 std::optional<PlaneFit> SurfaceTracker::fitPlane(const TrialPlane& trial, std::span<const SurfacePlane> others) noexcept
 {
-    if (!points_.mixed()) return fitter_.fit(trial.place, trial.normal, trial.spacing, others);
+    auto found = fitAnyDensity(trial, others);
+    if (trial.side == 0 || (found && found->plane.support >= 1)) return found;
+    TrialPlane either = trial;
+    either.side       = 0;
+    auto anySide      = fitAnyDensity(either, others);
+    if (!anySide || (found && anySide->plane.support < found->plane.support + kClearlyMore)) return found;
+    anySide->plane.side = trial.side;
+    return anySide;
+}
+
+/// Fits a plane, with a larger spacing where the surface goes on with sparser points: an apparent border is none
+/// then. Returns the fit with the most support.
+std::optional<PlaneFit> SurfaceTracker::fitAnyDensity(const TrialPlane&             trial,
+                                                      std::span<const SurfacePlane> others) noexcept
+{
+    if (!points_.mixed()) return fitter_.fit(trial.place, trial.normal, trial.spacing, others, trial.side);
     std::optional<PlaneFit> best;
     TrialPlane              wider = trial;
     for (bool last = false; !last;) { // at most once per doubling of the spacing
         const NearbyPoints near = pointsNear(wider);
         if (near.alike || !(near.sparser > 0)) {
-            const auto found = fitter_.fit(wider.place, wider.normal, wider.spacing, others);
+            const auto found = fitter_.fit(wider.place, wider.normal, wider.spacing, others, wider.side);
             if (found && (!best || found->plane.support > best->plane.support)) best = found;
         }
         last          = !(near.sparser > 0) || (best && best->plane.support >= 1);
@@ -195,14 +220,15 @@ bool SurfaceTracker::addSurface(Surfaces& surfaces, const VisiblePoints& visible
 {
     const NearPoint& nearest = visible.nearest;
     const double     length  = glm::length(seed);
-    if (!(length > 0)) return false;
-    SurfacePlane plane{seed / length, nearest.position, 0};
+    if (!(length > 0) || visible.side * nearest.mark.facing.along(seed) < 0) return false;
+    SurfacePlane plane{seed / length, nearest.position, 0, visible.side};
     double       spacing = surfaces.spacing;
     // Noise of sparse points is no ceiling over a floor of dense ones.
     const double coarse = points_.mixed() ? std::max(spacing, visible.sparsest) : spacing;
     for (int k = 0; k <= kFitsAtPoint; ++k) {
         const glm::dvec3 at = k < kFitsAtPoint ? nearest.position : place;
-        const auto found    = fitPlane({at - plane.height(at) * plane.normal, plane.normal, spacing}, surfaces.all());
+        const auto       found =
+            fitPlane({at - plane.height(at) * plane.normal, plane.normal, spacing, plane.side}, surfaces.all());
         if (!found) return false;
         plane = found->plane;
     }
@@ -235,13 +261,14 @@ bool SurfaceTracker::discover(Surfaces& surfaces, const glm::dvec3& place, const
         if (surfaces.planes[0].support >= kSureSupport) return true;
         surfaces = before;
     }
-    for (const glm::dvec3& seed : {visible.outward, place - towards, place - visible.nearest.position})
+    const glm::dvec3 faced = double(visible.side) * visible.nearest.mark.facing.normal(); // 0 if not known
+    for (const glm::dvec3& seed : {faced, visible.outward, place - towards, place - visible.nearest.position})
         if (addSurface(surfaces, visible, place, seed)) break;
     return true;
 }
 
-/// Drops the later of two surfaces that contradict each other. Beside a step in density the noise of sparse points can
-/// look like a ceiling; one that has come down to a known floor is none.
+/// Drops the later of two surfaces that contradict each other. Noise can look like a ceiling, and points would then be
+/// split between it and the floor; one that has come down to a known floor is none.
 void SurfaceTracker::dropContradicting(Surfaces& surfaces) noexcept
 {
     for (int j = surfaces.count - 1; j > 0; --j)
@@ -265,8 +292,9 @@ double SurfaceTracker::refresh(Surfaces& surfaces, const glm::dvec3& place) noex
         std::size_t                               count = 0;
         for (int k = 0; k < surfaces.count; ++k)
             if (k != j) others[count++] = surfaces.planes[std::size_t(k)];
-        const auto found = fitPlane({place - plane.height(place) * plane.normal, plane.normal, surfaces.spacing},
-                                    {others.data(), count});
+        const auto found =
+            fitPlane({place - plane.height(place) * plane.normal, plane.normal, surfaces.spacing, plane.side},
+                     {others.data(), count});
         if (!found || !(found->plane.support > 0)) {
             plane.support = 0;
             continue;
@@ -276,7 +304,7 @@ double SurfaceTracker::refresh(Surfaces& surfaces, const glm::dvec3& place) noex
         spacing += found->spacing;
         ++fitted;
     }
-    if (points_.mixed()) dropContradicting(surfaces);
+    dropContradicting(surfaces);
     constexpr double kFollow = 0.5; // [1] share of the way per fit: a step in density must not jump
     if (fitted > 0) surfaces.spacing += kFollow * (spacing / fitted - surfaces.spacing);
     return furthest;

@@ -43,7 +43,9 @@ struct RestPoint {
 /// Finds surfaces and follows them as the proxy moves.
 ///
 /// A surface is found by a ball about the proxy: a plane is fitted at its nearest visible point, one that no known
-/// surface hides, from several directions in turn. A found surface is fitted again at the foot of the proxy.
+/// surface hides, from several directions in turn. A found surface is fitted again at the foot of the proxy. Where it
+/// is known which way points face, those that face the proxy are preferred, and a surface keeps to the side it was
+/// found on; but where it would end only because points face the other way, their side is ignored.
 /// \thread one; allocates nothing after construction
 /// \source our own reconstruction, after the idea that only visible points may count
 class SurfaceTracker {
@@ -68,6 +70,7 @@ private:
         NearPoint  nearest{};
         double     sparsest = 0; ///< [m] largest spacing of all points in whose own balls the place is
         glm::dvec3 outward{};    ///< [m^2] sum of overshoots, away from the points
+        int        side = 0;     ///< 1: the nearest faces the place; -1: it faces away; 0: its side is not known
     };
 
     /// A plane to be fitted to the points around it, with a spacing.
@@ -75,6 +78,7 @@ private:
         glm::dvec3 place{};     ///< [m] near the surface
         glm::dvec3 normal{};    ///< [1] unit
         double     spacing = 0; ///< [m]
+        int        side    = 0; ///< see SurfacePlane
     };
 
     /// The points in whose own balls a place lies.
@@ -87,6 +91,8 @@ private:
     [[nodiscard]] NearbyPoints            pointsNear(const TrialPlane& trial) const noexcept;
     [[nodiscard]] std::optional<PlaneFit> fitPlane(const TrialPlane&             trial,
                                                    std::span<const SurfacePlane> others) noexcept;
+    [[nodiscard]] std::optional<PlaneFit> fitAnyDensity(const TrialPlane&             trial,
+                                                        std::span<const SurfacePlane> others) noexcept;
     [[nodiscard]] bool addSurface(Surfaces& surfaces, const VisiblePoints& visible, const glm::dvec3& place,
                                   const glm::dvec3& seed) noexcept;
     static void        dropContradicting(Surfaces& surfaces) noexcept;
