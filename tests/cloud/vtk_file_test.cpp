@@ -200,6 +200,8 @@ TEST(VtkFile, NumbersThatDoNotFitAreRefusedWithTheirPlace)
         contains(vtkRefusal(square("CELLS 1 4\n3 0 1 2\n", "UNSTRUCTURED_GRID")), {"CELL_TYPES", "found none"}));
     EXPECT_TRUE(contains(vtkRefusal(square("CELLS 1 3\n2 0 1\nCELL_TYPES 1\n5\n", "UNSTRUCTURED_GRID")),
                          {"cell 0", "at least 3 points", "found 2"}));
+    EXPECT_TRUE(
+        contains(vtkRefusal(kHead + "DATASET POLYDATA\nPOINTS 1 bit\n0 1 1\n"), {"line 5", "POINTS", "\"bit\""}));
     EXPECT_TRUE(contains(vtkRefusal(square("SPHERES 4\n")), {"line 8", "another keyword", "SPHERES"}));
     EXPECT_TRUE(contains(vtkRefusal(square("POINTS 1 float\n0 0 0\n")), {"line 8", "POINTS once"}));
 }

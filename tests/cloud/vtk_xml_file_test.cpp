@@ -77,6 +77,16 @@ TEST(VtkXmlFile, PiecesFollowEachOther)
     EXPECT_EQ(loaded.faces, (Triangles{{0, 1, 2}, {5, 4, 3}}));
 }
 
+TEST(VtkXmlFile, PiecesWithoutPointsArePassedOver)
+{
+    const std::string empty = "<Piece NumberOfPoints=\"0\" NumberOfPolys=\"1\"><Points/></Piece>\n";
+
+    EXPECT_EQ(vtk(polyData(empty + piece(kPoints, "1 2 3", "0 1 2") + empty)).cloud.size(), 3u);
+    EXPECT_TRUE(contains(vtkRefusal(polyData(empty)), {"the cloud is empty"}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(polyData(piece(kPoints, "1 2 3", "0 1 2")), "NumberOfPoints", "Points")),
+                         {"the cloud is empty"}));
+}
+
 TEST(VtkXmlFile, EveryPieceMustHaveTheStiffness)
 {
     EXPECT_TRUE(contains(vtkRefusal(polyData(piece(kPoints, "1 2 3", "0 1 2") +
