@@ -175,6 +175,9 @@ TEST(VtkFile, DatasetsWithoutPointsOfTheirOwnAreRefusedWithAWay)
     EXPECT_TRUE(contains(vtkRefusal("ply\n"), {"line 1", "# vtk DataFile Version", "\"ply\""}));
     EXPECT_TRUE(contains(vtkRefusal("# vtk DataFile Version 3.0\n\nUTF8\n"), {"ASCII or BINARY"}));
     EXPECT_TRUE(contains(vtkRefusal(""), {"# vtk DataFile Version"}));
+    EXPECT_TRUE(contains(vtkRefusal(kHead), {"line 4", "expected DATASET and its type"}));
+    EXPECT_TRUE(
+        contains(vtkRefusal(square("POLYGONS 2 3\nOFFSETS int\n0 3\n")), {"line 11", "OFFSETS and CONNECTIVITY"}));
     EXPECT_TRUE(contains(vtkRefusal(kHead + "DATASET POLYDATA\n"), {"expected POINTS"}));
 }
 

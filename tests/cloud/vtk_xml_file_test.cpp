@@ -113,6 +113,19 @@ TEST(VtkXmlFile, NumbersThatDoNotFitAreRefusedWithTheirPlace)
     EXPECT_TRUE(contains(vtkRefusal(polyData("")), {"the cloud is empty"}));
 }
 
+TEST(VtkXmlFile, ArraysWithoutTextAreRefusedWithTheirLine)
+{
+    for (const std::string format : {"ascii", "binary"}) {
+        const std::string bytes =
+            replaced(polyData(piece(kPoints, "1 2 3", "0 1 2")), "format=\"ascii\">" + kPoints + "</DataArray>",
+                     "format=\"" + format + "\"/>");
+
+        const std::size_t at    = bytes.find("DataArray", bytes.find("<Points>")) + 9;
+        const std::string place = format == "ascii" ? "line 5" : "byte " + std::to_string(at);
+        EXPECT_TRUE(contains(vtkRefusal(bytes), {place, format == "ascii" ? "room for 0" : "found at most 0"}));
+    }
+}
+
 TEST(VtkXmlFile, XmlThatIsNotWholeIsRefusedWithItsLine)
 {
     const std::string good = polyData(piece(kPoints, "1 2 3", "0 1 2"));

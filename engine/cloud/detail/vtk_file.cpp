@@ -144,10 +144,10 @@ private:
             fail("expected a first line \"# vtk DataFile Version\": this is no VTK file");
         static_cast<void>(line());
         static_cast<void>(line()); // the title
-        const std::string encoding = capitals(trimmed(textLine().value_or("")));
+        const std::string encoding = capitals(trimmed(textLine().value_or(rest_)));
         if (encoding != "ASCII" && encoding != "BINARY") fail("expected a third line ASCII or BINARY");
         ascii_            = encoding == "ASCII";
-        const auto words  = wordsOf(textLine().value_or(""), 2, "DATASET and its type");
+        const auto words  = wordsOf(textLine().value_or(rest_), 2, "DATASET and its type");
         dataset_          = capitals(words[1]);
         const bool isRead = dataset_ == "POLYDATA" || dataset_ == "UNSTRUCTURED_GRID" || dataset_ == "STRUCTURED_GRID";
         if (capitals(words[0]) != "DATASET" || !isRead)
@@ -222,7 +222,7 @@ private:
 
     VtkArray keyedArray(const std::string& key, std::uint64_t count)
     {
-        const auto words = wordsOf(textLine().value_or(""), 2, "OFFSETS and CONNECTIVITY, each with its type");
+        const auto words = wordsOf(textLine().value_or(rest_), 2, "OFFSETS and CONNECTIVITY, each with its type");
         if (capitals(words[0]) != key) failBefore(words[0], "expected " + key);
         return array(key, words[1], count, 1);
     }
