@@ -175,6 +175,9 @@ TEST(VtkFile, DatasetsWithoutPointsOfTheirOwnAreRefusedWithAWay)
     EXPECT_TRUE(contains(vtkRefusal("ply\n"), {"line 1", "# vtk DataFile Version", "\"ply\""}));
     EXPECT_TRUE(contains(vtkRefusal("# vtk DataFile Version 3.0\n\nUTF8\n"), {"ASCII or BINARY"}));
     EXPECT_TRUE(contains(vtkRefusal(""), {"# vtk DataFile Version"}));
+    EXPECT_TRUE(contains(vtkRefusal(kHead), {"line 4", "expected DATASET and its type"}));
+    EXPECT_TRUE(
+        contains(vtkRefusal(square("POLYGONS 2 3\nOFFSETS int\n0 3\n")), {"line 11", "OFFSETS and CONNECTIVITY"}));
     EXPECT_TRUE(contains(vtkRefusal(kHead + "DATASET POLYDATA\n"), {"expected POINTS"}));
 }
 
@@ -200,6 +203,8 @@ TEST(VtkFile, NumbersThatDoNotFitAreRefusedWithTheirPlace)
         contains(vtkRefusal(square("CELLS 1 4\n3 0 1 2\n", "UNSTRUCTURED_GRID")), {"CELL_TYPES", "found none"}));
     EXPECT_TRUE(contains(vtkRefusal(square("CELLS 1 3\n2 0 1\nCELL_TYPES 1\n5\n", "UNSTRUCTURED_GRID")),
                          {"cell 0", "at least 3 points", "found 2"}));
+    EXPECT_TRUE(
+        contains(vtkRefusal(kHead + "DATASET POLYDATA\nPOINTS 1 bit\n0 1 1\n"), {"line 5", "POINTS", "\"bit\""}));
     EXPECT_TRUE(contains(vtkRefusal(square("SPHERES 4\n")), {"line 8", "another keyword", "SPHERES"}));
     EXPECT_TRUE(contains(vtkRefusal(square("POINTS 1 float\n0 0 0\n")), {"line 8", "POINTS once"}));
 }

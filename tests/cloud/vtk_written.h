@@ -99,7 +99,8 @@ constexpr std::string_view kGridBinary51 =
     "642031203520756e7369676e65645f636861720a00010001000a";
 
 /// vtkXMLPolyDataWriter, text.
-constexpr std::string_view kXmlAscii = R"vtk(<VTKFile type="PolyData" version="0.1" byte_order="LittleEndian" header_type="UInt32">
+constexpr std::string_view kXmlAscii =
+    R"vtk(<VTKFile type="PolyData" version="0.1" byte_order="LittleEndian" header_type="UInt32">
   <PolyData>
     <Piece NumberOfPoints="5" NumberOfVerts="1" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="2">
       <PointData Normals="Normals">
@@ -175,7 +176,8 @@ constexpr std::string_view kXmlAscii = R"vtk(<VTKFile type="PolyData" version="0
 )vtk";
 
 /// vtkXMLUnstructuredGridWriter, base 64 within the elements, sizes of 64 bits.
-constexpr std::string_view kXmlBinary = R"vtk(<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+constexpr std::string_view kXmlBinary =
+    R"vtk(<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
   <UnstructuredGrid>
     <Piece NumberOfPoints="5" NumberOfCells="3">
       <PointData Normals="Normals">

@@ -77,6 +77,16 @@ TEST(VtkXmlFile, PiecesFollowEachOther)
     EXPECT_EQ(loaded.faces, (Triangles{{0, 1, 2}, {5, 4, 3}}));
 }
 
+TEST(VtkXmlFile, PiecesWithoutPointsArePassedOver)
+{
+    const std::string empty = "<Piece NumberOfPoints=\"0\" NumberOfPolys=\"1\"><Points/></Piece>\n";
+
+    EXPECT_EQ(vtk(polyData(empty + piece(kPoints, "1 2 3", "0 1 2") + empty)).cloud.size(), 3u);
+    EXPECT_TRUE(contains(vtkRefusal(polyData(empty)), {"the cloud is empty"}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(polyData(piece(kPoints, "1 2 3", "0 1 2")), "NumberOfPoints", "Points")),
+                         {"the cloud is empty"}));
+}
+
 TEST(VtkXmlFile, EveryPieceMustHaveTheStiffness)
 {
     EXPECT_TRUE(contains(vtkRefusal(polyData(piece(kPoints, "1 2 3", "0 1 2") +
@@ -101,6 +111,19 @@ TEST(VtkXmlFile, NumbersThatDoNotFitAreRefusedWithTheirPlace)
     EXPECT_TRUE(contains(vtkRefusal(polyData(piece(kPoints, "1 2 3", "0 1 1.5"))),
                          {"\"connectivity\"", "a whole number", "found 1.5"}));
     EXPECT_TRUE(contains(vtkRefusal(polyData("")), {"the cloud is empty"}));
+}
+
+TEST(VtkXmlFile, ArraysWithoutTextAreRefusedWithTheirLine)
+{
+    for (const std::string format : {"ascii", "binary"}) {
+        const std::string bytes =
+            replaced(polyData(piece(kPoints, "1 2 3", "0 1 2")), "format=\"ascii\">" + kPoints + "</DataArray>",
+                     "format=\"" + format + "\"/>");
+
+        const std::size_t at    = bytes.find("DataArray", bytes.find("<Points>")) + 9;
+        const std::string place = format == "ascii" ? "line 5" : "byte " + std::to_string(at);
+        EXPECT_TRUE(contains(vtkRefusal(bytes), {place, format == "ascii" ? "room for 0" : "found at most 0"}));
+    }
 }
 
 TEST(VtkXmlFile, XmlThatIsNotWholeIsRefusedWithItsLine)

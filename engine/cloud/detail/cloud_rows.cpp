@@ -397,8 +397,9 @@ LoadedCloud CloudRows::finish()
         reader_.fail(report_.droppedPoints ? "the cloud is empty: all " + std::to_string(report_.droppedPoints) +
                                                  " points have NaN or infinity in a used property and were dropped"
                                            : "the cloud is empty: expected at least one point, found none");
-    const glm::dvec3& first = positions_.front();
-    if (std::all_of(positions_.begin(), positions_.end(), [&](const glm::dvec3& p) { return p == first; }))
+    const glm::dvec3& first = positions_.front(); // distances whose squares vanish are none
+    if (std::all_of(positions_.begin(), positions_.end(),
+                    [&](const glm::dvec3& p) { return glm::length(p - first) == 0; }))
         reader_.fail("all " + std::to_string(positions_.size()) + " points coincide at (" + shown(first.x) + ", " +
                      shown(first.y) + ", " + shown(first.z) + ") m: expected an object with an extent");
     if (columns_[kSlotStiffness]) {

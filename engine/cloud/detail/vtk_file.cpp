@@ -144,10 +144,10 @@ private:
             fail("expected a first line \"# vtk DataFile Version\": this is no VTK file");
         static_cast<void>(line());
         static_cast<void>(line()); // the title
-        const std::string encoding = capitals(trimmed(textLine().value_or("")));
+        const std::string encoding = capitals(trimmed(textLine().value_or(rest_)));
         if (encoding != "ASCII" && encoding != "BINARY") fail("expected a third line ASCII or BINARY");
         ascii_            = encoding == "ASCII";
-        const auto words  = wordsOf(textLine().value_or(""), 2, "DATASET and its type");
+        const auto words  = wordsOf(textLine().value_or(rest_), 2, "DATASET and its type");
         dataset_          = capitals(words[1]);
         const bool isRead = dataset_ == "POLYDATA" || dataset_ == "UNSTRUCTURED_GRID" || dataset_ == "STRUCTURED_GRID";
         if (capitals(words[0]) != "DATASET" || !isRead)
@@ -222,7 +222,7 @@ private:
 
     VtkArray keyedArray(const std::string& key, std::uint64_t count)
     {
-        const auto words = wordsOf(textLine().value_or(""), 2, "OFFSETS and CONNECTIVITY, each with its type");
+        const auto words = wordsOf(textLine().value_or(rest_), 2, "OFFSETS and CONNECTIVITY, each with its type");
         if (capitals(words[0]) != key) failBefore(words[0], "expected " + key);
         return array(key, words[1], count, 1);
     }
@@ -262,7 +262,7 @@ private:
             const Words         words      = wordsOf(*text, 4, "an array's name, components, tuples and type");
             const std::uint64_t components = countIn(words[1]), tuples = countIn(words[2]);
             if (tuples_ && tuples != *tuples_) failBefore(words[2], "expected " + std::to_string(*tuples_) + " tuples");
-            addData(array(unescaped(words[0]), words[3], tuples, components));
+            addData(arrayOrBits(unescaped(words[0]), words[3], tuples, components));
         }
     }
 
@@ -293,8 +293,8 @@ private:
             const auto peek = rest_.substr(std::min(rest_.find_first_not_of(kBlanks), rest_.size()));
             if (capitals(peek.substr(0, 12)) == "LOOKUP_TABLE") static_cast<void>(textLine()); // only its name
         }
-        VtkArray data  = array(unescaped(words[1]), words[isTexture ? 3 : 2], *tuples_, components);
-        data.isNormals = data.isNormals || key == "NORMALS";
+        auto data = arrayOrBits(unescaped(words[1]), words[isTexture ? 3 : 2], *tuples_, components);
+        if (data && key == "NORMALS") data->isNormals = true;
         addData(std::move(data));
     }
 
@@ -307,13 +307,22 @@ private:
         static_cast<void>(array(key, "unsigned_char", table ? number : *tuples_, table ? 4 : number));
     }
 
-    void addData(VtkArray data)
+    void addData(std::optional<VtkArray> data)
     {
-        if (tuples_ && ofPoints_ && data.open) piece_.pointData.push_back(std::move(data));
+        if (tuples_ && ofPoints_ && data) piece_.pointData.push_back(std::move(*data));
     }
 
-    /// Passes over the numbers of an array. One of bits can not be opened.
+    /// Passes over the numbers of an array, which must be no bits.
     VtkArray array(const std::string& name, std::string_view typeName, std::uint64_t tuples, std::uint64_t components)
+    {
+        auto result = arrayOrBits(name, typeName, tuples, components);
+        if (!result) failBefore(typeName, "array " + inQuotes(name) + ": expected a type of numbers such as float");
+        return std::move(*result);
+    }
+
+    /// Passes over an array; of bits nothing is returned.
+    std::optional<VtkArray> arrayOrBits(const std::string& name, std::string_view typeName, std::uint64_t tuples,
+                                        std::uint64_t components)
     {
         const std::string word = capitals(typeName);
         const auto        known =
@@ -331,8 +340,8 @@ private:
         const std::string   what = "array " + inQuotes(name);
         if (ascii_) {
             const std::string_view words = skippedWords(what, numbers);
-            if (known->type) result.open = [&file = file_, what, words] { return Numbers(file, what, words); };
-            return result;
+            result.open                  = [&file = file_, what, words] { return Numbers(file, what, words); };
+            return known->type ? std::optional(std::move(result)) : std::nullopt;
         }
         const std::uint64_t bytes = known->type ? numbers * sizeOf(*known->type) : (numbers + 7) / 8;
         if (bytes > rest_.size())
@@ -340,10 +349,10 @@ private:
                                                std::to_string(rest_.size()) + "; was the file cut short?");
         const std::span<const std::byte> data(reinterpret_cast<const std::byte*>(rest_.data()), bytes);
         rest_.remove_prefix(bytes);
-        if (known->type)
-            result.open = [&file = file_, what, data, type = *known->type] {
-                return Numbers(file, what, type, std::endian::big, data);
-            };
+        if (!known->type) return std::nullopt;
+        result.open = [&file = file_, what, data, type = *known->type] {
+            return Numbers(file, what, type, std::endian::big, data);
+        };
         return result;
     }
 

@@ -53,7 +53,7 @@ public:
         if (!data) fail(root_, "expected an element " + kind_, "none");
         std::vector<VtkPiece> pieces;
         for (const XmlElement& element : data->children)
-            if (element.name == "Piece") pieces.push_back(pieceOf(element));
+            if (element.name == "Piece" && countOf(element, "NumberOfPoints") > 0) pieces.push_back(pieceOf(element));
         return pieces;
     }
 
@@ -109,8 +109,7 @@ private:
         piece.points             = countOf(element, "NumberOfPoints");
         const XmlElement* points = element.child("Points");
         const XmlElement* places = points ? points->child("DataArray") : nullptr;
-        if (piece.points > 0 && !places) fail(element, "expected Points with a DataArray", "none");
-        if (piece.points == 0) return {};
+        if (!places) fail(element, "expected Points with a DataArray", "none");
         piece.coordinates = arrayOf(*places, "points");
         if (piece.coordinates.components != 3)
             fail(*places, "expected 3 components of a point", std::to_string(piece.coordinates.components));

@@ -113,6 +113,7 @@ private:
         rest_.remove_prefix(1); // <
         XmlElement element;
         element.name = name();
+        element.text = rest_.substr(0, 0); // part of the file even if empty: errors count lines up to it
         readAttributes(element);
         if (passed("/>")) return element;
         rest_.remove_prefix(1); // >
