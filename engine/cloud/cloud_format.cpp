@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "engine/cloud/detail/glb_file.h"
 #include "engine/cloud/detail/npy_cloud.h"
 #include "engine/cloud/detail/obj_file.h"
 #include "engine/cloud/detail/pcd_file.h"
@@ -27,6 +28,7 @@ constexpr std::array kFormats = {
     CloudFormatRecord{CloudFormat::vtkXml, "VTK XML", {".vtp", ".vtu"}, kFaces, parseVtkXml, nullptr},
     CloudFormatRecord{CloudFormat::obj, "OBJ", {".obj"}, kFaces, parseObj, nullptr},
     CloudFormatRecord{CloudFormat::stl, "STL", {".stl"}, kFaces, parseStl, nullptr},
+    CloudFormatRecord{CloudFormat::glb, "glTF", {".glb"}, kFaces, parseGlb, nullptr},
     CloudFormatRecord{CloudFormat::npy, "NumPy", {".npy"}, kNoFaces, parseNpyCloud, nullptr},
 };
 

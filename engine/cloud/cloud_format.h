@@ -15,7 +15,7 @@ struct CloudWriteSettings;
 struct LoadedCloud;
 struct NamedField;
 
-enum class CloudFormat { ply, pcd, text, vtk, vtkXml, obj, stl, npy };
+enum class CloudFormat { ply, pcd, text, vtk, vtkXml, obj, stl, glb, npy };
 
 /// One format of cloud files. Reading, writing, help texts and errors go by the table of all of them.
 struct CloudFormatRecord {

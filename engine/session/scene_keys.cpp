@@ -124,6 +124,8 @@ void readScatter(S& scene, const V& given)
     if (const auto word = valueNamed<Scatter>(given.text)) {
         scene.scatter = *word;
     } else {
+        if (given.text.find_first_of("0123456789") == std::string::npos)
+            given.refuse(); // a word, and not a slip in a length
         scene.scatter         = Scatter::on;
         scene.scatterDistance = given.number();
     }

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Writes small files that the readers accept, or nearly, for the fuzzers to start from. Argument: the folder.
 set -eu
-mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/obj" "$1/stl" "$1/volume" "$1/npy" "$1/npy_cloud" "$1/vtk" "$1/vtk_xml" "$1/problem" "$1/scene" "$1/hand"
+mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/obj" "$1/stl" "$1/glb" "$1/volume" "$1/npy" "$1/npy_cloud" "$1/vtk" "$1/vtk_xml" "$1/problem" "$1/scene" "$1/hand"
 cd "$1"
 
 # The floats 1 and 2, little and big endian, and the doubles 1 and 2, little endian; printf takes octal.
@@ -55,6 +55,14 @@ printf '# length_unit mm\nv 0 0 0\nv 1 0 0 .5 .5 .5\nvt 0 0\nv 1 1 0\nusemtl a\n
 printf 'v 1 2 3 1\nv 2 3 4\nbevel on\nf 1 2 1\n' >obj/degenerate
 printf 'solid a b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e0 0\nendloop\nendfacet\nendsolid a\n' >stl/ascii
 printf '%-80s\001\000\000\000'"$f1$f1$f1$f1$f1$f1$f1$f1$f2$f2$f1$f1"'ab' solid >stl/binary
+
+little() { printf '\'"$(printf %03o $(($1 % 256)))"'\'"$(printf %03o $(($1 / 256)))"'\000\000'; }
+glb() { # glb JSON, of a length that four divides: with nine floats of binary data
+    printf 'glTF\002\000\000\000'; little $((${#1} + 64)); little ${#1}; printf 'JSON%s' "$1"; little 36
+    printf 'BIN\000'"$f1$f1$f1$f2$f1$f1$f1$f2$f1"
+}
+glb "$(printf '%-400s' '{"scenes":[{"nodes":[0]}],"nodes":[{"children":[1],"scale":[2,1,1]},{"mesh":0,"rotation":[0,0,1,0]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]}')" >glb/triangle
+glb "$(printf '%-400s' '{"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},{"bufferView":0,"componentType":5121,"count":3,"type":"SCALAR"}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]}')" >glb/indices
 
 # A header of NIfTI-1: 2 x 2 x 2 floats, mm, sizes 1.
 zeros() { head -c "$1" /dev/zero; }

@@ -602,7 +602,7 @@ holds '2 triangles of 2 faces'
 holds 'normals     in the file'
 bad 'a format that is only read' 'surface2.vtk: expected a name that ends with' convert surface.ply surface2.vtk
 good 'a mesh of far vertices' info mesh.ply --scatter on
-holds 'a fingertip of 4 mm touches 5 triangles through about'
+holds 'a fingertip of 4.00 mm touches 5 triangles through about'
 good 'a mesh of far vertices, for scripts' info mesh.ply --json --scatter 0.2mm
 holds '"distance": 0.0002'
 good 'a mesh as points' convert mesh.ply points.ply --uniform 1kPa --scatter 0.1mm --json
@@ -611,7 +611,7 @@ bad 'points on what has no faces' '--scatter: expected a cloud with faces' info 
 bad 'a distance that is none' '--scatter: expected auto, on, off, or a distance' info mesh.ply --scatter far
 printf 'v 0 0 0\nv 50 0 0\nv 50 50 0\nv 0 50 0\nf 1 2 3 4\n' >side.obj
 good 'a side of four corners' info side.obj --length-unit mm
-holds '4 vertices, 25 mm apart'
+holds '4 vertices, 25.0 mm apart'
 good 'is touched in its middle' touch side.obj --length-unit mm --place 25,25,0 --from 0,0,1 --window 30 --cells 32 --json
 good 'and keeps its corners' convert side.obj side.ply --length-unit mm
 holds 'side.ply: 4 points, 2 triangles'

@@ -1,0 +1,160 @@
+#include "engine/cloud/detail/glb_file.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include "tests/cloud/cloud_parsing.h"
+
+namespace palp {
+namespace {
+
+/// A file of JSON and binary data.
+std::string glb(std::string json, std::string binary)
+{
+    while (json.size() % 4 != 0) json += ' ';
+    while (binary.size() % 4 != 0) binary += '\0';
+    std::string bytes = "glTF";
+    append(bytes, std::uint32_t(2));
+    append(bytes, std::uint32_t(12 + 8 + json.size() + 8 + binary.size()));
+    append(bytes, std::uint32_t(json.size()));
+    bytes += "JSON" + json;
+    append(bytes, std::uint32_t(binary.size()));
+    return bytes + std::string("BIN\0", 4) + binary;
+}
+
+/// Four corners of a square and the indices of its two triangles, as shorts.
+std::string squareBytes()
+{
+    std::string binary;
+    for (const float number : {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}) append(binary, number);
+    for (const int corner : {0, 1, 2, 0, 2, 3}) append(binary, std::uint16_t(corner));
+    return binary;
+}
+
+const std::string kSquare = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+    "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 3}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                  {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}],
+    "buffers": [{"byteLength": 60}]})";
+
+std::string with(const std::string& before, const std::string& after)
+{
+    std::string       json = kSquare;
+    const std::size_t at   = json.find(before);
+    EXPECT_NE(at, std::string::npos) << before;
+    return json.replace(at, before.size(), after);
+}
+
+LoadedCloud read(const std::string& json)
+{
+    return parsed(glb(json, squareBytes()), CloudFormat::glb);
+}
+
+std::string refusal(const std::string& json)
+{
+    return refusalOf(glb(json, squareBytes()), CloudFormat::glb);
+}
+
+TEST(GlbFile, TrianglesOfTheSceneAreReadInMetres)
+{
+    const LoadedCloud loaded = read(kSquare);
+
+    EXPECT_EQ(loaded.cloud.size(), 4u);
+    EXPECT_EQ(loaded.cloud.positions()[2], glm::dvec3(1, 1, 0));
+    EXPECT_EQ(loaded.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+    EXPECT_EQ(loaded.report.format, "glTF 2, binary");
+    EXPECT_FALSE(loaded.report.lengthUnitAssumed);
+}
+
+TEST(GlbFile, NodesPlaceTheirMeshesOneWithinTheOther)
+{
+    // Turned by a quarter about z, then twice as large, then moved; the parent moves all once more.
+    const LoadedCloud loaded =
+        read(with(R"("nodes": [{"mesh": 0}])", R"("nodes": [{"children": [1, 2], "translation": [10, 0, 0]},
+        {"mesh": 0, "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476], "scale": [2, 2, 2], "translation": [0, 0, 5]},
+        {"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 7, 0, 1]}])"));
+
+    ASSERT_EQ(loaded.cloud.size(), 8u);
+    EXPECT_EQ(loaded.faces.size(), 4u);
+    EXPECT_EQ(loaded.cloud.positions()[1], glm::dvec3(11, 7, 0)); // the last child comes first
+    EXPECT_LT(glm::length(loaded.cloud.positions()[5] - glm::dvec3(10, 2, 5)), 1e-12);
+}
+
+TEST(GlbFile, IndicesMayBeAbsentAndOtherPrimitivesAreCounted)
+{
+    std::string json = with(R"("indices": 1, )", "");
+    json.replace(json.find(R"("count": 4)"), 10, R"("count": 3)");
+    EXPECT_EQ(read(json).faces, (std::vector<Triangle>{{0, 1, 2}}));
+    const LoadedCloud lines =
+        read(with(R"("primitives": [)", R"("primitives": [{"mode": 1, "attributes": {"POSITION": 0}}, )"));
+    ASSERT_EQ(lines.report.warnings.size(), 1u);
+    EXPECT_TRUE(contains(lines.report.warnings[0], {"1 parts of meshes"}));
+}
+
+TEST(GlbFile, WhatWouldChangeTheTrianglesIsRefusedByName)
+{
+    EXPECT_TRUE(
+        contains(refusal(with(R"("count": 4)", R"("sparse": {}, "count": 4)")), {"test: ", "accessor 0", "sparse"}));
+    EXPECT_TRUE(
+        contains(refusal(with(R"("scene": 0)", R"("scene": 0, "extensionsRequired": ["KHR_draco_mesh_compression"])")),
+                 {"extensionsRequired", "KHR_draco_mesh_compression"}));
+    EXPECT_TRUE(contains(refusal(with(R"("byteLength": 60})", R"("byteLength": 60, "uri": "a.bin"})")),
+                         {"accessor 0", ".glb"}));
+    EXPECT_TRUE(contains(refusal(with(R"({"mesh": 0})", R"({"mesh": 0, "skin": 0})")), {"node 0", "skin"}));
+}
+
+TEST(GlbFile, ARefusalNamesThePlaceAndWhatWasExpected)
+{
+    for (const auto& [before, after, said] : std::vector<std::array<std::string, 3>>{
+             {R"("count": 4)", R"("count": 5)", "accessor 0: expected 5 elements within 48 bytes"},
+             {R"("count": 4)", R"("count": 0)", "accessor 0: expected 0 elements"},
+             {R"("count": 4)", R"("count": 9007199254740991)", "accessor 0: expected"},
+             {R"("count": 4)", R"("count": -1)", "whole number as \"count\", found -1"},
+             {R"("count": 6)", R"("count": 5)", "three indices to a triangle, found 5"},
+             {R"("byteOffset": 48)", R"("byteOffset": 50)", "accessor 1: expected 6 elements"},
+             {R"("byteOffset": 48)", R"("byteOffset": 4)", "mesh 0: expected an index below 4"},
+             {R"("byteLength": 48)", R"("byteLength": 48, "byteStride": 4)", "accessor 0"},
+             {"5126", "5120", "componentType"},
+             {"5126", "5125", "positions as floats"},
+             {"VEC3", "VEC4", "accessor 0: expected the type VEC3"},
+             {R"("mesh": 0})", R"("mesh": 1})", "meshes 1: expected a number below 1"},
+             {R"("nodes": [0])", R"("nodes": [0, 0])", "node 0: expected one parent"},
+             {R"("nodes": [0])", R"("nodes": [7])", "numbers below 1, found 7"},
+             {R"({"mesh": 0})", R"({"children": [0]})", "node 0: expected one parent"},
+             {R"({"mesh": 0})", R"({"mesh": 0, "scale": [1, 2]})", "node 0: expected 3 numbers"},
+             {R"("scene": 0)", R"("scene": 2)", "scenes 2"},
+             {R"("buffers")", R"("buffer")", "a list \"buffers\""},
+         })
+        EXPECT_TRUE(contains(refusal(with(before, after)), {"test: in its JSON, ", said})) << before << " -> " << after;
+    const std::string whole = glb(kSquare, squareBytes());
+    EXPECT_TRUE(contains(refusalOf(whole.substr(0, whole.size() - 4), CloudFormat::glb), {"test: byte 8", "promises"}));
+    EXPECT_TRUE(contains(refusalOf("ply\nand more", CloudFormat::glb), {"test: byte 0: expected a binary glTF file"}));
+    EXPECT_TRUE(contains(refusalOf("gl", CloudFormat::glb), {"test: byte 0"}));
+    EXPECT_TRUE(contains(refusal("{]"), {"test: byte 20: expected JSON"}));
+    EXPECT_TRUE(contains(refusal("[]"), {"test: byte 20: expected an object"}));
+    EXPECT_TRUE(contains(refusal(R"({"a": 1e999})"), {"test: byte 20: expected JSON"}));
+    std::string nan = glb(kSquare, squareBytes());
+    nan.replace(nan.size() - 60, 4, "\xff\xff\xff\xff");
+    EXPECT_TRUE(contains(refusalOf(nan, CloudFormat::glb), {"test: point 0", "nan"}));
+}
+
+TEST(GlbFile, AMeshThatNodesRepeatDoesNotTakeAllMemory)
+{
+    std::string nodes, roots;
+    for (int n = 0; n < 20'000; ++n) {
+        nodes += std::string(n ? "," : "") + R"({"mesh":0})";
+        roots += (n ? "," : "") + std::to_string(n);
+    }
+    std::string json = with(R"("nodes": [{"mesh": 0}])", "\"nodes\": [" + nodes + "]");
+    json.replace(json.find(R"("nodes": [0])"), 12, "\"nodes\": [" + roots + "]");
+    std::string binary = squareBytes();
+    for (int k = 0; k < 1000; ++k) binary += squareBytes().substr(0, 48);
+    json.replace(json.find(R"("count": 4)"), 10, R"("count": 4000)");
+    json.replace(json.find(R"("byteLength": 48)"), 16, R"("byteLength": 48060)");
+    EXPECT_TRUE(contains(refusalOf(glb(json, binary), CloudFormat::glb), {"100 times the file"}));
+}
+
+} // namespace
+} // namespace palp
