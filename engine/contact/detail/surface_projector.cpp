@@ -66,16 +66,16 @@ std::optional<glm::dvec3> SurfaceProjector::wayToSurface(double scale)
     const double r     = reach(scale);
     const Frame  frame = principalFrame(points_, kPlaneReach * scale);
     if (frame.normal == glm::dvec3(0)) return {};
-    samples_.clear();
+    sites_.clear();
     for (const glm::dvec3& p : points_) {
         const double a = glm::dot(frame.u, p) / r, b = glm::dot(frame.v, p) / r, q = a * a + b * b;
-        if (q < 1) samples_.push_back({a, b, q, glm::dot(frame.normal, p) / r, (1 - q) * (1 - q)});
+        if (q < 1) sites_.push_back({a, b, q, glm::dot(frame.normal, p) / r, (1 - q) * (1 - q)});
     }
     Eigen::Vector4d fit = Eigen::Vector4d::Zero();
     for (int round = 0; round < kRounds; ++round) {
         double w1 = 0, wa = 0, wb = 0, wq = 0, waa = 0, wab = 0, waq = 0, wbb = 0, wbq = 0, wqq = 0;
         double h1 = 0, ha = 0, hb = 0, hq = 0;
-        for (const Sample& s : samples_) {
+        for (const Site& s : sites_) {
             const double away = std::abs(s.h - fit[0] - fit[1] * s.a - fit[2] * s.b - fit[3] * s.q) * kReach;
             if (!(away < kNoHeight)) continue;
             const double x = std::min((kNoHeight - away) / (kNoHeight - kFullHeight), 1.0);
@@ -105,7 +105,7 @@ std::optional<glm::dvec3> SurfaceProjector::wayToSurface(double scale)
         if (round > 0 && std::abs(fit[0] - before) * kReach < kSettled) break;
     }
     double weight = 0, square = 0, fourth = 0;
-    for (const Sample& s : samples_) {
+    for (const Site& s : sites_) {
         const double away = s.h - fit[0] - fit[1] * s.a - fit[2] * s.b - fit[3] * s.q;
         if (!(std::abs(away) * kReach < kNoHeight)) continue;
         weight += s.fall;

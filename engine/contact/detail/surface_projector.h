@@ -30,13 +30,13 @@ public:
     [[nodiscard]] std::optional<glm::dvec3> wayToSurface(double scale);
 
 private:
-    struct Sample {
+    struct Site {
         double a = 0, b = 0, q = 0, h = 0; ///< [1] over r, q over r^2
         double fall = 0;                   ///< [1] weight by the way along the plane
     };
 
     std::vector<glm::dvec3> points_;
-    std::vector<Sample>     samples_;
+    std::vector<Site>       sites_;
 };
 
 } // namespace palp
