@@ -17,7 +17,7 @@ struct VolumeSettings {
     std::optional<glm::dvec3> origin{};     ///< of a .npy file: the middle of its first voxel [m]; empty: 0
     std::optional<glm::dvec3> spacing{};    ///< of a .npy file: between voxels along each axis [m], needed
     std::string               lengthUnit{}; ///< of a NIfTI file, such as "mm"; empty: as it states itself
-    double                    factor = 1; ///< on every value, > 0: 1e3 for a file in kPa
+    double                    factor = 1;   ///< on every value, > 0: 1e3 for a file in kPa
 };
 
 /// Positive values at the nodes of a regular grid in space, as an elastogram has them. Zero is "nothing was measured".

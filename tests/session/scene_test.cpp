@@ -341,7 +341,7 @@ TEST(Scene, EveryKeyForReadingAFileIsRead)
     EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(loadCloud(scene)); }), {"columns are for text files"}));
     Scene binary = scene;
     binary.reading.columns.clear();
-    binary.scatter = Scatter::off; // the points have no faces
+    binary.scatter         = Scatter::off; // the points have no faces
     const PointCloud cloud = loadCloud(binary).cloud;
     EXPECT_EQ(cloud.kind(), StiffnessKind::rigidity);
     EXPECT_NEAR(cloud.bounds().high.x, 9e-3, 1e-12);
