@@ -63,10 +63,11 @@ void gatherPoints(Patch& patch, const SoftObject& object, const Contact& contact
 /// Keeps, of the ball, the surface that the finger touches; everything, in the paper's way.
 TouchedSurface touchedSurface(Patch& patch, const SoftObject& object, const PatchSettings& settings)
 {
-    if (settings.neighbourhood == Neighbourhood::ball) return {patch.gathered, {}, patch.contact.point, {}, 0, 0};
+    if (settings.neighbourhood == Neighbourhood::ball) return {.points = patch.gathered};
     const StageClock clock(patch.times.gather);
-    TouchedSurface   surface = touchedSurface(object, patch.contact, gatherRadius(settings, patch.spacing));
-    patch.noise              = surface.noise;
+    TouchedSurface   surface =
+        touchedSurface(object, patch.contact, patch.gathered, gatherRadius(settings, patch.spacing));
+    patch.noise = surface.noise;
     return surface;
 }
 
@@ -91,7 +92,7 @@ void fitSphereTo(Patch& patch, const SoftObject& object, const TouchedSurface& s
 {
     const StageClock clock(patch.times.fit);
     if (settings.neighbourhood == Neighbourhood::surface) {
-        patch.sphere = fitSphereTo(surface, object, gatherRadius(settings, patch.spacing));
+        patch.sphere = surface.sphere;
         takeFeltNormal(patch, surface);
         return;
     }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -20,6 +22,9 @@ constexpr double kNoisyNear = 18;
 
 /// Radius about the contact whose normals give the mean one, over that of the ball [1].
 constexpr double kFacing = 0.25;
+
+/// Farthest that a point of a single sheet lies off its sphere [spacings], [standard deviations of noise].
+constexpr double kOnSheet = 0.5, kNoisy = 4;
 
 constexpr double kTurned = 0.26, kFaces = 0.76; ///< cosines of 75 and 40 degrees [1]
 
@@ -49,34 +54,12 @@ glm::dvec3 anchorOf(const TouchedSurface& surface, const SoftObject& object, con
     return glm::length(foot - contact) <= radius ? foot : contact;
 }
 
-} // namespace
-
-double spacingAt(const SoftObject& object, const glm::dvec3& place)
-{
-    const double here = object.survey().spacing(object.index().nearest(place, 1).front().point);
-    const double all  = object.spacing();
-    return here > kUneven * all || all > kUneven * here ? here : all;
-}
-
-TouchedSurface touchedSurface(const SoftObject& object, const Contact& contact, double radius)
-{
-    SurfaceFlood   flood(object);
-    TouchedSurface surface;
-    const auto     points  = flood.reach(contact.point, radius, contact.outward);
-    const auto     normals = flood.normals();
-    surface.points.assign(points.begin(), points.end());
-    surface.normals.assign(normals.begin(), normals.end());
-    surface.spacing = spacingAt(object, contact.point);
-    surface.noise   = points.empty() ? 0 : object.survey().noise(points.front());
-    surface.anchor  = anchorOf(surface, object, contact.point);
-    surface.normal  = meanNormal(surface, object, surface.anchor, kFacing * radius);
-    return surface;
-}
-
 SphereFitResult fitSphereTo(const TouchedSurface& surface, const SoftObject& object, double radius)
 {
     std::vector<glm::dvec3> points;
     std::vector<double>     weights;
+    points.reserve(surface.points.size());
+    weights.reserve(surface.points.size());
     for (std::size_t k = 0; k < surface.points.size(); ++k) {
         const glm::dvec3 p     = object.positions()[surface.points[k]];
         const glm::dvec3 d     = p - surface.anchor;
@@ -88,6 +71,80 @@ SphereFitResult fitSphereTo(const TouchedSurface& surface, const SoftObject& obj
         weights.push_back(share * share * faces);
     }
     return fitSphereThrough(surface.anchor, points, weights);
+}
+
+/// Fills in what follows from points and normals.
+void describe(TouchedSurface& surface, const SoftObject& object, const glm::dvec3& contact, double radius)
+{
+    surface.anchor = anchorOf(surface, object, contact);
+    surface.normal = meanNormal(surface, object, surface.anchor, kFacing * radius);
+    surface.sphere = fitSphereTo(surface, object, radius);
+}
+
+/// Takes all points of the ball, their normals turned to the finger's side; empty if they turn too far from the nearest
+/// one's, or if some are known to face the other way.
+std::optional<TouchedSurface> wholeBall(const SoftObject& object, const Contact& contact,
+                                        std::span<const std::uint32_t> ball, std::uint32_t nearest)
+{
+    constexpr double     kAlike = 0.3; // cosine of 73 degrees [1]
+    const SurfaceSurvey& survey = object.survey();
+    const double         side   = glm::dot(survey.normal(nearest), contact.outward) < 0 ? -1 : 1;
+    const glm::dvec3     first  = side * survey.normal(nearest);
+    TouchedSurface       surface;
+    bool                 outward = false, inward = false;
+    surface.normals.reserve(ball.size());
+    for (const std::uint32_t point : ball) {
+        const double cosine = glm::dot(survey.normal(point), first);
+        if (std::abs(cosine) < kAlike) return {};
+        (cosine > 0 ? outward : inward) |= survey.sided(point);
+        if (outward && inward) return {};
+        surface.normals.push_back(cosine < 0 ? -survey.normal(point) : survey.normal(point));
+    }
+    surface.points.assign(ball.begin(), ball.end());
+    return surface;
+}
+
+/// Returns true if every point lies on the sphere, but for noise and half a spacing.
+bool isOneSheet(const TouchedSurface& surface, const SoftObject& object)
+{
+    if (!surface.sphere.usable()) return false;
+    return std::ranges::all_of(surface.points, [&](std::uint32_t point) {
+        const double off = surface.sphere.fit.signedDistance(object.positions()[point]);
+        return std::abs(off) <= kOnSheet * object.survey().spacing(point) + kNoisy * object.survey().noise(point);
+    });
+}
+
+} // namespace
+
+double spacingAt(const SoftObject& object, const glm::dvec3& place)
+{
+    const double here = object.survey().spacing(object.index().nearest(place, 1).front().point);
+    const double all  = object.spacing();
+    return here > kUneven * all || all > kUneven * here ? here : all;
+}
+
+TouchedSurface touchedSurface(const SoftObject& object, const Contact& contact, std::span<const std::uint32_t> ball,
+                              double radius)
+{
+    object.survey().expectSurface();
+    const std::uint32_t nearest = object.index().nearest(contact.point, 1).front().point;
+    const double        spacing = spacingAt(object, contact.point), noise = object.survey().noise(nearest);
+    if (auto whole = wholeBall(object, contact, ball, nearest)) {
+        whole->spacing = spacing;
+        whole->noise   = noise;
+        describe(*whole, object, contact.point, radius);
+        if (isOneSheet(*whole, object)) return std::move(*whole);
+    }
+    SurfaceFlood   flood(object);
+    TouchedSurface surface;
+    const auto     points  = flood.reach(contact.point, radius, contact.outward);
+    const auto     normals = flood.normals();
+    surface.points.assign(points.begin(), points.end());
+    surface.normals.assign(normals.begin(), normals.end());
+    surface.spacing = spacing;
+    surface.noise   = noise;
+    describe(surface, object, contact.point, radius);
+    return surface;
 }
 
 } // namespace palp

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -12,26 +13,27 @@ namespace palp {
 
 /// The piece of the object's surface that a finger touches, without the other side of a thin body.
 struct TouchedSurface {
-    std::vector<std::uint32_t> points;      ///< nearest along the surface first
+    std::vector<std::uint32_t> points;      ///< in no order
     std::vector<glm::dvec3>    normals;     ///< of `points`, their signs as at the contact: towards the finger [1]
     glm::dvec3                 anchor{};    ///< [m] the contact, on the surface that the points around it have
     glm::dvec3                 normal{};    ///< [1] unit, of the surface there, towards the finger
     double                     spacing = 0; ///< [m] of the points there; the cloud's, where the density hardly varies
     double                     noise   = 0; ///< [m] standard deviation of the points there about the surface
+
+    /// The sphere through the anchor. Points count (1 - d^2/r^2)^2, r the radius of the ball, and not where the surface
+    /// has turned by 75 degrees: what lies around an edge is not what the finger lies on.
+    SphereFitResult sphere{};
 };
 
-/// Finds the piece around a contact.
-/// \param radius  of the ball in which it lies [m]
+/// Finds the piece around a contact. Where all points of the ball lie on the sphere fitted to them, and face alike, they
+/// are the piece; elsewhere a flood finds it, which costs some ten times as much.
+/// \param ball    points of the object within `radius` [m] of the contact
 /// \throws Error if the cloud has fewer than seven points or most of them coincide
-[[nodiscard]] TouchedSurface touchedSurface(const SoftObject& object, const Contact& contact, double radius);
+[[nodiscard]] TouchedSurface touchedSurface(const SoftObject& object, const Contact& contact,
+                                            std::span<const std::uint32_t> ball, double radius);
 
 /// Returns the typical distance of neighbouring points at a place [m]: the cloud's, unless the density there is more
 /// than twice or less than half as large. So nothing depends on chance where a cloud is even.
 [[nodiscard]] double spacingAt(const SoftObject& object, const glm::dvec3& place);
-
-/// Fits a sphere through the anchor of the piece. Points count (1 - d^2/r^2)^2, and not where the surface has turned by
-/// 75 degrees: what lies around an edge is not what the finger lies on.
-/// \param radius  r, as given to touchedSurface() [m]
-[[nodiscard]] SphereFitResult fitSphereTo(const TouchedSurface& surface, const SoftObject& object, double radius);
 
 } // namespace palp
