@@ -62,7 +62,8 @@ double quantile(std::vector<double>& values, double share)
 /// What is found about single points.
 struct PointFacts {
     std::vector<std::uint8_t> border, inLine;
-    std::vector<float>        along; ///< to the nearest point [m]
+    std::vector<float>        along;  ///< to the nearest point [m]
+    std::vector<float>        across; ///< to the next line [m]; 0: none is near, or the point is in no line
 };
 
 /// Looks at the points of one piece of the cloud: each thread has its own.
@@ -144,6 +145,21 @@ private:
         facts_.inLine[point] =
             second->distance2 < close * close &&
             std::abs(glm::dot(first->away, second->away)) > kStraight * std::sqrt(first->distance2 * second->distance2);
+        if (facts_.inLine[point]) facts_.across[point] = float(toNextLine(near, first->away, close));
+    }
+
+    /// Returns the distance of the nearest neighbour that does not lie along a direction [m]; 0 if there is none.
+    /// \param close  a neighbour nearer to the line than this lies along it [m]
+    [[nodiscard]] static double toNextLine(std::span<const NearCandidate> near, const glm::dvec3& direction,
+                                           double close)
+    {
+        double least2 = INFINITY;
+        for (const NearCandidate& candidate : near) {
+            const double along   = glm::dot(candidate.away, direction);
+            const double beside2 = candidate.distance2 - along * along / glm::dot(direction, direction);
+            if (beside2 > close * close) least2 = std::min(least2, beside2);
+        }
+        return std::isfinite(least2) ? std::sqrt(least2) : 0;
     }
 
     const SoftObject&          object_;
@@ -185,16 +201,18 @@ void measureNoise(CloudQuality& quality, const SurfaceSurvey& survey, std::size_
 
 void summarise(CloudQuality& quality, const PointFacts& facts)
 {
-    std::vector<double> along;
+    std::vector<double> along, across;
     std::size_t         border = 0;
     for (std::size_t i = 0; i < facts.border.size(); ++i) {
         border += facts.border[i];
         if (facts.inLine[i]) along.push_back(facts.along[i]);
+        if (facts.across[i] > 0) across.push_back(facts.across[i]);
     }
     const double all = double(facts.border.size());
     quality.border   = double(border) / all;
     quality.inLines  = double(along.size()) / all;
     if (!along.empty()) quality.alongLine = quantile(along, 0.5);
+    if (!across.empty()) quality.betweenLines = quantile(across, 0.5);
 }
 
 } // namespace
@@ -212,7 +230,7 @@ CloudQuality cloudQuality(const SoftObject& object)
     measureSpacing(quality, survey.spacings());
     measureNoise(quality, survey, object.size());
     PointFacts facts{std::vector<std::uint8_t>(object.size()), std::vector<std::uint8_t>(object.size()),
-                     std::vector<float>(object.size())};
+                     std::vector<float>(object.size()), std::vector<float>(object.size())};
     const std::vector<std::uint32_t> order = alongCurve(object.positions());
     inParallel(order.size(), kPiece, [&](std::size_t begin, std::size_t end) {
         Looking(object, facts).lookAt(std::span(order).subspan(begin, end - begin));

@@ -17,13 +17,14 @@ struct Spread {
 /// How well the points of an object describe its surface. Everything is 0 for an object without one.
 struct CloudQuality {
     Spread spacing;                ///< see SurfaceSurvey
-    double area  = 0;              ///< of the surface, holes apart: the sum of the squared spacings [m^2]
+    double area  = 0;              ///< of the surface, holes apart: the sum of the squared spacings [m^2]; not of lines
     double noise = 0, noise95 = 0; ///< median, and what 95 % of the points stay below [m]
     double noisy = 0, noisy95 = 0; ///< the same, of the noise over the spacing of the same point [1]
-    double sided     = 0;          ///< share of the points whose outward side is known [1]
-    double border    = 0;          ///< share of the points at a border or beside a hole, see cloudQuality() [1]
-    double inLines   = 0,
-           alongLine = 0; ///< share of the points that lie in lines [1], and their median distance there [m]
+    double sided        = 0;       ///< share of the points whose outward side is known [1]
+    double border       = 0;       ///< share of the points at a border or beside a hole, see cloudQuality() [1]
+    double inLines      = 0;       ///< share of the points that lie in lines [1]
+    double alongLine    = 0;       ///< median distance of neighbours in a line [m]
+    double betweenLines = 0;       ///< median distance from a line to the next [m]; 0: none is near
 
     /// Returns how much coarser the sparse parts are than the dense ones, 5 % of the area apart at either end [1].
     [[nodiscard]] double unevenness() const noexcept { return spacing.low > 0 ? spacing.high / spacing.low : 1; }
@@ -43,7 +44,8 @@ inline constexpr double kFreeAngle = 120;
 /// neighbours are the points within three spacings, its own or theirs, so that a step in density is no border; the other
 /// side of a thin body does not count. Beside a round hole the free angle shows from a radius of three spacings on; smaller
 /// ones are bridged by the touch too.
-/// A point lies in a line if its two nearest points lie on a line through it and much closer than the spacing.
+/// A point lies in a line if its two nearest points lie on a line through it and much closer than the spacing. The
+/// spacing of lines is about half of the distance between them: see SurfaceSurvey.
 /// \thread pure; on all cores: about 2 us of one core a point
 [[nodiscard]] CloudQuality cloudQuality(const SoftObject& object);
 

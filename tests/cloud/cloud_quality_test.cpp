@@ -113,6 +113,7 @@ TEST(CloudQuality, ScanLinesAreToldFromSheets)
     const CloudQuality q = cloudQuality(objectOf(lines)), sheet = cloudQuality(objectOf(random));
     EXPECT_TRUE(q.areLines());
     EXPECT_NEAR(q.alongLine, 0.1e-3, 1e-9);
+    EXPECT_NEAR(q.betweenLines, 2e-3, 1e-8) << "exact but for the rounding of floats";
     EXPECT_FALSE(sheet.areLines());
     EXPECT_LT(sheet.inLines, 0.08) << "9 % times 40 % by chance";
     EXPECT_LT(sheet.border, 0.06) << "the border of 10 000 points is 4 % of them";
