@@ -210,8 +210,7 @@ void RealSession::deformationThread()
         DeformationAnswer answer = solved(*touch, period.begins(began));
         const double      took   = Seconds(Clock::now() - began).count();
         slow_.solve.add(took);
-        ++(answer.update ? slow_.patches : slow_.failedPatches);
-        if (!answer.why.empty()) slow_.why = answer.why;
+        slow_.addPatch(answer.update.has_value(), answer.why);
         if (!answer.update) continue;
         shared_.update.draft() = *answer.update;
         shared_.update.publish();
@@ -297,6 +296,7 @@ SessionSummary RealSession::run(std::string& warning)
     summary_.solve         = slow_.solve;
     summary_.fault         = force_.governor().fault();
     summary_.why           = slow_.why;
+    summary_.whyPatchless  = slow_.whyPatchless;
     return summary_;
 }
 

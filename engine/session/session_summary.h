@@ -22,12 +22,22 @@ struct SessionSummary {
     GovernorFault     fault       = GovernorFault::none;       ///< the last
     DeviceFault       deviceFault = DeviceFault::none;         ///< the first, except while starting up
     std::string       why;                                     ///< the last patch that failed; may be empty
-    DurationHistogram tick;                                    ///< computing a tick [s]
-    DurationHistogram solve;                                   ///< computing a patch [s]
-    DurationHistogram period;                                  ///< from tick to tick [s]; empty on a virtual clock
+    std::uint64_t     forceless       = 0;                     ///< ticks that pressed on the surface without a force
+    std::uint32_t     forcelessFaults = 0;                     ///< of the last of them, see TickRecord
+    std::string       whyPatchless; ///< the last patch that failed before the first that did not; may be empty
+    DurationHistogram tick;         ///< computing a tick [s]
+    DurationHistogram solve;        ///< computing a patch [s]
+    DurationHistogram period;       ///< from tick to tick [s]; empty on a virtual clock
 
     /// Counts a record in.
     void add(const TickRecord& record) noexcept;
+
+    /// Counts a patch in, or one that could not be solved.
+    /// \param reason  of the failure, also of one that a second try mended; may be empty
+    void addPatch(bool solved, const std::string& reason);
+
+    /// Returns why the last tick without a force had none, as the end of a sentence; empty if all had one.
+    [[nodiscard]] std::string whyForceless() const;
 };
 
 /// Receives each record of a session as it is made.

@@ -59,8 +59,7 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
                 DeformationAnswer answer = parts.solver(servo.touch(), double(every) * kTick);
                 summary.solve.add(secondsSince(began));
                 underWay = std::move(answer.update);
-                ++(underWay ? summary.patches : summary.failedPatches);
-                if (!answer.why.empty()) summary.why = answer.why;
+                summary.addPatch(underWay.has_value(), answer.why);
             }
         }
         const double began  = threadSeconds();

@@ -1,15 +1,17 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
-#include "engine/cloud/neighbour_index.h"
 #include "engine/cloud/samples.h"
+#include "engine/core/progress.h"
 #include "engine/core/quantity.h"
 #include "engine/session/scene_mesh.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/quality_report.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/study/hunt_scene.h"
 
@@ -18,6 +20,7 @@ namespace {
 
 struct InfoOptions {
     SceneSource source;
+    std::string picture; ///< a file; empty: none
     bool        json = false;
 };
 
@@ -77,42 +80,62 @@ nlohmann::json scatterJson(const ScatterPlan& plan)
             {"points_about", plan.points}};
 }
 
-void printInfo(const InfoOptions& options)
+/// Prints what was read, and what is known about it.
+void printText(const InfoOptions& options, const LoadedCloud& loaded, const QualityReport& quality,
+               const std::optional<ScatterPlan>& plan, const nlohmann::json& report)
 {
-    const Scene whole           = options.source.load();
-    Scene       scene           = whole;
-    scene.scatter               = Scatter::off; // the file is shown, and what would become of it
-    const LoadedCloud    loaded = options.source.loadCloud(scene);
-    const auto           plan   = scatterPlan(whole, loaded);
-    const NeighbourIndex index(loaded.cloud.positions());
-    nlohmann::json       report = cloudJson(options.source.name, loaded.cloud, loaded.faces, loaded.report);
-    report["point_spacing"]     = index.spacing();
-    report["scatter"]           = plan ? scatterJson(*plan) : nlohmann::json();
-
-    const std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
-    report["warnings"]                      = warnings;
-    if (options.json) {
-        std::cout << jsonText(report);
-        return;
-    }
-    const std::string spacing = index.spacing() > 0 ? formatQuantity(index.spacing(), "m") + " between points"
-                                                    : "unknown (fewer than seven different places)";
-    const std::string unit    = report["stiffness_unit"] == "Pa" ? "Pa" : "N m";
+    const std::string unit = report["stiffness_unit"] == "Pa" ? "Pa" : "N m";
     std::string       properties;
     for (const std::string& property : loaded.report.properties)
         properties += (properties.empty() ? "" : ", ") + property;
     std::cout << options.source.name << ": " << loaded.report.format << ", " << loaded.cloud.size() << " points";
     if (loaded.report.droppedPoints) std::cout << " (" << loaded.report.droppedPoints << " dropped: NaN or infinity)";
     std::cout << "\n  extent      " << span3(report["low"], report["high"]) << "\n  size        "
-              << sizeText(loaded.cloud.bounds()) << "\n  length unit " << loaded.report.lengthUnitSource
-              << "\n  spacing     " << spacing << ", " << loaded.report.duplicatePositions
-              << " exact duplicates merged\n  stiffness   " << formatQuantity(report["stiffness_min"], unit) << " to "
+              << sizeText(loaded.cloud.bounds()) << "\n  length unit " << loaded.report.lengthUnitSource << "\n";
+    printText(quality, loaded.report.duplicatePositions);
+    std::cout << "  stiffness   " << formatQuantity(report["stiffness_min"], unit) << " to "
               << formatQuantity(report["stiffness_max"], unit) << ": " << loaded.report.stiffnessSource << "\n";
     if (loaded.report.faces > 0) std::cout << "  faces       " << facesText(loaded) << "\n";
     if (plan) std::cout << "  scattered   " << scatterText(loaded, *plan) << "\n";
     if (!loaded.normals.empty()) std::cout << "  normals     in the file\n";
     if (!properties.empty()) std::cout << "  properties  " << properties << "\n";
-    for (const std::string& line : warnings) std::cout << "  warning     " << line << "\n";
+    for (const std::string& line : meaningForTouch(quality)) std::cout << "  for touch   " << line << "\n";
+    for (const auto& line : report["warnings"].get<std::vector<std::string>>())
+        std::cout << "  warning     " << line << "\n";
+}
+
+void printInfo(const InfoOptions& options)
+{
+    if (!options.picture.empty()) {
+        demandPictureName("--picture", options.picture);
+        refuseSourceAsTarget("--picture", options.source.name, options.picture);
+    }
+    const Scene whole              = options.source.load();
+    Scene       scene              = whole;
+    scene.scatter                  = Scatter::off; // the file is shown, and what would become of it
+    const LoadedCloud       loaded = options.source.loadCloud(scene);
+    const auto              plan   = scatterPlan(whole, loaded);
+    std::optional<Progress> progress("looking at the points");
+    progress->mayLast();
+    constexpr double    kMostTried = 1e6; // points: enough to judge a mesh by the points through which it is touched
+    const SoftObject    object     = plan && double(plan->points) <= kMostTried
+                                         ? options.source.loadObject(whole).object
+                                         : SoftObject(loaded.cloud, scene.material, loaded.faces, loaded.normals);
+    const QualityReport quality    = qualityReport(object, loaded, scene);
+    progress.reset();
+
+    nlohmann::json report   = cloudJson(options.source.name, loaded.cloud, loaded.faces, loaded.report);
+    report["point_spacing"] = object.spacing();
+    report["scatter"]       = plan ? scatterJson(*plan) : nlohmann::json();
+    report["quality"]       = jsonOf(quality);
+    report["warnings"]      = cloudWarnings(scene, loaded.cloud, loaded.report);
+    if (!options.picture.empty()) {
+        progress.emplace("drawing").mayLast();
+        writeQualityPicture(options.picture, options.source.title(), object, quality.quality);
+        progress.reset();
+        report["picture"] = options.picture;
+    }
+    options.json ? void(std::cout << jsonText(report)) : printText(options, loaded, quality, plan, report);
 }
 
 void printSamples(bool json)
@@ -129,7 +152,7 @@ void printSamples(bool json)
 
 void addInfoCommand(CLI::App& app)
 {
-    CLI::App*  command = app.add_subcommand("info", "shows what a cloud holds and how it is read");
+    CLI::App*  command = app.add_subcommand("info", "shows what a cloud holds, how it is read and how good it is");
     const auto options = std::make_shared<InfoOptions>();
     options->source.addTo(*command, SceneKey::Group::object);
     command->get_option("SCENE")->required(false);
@@ -138,8 +161,11 @@ void addInfoCommand(CLI::App& app)
     command->add_flag("--samples", *list, "lists the procedural samples");
     command->add_flag("--keys", *keys, "lists the keys of scenes, as a table in Markdown");
     command->add_flag("--schema", *schema, "prints the JSON Schema of scene files");
+    command->add_option("--picture", options->picture,
+                        "a new .png or .svg file: the object in the colours of spacing and of noise");
     command->add_flag("--json", options->json, "machine-readable");
     command->footer("Examples:\n"
+                    "  palpate info scan.ply --picture quality.png\n"
                     "  palpate info scan.ply --length-unit mm\n"
                     "  palpate info painted.ply --stiffness-property quality --stiffness-range 20kPa,2MPa\n"
                     "  palpate info --samples");

@@ -28,6 +28,9 @@ nlohmann::json jsonOf(const SessionSummary& s)
             {"ticks_beyond_table", s.beyondTable},
             {"ticks_beyond_theory", s.beyondTheory},
             {"ticks_without_patch", s.patchless},
+            {"ticks_without_force", s.forceless},
+            {"why_without_force", s.forceless > 0 ? nlohmann::json(s.whyForceless()) : nlohmann::json(nullptr)},
+            {"last_failure", s.why.empty() ? nlohmann::json(nullptr) : nlohmann::json(s.why)},
             {"max_force_N", s.mostForce},
             {"max_depth_m", s.mostDepth},
             {"compliance_min_m_per_N", s.leastCompliance},
@@ -48,6 +51,9 @@ void printText(const SessionSummary& s, const std::string& solver, const std::st
         std::cout << "  force at most " << formatQuantity(s.mostForce, "N") << ", depth at most "
                   << formatQuantity(s.mostDepth, "m") << ", compliance " << formatQuantity(s.leastCompliance, "m/N")
                   << " to " << formatQuantity(s.mostCompliance, "m/N") << "\n";
+    if (s.forceless > 0)
+        std::cout << "  without force for " << s.forceless
+                  << " ticks that pressed, the last because: " << s.whyForceless() << "\n";
     std::cout << "  a tick computes " << seconds(s.tick.quantile(0.5)) << " (p99 " << seconds(s.tick.quantile(0.99))
               << ", p99.9 " << seconds(s.tick.quantile(0.999)) << ", most " << seconds(s.tick.most()) << "), a patch "
               << seconds(s.solve.quantile(0.5)) << " (most " << seconds(s.solve.most()) << ")\n";
@@ -63,9 +69,12 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
     const auto               say = [&](std::string sentence) { said.push_back(std::move(sentence)); };
     if (s.contactTicks == 0)
         say("the hand never touched: it must start outside of the object, on the side that it presses");
+    const bool solvedNone = s.patches == 0 && s.failedPatches > 0;
     if (s.contactTicks > 0 && s.mostForce == 0 && s.fault == GovernorFault::none)
-        say("the hand touched, but no force came on: the hand must stay slower than 1.2 m/s for 1.5 s, and the "
-            "device must be homed and in its workspace");
+        say("the hand touched, but no force came on: " +
+            (solvedNone        ? "none of " + std::to_string(s.failedPatches) + " patches could be solved: " + s.why
+             : s.forceless > 0 ? s.whyForceless()
+                               : "it stayed on the surface and never pressed"));
     if (s.fault != GovernorFault::none) say(std::string("the governor stopped the force: ") + name(s.fault));
     if (s.deviceFault != DeviceFault::none) say(std::string("the device reported a fault: ") + name(s.deviceFault));
     if (s.beyondTheory > 0)
@@ -77,7 +86,8 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
     if (10 * s.staleTicks > s.contactTicks) // the first ticks of every touch have an old patch
         say(std::to_string(s.staleTicks) + " ticks had a patch older than three of its periods: lower cells, "
                                            "deformation_rate or table_size");
-    if (s.failedPatches > 0) say(std::to_string(s.failedPatches) + " patches could not be solved: " + s.why);
+    if (s.failedPatches > 0 && !solvedNone)
+        say(std::to_string(s.failedPatches) + " patches could not be solved: " + s.why);
     return said;
 }
 

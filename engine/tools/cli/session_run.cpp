@@ -10,6 +10,7 @@
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/patch_warnings.h"
+#include "engine/session/failure_teller.h"
 #include "engine/session/interrupt.h"
 #include "engine/session/real_session.h"
 #include "engine/session/session_line.h"
@@ -74,6 +75,15 @@ SessionSummary playLive(const SessionOptions& o, double seconds, const SessionPa
     if (line) clearLine();
     if (!warning.empty() && !o.blind) warn({warning});
     return summary;
+}
+
+/// Returns the solver, which also says on standard error why a hand feels nothing.
+PatchSolver telling(PatchSolver solver)
+{
+    return tellingFailures(std::move(solver), [](const std::string& sentence) {
+        if (isatty(STDERR_FILENO) != 0) clearLine(); // which shows what the hand feels
+        warn({sentence});
+    });
 }
 
 std::unique_ptr<Recording> recordingOf(const SessionOptions& o, const SessionParts& parts, SessionClock clock,
@@ -155,7 +165,8 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     const std::atomic<bool>& stop = catchInterrupts();
     waitForHoming(*hand.device, stop);
 
-    const SessionParts parts{scene, loaded.object, deformation.solver(), *hand.device, hand.frame};
+    const SessionParts parts{scene, loaded.object, o.blind ? deformation.solver() : telling(deformation.solver()),
+                             *hand.device, hand.frame};
     const auto         recording = recordingOf(o, parts, clock, run.solver);
     if (!o.blind) warn(run.warnings);
     const OnTick each = [&](const TickRecord& record) {

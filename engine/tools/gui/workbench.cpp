@@ -302,6 +302,8 @@ std::string Workbench::note(const SessionView* view) const
 {
     if (!notices_.current().empty()) return notices_.current();
     if (!notices_.faults().empty()) return notices_.faults().back();
+    if (const std::string why = session_.unsolved(); inContact(view) && !why.empty())
+        return "the plate cannot be solved here: " + why;
     if (const double force = view ? glm::length(view->record.force) : 0; force > 0) return formatQuantity(force, "N");
     return state_.blind ? "hold Space and move: touch.  M: declare a nodule here"
                         : "hold Space and move: touch.  F1: keys";

@@ -8,6 +8,7 @@
 #include "engine/core/contract.h"
 #include "engine/tools/plot/colour_bar.h"
 #include "engine/tools/plot/svg.h"
+#include "engine/tools/render/annotation.h"
 #include "engine/tools/render/cloud_skin.h"
 
 namespace palp {
@@ -49,30 +50,51 @@ ValueRange rangeOf(std::span<const double> values, const CloudFigure& figure)
     return rangeOf(values, Scale::linear).value_or(ValueRange{0, 1});
 }
 
+/// The surface of a cloud, ready to be drawn.
+struct CloudBody {
+    CloudSkin                 skin;
+    std::vector<glm::dvec3>   normals;  ///< [1] of the points where they are now
+    std::vector<std::uint8_t> oneSided; ///< see ViewScene
+};
+
+/// \throws Error if it has no surface
+CloudBody bodyOf(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now, const NeighbourIndex& index)
+{
+    CloudBody               body{CloudSkin(rest, index), {}, {}};
+    std::vector<glm::dvec3> restNormals = body.skin.normals(rest);
+    body.normals                        = body.skin.normals(now);
+    body.oneSided                       = body.skin.turnOutwards(rest, restNormals);
+    for (std::size_t n = 0; n < body.normals.size(); ++n)
+        if (glm::dot(body.normals[n], restNormals[n]) < 0) body.normals[n] = -body.normals[n];
+    return body;
+}
+
+/// Returns a scene without values, whose arrays are those of the arguments.
+ViewScene sceneOf(const CloudBody& body, std::span<const glm::dvec3> now, const Camera& camera)
+{
+    constexpr double kCue = 0.05; // of the picture's height [1]
+    ViewScene        scene;
+    scene.positions = now;
+    scene.normals   = body.normals;
+    scene.radii     = body.skin.radii();
+    scene.cores     = body.skin.cores();
+    scene.oneSided  = body.oneSided;
+    scene.cueRadius = kCue * 2 * camera.halfHeight();
+    return scene;
+}
+
 /// Draws the cloud alone.
 /// \throws Error if it has no surface, compute::ProcessorError if no processor can draw
 Image imageOf(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now, std::span<const double> values,
               const CloudFigure& figure, const Camera& camera, FigureRenderer& renderer)
 {
-    constexpr double kCue = 0.05, kMark = 0.012; // of the picture's height [1]
+    constexpr double kMark = 0.012; // of the picture's height [1]
     if (rest.empty()) throw Error("there are no points");
-    const NeighbourIndex            index(rest);
-    const CloudSkin                 skin(rest, index);
-    std::vector<glm::dvec3>         restNormals = skin.normals(rest), normals = skin.normals(now);
-    const std::vector<std::uint8_t> oneSided = skin.turnOutwards(rest, restNormals);
-    for (std::size_t n = 0; n < normals.size(); ++n)
-        if (glm::dot(normals[n], restNormals[n]) < 0) normals[n] = -normals[n];
-    const double height = 2 * camera.halfHeight(); // of the picture [m]
-
-    ViewScene scene;
-    scene.positions = now;
-    scene.normals   = normals;
-    scene.radii     = skin.radii();
-    scene.cores     = skin.cores();
-    scene.values    = values;
-    scene.oneSided  = oneSided;
-    scene.colours   = {ColourMap::viridis, Scale::linear, rangeOf(values, figure), figure.quantity, figure.unit};
-    scene.cueRadius = kCue * height;
+    const CloudBody body   = bodyOf(rest, now, NeighbourIndex(rest));
+    ViewScene       scene  = sceneOf(body, now, camera);
+    const double    height = 2 * camera.halfHeight(); // of the picture [m]
+    scene.values           = values;
+    scene.colours          = {ColourMap::viridis, Scale::linear, rangeOf(values, figure), figure.quantity, figure.unit};
     for (const glm::dvec3& place : figure.marks) scene.dots.push_back({place, kMark * height, kForceColour});
     return renderer.opened().draw(scene, camera, kSize);
 }
@@ -129,6 +151,29 @@ std::string cloudFigureSvg(std::span<const glm::dvec3> rest, std::span<const glm
         svg.text({corner.x, bottom += 8}, std::to_string(unvalued) + " points without a value are grey.",
                  {.colour = "#595959"});
     return svg.finish({corner.x + size.x + 10 + kColourBarWidth, bottom + 8}, figure.title);
+}
+
+Image cloudPanels(const SoftObject& object, std::span<const CloudPanel> panels, FigureRenderer& renderer)
+{
+    object.survey().expectSurface();
+    CloudFigure figure;
+    figure.direction       = {-0.5, -0.4, -1}; // from above for objects that stand on x and z, from outside for sheets
+    const Camera    camera = cameraOf(object.positions(), figure);
+    const CloudBody body   = bodyOf(object.positions(), object.positions(), object.index());
+    Image           all(kSize.width * int(panels.size()), kSize.height);
+    for (std::size_t n = 0; n < panels.size(); ++n) {
+        PALP_EXPECT(panels[n].values.size() == object.size(), "a panel has a value for each point");
+        ViewScene scene = sceneOf(body, object.positions(), camera);
+        scene.values    = panels[n].values;
+        scene.colours   = panels[n].colours;
+        scene.title     = panels[n].title;
+        scene.note      = panels[n].note;
+        Image image     = renderer.opened().draw(scene, camera, kSize);
+        annotate(image, scene, camera);
+        for (int y = 0; y < kSize.height; ++y)
+            std::copy_n(&image.at(0, y), kSize.width, &all.at(int(n) * kSize.width, y));
+    }
+    return all;
 }
 
 std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> patches, const SurfaceView& view,

@@ -51,6 +51,18 @@ private:
                                          std::span<const double> values, const CloudFigure& figure,
                                          FigureRenderer& renderer);
 
+/// One of several views of a cloud, side by side.
+struct CloudPanel {
+    std::span<const double> values;  ///< one for each point [colours.unit]
+    ViewColours             colours; ///< what they mean
+    std::string             title;
+    std::string             note; ///< a second, smaller line; may be empty
+};
+
+/// Draws an object at rest once for each panel, seen alike, with title, colour bar and a bar of length in each.
+/// \throws Error if the object has no surface, compute::ProcessorError if no processor can draw
+[[nodiscard]] Image cloudPanels(const SoftObject& object, std::span<const CloudPanel> panels, FigureRenderer& renderer);
+
 /// The view of a figure of pressed patches.
 struct SurfaceView {
     std::string title;

@@ -48,6 +48,8 @@ for sample in ellipsoid sheet pad hemisphere saddle skin palm ear-lobe; do holds
 good 'a sample as a file' convert sample:skin skin.ply --points 5000
 good 'info' info skin.ply --json
 holds '"points": 5000'
+holds '"for_touch": ['
+holds '"border_points"'
 good 'ascii, millimetres, a named property' convert skin.ply skin.csv
 good 'touch a sample' touch sample:ellipsoid --points 8000 --cells 32 --out 'a folder' --json
 holds '"felt_stiffness"'
@@ -261,6 +263,23 @@ done
 good 'threads of the paper' run scene.json --threads paper --seconds 0.3
 good 'a fast hand' run scene.json --speed 2 --clock virtual --seconds 1 --json
 holds 'no force came on'
+holds '"ticks_without_force"'
+# contact is never silent: 12 mm between points, and a window that holds one of them
+awk 'BEGIN { print "x,y,z"; for (i = -15; i < 15; ++i) for (j = -15; j < 15; ++j) print 12 * i + 6 "," 12 * j + 6 ",0" }' >coarse.csv
+coarse='coarse.csv --length-unit mm --window 20 --footprint-radius 4 --thickness 4 --place 6,6,0 --from 0,0,1 --hand press --clock virtual --seconds 1 --cells 32'
+# shellcheck disable=SC2086  # a list of words
+{
+    good 'a touch without a patch' run $coarse
+    holds 'ticks that pressed, the last because: at ('
+    holds '1 points of the touched surface'
+    [ "$(grep -c 'the hand touches and feels nothing' err.txt)" -eq 1 ] && passed=$((passed + 1)) || complain "a touch without a patch is not said once: $(cat err.txt)"
+    good 'a touch without a patch, for scripts' run $coarse --json
+    holds '"patches": 0'
+    grep -q '"why_without_force": "at (.*1 points of the touched surface' out.txt && passed=$((passed + 1)) || complain "no reason in the summary: $(cat out.txt)"
+    good 'which info foretells' info coarse.csv --length-unit mm
+    holds 'spacing     12'
+    holds 'covers only'
+}
 sed 's/"samples": [0-9]*/"samples": 7/' held-arm/session.json >cut.json && mv cut.json held-arm/session.json
 bad 'a damaged recording' 'the recording is damaged' replay held-arm --compare
 "$palpate" run scene.json --clock virtual --seconds 3000 --record stopped >out.txt 2>err.txt &
@@ -571,6 +590,7 @@ good 'a mesh as another' convert mesh.ply mesh2.ply
 holds '5 triangles'
 good 'which has its faces' info mesh2.ply
 holds '5 triangles of 5 faces'
+holds '100 % by faces'
 good 'a mesh as text' convert mesh.ply mesh.csv --json
 holds 'only .ply files hold faces'
 cat >surface.vtk <<'VTK'
@@ -683,6 +703,13 @@ JSON
     holds 'mm, from the setting'
     good 'info of its scene' info scan.json
     holds '20.0 kPa to 2.00 MPa'
+    holds 'of the points are at a border or beside a hole'
+    holds "no point's outward side is known"
+    good 'a picture of its quality' info $words --picture quality.png --json
+    holds '"picture": "quality.png"'
+    png quality.png 1800 700
+    good 'the same as SVG' info $words --picture quality.svg
+    bad 'a picture of another kind' '.png or .svg' info $words --picture quality.jpg
     good 'touch the scan' touch $words $touched --json
     cp out.txt touched.txt
     good 'touch its scene' touch scan.json --json

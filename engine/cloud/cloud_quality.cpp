@@ -1,0 +1,242 @@
+#include "engine/cloud/cloud_quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "engine/cloud/detail/neighbourhoods.h"
+#include "engine/core/parallel.h"
+
+namespace palp {
+namespace {
+
+constexpr std::size_t kPiece = 4096; ///< least points of a thread
+
+/// Radius of a neighbourhood [spacings of the point, or of the neighbour].
+constexpr double kReach = 3;
+
+/// Radius in which sparser neighbours are looked for [radii of the neighbourhood]: over it, a step in density is a
+/// border. Survey and charts bear steps of up to 8.
+constexpr double kSparser = 4;
+
+/// Neighbours that lie steeper over the tangent plane belong to another sheet [1]: the sine of 64 degrees. The faces at
+/// the corner of a cube rise by 55.
+constexpr double kSteep = 0.9;
+
+/// Height over the tangent plane that noise may make [standard deviations].
+constexpr double kNoisy = 3;
+
+/// The two nearest points of one in a line are closer than this [spacings], of a random sheet those of 9 % are; and the
+/// cosine between their directions is larger than this, of random ones in 40 %.
+constexpr double kClose = 0.4, kStraight = 0.8;
+
+struct Weighted {
+    double value = 0, weight = 0;
+};
+
+/// Returns the least value below which at least that share of the weight lies.
+/// \param sorted  not empty
+double quantile(std::span<const Weighted> sorted, double share, double all)
+{
+    double sum = 0;
+    for (const Weighted& one : sorted)
+        if ((sum += one.weight) >= share * all) return one.value;
+    return sorted.back().value;
+}
+
+/// Returns the value below which that share of the values lies; reorders them.
+double quantile(std::vector<double>& values, double share)
+{
+    const auto place =
+        values.begin() + std::ptrdiff_t(std::min(values.size() - 1, std::size_t(share * double(values.size()))));
+    std::nth_element(values.begin(), place, values.end());
+    return *place;
+}
+
+/// What is found about single points.
+struct PointFacts {
+    std::vector<std::uint8_t> border, inLine;
+    std::vector<float>        along;  ///< to the nearest point [m]
+    std::vector<float>        across; ///< to the next line [m]; 0: none is near, or the point is in no line
+};
+
+/// Looks at the points of one piece of the cloud: each thread has its own.
+class Looking {
+public:
+    Looking(const SoftObject& object, PointFacts& facts)
+        : object_(object), survey_(object.survey()), facts_(facts), neighbourhoods_(object.positions(), object.index())
+    {
+    }
+
+    void lookAt(std::span<const std::uint32_t> order)
+    {
+        const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacing(point); };
+        neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near, double) {
+            lookForLine(point, near);
+            if (glm::dot(survey_.normal(point), survey_.normal(point)) == 0) return; // no surface, so no border either
+            angles_.clear();
+            for (const NearCandidate& candidate : near)
+                if (candidate.distance2 <= radius(point) * radius(point)) addAngle(point, candidate);
+            facts_.border[point] = freeAngle() > kFree && !isBesideSparser(point);
+        });
+    }
+
+private:
+    static constexpr double kFree = kFreeAngle * std::numbers::pi / 180; // [rad]
+
+    /// Adds the direction of a neighbour in the tangent plane, unless it belongs to another sheet.
+    void addAngle(std::uint32_t point, const NearCandidate& candidate)
+    {
+        if (candidate.point == point || !(candidate.distance2 > 0)) return;
+        const glm::dvec3 normal = survey_.normal(point), away = candidate.away;
+        const double     height = std::abs(glm::dot(normal, away));
+        if (height > kSteep * std::sqrt(candidate.distance2) + kNoisy * survey_.noise(point)) return;
+        if (survey_.sided(point) && survey_.sided(candidate.point) &&
+            glm::dot(normal, survey_.normal(candidate.point)) < 0)
+            return;
+        const glm::dvec3 helper = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+        const glm::dvec3 east   = glm::normalize(glm::cross(helper, normal));
+        angles_.push_back(std::atan2(glm::dot(away, glm::cross(normal, east)), glm::dot(away, east)));
+    }
+
+    /// Returns the widest angle without a neighbour [rad].
+    [[nodiscard]] double freeAngle()
+    {
+        if (angles_.empty()) return 2 * std::numbers::pi;
+        std::ranges::sort(angles_);
+        double widest = angles_.front() + 2 * std::numbers::pi - angles_.back();
+        for (std::size_t k = 1; k < angles_.size(); ++k) widest = std::max(widest, angles_[k] - angles_[k - 1]);
+        return widest;
+    }
+
+    /// Adds the points that count this one among their neighbours; returns whether they close the angle.
+    bool isBesideSparser(std::uint32_t point)
+    {
+        const glm::dvec3 place = object_.positions()[point];
+        const double     own   = kReach * survey_.spacing(point);
+        object_.index().gather(place, kSparser * own, found_);
+        for (const std::uint32_t other : found_) {
+            const glm::dvec3 away      = object_.positions()[other] - place;
+            const double     distance2 = glm::dot(away, away), reach = kReach * survey_.spacing(other);
+            if (distance2 > own * own && distance2 <= reach * reach) addAngle(point, {other, away, distance2});
+        }
+        return freeAngle() <= kFree;
+    }
+
+    void lookForLine(std::uint32_t point, std::span<const NearCandidate> near)
+    {
+        const NearCandidate *first = nullptr, *second = nullptr;
+        for (const NearCandidate& candidate : near) {
+            if (candidate.point == point || !(candidate.distance2 > 0)) continue;
+            if (!first || candidate.distance2 < first->distance2)
+                second = std::exchange(first, &candidate);
+            else if (!second || candidate.distance2 < second->distance2)
+                second = &candidate;
+        }
+        if (!second) return;
+        const double close  = kClose * survey_.spacing(point);
+        facts_.along[point] = float(std::sqrt(first->distance2));
+        facts_.inLine[point] =
+            second->distance2 < close * close &&
+            std::abs(glm::dot(first->away, second->away)) > kStraight * std::sqrt(first->distance2 * second->distance2);
+        if (facts_.inLine[point]) facts_.across[point] = float(toNextLine(near, first->away, close));
+    }
+
+    /// Returns the distance of the nearest neighbour that does not lie along a direction [m]; 0 if there is none.
+    /// \param close  a neighbour nearer to the line than this lies along it [m]
+    [[nodiscard]] static double toNextLine(std::span<const NearCandidate> near, const glm::dvec3& direction,
+                                           double close)
+    {
+        double least2 = INFINITY;
+        for (const NearCandidate& candidate : near) {
+            const double along   = glm::dot(candidate.away, direction);
+            const double beside2 = candidate.distance2 - along * along / glm::dot(direction, direction);
+            if (beside2 > close * close) least2 = std::min(least2, beside2);
+        }
+        return std::isfinite(least2) ? std::sqrt(least2) : 0;
+    }
+
+    const SoftObject&          object_;
+    const SurfaceSurvey&       survey_;
+    PointFacts&                facts_;
+    Neighbourhoods             neighbourhoods_;
+    std::vector<double>        angles_; ///< [rad] of the neighbours in the tangent plane
+    std::vector<std::uint32_t> found_;
+};
+
+void measureSpacing(CloudQuality& quality, std::span<const double> spacings)
+{
+    std::vector<Weighted> sorted;
+    sorted.reserve(spacings.size());
+    for (const double s : spacings) {
+        sorted.push_back({s, s * s});
+        quality.area += s * s;
+    }
+    std::ranges::sort(sorted, {}, &Weighted::value);
+    const auto at   = [&](double share) { return quantile(sorted, share, quality.area); };
+    quality.spacing = {sorted.front().value, at(0.05), at(0.5), at(0.95), sorted.back().value};
+}
+
+void measureNoise(CloudQuality& quality, const SurfaceSurvey& survey, std::size_t points)
+{
+    std::vector<double> noise(points), noisy(points);
+    std::size_t         sided = 0;
+    for (std::size_t i = 0; i < points; ++i) {
+        noise[i] = survey.noise(i);
+        noisy[i] = survey.noise(i) / survey.spacing(i);
+        sided += survey.sided(i);
+    }
+    quality.noise   = quantile(noise, 0.5);
+    quality.noise95 = quantile(noise, 0.95);
+    quality.noisy   = quantile(noisy, 0.5);
+    quality.noisy95 = quantile(noisy, 0.95);
+    quality.sided   = double(sided) / double(points);
+}
+
+void summarise(CloudQuality& quality, const PointFacts& facts)
+{
+    std::vector<double> along, across;
+    std::size_t         border = 0;
+    for (std::size_t i = 0; i < facts.border.size(); ++i) {
+        border += facts.border[i];
+        if (facts.inLine[i]) along.push_back(facts.along[i]);
+        if (facts.across[i] > 0) across.push_back(facts.across[i]);
+    }
+    const double all = double(facts.border.size());
+    quality.border   = double(border) / all;
+    quality.inLines  = double(along.size()) / all;
+    if (!along.empty()) quality.alongLine = quantile(along, 0.5);
+    if (!across.empty()) quality.betweenLines = quantile(across, 0.5);
+}
+
+} // namespace
+
+double CloudQuality::pointsUnder(double radius) const noexcept
+{
+    return spacing.typical > 0 ? std::numbers::pi * radius * radius / (spacing.typical * spacing.typical) : 0;
+}
+
+CloudQuality cloudQuality(const SoftObject& object)
+{
+    CloudQuality         quality;
+    const SurfaceSurvey& survey = object.survey();
+    if (survey.spacings().empty()) return quality;
+    measureSpacing(quality, survey.spacings());
+    measureNoise(quality, survey, object.size());
+    PointFacts facts{std::vector<std::uint8_t>(object.size()), std::vector<std::uint8_t>(object.size()),
+                     std::vector<float>(object.size()), std::vector<float>(object.size())};
+    const std::vector<std::uint32_t> order = alongCurve(object.positions());
+    inParallel(order.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+        Looking(object, facts).lookAt(std::span(order).subspan(begin, end - begin));
+    });
+    summarise(quality, facts);
+    return quality;
+}
+
+} // namespace palp

@@ -1,0 +1,248 @@
+#include "engine/tools/cli/quality_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/file.h"
+#include "engine/core/quantity.h"
+#include "engine/tools/plot/svg.h"
+#include "engine/tools/render/cloud_figure.h"
+
+// What palpate info says about the quality of a scan, and what follows from it for a touch.
+
+namespace palp {
+namespace {
+
+constexpr double kNoisy  = 0.25; ///< noise above which the touch smooths more widely than it would [spacings]
+constexpr double kUneven = 3;    ///< ratio of the spacings of sparse and dense parts that is worth a word [1]
+constexpr double kStep   = 0.1;  ///< rounding that is worth a word [spacings]
+
+std::string metres(double length)
+{
+    return formatQuantity(length, "m");
+}
+
+std::string spacings(double ratio)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f spacings", ratio);
+    return text;
+}
+
+/// Returns a number of points with two digits: "0.9", "12", "1300".
+std::string roughly(double count)
+{
+    char text[32];
+    if (count >= 10) {
+        const double step = std::pow(10.0, std::floor(std::log10(count)) - 1);
+        std::snprintf(text, sizeof text, "%.0f", std::round(count / step) * step);
+    } else
+        std::snprintf(text, sizeof text, "%.1f", count);
+    return text;
+}
+
+std::string onFingertip(const QualityReport& r)
+{
+    constexpr double  kWanted = 2; // spacings in a radius: the touch warns below
+    const Spread&     s       = r.quality.spacing;
+    const std::string tip     = "the fingertip's radius is " + metres(r.fingertip);
+    if (r.fingertip < kWanted * s.typical)
+        return tip + " and covers only " + roughly(r.quality.pointsUnder(r.fingertip)) +
+               " points: stiffness between the points is interpolated, finer detail is not in the data";
+    const std::string good =
+        tip + " and covers some " + roughly(r.quality.pointsUnder(r.fingertip)) + " points: dense enough";
+    if (r.fingertip >= kWanted * s.high) return good;
+    return good + ", but not where they are " + metres(s.high) + " apart";
+}
+
+/// The same for points in lines, whose density along a line says nothing.
+std::string linesOnFingertip(const QualityReport& r)
+{
+    constexpr double kWanted = 3; // lines under a fingertip: fewer are felt one by one
+    const double     lines   = 2 * r.fingertip / r.quality.betweenLines;
+    return "the fingertip's radius is " + metres(r.fingertip) + " and covers " + (lines < kWanted ? "only " : "some ") +
+           roughly(lines) + " of the lines in which the points lie, " + metres(r.quality.alongLine) +
+           " apart along a line and " + metres(r.quality.betweenLines) +
+           " from line to line: the touch is as coarse as the lines are apart";
+}
+
+std::string onNoise(const CloudQuality& q)
+{
+    const bool   everywhere = q.noisy > kNoisy;
+    const double sigma      = everywhere ? q.noise : q.noise95;
+    return std::string("the points scatter by more than a quarter of a spacing") +
+           (everywhere ? "" : " in places, where you should expect a blurred touch") +
+           ": the touch averages over 6 sigma, " + metres(6 * sigma) + ", and finer shapes are lost";
+}
+
+std::string onSides(const QualityReport& r)
+{
+    return std::string(r.quality.sided == 0 ? "no point's outward side is known"
+                                            : "elsewhere the outward side is not known") +
+           ": open, or the sides are far apart, and the side is the one the hand comes from";
+}
+
+std::vector<double> noiseInSpacings(const SurfaceSurvey& survey, std::size_t points)
+{
+    std::vector<double> values(points);
+    for (std::size_t i = 0; i < points; ++i) values[i] = survey.noise(i) / survey.spacing(i);
+    return values;
+}
+
+} // namespace
+
+std::string percentText(double share)
+{
+    if (share == 0) return "0 %";
+    if (share < 1e-3) return "<0.1 %";
+    char text[32];
+    std::snprintf(text, sizeof text, share < 0.0995 ? "%.1f %%" : "%.0f %%", 100 * share);
+    return share < 1 && text == std::string("100 %") ? "almost 100 %" : text;
+}
+
+SideSources sideSources(const SoftObject& object, std::span<const glm::vec3> normals)
+{
+    std::vector<std::uint8_t> given(object.size()); // 1: its side was handed to the survey
+    for (std::size_t i = 0; i < normals.size(); ++i) given[i] = normals[i] != glm::vec3(0);
+    if (normals.empty())
+        for (const Triangle& face : object.faces())
+            for (const std::uint32_t corner : face) given[corner] = 1;
+    std::size_t fromGiven = 0, sided = 0;
+    for (std::size_t i = 0; i < object.size(); ++i) {
+        sided += object.survey().sided(i);
+        fromGiven += object.survey().sided(i) && given[i];
+    }
+    const double all   = double(object.size());
+    const double share = double(fromGiven) / all;
+    return {normals.empty() ? 0 : share, normals.empty() ? share : 0, double(sided - fromGiven) / all};
+}
+
+QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded, const Scene& scene)
+{
+    return {cloudQuality(object), sideSources(object, loaded.normals), loaded.report.coordinateRounding,
+            scene.patch.footprintRadius, scene.patch.window};
+}
+
+std::vector<std::string> meaningForTouch(const QualityReport& r)
+{
+    constexpr double         kFewestAcross = 3; // points across a patch window: 9 in all are asked for
+    const CloudQuality&      q             = r.quality;
+    std::vector<std::string> said;
+    if (!(q.spacing.typical > 0)) return {"there is no surface to touch: too few points in different places"};
+    said.push_back(q.areLines() && q.betweenLines > 0 ? linesOnFingertip(r) : onFingertip(r));
+    if (r.window < kFewestAcross * q.spacing.high)
+        said.push_back(
+            "the patch window of " + metres(r.window) +
+            " holds fewer than 9 points where the points are sparse: nothing can be felt there; set --window to " +
+            metres(2 * kFewestAcross * q.spacing.high) + " or more");
+    if (q.noisy95 > kNoisy) said.push_back(onNoise(q));
+    if (q.noise > r.fingertip / 4)
+        said.push_back(
+            "the noise of " + metres(q.noise) +
+            " is more than a quarter of the fingertip: forces are no better than the depth of a press, which is "
+            "uncertain by as much");
+    if (q.unevenness() > kUneven)
+        said.push_back("the spacing varies by a factor of " + roughly(q.unevenness()) +
+                       ": the sparse parts are felt as coarsely as their own points lie");
+    if (q.border > 0) said.push_back("at borders and holes the sheet goes on with the stiffness of the nearest points");
+    if (q.sided < 0.995) said.push_back(onSides(r));
+    if (r.rounding > kStep * q.spacing.typical)
+        said.push_back("the coordinates are rounded to steps of " + metres(r.rounding) + ", " +
+                       spacings(r.rounding / q.spacing.typical) + ": the surface is felt as stairs");
+    return said;
+}
+
+nlohmann::json jsonOf(const QualityReport& r)
+{
+    const CloudQuality& q = r.quality;
+    return {{"spacing",
+             {{"min", q.spacing.least},
+              {"p5", q.spacing.low},
+              {"median", q.spacing.typical},
+              {"p95", q.spacing.high},
+              {"max", q.spacing.most}}},
+            {"area", q.areLines() ? nlohmann::json(nullptr) : nlohmann::json(q.area)},
+            {"noise", {{"median", q.noise}, {"p95", q.noise95}}},
+            {"noise_in_spacings", {{"median", q.noisy}, {"p95", q.noisy95}}},
+            {"sides_known",
+             {{"all", q.sided}, {"file", r.sides.file}, {"faces", r.sides.faces}, {"layers", r.sides.layers}}},
+            {"border_points", q.border},
+            {"points_in_lines", q.inLines},
+            {"spacing_between_lines", q.areLines() ? nlohmann::json(q.betweenLines) : nlohmann::json(nullptr)},
+            {"spacing_along_lines", q.areLines() ? nlohmann::json(q.alongLine) : nlohmann::json(nullptr)},
+            {"coordinate_rounding", r.rounding},
+            {"footprint_radius", r.fingertip},
+            {"points_under_footprint", q.pointsUnder(r.fingertip)},
+            {"window", r.window},
+            {"for_touch", meaningForTouch(r)}};
+}
+
+void printText(const QualityReport& r, std::size_t duplicates)
+{
+    const CloudQuality& q      = r.quality;
+    const std::string   merged = std::to_string(duplicates) + " exact duplicates merged\n";
+    if (!(q.spacing.typical > 0)) {
+        std::cout << "  spacing     unknown (fewer than seven different places), " << merged;
+        return;
+    }
+    std::cout << "  spacing     " << metres(q.spacing.typical) << " between points; 90 % of the area "
+              << metres(q.spacing.low) << " to " << metres(q.spacing.high) << ", all " << metres(q.spacing.least)
+              << " to " << metres(q.spacing.most) << "; " << merged << "  noise       " << metres(q.noise) << " ("
+              << spacings(q.noisy) << "); 95 % of the points below " << metres(q.noise95) << " (" << spacings(q.noisy95)
+              << ")\n";
+    std::cout << "  sides       known for " << percentText(q.sided) << " of the points";
+    const char* joint = ": ";
+    for (const auto& [share, source] : {std::pair{r.sides.file, "normals in the file"},
+                                        {r.sides.faces, "faces"},
+                                        {r.sides.layers, "the other side is near"}}) {
+        if (share == 0) continue;
+        std::cout << joint << percentText(share) << " by " << source;
+        joint = ", ";
+    }
+    std::cout << "\n  borders     " << percentText(q.border) << " of the points are at a border or beside a hole\n";
+}
+
+void demandPictureName(const std::string& option, const std::string& file)
+{
+    const auto ending = std::filesystem::path(file).extension();
+    if (ending != ".png" && ending != ".svg")
+        throw Error(option + ": expected a file that ends in .png or .svg, found \"" + file + "\"");
+}
+
+void writeQualityPicture(const std::filesystem::path& file, const std::string& title, const SoftObject& object,
+                         const CloudQuality& quality)
+{
+    constexpr double kEven = 1.5; // colours span at least this factor to either side: even clouds look even [1]
+    const Spread&    s     = quality.spacing;
+    const std::vector<double> noise = noiseInSpacings(object.survey(), object.size());
+    const ValueRange          range{std::min(s.low, s.typical / kEven), std::max(s.high, s.typical * kEven)};
+    const Scale               scale    = range.high > 10 * range.low ? Scale::logarithmic : Scale::linear;
+    const CloudPanel          panels[] = {
+                 {object.survey().spacings(),
+                  {ColourMap::viridis, scale, range, "spacing", "m"},
+                  title,
+                  metres(s.typical) + " between points; 90 % of the area " + metres(s.low) + " to " + metres(s.high)},
+                 {noise,
+                  {ColourMap::cividis, Scale::linear, {0, std::max(2 * kNoisy, quality.noisy95)}, "noise [spacings]", "1"},
+                  "noise",
+                  metres(quality.noise) + ", " + spacings(quality.noisy) + "; the touch smooths more above " +
+                      spacings(kNoisy)}};
+    FigureRenderer renderer;
+    const Image    image = cloudPanels(object, panels, renderer);
+    std::string    bytes;
+    if (file.extension() == ".svg") {
+        SvgDrawing       svg;
+        const glm::dvec2 size(image.width, image.height);
+        svg.image({0, 0}, size, image);
+        bytes = svg.finish(size, title + ": spacing and noise");
+    } else
+        bytes = encodePng(image);
+    writeFileWhole(file, [&](std::ostream& stream) { stream << bytes; });
+}
+
+} // namespace palp
