@@ -69,6 +69,25 @@ TEST(PointTree, FindsThePointsOfABallAndTheBallsAboutAPlace)
     }
 }
 
+TEST(PointTree, ALargeCloudIsBuiltByThreadsAndSearchedAlike)
+{
+    // So many that other threads build parts of the tree, a sheet whose points are 1 apart.
+    std::mt19937_64                  random(7);
+    std::uniform_real_distribution<> unit(-200, 200);
+    std::vector<glm::dvec3>          positions;
+    for (int i = 0; i < 160'000; ++i) positions.emplace_back(unit(random), unit(random), 0.01 * unit(random));
+    const PointTree tree(positions, std::vector<double>(positions.size(), 1));
+    for (int k = 0; k < 20; ++k) {
+        const glm::dvec3 place(unit(random), unit(random), 0);
+        std::set<Place>  inside, found;
+        for (const glm::dvec3& p : positions)
+            if (glm::length(p - place) < 6) inside.insert(key(p));
+        tree.inside(place, 6, 0, [&](const NearPoint& p) { return found.insert(key(p.position)).second; });
+        EXPECT_EQ(found, inside);
+        EXPECT_LT(tree.firstTouch(place + glm::dvec3(0, 0, 20), place - glm::dvec3(0, 0, 20)), 1);
+    }
+}
+
 TEST(PointTree, AWayEndsAtTheFirstBallThatItEnters)
 {
     const Cloud     cloud;

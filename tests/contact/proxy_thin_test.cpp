@@ -58,9 +58,10 @@ TEST(ProxyThin, PressesFindTheNearFace)
 {
     for (const double speed : {0.1, 0.5})
         for (const auto& [gap, most] : {std::pair(2.0, 0), {1.0, 1}, {0.5, 5}}) {
-            const Wrong wrong = presses(gap, speed);
-            EXPECT_LE(wrong.any, most) << record(testing::PrintToString(wrong),
-                                                 "gap " + std::to_string(gap) + ", speed " + std::to_string(speed));
+            const Wrong       wrong = presses(gap, speed);
+            const std::string name  = "gap " + std::to_string(gap) + ", speed " + std::to_string(speed);
+            SCOPED_TRACE(record(testing::PrintToString(wrong), name));
+            EXPECT_LE(wrong.any, most);
         }
 }
 
@@ -97,7 +98,8 @@ TEST(ProxyThin, FlippedFacesOpenNoHoles)
         touch.start({-15, 0.3, 5});
         touch.move({-15, 0.3, -depth}, 0.5);
         touch.move({15, 0.3, -depth}, 0.1, [&] { least = std::min(least, touch.pull().z); });
-        EXPECT_GT(least, 0.85 * depth) << record(std::to_string(least), "flipped within " + std::to_string(flipped));
+        SCOPED_TRACE(record(std::to_string(least), "flipped within " + std::to_string(flipped)));
+        EXPECT_GT(least, 0.85 * depth);
         for (const double x : {-5.0, -2.0, 0.0, 3.0}) {
             touch.start({x, 0, 5});
             touch.move({x, 0, -depth}, 0.1);

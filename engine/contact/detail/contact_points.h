@@ -26,7 +26,7 @@ namespace palp {
 /// \source the projection: Levin 1998, The approximation power of moving least squares; the scale is our own
 class ContactPoints {
 public:
-    /// Takes about 2 s of one core for a million noisy points, on all cores; nothing much where all are clean.
+    /// Takes about 3 s of one core for a million noisy points, on all cores; nothing much where all are clean.
     /// \param object  outlives this: clean points are not copied
     /// \throws Error if most of the points coincide
     explicit ContactPoints(const SoftObject& object);

@@ -1,7 +1,10 @@
 #include "engine/contact/detail/point_tree.h"
 
 #include <cmath>
+#include <future>
 #include <numeric>
+#include <thread>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -24,6 +27,9 @@ constexpr double kFiner = 2;
 /// Number of levels beyond the sparsest point: where a volume is full of points, even a coarse level has many.
 constexpr int kSpareLevels = 3;
 constexpr int kMostLevels  = 100;
+
+/// Points whose part of the tree is worth a thread.
+constexpr std::size_t kWorthAThread = 50'000;
 
 /// Keeps those points that come first in their cube.
 void thin(std::span<const glm::dvec3> positions, double side, std::vector<std::uint32_t>& points)
@@ -58,6 +64,29 @@ struct PointTree::Builder {
     std::vector<std::uint8_t>   shown; ///< level by point
     std::vector<std::uint32_t>  order;
 
+    /// Some nodes that follow each other, and their points.
+    struct Part {
+        std::vector<Node>         nodes;
+        std::vector<NearPoint>    points;
+        std::vector<std::uint8_t> shownUntil;
+
+        void reserve(std::size_t count)
+        {
+            points.reserve(count);
+            shownUntil.reserve(count);
+        }
+        void append(Part&& other)
+        {
+            for (Node& node : other.nodes) {
+                node.next += std::uint32_t(nodes.size());
+                node.first += std::uint32_t(points.size());
+            }
+            nodes.insert(nodes.end(), other.nodes.begin(), other.nodes.end());
+            points.insert(points.end(), other.points.begin(), other.points.end());
+            shownUntil.insert(shownUntil.end(), other.shownUntil.begin(), other.shownUntil.end());
+        }
+    };
+
     /// Sets the level up to which each point is shown.
     void setLevels()
     {
@@ -83,8 +112,9 @@ struct PointTree::Builder {
         }
     }
 
-    /// Adds the node of a part of `order` and all below it.
-    void add(std::size_t from, std::size_t to)
+    /// Adds the node of a part of `order` and all below it. A large half is built by another thread, into a part of its
+    /// own that then follows: the tree does not depend on the number of threads.
+    void add(Part& part, std::size_t from, std::size_t to, unsigned threads)
     {
         Node   node{positions[order[from]], positions[order[from]], 0, 0, 0, 0, 0};
         double least = spacings[order[from]];
@@ -98,15 +128,15 @@ struct PointTree::Builder {
         }
         const glm::dvec3 size = node.high - node.low;
         if (to - from > kStacked && glm::length(size) < least) to = keepSome(from, to);
-        const std::size_t here = tree.nodes_.size();
-        tree.nodes_.push_back(node);
+        const std::size_t here = part.nodes.size();
+        part.nodes.push_back(node);
         if (to - from <= kLeaf) {
-            tree.nodes_[here].first = std::uint32_t(tree.points_.size());
-            tree.nodes_[here].count = std::uint16_t(to - from);
+            part.nodes[here].first = std::uint32_t(part.points.size());
+            part.nodes[here].count = std::uint16_t(to - from);
             for (std::size_t k = from; k < to; ++k) {
                 const std::uint32_t i = order[k];
-                tree.points_.push_back({positions[i], spacings[i], marks.empty() ? PointMark() : marks[i]});
-                tree.shownUntil_.push_back(shown[i]);
+                part.points.push_back({positions[i], spacings[i], marks.empty() ? PointMark() : marks[i]});
+                part.shownUntil.push_back(shown[i]);
             }
         } else {
             const int  axis   = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -116,10 +146,21 @@ struct PointTree::Builder {
                 const double x = positions[a][axis], y = positions[b][axis];
                 return x != y ? x < y : a < b;
             });
-            add(from, middle);
-            add(middle, to);
+            if (threads > 1 && to - from > kWorthAThread) {
+                Part far;
+                auto other = std::async(std::launch::async, [&] {
+                    far.reserve(to - middle);
+                    add(far, middle, to, threads / 2);
+                });
+                add(part, from, middle, threads - threads / 2);
+                other.get();
+                part.append(std::move(far));
+            } else {
+                add(part, from, middle, 1);
+                add(part, middle, to, 1);
+            }
         }
-        tree.nodes_[here].next = std::uint32_t(tree.nodes_.size());
+        part.nodes[here].next = std::uint32_t(part.nodes.size());
     }
 
     /// Keeps the points that are shown longest, and an even choice of the others; returns the new end.
@@ -145,9 +186,12 @@ PointTree::PointTree(std::span<const glm::dvec3> positions, std::span<const doub
     Builder builder{*this, positions, spacings, marks, {}, std::vector<std::uint32_t>(positions.size())};
     builder.setLevels();
     std::iota(builder.order.begin(), builder.order.end(), 0U);
-    points_.reserve(positions.size());
-    shownUntil_.reserve(positions.size());
-    builder.add(0, positions.size());
+    Builder::Part whole;
+    whole.reserve(positions.size());
+    builder.add(whole, 0, positions.size(), std::max(1U, std::thread::hardware_concurrency()));
+    nodes_      = std::move(whole.nodes);
+    points_     = std::move(whole.points);
+    shownUntil_ = std::move(whole.shownUntil);
 }
 
 bool PointTree::mixed() const noexcept
