@@ -10,7 +10,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/cloud/detail/neighbourhoods.h"
+#include "engine/cloud/neighbourhoods.h"
 #include "engine/core/parallel.h"
 
 namespace palp {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "engine/cloud/detail/neighbourhoods.h"
+#include "engine/cloud/neighbourhoods.h"
 #include "engine/core/contract.h"
 #include "engine/core/parallel.h"
 

@@ -233,7 +233,8 @@ const std::array<Shape, 8>& shapes()
          [](Uniform& u) { return onHeightField(u, kPalm, palm); },
          palmModulus},
         {{"ear-lobe",
-          "two thin sheets, 28 by 36 mm, 3 mm apart in the middle, 0.4 MPa at the tip to 1 MPa at the root, the back twice that",
+          "two thin sheets, 28 by 36 mm, 3 mm apart in the middle, 0.4 MPa at the tip to 1 MPa at the root, the back "
+          "twice that",
           20'000,
           {3e-3, 0.45},
           0,

@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 
 #include "engine/cloud/detail/local_shape.h"
-#include "engine/cloud/detail/neighbourhoods.h"
 #include "engine/cloud/local_spacing.h"
+#include "engine/cloud/neighbourhoods.h"
 #include "engine/core/contract.h"
 #include "engine/core/parallel.h"
 

@@ -9,7 +9,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/cloud/detail/neighbourhoods.h"
+#include "engine/cloud/neighbourhoods.h"
 #include "engine/contact/detail/surface_projector.h"
 #include "engine/core/parallel.h"
 

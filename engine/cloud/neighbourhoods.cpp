@@ -1,4 +1,4 @@
-#include "engine/cloud/detail/neighbourhoods.h"
+#include "engine/cloud/neighbourhoods.h"
 
 #include <algorithm>
 #include <utility>
