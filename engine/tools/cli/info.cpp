@@ -71,7 +71,8 @@ void printText(const InfoOptions& options, const LoadedCloud& loaded, const Qual
     if (!loaded.normals.empty()) std::cout << "  normals     in the file\n";
     if (!properties.empty()) std::cout << "  properties  " << properties << "\n";
     for (const std::string& line : meaningForTouch(quality)) std::cout << "  for touch   " << line << "\n";
-    for (const auto& line : report["warnings"].get<std::vector<std::string>>()) std::cout << "  warning     " << line << "\n";
+    for (const auto& line : report["warnings"].get<std::vector<std::string>>())
+        std::cout << "  warning     " << line << "\n";
 }
 
 void printInfo(const InfoOptions& options)
