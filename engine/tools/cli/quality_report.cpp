@@ -77,7 +77,7 @@ std::string onNoise(const CloudQuality& q)
     const double sigma      = everywhere ? q.noise : q.noise95;
     return std::string("the points scatter by more than a quarter of a spacing") +
            (everywhere ? "" : " in places, where you should expect a blurred touch") +
-           ": the touch averages over 6 sigma, " + metres(6 * sigma) + ", and finer shapes are lost";
+           ": the touch averages over points " + metres(7 * sigma) + " apart, 7 sigma" + ", and finer shapes are lost";
 }
 
 std::string onSides(const QualityReport& r)
