@@ -126,7 +126,7 @@ void PlaneFitter::collect(const Frame& frame, double radius)
         const glm::dvec3 d = point.position - frame.place;
         const double     h = glm::dot(frame.normal, d);
         if (!(std::abs(h) < kNoHeight * frame.spacing)) return;
-        if (frame.side * point.mark.facing.along(frame.normal) < -kFacesAway) return;
+        if (frame.side != 0 && frame.side * point.mark.facing.along(frame.normal) < -kFacesAway) return;
         bool own = true;
         for (const SurfacePlane& other : frame.others)
             own = own && (glm::dot(other.normal, frame.normal) >= kSameSurface ||

@@ -138,7 +138,9 @@ SurfaceTracker::VisiblePoints SurfaceTracker::findVisible(const Surfaces& surfac
             if (plane.height(point.position) <= hidden) return false;
         return true;
     };
-    const auto    faces = [&](const NearPoint& point) { return point.mark.facing.along(place - point.position) >= 0; };
+    const auto faces = [&](const NearPoint& point) {
+        return !point.mark.facing.known() || point.mark.facing.along(place - point.position) >= 0;
+    };
     VisiblePoints visible;
     double        best   = kBall; // [1] distance over the point's spacing
     bool          facing = false; // the nearest one does
