@@ -185,12 +185,12 @@ std::vector<std::optional<ChartPoint>> unroll(const Patch& patch, const SoftObje
 /// fingers, edges and folds, and in between a blend, so that no step is felt where one gives way to the other.
 ///
 /// A surface that lies off the sphere by a share e of the window slopes against it by some 4 e, which shortens lengths
-/// by 8 e^2: 0.2 % at the first bound, 3 % at the second.
+/// by 8 e^2: 0.3 % at the first bound, 2 % at the second.
 double unrolledShare(const Patch& patch, const PatchSettings& settings)
 {
     if (settings.map != Map::lambertAzimuthal) return 0; // the user has chosen how a sphere is laid flat
     if (patch.normalFelt) return 1;
-    constexpr double kFollows = 0.015, kAstray = 0.06; // misfit over the window [1]
+    constexpr double kFollows = 0.02, kAstray = 0.05; // misfit over the window [1]
     const double     misfit = patch.sphere.fit.misfit, noise = patch.noise;
     const double     shape = std::sqrt(std::max(0.0, misfit * misfit - noise * noise)) / settings.window;
     const double     t     = std::clamp((shape - kFollows) / (kAstray - kFollows), 0.0, 1.0);
@@ -228,7 +228,7 @@ void layFlat(Patch& patch, const SoftObject& object, const TouchedSurface& surfa
     patch.chart = chartAt(patch, object, settings, carried);
     layTouched(patch, object, surface, settings);
     patch.touched = patch.points.size();
-    if (settings.neighbourhood == Neighbourhood::ball) return;
+    if (settings.neighbourhood == Neighbourhood::ball || patch.touched == patch.gathered.size()) return;
     // The rest of the ball, the other side of a thin body above all, moves with the touched side but does not count.
     std::vector<std::uint32_t> rest = patch.gathered, laid = patch.points;
     std::ranges::sort(rest);

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
+#include "engine/chart/chart.h"
 #include "engine/cloud/surface_flood.h"
 
 namespace palp {
@@ -22,9 +24,6 @@ constexpr double kNoisyNear = 18;
 
 /// Radius about the contact whose normals give the mean one, over that of the ball [1].
 constexpr double kFacing = 0.25;
-
-/// Farthest that a point of a single sheet lies off its sphere [spacings], [standard deviations of noise].
-constexpr double kOnSheet = 0.5, kNoisy = 4;
 
 constexpr double kTurned = 0.26, kFaces = 0.76; ///< cosines of 75 and 40 degrees [1]
 
@@ -104,14 +103,37 @@ std::optional<TouchedSurface> wholeBall(const SoftObject& object, const Contact&
     return surface;
 }
 
-/// Returns true if every point lies on the sphere, but for noise and half a spacing.
-bool isOneSheet(const TouchedSurface& surface, const SoftObject& object)
+/// Returns true if the points, seen along a normal, nowhere lie one over the other: the heights within a square of two
+/// spacings differ by no more than those of a slope of 45 degrees and noise. Sheets so near to each other that they pass
+/// are told apart by the sides that the survey knows.
+bool isOneSheet(const TouchedSurface& surface, const SoftObject& object, const glm::dvec3& centre, double radius)
 {
-    if (!surface.sphere.usable()) return false;
-    return std::ranges::all_of(surface.points, [&](std::uint32_t point) {
-        const double off = surface.sphere.fit.signedDistance(object.positions()[point]);
-        return std::abs(off) <= kOnSheet * object.survey().spacing(point) + kNoisy * object.survey().noise(point);
-    });
+    constexpr double kSquare = 2, kSteep = 2.9, kNoisy = 8; // [spacings], [spacings], [standard deviations of noise]
+    constexpr int    kMostSquares = 1024;                   // along a side
+    const SurfaceSurvey& survey   = object.survey();
+    double               widest = 0, noise = 0; // [m]
+    for (const std::uint32_t point : surface.points) {
+        widest = std::max(widest, survey.spacing(point));
+        noise  = std::max(noise, survey.noise(point));
+    }
+    const int          side = std::clamp(int(2 * radius / (kSquare * widest)), 1, kMostSquares);
+    const Frame        axes = Frame::about(surface.normals.front());
+    std::vector<float> low(std::size_t(side * side), std::numeric_limits<float>::max()); // [m] heights in each square
+    std::vector<float> high(low.size(), std::numeric_limits<float>::lowest());
+    const auto         place = [&](double along) {
+        return std::size_t(std::clamp(int((along + radius) / (2 * radius) * side), 0, side - 1));
+    };
+    for (const std::uint32_t point : surface.points) {
+        const glm::dvec3  d      = object.positions()[point] - centre;
+        const std::size_t square = place(glm::dot(d, axes.east)) * std::size_t(side) + place(glm::dot(d, axes.north));
+        const auto        height = float(glm::dot(d, axes.normal));
+        low[square]              = std::min(low[square], height);
+        high[square]             = std::max(high[square], height);
+    }
+    const double most = std::max(kSteep * widest, kSteep / kSquare * 2 * radius / side) + kNoisy * noise;
+    for (std::size_t k = 0; k < low.size(); ++k)
+        if (double(high[k]) - double(low[k]) > most) return false;
+    return true;
 }
 
 } // namespace
@@ -132,8 +154,10 @@ TouchedSurface touchedSurface(const SoftObject& object, const Contact& contact, 
     if (auto whole = wholeBall(object, contact, ball, nearest)) {
         whole->spacing = spacing;
         whole->noise   = noise;
-        describe(*whole, object, contact.point, radius);
-        if (isOneSheet(*whole, object)) return std::move(*whole);
+        if (isOneSheet(*whole, object, contact.point, radius)) {
+            describe(*whole, object, contact.point, radius);
+            return std::move(*whole);
+        }
     }
     SurfaceFlood   flood(object);
     TouchedSurface surface;

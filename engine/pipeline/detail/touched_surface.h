@@ -25,8 +25,8 @@ struct TouchedSurface {
     SphereFitResult sphere{};
 };
 
-/// Finds the piece around a contact. Where all points of the ball lie on the sphere fitted to them, and face alike, they
-/// are the piece; elsewhere a flood finds it, which costs some ten times as much.
+/// Finds the piece around a contact. Where the points of the ball face alike and nowhere lie one over the other, they are
+/// the piece; elsewhere a flood finds it, which costs some ten times as much.
 /// \param ball    points of the object within `radius` [m] of the contact
 /// \throws Error if the cloud has fewer than seven points or most of them coincide
 [[nodiscard]] TouchedSurface touchedSurface(const SoftObject& object, const Contact& contact,

@@ -55,6 +55,7 @@ Json windowJson(const Patch& patch)
             {"spacing", grid.spacingX},
             {"points_gathered", patch.gathered.size()},
             {"points_near_side", patch.points.size()},
+            {"points_touched", patch.touched},
             {"nodes_without_point", patch.nodesWithoutPoint},
             {"rigidity_min", *least},
             {"rigidity_max", *most}};
@@ -96,6 +97,8 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
     if (!patch.deformed()) return report;
     const int middle                = settings.cells / 2;
     report["chart"]                 = chartJson(patch.chart);
+    report["chart"]["unrolled"]     = patch.unrolled;
+    report["noise"]                 = patch.noise;
     report["window"]                = windowJson(patch);
     report["rigidity_at_contact"]   = patch.plate.rigidity(middle, middle);
     report["compliance"]            = patch.compliance;

@@ -35,10 +35,14 @@ PointCloud ballWithAnEar(double factor, std::size_t points)
 }
 
 struct Lobe {
-    PlateSolver solver{"host"};
-    Section     section;
+    PlateSolver    solver{"host"};
+    FigureRenderer renderer;
+    Section        section;
 
-    void bend(const std::filesystem::path& file) { addBunny(section, file, {.solver = solver, .quick = true}); }
+    void bend(const std::filesystem::path& file)
+    {
+        addBunny(section, file, {.solver = solver, .renderer = renderer, .quick = true});
+    }
 };
 
 TEST(Bunny, ItsEarIsFoundScaledAndBent)
