@@ -38,8 +38,11 @@ constexpr double kSettled = 1.35;
 /// noise has 1.8.
 constexpr double kTwoFaces = 1.6;
 
-constexpr double      kWidest     = 32;  ///< largest ball of a search for noise, and for lines [spacings]
-constexpr std::size_t kTogether   = 16;  ///< points along the curve that share a search for noise
+constexpr double kWidest = 32; ///< largest ball of a search for noise, and for lines [spacings]
+/// Medians over the neighbours, one after the other: the noise then varies by some per cent only.
+constexpr int kMedians = 2;
+
+constexpr std::size_t kTogether   = 8;   ///< points along the curve that share a search for noise
 constexpr std::size_t kMostOfBall = 512; ///< points of a wide ball that are looked at
 
 } // namespace
@@ -214,14 +217,16 @@ SurfaceSurvey::SurfaceSurvey(std::span<const glm::dvec3> positions, const Neighb
     const std::vector<std::uint8_t> layered = sided_;
     eachRun([&](Measuring& m, auto run) { m.adoptSides(run, layered); });
     eachPiece([](Measuring& m, auto piece) { m.measureNoise(piece); });
-    const std::vector<float> raw = noises_;
-    eachRun([&](Measuring& m, auto run) { m.settleNoise(run, raw); });
+    for (int round = 0; round < kMedians; ++round) {
+        const std::vector<float> raw = noises_;
+        eachRun([&](Measuring& m, auto run) { m.settleNoise(run, raw); });
+    }
     for (std::size_t i = 0; i < given.size(); ++i) {
         if (!(glm::dot(given[i], given[i]) > 0)) continue;
         // The given one says which side is out; where it is the better normal too is not known, and ours fits the points.
         if (glm::dot(normals_[i], given[i]) < 0) normals_[i] = -normals_[i];
         if (glm::dot(normals_[i], normals_[i]) == 0) normals_[i] = glm::normalize(given[i]);
-        sided_[i] = 1;
+        sided_[i] = kGiven;
     }
 }
 

@@ -37,9 +37,13 @@ public:
     [[nodiscard]] glm::dvec3 normal(std::size_t point) const noexcept { return normals_[point]; }   ///< unit, or 0 [1]
     [[nodiscard]] double     noise(std::size_t point) const noexcept { return noises_[point]; }     ///< [m]
     [[nodiscard]] bool       sided(std::size_t point) const noexcept { return sided_[point] != 0; } ///< see above
+    /// Returns whether the side is that of a given normal.
+    [[nodiscard]] bool given(std::size_t point) const noexcept { return sided_[point] == kGiven; }
 
 private:
     class Measuring;
+
+    static constexpr std::uint8_t kGiven = 2; ///< in sided_; 1: by layers
 
     std::vector<double>       spacings_; ///< [m]
     std::vector<glm::vec3>    normals_;  ///< [1]

@@ -106,7 +106,7 @@ void ContactPoints::unstack(Source& source)
     std::vector<glm::vec3> normals;
     for (const std::uint32_t i : firstOfEachPlace(source.positions)) {
         ownPositions_.push_back(source.positions[i]);
-        normals.push_back(source.survey->sided(i) ? glm::vec3(source.survey->normal(i)) : glm::vec3(0));
+        normals.push_back(source.survey->given(i) ? glm::vec3(source.survey->normal(i)) : glm::vec3(0));
     }
     ownIndex_  = std::make_unique<const NeighbourIndex>(ownPositions_);
     ownSurvey_ = std::make_unique<const SurfaceSurvey>(ownPositions_, *ownIndex_, normals);
