@@ -22,6 +22,31 @@ make_scan() { # prints a sheet in millimetres at z = 30, a point per millimetre,
 }
 make_scan >scan.ply
 
+make_part() { # prints a cube of 40 mm as STL: two triangles a side, given by axis and place
+    awk 'BEGIN {
+        print "solid part"
+        for (axis = 0; axis < 3; ++axis) for (side = 0; side < 2; ++side) for (half = 0; half < 2; ++half) {
+            print "facet normal 0 0 0\nouter loop"
+            for (k = 0; k < 3; ++k) {
+                n = half + k # corners 0 1 2 and 1 2 3 of the square
+                p[axis] = 40 * side; p[(axis + 1) % 3] = 40 * (n % 2); p[(axis + 2) % 3] = 40 * int(n / 2)
+                print "vertex", p[0], p[1], p[2]
+            }
+            print "endloop\nendfacet"
+        }
+        print "endsolid part"
+    }'
+}
+make_part >part.stl
+
+make_volume() { # prints 4 x 4 x 2 values of 10 kPa as an array of NumPy
+    printf '\223NUMPY\001\000\166\000%-117s\n' "{'descr': '<f8', 'fortran_order': False, 'shape': (4, 4, 2), }"
+    for value in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32; do
+        printf '\000\000\000\000\000\210\303\100'
+    done
+}
+make_volume >e.npy
+
 # Sets the exit code and a required message for a command; the patterns name the commands that do not end with 0 here,
 # with the reason. Where a Falcon is plugged in, its commands are skipped: no test may move a device.
 expected() {

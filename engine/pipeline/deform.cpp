@@ -220,12 +220,19 @@ void layTouched(Patch& patch, const SoftObject& object, const TouchedSurface& su
     }
 }
 
+void turnOver(TouchedSurface& surface)
+{
+    surface.normal = -surface.normal;
+    for (glm::dvec3& normal : surface.normals) normal = -normal;
+}
+
 /// Makes the chart, and lays the points flat in it, those of the touched surface first.
-void layFlat(Patch& patch, const SoftObject& object, const TouchedSurface& surface, const PatchSettings& settings,
+void layFlat(Patch& patch, const SoftObject& object, TouchedSurface surface, const PatchSettings& settings,
              const std::optional<Frame>& carried)
 {
     const StageClock clock(patch.times.project);
     patch.chart = chartAt(patch, object, settings, carried);
+    if (glm::dot(surface.normal, patch.chart.frame.normal) < 0) turnOver(surface); // the finger's side was a guess
     layTouched(patch, object, surface, settings);
     patch.touched = patch.points.size();
     if (settings.neighbourhood == Neighbourhood::ball || patch.touched == patch.gathered.size()) return;
@@ -375,15 +382,15 @@ Patch deform(const SoftObject& object, const Contact& contact, const PatchSettin
              const std::optional<Frame>& carried)
 {
     Patch patch;
-    gatherPoints(patch, object, contact, settings);                         // 2.1: the points near the contact,
-    const TouchedSurface surface = touchedSurface(patch, object, settings); // on the side that is touched,
-    fitSphereTo(patch, object, surface, settings);                          // 2.2: lie close to a sphere,
+    gatherPoints(patch, object, contact, settings);                   // 2.1: the points near the contact,
+    TouchedSurface surface = touchedSurface(patch, object, settings); // on the side that is touched,
+    fitSphereTo(patch, object, surface, settings);                    // 2.2: lie close to a sphere,
     if (!patch.deformed()) return patch;
-    layFlat(patch, object, surface, settings, carried); // 2.3: which an equal-area map lays flat,
-    fillRigidity(patch, object, settings);              // 2.4: where a grid takes over their rigidity
-    bendPlate(patch, settings, solver);                 // 2.5: and bends as a plate under a unit force;
-    movePoints(patch);                                  // 2.6: the plate moves the points,
-    findStiffness(patch, object, settings);             //      and with the contact it is what the hand feels.
+    layFlat(patch, object, std::move(surface), settings, carried); // 2.3: which an equal-area map lays flat,
+    fillRigidity(patch, object, settings);                         // 2.4: where a grid takes over their rigidity
+    bendPlate(patch, settings, solver);                            // 2.5: and bends as a plate under a unit force;
+    movePoints(patch);                                             // 2.6: the plate moves the points,
+    findStiffness(patch, object, settings); //      and with the contact it is what the hand feels.
     return patch;
 }
 
@@ -400,10 +407,10 @@ PatchWithTable deformWithTable(const SoftObject& object, const Contact& contact,
     PatchWithTable result;
     Patch&         patch = result.patch;
     gatherPoints(patch, object, contact, settings);
-    const TouchedSurface surface = touchedSurface(patch, object, settings);
+    TouchedSurface surface = touchedSurface(patch, object, settings);
     fitSphereTo(patch, object, surface, settings);
     if (!patch.deformed()) return result;
-    layFlat(patch, object, surface, settings, carried);
+    layFlat(patch, object, std::move(surface), settings, carried);
     fillRigidity(patch, object, settings);
     result.table = bendPlate(patch, settings, lattice, solver);
     movePoints(patch);

@@ -60,7 +60,8 @@ TEST(SurfaceSurvey, FindsTheNoiseThatWasMade)
             std::vector<double> found;
             for (std::size_t n = 0; n < points.size(); ++n) found.push_back(survey.noise(n) / (noise * kSpacing));
             EXPECT_NEAR(quantile(found, 0.5), 1, 0.06) << noise << ": 28 points give 13 %, the median of 28 less";
-            EXPECT_GT(quantile(found, 0.05), 0.75) << noise;
+            EXPECT_GT(quantile(found, 0.05), noise < 0.2 ? 0.7 : 0.8)
+                << noise << ": 28 points with 6 unknowns scatter by 15 %, and clean ones need no median";
             EXPECT_LT(quantile(found, 0.95), 1.3) << noise;
         }
 }

@@ -20,6 +20,7 @@ constexpr double kSpeed = 0.1;
 struct Felt {
     int    lost    = 0; ///< ticks without contact
     double error   = 0; ///< [1] of the mean pull of a track, the worst
+    double bias    = 0; ///< [1] error of the mean pull of all tracks
     double ripple  = 0; ///< [1] standard deviation of the pull about its track's mean, over the depth
     double step    = 0; ///< [spacings] largest change of the depth that is felt, in a tick
     double lateral = 0; ///< [spacings] largest pull along the plane
@@ -27,8 +28,8 @@ struct Felt {
 
 void PrintTo(const Felt& felt, std::ostream* out)
 {
-    *out << "lost " << felt.lost << ", error " << 100 * felt.error << " %, ripple " << 100 * felt.ripple << " %, step "
-         << felt.step << ", lateral " << felt.lateral;
+    *out << "lost " << felt.lost << ", error " << 100 * felt.error << " %, bias " << 100 * felt.bias << " %, ripple "
+         << 100 * felt.ripple << " %, step " << felt.step << ", lateral " << felt.lateral;
 }
 
 enum class Scatter { across, everyWay };
@@ -70,6 +71,7 @@ Felt feel(double deviation, Scatter scatter = Scatter::across)
         const double mean = std::accumulate(pulls.begin(), pulls.end(), 0.0) / double(pulls.size());
         for (const double pull : pulls) square += (pull - mean) * (pull - mean) / double(kTracks * pulls.size());
         felt.error = std::max(felt.error, std::abs(mean / kDepth - 1));
+        felt.bias += (mean / kDepth - 1) / kTracks;
     }
     felt.ripple = std::sqrt(square) / kDepth;
     return felt;
@@ -86,7 +88,8 @@ TEST(ProxyNoise, NoPhantomCeilingSinksTheFloor)
     SCOPED_TRACE(record(testing::PrintToString(some), "0.2") + "; " + record(testing::PrintToString(more), "0.3"));
     EXPECT_EQ(some.lost + more.lost, 0);
     EXPECT_LT(some.error, 0.01);
-    EXPECT_LT(more.error, 0.01);
+    EXPECT_LT(std::abs(more.bias), 0.01);
+    EXPECT_LT(more.error, 0.02) << "a track has some nine independent errors of 1.5 %: their mean has 0.5 % (sd)";
     EXPECT_LT(some.ripple, 0.03) << "the fit leaves 0.04 spacings of this noise: 2 % of the depth";
     EXPECT_LT(some.step, 1.25 * kSmoothStep);
     EXPECT_LT(more.step, kSmoothStep);
@@ -133,7 +136,7 @@ double heightOnBall(double deviation, std::uint64_t seed)
 
 TEST(ProxyNoise, ANoisyBallIsNotFlattened)
 {
-    for (const auto& [deviation, most] : {std::pair(0.5, 0.1), {1.0, 0.1}, {2.0, 0.25}}) {
+    for (const auto& [deviation, most] : {std::pair(0.5, 0.1), {1.0, 0.1}, {2.0, 0.3}}) {
         double sum = 0;
         for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + 4; ++seed) sum += heightOnBall(deviation, seed) / 4;
         SCOPED_TRACE(record(std::to_string(sum), "height at " + std::to_string(deviation)));

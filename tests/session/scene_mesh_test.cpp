@@ -102,17 +102,6 @@ TEST_F(SceneMesh, AHandThatPressesTheMiddleOfACubesSideMeetsAForceAndDoesNotPass
     EXPECT_GT(lowest, 39.9e-3) << "the proxy stays on the side";
 }
 
-TEST_F(SceneMesh, TheHandPassesBetweenTheCornersWithoutThePoints)
-{
-    const SoftObject object = loadObject(sceneOf(kCube, {{"scatter", "off"}})).object;
-    ASSERT_EQ(object.size(), 8u);
-    ASSERT_EQ(object.faces().size(), 12u);
-    Proxy proxy(object, {});
-    for (int tick = 0; tick <= 400; ++tick) proxy.step({0, 0, 60e-3 - 1e-4 * tick});
-
-    EXPECT_FALSE(proxy.state().touching); // what the points are there for
-}
-
 TEST_F(SceneMesh, PointsAreAFifthOfAFingertipApartWithTheStiffnessBetweenTheCorners)
 {
     const LoadedCloud loaded = loadCloud(sceneOf(kCube));

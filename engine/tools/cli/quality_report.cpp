@@ -105,26 +105,21 @@ std::string percentText(double share)
     return share < 1 && text == std::string("100 %") ? "almost 100 %" : text;
 }
 
-SideSources sideSources(const SoftObject& object, std::span<const glm::vec3> normals)
+/// Returns the shares of points whose side is known, by what tells it.
+SideSources sideSources(const SoftObject& object, bool byNormals)
 {
-    std::vector<std::uint8_t> given(object.size()); // 1: its side was handed to the survey
-    for (std::size_t i = 0; i < normals.size(); ++i) given[i] = normals[i] != glm::vec3(0);
-    if (normals.empty())
-        for (const Triangle& face : object.faces())
-            for (const std::uint32_t corner : face) given[corner] = 1;
-    std::size_t fromGiven = 0, sided = 0;
+    std::size_t given = 0, sided = 0;
     for (std::size_t i = 0; i < object.size(); ++i) {
         sided += object.survey().sided(i);
-        fromGiven += object.survey().sided(i) && given[i];
+        given += object.survey().given(i);
     }
-    const double all   = double(object.size());
-    const double share = double(fromGiven) / all;
-    return {normals.empty() ? 0 : share, normals.empty() ? share : 0, double(sided - fromGiven) / all};
+    const double all = double(object.size()), share = double(given) / all;
+    return {byNormals ? share : 0, byNormals ? 0 : share, double(sided - given) / all};
 }
 
 QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded, const Scene& scene)
 {
-    return {cloudQuality(object), sideSources(object, loaded.normals), loaded.report.coordinateRounding,
+    return {cloudQuality(object), sideSources(object, !loaded.normals.empty()), loaded.report.coordinateRounding,
             scene.patch.footprintRadius, scene.patch.window};
 }
 

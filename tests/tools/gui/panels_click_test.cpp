@@ -183,8 +183,8 @@ TEST_F(PanelsClick, AnotherMapIsAWish)
 TEST_F(PanelsClick, AnotherEdgeOfOneSideIsAWish)
 {
     openScene();
-    click({250, 382});
-    click({250, 422}); // the second of the list below
+    click({250, 403});
+    click({250, 443}); // the second of the list below
 
     ASSERT_TRUE(wishes_.values.contains("edges"));
     EXPECT_EQ(wishes_.values.at("edges"), "x0=clamped,x1=supported,z0=clamped,z1=clamped");

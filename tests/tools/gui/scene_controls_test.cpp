@@ -33,7 +33,7 @@ TEST(SceneControls, EveryKeyOfASceneIsThereOrCannotChangeWhileOneTouches)
                 EXPECT_TRUE(found.insert(key->name).second) << key->name;
                 ++controls;
             }
-    EXPECT_EQ(controls, 17u);
+    EXPECT_EQ(controls, 18u);
     for (const SceneKey& key : sceneKeys()) EXPECT_TRUE(found.contains(key.name)) << key.name << " has no control";
 }
 
