@@ -77,7 +77,7 @@ public:
     void lookAt(std::span<const std::uint32_t> order)
     {
         const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacing(point); };
-        neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near, double) {
+        neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near) {
             lookForLine(point, near);
             if (glm::dot(survey_.normal(point), survey_.normal(point)) == 0) return; // no surface, so no border either
             angles_.clear();

@@ -66,15 +66,15 @@ void guessSpacings(std::span<const glm::dvec3> positions, const NeighbourIndex& 
     std::vector<double> squares;
     Neighbourhoods      neighbourhoods(positions, index);
     const auto          radius = [&](std::uint32_t) { return kLikelyReach * sixth; };
-    neighbourhoods.each(order, radius, [&](std::uint32_t i, std::span<const NearCandidate> near, double complete) {
-        squares.clear();
-        for (const NearCandidate& candidate : near) squares.push_back(candidate.distance2);
-        double found = std::numeric_limits<double>::infinity();
-        if (squares.size() > kNeighbours) {
+    neighbourhoods.each(order, radius, [&](std::uint32_t i, std::span<const NearCandidate> near) {
+        if (near.size() > kNeighbours) {
+            squares.clear();
+            for (const NearCandidate& candidate : near) squares.push_back(candidate.distance2);
             std::nth_element(squares.begin(), squares.begin() + kNeighbours, squares.end());
-            found = std::sqrt(squares[kNeighbours]);
+            sixth = std::sqrt(squares[kNeighbours]);
+        } else {
+            sixth = index.nearest(positions[i], kNeighbours + 1).back().distance;
         }
-        sixth    = found <= complete ? found : index.nearest(positions[i], kNeighbours + 1).back().distance;
         guess[i] = std::max(sixth * std::sqrt(std::numbers::pi / kNeighbours), kLeast * usual);
     });
 }
@@ -86,10 +86,9 @@ void settleSpacings(std::span<const glm::dvec3> positions, const NeighbourIndex&
     std::vector<double> values;
     Neighbourhoods      neighbourhoods(positions, index);
     const auto          radius = [&](std::uint32_t i) { return kMedianReach * guess[i]; };
-    neighbourhoods.each(order, radius, [&](std::uint32_t i, std::span<const NearCandidate> near, double) {
+    neighbourhoods.each(order, radius, [&](std::uint32_t i, std::span<const NearCandidate> near) {
         values.clear();
-        for (const NearCandidate& candidate : near)
-            if (candidate.distance2 <= radius(i) * radius(i)) values.push_back(guess[candidate.point]);
+        for (const NearCandidate& candidate : near) values.push_back(guess[candidate.point]);
         spacings[i] = median(values);
         if (guess[i] > kAlone * spacings[i])
             spacings[i] = std::min(guess[i], medianOfArea(values, kMedianReach * guess[i]));

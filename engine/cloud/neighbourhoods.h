@@ -29,8 +29,7 @@ public:
     {
     }
 
-    /// Calls visit(point, candidates, complete) for the points in `order`: every point within `complete` [m] of it is
-    /// among the candidates, itself too, and `complete` is at least its radius.
+    /// Calls visit(point, near) for the points in `order`; `near` are those within its radius, itself too.
     /// \param radius  of a point [m], > 0; it may change with every visit
     template <class Radius, class Visit>
     void each(std::span<const std::uint32_t> order, Radius&& radius, Visit&& visit)
@@ -48,14 +47,20 @@ public:
                 reach = glm::max(reach, away + own);
             }
             index_.gather(middle, reach * (1 + 1e-9), found_);
+            places_.clear();
+            for (const std::uint32_t point : found_) places_.push_back(positions_[point]);
             for (std::size_t k = begin; k < end; ++k) {
+                // What is out of reach of the search is out of the radius too, unless a visit has enlarged it.
                 const glm::dvec3 place = positions_[order[k]];
-                candidates_.clear();
-                for (const std::uint32_t point : found_) {
-                    const glm::dvec3 d = positions_[point] - place;
-                    candidates_.push_back({point, d, d.x * d.x + d.y * d.y + d.z * d.z});
+                const double     most = reach - glm::length(place - middle), wanted = radius(order[k]);
+                const double     own = wanted <= most * (1 + 1e-9) ? wanted : most;
+                near_.clear();
+                for (std::size_t n = 0; n < found_.size(); ++n) {
+                    const glm::dvec3 d  = places_[n] - place;
+                    const double     d2 = d.x * d.x + d.y * d.y + d.z * d.z;
+                    if (d2 <= own * own) near_.push_back({found_[n], d, d2});
                 }
-                visit(order[k], std::span<NearCandidate>(candidates_), reach - glm::length(place - middle));
+                visit(order[k], std::span<const NearCandidate>(near_));
             }
         }
     }
@@ -64,7 +69,8 @@ private:
     std::span<const glm::dvec3> positions_; ///< [m]
     const NeighbourIndex&       index_;
     std::vector<std::uint32_t>  found_;
-    std::vector<NearCandidate>  candidates_;
+    std::vector<glm::dvec3>     places_; ///< of the found ones [m]
+    std::vector<NearCandidate>  near_;
 };
 
 } // namespace palp

@@ -100,11 +100,10 @@ LocalShape SurfaceSurvey::Measuring::widened(std::uint32_t point, LocalShape sha
 void SurfaceSurvey::Measuring::measureShapes(std::span<const std::uint32_t> order)
 {
     const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
-    neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near, double) {
+    neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near) {
         const double r = radius(point);
         away_.clear();
-        for (const NearCandidate& candidate : near)
-            if (candidate.distance2 <= r * r) away_.push_back(candidate.away);
+        for (const NearCandidate& candidate : near) away_.push_back(candidate.away);
         LocalShape shape = fitter_.fit(away_, r, survey_.spacings_[point]);
         if (shape.narrow < kNarrow && !shape.sided) shape = widened(point, shape);
         survey_.normals_[point] = shape.normal;
@@ -119,7 +118,7 @@ void SurfaceSurvey::Measuring::adoptSides(std::span<const std::uint32_t> order, 
 {
     if (std::ranges::none_of(order, [&](std::uint32_t point) { return sided[point] != 0; })) return;
     const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
-    neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near, double) {
+    neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near) {
         if (sided[point]) return;
         double     height[2] = {}, weight[2] = {}; // [m] of the point over the layers along its normal and against it
         glm::dvec3 normal[2] = {};
@@ -182,11 +181,9 @@ void SurfaceSurvey::Measuring::settleNoise(std::span<const std::uint32_t> order,
                              [&](std::uint32_t point) { return raw[point] > kClean * survey_.spacings_[point]; }))
         return;
     const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
-    neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near, double) {
-        const double r = radius(point);
+    neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near) {
         values_.clear();
-        for (const NearCandidate& candidate : near)
-            if (candidate.distance2 <= r * r) values_.push_back(raw[candidate.point]);
+        for (const NearCandidate& candidate : near) values_.push_back(raw[candidate.point]);
         const auto middle = values_.begin() + std::ptrdiff_t(values_.size() / 2);
         std::nth_element(values_.begin(), middle, values_.end());
         survey_.noises_[point] = *middle;
