@@ -10,17 +10,14 @@
 #include <glm/geometric.hpp>
 
 #include "engine/cloud/neighbourhoods.h"
+#include "engine/cloud/touch_scale.h"
 #include "engine/contact/detail/surface_projector.h"
 #include "engine/core/parallel.h"
 
 namespace palp {
 namespace {
 
-/// Noise beyond which points are smoothed [spacings]. At 0.2 the fit leaves 0.04 of a spacing, which is bearable.
-constexpr double kNoisy = 0.25;
-
-/// Touch scale over the noise [1], and over the spacing at most: beyond it is no surface that a survey could see.
-constexpr double kScaleOfNoise = 7;
+/// Largest touch scale over the spacing [1]: beyond it is no surface that a survey could see.
 constexpr double kLargestScale = 16;
 
 /// Least distance of the chosen points [scales]: one then stands for one square scale.
@@ -81,10 +78,11 @@ struct ContactPoints::Source {
     const NeighbourIndex*       index;
     const SurfaceSurvey*        survey;
 
-    [[nodiscard]] bool   noisy(std::size_t i) const { return survey->noise(i) > kNoisy * survey->spacing(i); }
+    [[nodiscard]] bool   noisy(std::size_t i) const { return survey->noise(i) > kNoisySpacings * survey->spacing(i); }
     [[nodiscard]] double scale(std::size_t i) const
     {
-        return std::clamp(kScaleOfNoise * survey->noise(i), survey->spacing(i), kLargestScale * survey->spacing(i));
+        return std::clamp(kTouchScaleOfNoise * survey->noise(i), survey->spacing(i),
+                          kLargestScale * survey->spacing(i));
     }
 };
 

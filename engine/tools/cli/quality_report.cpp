@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/cloud/touch_scale.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/quantity.h"
@@ -18,9 +19,8 @@
 namespace palp {
 namespace {
 
-constexpr double kNoisy  = 0.25; ///< noise above which the touch smooths more widely than it would [spacings]
-constexpr double kUneven = 3;    ///< ratio of the spacings of sparse and dense parts that is worth a word [1]
-constexpr double kStep   = 0.1;  ///< rounding that is worth a word [spacings]
+constexpr double kUneven = 3;   ///< ratio of the spacings of sparse and dense parts that is worth a word [1]
+constexpr double kStep   = 0.1; ///< rounding that is worth a word [spacings]
 
 std::string metres(double length)
 {
@@ -73,11 +73,12 @@ std::string linesOnFingertip(const QualityReport& r)
 
 std::string onNoise(const CloudQuality& q)
 {
-    const bool   everywhere = q.noisy > kNoisy;
+    const bool   everywhere = q.noisy > kNoisySpacings;
     const double sigma      = everywhere ? q.noise : q.noise95;
     return std::string("the points scatter by more than a quarter of a spacing") +
            (everywhere ? "" : " in places, where you should expect a blurred touch") +
-           ": the touch averages over points " + metres(7 * sigma) + " apart, 7 sigma" + ", and finer shapes are lost";
+           ": the touch averages over points " + metres(kTouchScaleOfNoise * sigma) + " apart, " +
+           std::to_string(std::lround(kTouchScaleOfNoise)) + " standard deviations" + ", and finer shapes are lost";
 }
 
 std::string onSides(const QualityReport& r)
@@ -135,7 +136,7 @@ std::vector<std::string> meaningForTouch(const QualityReport& r)
             "the patch window of " + metres(r.window) +
             " holds fewer than 9 points where the points are sparse: nothing can be felt there; set --window to " +
             metres(2 * kFewestAcross * q.spacing.high) + " or more");
-    if (q.noisy95 > kNoisy) said.push_back(onNoise(q));
+    if (q.noisy95 > kNoisySpacings) said.push_back(onNoise(q));
     if (q.noise > r.fingertip / 4)
         said.push_back(
             "the noise of " + metres(q.noise) +
@@ -223,10 +224,14 @@ void writeQualityPicture(const std::filesystem::path& file, const std::string& t
                   title,
                   metres(s.typical) + " between points; 90 % of the area " + metres(s.low) + " to " + metres(s.high)},
                  {noise,
-                  {ColourMap::cividis, Scale::linear, {0, std::max(2 * kNoisy, quality.noisy95)}, "noise [spacings]", "1"},
+                  {ColourMap::cividis,
+                   Scale::linear,
+                   {0, std::max(2 * kNoisySpacings, quality.noisy95)},
+                   "noise [spacings]",
+                   "1"},
                   "noise",
                   metres(quality.noise) + ", " + spacings(quality.noisy) + "; the touch smooths more above " +
-                      spacings(kNoisy)}};
+                      spacings(kNoisySpacings)}};
     FigureRenderer renderer;
     const Image    image = cloudPanels(object, panels, renderer);
     std::string    bytes;
