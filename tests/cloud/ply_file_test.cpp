@@ -285,9 +285,9 @@ TEST(PlyFile, ListsThatLieAboutTheirLengthAreRefused)
 
     EXPECT_TRUE(
         contains(plyRefusal(with("int", std::int32_t(-1))),
-                 {"byte " + std::to_string(with("int", std::int32_t(-1)).size() - 12), "list \"n\"", "found -1"}));
-    EXPECT_TRUE(contains(plyRefusal(with("uint", 0xFFFF'FFFFu)), {"from 0 to 1", "found 4294967295"}));
-    EXPECT_TRUE(contains(plyRefusal(with("uchar", std::uint8_t(200))), {"from 0 to 1", "found 200"}));
+                 {"byte " + std::to_string(with("int", std::int32_t(-1)).size() - 12), "list \"n\" promises -1"}));
+    EXPECT_TRUE(contains(plyRefusal(with("uint", 0xFFFF'FFFFu)), {"promises 4294967295", "from 0 to 1"}));
+    EXPECT_TRUE(contains(plyRefusal(with("uchar", std::uint8_t(200))), {"promises 200", "from 0 to 1"}));
     EXPECT_TRUE(contains(plyRefusal(asciiHeader(1, "property list int int n\nproperty int x\nproperty int y\n"
                                                    "property int z\n") +
                                     "999999999999 1 2 3\n"),

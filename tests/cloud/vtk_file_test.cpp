@@ -39,15 +39,8 @@ TEST(VtkFile, FilesOfOtherProgramsGiveTheSameCloudInEveryForm)
         SCOPED_TRACE(bytes.substr(0, 90));
         const LoadedCloud loaded = vtk(bytes);
 
-        ASSERT_EQ(loaded.cloud.size(), 5u);
-        EXPECT_EQ(loaded.cloud.positions()[3], glm::dvec3(0, 1, 0.5));
-        EXPECT_EQ(loaded.cloud.positions()[4], glm::dvec3(0.5, 1.5, 0));
-        for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(loaded.cloud.stiffness()[i], 1000.0 * double(i + 1));
-        EXPECT_EQ(loaded.faces, (Triangles{{0, 1, 2}, {0, 2, 4}, {0, 4, 3}}));
+        expectTheWrittenObject(loaded);
         EXPECT_EQ(loaded.report.faces, 2u);
-        ASSERT_EQ(loaded.normals.size(), 5u);
-        EXPECT_EQ(loaded.normals[3], glm::vec3(0, 0, 1));
-        EXPECT_EQ(loaded.normals[4], glm::vec3(0));
         EXPECT_EQ(loaded.report.format, format);
         EXPECT_TRUE(loaded.report.lengthUnitAssumed);
         EXPECT_TRUE(loaded.report.warnings.empty());

@@ -1,5 +1,10 @@
 #pragma once
 #include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/cloud/point_cloud_io.h"
 
 namespace palp {
 
@@ -7,6 +12,18 @@ namespace palp {
 // of 1000 to 5000, and normals (0, 0, 2), of which the last is zero. They were made by scripts for the Python modules of
 // VTK 9.1 (vtkPolyDataWriter, vtkUnstructuredGridWriter, vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter with blocks
 // of 32 bytes) and of meshio 5.0 (Debian's python3-meshio).
+
+inline void expectTheWrittenObject(const LoadedCloud& loaded)
+{
+    ASSERT_EQ(loaded.cloud.size(), 5u);
+    EXPECT_EQ(loaded.cloud.positions()[3], glm::dvec3(0, 1, 0.5));
+    EXPECT_EQ(loaded.cloud.positions()[4], glm::dvec3(0.5, 1.5, 0));
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(loaded.cloud.stiffness()[i], 1000.0 * double(i + 1));
+    EXPECT_EQ(loaded.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 4}, {0, 4, 3}}));
+    ASSERT_EQ(loaded.normals.size(), 5u);
+    EXPECT_EQ(loaded.normals[3], glm::vec3(0, 0, 1));
+    EXPECT_EQ(loaded.normals[4], glm::vec3(0));
+}
 
 /// vtkPolyDataWriter, text, version 5.1: offsets, and a component with a name.
 constexpr std::string_view kPolyAscii51 = R"vtk(# vtk DataFile Version 5.1

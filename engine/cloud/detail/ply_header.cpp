@@ -186,9 +186,10 @@ std::uint64_t listLength(const ByteReader& reader, const PlyProperty& list, cons
     const double        count = loadScalar(*list.listCount, bytes, order);
     const std::uint64_t room  = reader.remaining() / sizeOf(list.type);
     if (count < 0 || count > double(room)) // lengths have at most 32 bits, so the double is exact
-        reader.fail("byte " + std::to_string(reader.offset() - sizeOf(*list.listCount)) +
-                    ": expected a length from 0 to " + std::to_string(room) + " for list " + inQuotes(list.name) +
-                    ", found " + std::to_string(std::int64_t(count)));
+        reader.fail("byte " + std::to_string(reader.offset() - sizeOf(*list.listCount)) + ": list " +
+                    inQuotes(list.name) + " promises " + std::to_string(std::int64_t(count)) +
+                    " values, expected from 0 to " + std::to_string(room) +
+                    ", for which the file has bytes left; it may have been cut short while it was copied");
     return std::uint64_t(count);
 }
 
