@@ -11,12 +11,9 @@
 #include <glm/geometric.hpp>
 
 #include "engine/cloud/neighbourhoods.h"
-#include "engine/core/parallel.h"
 
 namespace palp {
 namespace {
-
-constexpr std::size_t kPiece = 4096; ///< least points of a thread
 
 /// Radius of a neighbourhood [spacings of the point, or of the neighbour].
 constexpr double kReach = 3;
@@ -69,21 +66,23 @@ struct PointFacts {
 /// Looks at the points of one piece of the cloud: each thread has its own.
 class Looking {
 public:
-    Looking(const SoftObject& object, PointFacts& facts)
-        : object_(object), survey_(object.survey()), facts_(facts), neighbourhoods_(object.positions(), object.index())
+    /// \param points  by rank
+    Looking(const SoftObject& object, std::span<const std::uint32_t> points, PointFacts& facts)
+        : object_(object), survey_(object.survey()), points_(points), facts_(facts), neighbourhoods_(object.index())
     {
     }
 
-    void lookAt(std::span<const std::uint32_t> order)
+    void operator()(const RankRun& run)
     {
-        const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacing(point); };
-        neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near) {
-            lookForLine(point, near);
+        const auto radius = [&](std::uint32_t rank) { return kReach * survey_.spacing(points_[rank]); };
+        neighbourhoods_.each(run, radius, [&](std::uint32_t rank, std::span<const NearCandidate> near) {
+            const std::uint32_t point = points_[rank];
+            lookForLine(rank, near);
             if (glm::dot(survey_.normal(point), survey_.normal(point)) == 0) return; // no surface, so no border either
             angles_.clear();
             for (const NearCandidate& candidate : near)
-                if (candidate.distance2 <= radius(point) * radius(point)) addAngle(point, candidate);
-            facts_.border[point] = freeAngle() > kFree && !isBesideSparser(point);
+                if (candidate.distance2 <= radius(rank) * radius(rank)) addAngle(rank, candidate);
+            facts_.border[point] = freeAngle() > kFree && !isBesideSparser(rank);
         });
     }
 
@@ -91,15 +90,14 @@ private:
     static constexpr double kFree = kFreeAngle * std::numbers::pi / 180; // [rad]
 
     /// Adds the direction of a neighbour in the tangent plane, unless it belongs to another sheet.
-    void addAngle(std::uint32_t point, const NearCandidate& candidate)
+    void addAngle(std::uint32_t rank, const NearCandidate& candidate)
     {
-        if (candidate.point == point || !(candidate.distance2 > 0)) return;
-        const glm::dvec3 normal = survey_.normal(point), away = candidate.away;
-        const double     height = std::abs(glm::dot(normal, away));
+        if (candidate.rank == rank || !(candidate.distance2 > 0)) return;
+        const std::uint32_t point = points_[rank], other = points_[candidate.rank];
+        const glm::dvec3    normal = survey_.normal(point), away = candidate.away;
+        const double        height = std::abs(glm::dot(normal, away));
         if (height > kSteep * std::sqrt(candidate.distance2) + kNoisy * survey_.noise(point)) return;
-        if (survey_.sided(point) && survey_.sided(candidate.point) &&
-            glm::dot(normal, survey_.normal(candidate.point)) < 0)
-            return;
+        if (survey_.sided(point) && survey_.sided(other) && glm::dot(normal, survey_.normal(other)) < 0) return;
         const glm::dvec3 helper = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
         const glm::dvec3 east   = glm::normalize(glm::cross(helper, normal));
         angles_.push_back(std::atan2(glm::dot(away, glm::cross(normal, east)), glm::dot(away, east)));
@@ -116,24 +114,25 @@ private:
     }
 
     /// Adds the points that count this one among their neighbours; returns whether they close the angle.
-    bool isBesideSparser(std::uint32_t point)
+    bool isBesideSparser(std::uint32_t rank)
     {
-        const glm::dvec3 place = object_.positions()[point];
-        const double     own   = kReach * survey_.spacing(point);
-        object_.index().gather(place, kSparser * own, found_);
+        const std::span<const glm::dvec3> positions = object_.index().positionsByRank();
+        const double                      own       = kReach * survey_.spacing(points_[rank]);
+        object_.index().gatherRanks(positions[rank], kSparser * own, found_);
         for (const std::uint32_t other : found_) {
-            const glm::dvec3 away      = object_.positions()[other] - place;
-            const double     distance2 = glm::dot(away, away), reach = kReach * survey_.spacing(other);
-            if (distance2 > own * own && distance2 <= reach * reach) addAngle(point, {other, away, distance2});
+            const glm::dvec3 away      = positions[other] - positions[rank];
+            const double     distance2 = glm::dot(away, away), reach = kReach * survey_.spacing(points_[other]);
+            if (distance2 > own * own && distance2 <= reach * reach) addAngle(rank, {other, away, distance2});
         }
         return freeAngle() <= kFree;
     }
 
-    void lookForLine(std::uint32_t point, std::span<const NearCandidate> near)
+    void lookForLine(std::uint32_t rank, std::span<const NearCandidate> near)
     {
+        const std::uint32_t  point = points_[rank];
         const NearCandidate *first = nullptr, *second = nullptr;
         for (const NearCandidate& candidate : near) {
-            if (candidate.point == point || !(candidate.distance2 > 0)) continue;
+            if (candidate.rank == rank || !(candidate.distance2 > 0)) continue;
             if (!first || candidate.distance2 < first->distance2)
                 second = std::exchange(first, &candidate);
             else if (!second || candidate.distance2 < second->distance2)
@@ -162,12 +161,13 @@ private:
         return std::isfinite(least2) ? std::sqrt(least2) : 0;
     }
 
-    const SoftObject&          object_;
-    const SurfaceSurvey&       survey_;
-    PointFacts&                facts_;
-    Neighbourhoods             neighbourhoods_;
-    std::vector<double>        angles_; ///< [rad] of the neighbours in the tangent plane
-    std::vector<std::uint32_t> found_;
+    const SoftObject&              object_;
+    const SurfaceSurvey&           survey_;
+    std::span<const std::uint32_t> points_; ///< by rank
+    PointFacts&                    facts_;
+    Neighbourhoods                 neighbourhoods_;
+    std::vector<double>            angles_; ///< [rad] of the neighbours in the tangent plane
+    std::vector<std::uint32_t>     found_;  ///< ranks
 };
 
 void measureSpacing(CloudQuality& quality, std::span<const double> spacings)
@@ -231,10 +231,8 @@ CloudQuality cloudQuality(const SoftObject& object)
     measureNoise(quality, survey, object.size());
     PointFacts facts{std::vector<std::uint8_t>(object.size()), std::vector<std::uint8_t>(object.size()),
                      std::vector<float>(object.size()), std::vector<float>(object.size())};
-    const std::vector<std::uint32_t> order = alongCurve(object.positions());
-    inParallel(order.size(), kPiece, [&](std::size_t begin, std::size_t end) {
-        Looking(object, facts).lookAt(std::span(order).subspan(begin, end - begin));
-    });
+    const std::vector<std::uint32_t> points = object.index().pointsByRank();
+    inCurveRuns(points.size(), [&] { return Looking(object, points, facts); });
     summarise(quality, facts);
     return quality;
 }

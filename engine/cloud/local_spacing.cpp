@@ -8,13 +8,11 @@
 
 #include "engine/cloud/neighbourhoods.h"
 #include "engine/core/contract.h"
-#include "engine/core/parallel.h"
 
 namespace palp {
 namespace {
 
-constexpr std::size_t kNeighbours = 6;    ///< besides the point itself
-constexpr std::size_t kPiece      = 4096; ///< least points of a thread
+constexpr std::size_t kNeighbours = 6; ///< besides the point itself
 
 /// Search radius over the distance of the sixth neighbour of the point before, a near one [1]: holds 15 points where
 /// the density does not vary. Where it holds fewer than seven the exact, slower search follows. (The cloud's usual
@@ -23,6 +21,11 @@ constexpr double kLikelyReach = 1.6;
 
 /// Radius of the median over the point's own first guess [1]: 28 points of a regular sheet.
 constexpr double kMedianReach = 3;
+
+/// Points that follow the one of a median along the curve share it: this many, within its guess, with a guess like it [1].
+/// Their own medians would be over nearly the same points.
+constexpr std::size_t kSharing = 8;
+constexpr double      kLike    = 1.6;
 
 /// A point this many times further from its neighbours than they are among themselves [1] is a stray, or belongs to the
 /// sparse side of a step in density; a random sheet has none, also at its corners. Then the area decides and not the
@@ -57,62 +60,97 @@ double medianOfArea(std::vector<double>& values, double radius)
     return values.back();
 }
 
-/// Finds the first guess of the spacing around some points, from the distance to the sixth neighbour.
-void guessSpacings(std::span<const glm::dvec3> positions, const NeighbourIndex& index,
-                   std::span<const std::uint32_t> order, std::span<double> guess)
-{
-    const double        usual = index.spacing();
-    double              sixth = usual * std::sqrt(kNeighbours / std::numbers::pi); // [m] of the point before
-    std::vector<double> squares;
-    Neighbourhoods      neighbourhoods(positions, index);
-    const auto          radius = [&](std::uint32_t) { return kLikelyReach * sixth; };
-    neighbourhoods.each(order, radius, [&](std::uint32_t i, std::span<const NearCandidate> near) {
-        if (near.size() > kNeighbours) {
-            squares.clear();
-            for (const NearCandidate& candidate : near) squares.push_back(candidate.distance2);
-            std::nth_element(squares.begin(), squares.begin() + kNeighbours, squares.end());
-            sixth = std::sqrt(squares[kNeighbours]);
-        } else {
-            sixth = index.nearest(positions[i], kNeighbours + 1).back().distance;
-        }
-        guess[i] = std::max(sixth * std::sqrt(std::numbers::pi / kNeighbours), kLeast * usual);
-    });
-}
+/// Finds the first guess of the spacing around the points of a run, from the distance to the sixth neighbour.
+class GuessingSpacings {
+public:
+    GuessingSpacings(const NeighbourIndex& index, std::span<double> guess)
+        : index_(index), guess_(guess), neighbourhoods_(index)
+    {
+    }
 
-/// Settles the spacing around some points by the median of the guesses near them.
-void settleSpacings(std::span<const glm::dvec3> positions, const NeighbourIndex& index,
-                    std::span<const std::uint32_t> order, std::span<const double> guess, std::span<double> spacings)
-{
-    std::vector<double> values;
-    Neighbourhoods      neighbourhoods(positions, index);
-    const auto          radius = [&](std::uint32_t i) { return kMedianReach * guess[i]; };
-    neighbourhoods.each(order, radius, [&](std::uint32_t i, std::span<const NearCandidate> near) {
-        values.clear();
-        for (const NearCandidate& candidate : near) values.push_back(guess[candidate.point]);
-        spacings[i] = median(values);
-        if (guess[i] > kAlone * spacings[i])
-            spacings[i] = std::min(guess[i], medianOfArea(values, kMedianReach * guess[i]));
-    });
-}
+    void operator()(const RankRun& run)
+    {
+        const double usual  = index_.spacing();
+        double       sixth  = usual * std::sqrt(kNeighbours / std::numbers::pi); // [m] of the point before
+        const auto   radius = [&](std::uint32_t) { return kLikelyReach * sixth; };
+        neighbourhoods_.each(run, radius, [&](std::uint32_t rank, std::span<const NearCandidate> near) {
+            if (near.size() > kNeighbours) {
+                squares_.clear();
+                for (const NearCandidate& candidate : near) squares_.push_back(candidate.distance2);
+                std::nth_element(squares_.begin(), squares_.begin() + kNeighbours, squares_.end());
+                sixth = std::sqrt(squares_[kNeighbours]);
+            } else {
+                sixth = index_.nearest(index_.positionsByRank()[rank], kNeighbours + 1).back().distance;
+            }
+            guess_[rank] = std::max(sixth * std::sqrt(std::numbers::pi / kNeighbours), kLeast * usual);
+        });
+    }
+
+private:
+    const NeighbourIndex& index_;
+    std::span<double>     guess_; ///< [m] by rank
+    Neighbourhoods        neighbourhoods_;
+    std::vector<double>   squares_; ///< [m^2]
+};
+
+/// Settles the spacing around the points of a run by the median of the guesses near them.
+class SettlingSpacings {
+public:
+    SettlingSpacings(const NeighbourIndex& index, std::span<const double> guess, std::span<double> spacings)
+        : index_(index), positions_(index.positionsByRank()), guess_(guess), spacings_(spacings)
+    {
+    }
+
+    void operator()(const RankRun& run)
+    {
+        for (std::uint32_t first = run.begin, end = 0; first < run.end; first = end) {
+            const double mine = guess_[first];
+            index_.gatherRanks(positions_[first], kMedianReach * mine, near_);
+            values_.clear();
+            for (const std::uint32_t other : near_) values_.push_back(guess_[other]);
+            spacings_[first] = median(values_);
+            const bool alone = mine > kAlone * spacings_[first];
+            if (alone) spacings_[first] = std::min(mine, medianOfArea(values_, kMedianReach * mine));
+            for (end = first + 1; end < run.end && end - first < kSharing && !alone && shares(first, end); ++end)
+                spacings_[end] = spacings_[first];
+        }
+    }
+
+private:
+    [[nodiscard]] bool shares(std::uint32_t first, std::uint32_t other) const
+    {
+        const glm::dvec3 d    = positions_[other] - positions_[first];
+        const double     mine = guess_[first], its = guess_[other];
+        return glm::dot(d, d) <= mine * mine && its < kLike * mine && mine < kLike * its;
+    }
+
+    const NeighbourIndex&       index_;
+    std::span<const glm::dvec3> positions_; ///< [m] all by rank
+    std::span<const double>     guess_;     ///< [m]
+    std::span<double>           spacings_;  ///< [m]
+    std::vector<std::uint32_t>  near_;
+    std::vector<double>         values_; ///< [m]
+};
 
 } // namespace
 
-std::vector<double> localSpacings(std::span<const glm::dvec3> positions, const NeighbourIndex& index)
+std::vector<double> localSpacingsByRank(const NeighbourIndex& index)
 {
-    PALP_EXPECT(positions.size() == index.size(), "the index is over other points");
-    const double usual = index.spacing();
-    if (!(usual > 0))
+    if (!(index.spacing() > 0))
         throw Error("the cloud has fewer than seven points or most of them coincide, so there is no surface "
                     "to touch; are there duplicates?");
+    std::vector<double> guess(index.size()), spacings(index.size());
+    inCurveRuns(index.size(), [&] { return GuessingSpacings(index, guess); });
+    inCurveRuns(index.size(), [&] { return SettlingSpacings(index, guess, spacings); });
+    return spacings;
+}
 
-    const std::vector<std::uint32_t> order = alongCurve(positions);
-    std::vector<double>              guess(positions.size()), spacings(positions.size());
-    inParallel(order.size(), kPiece, [&](std::size_t begin, std::size_t end) {
-        guessSpacings(positions, index, std::span(order).subspan(begin, end - begin), guess);
-    });
-    inParallel(order.size(), kPiece, [&](std::size_t begin, std::size_t end) {
-        settleSpacings(positions, index, std::span(order).subspan(begin, end - begin), guess, spacings);
-    });
+std::vector<double> localSpacings(const NeighbourIndex& index)
+{
+    const std::vector<double>        byRank = localSpacingsByRank(index);
+    const std::vector<std::uint32_t> points = index.pointsByRank();
+    std::vector<double>              spacings(points.size());
+    for (std::size_t rank = 0; rank < points.size(); ++rank) spacings[points[rank]] = byRank[rank];
     return spacings;
 }
 

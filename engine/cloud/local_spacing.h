@@ -1,8 +1,5 @@
 #pragma once
-#include <span>
 #include <vector>
-
-#include <glm/vec3.hpp>
 
 #include "engine/cloud/neighbour_index.h"
 
@@ -15,10 +12,12 @@ namespace palp {
 /// one stray or one pair of points does not count. A second sheet two spacings away does not disturb d6. Beside a step
 /// in density, where most of these points are those of the dense side, it takes the median of the area.
 ///
-/// \param positions  those that the index was built from
-/// \return           as many as positions, each > 0
+/// \return  one for each point that the index was built from, > 0
 /// \throws Error if the cloud has fewer than seven points or most of them coincide
-/// \thread pure; allocates
-[[nodiscard]] std::vector<double> localSpacings(std::span<const glm::dvec3> positions, const NeighbourIndex& index);
+/// \thread pure; uses all cores, allocates
+[[nodiscard]] std::vector<double> localSpacings(const NeighbourIndex& index);
+
+/// Returns the same by the ranks of the points.
+[[nodiscard]] std::vector<double> localSpacingsByRank(const NeighbourIndex& index);
 
 } // namespace palp

@@ -13,6 +13,7 @@
 #include "engine/cloud/detail/point_block.h"
 #include "engine/cloud/morton.h"
 #include "engine/core/contract.h"
+#include "engine/core/parallel.h"
 
 // How floats give the answers of doubles
 // --------------------------------------
@@ -50,6 +51,8 @@ constexpr int kLeastScaling = -480;
 
 /// Coordinate [index units] of the lanes that fill up the last block: outside every sphere, its square no overflow.
 constexpr float kNowhere = 1e18F;
+
+constexpr std::size_t kPiece = 50'000; ///< least points of a thread
 
 [[nodiscard]] double squaredDistance(const glm::dvec3& a, const glm::dvec3& b) noexcept
 {
@@ -136,11 +139,13 @@ struct IndexFrame {
         return static_cast<std::uint32_t>(std::clamp((x + 1) * (0.5 * kMortonCells), 0.0, kMortonCells - 1.0));
     };
     std::vector<Key> keys(positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        const glm::dvec3 p = frame.to(positions[i]);
-        keys[i]            = {mortonCode(cell(p.x), cell(p.y), cell(p.z)), static_cast<std::uint32_t>(i)};
-    }
-    if (!std::is_sorted(keys.begin(), keys.end())) std::sort(keys.begin(), keys.end());
+    inParallel(positions.size(), kPiece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::dvec3 p = frame.to(positions[i]);
+            keys[i]            = {mortonCode(cell(p.x), cell(p.y), cell(p.z)), static_cast<std::uint32_t>(i)};
+        }
+    });
+    if (!std::is_sorted(keys.begin(), keys.end())) sortInParallel(keys);
     std::vector<std::uint32_t> order(keys.size());
     std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& key) { return key.point; });
     return order;
@@ -150,16 +155,18 @@ struct IndexFrame {
                                                std::span<const std::uint32_t> order, const IndexFrame& frame)
 {
     std::vector<PointBlock> blocks((order.size() + kBlockPoints - 1) / kBlockPoints);
-    for (std::size_t slot = 0; slot < blocks.size() * kBlockPoints; ++slot) {
-        PointBlock& block = blocks[slot / kBlockPoints];
-        const auto  lane  = slot % kBlockPoints;
-        const bool  used  = slot < order.size();
-        const auto  p     = used ? glm::vec3(frame.to(positions[order[slot]])) : glm::vec3(kNowhere);
-        block.x[lane]     = p.x;
-        block.y[lane]     = p.y;
-        block.z[lane]     = p.z;
-        block.point[lane] = used ? order[slot] : 0;
-    }
+    inParallel(blocks.size() * kBlockPoints, kPiece, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t slot = begin; slot < end; ++slot) {
+            PointBlock& block = blocks[slot / kBlockPoints];
+            const auto  lane  = slot % kBlockPoints;
+            const bool  used  = slot < order.size();
+            const auto  p     = used ? glm::vec3(frame.to(positions[order[slot]])) : glm::vec3(kNowhere);
+            block.x[lane]     = p.x;
+            block.y[lane]     = p.y;
+            block.z[lane]     = p.z;
+            block.point[lane] = used ? order[slot] : 0;
+        }
+    });
     return blocks;
 }
 
@@ -355,6 +362,9 @@ struct NeighbourIndex::Impl {
     void gather(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
                 std::vector<std::uint32_t>& found) const;
 
+    void gatherRanks(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
+                     std::vector<std::uint32_t>& found) const;
+
     /// Fills `candidates` with at least the k nearest.
     /// \return  false unless all of them are within `start` [index units]
     [[nodiscard]] bool findCandidates(const FloatSphere& sphere, double start, std::size_t k,
@@ -385,6 +395,23 @@ void NeighbourIndex::Impl::gather(const FloatSphere& sphere, const glm::dvec3& c
         }
     });
     handOver();
+}
+
+void NeighbourIndex::Impl::gatherRanks(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
+                                       std::vector<std::uint32_t>& found) const
+{
+    const Shell  shell   = sphere.shell(radius * frame.scale);
+    const double radius2 = radius * radius;
+    eachBatch(sphere, radius * frame.scale, [&](std::span<const std::uint32_t> numbers, float&) {
+        for (const std::uint32_t number : numbers) {
+            float distance2[kBlockPoints];
+            for (auto near = filter.measure(blocks[number], shell, distance2); near != 0; near &= near - 1) {
+                const auto lane = std::uint32_t(std::countr_zero(near)), rank = number * kBlockPoints + lane;
+                if (distance2[lane] <= shell.inner2 || squaredDistance(exact[rank], centre) <= radius2)
+                    found.push_back(rank);
+            }
+        }
+    });
 }
 
 bool NeighbourIndex::Impl::findCandidates(const FloatSphere& sphere, double start, std::size_t k,
@@ -507,6 +534,35 @@ std::vector<Neighbour> NeighbourIndex::nearest(const glm::dvec3& centre, std::si
 std::size_t NeighbourIndex::size() const noexcept
 {
     return impl_->exact.size();
+}
+
+std::vector<std::uint32_t> NeighbourIndex::pointsByRank() const
+{
+    std::vector<std::uint32_t> points(size());
+    for (std::size_t rank = 0; rank < points.size(); ++rank) points[rank] = impl_->pointAt(rank);
+    return points;
+}
+
+std::span<const glm::dvec3> NeighbourIndex::positionsByRank() const noexcept
+{
+    return impl_->exact;
+}
+
+void NeighbourIndex::gatherRanks(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const
+{
+    PALP_EXPECT(finite(centre), "centre " + text(centre));
+    PALP_EXPECT(radius >= 0, "radius " + std::to_string(radius) + " m");
+
+    found.clear();
+    const Impl&      index       = *impl_;
+    const glm::dvec3 place       = index.frame.to(centre);
+    const double     indexRadius = radius * index.frame.scale;
+    if (index.frame.searchable(place) && indexRadius <= kFloatReach) {
+        index.gatherRanks(FloatSphere(place), centre, radius, found);
+        return;
+    }
+    for (std::size_t rank = 0; rank < index.exact.size(); ++rank)
+        if (squaredDistance(index.exact[rank], centre) <= radius * radius) found.push_back(std::uint32_t(rank));
 }
 
 double NeighbourIndex::spacing() const noexcept

@@ -41,6 +41,15 @@ public:
 
     [[nodiscard]] std::size_t size() const noexcept;
 
+    // What is asked about every point is asked along the curve, where neighbours follow each other: what one search reads
+    // is then in the cache for the next. A point's number along it is its rank.
+
+    [[nodiscard]] std::vector<std::uint32_t>  pointsByRank() const;             ///< which point has each rank
+    [[nodiscard]] std::span<const glm::dvec3> positionsByRank() const noexcept; ///< [m]; lives as long as the index
+
+    /// Does what gather() does, with ranks in place of points.
+    void gatherRanks(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const;
+
     /// Returns the mean distance between points of the surface, 1/sqrt(points per square metre) [m]: the median over up
     /// to 2000 points, spread evenly, of d6 sqrt(pi/6), d6 the distance to the sixth neighbour. Computed once, at
     /// construction. 0 if the cloud has fewer than seven points or most of them coincide.

@@ -1,30 +1,33 @@
 #include "engine/cloud/neighbourhoods.h"
 
-#include <algorithm>
-#include <utility>
-
-#include "engine/cloud/morton.h"
-
 namespace palp {
 
-std::vector<std::uint32_t> alongCurve(std::span<const glm::dvec3> positions)
+void Neighbourhoods::search(const glm::dvec3& middle, double reach)
 {
-    glm::dvec3 low = positions[0], high = positions[0];
-    for (const glm::dvec3& p : positions) {
-        low  = glm::min(low, p);
-        high = glm::max(high, p);
+    index_.gatherRanks(middle, reach * (1 + 1e-9), found_);
+    for (std::vector<double>* v : {&x_, &y_, &z_, &distance2_}) v->resize(found_.size());
+    for (std::size_t n = 0; n < found_.size(); ++n) {
+        const glm::dvec3 d = positions_[found_[n]] - middle;
+        x_[n]              = d.x;
+        y_[n]              = d.y;
+        z_[n]              = d.z;
     }
-    const glm::dvec3 size  = high - low;
-    const double     scale = (kMortonCells - 1) / std::max({size.x, size.y, size.z});
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        const glm::dvec3 cell = scale * (positions[i] - low);
-        keys[i] = {mortonCode(std::uint32_t(cell.x), std::uint32_t(cell.y), std::uint32_t(cell.z)), std::uint32_t(i)};
+}
+
+void Neighbourhoods::keepNear(const glm::dvec3& place, double radius)
+{
+    // Two loops: the compiler turns the first one into vector instructions.
+    const std::size_t   count = found_.size();
+    const double *const x = x_.data(), *const y = y_.data(), *const z = z_.data();
+    double* const d2 = distance2_.data();
+    for (std::size_t n = 0; n < count; ++n) {
+        const double dx = x[n] - place.x, dy = y[n] - place.y, dz = z[n] - place.z;
+        d2[n] = dx * dx + dy * dy + dz * dz;
     }
-    std::sort(keys.begin(), keys.end());
-    std::vector<std::uint32_t> order(keys.size());
-    std::transform(keys.begin(), keys.end(), order.begin(), [](const auto& key) { return key.second; });
-    return order;
+    near_.clear();
+    for (std::size_t n = 0; n < count; ++n)
+        if (d2[n] <= radius * radius)
+            near_.push_back({found_[n], {x[n] - place.x, y[n] - place.y, z[n] - place.z}, d2[n]});
 }
 
 } // namespace palp

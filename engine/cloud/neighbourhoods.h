@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -7,15 +8,36 @@
 #include <glm/vec3.hpp>
 
 #include "engine/cloud/neighbour_index.h"
+#include "engine/core/parallel.h"
 
 namespace palp {
 
-/// Returns the points in an order in which neighbours follow each other, so that what a search reads is in the cache.
-[[nodiscard]] std::vector<std::uint32_t> alongCurve(std::span<const glm::dvec3> positions);
+/// Points along the curve of an index that are looked at together.
+inline constexpr std::size_t kCurveRun = 256;
+
+/// Some points that follow each other along the curve of an index, by their ranks: [begin, end).
+struct RankRun {
+    std::uint32_t begin = 0, end = 0;
+};
+
+/// Runs work(RankRun) for all runs of kCurveRun points, on all cores. The runs do not depend on the number of cores, so
+/// what the points of a run share does not either.
+/// \param points    how many there are
+/// \param makeWork  called once a thread
+template <class MakeWork>
+void inCurveRuns(std::size_t points, MakeWork&& makeWork)
+{
+    constexpr std::size_t kLeast = 16; // runs of a thread
+    inParallel((points + kCurveRun - 1) / kCurveRun, kLeast, [&](std::size_t begin, std::size_t end) {
+        auto work = makeWork();
+        for (std::size_t run = begin; run < end; ++run)
+            work(RankRun{std::uint32_t(run * kCurveRun), std::uint32_t(std::min(points, (run + 1) * kCurveRun))});
+    });
+}
 
 /// A point near another one.
 struct NearCandidate {
-    std::uint32_t point = 0;
+    std::uint32_t rank = 0;
     glm::dvec3    away{};        ///< [m] from the other one
     double        distance2 = 0; ///< [m^2] squared length of `away`
 };
@@ -24,52 +46,44 @@ struct NearCandidate {
 /// \thread one; allocates
 class Neighbourhoods {
 public:
-    Neighbourhoods(std::span<const glm::dvec3> positions, const NeighbourIndex& index)
-        : positions_(positions), index_(index)
-    {
-    }
+    explicit Neighbourhoods(const NeighbourIndex& index) : index_(index), positions_(index.positionsByRank()) {}
 
-    /// Calls visit(point, near) for the points in `order`; `near` are those within its radius, itself too.
-    /// \param radius  of a point [m], > 0; it may change with every visit
+    /// Calls visit(rank, near) for the points of a run; `near` are those within its radius, itself too.
+    /// \param radius  of a rank [m], > 0; it may change with every visit
     template <class Radius, class Visit>
-    void each(std::span<const std::uint32_t> order, Radius&& radius, Visit&& visit)
+    void each(const RankRun& run, Radius&& radius, Visit&& visit)
     {
-        constexpr std::size_t kMost   = 16;  // points a search
-        constexpr double      kApart  = 0.8; // farthest of them from the first, over its radius [1]
-        constexpr double      kUnlike = 1.5; // ratio of their radii [1]
-        for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-            const glm::dvec3 middle = positions_[order[begin]];
-            const double     first  = radius(order[begin]);
+        constexpr std::uint32_t kMost   = 16;  // points a search
+        constexpr double        kApart  = 0.8; // farthest of them from the first, over its radius [1]
+        constexpr double        kUnlike = 1.5; // ratio of their radii [1]
+        for (std::uint32_t begin = run.begin, end = 0; begin < run.end; begin = end) {
+            const glm::dvec3 middle = positions_[begin];
+            const double     first  = radius(begin);
             double           reach  = first;
-            for (end = begin + 1; end < order.size() && end - begin < kMost; ++end) {
-                const double away = glm::length(positions_[order[end]] - middle), own = radius(order[end]);
+            for (end = begin + 1; end < run.end && end - begin < kMost; ++end) {
+                const double away = glm::length(positions_[end] - middle), own = radius(end);
                 if (away > kApart * first || own > kUnlike * first) break;
-                reach = glm::max(reach, away + own);
+                reach = std::max(reach, away + own);
             }
-            index_.gather(middle, reach * (1 + 1e-9), found_);
-            places_.clear();
-            for (const std::uint32_t point : found_) places_.push_back(positions_[point]);
-            for (std::size_t k = begin; k < end; ++k) {
+            search(middle, reach);
+            for (std::uint32_t k = begin; k < end; ++k) {
                 // What is out of reach of the search is out of the radius too, unless a visit has enlarged it.
-                const glm::dvec3 place = positions_[order[k]];
-                const double     most = reach - glm::length(place - middle), wanted = radius(order[k]);
-                const double     own = wanted <= most * (1 + 1e-9) ? wanted : most;
-                near_.clear();
-                for (std::size_t n = 0; n < found_.size(); ++n) {
-                    const glm::dvec3 d  = places_[n] - place;
-                    const double     d2 = d.x * d.x + d.y * d.y + d.z * d.z;
-                    if (d2 <= own * own) near_.push_back({found_[n], d, d2});
-                }
-                visit(order[k], std::span<const NearCandidate>(near_));
+                const glm::dvec3 place = positions_[k] - middle;
+                const double     most = reach - glm::length(place), wanted = radius(k);
+                keepNear(place, wanted <= most * (1 + 1e-9) ? wanted : most);
+                visit(k, std::span<const NearCandidate>(near_));
             }
         }
     }
 
 private:
-    std::span<const glm::dvec3> positions_; ///< [m]
+    void search(const glm::dvec3& middle, double reach);
+    void keepNear(const glm::dvec3& place, double radius);
+
     const NeighbourIndex&       index_;
+    std::span<const glm::dvec3> positions_; ///< [m] by rank
     std::vector<std::uint32_t>  found_;
-    std::vector<glm::dvec3>     places_; ///< of the found ones [m]
+    std::vector<double>         x_, y_, z_, distance2_; ///< of the found ones: from the middle of the search [m]; [m^2]
     std::vector<NearCandidate>  near_;
 };
 

@@ -36,8 +36,7 @@ SoftObject::SoftObject(PointCloud cloud, const Material& material, std::vector<T
     : cloud_(std::move(cloud)), index_(std::make_shared<const NeighbourIndex>(cloud_.positions())),
       faces_(std::make_shared<const std::vector<Triangle>>(std::move(faces))),
       survey_(std::make_shared<const SurfaceSurvey>(
-          cloud_.positions(), *index_,
-          normals.empty() ? std::span<const glm::vec3>(normalsOf(*faces_, cloud_.positions())) : normals)),
+          *index_, normals.empty() ? std::span<const glm::vec3>(normalsOf(*faces_, cloud_.positions())) : normals)),
       material_(material)
 {
 }

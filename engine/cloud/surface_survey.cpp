@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include <glm/geometric.hpp>
 
@@ -9,13 +10,9 @@
 #include "engine/cloud/local_spacing.h"
 #include "engine/cloud/neighbourhoods.h"
 #include "engine/core/contract.h"
-#include "engine/core/parallel.h"
 
 namespace palp {
 namespace {
-
-constexpr std::size_t kPiece = 4096; ///< least points of a thread
-constexpr std::size_t kRun   = 256;  ///< points along the curve that are looked at together
 
 /// Radius of the neighbourhood of a normal [spacings]: 28 points of a random sheet, some thirty.
 constexpr double kReach = 3;
@@ -23,6 +20,21 @@ constexpr double kReach = 3;
 /// Points lie along a line if their extents along the surface have a smaller ratio, squared [1]: of the 28 points of a
 /// random sheet one in 10^5 does. The ball then grows by kGrowth until the ratio reaches kPlanar.
 constexpr double kNarrow = 0.08, kPlanar = 0.3, kGrowth = 1.4;
+
+/// Points within a spacing of each other that share the shape about one of them.
+constexpr std::size_t kSharing = 8;
+
+/// Returns the ranks of a run.
+auto pointsOf(const RankRun& run)
+{
+    return std::views::iota(run.begin, run.end);
+}
+
+/// Returns whether two spacings are nearly the same.
+bool alike(double a, double b)
+{
+    return std::abs(a - b) < 0.15 * b;
+}
 
 /// A point belongs to a layer whose tangent planes it lies this many times nearer to than to the other's [1].
 constexpr double kOwnLayer = 0.4;
@@ -47,18 +59,18 @@ constexpr std::size_t kMostOfBall = 512; ///< points of a wide ball that are loo
 
 } // namespace
 
-/// The survey of some pieces of a cloud: each thread has its own.
+/// The survey of some runs of a cloud, all by rank: each thread has its own.
 class SurfaceSurvey::Measuring {
 public:
-    Measuring(SurfaceSurvey& survey, std::span<const glm::dvec3> positions, const NeighbourIndex& index)
-        : survey_(survey), positions_(positions), index_(index), neighbourhoods_(positions, index)
+    Measuring(SurfaceSurvey& survey, const NeighbourIndex& index)
+        : survey_(survey), positions_(index.positionsByRank()), index_(index), neighbourhoods_(index)
     {
     }
 
-    void measureShapes(std::span<const std::uint32_t> order);
-    void adoptSides(std::span<const std::uint32_t> order, std::span<const std::uint8_t> sided);
-    void measureNoise(std::span<const std::uint32_t> order);
-    void settleNoise(std::span<const std::uint32_t> order, std::span<const float> raw);
+    void measureShapes(const RankRun& run);
+    void adoptSides(const RankRun& run, std::span<const std::uint8_t> sided);
+    void measureNoise(const RankRun& run);
+    void settleNoise(const RankRun& run, std::span<const float> raw);
 
 private:
     LocalShape shapeWithin(std::uint32_t point, double radius);
@@ -66,7 +78,7 @@ private:
     float      noiseAbout(std::uint32_t point);
 
     SurfaceSurvey&              survey_;
-    std::span<const glm::dvec3> positions_;
+    std::span<const glm::dvec3> positions_; ///< [m]
     const NeighbourIndex&       index_;
     Neighbourhoods              neighbourhoods_;
     ShapeFitter                 fitter_;
@@ -77,7 +89,7 @@ private:
 
 LocalShape SurfaceSurvey::Measuring::shapeWithin(std::uint32_t point, double radius)
 {
-    index_.gather(positions_[point], radius, found_);
+    index_.gatherRanks(positions_[point], radius, found_);
     const std::size_t step = (found_.size() + kMostOfBall - 1) / kMostOfBall;
     away_.clear();
     for (std::size_t k = 0; k < found_.size(); k += step) away_.push_back(positions_[found_[k]] - positions_[point]);
@@ -97,35 +109,43 @@ LocalShape SurfaceSurvey::Measuring::widened(std::uint32_t point, LocalShape sha
     return shape;
 }
 
-void SurfaceSurvey::Measuring::measureShapes(std::span<const std::uint32_t> order)
+/// Measures the shape about some points. Where it is smooth, those that follow share it: their own would be over nearly
+/// the same points.
+void SurfaceSurvey::Measuring::measureShapes(const RankRun& run)
 {
-    const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
-    neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near) {
-        const double r = radius(point);
-        away_.clear();
-        for (const NearCandidate& candidate : near) away_.push_back(candidate.away);
-        LocalShape shape = fitter_.fit(away_, r, survey_.spacings_[point]);
+    for (std::uint32_t point = run.begin, end = 0; point < run.end; point = end) {
+        const double spacing = survey_.spacings_[point], radius = kReach * spacing;
+        LocalShape   shape = shapeWithin(point, radius);
+        end                = point + 1;
+        if (shape.smooth && !shape.sided) {
+            for (; end < run.end && end - point < kSharing; ++end) {
+                const glm::dvec3 away = positions_[end] - positions_[point];
+                if (!alike(survey_.spacings_[end], spacing) || glm::dot(away, away) > spacing * spacing) break;
+                survey_.normals_[end] = shape.normalAt(away, radius);
+                survey_.noises_[end]  = float(shape.residual);
+            }
+        }
         if (shape.narrow < kNarrow && !shape.sided) shape = widened(point, shape);
         survey_.normals_[point] = shape.normal;
         survey_.noises_[point]  = float(shape.residual);
         survey_.sided_[point]   = shape.sided;
-    });
+    }
 }
 
 /// Gives a point whose own layer was not found that of its neighbours: of those on either side, the ones in whose
 /// tangent planes it lies.
-void SurfaceSurvey::Measuring::adoptSides(std::span<const std::uint32_t> order, std::span<const std::uint8_t> sided)
+void SurfaceSurvey::Measuring::adoptSides(const RankRun& run, std::span<const std::uint8_t> sided)
 {
-    if (std::ranges::none_of(order, [&](std::uint32_t point) { return sided[point] != 0; })) return;
+    if (std::ranges::none_of(pointsOf(run), [&](std::uint32_t point) { return sided[point] != 0; })) return;
     const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
-    neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near) {
+    neighbourhoods_.each(run, radius, [&](std::uint32_t point, std::span<const NearCandidate> near) {
         if (sided[point]) return;
         double     height[2] = {}, weight[2] = {}; // [m] of the point over the layers along its normal and against it
         glm::dvec3 normal[2] = {};
         for (const NearCandidate& candidate : near) {
             const double share = 1 - candidate.distance2 / (radius(point) * radius(point));
-            if (!sided[candidate.point] || share <= 0) continue;
-            const glm::dvec3 n     = survey_.normals_[candidate.point];
+            if (!sided[candidate.rank] || share <= 0) continue;
+            const glm::dvec3 n     = survey_.normals_[candidate.rank];
             const int        layer = glm::dot(n, glm::dvec3(survey_.normals_[point])) < 0;
             height[layer] += share * std::abs(glm::dot(n, candidate.away));
             weight[layer] += share;
@@ -161,11 +181,11 @@ float SurfaceSurvey::Measuring::noiseAbout(std::uint32_t point)
     return 0;
 }
 
-void SurfaceSurvey::Measuring::measureNoise(std::span<const std::uint32_t> order)
+void SurfaceSurvey::Measuring::measureNoise(const RankRun& run)
 {
     std::size_t since = kTogether;
     float       last  = 0;
-    for (const std::uint32_t point : order) {
+    for (std::uint32_t point = run.begin; point < run.end; ++point) {
         if (survey_.sided_[point] || !(survey_.noises_[point] > kClean * survey_.spacings_[point])) continue;
         if (++since > kTogether) {
             last  = noiseAbout(point);
@@ -175,52 +195,63 @@ void SurfaceSurvey::Measuring::measureNoise(std::span<const std::uint32_t> order
     }
 }
 
-void SurfaceSurvey::Measuring::settleNoise(std::span<const std::uint32_t> order, std::span<const float> raw)
+void SurfaceSurvey::Measuring::settleNoise(const RankRun& run, std::span<const float> raw)
 {
-    if (std::ranges::none_of(order,
+    if (std::ranges::none_of(pointsOf(run),
                              [&](std::uint32_t point) { return raw[point] > kClean * survey_.spacings_[point]; }))
         return;
     const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
-    neighbourhoods_.each(order, radius, [&](std::uint32_t point, std::span<const NearCandidate> near) {
+    neighbourhoods_.each(run, radius, [&](std::uint32_t point, std::span<const NearCandidate> near) {
         values_.clear();
-        for (const NearCandidate& candidate : near) values_.push_back(raw[candidate.point]);
+        for (const NearCandidate& candidate : near) values_.push_back(raw[candidate.rank]);
         const auto middle = values_.begin() + std::ptrdiff_t(values_.size() / 2);
         std::nth_element(values_.begin(), middle, values_.end());
         survey_.noises_[point] = *middle;
     });
 }
 
-SurfaceSurvey::SurfaceSurvey(std::span<const glm::dvec3> positions, const NeighbourIndex& index,
-                             std::span<const glm::vec3> given)
-    : normals_(positions.size()), noises_(positions.size()), sided_(positions.size())
+SurfaceSurvey::SurfaceSurvey(const NeighbourIndex& index, std::span<const glm::vec3> given)
+    : normals_(index.size()), noises_(index.size()), sided_(index.size())
 {
-    PALP_EXPECT(given.empty() || given.size() == positions.size(), "normals of other points");
+    PALP_EXPECT(given.empty() || given.size() == index.size(), "normals of other points");
     if (!(index.spacing() > 0)) return;
-    const std::vector<std::uint32_t> order = alongCurve(positions);
-    spacings_                              = localSpacings(positions, index);
-    const auto eachPiece                   = [&](auto&& measure) {
-        inParallel(order.size(), kPiece, [&](std::size_t begin, std::size_t end) {
-            Measuring measuring(*this, positions, index);
-            measure(measuring, std::span(order).subspan(begin, end - begin));
-        });
+    spacings_          = localSpacingsByRank(index);
+    const auto eachRun = [&](auto&& measure) {
+        inCurveRuns(index.size(),
+                    [&] { return [&, m = Measuring(*this, index)](const RankRun& run) mutable { measure(m, run); }; });
     };
-    eachPiece([](Measuring& m, auto piece) { m.measureShapes(piece); });
-    const auto eachRun = [&](auto&& measure) { // most runs along the curve have nothing to do, and say so quickly
-        eachPiece([&](Measuring& m, auto piece) {
-            for (std::size_t k = 0; k < piece.size(); k += kRun)
-                measure(m, piece.subspan(k, std::min(kRun, piece.size() - k)));
-        });
-    };
+    // Most runs have nothing to do in all but the first of these, and say so quickly.
+    eachRun([](Measuring& m, const RankRun& run) { m.measureShapes(run); });
     const std::vector<std::uint8_t> layered = sided_;
-    eachRun([&](Measuring& m, auto run) { m.adoptSides(run, layered); });
-    eachPiece([](Measuring& m, auto piece) { m.measureNoise(piece); });
+    eachRun([&](Measuring& m, const RankRun& run) { m.adoptSides(run, layered); });
+    eachRun([](Measuring& m, const RankRun& run) { m.measureNoise(run); });
     for (int round = 0; round < kMedians; ++round) {
         const std::vector<float> raw = noises_;
-        eachRun([&](Measuring& m, auto run) { m.settleNoise(run, raw); });
+        eachRun([&](Measuring& m, const RankRun& run) { m.settleNoise(run, raw); });
     }
+    fromRanksToPoints(index.pointsByRank());
+    takeSides(given);
+}
+
+/// Sorts what was measured by rank.
+void SurfaceSurvey::fromRanksToPoints(std::span<const std::uint32_t> points)
+{
+    const auto sorted = [&](auto& values) {
+        auto byRank = values;
+        for (std::size_t rank = 0; rank < points.size(); ++rank) values[points[rank]] = byRank[rank];
+    };
+    sorted(spacings_);
+    sorted(normals_);
+    sorted(noises_);
+    sorted(sided_);
+}
+
+/// Takes the side, but not the direction, from given normals: where they are the better ones is not known, and ours fit
+/// the points.
+void SurfaceSurvey::takeSides(std::span<const glm::vec3> given)
+{
     for (std::size_t i = 0; i < given.size(); ++i) {
         if (!(glm::dot(given[i], given[i]) > 0)) continue;
-        // The given one says which side is out; where it is the better normal too is not known, and ours fits the points.
         if (glm::dot(normals_[i], given[i]) < 0) normals_[i] = -normals_[i];
         if (glm::dot(normals_[i], normals_[i]) == 0) normals_[i] = glm::normalize(given[i]);
         sided_[i] = kGiven;

@@ -24,10 +24,8 @@ namespace palp {
 class SurfaceSurvey {
 public:
     /// Takes about 1 s of one core for a million points, on all cores.
-    /// \param positions  [m] those that the index was built from
-    /// \param given      [1] a normal for each point, 0 where there is none; empty: none at all
-    SurfaceSurvey(std::span<const glm::dvec3> positions, const NeighbourIndex& index,
-                  std::span<const glm::vec3> given = {});
+    /// \param given  [1] a normal for each point, 0 where there is none; empty: none at all
+    explicit SurfaceSurvey(const NeighbourIndex& index, std::span<const glm::vec3> given = {});
 
     /// \throws Error if the cloud has fewer than seven points or most of them coincide: there is nothing to touch
     void expectSurface() const;
@@ -42,6 +40,9 @@ public:
 
 private:
     class Measuring;
+
+    void fromRanksToPoints(std::span<const std::uint32_t> points);
+    void takeSides(std::span<const glm::vec3> given);
 
     static constexpr std::uint8_t kGiven = 2; ///< in sided_; 1: by layers
 

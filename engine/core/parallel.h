@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <future>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -23,6 +24,25 @@ void inParallel(std::size_t count, std::size_t leastPiece, Work&& work)
         others.push_back(std::async(std::launch::async, [&, piece] { work(edge(piece), edge(piece + 1)); }));
     work(edge(0), edge(1));
     for (std::future<void>& other : others) other.get();
+}
+
+/// Sorts values of which no two are equal, on all cores: the result does not depend on their number.
+/// \thread  any; starts threads, allocates
+template <class Value>
+void sortInParallel(std::vector<Value>& values)
+{
+    constexpr std::size_t    kWorthAThread = 100'000;
+    std::vector<std::size_t> ends; // of the sorted pieces
+    std::mutex               mutex;
+    inParallel(values.size(), kWorthAThread, [&](std::size_t begin, std::size_t end) {
+        std::sort(values.begin() + std::ptrdiff_t(begin), values.begin() + std::ptrdiff_t(end));
+        const std::lock_guard lock(mutex);
+        ends.push_back(end);
+    });
+    std::sort(ends.begin(), ends.end());
+    for (std::size_t k = 0; k + 1 < ends.size(); ++k)
+        std::inplace_merge(values.begin(), values.begin() + std::ptrdiff_t(ends[k]),
+                           values.begin() + std::ptrdiff_t(ends[k + 1]));
 }
 
 } // namespace palp

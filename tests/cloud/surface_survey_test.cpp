@@ -34,7 +34,7 @@ Points sheet(std::uint64_t seed, double z = 0)
 
 SurfaceSurvey surveyOf(const Points& points, std::span<const glm::vec3> given = {})
 {
-    return {points, NeighbourIndex(points), given};
+    return SurfaceSurvey(NeighbourIndex(points), given);
 }
 
 double quantile(std::vector<double> values, double share)

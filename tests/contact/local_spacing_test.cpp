@@ -15,7 +15,7 @@ using namespace proxytest;
 std::vector<double> spacingsOf(const Points& points)
 {
     const NeighbourIndex index(points);
-    return localSpacings(points, index);
+    return localSpacings(index);
 }
 
 bool inside(const glm::dvec3& p, double x0, double x1)

@@ -18,6 +18,8 @@ constexpr double      kOverlap       = 1.8; // [spacing] least way along the sur
                                             // beside a step or across a ridge it is farther
 constexpr int         kLayerRounds = 4;     // the first plane lies askew, by as much as the layers are apart
 constexpr std::size_t kMostQuadric = 256;   // points; of more, evenly spread ones are taken
+constexpr std::size_t kForSmooth   = 12;    // points: fewer determine no quadric well
+constexpr double      kEven        = 0.3;   // [1] least ratio of their extents, squared, for that
 constexpr int         kForTails    = 40;    // points: fewer tell nothing about tails
 
 /// The principal axes of some points.
@@ -84,41 +86,79 @@ double meanHeight(std::span<const glm::dvec3> points, const glm::dvec3& normal)
     return sum / double(points.size());
 }
 
-/// Sets residual and tails of a shape from a quadric over its plane, or from the plane where points are few.
+/// The sums of a^m b^n over some points that the normal equations of a quadric are made of.
+class QuadricSums {
+public:
+    using Row = Eigen::Matrix<double, 6, 1>;
+
+    void add(double a, double b, double h) noexcept
+    {
+        const double aa = a * a, ab = a * b, bb = b * b;
+        const double powers[kPowers] = {1,      a,      b,       aa,      ab,      bb,      aa * a, aa * b,
+                                        ab * b, bb * b, aa * aa, aa * ab, aa * bb, ab * bb, bb * bb};
+        for (int k = 0; k < kPowers; ++k) sums_[k] += powers[k];
+        for (int k = 0; k < 6; ++k) right_[k] += h * powers[k];
+        square_ += h * h;
+    }
+
+    [[nodiscard]] Eigen::Matrix<double, 6, 6> matrix(double ridge) const
+    {
+        // Which sum stands where: row 1, a, b, a^2, a b, b^2 times column.
+        static constexpr int        kOf[6][6] = {{0, 1, 2, 3, 4, 5},    {1, 3, 4, 6, 7, 8},    {2, 4, 5, 7, 8, 9},
+                                                 {3, 6, 7, 10, 11, 12}, {4, 7, 8, 11, 12, 13}, {5, 8, 9, 12, 13, 14}};
+        Eigen::Matrix<double, 6, 6> result;
+        for (int r = 0; r < 6; ++r)
+            for (int c = 0; c < 6; ++c) result(r, c) = sums_[kOf[r][c]] + (r == c ? ridge * sums_[0] : 0);
+        return result;
+    }
+    [[nodiscard]] Row    right() const { return Row(right_); }
+    [[nodiscard]] double square() const noexcept { return square_; }
+    [[nodiscard]] int    count() const noexcept { return int(sums_[0]); }
+
+private:
+    static constexpr int kPowers = 15;
+
+    double sums_[kPowers] = {}, right_[6] = {}, square_ = 0;
+};
+
+/// Sets quadric, residual and tails of a shape from the points about its plane.
 void fitQuadric(LocalShape& shape, std::span<const glm::dvec3> points, const Axes& axes, double radius)
 {
-    using Row                          = Eigen::Matrix<double, 6, 1>;
-    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
-    Row                         right  = Row::Zero();
-    double                      square = 0;
-    const std::size_t           step   = (points.size() + kMostQuadric - 1) / kMostQuadric;
-    int                         count  = 0;
-    for (std::size_t i = 0; i < points.size(); i += step) {
-        const double a = glm::dot(axes.u, points[i]) / radius, b = glm::dot(axes.v, points[i]) / radius;
-        const double h = glm::dot(axes.normal, points[i]);
-        const Row    row{1, a, b, a * a, a * b, b * b};
-        normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
-        right += h * row;
-        square += h * h;
-        ++count;
-    }
-    constexpr int    kUnknowns = 6;
-    constexpr double kRidge    = 1e-9; // [1] of the count: points on a line must not blow up
-    normal.diagonal().array() += kRidge * count;
-    const Row    x  = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-    const double ss = std::max(0.0, square - x.dot(right));
+    constexpr int     kUnknowns = 6;
+    constexpr double  kRidge    = 1e-9; // [1] of the count: points on a line must not blow up
+    const std::size_t step      = (points.size() + kMostQuadric - 1) / kMostQuadric;
+    QuadricSums       sums;
+    for (std::size_t i = 0; i < points.size(); i += step)
+        sums.add(glm::dot(axes.u, points[i]) / radius, glm::dot(axes.v, points[i]) / radius,
+                 glm::dot(axes.normal, points[i]));
+    const int              count = sums.count();
+    const QuadricSums::Row right = sums.right();
+    const QuadricSums::Row x     = sums.matrix(kRidge).ldlt().solve(right);
+    shape.u                      = axes.u;
+    shape.v                      = axes.v;
+    std::copy(x.begin(), x.end(), shape.quadric.begin());
+
+    const double ss = std::max(0.0, sums.square() - x.dot(right));
     if (count > kUnknowns + 2) shape.residual = std::sqrt(ss / (count - kUnknowns));
     if (count <= kForTails || !(ss > 0)) return;
     double fourth = 0;
     for (std::size_t i = 0; i < points.size(); i += step) {
         const double a = glm::dot(axes.u, points[i]) / radius, b = glm::dot(axes.v, points[i]) / radius;
-        const double off = glm::dot(axes.normal, points[i]) - Row{1, a, b, a * a, a * b, b * b}.dot(x);
+        const double off = glm::dot(axes.normal, points[i]) - QuadricSums::Row{1, a, b, a * a, a * b, b * b}.dot(x);
         fourth += off * off * off * off;
     }
     shape.tails = fourth * count / (ss * ss);
 }
 
 } // namespace
+
+glm::dvec3 LocalShape::normalAt(const glm::dvec3& away, double radius) const noexcept
+{
+    const double a = glm::dot(u, away) / radius, b = glm::dot(v, away) / radius;
+    const double alongU = (quadric[1] + 2 * quadric[3] * a + quadric[4] * b) / radius;
+    const double alongV = (quadric[2] + quadric[4] * a + 2 * quadric[5] * b) / radius;
+    return glm::normalize(normal - alongU * u - alongV * v);
+}
 
 /// Sorts the points by height and returns how many lie below the cut that parts them best into two groups (Otsu 1979:
 /// the largest variance between the groups).
@@ -208,6 +248,7 @@ LocalShape ShapeFitter::fit(std::span<const glm::dvec3> away, double radius, dou
     if (shape.sided) axes = planeOf(own);
     shape.narrow = std::max(0.0, axes.middle) / axes.most;
     shape.normal = axes.normal;
+    shape.smooth = !thick && own.size() >= kForSmooth && shape.narrow > kEven;
     fitQuadric(shape, own, axes, radius);
     if (shape.sided && meanHeight(own, shape.normal) < meanHeight(away, shape.normal)) shape.normal = -shape.normal;
     return shape;

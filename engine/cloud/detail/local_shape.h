@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -14,6 +15,15 @@ struct LocalShape {
     double     residual = 0;     ///< [m] standard deviation of the points about the fitted quadric
     double     tails    = 3;     ///< [1] kurtosis of the deviations, of more than 40 points: two layers have 1
     bool       sided    = false; ///< the points form two layers, and the normal points away from the other one
+
+    // The quadric h = q0 + q1 a + q2 b + q3 a^2 + q4 a b + q5 b^2 [m] over a, b [radii], of points that lie nearly in a
+    // plane and determine it well; then it holds for the points close to the middle one too.
+    bool                  smooth = false;
+    glm::dvec3            u{}, v{}; ///< [1] axes of a and b
+    std::array<double, 6> quadric{};
+
+    /// Returns the quadric's normal [1] at a place close to the middle point, unit. Requires `smooth`.
+    [[nodiscard]] glm::dvec3 normalAt(const glm::dvec3& away, double radius) const noexcept;
 };
 
 /// Fits planes and quadrics to the points about a point.

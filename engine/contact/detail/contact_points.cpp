@@ -9,7 +9,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/cloud/neighbourhoods.h"
 #include "engine/cloud/touch_scale.h"
 #include "engine/contact/detail/surface_projector.h"
 #include "engine/core/parallel.h"
@@ -107,7 +106,7 @@ void ContactPoints::unstack(Source& source)
         normals.push_back(source.survey->given(i) ? glm::vec3(source.survey->normal(i)) : glm::vec3(0));
     }
     ownIndex_  = std::make_unique<const NeighbourIndex>(ownPositions_);
-    ownSurvey_ = std::make_unique<const SurfaceSurvey>(ownPositions_, *ownIndex_, normals);
+    ownSurvey_ = std::make_unique<const SurfaceSurvey>(*ownIndex_, normals);
     source     = {ownPositions_, ownIndex_.get(), ownSurvey_.get()};
 }
 
@@ -155,7 +154,7 @@ void ContactPoints::smooth(const Source& source)
     std::vector<std::uint32_t> standsFor(source.positions.size(), kNone); // number of the chosen one, for each
     std::vector<std::uint32_t> near;
     for (const std::uint32_t i : clean) standsFor[i] = kItself;
-    for (const std::uint32_t i : alongCurve(source.positions)) {
+    for (const std::uint32_t i : source.index->pointsByRank()) {
         if (standsFor[i] != kNone) continue;
         source.index->gather(source.positions[i], kApart * source.scale(i), near);
         for (const std::uint32_t j : near)

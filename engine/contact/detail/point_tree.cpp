@@ -1,15 +1,17 @@
 #include "engine/contact/detail/point_tree.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <future>
-#include <numeric>
 #include <thread>
-#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "engine/cloud/morton.h"
 #include "engine/core/contract.h"
+#include "engine/core/parallel.h"
 
 namespace palp {
 namespace {
@@ -31,27 +33,38 @@ constexpr int kMostLevels  = 100;
 /// Points whose part of the tree is worth a thread.
 constexpr std::size_t kWorthAThread = 50'000;
 
-/// Keeps those points that come first in their cube.
-void thin(std::span<const glm::dvec3> positions, double side, std::vector<std::uint32_t>& points)
+/// A point and the cube of side `least` in which it lies, by the number of the cube along a Morton curve: those of larger
+/// cubes are the same without the last bits.
+struct Place {
+    std::uint64_t cube  = 0;
+    std::uint32_t point = 0;
+
+    bool operator<(const Place& b) const noexcept { return cube != b.cube ? cube < b.cube : point < b.point; }
+};
+
+/// Returns the points along the curve. The cubes are counted from the middle of the points, so that those of a few
+/// strays, and not those of an object with strays, are too far away to be told apart.
+std::vector<Place> alongCurve(std::span<const glm::dvec3> positions, double least)
 {
-    struct Place {
-        std::int64_t  x, y, z;
-        std::uint32_t point;
-        auto          operator<=>(const Place&) const = default;
-    };
-    constexpr double   kFar = 0x1p62; // cubes; beyond, among the strays of so wide a cloud, all are one
-    std::vector<Place> places;
-    places.reserve(points.size());
-    for (const std::uint32_t i : points) {
-        const glm::dvec3 c = glm::clamp(glm::floor(positions[i] / side), -kFar, kFar);
-        places.push_back({std::int64_t(c.x), std::int64_t(c.y), std::int64_t(c.z), i});
+    constexpr std::size_t kSamples = 1000;
+    const std::size_t     stride   = (positions.size() + kSamples - 1) / kSamples;
+    glm::dvec3            middle{}; // [m]
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<double> along;
+        for (std::size_t i = 0; i < positions.size(); i += stride) along.push_back(positions[i][axis]);
+        std::nth_element(along.begin(), along.begin() + std::ptrdiff_t(along.size() / 2), along.end());
+        middle[axis] = along[along.size() / 2];
     }
-    std::sort(places.begin(), places.end());
-    points.clear();
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const Place &a = places[i], &b = places[i > 0 ? i - 1 : 0];
-        if (i == 0 || a.x != b.x || a.y != b.y || a.z != b.z) points.push_back(a.point);
-    }
+    constexpr double   kHalf = kMortonCells / 2;
+    std::vector<Place> places(positions.size());
+    inParallel(positions.size(), kWorthAThread, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::dvec3 c = glm::clamp(glm::floor((positions[i] - middle) / least) + kHalf, 0.0, 2 * kHalf - 1);
+            places[i] = {mortonCode(std::uint32_t(c.x), std::uint32_t(c.y), std::uint32_t(c.z)), std::uint32_t(i)};
+        }
+    });
+    sortInParallel(places);
+    return places;
 }
 
 } // namespace
@@ -64,57 +77,40 @@ struct PointTree::Builder {
     std::vector<std::uint8_t>   shown; ///< level by point
     std::vector<std::uint32_t>  order;
 
-    /// Some nodes that follow each other, and their points.
-    struct Part {
-        std::vector<Node>         nodes;
-        std::vector<NearPoint>    points;
-        std::vector<std::uint8_t> shownUntil;
-
-        void reserve(std::size_t count)
-        {
-            points.reserve(count);
-            shownUntil.reserve(count);
-        }
-        void append(Part&& other)
-        {
-            for (Node& node : other.nodes) {
-                node.next += std::uint32_t(nodes.size());
-                node.first += std::uint32_t(points.size());
-            }
-            nodes.insert(nodes.end(), other.nodes.begin(), other.nodes.end());
-            points.insert(points.end(), other.points.begin(), other.points.end());
-            shownUntil.insert(shownUntil.end(), other.shownUntil.begin(), other.shownUntil.end());
-        }
-    };
-
-    /// Sets the level up to which each point is shown.
+    /// Sets the level up to which each point is shown, and an order in which neighbours follow each other.
     void setLevels()
     {
-        const auto ownLevel = [&](std::size_t i) {
-            return std::clamp(int(std::floor(std::log2(spacings[i] / tree.least_))), 0, kMostLevels);
-        };
         shown.resize(positions.size());
-        int top = 0;
-        for (std::size_t i = 0; i < positions.size(); ++i) {
-            shown[i] = std::uint8_t(ownLevel(i));
-            top      = std::max(top, int(shown[i]));
-        }
-        tree.levels_ = top + kSpareLevels + 1;
-        std::vector<std::vector<std::uint32_t>> own(std::size_t(tree.levels_));
-        for (std::size_t i = 0; i < positions.size(); ++i) own[shown[i]].push_back(std::uint32_t(i));
-        // Of the points that level m - 1 shows and that are closer than the cubes of level m, one per cube goes on.
-        std::vector<std::uint32_t> going;
-        for (int m = 1; m < tree.levels_; ++m) {
-            const auto& joining = own[std::size_t(m - 1)];
-            going.insert(going.end(), joining.begin(), joining.end());
-            thin(positions, std::ldexp(tree.least_, m), going);
-            for (const std::uint32_t i : going) shown[i] = std::uint8_t(m);
-        }
+        for (std::size_t i = 0; i < positions.size(); ++i)
+            shown[i] = std::uint8_t(std::clamp(std::ilogb(spacings[i] / tree.least_), 0, kMostLevels));
+        tree.levels_ = *std::max_element(shown.begin(), shown.end()) + kSpareLevels + 1;
+
+        std::vector<Place> places = alongCurve(positions, tree.least_);
+        order.reserve(places.size());
+        for (const Place& place : places) order.push_back(place.point);
+        for (int m = 1; m < tree.levels_; ++m) thin(places, m);
     }
 
-    /// Adds the node of a part of `order` and all below it. A large half is built by another thread, into a part of its
-    /// own that then follows: the tree does not depend on the number of threads.
-    void add(Part& part, std::size_t from, std::size_t to, unsigned threads)
+    /// Of the points that level m - 1 shows and that are closer than the cubes of level m, one per cube goes on.
+    void thin(std::vector<Place>& places, int m)
+    {
+        const auto cube = [m](const Place& place) { return place.cube >> std::min(3 * m, 63); };
+        auto       kept = places.begin();
+        for (auto from = places.begin(), to = from; from != places.end(); from = to) {
+            constexpr std::uint32_t kNone = 0xffffffff;
+            std::uint32_t           first = kNone;
+            for (to = from; to != places.end() && cube(*to) == cube(*from); ++to)
+                if (shown[to->point] < m) first = std::min(first, to->point);
+            for (auto place = from; place != to; ++place)
+                if (shown[place->point] >= m || place->point == first) *kept++ = *place;
+            if (first != kNone) shown[first] = std::uint8_t(m);
+        }
+        places.erase(kept, places.end());
+    }
+
+    /// Adds the node of a part of `order` and all below it. The points of a leaf lie where they lie in `order`. A large
+    /// half is built by another thread; its nodes then follow: the tree does not depend on the number of threads.
+    void add(std::vector<Node>& nodes, std::size_t from, std::size_t to, unsigned threads)
     {
         Node   node{positions[order[from]], positions[order[from]], 0, 0, 0, 0, 0};
         double least = spacings[order[from]];
@@ -128,15 +124,15 @@ struct PointTree::Builder {
         }
         const glm::dvec3 size = node.high - node.low;
         if (to - from > kStacked && glm::length(size) < least) to = keepSome(from, to);
-        const std::size_t here = part.nodes.size();
-        part.nodes.push_back(node);
+        const std::size_t here = nodes.size();
+        nodes.push_back(node);
         if (to - from <= kLeaf) {
-            part.nodes[here].first = std::uint32_t(part.points.size());
-            part.nodes[here].count = std::uint16_t(to - from);
+            nodes[here].first = std::uint32_t(from);
+            nodes[here].count = std::uint16_t(to - from);
             for (std::size_t k = from; k < to; ++k) {
                 const std::uint32_t i = order[k];
-                part.points.push_back({positions[i], spacings[i], marks.empty() ? PointMark() : marks[i]});
-                part.shownUntil.push_back(shown[i]);
+                tree.points_[k]       = {positions[i], spacings[i], marks.empty() ? PointMark() : marks[i]};
+                tree.shownUntil_[k]   = shown[i];
             }
         } else {
             const int  axis   = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -147,20 +143,18 @@ struct PointTree::Builder {
                 return x != y ? x < y : a < b;
             });
             if (threads > 1 && to - from > kWorthAThread) {
-                Part far;
-                auto other = std::async(std::launch::async, [&] {
-                    far.reserve(to - middle);
-                    add(far, middle, to, threads / 2);
-                });
-                add(part, from, middle, threads - threads / 2);
+                std::vector<Node> far;
+                auto              other = std::async(std::launch::async, [&] { add(far, middle, to, threads / 2); });
+                add(nodes, from, middle, threads - threads / 2);
                 other.get();
-                part.append(std::move(far));
+                for (Node& one : far) one.next += std::uint32_t(nodes.size());
+                nodes.insert(nodes.end(), far.begin(), far.end());
             } else {
-                add(part, from, middle, 1);
-                add(part, middle, to, 1);
+                add(nodes, from, middle, 1);
+                add(nodes, middle, to, 1);
             }
         }
-        part.nodes[here].next = std::uint32_t(part.nodes.size());
+        nodes[here].next = std::uint32_t(nodes.size());
     }
 
     /// Keeps the points that are shown longest, and an even choice of the others; returns the new end.
@@ -183,15 +177,13 @@ PointTree::PointTree(std::span<const glm::dvec3> positions, std::span<const doub
     least_   = *std::min_element(spacings.begin(), spacings.end());
     largest_ = *std::max_element(spacings.begin(), spacings.end());
     PALP_EXPECT(least_ > 0, "a spacing is not positive");
-    Builder builder{*this, positions, spacings, marks, {}, std::vector<std::uint32_t>(positions.size())};
+    Builder builder{*this, positions, spacings, marks, {}, {}};
     builder.setLevels();
-    std::iota(builder.order.begin(), builder.order.end(), 0U);
-    Builder::Part whole;
-    whole.reserve(positions.size());
-    builder.add(whole, 0, positions.size(), std::max(1U, std::thread::hardware_concurrency()));
-    nodes_      = std::move(whole.nodes);
-    points_     = std::move(whole.points);
-    shownUntil_ = std::move(whole.shownUntil);
+    points_.resize(positions.size());
+    shownUntil_.resize(positions.size());
+    // Halves go on until a leaf holds its eight: so many nodes, unless points are stacked.
+    nodes_.reserve(2 * std::bit_ceil((positions.size() + kLeaf - 1) / kLeaf));
+    builder.add(nodes_, 0, positions.size(), std::max(1U, std::thread::hardware_concurrency()));
 }
 
 bool PointTree::mixed() const noexcept

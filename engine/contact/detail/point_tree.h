@@ -149,7 +149,7 @@ private:
     struct Builder;
 
     std::vector<Node>         nodes_;
-    std::vector<NearPoint>    points_;      ///< leaf by leaf
+    std::vector<NearPoint>    points_;      ///< leaf by leaf; those that are in no leaf are stacked
     std::vector<std::uint8_t> shownUntil_;  ///< level, by point
     double                    least_   = 0; ///< [m] spacing
     double                    largest_ = 0; ///< [m] spacing

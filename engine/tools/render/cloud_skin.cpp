@@ -57,7 +57,7 @@ glm::dvec3 perpendicularTo(const glm::dmat3& a)
 } // namespace
 
 CloudSkin::CloudSkin(std::span<const glm::dvec3> positions, const NeighbourIndex& index)
-    : each_(std::min(kNeighbours, positions.size())), radii_(localSpacings(positions, index)), cores_(radii_.size())
+    : each_(std::min(kNeighbours, positions.size())), radii_(localSpacings(index)), cores_(radii_.size())
 {
     neighbours_.reserve(each_ * positions.size());
     for (const glm::dvec3& position : positions)
