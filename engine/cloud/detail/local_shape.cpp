@@ -16,11 +16,14 @@ constexpr double      kLeastGap      = 0.2;  // [spacing] between two layers
 constexpr double      kThin          = 0.08; // [spacing] points that deviate less from a plane are not two layers
 constexpr double      kOverlap       = 1.8; // [spacing] least way along the surface to the other layer's nearest point:
                                             // beside a step or across a ridge it is farther
-constexpr int         kLayerRounds = 4;     // the first plane lies askew, by as much as the layers are apart
-constexpr std::size_t kMostQuadric = 256;   // points; of more, evenly spread ones are taken
-constexpr std::size_t kForSmooth   = 12;    // points: fewer determine no quadric well
-constexpr double      kEven        = 0.3;   // [1] least ratio of their extents, squared, for that
-constexpr int         kForTails    = 40;    // points: fewer tell nothing about tails
+constexpr int kLayerRounds = 4;             // the first plane lies askew, by as much as the layers are apart
+// A cut between two layers leaves most of the variance between them [1]: 0.9 and more, that through noise 0.66. Where the
+// layers are so far apart that the first plane may stand across them [spacings], that is no sign yet.
+constexpr double      kParted = 0.7, kNearlyFlat = 0.6;
+constexpr std::size_t kMostQuadric = 256; // points; of more, evenly spread ones are taken
+constexpr std::size_t kForSmooth   = 12;  // points: fewer determine no quadric well
+constexpr double      kEven        = 0.3; // [1] least ratio of their extents, squared, for that
+constexpr int         kForTails    = 40;  // points: fewer tell nothing about tails
 
 /// The principal axes of some points.
 struct Axes {
@@ -160,15 +163,16 @@ glm::dvec3 LocalShape::normalAt(const glm::dvec3& away, double radius) const noe
     return glm::normalize(normal - alongU * u - alongV * v);
 }
 
-/// Sorts the points by height and returns how many lie below the cut that parts them best into two groups (Otsu 1979:
-/// the largest variance between the groups).
-std::size_t ShapeFitter::cutByHeight(std::span<const glm::dvec3> away, const glm::dvec3& normal)
+/// Sorts the points by height and returns the cut that parts them best into two groups (Otsu 1979: the largest variance
+/// between the groups).
+ShapeFitter::Cut ShapeFitter::cutByHeight(std::span<const glm::dvec3> away, const glm::dvec3& normal)
 {
     heights_.clear();
-    double all = 0;
+    double all = 0, square = 0;
     for (std::size_t i = 0; i < away.size(); ++i) {
         heights_.push_back({glm::dot(normal, away[i]), i});
         all += heights_.back().height;
+        square += heights_.back().height * heights_.back().height;
     }
     std::sort(heights_.begin(), heights_.end(), [](const Height& a, const Height& b) { return a.height < b.height; });
     const auto  count = double(away.size());
@@ -182,7 +186,8 @@ std::size_t ShapeFitter::cutByHeight(std::span<const glm::dvec3> away, const glm
         most = between;
         best = k;
     }
-    return best;
+    const double variance = count * square - all * all; // times count^2, as `most` is
+    return {best, variance > 0 ? most / variance : 0};
 }
 
 /// Returns true if the groups below and above a cut are two layers, one over the other about the middle point.
@@ -210,11 +215,14 @@ bool ShapeFitter::areLayers(std::span<const glm::dvec3> away, const glm::dvec3& 
 /// Keeps in own_ the points of the layer in which the middle point lies; returns false if there is one layer only.
 ///
 /// The normal of two layers is that of the variance within them, found in turns with the cut between them.
-bool ShapeFitter::keepOwnLayer(std::span<const glm::dvec3> away, glm::dvec3 normal, double radius, double spacing)
+/// \param variance  of the heights over the first plane [m^2]
+bool ShapeFitter::keepOwnLayer(std::span<const glm::dvec3> away, glm::dvec3 normal, double variance, double radius,
+                               double spacing)
 {
     if (away.size() < 2 * kFewestInLayer) return false;
     for (int round = 0;; ++round) {
-        const std::size_t cut = cutByHeight(away, normal);
+        const auto [cut, share] = cutByHeight(away, normal);
+        if (share < kParted && variance < kNearlyFlat * kNearlyFlat * spacing * spacing) return false;
         if (areLayers(away, normal, spacing, cut)) {
             const bool above = heights_[cut - 1].height < 0;
             own_.clear();
@@ -243,7 +251,8 @@ LocalShape ShapeFitter::fit(std::span<const glm::dvec3> away, double radius, dou
     Axes axes = planeOf(away);
     if (!(axes.most > 0) || !std::isfinite(axes.most)) return shape;
     const bool thick = axes.least > kThin * kThin * spacing * spacing;
-    if (thick && away.size() <= kMostInLayers) shape.sided = keepOwnLayer(away, axes.normal, radius, spacing);
+    if (thick && away.size() <= kMostInLayers)
+        shape.sided = keepOwnLayer(away, axes.normal, axes.least, radius, spacing);
     const std::span<const glm::dvec3> own = shape.sided ? std::span<const glm::dvec3>(own_) : away;
     if (shape.sided) axes = planeOf(own);
     shape.narrow = std::max(0.0, axes.middle) / axes.most;

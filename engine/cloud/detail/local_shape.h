@@ -45,10 +45,17 @@ private:
         std::size_t point  = 0;
     };
 
-    std::size_t        cutByHeight(std::span<const glm::dvec3> away, const glm::dvec3& normal);
+    /// Heights sorted into two groups.
+    struct Cut {
+        std::size_t at    = 0; ///< how many lie below it
+        double      share = 0; ///< [1] of the variance that lies between the groups
+    };
+
+    Cut                cutByHeight(std::span<const glm::dvec3> away, const glm::dvec3& normal);
     [[nodiscard]] bool areLayers(std::span<const glm::dvec3> away, const glm::dvec3& normal, double spacing,
                                  std::size_t cut) const;
-    bool               keepOwnLayer(std::span<const glm::dvec3> away, glm::dvec3 normal, double radius, double spacing);
+    bool               keepOwnLayer(std::span<const glm::dvec3> away, glm::dvec3 normal, double variance, double radius,
+                                    double spacing);
 
     std::vector<glm::dvec3> own_; ///< [m] scratch: the points that count
     std::vector<Height>     heights_;
