@@ -117,6 +117,12 @@ struct IndexFrame {
     }
 
     [[nodiscard]] glm::dvec3 to(const glm::dvec3& position) const noexcept { return (position - centre) * scale; }
+
+    /// Returns the cell [1] of a coordinate [index units] along the Morton curve; strays lie in the outermost.
+    [[nodiscard]] static std::uint32_t cell(double x) noexcept
+    {
+        return static_cast<std::uint32_t>(std::clamp((x + 1) * (0.5 * kMortonCells), 0.0, kMortonCells - 1.0));
+    }
 };
 
 /// Returns a radius [m] that holds k points of a surface nearly always: k and twice the square root of k, the standard
@@ -135,14 +141,12 @@ struct IndexFrame {
         std::uint32_t point;
         bool operator<(const Key& b) const noexcept { return code != b.code ? code < b.code : point < b.point; }
     };
-    const auto cell = [](double x) {
-        return static_cast<std::uint32_t>(std::clamp((x + 1) * (0.5 * kMortonCells), 0.0, kMortonCells - 1.0));
-    };
     std::vector<Key> keys(positions.size());
     inParallel(positions.size(), kPiece, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const glm::dvec3 p = frame.to(positions[i]);
-            keys[i]            = {mortonCode(cell(p.x), cell(p.y), cell(p.z)), static_cast<std::uint32_t>(i)};
+            keys[i]            = {mortonCode(IndexFrame::cell(p.x), IndexFrame::cell(p.y), IndexFrame::cell(p.z)),
+                                  static_cast<std::uint32_t>(i)};
         }
     });
     if (!std::is_sorted(keys.begin(), keys.end())) sortInParallel(keys);
@@ -541,6 +545,25 @@ std::vector<std::uint32_t> NeighbourIndex::pointsByRank() const
     std::vector<std::uint32_t> points(size());
     for (std::size_t rank = 0; rank < points.size(); ++rank) points[rank] = impl_->pointAt(rank);
     return points;
+}
+
+std::vector<std::uint32_t> NeighbourIndex::cubes(double side) const
+{
+    PALP_EXPECT(side > 0, "side " + std::to_string(side) + " m");
+    constexpr int kMostHalvings = 21;                                      // of the cube that holds nearly all points
+    const double  finest        = 2 / (kMortonCells * impl_->frame.scale); // [m]
+    const int     level         = int(std::lround(std::clamp(std::log2(side / finest), 0.0, double(kMostHalvings))));
+    std::vector<std::uint32_t> edges;
+    glm::uvec3                 last{};
+    for (std::size_t rank = 0; rank < size(); ++rank) {
+        const glm::dvec3 p = impl_->frame.to(impl_->exact[rank]);
+        const glm::uvec3 cube{IndexFrame::cell(p.x) >> level, IndexFrame::cell(p.y) >> level,
+                              IndexFrame::cell(p.z) >> level};
+        if (rank == 0 || cube != last || largest(p) > 1) edges.push_back(std::uint32_t(rank));
+        last = cube;
+    }
+    edges.push_back(std::uint32_t(size()));
+    return edges;
 }
 
 std::span<const glm::dvec3> NeighbourIndex::positionsByRank() const noexcept

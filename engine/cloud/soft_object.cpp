@@ -4,6 +4,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/cloud/coarse_object.h"
+
 namespace palp {
 
 namespace {
@@ -45,6 +47,7 @@ SoftObject SoftObject::repainted(std::vector<double> stiffness) const
 {
     SoftObject painted = *this;
     painted.cloud_     = PointCloud(cloud_, std::move(stiffness));
+    painted.coarse_    = coarseShape();
     return painted;
 }
 
@@ -52,7 +55,30 @@ SoftObject SoftObject::withMaterial(const Material& material) const
 {
     SoftObject other = *this;
     other.material_  = material;
+    other.coarse_    = coarseShape();
     return other;
+}
+
+std::shared_ptr<const CoarseObject> SoftObject::coarse(double side) const
+{
+    const std::lock_guard lock(coarse_->mutex);
+    auto&                 known = coarse_->object;
+    if (!known || known->side() != side)
+        known = std::make_shared<const CoarseObject>(*this, side);
+    else if (!coarse_->own)
+        known = std::make_shared<const CoarseObject>(*known, *this);
+    coarse_->own = true;
+    return known;
+}
+
+/// Returns the coarse object, if there is one, for others of the same points.
+std::shared_ptr<SoftObject::Coarse> SoftObject::coarseShape() const
+{
+    auto                  shape = std::make_shared<Coarse>();
+    const std::lock_guard lock(coarse_->mutex);
+    shape->object = coarse_->object;
+    shape->own    = false;
+    return shape;
 }
 
 } // namespace palp

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "engine/cloud/triangle.h"
 
 namespace palp {
+
+class CoarseObject;
 
 /// A touched object: points with a stiffness, the index over them, perhaps a mesh, and the material of the sheet.
 ///
@@ -42,15 +45,29 @@ public:
     [[nodiscard]] std::span<const glm::dvec3> positions() const noexcept { return cloud_.positions(); } ///< [m]
     [[nodiscard]] double                      spacing() const noexcept { return index_->spacing(); }    ///< [m]
 
+    /// Returns the object by one point per cube of about this side [m], which is made at the first call; see CoarseObject.
+    /// \thread any; the first call for a side takes up to a second for millions of points
+    [[nodiscard]] std::shared_ptr<const CoarseObject> coarse(double side) const;
+
     /// Returns the flexural rigidity D at a point [N m].
     [[nodiscard]] double rigidity(std::size_t point) const noexcept { return cloud_.rigidity(point, material_); }
 
 private:
+    /// The coarse object of the side asked for last.
+    struct Coarse {
+        std::mutex                          mutex;
+        std::shared_ptr<const CoarseObject> object;     ///< of these points; null: none yet
+        bool                                own = true; ///< of this stiffness and material too
+    };
+
+    [[nodiscard]] std::shared_ptr<Coarse> coarseShape() const;
+
     PointCloud                                   cloud_;
     std::shared_ptr<const NeighbourIndex>        index_;  ///< never null
     std::shared_ptr<const std::vector<Triangle>> faces_;  ///< never null
     std::shared_ptr<const SurfaceSurvey>         survey_; ///< never null
     Material                                     material_;
+    std::shared_ptr<Coarse>                      coarse_ = std::make_shared<Coarse>(); ///< never null
 };
 
 } // namespace palp

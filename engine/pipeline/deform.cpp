@@ -361,11 +361,7 @@ void movePoints(Patch& patch)
 {
     const StageClock clock(patch.times.lift);
     patch.pointResponse.reserve(patch.positions.size());
-    for (const ChartPoint& p : patch.positions)
-        patch.pointResponse.push_back(patch.window.holds(p)
-                                          ? interpolate(patch.window.grid, patch.response, p.x - patch.window.corner.x,
-                                                        p.z - patch.window.corner.z)
-                                          : 0.0);
+    for (const ChartPoint& p : patch.positions) patch.pointResponse.push_back(responseAt(patch, p));
 }
 
 void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& settings)
@@ -376,21 +372,58 @@ void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& 
     patch.feltStiffness    = feltStiffness(settings.forceLaw, patch.contactStiffness, patch.compliance);
 }
 
+/// Returns the edge of a cell of the grid [m].
+double cellOf(const PatchSettings& settings)
+{
+    return settings.window / settings.cells;
+}
+
+constexpr double kDense = 0.3; ///< spacing over the cell below which a point per cell will do [1]
+
+/// Returns the object of a point or so per cell, where the points are much denser than that; else nothing. Noise must
+/// not reach from one cube into the next, or the surface would become two.
+std::shared_ptr<const CoarseObject> coarseFor(const SoftObject& object, const Contact& contact,
+                                              const PatchSettings& settings)
+{
+    constexpr double kQuiet = 0.1; // noise over the cell [1]
+    if (settings.neighbourhood == Neighbourhood::ball || object.survey().spacings().empty()) return {};
+    const std::uint32_t nearest = object.index().nearest(contact.point, 1).front().point;
+    const bool          dense   = object.survey().spacing(nearest) < kDense * cellOf(settings);
+    const bool          quiet   = object.survey().noise(nearest) < kQuiet * cellOf(settings);
+    return dense && quiet ? object.coarse(cellOf(settings)) : nullptr;
+}
+
+/// Does everything up to the plate; false if the points determine no surface.
+bool makePlate(Patch& patch, const SoftObject& object, const Contact& contact, const PatchSettings& settings,
+               const std::optional<Frame>& carried)
+{
+    gatherPoints(patch, object, contact, settings);                   // 2.1: the points near the contact,
+    TouchedSurface surface = touchedSurface(patch, object, settings); // on the side that is touched,
+    fitSphereTo(patch, object, surface, settings);                    // 2.2: lie close to a sphere,
+    if (!patch.deformed()) return false;
+    layFlat(patch, object, std::move(surface), settings, carried); // 2.3: which an equal-area map lays flat,
+    fillRigidity(patch, object, settings);                         // 2.4: where a grid takes over their rigidity
+    return true;
+}
+
 } // namespace
+
+void prepareTouch(const SoftObject& object, const PatchSettings& settings)
+{
+    if (settings.neighbourhood != Neighbourhood::ball && object.spacing() < kDense * cellOf(settings))
+        static_cast<void>(object.coarse(cellOf(settings)));
+}
 
 Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings, PlateSolver& solver,
              const std::optional<Frame>& carried)
 {
     Patch patch;
-    gatherPoints(patch, object, contact, settings);                   // 2.1: the points near the contact,
-    TouchedSurface surface = touchedSurface(patch, object, settings); // on the side that is touched,
-    fitSphereTo(patch, object, surface, settings);                    // 2.2: lie close to a sphere,
-    if (!patch.deformed()) return patch;
-    layFlat(patch, object, std::move(surface), settings, carried); // 2.3: which an equal-area map lays flat,
-    fillRigidity(patch, object, settings);                         // 2.4: where a grid takes over their rigidity
-    bendPlate(patch, settings, solver);                            // 2.5: and bends as a plate under a unit force;
-    movePoints(patch);                                             // 2.6: the plate moves the points,
-    findStiffness(patch, object, settings); //      and with the contact it is what the hand feels.
+    patch.coarse           = coarseFor(object, contact, settings);
+    const SoftObject& used = patch.coarse ? patch.coarse->object() : object;
+    if (!makePlate(patch, used, contact, settings, carried)) return patch;
+    bendPlate(patch, settings, solver);   // 2.5: and bends as a plate under a unit force;
+    movePoints(patch);                    // 2.6: the plate moves the points,
+    findStiffness(patch, used, settings); //      and with the contact it is what the hand feels.
     return patch;
 }
 
@@ -405,16 +438,13 @@ PatchWithTable deformWithTable(const SoftObject& object, const Contact& contact,
                                const std::optional<Frame>& carried)
 {
     PatchWithTable result;
-    Patch&         patch = result.patch;
-    gatherPoints(patch, object, contact, settings);
-    TouchedSurface surface = touchedSurface(patch, object, settings);
-    fitSphereTo(patch, object, surface, settings);
-    if (!patch.deformed()) return result;
-    layFlat(patch, object, std::move(surface), settings, carried);
-    fillRigidity(patch, object, settings);
+    Patch&         patch   = result.patch;
+    patch.coarse           = coarseFor(object, contact, settings);
+    const SoftObject& used = patch.coarse ? patch.coarse->object() : object;
+    if (!makePlate(patch, used, contact, settings, carried)) return result;
     result.table = bendPlate(patch, settings, lattice, solver);
     movePoints(patch);
-    findStiffness(patch, object, settings);
+    findStiffness(patch, used, settings);
     return result;
 }
 

@@ -6,6 +6,9 @@
 
 namespace palp {
 
+/// Does beforehand what the first touch of a very dense object would wait for, up to a second.
+void prepareTouch(const SoftObject& object, const PatchSettings& settings);
+
 /// Runs section 2 of the paper on one clock: contact, neighbourhood, sphere, chart, rigidity, plate, points.
 ///
 /// The plate is solved for a force of 1 N on a smooth footprint about the contact; it is linear, so any force follows.

@@ -1,11 +1,15 @@
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "engine/chart/chart.h"
 #include "engine/chart/resample.h"
 #include "engine/chart/sphere_fit.h"
+#include "engine/cloud/coarse_object.h"
 #include "engine/cloud/soft_object.h"
 #include "engine/contact/contact.h"
 #include "engine/core/enum_names.h"
@@ -70,7 +74,11 @@ struct Patch {
     double      contactStiffness = 0;  ///< k_c [N/m]
     double      feltStiffness    = 0;  ///< [N/m]
 
-    std::vector<std::uint32_t> gathered;  ///< points of the cloud around the contact
+    /// The object that was touched in place of one far denser than the grid; empty: the object itself. The points below
+    /// are its.
+    std::shared_ptr<const CoarseObject> coarse;
+
+    std::vector<std::uint32_t> gathered;  ///< points around the contact
     std::vector<std::uint32_t> points;    ///< those that may move, in the same order as the next two; first `touched`
     std::vector<ChartPoint>    positions; ///< of `points` in the chart [m]
     std::size_t touched = 0; ///< number of `points` on the touched surface, which alone give the plate its rigidity
@@ -95,6 +103,15 @@ void demandDeformed(const Patch& patch, const char* hint = "try a larger --windo
 
 /// Returns a unit vector as complaints and warnings show it: "0.00,0.60,0.80".
 [[nodiscard]] std::string directionText(const glm::dvec3& direction);
+
+/// Returns the deflection per force at a place in the chart [m/N]; 0 outside the window.
+[[nodiscard]] double responseAt(const Patch& patch, const ChartPoint& place);
+
+/// Calls visit(point of the cloud, its place in the chart [m], its deflection per force [m/N]) for every point that may
+/// move.
+/// \param positions  [m] of the cloud at rest
+void eachMoving(const Patch& patch, std::span<const glm::dvec3> positions,
+                const std::function<void(std::uint32_t, const ChartPoint&, double)>& visit);
 
 /// Returns the whole cloud under `force` [N] at the patch's contact: p_i + force * response_i * forceDirection.
 /// \source Kumari & Chaudhuri 2016, eq. 9

@@ -31,6 +31,7 @@ Deformation::Deformation(const SoftObject& object, const Scene& scene)
     : object_(&object), law_(scene.complianceLaw), settings_(scene.patch),
       solver_(scene.solver, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, object, solver_))
 {
+    prepareTouch(object, settings_);
 }
 
 void Deformation::repaint(const SoftObject& object)

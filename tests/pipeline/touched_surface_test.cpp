@@ -219,5 +219,34 @@ TEST(TouchedSurface, TheRimOfAThinBodyIsTouched)
     EXPECT_GT(glm::dot(patch.chart.frame.normal, glm::dvec3(1, 0, 0)), 0.5);
 }
 
+/// A cloud that is far denser than the grid is touched by a point or so per cell, and all of it moves.
+TEST(DenseCloud, FeelsAsTheSparseOneAndMovesSmoothly)
+{
+    Cloud sparse, dense;
+    sparse.add(sheet(8'000, 0, 5), wart);
+    dense.add(sheet(300'000, 0, 6), wart);
+    const SoftObject few = sparse.object(), many = dense.object();
+    for (const double x : {0.0, 4e-3}) {
+        const Contact contact{{x, 1e-3, 0}, {0, 0, 1}};
+        const Patch   one = deform(few, contact, kTouch), other = deform(many, contact, kTouch);
+        ASSERT_FALSE(one.coarse);
+        ASSERT_TRUE(other.coarse);
+        EXPECT_LT(other.points.size(), 4 * one.points.size()) << "38 times as dense";
+        EXPECT_NEAR(other.feltStiffness / one.feltStiffness, 1, 0.02)
+            << "the log mean over cells of 0.94 mm beside that over random points 0.67 mm apart";
+
+        const std::vector<double> moved  = deflections(many.cloud(), other, 1);
+        std::size_t               inside = 0;
+        for (std::size_t i = 0; i < moved.size(); ++i) {
+            const auto place = other.chart.project(many.positions()[i]);
+            ASSERT_TRUE(place);
+            if (!other.window.holds(*place)) continue;
+            ++inside;
+            ASSERT_NEAR(moved[i], responseAt(other, *place), 1e-3 * other.compliance);
+        }
+        EXPECT_GT(inside, 70'000u);
+    }
+}
+
 } // namespace
 } // namespace palp

@@ -142,21 +142,20 @@ private:
 } // namespace
 
 PatchSurface::PatchSurface(const Patch& patch, std::span<const glm::dvec3> positions, double cueRadius)
-    : edge(edgeOf(patch, positions)), mostResponse(*std::ranges::max_element(patch.response.values())),
-      inward(patch.forceDirection())
+    : edge(edgeOf(patch, patch.coarse ? patch.coarse->object().positions() : positions)),
+      mostResponse(*std::ranges::max_element(patch.response.values())), inward(patch.forceDirection())
 {
     // Of the largest response: below the first nothing shows, below the second no slope.
     constexpr double kNotable = 1e-3, kSlopes = 1e-2; // [1]
     const Hollows    hollowness(patch, cueRadius);
     const auto       add = [&](double least, double most) {
-        for (std::size_t n = 0; n < patch.points.size(); ++n) {
-            const double size = std::abs(patch.pointResponse[n]);
-            if (!(size > least * mostResponse && size <= most * mostResponse)) continue;
-            moving.push_back(patch.points[n]);
-            responses.push_back(patch.pointResponse[n]);
-            hollows.push_back(hollowness.of(patch.positions[n].x - patch.window.corner.x,
-                                                  patch.positions[n].z - patch.window.corner.z));
-        }
+        eachMoving(patch, positions, [&](std::uint32_t point, const ChartPoint& place, double response) {
+            const double size = std::abs(response);
+            if (!(size > least * mostResponse && size <= most * mostResponse)) return;
+            moving.push_back(point);
+            responses.push_back(response);
+            hollows.push_back(hollowness.of(place.x - patch.window.corner.x, place.z - patch.window.corner.z));
+        });
     };
     add(kSlopes, std::numeric_limits<double>::infinity());
     sloping = moving.size();

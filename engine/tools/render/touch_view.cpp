@@ -163,10 +163,10 @@ void TouchView::addFit(const Patch& patch, const Overlays& overlays)
 {
     if (overlays.sphere) scene_.sphere = linesOf(patch.chart, settings_.window);
     if (overlays.projected)
-        for (std::size_t n = 0; n < patch.points.size(); ++n)
-            if (const auto on =
-                    patch.window.holds(patch.positions[n]) ? patch.chart.lift(patch.positions[n]) : std::nullopt)
-                scene_.dots.push_back({*on, kDot * skin_.cores()[patch.points[n]], kProjectedColour});
+        eachMoving(patch, object_.positions(), [&](std::uint32_t point, const ChartPoint& place, double) {
+            if (const auto on = patch.window.holds(place) ? patch.chart.lift(place) : std::nullopt)
+                scene_.dots.push_back({*on, kDot * skin_.cores()[point], kProjectedColour});
+        });
 }
 
 void TouchView::addGhost(Ground ground)
