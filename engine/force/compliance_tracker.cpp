@@ -18,25 +18,43 @@ void ComplianceTracker::carry(Carried& carried, double before, double after) con
 {
     constexpr double kRate = 10; // [1/s] 1 % per ms, our own prototype's: faster is felt as a tick, slower lags
 
-    carried.offset = law_ == ComplianceLaw::table && inContact_ ? before + carried.offset - after : 0;
-    carried.rate   = std::max(kRate, std::abs(carried.offset) / period_);
-    carried.from   = inContact_ ? carried.handed : after;
+    const bool goesOn = touching_ && fits_;
+    carried.offset    = law_ == ComplianceLaw::table && goesOn ? before + carried.offset - after : 0;
+    carried.rate      = std::max(kRate, std::abs(carried.offset) / period_);
+    carried.from      = goesOn ? carried.handed : after;
+}
+
+/// Starts a contact with the table that is there.
+void ComplianceTracker::land(const ComplianceTick& now) noexcept
+{
+    constexpr double kLate = 1.5; // [periods] a table that is in use for longer has missed its successor
+
+    compliance_ = contact_ = {};
+    fits_                  = hasTable_ && now.time - adopted_ <= kLate * period_ && !lookUp(now.contact).clamped;
+    const auto middle      = table_.middle();
+    compliance_.handed = compliance_.from = middle.lnCompliance;
+    contact_.handed = contact_.from = middle.lnContactStiffness;
 }
 
 void ComplianceTracker::adopt(const ComplianceTick& now) noexcept
 {
     constexpr double kShortest = 1e-3, kLongest = 0.1; // [s] one tick; longer is a thread that stalled, not a period
     constexpr double kWeight = 0.25;                   // of the newest interval [1]: late and early threads even out
+    constexpr double kPause  = 2;                      // [periods] longer with free space in it: nothing was solved
 
-    const ComplianceTable::Values before = lookUp(now.contact);
-    if (hasTable_) period_ += kWeight * (std::clamp(now.time - adopted_, kShortest, kLongest) - period_);
+    const ComplianceTable::Values before   = lookUp(now.contact);
+    const double                  interval = now.time - adopted_;
+    const bool                    paused   = interval > (flown_ ? std::min(kPause * period_, kLongest) : kLongest);
+    if (hasTable_ && !paused) period_ += kWeight * (std::max(interval, kShortest) - period_);
     table_    = *now.newest;
     hasTable_ = true;
+    flown_    = false;
     adopted_  = now.time;
 
     const ComplianceTable::Values after = lookUp(now.contact);
     carry(compliance_, before.lnCompliance, after.lnCompliance);
     carry(contact_, before.lnContactStiffness, after.lnContactStiffness);
+    fits_ = touching_; // from here on this contact has a table of its own
 }
 
 double ComplianceTracker::hand(Carried& carried, double wanted, double time) const noexcept
@@ -52,21 +70,16 @@ std::optional<LocalCompliance> ComplianceTracker::tick(const ComplianceTick& now
     for (Carried* carried : {&compliance_, &contact_})
         carried->offset =
             std::copysign(std::max(0.0, std::abs(carried->offset) - carried->rate * now.dt), carried->offset);
+    const bool landed = now.touching && !touching_;
+    touching_         = now.touching;
+    flown_            = flown_ || !touching_;
+    if (landed || !touching_) land(now);
     if (now.newest && now.newest->sequence != (hasTable_ ? table_.sequence : 0) && now.newest->usable()) adopt(now);
     if (!hasTable_) return {};
 
     const ComplianceTable::Values here = lookUp(now.contact);
-    inContact_                         = true;
     return LocalCompliance{hand(compliance_, here.lnCompliance, now.time),
                            hand(contact_, here.lnContactStiffness, now.time), here.clamped, now.time - table_.time};
-}
-
-void ComplianceTracker::restart() noexcept
-{
-    inContact_        = false;
-    const auto middle = table_.middle();
-    compliance_       = {.handed = middle.lnCompliance, .from = middle.lnCompliance};
-    contact_          = {.handed = middle.lnContactStiffness, .from = middle.lnContactStiffness};
 }
 
 } // namespace palp

@@ -22,10 +22,11 @@ constexpr auto namesOf(ComplianceLaw)
 
 /// The servo's input of one tick.
 struct ComplianceTick {
-    glm::dvec3             contact{};        ///< [m] of the proxy, world
-    double                 time   = 0;       ///< [s] of the servo's clock
-    double                 dt     = 0;       ///< [s] since the last tick
-    const ComplianceTable* newest = nullptr; ///< of the deformation thread; null: none yet
+    glm::dvec3             contact{};          ///< [m] of the proxy, world
+    double                 time     = 0;       ///< [s] of the servo's clock
+    double                 dt       = 0;       ///< [s] since the last tick
+    const ComplianceTable* newest   = nullptr; ///< of the deformation thread; null: none yet
+    bool                   touching = true;    ///< false: in free space. The next contact then starts without an offset
 };
 
 struct LocalCompliance {
@@ -44,7 +45,9 @@ struct LocalCompliance {
 /// would be shifted by that distance times the slope.)
 ///
 /// Where a new table disagrees with the old one at the contact, the difference is carried as an offset of ln c, and of
-/// ln k_c, which dies at 1 % per millisecond, or within one period if that is faster.
+/// ln k_c, which dies at 1 % per millisecond, or within one period if that is faster. In free space tables change
+/// without: nothing is felt. Nor does a contact carry an offset that began beyond the reach of its table, or with one
+/// that was not replaced in time: that table was made for another place, and what it says is no value to keep.
 /// \thread the servo's; no allocation, lock or throw
 /// \source our own prototype, with slopes in place of twice as many footprints; README.md here has the measurements
 class ComplianceTracker {
@@ -54,9 +57,6 @@ public:
     /// Returns the compliance in use; empty until the first usable table. A table counts once, by its sequence number;
     /// one that is not usable() is not taken.
     [[nodiscard]] std::optional<LocalCompliance> tick(const ComplianceTick& now) noexcept;
-
-    /// Ends a contact, when the finger left the surface: the next one starts without an offset.
-    void restart() noexcept;
 
     [[nodiscard]] double period() const noexcept { return period_; } ///< of the tables, smoothed [s]
 
@@ -70,16 +70,19 @@ private:
     };
 
     [[nodiscard]] ComplianceTable::Values lookUp(const glm::dvec3& contact) const noexcept;
+    void                                  land(const ComplianceTick& now) noexcept;
     void                                  adopt(const ComplianceTick& now) noexcept;
     void                                  carry(Carried& carried, double before, double after) const noexcept;
     [[nodiscard]] double                  hand(Carried& carried, double wanted, double time) const noexcept;
 
     ComplianceLaw   law_;
     ComplianceTable table_{};
-    bool            hasTable_  = false;
-    bool            inContact_ = false;    // since a tick after restart()
-    double          adopted_   = 0;        // when the table came [s]
-    double          period_    = 1.0 / 30; // [s] the slowest deformation thread that is planned for
+    bool            hasTable_ = false;
+    bool            touching_ = false;
+    bool            fits_     = false;    // the table in use was made for this contact, as far as is known
+    bool            flown_    = false;    // in free space since the table came
+    double          adopted_  = 0;        // when the table came [s]
+    double          period_   = 1.0 / 30; // [s] the slowest deformation thread that is planned for
     Carried         compliance_, contact_;
 };
 

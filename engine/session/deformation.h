@@ -30,6 +30,9 @@ public:
     /// Solves for where the touch will be 1.5 periods later. If that is off the object, or the points determine no
     /// surface there, it solves for the touch itself; if that fails too there is no update, and the answer says why.
     ///
+    /// In free space it solves for where the hand will land, see landingOf(), so that a tap finds a table that is made
+    /// for its place. Where the surface is too far away, or has no answer there, there is no update and no reason.
+    ///
     /// Then the servo goes on with its last table: k_c of the contact in series with the last known compliance, flagged
     /// as stale. Before the first table there is no force, and that is meant. A plate could be made up there, of the
     /// nearest point's rigidity everywhere; but what fails is most often a wrong unit or a window that is too small,
@@ -52,7 +55,8 @@ public:
     [[nodiscard]] const PlateSolver& plateSolver() const noexcept { return solver_; }
 
 private:
-    [[nodiscard]] DeformationAnswer solveAt(const glm::dvec3& place, const Touch& touch);
+    [[nodiscard]] DeformationAnswer solveAhead(const Touch& touch, double period);
+    [[nodiscard]] DeformationAnswer solveAt(const Contact& contact, const Touch& touch);
 
     const SoftObject*    object_; ///< never null
     ComplianceLaw        law_;

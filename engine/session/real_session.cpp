@@ -204,11 +204,12 @@ void RealSession::deformationThread()
         metronome.wait();
         shared_.touch.take();
         const Touch* touch = shared_.touch.held();
-        if (!touch || !touch->touching || touch->sequence == done) continue;
+        if (!touch || touch->sequence == done) continue;
         done                     = touch->sequence;
         const auto        began  = Clock::now();
         DeformationAnswer answer = solved(*touch, period.begins(began));
         const double      took   = Seconds(Clock::now() - began).count();
+        if (!answer.update && !touch->touching) continue; // nothing is near
         slow_.solve.add(took);
         slow_.addPatch(answer.update.has_value(), answer.why);
         if (!answer.update) continue;

@@ -65,11 +65,10 @@ ContactHalf::ContactHalf(const SoftObject& object, const Scene& scene)
 const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip) noexcept
 {
     const ProxyState& proxy = proxy_.step(hip);
-    if (proxy.touching)
-        motion_.add(time, proxy.position);
-    else
-        motion_.forget();
-    held_ = {{held_.touch.sequence + 1, time, proxy.touching, proxy.position, proxy.normal, motion_.velocity()},
+    motion_.add(time, proxy.position);
+    glm::dvec3 velocity = motion_.velocity();
+    if (proxy.touching) velocity -= glm::dot(velocity, proxy.normal) * proxy.normal; // of the way down to the surface
+    held_ = {{held_.touch.sequence + 1, time, proxy.touching, proxy.position, proxy.normal, velocity},
              proxy.pull,
              proxy.limited};
     return held_;
@@ -110,10 +109,9 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     pressed_         = press ? pressed_ + 1 : 0;
     if (pressed_ == kPressTicks) governor_.reset();
 
-    const Touch& touch = held.touch;
-    if (!touch.touching) compliance_.restart();
-    const auto handed =
-        compliance_.tick({touch.point, now.time, now.dt, newest ? &newest->table : nullptr}); // also beyond the surface
+    const Touch& touch  = held.touch;
+    const auto   handed = compliance_.tick(
+          {touch.point, now.time, now.dt, newest ? &newest->table : nullptr, touch.touching}); // also in free space
     const double      stiffness = handed ? feltStiffness(law_, handed->contactStiffness, handed->compliance) : 0;
     const WantedForce want      = wantedForce(stiffness, now.dt, hand, held);
 

@@ -31,9 +31,9 @@ struct Touch {
     std::uint64_t sequence = 0; ///< counts ticks; 0: none yet
     double        time     = 0; ///< [s]
     bool          touching = false;
-    glm::dvec3    point{};    ///< [m] of the proxy
-    glm::dvec3    outward{};  ///< [1] normal there, towards the hand
-    glm::dvec3    velocity{}; ///< of the proxy over its last 10 ms [m/s]
+    glm::dvec3    point{};    ///< [m] of the proxy, which is the hand's in free space
+    glm::dvec3    outward{};  ///< [1] normal there, towards the hand; nothing in free space
+    glm::dvec3    velocity{}; ///< of the proxy over its last 10 ms, in contact along the surface [m/s]
 };
 
 /// Bits of TickRecord::faults. The low eight are the governor's fault as a number, see GovernorFault.

@@ -32,13 +32,14 @@ struct Servo {
     ComplianceTracker handOver;
     double            time = 0;
     glm::dvec3        contact{};
+    bool              touching = true;
 
     explicit Servo(ComplianceLaw law = ComplianceLaw::table) : handOver(law) {}
 
     double tick(const ComplianceTable& table, double dt = kTick)
     {
         time += dt;
-        const auto handed = handOver.tick({contact, time, dt, &table});
+        const auto handed = handOver.tick({contact, time, dt, &table, touching});
         return handed ? std::log(handed->compliance) : std::numeric_limits<double>::quiet_NaN();
     }
 };
@@ -148,14 +149,53 @@ TEST(ComplianceTracker, HoldStepsAndBlendTakesAPeriod)
     EXPECT_NEAR(blend.tick(second, period), -7, 1e-12);
 }
 
-TEST(ComplianceTracker, ATouchAfterALiftStartsWithoutAnOffset)
+/// Until the first table of a contact comes, a table that was made for it goes over smoothly and another one at once.
+TEST(ComplianceTracker, ANewContactCarriesAnOffsetOnlyFromATableThatWasMadeForIt)
 {
-    for (ComplianceLaw law : {ComplianceLaw::table, ComplianceLaw::blend}) {
-        Servo servo(law);
-        (void)servo.tick(tableOf(1, -6));
-        servo.handOver.restart();
-        EXPECT_NEAR(servo.tick(tableOf(2, -5)), -5, 1e-12) << name(law);
+    enum class Before { fits, beyondReach, old };
+    for (ComplianceLaw law : {ComplianceLaw::table, ComplianceLaw::blend})
+        for (Before before : {Before::fits, Before::beyondReach, Before::old}) {
+            if (law == ComplianceLaw::blend && before == Before::beyondReach) continue; // it does not look
+            Servo servo(law);
+            servo.touching = false;
+            (void)servo.tick(tableOf(1, -6));
+            if (before == Before::beyondReach) servo.contact = {4.1e-3, 0, 0};
+            if (before == Before::old) servo.time += 2 * servo.handOver.period();
+            servo.touching = true;
+            (void)servo.tick(tableOf(1, -6));
+            const double next = servo.tick(tableOf(2, -5));
+            EXPECT_NEAR(next, before == Before::fits ? -6 : -5, 1e-12) << name(law) << int(before);
+        }
+}
+
+TEST(ComplianceTracker, TablesChangeInFreeSpaceWithoutAnOffset)
+{
+    Servo servo;
+    (void)servo.tick(tableOf(1, -6));
+    servo.touching = false;
+    EXPECT_NEAR(servo.tick(tableOf(2, -5)), -5, 1e-12);
+    servo.touching = true;
+    EXPECT_NEAR(servo.tick(tableOf(2, -5)), -5, 1e-12) << "nor does the next contact find one";
+}
+
+TEST(ComplianceTracker, TimeInTheAirIsNoPeriod)
+{
+    constexpr int kPeriod = 17; // ticks
+    Servo         servo;
+    std::uint64_t sequence = 0;
+    const auto    touchFor = [&](int ticks) {
+        for (int tick = 0; tick < ticks; ++tick) (void)servo.tick(tableOf(1 + sequence++ / kPeriod, -6));
+    };
+    touchFor(40 * kPeriod);
+    const double before = servo.handOver.period();
+    EXPECT_NEAR(before, kPeriod * kTick, 1e-5);
+    for (int lift = 0; lift < 5; ++lift) { // 60 ms without a new table, then half of a period until one comes
+        servo.touching = false;
+        for (int tick = 0; tick < 60; ++tick) (void)servo.tick(tableOf(sequence / kPeriod, -6));
+        servo.touching = true;
+        touchFor(2 * kPeriod);
     }
+    EXPECT_NEAR(servo.handOver.period(), before, 1e-5);
 }
 
 TEST(ComplianceTracker, WhatIsNotUsableIsNotTaken)
