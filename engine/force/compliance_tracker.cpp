@@ -79,7 +79,17 @@ std::optional<LocalCompliance> ComplianceTracker::tick(const ComplianceTick& now
 
     const ComplianceTable::Values here = lookUp(now.contact);
     return LocalCompliance{hand(compliance_, here.lnCompliance, now.time),
-                           hand(contact_, here.lnContactStiffness, now.time), here.clamped, now.time - table_.time};
+                           hand(contact_, here.lnContactStiffness, now.time), here.clamped, now.time - table_.time,
+                           table_.chart.curvature};
+}
+
+std::optional<LocalCompliance> ComplianceTracker::near(const glm::dvec3& place) const noexcept
+{
+    if (!hasTable_) return {};
+    const ComplianceTable::Values there = lookUp(place);
+    return LocalCompliance{std::exp(there.lnCompliance + compliance_.offset),
+                           std::exp(there.lnContactStiffness + contact_.offset), there.clamped, 0,
+                           table_.chart.curvature};
 }
 
 } // namespace palp

@@ -34,6 +34,7 @@ struct LocalCompliance {
     double contactStiffness = 0;     ///< k_c [N/m]
     bool   clamped          = false; ///< the contact lies beyond the table's reach
     double age              = 0;     ///< [s] of the contact that the table was solved for
+    double curvature        = 0;     ///< [1/m] of the table's chart, see Chart
 };
 
 /// Compliance at 1 kHz from tables at 30 to 60 Hz.
@@ -57,6 +58,10 @@ public:
     /// Returns the compliance in use; empty until the first usable table. A table counts once, by its sequence number;
     /// one that is not usable() is not taken.
     [[nodiscard]] std::optional<LocalCompliance> tick(const ComplianceTick& now) noexcept;
+
+    /// Returns what is in use at another place, with the offsets of the last tick: what its slope is taken from. A blend
+    /// and a hold have none.
+    [[nodiscard]] std::optional<LocalCompliance> near(const glm::dvec3& place) const noexcept;
 
     [[nodiscard]] double period() const noexcept { return period_; } ///< of the tables, smoothed [s]
 

@@ -23,8 +23,9 @@ constexpr double kTick = 1e-3; ///< nominal period of servo and proxy [s]
 
 /// A hand and its time.
 struct TimedHand {
-    double time = 0; ///< [s]
-    Hand   hand;
+    double     time = 0; ///< [s]
+    Hand       hand;
+    glm::dvec3 lean{}; ///< [m]
 };
 
 /// The servo's output for the caller.
@@ -137,7 +138,7 @@ TickRecord RealSession::tick(const ForceHalf::TickTime& now, const HapticState& 
 const ProxyContact& RealSession::held(double time, const Hand& hand) noexcept
 {
     if (settings_.threads == SessionThreads::paper) {
-        shared_.hand.draft() = {time, hand};
+        shared_.hand.draft() = {time, hand, force_.lean()};
         shared_.hand.publish();
         shared_.held.take();
         if (const ProxyContact* const newest = shared_.held.held()) return *newest;
@@ -145,7 +146,7 @@ const ProxyContact& RealSession::held(double time, const Hand& hand) noexcept
         nothing_.touch.point = hand.position;
         return nothing_;
     }
-    const ProxyContact& contact = contact_.tick(time, hand.position);
+    const ProxyContact& contact = contact_.tick(time, hand.position, force_.lean());
     publish(contact);
     return contact;
 }
@@ -159,7 +160,7 @@ void RealSession::proxyThread()
         metronome.wait();
         if (!shared_.hand.take()) continue;
         const TimedHand&    newest = *shared_.hand.held();
-        const ProxyContact& held   = contact_.tick(newest.time, newest.hand.position);
+        const ProxyContact& held   = contact_.tick(newest.time, newest.hand.position, newest.lean);
         publish(held);
         shared_.held.draft() = held;
         shared_.held.publish();

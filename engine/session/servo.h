@@ -12,6 +12,7 @@
 #include "engine/force/compliance_tracker.h"
 #include "engine/force/energy_tank.h"
 #include "engine/force/governor.h"
+#include "engine/force/lateral_lean.h"
 #include "engine/session/scene.h"
 #include "engine/session/tick_record.h"
 
@@ -88,6 +89,7 @@ constexpr auto namesOf(SessionThreads)
 struct ProxyContact {
     Touch      touch;
     glm::dvec3 pull{};          ///< [m] from the hand to where the force law acts; see ProxyState
+    glm::dvec3 lean{};          ///< [m] part of the pull: what the proxy was given beyond the hand; see LateralLean
     bool       limited = false; ///< the proxy ran out of iterations
 };
 
@@ -101,7 +103,8 @@ public:
     /// Runs one tick of the proxy.
     /// \param time  [s] of the session's clock
     /// \param hip   [m]
-    const ProxyContact& tick(double time, const glm::dvec3& hip) noexcept;
+    /// \param lean  [m] the latest of the force, ForceHalf::lean()
+    const ProxyContact& tick(double time, const glm::dvec3& hip, const glm::dvec3& lean) noexcept;
 
     [[nodiscard]] const Touch& touch() const noexcept { return held_.touch; }
 
@@ -138,6 +141,7 @@ public:
                     const PatchUpdate* newest) noexcept;
 
     [[nodiscard]] const ForceGovernor& governor() const noexcept { return governor_; }
+    [[nodiscard]] const glm::dvec3&    lean() const noexcept { return lean_.way(); } ///< [m] for the next proxy's tick
 
 private:
     /// The wanted force and the tank's payment for it.
@@ -145,15 +149,21 @@ private:
         glm::dvec3       force{};
         EnergyTankOutput tank{};
     };
-    [[nodiscard]] WantedForce wantedForce(double stiffness, double dt, const Hand& hand,
-                                          const ProxyContact& held) noexcept;
+    [[nodiscard]] WantedForce    wantedForce(double stiffness, double dt, const Hand& hand,
+                                             const ProxyContact& held) noexcept;
+    [[nodiscard]] double         stiffnessOf(const std::optional<LocalCompliance>& local) const noexcept;
+    [[nodiscard]] StiffnessSlope slopeAt(const glm::dvec3& place, const glm::dvec3& outward) const noexcept;
+    void                         leanOn(const ProxyContact& held, const Hand& hand) noexcept;
 
     ForceLaw          law_;
     double            thickness_;   ///< [m]
     double            patchPeriod_; ///< of the deformation [s]
     ComplianceTracker compliance_;
+    LateralLean       lean_;
     EnergyTank        tank_;
     ForceGovernor     governor_;
+    ProxyContact      last_;        ///< of the tick before
+    glm::dvec3        lastHand_{};  ///< [m]
     int               pressed_ = 0; ///< ticks that the operator's button has been down
 };
 
@@ -171,7 +181,7 @@ public:
 
     TickRecord tick(const ForceHalf::TickTime& now, const Hand& hand, const PatchUpdate* newest) noexcept
     {
-        return force_.tick(now, hand, contact_.tick(now.time, hand.position), newest);
+        return force_.tick(now, hand, contact_.tick(now.time, hand.position, force_.lean()), newest);
     }
 
     [[nodiscard]] const Touch&         touch() const noexcept { return contact_.touch(); }
