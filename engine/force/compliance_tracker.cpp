@@ -2,11 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palp {
+namespace {
+
+constexpr double kLongestGuess = 0.25; ///< [s] as long as a table may stay in use
+
+} // namespace
 
 ComplianceTable::Values ComplianceTracker::lookUp(const glm::dvec3& contact) const noexcept
 {
+    if (guessing_)
+        if (const auto guess = first_->at(contact)) return *guess;
     if (law_ != ComplianceLaw::table) return table_.middle();
     if (const auto place = table_.chart.project(contact)) return table_.at(*place);
     // The contact is behind the sphere, or not finite: the last felt value stays.
@@ -30,10 +38,14 @@ void ComplianceTracker::land(const ComplianceTick& now) noexcept
     constexpr double kLate = 1.5; // [periods] a table that is in use for longer has missed its successor
 
     compliance_ = contact_ = {};
-    fits_                  = hasTable_ && now.time - adopted_ <= kLate * period_ && !lookUp(now.contact).clamped;
-    const auto middle      = table_.middle();
-    compliance_.handed = compliance_.from = middle.lnCompliance;
-    contact_.handed = contact_.from = middle.lnContactStiffness;
+    guessing_              = false;
+    const bool reached     = hasTable_ && !lookUp(now.contact).clamped;
+    fits_                  = reached && now.time - adopted_ <= kLate * period_;
+    guessing_              = !reached && first_ && first_->at(now.contact);
+    landed_                = now.time;
+    const auto here        = lookUp(now.contact);
+    compliance_.handed = compliance_.from = here.lnCompliance;
+    contact_.handed = contact_.from = here.lnContactStiffness;
 }
 
 void ComplianceTracker::adopt(const ComplianceTick& now) noexcept
@@ -51,7 +63,9 @@ void ComplianceTracker::adopt(const ComplianceTick& now) noexcept
     flown_    = false;
     adopted_  = now.time;
 
-    const ComplianceTable::Values after = lookUp(now.contact);
+    const bool                    guessed = std::exchange(guessing_, false);
+    const ComplianceTable::Values after   = lookUp(now.contact);
+    fits_                                 = fits_ || guessed;
     carry(compliance_, before.lnCompliance, after.lnCompliance);
     carry(contact_, before.lnContactStiffness, after.lnContactStiffness);
     fits_ = touching_; // from here on this contact has a table of its own
@@ -75,17 +89,18 @@ std::optional<LocalCompliance> ComplianceTracker::tick(const ComplianceTick& now
     flown_            = flown_ || !touching_;
     if (landed || !touching_) land(now);
     if (now.newest && now.newest->sequence != (hasTable_ ? table_.sequence : 0) && now.newest->usable()) adopt(now);
-    if (!hasTable_) return {};
+    if (guessing_ && now.time - landed_ > kLongestGuess) guessing_ = false;
+    if (!answers()) return {};
 
     const ComplianceTable::Values here = lookUp(now.contact);
     return LocalCompliance{hand(compliance_, here.lnCompliance, now.time),
-                           hand(contact_, here.lnContactStiffness, now.time), here.clamped, now.time - table_.time,
-                           table_.chart.curvature};
+                           hand(contact_, here.lnContactStiffness, now.time), here.clamped,
+                           now.time - (guessing_ ? landed_ : table_.time), guessing_ ? 0 : table_.chart.curvature};
 }
 
 std::optional<LocalCompliance> ComplianceTracker::near(const glm::dvec3& place) const noexcept
 {
-    if (!hasTable_) return {};
+    if (!answers()) return {};
     const ComplianceTable::Values there = lookUp(place);
     return LocalCompliance{std::exp(there.lnCompliance + compliance_.offset),
                            std::exp(there.lnContactStiffness + contact_.offset), there.clamped, 0,

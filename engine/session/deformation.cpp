@@ -30,7 +30,8 @@ FootprintLattice latticeOf(const Scene& scene, const SoftObject& object, PlateSo
 
 Deformation::Deformation(const SoftObject& object, const Scene& scene)
     : object_(&object), law_(scene.complianceLaw), settings_(scene.patch),
-      solver_(scene.solver, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, object, solver_))
+      solver_(scene.solver, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, object, solver_)),
+      firstLaw_(homogeneousLaw(object, lattice_))
 {
 }
 

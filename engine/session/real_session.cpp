@@ -68,7 +68,7 @@ class RealSession {
 public:
     RealSession(const SessionParts& parts, const RealSessionSettings& settings)
         : parts_(parts), settings_(settings), contact_(parts.object, parts.scene),
-          force_(parts.scene, parts.device.info(), settings.threads)
+          force_(parts.scene, parts.device.info(), settings.threads, parts.first)
     {
     }
 

@@ -75,9 +75,11 @@ const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip, const 
     return held_;
 }
 
-ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads)
+ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads,
+                     const HomogeneousLaw* first)
     : law_(scene.patch.forceLaw), thickness_(scene.material.thickness), patchPeriod_(1 / scene.deformationRate),
-      compliance_(scene.complianceLaw), tank_(tankOf(scene, limits)), governor_(governorOf(scene, limits, threads))
+      compliance_(scene.complianceLaw, first), tank_(tankOf(scene, limits)),
+      governor_(governorOf(scene, limits, threads))
 {
 }
 

@@ -124,8 +124,9 @@ public:
     static constexpr int           kPressTicks      = 20;
 
     /// \param limits  of the device; they bound the values of the scene
+    /// \param first   answers until there is a table, see ComplianceTracker; outlives this; null: nothing does
     explicit ForceHalf(const Scene& scene, const HapticDeviceInfo& limits = {},
-                       SessionThreads threads = SessionThreads::servo);
+                       SessionThreads threads = SessionThreads::servo, const HomogeneousLaw* first = nullptr);
 
     /// The time of a tick, and its clock.
     struct TickTime {
@@ -174,8 +175,9 @@ private:
 /// \thread as its halves
 class Servo {
 public:
-    Servo(const SoftObject& object, const Scene& scene, const HapticDeviceInfo& limits = {})
-        : contact_(object, scene), force_(scene, limits)
+    Servo(const SoftObject& object, const Scene& scene, const HapticDeviceInfo& limits = {},
+          const HomogeneousLaw* first = nullptr)
+        : contact_(object, scene), force_(scene, limits, SessionThreads::servo, first)
     {
     }
 

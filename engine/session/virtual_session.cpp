@@ -39,7 +39,7 @@ private:
 SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTick& onTick,
                           const std::atomic<bool>* stop)
 {
-    Servo                      servo(parts.object, parts.scene, parts.device.info());
+    Servo                      servo(parts.object, parts.scene, parts.device.info(), parts.first);
     SessionSummary             summary;
     GovernedForce              force;
     std::optional<PatchUpdate> inUse, underWay;

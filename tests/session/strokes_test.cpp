@@ -15,8 +15,8 @@
 namespace palp {
 namespace {
 
-constexpr double kHeight = 6e-3; // [m] where the hand comes from
-constexpr double kEngage = 2.2;  // [s] until the force is fully on
+constexpr double kHeight = 40e-3; // [m] where the hand comes from
+constexpr double kEngage = 2.2;   // [s] until the force is fully on
 
 struct Session {
     Scene      scene;
@@ -82,9 +82,9 @@ struct Stroke {
 HandPath handOf(const Stroke& stroke)
 {
     std::vector<HandPose> path;
-    const double          y = 0.7e-3, down = 0.3; // [m], [s]
+    const double          y = 0.7e-3, hover = 1.7, down = 0.3; // [m], [s]: nothing is solved while it waits
     for (int n = 0; n * 1e-3 < kEngage + stroke.cycles * stroke.period() + 0.02; ++n) {
-        const double time = n * 1e-3, u = std::min(time / down, 1.0);
+        const double time = n * 1e-3, u = std::clamp((time - hover) / down, 0.0, 1.0);
         const double z = kHeight - (kHeight + stroke.depth) * u * u * (3 - 2 * u);
         path.push_back({time, {stroke.at(std::max(0.0, time - kEngage)), y, z}});
     }
@@ -137,6 +137,35 @@ TEST(ClosedStrokes, ALumpResistsOnTheWayInAndPushesOnTheWayOut)
     std::printf("  in %.3f N, out %+.3f N\n", in, out);
     EXPECT_NEAR(in, -0.12, 0.03) << "d^2/2 dK/ds of a wart of 455 to 857 N/m";
     EXPECT_NEAR(out, -in, 0.01) << "what resists pushes";
+}
+
+/// Stiffness against the proxy's place, to the right only.
+std::vector<std::pair<double, double>> feltAlong(const std::vector<TickRecord>& records)
+{
+    std::vector<std::pair<double, double>> felt;
+    for (const TickRecord& s : records)
+        if (s.time > kEngage + 0.02 && s.hipVelocity.x > 1e-3)
+            felt.emplace_back(s.proxy.x, glm::length(s.force) / glm::length(s.proxy - s.hip));
+    return felt;
+}
+
+/// It starts from rest at once, where the sheet is even: tables reach as far as a hand accelerates, which this one beats.
+TEST(Strokes, AFastHandFeelsWhatASlowOneFeels)
+{
+    for (const double friction : {0.0, 0.5}) {
+        Stroke        stroke{0, 22e-3, 1.5e-3, 0.05, false, 1};
+        const Session session(palmWart(friction, 0.6 * friction));
+        const auto    slow = feltAlong(session.run(handOf(stroke)));
+        stroke.speed       = 0.2;
+        double error       = 0; // [1]
+        for (const auto& [x, stiffness] : feltAlong(session.run(handOf(stroke)))) {
+            const auto next = std::lower_bound(slow.begin(), slow.end(), std::pair{x, 0.0});
+            if (next == slow.begin() || next == slow.end()) continue;
+            error = std::max(error, std::abs(stiffness / next->second - 1)); // 0.02 mm apart: 0.2 % at most
+        }
+        std::printf("  friction %.1f: %.1f %%\n", friction, error * 100);
+        EXPECT_LT(error, 0.025) << "2.0 % and the slow hand's own ticks; friction " << friction;
+    }
 }
 
 /// Largest change of the force in a millisecond [N], within 0.15 s of where the hand turns.
