@@ -40,7 +40,7 @@ struct Touch {
 /// Bits of TickRecord::faults. The low eight are the governor's fault as a number, see GovernorFault.
 enum class SessionFlag : std::uint32_t {
     stalePatch   = 1U << 8,  ///< the plate's answer in use is older than three of its periods
-    beyondTable  = 1U << 9,  ///< the contact lies beyond the table's reach
+    beyondTable  = 1U << 9,  ///< the contact lies beyond the table's reach, or no table was there yet
     noPatch      = 1U << 10, ///< in contact, and no answer of the plate yet: no force
     proxyLimited = 1U << 11, ///< the proxy ran out of iterations
     beyondTheory = 1U << 12, ///< the deflection exceeds half the thickness: Kirchhoff's plate does not hold
