@@ -5,9 +5,9 @@
 
 namespace palp {
 
-/// Makes the law that answers until the first table: for each piece of the surface, half a footprint's radius wide (or a
-/// spacing of sparse points), the
-/// compliance of a homogeneous window, from the lattice's ladder of rigidities, and the contact's stiffness.
+/// Makes the law that answers until the first table: for each piece of the surface, half a footprint's radius wide, or
+/// a spacing where points are sparse, the compliance of a homogeneous window, from the lattice's ladder of rigidities,
+/// and the contact's stiffness.
 ///
 /// To first order c changes with ln D by the bending energy that a place holds, which a load leaves within some
 /// footprints: D is the geometric mean over that reach, FootprintLattice::feltRadius, by area. Over and beside a wart of
