@@ -42,8 +42,8 @@ constexpr double kMostShare   = 3;    // [1]
 class HybridProxy final : public Proxy::Impl {
 public:
     HybridProxy(const SoftObject& object, const ProxySettings& settings)
-        : points_(ContactPoints(object)), tracker_(points_),
-          travel_(points_, tracker_), friction_{settings.staticFriction, settings.dynamicFriction, false}
+        : points_(ContactPoints(object)), tracker_(points_), travel_(points_, tracker_),
+          friction_(settings.staticFriction, settings.dynamicFriction)
     {
     }
 

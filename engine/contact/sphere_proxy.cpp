@@ -24,7 +24,7 @@ constexpr double kTinyNormal = 1e-9; // [radius] mean overshoot of a sphere that
 class SphereProxy final : public Proxy::Impl {
 public:
     SphereProxy(const SoftObject& object, const ProxySettings& settings)
-        : points_(ContactPoints(object)), friction_{settings.staticFriction, settings.dynamicFriction, false},
+        : points_(ContactPoints(object)), friction_(settings.staticFriction, settings.dynamicFriction),
           regulated_(settings.form == ProxyForm::sphere)
     {
     }

@@ -2,11 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace palp {
+namespace {
+
+constexpr double kLongestGuess = 0.25; ///< [s] as long as a table may stay in use
+
+} // namespace
 
 ComplianceTable::Values ComplianceTracker::lookUp(const glm::dvec3& contact) const noexcept
 {
+    if (guessing_)
+        if (const auto guess = first_->at(contact)) return *guess;
     if (law_ != ComplianceLaw::table) return table_.middle();
     if (const auto place = table_.chart.project(contact)) return table_.at(*place);
     // The contact is behind the sphere, or not finite: the last felt value stays.
@@ -18,25 +26,49 @@ void ComplianceTracker::carry(Carried& carried, double before, double after) con
 {
     constexpr double kRate = 10; // [1/s] 1 % per ms, our own prototype's: faster is felt as a tick, slower lags
 
-    carried.offset = law_ == ComplianceLaw::table && inContact_ ? before + carried.offset - after : 0;
-    carried.rate   = std::max(kRate, std::abs(carried.offset) / period_);
-    carried.from   = inContact_ ? carried.handed : after;
+    const bool goesOn = touching_ && fits_;
+    carried.offset    = law_ == ComplianceLaw::table && goesOn ? before + carried.offset - after : 0;
+    carried.rate      = std::max(kRate, std::abs(carried.offset) / period_);
+    carried.from      = goesOn ? carried.handed : after;
+}
+
+/// Starts a contact with the table that is there.
+void ComplianceTracker::land(const ComplianceTick& now) noexcept
+{
+    constexpr double kLate = 1.5; // [periods] a table that is in use for longer has missed its successor
+
+    compliance_ = contact_ = {};
+    guessing_              = false;
+    const bool reached     = hasTable_ && !lookUp(now.contact).clamped;
+    fits_                  = reached && now.time - adopted_ <= kLate * period_;
+    guessing_              = !reached && first_ && first_->at(now.contact);
+    landed_                = now.time;
+    const auto here        = lookUp(now.contact);
+    compliance_.handed = compliance_.from = here.lnCompliance;
+    contact_.handed = contact_.from = here.lnContactStiffness;
 }
 
 void ComplianceTracker::adopt(const ComplianceTick& now) noexcept
 {
     constexpr double kShortest = 1e-3, kLongest = 0.1; // [s] one tick; longer is a thread that stalled, not a period
     constexpr double kWeight = 0.25;                   // of the newest interval [1]: late and early threads even out
+    constexpr double kPause  = 2;                      // [periods] longer with free space in it: nothing was solved
 
-    const ComplianceTable::Values before = lookUp(now.contact);
-    if (hasTable_) period_ += kWeight * (std::clamp(now.time - adopted_, kShortest, kLongest) - period_);
+    const ComplianceTable::Values before   = lookUp(now.contact);
+    const double                  interval = now.time - adopted_;
+    const bool                    paused   = interval > (flown_ ? std::min(kPause * period_, kLongest) : kLongest);
+    if (hasTable_ && !paused) period_ += kWeight * (std::max(interval, kShortest) - period_);
     table_    = *now.newest;
     hasTable_ = true;
+    flown_    = false;
     adopted_  = now.time;
 
-    const ComplianceTable::Values after = lookUp(now.contact);
+    const bool                    guessed = std::exchange(guessing_, false);
+    const ComplianceTable::Values after   = lookUp(now.contact);
+    fits_                                 = fits_ || guessed;
     carry(compliance_, before.lnCompliance, after.lnCompliance);
     carry(contact_, before.lnContactStiffness, after.lnContactStiffness);
+    fits_ = touching_; // from here on this contact has a table of its own
 }
 
 double ComplianceTracker::hand(Carried& carried, double wanted, double time) const noexcept
@@ -52,21 +84,27 @@ std::optional<LocalCompliance> ComplianceTracker::tick(const ComplianceTick& now
     for (Carried* carried : {&compliance_, &contact_})
         carried->offset =
             std::copysign(std::max(0.0, std::abs(carried->offset) - carried->rate * now.dt), carried->offset);
+    const bool landed = now.touching && !touching_;
+    touching_         = now.touching;
+    flown_            = flown_ || !touching_;
+    if (landed || !touching_) land(now);
     if (now.newest && now.newest->sequence != (hasTable_ ? table_.sequence : 0) && now.newest->usable()) adopt(now);
-    if (!hasTable_) return {};
+    if (guessing_ && now.time - landed_ > kLongestGuess) guessing_ = false;
+    if (!answers()) return {};
 
     const ComplianceTable::Values here = lookUp(now.contact);
-    inContact_                         = true;
     return LocalCompliance{hand(compliance_, here.lnCompliance, now.time),
-                           hand(contact_, here.lnContactStiffness, now.time), here.clamped, now.time - table_.time};
+                           hand(contact_, here.lnContactStiffness, now.time), here.clamped,
+                           now.time - (guessing_ ? landed_ : table_.time), guessing_ ? 0 : table_.chart.curvature};
 }
 
-void ComplianceTracker::restart() noexcept
+std::optional<LocalCompliance> ComplianceTracker::near(const glm::dvec3& place) const noexcept
 {
-    inContact_        = false;
-    const auto middle = table_.middle();
-    compliance_       = {.handed = middle.lnCompliance, .from = middle.lnCompliance};
-    contact_          = {.handed = middle.lnContactStiffness, .from = middle.lnContactStiffness};
+    if (!answers()) return {};
+    const ComplianceTable::Values there = lookUp(place);
+    return LocalCompliance{std::exp(there.lnCompliance + compliance_.offset),
+                           std::exp(there.lnContactStiffness + contact_.offset), there.clamped, 0,
+                           table_.chart.curvature};
 }
 
 } // namespace palp

@@ -5,6 +5,7 @@
 
 #include "engine/core/enum_names.h"
 #include "engine/force/compliance_table.h"
+#include "engine/force/homogeneous_law.h"
 
 namespace palp {
 
@@ -22,17 +23,19 @@ constexpr auto namesOf(ComplianceLaw)
 
 /// The servo's input of one tick.
 struct ComplianceTick {
-    glm::dvec3             contact{};        ///< [m] of the proxy, world
-    double                 time   = 0;       ///< [s] of the servo's clock
-    double                 dt     = 0;       ///< [s] since the last tick
-    const ComplianceTable* newest = nullptr; ///< of the deformation thread; null: none yet
+    glm::dvec3             contact{};          ///< [m] of the proxy, world
+    double                 time     = 0;       ///< [s] of the servo's clock
+    double                 dt       = 0;       ///< [s] since the last tick
+    const ComplianceTable* newest   = nullptr; ///< of the deformation thread; null: none yet
+    bool                   touching = true;    ///< false: in free space. The next contact then starts without an offset
 };
 
 struct LocalCompliance {
     double compliance       = 0;     ///< c [m/N]
     double contactStiffness = 0;     ///< k_c [N/m]
-    bool   clamped          = false; ///< the contact lies beyond the table's reach
-    double age              = 0;     ///< [s] of the contact that the table was solved for
+    bool   clamped          = false; ///< the contact lies beyond the table's reach, or no table was there yet
+    double age              = 0;     ///< [s] of the contact that the table was solved for; without one, of this contact
+    double curvature        = 0;     ///< [1/m] of the table's chart, see Chart
 };
 
 /// Compliance at 1 kHz from tables at 30 to 60 Hz.
@@ -44,19 +47,30 @@ struct LocalCompliance {
 /// would be shifted by that distance times the slope.)
 ///
 /// Where a new table disagrees with the old one at the contact, the difference is carried as an offset of ln c, and of
-/// ln k_c, which dies at 1 % per millisecond, or within one period if that is faster.
+/// ln k_c, which dies at 1 % per millisecond, or within one period if that is faster. In free space tables change
+/// without: nothing is felt. Nor does a contact carry an offset that began beyond the reach of its table, or with one
+/// that was not replaced in time: that table was made for another place, and what it says is no value to keep.
+///
+/// A contact that finds no table, or that begins beyond its reach, is answered by the homogeneous law of its place, if
+/// there is one, until its first table comes. Where none comes for a quarter of a second there is no answer: what
+/// cannot be solved for so long is most often a wrong unit, and that law would be as wrong.
 /// \thread the servo's; no allocation, lock or throw
 /// \source our own prototype, with slopes in place of twice as many footprints; README.md here has the measurements
 class ComplianceTracker {
 public:
-    explicit ComplianceTracker(ComplianceLaw law = ComplianceLaw::table) noexcept : law_(law) {}
+    /// \param first  answers until there is a table; outlives this; null: nothing does
+    explicit ComplianceTracker(ComplianceLaw law = ComplianceLaw::table, const HomogeneousLaw* first = nullptr) noexcept
+        : law_(law), first_(first)
+    {
+    }
 
     /// Returns the compliance in use; empty until the first usable table. A table counts once, by its sequence number;
     /// one that is not usable() is not taken.
     [[nodiscard]] std::optional<LocalCompliance> tick(const ComplianceTick& now) noexcept;
 
-    /// Ends a contact, when the finger left the surface: the next one starts without an offset.
-    void restart() noexcept;
+    /// Returns what is in use at another place, with the offsets of the last tick: what its slope is taken from. A blend
+    /// and a hold have none.
+    [[nodiscard]] std::optional<LocalCompliance> near(const glm::dvec3& place) const noexcept;
 
     [[nodiscard]] double period() const noexcept { return period_; } ///< of the tables, smoothed [s]
 
@@ -70,17 +84,24 @@ private:
     };
 
     [[nodiscard]] ComplianceTable::Values lookUp(const glm::dvec3& contact) const noexcept;
+    [[nodiscard]] bool                    answers() const noexcept { return hasTable_ || guessing_; }
+    void                                  land(const ComplianceTick& now) noexcept;
     void                                  adopt(const ComplianceTick& now) noexcept;
     void                                  carry(Carried& carried, double before, double after) const noexcept;
     [[nodiscard]] double                  hand(Carried& carried, double wanted, double time) const noexcept;
 
-    ComplianceLaw   law_;
-    ComplianceTable table_{};
-    bool            hasTable_  = false;
-    bool            inContact_ = false;    // since a tick after restart()
-    double          adopted_   = 0;        // when the table came [s]
-    double          period_    = 1.0 / 30; // [s] the slowest deformation thread that is planned for
-    Carried         compliance_, contact_;
+    ComplianceLaw         law_;
+    const HomogeneousLaw* first_; // may be null
+    ComplianceTable       table_{};
+    bool                  hasTable_ = false;
+    bool                  touching_ = false;
+    bool                  fits_     = false;    // the table in use was made for this contact, as far as is known
+    bool                  guessing_ = false;    // the homogeneous law answers
+    double                landed_   = 0;        // when this contact began [s]
+    bool                  flown_    = false;    // in free space since the table came
+    double                adopted_  = 0;        // when the table came [s]
+    double                period_   = 1.0 / 30; // [s] the slowest deformation thread that is planned for
+    Carried               compliance_, contact_;
 };
 
 } // namespace palp

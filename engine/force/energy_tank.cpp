@@ -12,11 +12,8 @@ namespace palp {
 EnergyTank::EnergyTank(const EnergyTankSettings& settings)
     : settings_(settings), energy_(std::min(settings.start, settings.limit))
 {
-    const std::pair<const char*, double> all[] = {{"limit", settings.limit},
-                                                  {"start", settings.start},
-                                                  {"damping", settings.damping},
-                                                  {"power", settings.power},
-                                                  {"brake", settings.brake}};
+    const std::pair<const char*, double> all[] = {
+        {"limit", settings.limit}, {"start", settings.start}, {"damping", settings.damping}, {"power", settings.power}};
     for (const auto& [what, value] : all)
         if (!(std::isfinite(value) && value >= 0))
             throw Error("energy tank: " + std::string(what) + " must be zero or more, found " + std::to_string(value));
@@ -25,7 +22,7 @@ EnergyTank::EnergyTank(const EnergyTankSettings& settings)
 EnergyTankOutput EnergyTank::step(const EnergyTankInput& in) noexcept
 {
     const double speed = std::abs(in.tangentialSpeed);
-    if (!std::isfinite(in.stiffness + in.depth + in.normalSpeed + speed + in.dt) || in.stiffness < 0) {
+    if (!std::isfinite(in.stiffness + in.depth + in.normalSpeed + speed + in.dt + in.drag) || in.stiffness < 0) {
         energy_    = 0;
         stiffness_ = 0;
         return {};
@@ -36,19 +33,21 @@ EnergyTankOutput EnergyTank::step(const EnergyTankInput& in) noexcept
     const double income = settings_.damping * (in.normalSpeed * in.normalSpeed + speed * speed) + settings_.power;
     energy_             = std::min(settings_.limit, energy_ + income * dt);
 
-    // Cost of the step of stiffness at this depth. A fall gives the energy back; outside it is free.
+    // Cost of the step of stiffness at this depth, less what the hand paid. A fall that pushed nobody along the surface
+    // gives its energy back; friction's loss is not credited. Outside all is free.
     EnergyTankOutput out;
     const double     depth = std::max(in.depth, 0.0);
-    const double     need  = depth * depth * (in.stiffness - stiffness_) / 2;
+    const double     rise  = depth * depth * (in.stiffness - stiffness_) / 2;
+    const double     paid  = stiffness_ * in.drag;
+    const double     need  = rise - paid;
     if (need <= 0) {
-        energy_    = std::min(settings_.limit, energy_ - need);
+        energy_    = std::min(settings_.limit, energy_ + std::min(-need, std::max(-rise, 0.0)));
         stiffness_ = in.stiffness;
     } else {
-        const double paid = std::min(need, settings_.brake * stiffness_ * depth * speed * dt); // by the hand
-        out.used          = std::min(energy_, need - paid);
-        out.brake         = paid > 0 ? paid / (speed * dt) : 0;
+        out.used = std::min(energy_, need);
         energy_ -= out.used;
-        stiffness_ += (in.stiffness - stiffness_) * ((paid + out.used) / need);
+        const double share = rise > 0 ? std::clamp((paid + out.used) / rise, 0.0, 1.0) : 1;
+        stiffness_ += (in.stiffness - stiffness_) * share;
     }
     out.stiffness = stiffness_;
     out.stored    = stiffness_ * depth * depth / 2;

@@ -11,7 +11,6 @@ struct EnergyTankSettings {
     /// K (T/2 + delay) = 1000 (0.5 ms + 1 ms); 1 of the remaining 1.7.
     double damping = 1;
     double power   = 1e-3; ///< [W] fills it at rest too; 0 is strict, and a still finger never feels a spot harden
-    double brake   = 0.3;  ///< [1] the tangential brake's limit as a part of the normal force; 0.3 to 0.5, 0 is none
 };
 
 struct EnergyTankInput {
@@ -20,29 +19,29 @@ struct EnergyTankInput {
     double normalSpeed     = 0; ///< [m/s] along the surface's normal; the sign does not matter
     double tangentialSpeed = 0; ///< [m/s] along the surface; the sign does not matter
     double dt              = 0; ///< [s] since the last tick
+    /// [m^2] -pull · way of the proxy along the surface in this tick: times the stiffness it is what the hand paid to
+    /// drag the proxy there, or below zero what it was given on the way down a slope
+    double drag = 0;
 };
 
 struct EnergyTankOutput {
     double stiffness = 0; ///< [N/m] to render; at most the wanted one
-    double brake     = 0; ///< [N] against the tangential velocity; at most settings.brake times the normal force
     double used      = 0; ///< [J] that the tank let into the hand: GovernorInput::admittedEnergy
     double stored    = 0; ///< [J] in the rendered spring, K depth^2 / 2: GovernorInput::storedEnergy
 };
 
-/// Pays for stiffness that rises under a loaded finger. A contact of depth d stores d^2 K / 2: sliding onto a stiffer
-/// spot puts d^2 (K2 - K1) / 2 into the hand, once per round; shaking across an edge pumps. Here the hand itself pays
-/// for a rise, through a brake along the surface, and a small store that the arm's damping fills pays the rest; what
-/// cannot be paid waits, and the stiffness lags.
+/// Pays for stiffness that rises under a loaded finger. A contact of depth d stores d^2 K / 2. What the hand changes of
+/// it by sliding it pays, or gets, itself through the tangential part of its pull, see LateralLean. What is left comes
+/// from outside: a new table, an offset that dies, a cap that rises. A small store that the arm's damping fills pays
+/// for a rise of that kind; what cannot be paid waits, and the stiffness lags.
 ///
 /// The servo calls it, once a tick, between the force law and the governor:
 ///
-///     K = min(law, governor.stiffnessCap()) -> tank.step() -> force = K depth normal - brake -> governor.step()
+///     K = min(law, governor.stiffnessCap()) -> tank.step() -> force = K pull -> governor.step()
 ///
 /// Invariants: 0 <= energy() <= limit; the stiffness rises in contact only by what was paid. This bounds growth, and is
 /// not strict passivity: damping and power let in a few mJ per second.
 /// \thread one
-/// \differs the exact cure is the lateral force -(d^2/2) dK/ds along the slope of K, which needs that slope without
-///          noise
 class EnergyTank {
 public:
     /// \throws Error naming a setting that is negative or not finite

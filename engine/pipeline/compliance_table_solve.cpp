@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -40,6 +41,27 @@ ComplianceTable::Entry contactOf(const FootprintLattice& lattice, std::size_t n,
 {
     return {std::log(lattice.shape.contactPerRigidity * node) + dot(lattice.loads[n], over),
             dot(lattice.slopesX[n], over), dot(lattice.slopesZ[n], over)};
+}
+
+/// Returns the root mean square radius [m] of the bending energy of a homogeneous plate about its middle:
+/// (w_xx + w_zz)^2 - 2 (1 - nu)(w_xx w_zz - w_xz^2), on which its compliance depends where the rigidity changes.
+double bendingRadius(const Plate& plate, const NodeField& w)
+{
+    const PlateGrid& grid = plate.grid;
+    const double     x2 = grid.spacingX * grid.spacingX, z2 = grid.spacingZ * grid.spacingZ;
+    double           sum = 0, energy = 0;
+    for (int i = 1; i + 1 < grid.nodesX(); ++i)
+        for (int j = 1; j + 1 < grid.nodesZ(); ++j) {
+            const double xx = (w(i + 1, j) - 2 * w(i, j) + w(i - 1, j)) / x2;
+            const double zz = (w(i, j + 1) - 2 * w(i, j) + w(i, j - 1)) / z2;
+            const double xz = (w(i + 1, j + 1) - w(i + 1, j - 1) - w(i - 1, j + 1) + w(i - 1, j - 1)) /
+                              (4 * grid.spacingX * grid.spacingZ);
+            const double here = (xx + zz) * (xx + zz) - 2 * (1 - plate.poissonRatio) * (xx * zz - xz * xz);
+            const double x = i * grid.spacingX - grid.sizeX() / 2, z = j * grid.spacingZ - grid.sizeZ() / 2;
+            sum += here * (x * x + z * z);
+            energy += here;
+        }
+    return std::sqrt(sum / energy);
 }
 
 } // namespace
@@ -89,6 +111,7 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
     const int reach  = homogeneous.foundation > 0 ? kRungs : 0;
     lattice.rigidity = homogeneous.rigidity(0, 0);
     std::vector<ComplianceTable::Entries> rungs(std::size_t(2 * reach + 1));
+    std::vector<double>                   middles(rungs.size());
     for (int n = 0; n <= 2 * reach; ++n) {
         const int rung              = (n + 1) / 2 * (n % 2 == 0 ? 1 : -1); // 0, -1, 1, -2, ...
         Plate     plate             = homogeneous;
@@ -97,8 +120,11 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
         const double        middle  = own.table.middle().lnCompliance;
         auto&               entries = rungs[std::size_t(rung + reach)] = own.table.compliance;
         for (ComplianceTable::Entry& entry : entries) entry.value -= middle;
+        middles[std::size_t(rung + reach)] = middle;
+        if (rung == 0) lattice.feltRadius = bendingRadius(plate, own.middle.deflection);
     }
-    lattice.rungs = std::move(rungs);
+    lattice.rungs   = std::move(rungs);
+    lattice.middles = std::move(middles);
     return lattice;
 }
 
@@ -117,6 +143,15 @@ ComplianceTable::Entries FootprintLattice::homogeneous(double meanRigidity) cons
                       std::lerp(a.slopeZ, b.slopeZ, t)};
     }
     return entries;
+}
+
+double FootprintLattice::lnCompliance(double ofRigidity) const
+{
+    const double decades = std::log10(ofRigidity / rigidity);
+    if (middles.size() < 2) return middles.front() - decades * std::numbers::ln10;
+    const double last = double(middles.size() - 1), along = last / 2 + kRungsPerDecade * decades;
+    const auto   lower = std::size_t(std::clamp(std::floor(along), 0.0, last - 1));
+    return std::lerp(middles[lower], middles[lower + 1], along - double(lower));
 }
 
 TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver, double tolerance)

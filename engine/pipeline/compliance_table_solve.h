@@ -29,10 +29,16 @@ struct FootprintLattice {
     double                 rigidity = 1; ///< D of the middle rung [N m]
     /// ln c(e)/c(0) of homogeneous windows, with its slopes, by rigidity; one rung without a foundation.
     std::vector<ComplianceTable::Entries> rungs{};
+    std::vector<double>                   middles{}; ///< ln c in the middle of those windows
+    double feltRadius = 0; ///< root mean square radius of the bending energy, in the middle rung [m]
 
     /// Returns the entries for a plate whose rigidity has this geometric mean [N m]: linear between rungs, the last one
     /// beyond them.
     [[nodiscard]] ComplianceTable::Entries homogeneous(double meanRigidity) const;
+
+    /// Returns ln c in the middle of a homogeneous window of this rigidity [N m]: linear between rungs and beyond them;
+    /// without a foundation c is 1/D exactly.
+    [[nodiscard]] double lnCompliance(double ofRigidity) const;
 };
 
 /// Solves the lattice of the settings' window on a homogeneous object of the geometric mean of this one's rigidity.

@@ -4,6 +4,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/force/ahead.h"
+#include "engine/session/approach.h"
 
 namespace palp {
 namespace {
@@ -29,7 +30,8 @@ FootprintLattice latticeOf(const Scene& scene, const SoftObject& object, PlateSo
 
 Deformation::Deformation(const SoftObject& object, const Scene& scene)
     : object_(&object), law_(scene.complianceLaw), settings_(scene.patch),
-      solver_(scene.solver, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, object, solver_))
+      solver_(scene.solver, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, object, solver_)),
+      firstLaw_(homogeneousLaw(object, lattice_))
 {
     prepareTouch(object, settings_);
 }
@@ -42,19 +44,30 @@ void Deformation::repaint(const SoftObject& object)
 
 DeformationAnswer Deformation::solve(const Touch& touch, double period)
 {
+    if (!touch.touching) return solveAhead(touch, period);
     const glm::dvec3  ahead = aheadOf(law_, touch.point, touch.velocity, period);
-    DeformationAnswer there = solveAt(ahead, touch);
+    DeformationAnswer there = solveAt({ahead, touch.outward, true, true}, touch);
     if (there.update || ahead == touch.point) return there;
-    DeformationAnswer here = solveAt(touch.point, touch);
+    DeformationAnswer here = solveAt({touch.point, touch.outward, true, true}, touch);
     if (here.why.empty()) here.why = there.why;
     return here;
 }
 
-DeformationAnswer Deformation::solveAt(const glm::dvec3& place, const Touch& touch)
+/// Solves for where a hand in free space will land. Nobody is touching yet, so a failure is none: a rim may be what is
+/// nearest, and never be touched.
+DeformationAnswer Deformation::solveAhead(const Touch& touch, double period)
+{
+    const auto landing = landingOf(*object_, {touch.point, touch.velocity}, period);
+    if (!landing) return {};
+    DeformationAnswer answer = solveAt({landing->place, landing->outward, true, false}, touch);
+    answer.why.clear();
+    return answer;
+}
+
+DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touch)
 {
     try {
-        PatchWithTable solved =
-            deformWithTable(*object_, {place, touch.outward, true, true}, settings_, lattice_, solver_, frame_);
+        PatchWithTable solved = deformWithTable(*object_, contact, settings_, lattice_, solver_, frame_);
         if (!solved.table) return {{}, {}, "the points around the contact determine no surface"};
         Patch& patch = solved.patch;
         frame_       = patch.chart.frame;

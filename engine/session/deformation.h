@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/pipeline/deform.h"
+#include "engine/pipeline/homogeneous_sites.h"
 #include "engine/session/servo.h"
 
 namespace palp {
@@ -30,11 +31,14 @@ public:
     /// Solves for where the touch will be 1.5 periods later. If that is off the object, or the points determine no
     /// surface there, it solves for the touch itself; if that fails too there is no update, and the answer says why.
     ///
+    /// In free space it solves for where the hand will land, see landingOf(), so that a tap finds a table that is made
+    /// for its place. Where the surface is too far away, or has no answer there, there is no update and no reason.
+    ///
     /// Then the servo goes on with its last table: k_c of the contact in series with the last known compliance, flagged
-    /// as stale. Before the first table there is no force, and that is meant. A plate could be made up there, of the
-    /// nearest point's rigidity everywhere; but what fails is most often a wrong unit or a window that is too small,
-    /// and then thickness, footprint and stiffness are as wrong: the hand would feel something that is off by powers of
-    /// ten, and recordings would hold forces that no plate gave. So a session says in words why it has no force.
+    /// as stale. Before the first table firstLaw() answers, for a quarter of a second; after that there is no force, and
+    /// that is meant. What fails is most often a wrong unit or a window that is too small, and then thickness, footprint
+    /// and stiffness are as wrong: the hand would go on feeling something that is off by powers of ten, and recordings
+    /// would hold forces that no plate gave. So a session says in words why it has no force.
     /// \param period  of the deformation, as measured [s]
     [[nodiscard]] DeformationAnswer solve(const Touch& touch, double period);
 
@@ -49,16 +53,21 @@ public:
     /// \param object  repainted() or as it was; outlives this
     void repaint(const SoftObject& object);
 
+    /// Returns what answers until the first table: of the object as it was first, whatever is painted later.
+    [[nodiscard]] const HomogeneousLaw* firstLaw() const noexcept { return &firstLaw_; }
+
     [[nodiscard]] const PlateSolver& plateSolver() const noexcept { return solver_; }
 
 private:
-    [[nodiscard]] DeformationAnswer solveAt(const glm::dvec3& place, const Touch& touch);
+    [[nodiscard]] DeformationAnswer solveAhead(const Touch& touch, double period);
+    [[nodiscard]] DeformationAnswer solveAt(const Contact& contact, const Touch& touch);
 
     const SoftObject*    object_; ///< never null
     ComplianceLaw        law_;
     PatchSettings        settings_;
     PlateSolver          solver_;
     FootprintLattice     lattice_;
+    HomogeneousLaw       firstLaw_;
     std::optional<Frame> frame_; ///< of the last patch, carried to the next
 };
 

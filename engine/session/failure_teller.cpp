@@ -33,7 +33,7 @@ public:
     {
         try {
             DeformationAnswer answer = solver_(touch, period);
-            if (!answer.update) note(answer.why);
+            if (!answer.update && !answer.why.empty()) note(answer.why); // no reason: nobody touches
             solved_ = solved_ || answer.update;
             return answer;
         } catch (const std::exception& error) { // the session's to catch, too

@@ -23,8 +23,9 @@ constexpr double kTick = 1e-3; ///< nominal period of servo and proxy [s]
 
 /// A hand and its time.
 struct TimedHand {
-    double time = 0; ///< [s]
-    Hand   hand;
+    double     time = 0; ///< [s]
+    Hand       hand;
+    glm::dvec3 lean{}; ///< [m]
 };
 
 /// The servo's output for the caller.
@@ -67,7 +68,7 @@ class RealSession {
 public:
     RealSession(const SessionParts& parts, const RealSessionSettings& settings)
         : parts_(parts), settings_(settings), contact_(parts.object, parts.scene),
-          force_(parts.scene, parts.device.info(), settings.threads)
+          force_(parts.scene, parts.device.info(), settings.threads, parts.first)
     {
     }
 
@@ -137,7 +138,7 @@ TickRecord RealSession::tick(const ForceHalf::TickTime& now, const HapticState& 
 const ProxyContact& RealSession::held(double time, const Hand& hand) noexcept
 {
     if (settings_.threads == SessionThreads::paper) {
-        shared_.hand.draft() = {time, hand};
+        shared_.hand.draft() = {time, hand, force_.lean()};
         shared_.hand.publish();
         shared_.held.take();
         if (const ProxyContact* const newest = shared_.held.held()) return *newest;
@@ -145,7 +146,7 @@ const ProxyContact& RealSession::held(double time, const Hand& hand) noexcept
         nothing_.touch.point = hand.position;
         return nothing_;
     }
-    const ProxyContact& contact = contact_.tick(time, hand.position);
+    const ProxyContact& contact = contact_.tick(time, hand.position, force_.lean());
     publish(contact);
     return contact;
 }
@@ -159,7 +160,7 @@ void RealSession::proxyThread()
         metronome.wait();
         if (!shared_.hand.take()) continue;
         const TimedHand&    newest = *shared_.hand.held();
-        const ProxyContact& held   = contact_.tick(newest.time, newest.hand.position);
+        const ProxyContact& held   = contact_.tick(newest.time, newest.hand.position, newest.lean);
         publish(held);
         shared_.held.draft() = held;
         shared_.held.publish();
@@ -204,11 +205,12 @@ void RealSession::deformationThread()
         metronome.wait();
         shared_.touch.take();
         const Touch* touch = shared_.touch.held();
-        if (!touch || !touch->touching || touch->sequence == done) continue;
+        if (!touch || touch->sequence == done) continue;
         done                     = touch->sequence;
         const auto        began  = Clock::now();
         DeformationAnswer answer = solved(*touch, period.begins(began));
         const double      took   = Seconds(Clock::now() - began).count();
+        if (!answer.update && !touch->touching) continue; // nothing is near
         slow_.solve.add(took);
         slow_.addPatch(answer.update.has_value(), answer.why);
         if (!answer.update) continue;

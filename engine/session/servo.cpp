@@ -62,45 +62,80 @@ ContactHalf::ContactHalf(const SoftObject& object, const Scene& scene)
 {
 }
 
-const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip) noexcept
+const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip, const glm::dvec3& lean) noexcept
 {
-    const ProxyState& proxy = proxy_.step(hip);
-    if (proxy.touching)
-        motion_.add(time, proxy.position);
-    else
-        motion_.forget();
-    held_ = {{held_.touch.sequence + 1, time, proxy.touching, proxy.position, proxy.normal, motion_.velocity()},
-             proxy.pull,
+    const ProxyState& proxy = proxy_.step(hip + lean);
+    motion_.add(time, proxy.position);
+    glm::dvec3 velocity = motion_.velocity();
+    if (proxy.touching) velocity -= glm::dot(velocity, proxy.normal) * proxy.normal; // of the way down to the surface
+    held_ = {{held_.touch.sequence + 1, time, proxy.touching, proxy.position, proxy.normal, velocity},
+             proxy.pull + proxy.fade * lean,
+             proxy.fade * lean,
              proxy.limited};
     return held_;
 }
 
-ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads)
+ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads,
+                     const HomogeneousLaw* first)
     : law_(scene.patch.forceLaw), thickness_(scene.material.thickness), patchPeriod_(1 / scene.deformationRate),
-      compliance_(scene.complianceLaw), tank_(tankOf(scene, limits)), governor_(governorOf(scene, limits, threads))
+      compliance_(scene.complianceLaw, first), tank_(tankOf(scene, limits)),
+      governor_(governorOf(scene, limits, threads))
 {
 }
 
 ForceHalf::WantedForce ForceHalf::wantedForce(double stiffness, double dt, const Hand& hand,
                                               const ProxyContact& held) noexcept
 {
-    const glm::dvec3& pull  = held.pull;
-    const double      depth = glm::length(pull);
-    const glm::dvec3& outward =
-        held.touch.outward; // the brake is along the surface, whichever way friction tilts the pull
-    const double     along   = glm::dot(hand.velocity, outward);
-    const glm::dvec3 sliding = hand.velocity - along * outward;
-    const double     speed   = glm::length(sliding);
+    const glm::dvec3& outward = held.touch.outward; // of the surface, whichever way friction tilts the pull
+    const double      along   = glm::dot(hand.velocity, outward);
+    const auto        tangent = [&](const glm::dvec3& v) { return v - glm::dot(v, outward) * outward; };
+    const bool        slid    = held.touch.touching && last_.touch.touching;
+    const glm::dvec3  way     = slid ? held.touch.point - last_.touch.point : glm::dvec3(0);
 
     WantedForce result;
-    result.tank  = tank_.step({.stiffness       = std::min(stiffness, governor_.stiffnessCap()),
-                               .depth           = depth,
+    result.tank  = tank_.step({.stiffness       = stiffness,
+                               .depth           = glm::length(held.pull),
                                .normalSpeed     = along,
-                               .tangentialSpeed = speed,
-                               .dt              = dt});
-    result.force = result.tank.stiffness * pull;
-    if (speed > 0) result.force -= result.tank.brake / speed * sliding;
+                               .tangentialSpeed = glm::length(tangent(hand.velocity)),
+                               .dt              = dt,
+                               .drag            = -glm::dot(tangent(held.pull), tangent(way))});
+    result.force = result.tank.stiffness * held.pull;
     return result;
+}
+
+/// Returns the stiffness that is wanted [N/m].
+double ForceHalf::stiffnessOf(const std::optional<LocalCompliance>& local) const noexcept
+{
+    if (!local) return 0;
+    return std::min(feltStiffness(law_, local->contactStiffness, local->compliance), governor_.stiffnessCap());
+}
+
+/// Takes the slope of the wanted stiffness from its differences over a way on which a table's cubics are straight.
+StiffnessSlope ForceHalf::slopeAt(const glm::dvec3& place, const glm::dvec3& outward) const noexcept
+{
+    constexpr double kWay  = 20e-6; // [m] a cubic of 4 mm loses 1e-5 of its slope
+    const glm::dvec3 other = std::abs(outward.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 one = glm::normalize(glm::cross(outward, other)), two = glm::cross(outward, one);
+    StiffnessSlope   slope;
+    for (const glm::dvec3& along : {one, two}) {
+        const auto   ahead = compliance_.near(place + kWay * along), behind = compliance_.near(place - kWay * along);
+        const double more = stiffnessOf(ahead), less = stiffnessOf(behind);
+        if (more > 0 && less > 0) slope.ofLogarithm += std::log(more / less) / (2 * kWay) * along;
+        if (ahead) slope.curvature = ahead->curvature;
+    }
+    return slope;
+}
+
+/// Updates the lean for the next tick.
+void ForceHalf::leanOn(const ProxyContact& held, const Hand& hand) noexcept
+{
+    if (held.touch.touching)
+        lean_.step(slopeAt(held.touch.point - held.lean, held.touch.outward), held.pull,
+                   glm::length(hand.position - lastHand_));
+    else
+        lean_.end();
+    lastHand_ = hand.position;
+    last_     = held;
 }
 
 TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyContact& held,
@@ -111,11 +146,10 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     if (pressed_ == kPressTicks) governor_.reset();
 
     const Touch& touch = held.touch;
-    if (!touch.touching) compliance_.restart();
-    const auto handed =
-        compliance_.tick({touch.point, now.time, now.dt, newest ? &newest->table : nullptr}); // also beyond the surface
-    const double      stiffness = handed ? feltStiffness(law_, handed->contactStiffness, handed->compliance) : 0;
-    const WantedForce want      = wantedForce(stiffness, now.dt, hand, held);
+    const auto handed  = compliance_.tick({touch.point - held.lean, now.time, now.dt, newest ? &newest->table : nullptr,
+                                           touch.touching}); // also in free space
+    const WantedForce want = wantedForce(stiffnessOf(handed), now.dt, hand, held);
+    leanOn(held, hand);
 
     GovernorInput in;
     in.force                 = want.force;

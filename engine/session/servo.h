@@ -12,6 +12,7 @@
 #include "engine/force/compliance_tracker.h"
 #include "engine/force/energy_tank.h"
 #include "engine/force/governor.h"
+#include "engine/force/lateral_lean.h"
 #include "engine/session/scene.h"
 #include "engine/session/tick_record.h"
 
@@ -31,15 +32,15 @@ struct Touch {
     std::uint64_t sequence = 0; ///< counts ticks; 0: none yet
     double        time     = 0; ///< [s]
     bool          touching = false;
-    glm::dvec3    point{};    ///< [m] of the proxy
-    glm::dvec3    outward{};  ///< [1] normal there, towards the hand
-    glm::dvec3    velocity{}; ///< of the proxy over its last 10 ms [m/s]
+    glm::dvec3    point{};    ///< [m] of the proxy, which is the hand's in free space
+    glm::dvec3    outward{};  ///< [1] normal there, towards the hand; nothing in free space
+    glm::dvec3    velocity{}; ///< of the proxy over its last 10 ms, in contact along the surface [m/s]
 };
 
 /// Bits of TickRecord::faults. The low eight are the governor's fault as a number, see GovernorFault.
 enum class SessionFlag : std::uint32_t {
     stalePatch   = 1U << 8,  ///< the plate's answer in use is older than three of its periods
-    beyondTable  = 1U << 9,  ///< the contact lies beyond the table's reach
+    beyondTable  = 1U << 9,  ///< the contact lies beyond the table's reach, or no table was there yet
     noPatch      = 1U << 10, ///< in contact, and no answer of the plate yet: no force
     proxyLimited = 1U << 11, ///< the proxy ran out of iterations
     beyondTheory = 1U << 12, ///< the deflection exceeds half the thickness: Kirchhoff's plate does not hold
@@ -88,6 +89,7 @@ constexpr auto namesOf(SessionThreads)
 struct ProxyContact {
     Touch      touch;
     glm::dvec3 pull{};          ///< [m] from the hand to where the force law acts; see ProxyState
+    glm::dvec3 lean{};          ///< [m] part of the pull: what the proxy was given beyond the hand; see LateralLean
     bool       limited = false; ///< the proxy ran out of iterations
 };
 
@@ -101,7 +103,8 @@ public:
     /// Runs one tick of the proxy.
     /// \param time  [s] of the session's clock
     /// \param hip   [m]
-    const ProxyContact& tick(double time, const glm::dvec3& hip) noexcept;
+    /// \param lean  [m] the latest of the force, ForceHalf::lean()
+    const ProxyContact& tick(double time, const glm::dvec3& hip, const glm::dvec3& lean) noexcept;
 
     [[nodiscard]] const Touch& touch() const noexcept { return held_.touch; }
 
@@ -121,8 +124,9 @@ public:
     static constexpr int           kPressTicks      = 20;
 
     /// \param limits  of the device; they bound the values of the scene
+    /// \param first   answers until there is a table, see ComplianceTracker; outlives this; null: nothing does
     explicit ForceHalf(const Scene& scene, const HapticDeviceInfo& limits = {},
-                       SessionThreads threads = SessionThreads::servo);
+                       SessionThreads threads = SessionThreads::servo, const HomogeneousLaw* first = nullptr);
 
     /// The time of a tick, and its clock.
     struct TickTime {
@@ -138,6 +142,7 @@ public:
                     const PatchUpdate* newest) noexcept;
 
     [[nodiscard]] const ForceGovernor& governor() const noexcept { return governor_; }
+    [[nodiscard]] const glm::dvec3&    lean() const noexcept { return lean_.way(); } ///< [m] for the next proxy's tick
 
 private:
     /// The wanted force and the tank's payment for it.
@@ -145,15 +150,21 @@ private:
         glm::dvec3       force{};
         EnergyTankOutput tank{};
     };
-    [[nodiscard]] WantedForce wantedForce(double stiffness, double dt, const Hand& hand,
-                                          const ProxyContact& held) noexcept;
+    [[nodiscard]] WantedForce    wantedForce(double stiffness, double dt, const Hand& hand,
+                                             const ProxyContact& held) noexcept;
+    [[nodiscard]] double         stiffnessOf(const std::optional<LocalCompliance>& local) const noexcept;
+    [[nodiscard]] StiffnessSlope slopeAt(const glm::dvec3& place, const glm::dvec3& outward) const noexcept;
+    void                         leanOn(const ProxyContact& held, const Hand& hand) noexcept;
 
     ForceLaw          law_;
     double            thickness_;   ///< [m]
     double            patchPeriod_; ///< of the deformation [s]
     ComplianceTracker compliance_;
+    LateralLean       lean_;
     EnergyTank        tank_;
     ForceGovernor     governor_;
+    ProxyContact      last_;        ///< of the tick before
+    glm::dvec3        lastHand_{};  ///< [m]
     int               pressed_ = 0; ///< ticks that the operator's button has been down
 };
 
@@ -164,14 +175,15 @@ private:
 /// \thread as its halves
 class Servo {
 public:
-    Servo(const SoftObject& object, const Scene& scene, const HapticDeviceInfo& limits = {})
-        : contact_(object, scene), force_(scene, limits)
+    Servo(const SoftObject& object, const Scene& scene, const HapticDeviceInfo& limits = {},
+          const HomogeneousLaw* first = nullptr)
+        : contact_(object, scene), force_(scene, limits, SessionThreads::servo, first)
     {
     }
 
     TickRecord tick(const ForceHalf::TickTime& now, const Hand& hand, const PatchUpdate* newest) noexcept
     {
-        return force_.tick(now, hand, contact_.tick(now.time, hand.position), newest);
+        return force_.tick(now, hand, contact_.tick(now.time, hand.position, force_.lean()), newest);
     }
 
     [[nodiscard]] const Touch&         touch() const noexcept { return contact_.touch(); }

@@ -42,11 +42,12 @@ struct DeviceFrame {
 
 /// Everything that a session needs, on either clock. All of it outlives the session.
 struct SessionParts {
-    const Scene&      scene;
-    const SoftObject& object; ///< of the scene
-    PatchSolver       solver; ///< Deformation::solver() of the same scene and object
-    HapticDevice&     device; ///< open
-    DeviceFrame       frame{};
+    const Scene&          scene;
+    const SoftObject&     object; ///< of the scene
+    PatchSolver           solver; ///< Deformation::solver() of the same scene and object
+    HapticDevice&         device; ///< open
+    DeviceFrame           frame{};
+    const HomogeneousLaw* first = nullptr; ///< Deformation::firstLaw(); null: no force before the first table
 };
 
 } // namespace palp

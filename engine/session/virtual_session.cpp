@@ -39,7 +39,7 @@ private:
 SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTick& onTick,
                           const std::atomic<bool>* stop)
 {
-    Servo                      servo(parts.object, parts.scene, parts.device.info());
+    Servo                      servo(parts.object, parts.scene, parts.device.info(), parts.first);
     SessionSummary             summary;
     GovernedForce              force;
     std::optional<PatchUpdate> inUse, underWay;
@@ -54,12 +54,14 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
         if (n % every == 0) {
             if (underWay) inUse = underWay;
             underWay.reset();
-            if (servo.touch().touching) {
+            if (const Touch& touch = servo.touch(); touch.sequence > 0) {
                 const auto        began  = Clock::now();
-                DeformationAnswer answer = parts.solver(servo.touch(), double(every) * kTick);
-                summary.solve.add(secondsSince(began));
+                DeformationAnswer answer = parts.solver(touch, double(every) * kTick);
+                if (answer.update || touch.touching) {
+                    summary.solve.add(secondsSince(began));
+                    summary.addPatch(answer.update.has_value(), answer.why);
+                }
                 underWay = std::move(answer.update);
-                summary.addPatch(underWay.has_value(), answer.why);
             }
         }
         const double began  = threadSeconds();

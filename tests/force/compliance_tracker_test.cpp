@@ -32,13 +32,14 @@ struct Servo {
     ComplianceTracker handOver;
     double            time = 0;
     glm::dvec3        contact{};
+    bool              touching = true;
 
     explicit Servo(ComplianceLaw law = ComplianceLaw::table) : handOver(law) {}
 
     double tick(const ComplianceTable& table, double dt = kTick)
     {
         time += dt;
-        const auto handed = handOver.tick({contact, time, dt, &table});
+        const auto handed = handOver.tick({contact, time, dt, &table, touching});
         return handed ? std::log(handed->compliance) : std::numeric_limits<double>::quiet_NaN();
     }
 };
@@ -148,14 +149,106 @@ TEST(ComplianceTracker, HoldStepsAndBlendTakesAPeriod)
     EXPECT_NEAR(blend.tick(second, period), -7, 1e-12);
 }
 
-TEST(ComplianceTracker, ATouchAfterALiftStartsWithoutAnOffset)
+/// Until the first table of a contact comes, a table that was made for it goes over smoothly and another one at once.
+TEST(ComplianceTracker, ANewContactCarriesAnOffsetOnlyFromATableThatWasMadeForIt)
 {
-    for (ComplianceLaw law : {ComplianceLaw::table, ComplianceLaw::blend}) {
-        Servo servo(law);
-        (void)servo.tick(tableOf(1, -6));
-        servo.handOver.restart();
-        EXPECT_NEAR(servo.tick(tableOf(2, -5)), -5, 1e-12) << name(law);
+    enum class Before { fits, beyondReach, old };
+    for (ComplianceLaw law : {ComplianceLaw::table, ComplianceLaw::blend})
+        for (Before before : {Before::fits, Before::beyondReach, Before::old}) {
+            if (law == ComplianceLaw::blend && before == Before::beyondReach) continue; // it does not look
+            Servo servo(law);
+            servo.touching = false;
+            (void)servo.tick(tableOf(1, -6));
+            if (before == Before::beyondReach) servo.contact = {4.1e-3, 0, 0};
+            if (before == Before::old) servo.time += 2 * servo.handOver.period();
+            servo.touching = true;
+            (void)servo.tick(tableOf(1, -6));
+            const double next = servo.tick(tableOf(2, -5));
+            EXPECT_NEAR(next, before == Before::fits ? -6 : -5, 1e-12) << name(law) << int(before);
+        }
+}
+
+TEST(ComplianceTracker, TablesChangeInFreeSpaceWithoutAnOffset)
+{
+    Servo servo;
+    (void)servo.tick(tableOf(1, -6));
+    servo.touching = false;
+    EXPECT_NEAR(servo.tick(tableOf(2, -5)), -5, 1e-12);
+    servo.touching = true;
+    EXPECT_NEAR(servo.tick(tableOf(2, -5)), -5, 1e-12) << "nor does the next contact find one";
+}
+
+TEST(ComplianceTracker, TimeInTheAirIsNoPeriod)
+{
+    constexpr int kPeriod = 17; // ticks
+    Servo         servo;
+    std::uint64_t sequence = 0;
+    const auto    touchFor = [&](int ticks) {
+        for (int tick = 0; tick < ticks; ++tick) (void)servo.tick(tableOf(1 + sequence++ / kPeriod, -6));
+    };
+    touchFor(40 * kPeriod);
+    const double before = servo.handOver.period();
+    EXPECT_NEAR(before, kPeriod * kTick, 1e-5);
+    for (int lift = 0; lift < 5; ++lift) { // 60 ms without a new table, then half of a period until one comes
+        servo.touching = false;
+        for (int tick = 0; tick < 60; ++tick) (void)servo.tick(tableOf(sequence / kPeriod, -6));
+        servo.touching = true;
+        touchFor(2 * kPeriod);
     }
+    EXPECT_NEAR(servo.handOver.period(), before, 1e-5);
+}
+
+/// ln c = -5 and k_c = 500 N/m about the origin.
+HomogeneousLaw lawAtTheOrigin()
+{
+    return {{{{0, 0, 0}, -5, std::log(500.0)}}, 2e-3};
+}
+
+TEST(ComplianceTracker, TheHomogeneousLawAnswersUntilTheFirstTableAndGoesOverSmoothly)
+{
+    const HomogeneousLaw law = lawAtTheOrigin();
+    Servo                servo;
+    servo.handOver = ComplianceTracker(ComplianceLaw::table, &law);
+    const ComplianceTable none;
+    EXPECT_NEAR(servo.tick(none), -5, 1e-12);
+    EXPECT_TRUE(servo.handOver.tick({{}, servo.time, 0, &none})->clamped) << "it is no table's";
+    EXPECT_NEAR(servo.tick(tableOf(1, -5.5)), -5, 1e-12);
+    double last = -5;
+    for (int n = 0; n < 40; ++n) last = servo.tick(tableOf(1, -5.5));
+    EXPECT_NEAR(last, -5.5, 1e-12) << "within a period of 33 ms";
+}
+
+TEST(ComplianceTracker, TheHomogeneousLawAnswersBeyondTheReachOfAnOldTableOnly)
+{
+    const HomogeneousLaw law = lawAtTheOrigin();
+    for (const double away : {0.0, 20e-3}) {
+        Servo servo;
+        servo.handOver     = ComplianceTracker(ComplianceLaw::table, &law);
+        auto table         = tableOf(1, -6);
+        table.chart.origin = {away, 0, 0};
+        servo.touching     = false;
+        (void)servo.tick(table);
+        servo.touching = true;
+        EXPECT_NEAR(servo.tick(table), away > 0 ? -5 : -6, 1e-12) << away;
+    }
+}
+
+TEST(ComplianceTracker, NoTableForAQuarterOfASecondIsNoAnswer)
+{
+    const HomogeneousLaw  law = lawAtTheOrigin();
+    ComplianceTracker     tracker(ComplianceLaw::table, &law);
+    const ComplianceTable none;
+    for (int n = 0; n <= 600; ++n) {
+        const bool touching = n != 300; // a new contact has its own quarter of a second
+        const auto here     = tracker.tick({{}, n * kTick, kTick, &none, touching});
+        if (n % 301 != 250 && touching) {
+            EXPECT_EQ(here.has_value(), n % 301 < 250) << n;
+        }
+        if (here && touching) {
+            EXPECT_NEAR(here->age, (n < 300 ? n : n - 301) * kTick, 1e-9) << n;
+        }
+    }
+    EXPECT_FALSE(tracker.tick({{5e-3, 0, 0}, 1, kTick, &none}).has_value()) << "no site is near";
 }
 
 TEST(ComplianceTracker, WhatIsNotUsableIsNotTaken)
@@ -202,10 +295,14 @@ TEST(ComplianceTracker, AStalledDeformationThreadLeavesAFiniteForceAndAnAge)
 
 TEST(ComplianceTracker, AllocatesNothing)
 {
+    const HomogeneousLaw first = lawAtTheOrigin();
     for (ComplianceLaw law : {ComplianceLaw::table, ComplianceLaw::hold, ComplianceLaw::blend}) {
-        Servo      servo(law);
-        const auto one = tableOf(1, -6, 50), two = tableOf(2, -7, 50);
-        const auto before = allocationsOfThisThread();
+        Servo servo(law);
+        servo.handOver = ComplianceTracker(law, &first);
+        const ComplianceTable none;
+        const auto            one = tableOf(1, -6, 50), two = tableOf(2, -7, 50);
+        const auto            before = allocationsOfThisThread();
+        for (int n = 0; n < 10; ++n) (void)servo.tick(none);
         for (int n = 0; n < 10; ++n) (void)servo.tick(one);
         for (int n = 0; n < 10; ++n) (void)servo.tick(two);
         EXPECT_EQ(allocationsOfThisThread(), before) << name(law);

@@ -163,7 +163,8 @@ std::vector<TickRecord> recordsOf(const RenderOptions& o, Stage& stage, int fram
     if (source.isHeldByPerson())
         throw Error("--hand " + hand.hand + ": a person holds it; --frames needs a scripted hand");
     Deformation             deformation(stage.loaded.object, stage.scene);
-    const SessionParts      parts{stage.scene, stage.loaded.object, deformation.solver(), *source.device, source.frame};
+    const SessionParts      parts{stage.scene,    stage.loaded.object, deformation.solver(),
+                             *source.device, source.frame,        deformation.firstLaw()};
     std::vector<TickRecord> all;
     static_cast<void>(runVirtual(parts, source.seconds, [&](const TickRecord& s) { all.push_back(s); }));
     if (all.empty()) throw Error("--seconds: expected a hand of at least a millisecond");

@@ -83,7 +83,7 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
     if (s.beyondTable > 0)
         say("the contact left the table's reach in " + std::to_string(s.beyondTable) +
             " ticks: raise table_size or deformation_rate for fast hands");
-    if (10 * s.staleTicks > s.contactTicks) // the first ticks of every touch have an old patch
+    if (10 * s.staleTicks > s.contactTicks) // one late patch is no slow machine
         say(std::to_string(s.staleTicks) + " ticks had a patch older than three of its periods: lower cells, "
                                            "deformation_rate or table_size");
     if (s.failedPatches > 0 && !solvedNone)

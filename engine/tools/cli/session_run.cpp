@@ -165,9 +165,10 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     const std::atomic<bool>& stop = catchInterrupts();
     waitForHoming(*hand.device, stop);
 
-    const SessionParts parts{scene, loaded.object, o.blind ? deformation.solver() : telling(deformation.solver()),
-                             *hand.device, hand.frame};
-    const auto         recording = recordingOf(o, parts, clock, run.solver);
+    const SessionParts parts{
+        scene,        loaded.object, o.blind ? deformation.solver() : telling(deformation.solver()),
+        *hand.device, hand.frame,    deformation.firstLaw()};
+    const auto recording = recordingOf(o, parts, clock, run.solver);
     if (!o.blind) warn(run.warnings);
     const OnTick each = [&](const TickRecord& record) {
         if (recording) recording->pushWaiting(record);

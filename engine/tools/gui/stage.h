@@ -47,6 +47,9 @@ public:
         takePaint();
     }
 
+    /// Returns what answers until the first table. It must not outlive this.
+    [[nodiscard]] const HomogeneousLaw* firstLaw() const noexcept { return deformation_->firstLaw(); }
+
     /// Returns the solver for the deformation's thread, with the newest paint. It must not outlive this.
     [[nodiscard]] PatchSolver solver();
 

@@ -45,7 +45,7 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
     hand_  = hand;
     state_ = State::ready;
     recorder_.begin([this] { return settings_.recorded(*stage_, *hand_.device); });
-    const SessionParts  parts{stage_->scene(), stage_->object(), solver(), *hand.device, hand.frame};
+    const SessionParts parts{stage_->scene(), stage_->object(), solver(), *hand.device, hand.frame, stage_->firstLaw()};
     RealSessionSettings real;
     real.seconds    = hand.seconds;
     real.viewPeriod = 1e-4; // the next picture begins as soon as one is done

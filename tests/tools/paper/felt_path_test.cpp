@@ -56,6 +56,25 @@ TEST(FeltPath, TheFloorOfCurvedObjectsIsBelowHalfAStep)
     }
 }
 
+/// Where the stroke turns friction holds the proxy, and then lets it go: that must not be felt as another stiffness.
+TEST(FeltPath, AStrokeHasNoSpikesWhereItTurns)
+{
+    for (const char* const object : {R"("sample:ellipsoid", "place": [0, 0, 0.035], "from": [0, 0, 1], "stiffness":
+            {"law": "linear", "from": 0.15e6, "to": 1.5e6, "axis": "x"})",
+                                     R"("sample:palm", "place": [0, 0, 0], "from": [0, 0, 1])"}) {
+        Felt felt(parseScene(R"({"thickness": "4 mm", "poisson": 0.45, "foundation": "1.74 MPa/m", "points": 8000,
+            "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "solver": "host", "cloud": )" +
+                                 std::string(object) + "}",
+                             "a test", "."));
+        const auto stroke = strokeAlong(felt.object, felt.scene, felt.line(20e-3));
+        double     most   = 0; // [1] change of the felt stiffness in a millisecond
+        for (std::size_t n = 1; n < stroke.size(); ++n)
+            most = std::max(most, std::abs(std::log(stroke[n].stiffness / stroke[n - 1].stiffness)));
+        std::printf("  %s: %.2f %% in a millisecond\n", object, most * 100);
+        EXPECT_LT(most, 0.01) << object << ": 50 mm/s over a slope of 10 % per mm are 0.5 %; the spikes had 10 %";
+    }
+}
+
 TEST(FeltPath, FollowsItsDirectionAndTheSurface)
 {
     Felt             felt(parseScene(R"({"cloud": "sample:ellipsoid", "points": 8000, "cells": 16})", "a test", "."));

@@ -1,0 +1,86 @@
+#include "engine/pipeline/homogeneous_sites.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include <glm/geometric.hpp>
+
+#include "engine/core/parallel.h"
+
+namespace palp {
+namespace {
+
+/// A piece of the surface.
+struct Piece {
+    glm::dvec3 point{};        ///< [m] mean of its points, by area
+    double     area       = 0; ///< [m^2]
+    double     lnRigidity = 0; ///< mean of ln D, by area
+};
+
+std::vector<Piece> piecesOf(const SoftObject& object, double cell)
+{
+    const bool uneven = !object.survey().spacings().empty(); // else there is no surface, and nothing to touch
+    std::map<std::tuple<long, long, long>, Piece> cubes;
+    for (std::size_t n = 0; n < object.size(); ++n) {
+        const glm::dvec3 p    = object.positions()[n];
+        const auto       at   = [&](double x) { return long(std::floor(x / cell)); };
+        const double     area = uneven ? object.survey().spacing(n) * object.survey().spacing(n) : 1;
+        Piece&           cube = cubes[{at(p.x), at(p.y), at(p.z)}];
+        cube.point += area * p;
+        cube.area += area;
+        cube.lnRigidity += area * std::log(object.rigidity(n));
+    }
+    std::vector<Piece> pieces;
+    for (auto& [key, cube] : cubes) {
+        cube.point /= cube.area;
+        cube.lnRigidity /= cube.area;
+        pieces.push_back(cube);
+    }
+    return pieces;
+}
+
+/// Returns the mean of ln D about a place, weighted by a Gaussian.
+double lnRigidityAbout(const glm::dvec3& place, double deviation, const std::vector<Piece>& pieces,
+                       const std::vector<std::uint32_t>& near)
+{
+    double sum = 0, weights = 0;
+    for (const std::uint32_t n : near) {
+        const glm::dvec3 away   = pieces[n].point - place;
+        const double     weight = pieces[n].area * std::exp(-glm::dot(away, away) / (2 * deviation * deviation));
+        sum += weight * pieces[n].lnRigidity;
+        weights += weight;
+    }
+    return sum / weights;
+}
+
+} // namespace
+
+HomogeneousLaw homogeneousLaw(const SoftObject& object, const FootprintLattice& lattice)
+{
+    constexpr double      kReach  = 3;   // [deviations]
+    constexpr std::size_t kFewest = 500; // pieces that are worth a thread
+    const double          radius = lattice.shape.radius, cell = std::max(radius / 2, object.spacing());
+    // A mean square radius is twice a Gaussian's variance; that of a footprint, (1 - r^2/R^2)^2, is R^2 / 4.
+    const double under = radius / std::sqrt(8.0), felt = std::max(under, lattice.feltRadius / std::sqrt(2.0));
+
+    const std::vector<Piece> pieces = piecesOf(object, cell);
+    std::vector<glm::dvec3>  points;
+    for (const Piece& piece : pieces) points.push_back(piece.point);
+    const NeighbourIndex              index(points);
+    std::vector<HomogeneousLaw::Site> sites(points.size());
+    inParallel(points.size(), kFewest, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t> near;
+        for (std::size_t n = begin; n < end; ++n) {
+            index.gather(points[n], kReach * felt, near);
+            const double bends = lnRigidityAbout(points[n], felt, pieces, near),
+                         lies  = lnRigidityAbout(points[n], under, pieces, near);
+            sites[n]           = {points[n], lattice.lnCompliance(std::exp(bends)),
+                                  std::log(lattice.shape.contactPerRigidity) + lies};
+        }
+    });
+    return {std::move(sites), cell};
+}
+
+} // namespace palp

@@ -1,0 +1,19 @@
+#pragma once
+#include "engine/cloud/soft_object.h"
+#include "engine/force/homogeneous_law.h"
+#include "engine/pipeline/compliance_table_solve.h"
+
+namespace palp {
+
+/// Makes the law that answers until the first table: for each piece of the surface, half a footprint's radius wide, or
+/// a spacing where points are sparse, the compliance of a homogeneous window, from the lattice's ladder of rigidities,
+/// and the contact's stiffness.
+///
+/// To first order c changes with ln D by the bending energy that a place holds, which a load leaves within some
+/// footprints: D is the geometric mean over that reach, FootprintLattice::feltRadius, by area. Over and beside a wart of
+/// ten times the rigidity, 3 mm wide, that is right to 15 %. Points of the other face of a thin body count as well.
+/// \thread any; uses all cores, some tenths of a second of one for a million points
+/// \param lattice  of the same object and settings
+[[nodiscard]] HomogeneousLaw homogeneousLaw(const SoftObject& object, const FootprintLattice& lattice);
+
+} // namespace palp
