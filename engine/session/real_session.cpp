@@ -67,7 +67,7 @@ class RealSession {
 public:
     RealSession(const SessionParts& parts, const RealSessionSettings& settings)
         : parts_(parts), settings_(settings), contact_(parts.object, parts.scene),
-          force_(parts.scene, parts.device.info(), settings.threads)
+          force_(parts.scene, parts.device.info())
     {
     }
 
@@ -99,25 +99,24 @@ private:
 /// Runs the servo.
 void RealSession::servoThread()
 {
-    constexpr double kMean = 0.1; // [s] over which the measured period is averaged
-    warning_               = askForRealTime();
-    Metronome     metronome{std::chrono::microseconds(1000)};
-    GovernedForce force;
-    const auto    start = metronome.wait(); // asking may take a quarter of a second
-    double        last = 0, period = kTick;
+    constexpr double kShare = 0.01; // of the newest tick in the mean that is shown [1]
+    warning_                = askForRealTime();
+    Metronome  metronome{std::chrono::microseconds(1000)};
+    const auto start = metronome.wait(); // asking may take a quarter of a second
+    double     last = 0, period = kTick;
     for (;;) {
         const auto   now  = metronome.wait();
         const double time = Seconds(now - start).count(), dt = time - last;
         if (time >= settings_.seconds || shared_.over || (settings_.stop && *settings_.stop)) break;
         last = lastTick_ = time;
-        period += (dt - period) * std::min(1.0, dt / kMean);
+        period += (dt - period) * kShare;
         summary_.period.add(dt);
         const double      began  = threadSeconds();
-        const HapticState state  = parts_.device.exchange(force, time);
-        TickRecord        record = tick({time, dt, period}, state);
-        force                    = parts_.frame.toDevice(force_.governor().force());
-        record.tickTime          = threadSeconds() - began;
-        shared_.shown.draft()    = {record, period, state.buttons};
+        const HapticState state  = parts_.device.read(time);
+        TickRecord        record = tick({time, dt}, state);
+        parts_.device.render(parts_.frame.toDevice(force_.governor().force())); // leaves in this tick
+        record.tickTime       = threadSeconds() - began;
+        shared_.shown.draft() = {record, period, state.buttons};
         shared_.shown.publish();
         summary_.add(record);
         if (settings_.onTick) settings_.onTick(record);

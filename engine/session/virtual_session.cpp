@@ -41,7 +41,6 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
 {
     Servo                      servo(parts.object, parts.scene, parts.device.info());
     SessionSummary             summary;
-    GovernedForce              force;
     std::optional<PatchUpdate> inUse, underWay;
     ZeroAtLast                 zero(parts.device);
 
@@ -63,10 +62,10 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
             }
         }
         const double began  = threadSeconds();
-        const Hand   hand   = parts.frame.handOf(parts.device.exchange(force, time));
-        TickRecord   record = servo.tick({time, kTick, kTick}, hand, inUse ? &*inUse : nullptr);
-        force               = parts.frame.toDevice(servo.governor().force());
-        record.tickTime     = threadSeconds() - began;
+        const Hand   hand   = parts.frame.handOf(parts.device.read(time));
+        TickRecord   record = servo.tick({time, kTick}, hand, inUse ? &*inUse : nullptr);
+        parts.device.render(parts.frame.toDevice(servo.governor().force()));
+        record.tickTime = threadSeconds() - began;
         summary.add(record);
         if (onTick) onTick(record);
     }

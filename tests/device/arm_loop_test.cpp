@@ -55,9 +55,8 @@ struct Loop {
          const EnergyTankSettings& tankSettings = {})
         : arm(settings, start), tank(tankSettings), law(stiffness)
     {
-        in.homed      = true;
-        in.dt         = kDt;
-        in.loopPeriod = kDt;
+        in.homed = true;
+        in.dt    = kDt;
     }
 
     void tick() { touch(arm.state(), law(arm.state().position), arm.state().velocity); }

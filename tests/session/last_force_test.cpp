@@ -19,15 +19,14 @@ class Listening : public ScriptedHand {
 public:
     using ScriptedHand::ScriptedHand;
 
-    HapticState exchange(const GovernedForce& force, double now) noexcept override
+    void render(const GovernedForce& force) noexcept override
     {
         last = glm::length(force.newtons());
         if (last > 0) ++pushed;
-        return ScriptedHand::exchange(force, now);
     }
 
     double last   = 0; ///< [N]
-    int    pushed = 0; ///< exchanges with a force
+    int    pushed = 0; ///< ticks with a force
 };
 
 constexpr double kPushes = 0.2; // [N] well below what the sheet answers in the end
