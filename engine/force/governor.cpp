@@ -61,6 +61,9 @@ constexpr double kNominalLag = 1.5; ///< [1] periods: one from a position to its
 /// of sampling; with less the cap is farther from what the arm bears, with more an arm worse than its figure swings.
 constexpr double kUsable = 0.8;
 
+/// [kg] of an arm whose mass is unknown: among haptic arms only pens are lighter.
+constexpr double kLeastMass = 0.1;
+
 /// [s] age of a velocity that drivers take over 15 ms.
 constexpr double kVelocityAge = 7.5e-3;
 
@@ -278,7 +281,8 @@ glm::dvec3 ForceGovernor::passiveForce(glm::dvec3 force, const GovernorInput& in
     const bool   flows = engagement_ == Engagement::engaging || engagement_ == Engagement::engaged;
     if (!flows || energy_ >= 0 || !(speed > settings_.passivitySpeed)) return force;
     // A damper turns unstable where its own lag times it is more than the mass; half of that.
-    const double most = settings_.mass > 0 ? settings_.mass / (2 * (lag_ + kVelocityAge)) : settings_.passivityDamping;
+    const double mass = settings_.mass > 0 ? settings_.mass : kLeastMass;
+    const double most = mass / (2 * (lag_ + kVelocityAge));
     out.damping       = std::min({-energy_ / (speed * speed * dt), settings_.passivityDamping, most});
     // A force along the motion gives energy: it is reduced, but never turned round, or the surface would be sticky.
     const double along = glm::dot(force, in.velocity);
