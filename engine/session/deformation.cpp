@@ -40,9 +40,9 @@ void Deformation::repaint(const SoftObject& object)
     object_ = &object;
 }
 
-DeformationAnswer Deformation::solve(const Touch& touch, double period)
+DeformationAnswer Deformation::solve(const Touch& touch, double lead)
 {
-    const glm::dvec3  ahead = aheadOf(law_, touch.point, touch.velocity, period);
+    const glm::dvec3  ahead = aheadOf(law_, touch.point, touch.velocity, lead);
     DeformationAnswer there = solveAt(ahead, touch);
     if (there.update || ahead == touch.point) return there;
     DeformationAnswer here = solveAt(touch.point, touch);

@@ -12,6 +12,7 @@
 #include "engine/core/latest.h"
 #include "engine/core/real_time.h"
 #include "engine/core/thread_time.h"
+#include "engine/session/detail/solve_pace.h"
 
 namespace palp {
 namespace {
@@ -79,7 +80,7 @@ private:
     const ProxyContact&             held(double time, const Hand& hand) noexcept;
     void                            proxyThread();
     void                            deformationThread();
-    [[nodiscard]] DeformationAnswer solved(const Touch& touch, double period);
+    [[nodiscard]] DeformationAnswer solved(const Touch& touch, double lead);
     void                            watch();
     void                            publish(const ProxyContact& held) noexcept;
 
@@ -171,33 +172,12 @@ void RealSession::publish(const ProxyContact& held) noexcept
     shared_.touch.publish();
 }
 
-/// The time from one solve to the next, smoothed: how far ahead a window must be.
-class SolvePeriod {
-public:
-    explicit SolvePeriod(double nominal) : nominal_(nominal), mean_(nominal) {}
-
-    /// Notes that a solve begins.
-    /// \return [s] the smoothed time from one solve to the next
-    double begins(Clock::time_point now)
-    {
-        constexpr double kLongest = 0.5, kShare = 0.2; // [s] beyond it the hand was away; of the newest [1]
-        const double     dt = Seconds(now - last_).count();
-        last_               = now;
-        if (dt < kLongest) mean_ += kShare * (std::max(dt, nominal_) - mean_);
-        return mean_;
-    }
-
-private:
-    double            nominal_, mean_; ///< [s]
-    Clock::time_point last_{};
-};
-
 /// Runs the deformation: solves for the newest touch, once a period.
 void RealSession::deformationThread()
 {
     const double  nominal = 1 / parts_.scene.deformationRate;
     Metronome     metronome(std::chrono::duration_cast<std::chrono::nanoseconds>(Seconds(nominal)));
-    SolvePeriod   period(nominal);
+    SolvePace     pace(nominal);
     std::uint64_t done = 0;
     while (!shared_.over) {
         metronome.wait();
@@ -206,8 +186,9 @@ void RealSession::deformationThread()
         if (!touch || !touch->touching || touch->sequence == done) continue;
         done                     = touch->sequence;
         const auto        began  = Clock::now();
-        DeformationAnswer answer = solved(*touch, period.begins(began));
+        DeformationAnswer answer = solved(*touch, pace.begins(Seconds(began.time_since_epoch()).count()));
         const double      took   = Seconds(Clock::now() - began).count();
+        pace.ended(took);
         slow_.solve.add(took);
         slow_.addPatch(answer.update.has_value(), answer.why);
         if (!answer.update) continue;
@@ -219,10 +200,10 @@ void RealSession::deformationThread()
 }
 
 /// Solves one patch. If anything fails there is no patch for this touch, and the session goes on with the one before.
-DeformationAnswer RealSession::solved(const Touch& touch, double period)
+DeformationAnswer RealSession::solved(const Touch& touch, double lead)
 {
     try {
-        return parts_.solver(touch, period);
+        return parts_.solver(touch, lead);
     } catch (const std::exception& error) {
         return {{}, {}, error.what()};
     }

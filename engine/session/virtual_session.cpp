@@ -14,6 +14,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kTick = 1e-3; ///< [s]
+constexpr double kLead = 1.5;  ///< [1] periods: a table is in use from one period after its touch to two
 
 double secondsSince(Clock::time_point start)
 {
@@ -55,7 +56,7 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
             underWay.reset();
             if (servo.touch().touching) {
                 const auto        began  = Clock::now();
-                DeformationAnswer answer = parts.solver(servo.touch(), double(every) * kTick);
+                DeformationAnswer answer = parts.solver(servo.touch(), kLead * double(every) * kTick);
                 summary.solve.add(secondsSince(began));
                 underWay = std::move(answer.update);
                 summary.addPatch(underWay.has_value(), answer.why);

@@ -87,9 +87,9 @@ TEST_F(LastForce, IsZeroWhenAVirtualSessionIsStopped)
 TEST_F(LastForce, IsZeroWhenTheSolverOfAVirtualSessionThrows)
 {
     const PatchSolver solves = solver_;
-    solver_                  = [&](const Touch& touch, double period) {
+    solver_                  = [&](const Touch& touch, double lead) {
         if (device_.pushed > 100) throw std::runtime_error("lost");
-        return solves(touch, period);
+        return solves(touch, lead);
     };
     EXPECT_THROW(runVirtual(parts(), 1000, {}), std::runtime_error);
     expectZeroAfterAForce();
