@@ -10,7 +10,7 @@
 namespace palp {
 namespace {
 
-constexpr std::array kOptions{kFalconFirmware, kFalconCounts, kFalconEventCharacter, kFalconCold};
+constexpr std::array kOptions{kFalconFirmware, kFalconCounts, kFalconTimerOnly, kFalconCold};
 
 constexpr std::size_t kStandInFirmware = 8000; ///< [byte] of zeros, which the emulator takes as well as any
 

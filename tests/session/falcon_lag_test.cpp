@@ -67,6 +67,7 @@ struct Reading {
     HapticState state{};
     double      time   = 0; // [s] of the servo
     double      period = 0; // [s] of the exchanges
+    double      dt     = 0; // [s] since the last tick
 
     [[nodiscard]] GovernorInput input() const
     {
@@ -75,7 +76,7 @@ struct Reading {
         in.velocity       = state.velocity;
         in.homed          = state.homed && state.fault == DeviceFault::none;
         in.inBox          = state.inBox;
-        in.dt             = kTick;
+        in.dt             = dt;
         in.answerAge      = state.age;
         in.sinceAnswer    = time - state.time;
         in.exchangePeriod = period;
@@ -94,6 +95,7 @@ struct Rig {
     HapticState                 newest{}; // as the driver's thread has published it
     AnswerPeriod                answers;
     double                      next  = 0; // [s] of the next tick
+    double                      last  = 0; // [s] of the last one
     double                      begun = 0; // [s]
     glm::dvec3                  handed{}, kept{};
     unsigned                    exchanges = 0;
@@ -105,8 +107,8 @@ struct Rig {
           })
     {
         FalconStartSettings how;
-        how.eventCharacter    = line.eventful;
-        StartedFalcon started = startFalcon([this] { return emulator.connect(); }, {}, how);
+        how.triesEventCharacter = line.eventful;
+        StartedFalcon started   = startFalcon([this] { return emulator.connect(); }, {}, how);
         started.link->control(FtdiRequest::latencyTimer, std::uint16_t(line.timer));
         FalconLoopSettings patient;
         patient.answerTimeout = 20e-3; // the timer of 4 ms keeps an answer for longer than a driver waits for it
@@ -114,6 +116,7 @@ struct Rig {
         newest.fault          = DeviceFault::startingUp;
         begun                 = emulator.now();
         next                  = begun + phase;
+        last                  = next - kTick;
     }
 
     static Ft232EmulatorSettings settings(const Line& line)
@@ -126,15 +129,19 @@ struct Rig {
 
     [[nodiscard]] double time() const { return emulator.now() - begun; } // [s]
 
+    /// The servo does nothing for so long [s].
+    void delay(double late) { next = last + late; }
+
     void run(double seconds, const Tick& tick)
     {
         for (const double until = time() + seconds; time() < until;) {
             const HapticState state = loop->exchange({.force = handed});
             ++exchanges;
-            for (; next <= emulator.now(); next += kTick) { // those during this exchange know the answer before
+            for (; next <= emulator.now();
+                 last = next, next += kTick) { // those during this exchange know the answer before
                 if (newest.fault == DeviceFault::startingUp) continue;
                 const double     period = answers.add(newest.sequence, newest.time);
-                const glm::dvec3 force  = tick({newest, next, period});
+                const glm::dvec3 force  = tick({newest, next, period, next - last});
                 handed                  = line.isHandedAtOnce ? force : kept;
                 kept                    = force;
             }
@@ -203,7 +210,7 @@ struct Wall {
         const auto    paid  = tank.step({.stiffness    = std::min(stiffness, governor.stiffnessCap()),
                                          .depth        = std::abs(depth),
                                          .normalSpeed  = in.velocity.y,
-                                         .dt           = kTick,
+                                         .dt           = now.dt,
                                          .spareDamping = governor.spareDamping()});
         in.force            = {0, paid.stiffness * depth, 0};
         in.stiffness        = paid.stiffness;
@@ -324,6 +331,47 @@ TEST(FalconLag, APressedWallIsAtRestHalfASecondLaterOnEveryLine)
                 EXPECT_LT(wall.swing, 0.2e-3) << line.name();
                 EXPECT_EQ(wall.fault, GovernorFault::none) << line.name();
             }
+}
+
+TEST(FalconLag, OneLateTickIsFeltForLessThanTwentyMillisecondsAndTheCapStays)
+{
+    for (double late : {5e-3, 10e-3, 20e-3, 50e-3}) {
+        Rig           rig({}, bareArm(), {});
+        SimulatedHand hand{.stiffness = 500, .damping = 5};
+        Wall          wall{ForceGovernor(governorOf(bareArm(), 1000))};
+        wall.stiffness = 866;
+        rig.arm.holdBy(hand);
+        const Tick tick = [&](const Reading& now) { return wall.tick(now); };
+        rig.run(2, tick);
+        hand.targetVelocity = {0, -10e-3, 0}; // to 5 mm, of which 1.8 are depth
+        for (const double until = rig.time() + 0.5; rig.time() < until; hand.target.y -= 10e-6) {
+            rig.arm.holdBy(hand);
+            rig.run(1e-3, tick);
+        }
+        hand.targetVelocity = {};
+        rig.arm.holdBy(hand);
+        rig.run(1, tick);
+        const double before = wall.out.force.y, cap = wall.governor.stiffnessCap();
+        ASSERT_GT(before, 1);
+
+        rig.delay(late);
+        double     least = before, back = 0, lowestCap = cap, from = rig.time();
+        const auto watch = [&](const Reading& now) {
+            const auto force = wall.tick(now);
+            least            = std::min(least, force.y);
+            lowestCap        = std::min(lowestCap, wall.governor.stiffnessCap());
+            if (std::abs(force.y - before) > 0.05 * before) back = now.time - rig.begun - from - late;
+            return force;
+        };
+        rig.run(0.4, watch);
+
+        std::printf("  a tick %2.0f ms late: %.2f N becomes %.2f, is back after %.1f ms; cap %.0f N/m\n", late * 1e3,
+                    before, least, std::max(0.0, back) * 1e3, lowestCap);
+        EXPECT_LT(least, 0.9 * before) << "the late tick's force is scaled";
+        EXPECT_LT(back, 20e-3) << late;
+        EXPECT_GT(lowestCap, 0.99 * cap) << late;
+        EXPECT_EQ(wall.governor.fault(), GovernorFault::none);
+    }
 }
 
 /// Figures of an arm that are not its own: the cap stays at the most that the device states, and the false damping is
