@@ -4,11 +4,10 @@
 
 namespace palp {
 
-/// A SimulatedArm, and the hand that holds it, as a device: exchange() moves both on to `now` by the caller's clock,
-/// virtual or real. Its frame is the arm's. The force of an exchange acts from then on, after the delay of the
-/// settings: the arm's delay of n ticks is n - 1 beyond that, so it must be at least 1.
+/// A SimulatedArm, and the hand that holds it, as a device: read() moves both on to `now` by the caller's clock,
+/// virtual or real. Its frame is the arm's. A force acts from render() on, after the delay of the settings.
 ///
-/// If exchange() is not called, the force acts for 100 ms, then none; time beyond one second is omitted.
+/// If read() is not called, the force acts for 100 ms, then none; time beyond one second is omitted.
 class ArmDevice : public HapticDevice {
 public:
     /// \param start  [m] where the arm rests when it is opened
@@ -19,10 +18,11 @@ public:
 
     void        open() override;
     void        close() noexcept override;
-    HapticState exchange(const GovernedForce& force, double now) noexcept override;
+    HapticState read(double now) noexcept override;
+    void        render(const GovernedForce& force) noexcept override { wanted_ = force.newtons(); }
 
     /// Sets the hand from now on, see SimulatedArm::holdBy().
-    /// \thread that of exchange(), or any while none runs
+    /// \thread that of read(), or any while none runs
     void holdBy(const SimulatedHand& hand) noexcept;
 
     /// Returns the true position of the arm.
@@ -36,8 +36,9 @@ private:
     SimulatedHand        hand_;
     HapticDeviceInfo     info_;
     HapticState          state_;
+    glm::dvec3           wanted_{};       ///< [N] of the last render()
     bool                 ticked_ = false; ///< since open()
-    double               last_   = 0;     ///< [s] of the last exchange
+    double               last_   = 0;     ///< [s] of the last read()
 };
 
 } // namespace palp

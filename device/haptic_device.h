@@ -20,6 +20,8 @@ struct HapticDeviceInfo {
     double maximumForce     = 0; ///< [N] that it holds in every direction in that sphere; 0: input only
     double maximumStiffness = 0; ///< [N/m] of a wall that it renders stably at 1 kHz
     double maximumDamping   = 0; ///< [N s/m]
+    double mass             = 0; ///< [kg] of the arm as the grip feels it; 0: unknown
+    double ownDamping       = 0; ///< [N s/m] of the arm without its motors; 0: unknown, and nothing is credited
 
     unsigned buttons      = 0;     ///< number of buttons
     bool     needsHoming  = false; ///< its position is unknown until the user has moved it to its stops
@@ -39,7 +41,7 @@ enum class DeviceFault : std::uint8_t {
     ownWatchdog = 6, ///< the device reports that it stopped by itself
     badForce    = 7, ///< the requested force was not finite; it rendered none
     startingUp  = 8, ///< it is being opened: upload, first exchange
-    hostTooSlow = 9  ///< exchange() was not called for 100 ms; the force was already zero
+    hostTooSlow = 9  ///< render() was not called for 100 ms; the force was already zero
 };
 constexpr auto namesOf(DeviceFault)
 {
@@ -59,8 +61,9 @@ constexpr auto namesOf(DeviceFault)
 /// The device as of its last good answer, in its own frame: x right, y up, z towards the user, the origin in the middle
 /// of its workspace.
 struct HapticState {
-    double        time     = 0; ///< [s] of that answer, by the clock given to exchange()
-    std::uint64_t sequence = 0; ///< answers so far; unchanged if there was none since the last exchange
+    double        time     = 0; ///< [s] when that answer came, by the clock given to read()
+    double        age      = 0; ///< [s] of its position at that time
+    std::uint64_t sequence = 0; ///< answers so far; unchanged if there was none since the last read()
     glm::dvec3    position{};   ///< [m]
     glm::dvec3    velocity{};   ///< [m/s] filtered
     glm::dquat    orientation{1, 0, 0, 0};
@@ -78,9 +81,9 @@ enum class DeviceLight : std::uint8_t { none = 0, red = 1, green = 2, blue = 4 }
 
 /// One haptic device, real or simulated: the interface that a driver implements, and all that the engine knows of it.
 ///
-/// Call open(), then exchange() every millisecond, then close(). A fault while open is reported in the state, never as
-/// an exception.
-/// \thread open, close and destruction on any one thread while no exchange runs; exchange() on the servo's
+/// Call open(), then every millisecond read(), compute the force, render(), and at last close(). A fault while open is
+/// reported in the state, never as an exception.
+/// \thread open, close and destruction on any one thread while neither read() nor render() runs; these on the servo's
 class HapticDevice {
 public:
     HapticDevice()                               = default;
@@ -90,25 +93,36 @@ public:
 
     [[nodiscard]] virtual const HapticDeviceInfo& info() const noexcept = 0;
 
-    /// Makes it ready for exchange(), which may take seconds (a firmware upload). Does nothing if it is open.
+    /// Makes it ready for read() and render(), which may take seconds (a firmware upload). Does nothing if it is open.
     /// \throws Error saying in one sentence what is missing and what helps
     virtual void open() = 0;
 
     /// Sends zero force, then releases the device. Does nothing if it is closed.
     virtual void close() noexcept = 0;
 
-    /// Does one tick: renders `force` from now on, and returns the state of the hand. It takes well below a
-    /// millisecond, waits for no thread and allocates nothing. If it is not called, a driver with a thread holds the
-    /// force for 5 ms and lets it fall to zero in 20 ms more; any other device does so by its own watchdog. After 100
-    /// ms the next state reports it.
+    /// Returns the state of the hand. Like render() it takes well below a millisecond, waits for no thread and allocates
+    /// nothing.
+    /// \param now  [s] of the servo's clock; simulated devices move on to it
+    virtual HapticState read(double now) noexcept = 0;
+
+    /// Renders `force` from now on: a driver with a thread hands it over at once, to leave with the next packet; a
+    /// device without one takes it into the next read(). If it is not called, a driver with a thread holds the force
+    /// for 5 ms and lets it fall to zero in 20 ms more; any other device does so by its own watchdog. After 100 ms the
+    /// next state reports it.
     /// \param force  [N] in the device's frame
-    /// \param now    [s] of the servo's clock; simulated devices move on to it
-    virtual HapticState exchange(const GovernedForce& force, double now) noexcept = 0;
+    virtual void render(const GovernedForce& force) noexcept = 0;
+
+    /// Renders a force that is known before the state is: the two calls in one, for a caller that is no servo.
+    HapticState exchange(const GovernedForce& force, double now) noexcept
+    {
+        render(force);
+        return read(now);
+    }
 
     /// Asks the user, by lights or words, to home a device that needs it. No force flows until HapticState::homed.
     virtual void home() noexcept {}
 
-    /// Sets the lights from the next exchange on, a sum of DeviceLight.
+    /// Sets the lights from the next render() on, a sum of DeviceLight.
     virtual void light(std::uint8_t /*lights*/) noexcept {}
 };
 

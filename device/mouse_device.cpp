@@ -45,6 +45,7 @@ void MouseDevice::open()
 {
     if (state_.fault == DeviceFault::none) return;
     state_          = {};
+    badForce_       = false;
     state_.position = settings_.rest;
     state_.homed = state_.inBox = true;
     state_.fault                = DeviceFault::none;
@@ -56,10 +57,15 @@ void MouseDevice::close() noexcept
     state_.fault    = DeviceFault::closed;
 }
 
-HapticState MouseDevice::exchange(const GovernedForce& force, double now) noexcept
+void MouseDevice::render(const GovernedForce& force) noexcept
+{
+    badForce_ = !isFinite(force.newtons());
+}
+
+HapticState MouseDevice::read(double now) noexcept
 {
     if (state_.fault == DeviceFault::closed) return state_;
-    state_.fault = isFinite(force.newtons()) ? DeviceFault::none : DeviceFault::badForce;
+    state_.fault = badForce_ ? DeviceFault::badForce : DeviceFault::none;
     target_.take();
     const Target& target = *target_.held(); // the constructor has set one
 

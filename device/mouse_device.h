@@ -31,7 +31,8 @@ public:
 
     void        open() override;
     void        close() noexcept override;
-    HapticState exchange(const GovernedForce& force, double now) noexcept override;
+    HapticState read(double now) noexcept override;
+    void        render(const GovernedForce& force) noexcept override;
 
     /// Sets, for the window, where the point is pulled from now on and which buttons are down. Wait-free.
     /// \param point  [m] in the device's frame, limited to the reach; one that is not finite is omitted
@@ -49,6 +50,7 @@ private:
     MouseDeviceSettings settings_;
     HapticDeviceInfo    info_;
     HapticState         state_;
+    bool                badForce_ = false; ///< of the last render()
     Latest<Target>      target_;
 };
 

@@ -30,6 +30,8 @@ FalconDevice::FalconDevice(FalconLinkOpener open, const FalconDeviceSettings& se
     info_.maximumForce     = 8;    // CHAI3D's table; 4095 counts at 4200 hold 11.4 N at the worst place of the sphere
     info_.maximumStiffness = 1000; // half of where the released arm starts to swing, at 1 kHz and a tick of delay
     info_.maximumDamping   = 1.5;  // so that 1000 N/m (T/2 + delay) and it stay below the arm's own 3.2
+    info_.mass             = 0.46; // one published measurement, as is the next
+    info_.ownDamping       = 3.2;  // with the loss of sampling added back
     info_.buttons          = 4;
     info_.needsHoming      = true;
 }
@@ -52,14 +54,19 @@ void FalconDevice::close() noexcept
     line_.reset(); // its FalconLoop ends with zero force
 }
 
-HapticState FalconDevice::exchange(const GovernedForce& force, double now) noexcept
+void FalconDevice::render(const GovernedForce& force) noexcept
+{
+    if (!line_) return;
+    line_->asked = {.force = force.newtons(), .lights = lights_};
+    if (settings_.pace == FalconPace::stepped) return;
+    line_->requests.draft() = {line_->asked, Clock::now()};
+    line_->requests.publish();
+}
+
+HapticState FalconDevice::read(double now) noexcept
 {
     if (!line_) return {};
-    const FalconRequest request{.force = force.newtons(), .lights = lights_};
-    if (settings_.pace == FalconPace::stepped) return step(request, now);
-    line_->requests.draft() = {request, Clock::now()};
-    line_->requests.publish();
-    return newest(now);
+    return settings_.pace == FalconPace::stepped ? step(line_->asked, now) : newest(now);
 }
 
 /// Runs the I/O thread: sends the newest force, and less of it the longer the servo does not call.
@@ -100,7 +107,8 @@ HapticState FalconDevice::newest(double now) noexcept
     return state;
 }
 
-/// Follows the servo's clock, which may start anew, then makes the round trip.
+/// Follows the servo's clock, which may start anew, then makes the round trip. For the servo no time passes meanwhile:
+/// its position is as old as its packet.
 HapticState FalconDevice::step(FalconRequest request, double now) noexcept
 {
     FalconLoop&  loop   = *line_->loop;
@@ -114,7 +122,8 @@ HapticState FalconDevice::step(FalconRequest request, double now) noexcept
     line_->isFirst    = false;
     line_->last       = now;
     HapticState state = loop.exchange(request);
-    state.time += line_->offset;
+    state.time += line_->offset - state.age;
+    state.age = 0;
     return state;
 }
 

@@ -17,8 +17,8 @@ namespace palp {
 
 /// The thread that carries the packets.
 enum class FalconPace : std::uint8_t {
-    thread, ///< a thread of its own, as fast as the line: for real time. exchange() does not wait
-    stepped ///< the caller of exchange(), which takes a round trip: for virtual time and programs of one thread
+    thread, ///< a thread of its own, as fast as the line: for real time; nobody waits for it
+    stepped ///< the caller of read(), which takes a round trip: for virtual time and programs of one thread
 };
 
 struct FalconDeviceSettings {
@@ -31,13 +31,13 @@ struct FalconDeviceSettings {
     FalconLoopSettings        loop{};
 };
 
-/// A Novint Falcon behind any FalconLink. FalconLoop decides when forces flow. In addition, a force that exchange()
+/// A Novint Falcon behind any FalconLink. FalconLoop decides when forces flow. In addition, a force that render()
 /// does not renew is held for 5 ms and falls to zero in 20 ms more, and close() ends with packets of zero force.
 ///
 /// Forces come from the governor only. Positions are in the device's frame: the kinematics' less (0, 0, 125 mm).
 /// Buttons: bit 0 plus, 1 forward, 2 centre, 3 minus. The light is red until the device is homed: the user pulls the
-/// grip out, then pushes it in. In the pace `stepped`, if exchange() is not called, the last force acts until the
-/// Falcon's own firmware lets go.
+/// grip out, then pushes it in. In the pace `stepped` a force leaves with the packet of the next
+/// read(); if that is not called, the last force acts until the Falcon's own firmware lets go.
 /// \thread as HapticDevice; the pace `thread` hands over by Latest
 class FalconDevice final : public HapticDevice {
 public:
@@ -48,7 +48,8 @@ public:
     [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }
     void                                  open() override;
     void                                  close() noexcept override;
-    HapticState                           exchange(const GovernedForce& force, double now) noexcept override;
+    HapticState                           read(double now) noexcept override;
+    void                                  render(const GovernedForce& force) noexcept override;
     void light(std::uint8_t lights) noexcept override { lights_ = lights; } ///< if settings.loop.showsState is off
 
 private:
@@ -71,9 +72,10 @@ private:
         Latest<Answer>              answers;
         std::atomic<bool>           isOver = false;
         std::thread                 thread;
+        FalconRequest               asked{};        ///< by the last render()
         double                      offset  = 0;    ///< [s] from the link's clock to the servo's; stepped
-        double                      last    = 0;    ///< [s] of the servo's clock at the last exchange; stepped
-        bool                        isFirst = true; ///< exchange() was not called yet; stepped
+        double                      last    = 0;    ///< [s] of the servo's clock at the last read(); stepped
+        bool                        isFirst = true; ///< read() was not called yet; stepped
     };
 
     static void converse(Line& line, bool asksForRealTime) noexcept;

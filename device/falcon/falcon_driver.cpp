@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <optional>
 #include <string>
 #include <thread>
@@ -28,6 +29,8 @@ constexpr int         kAnswers     = 3;     ///< in a row before the firmware co
 constexpr int         kProbes      = 5;     ///< packets to firmware that may be running
 constexpr int         kQuestions   = 4;     ///< packets of askFalcon(): 80 ms
 constexpr int         kFirstProbes = 50;    ///< packets to starting firmware: for 1 s
+constexpr int         kTimed       = 16;    ///< packets by which two ways are compared: 8 to 50 ms each
+constexpr double      kFaster      = 0.9;   ///< [1] of the timer's time that is worth a change
 
 constexpr std::chrono::milliseconds kGlance(10); ///< between looks at `cancel` while it waits to reopen
 
@@ -35,7 +38,7 @@ constexpr const char* kAdvice = "; try without a hub, or take the Falcon off its
 
 constexpr std::uint16_t kDtrLow = 0x0100, kDtrHigh = 0x0101, kRtsLow = 0x0200, k8N1 = 0x0008;
 constexpr std::uint16_t kLoaderLatency = 16, kRunLatency = 1; ///< [ms] libnifalcon: the loader's checks fail at 1
-constexpr std::uint16_t kEventOnEnd    = 0x0100 | '>';
+constexpr std::uint16_t kEventOnEnd = 0x0100 | '>', kNoEvent = '>';
 constexpr std::uint16_t kPurgeReceived = 1, kPurgeToSend = 2;
 
 void prepare(FalconLink& link, std::uint16_t latency, FalconDivisor divisor, std::uint16_t event)
@@ -74,14 +77,14 @@ public:
         StartedFalcon started;
         started.link = open();
         end_         = started.link->now() + settings_.deadline;
-        if (firmwareRuns(started)) return started;
+        if (firmwareRuns(started)) return hurried(std::move(started));
         if (firmware_.empty() && !lost_.empty()) throw Error(lost_ + kAdvice);
         if (firmware_.empty())
             throw Error("the Falcon has no firmware: name the file that came with its software (--falcon-firmware)");
         while (started.attempts < settings_.attempts) {
             ++started.attempts;
             reason_ = attempt(started, open);
-            if (reason_.empty()) return started;
+            if (reason_.empty()) return hurried(std::move(started));
         }
         throw Error("the Falcon did not start in " + std::to_string(started.attempts) + " attempts: " + reason_ +
                     kAdvice);
@@ -144,7 +147,7 @@ private:
     bool probe(StartedFalcon& started, int packets)
     {
         FalconLink& link = *started.link;
-        prepare(link, kRunLatency, FalconDivisor::run, settings_.eventCharacter ? kEventOnEnd : std::uint16_t('>'));
+        prepare(link, kRunLatency, FalconDivisor::run, kNoEvent);
         const FalconPacket zero = encode(FalconCommand{.homing = true, .lights = std::uint8_t(DeviceLight::red)});
         FalconParser       parser;
         int                inARow = 0;
@@ -156,6 +159,35 @@ private:
             if (reply) started.reply = *reply;
         }
         return inARow == kAnswers;
+    }
+
+    /// Lets the bridge pass on answers in the faster of two ways.
+    StartedFalcon hurried(StartedFalcon started) const
+    {
+        if (!settings_.triesEventCharacter) return started;
+        FalconLink& link = *started.link;
+        try {
+            const double timer = roundTrips(link);
+            link.control(FtdiRequest::eventCharacter, kEventOnEnd);
+            started.usesEventCharacter = roundTrips(link) < kFaster * timer;
+            if (!started.usesEventCharacter) link.control(FtdiRequest::eventCharacter, kNoEvent);
+        } catch (const LinkLost& lost) {
+            throw Error(lost.what() + std::string(kAdvice));
+        }
+        return started;
+    }
+
+    /// Returns the time of some exchanges [s]; infinity if one found no answer.
+    static double roundTrips(FalconLink& link)
+    {
+        const FalconPacket zero = encode(FalconCommand{.homing = true, .lights = std::uint8_t(DeviceLight::red)});
+        FalconParser       parser;
+        const double       begin = link.now();
+        for (int n = 0; n < kTimed; ++n) {
+            link.write(zero);
+            if (!listen(link, parser)) return std::numeric_limits<double>::infinity();
+        }
+        return link.now() - begin;
     }
 
     /// Wakes the boot loader.

@@ -181,6 +181,7 @@ bool FalconLoop::accept(const FalconReply& reply) noexcept
     state_.inBox   = isGood && glm::length(state_.position) <= settings_.workspaceRadius;
     state_.buttons = reply.grip;
     state_.time    = now;
+    state_.age     = now - sent_; // the firmware measures when the packet has come, which is also when its force acts
     state_.missed  = 0;
     ++state_.sequence;
     answered_ = now;

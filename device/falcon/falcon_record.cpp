@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kOptions{kFalconFirmware, kFalconCounts, kFalconEventCharacter};
+constexpr std::array kOptions{kFalconFirmware, kFalconCounts, kFalconTimerOnly};
 
 std::vector<DeviceListing> list(HidSystem& /*hid*/)
 {
@@ -102,9 +102,9 @@ FalconDeviceSettings falconSettings(const DeviceRequest& request)
     settings.path = request.path;
     if (const std::string counts = textOf(request.options, kFalconCounts); !counts.empty())
         settings.loop.countsPerTorque = numberOf(kFalconCounts, counts);
-    settings.start.eventCharacter = !textOf(request.options, kFalconEventCharacter).empty();
-    settings.start.onUpload       = request.onUpload;
-    settings.start.cancel         = request.cancel;
+    settings.start.triesEventCharacter = textOf(request.options, kFalconTimerOnly).empty();
+    settings.start.onUpload            = request.onUpload;
+    settings.start.cancel              = request.cancel;
     return settings;
 }
 

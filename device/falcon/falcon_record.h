@@ -13,9 +13,8 @@ extern const DeviceRecord kFalconRecord;
 inline constexpr DeviceOption kFalconCounts{
     "--falcon-counts", "counts per N m of a Falcon's motors, see palpate calibrate [4200]", DeviceOption::Kind::number,
     FalconMotors::kLeastCountsPerTorque, FalconMotors::kMostCountsPerTorque};
-inline constexpr DeviceOption kFalconEventCharacter{
-    "--falcon-event-character",
-    "asks the Falcon's bridge to pass on each answer at once; nobody has tried it on a device yet",
+inline constexpr DeviceOption kFalconTimerOnly{
+    "--falcon-timer-only", "does not try whether the Falcon's bridge is faster if it passes on each answer at once",
     DeviceOption::Kind::flag};
 inline constexpr DeviceOption kFalconFirmware{"--falcon-firmware",
                                               "image that a Falcon needs after it was plugged in [FALCON_FIRMWARE]"};

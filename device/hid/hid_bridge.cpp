@@ -16,13 +16,14 @@ namespace {
 
 constexpr double kSilence = 0.1;  // [s] without an answer, see DeviceFault::silent
 constexpr int    kMissed  = 20;   // exchanges without an answer, likewise
-constexpr double kQuiet   = 0.02; // [s] between zero commands while exchange() is not called: far from flooding
+constexpr double kQuiet   = 0.02; // [s] between zero commands while render() is not called: far from flooding
 constexpr double kStep    = 1e-3; // [s] at least between commands while a force falls
 constexpr double kLongest = 4e-3; // [s] most time between two commands that is counted, as in the governor
 constexpr int    kZeros   = 3;    // commands at the end: one packet may be lost, hardly three
 constexpr int    kRestart = 20; // answers that count on from an old number before the device is taken to have restarted
-constexpr int    kMostReports = 64; // per pass, so that a flooded host still writes
-constexpr double kFarOut      = 2;  // [1] times the workspace's radius: no arm reaches that far
+constexpr int    kMostReports = 64;   // per pass, so that a flooded host still writes
+constexpr double kFrames      = 1e-3; // [s] that USB holds a report and a command back: on average half a frame each
+constexpr double kFarOut      = 2;    // [1] times the workspace's radius: no arm reaches that far
 
 double secondsSince(std::chrono::steady_clock::time_point then)
 {
@@ -67,6 +68,7 @@ void HidBridgeDevice::open()
     sent_         = 0;
     hot_          = false;
     homing_       = false;
+    wanted_       = {};
     started_ = stopped_ = impossible_ = false;
     seenGood_ = seenGarbled_ = 0;
     state_                   = {};
@@ -125,7 +127,7 @@ void HidBridgeDevice::close() noexcept
     state_.velocity = {};
 }
 
-// --- the port: the thread's, or exchange()'s
+// --- the port: the thread's, or read()'s
 
 /// Reads every waiting report.
 /// \throws HidLost if the device went away
@@ -157,6 +159,7 @@ void HidBridgeDevice::takeAnswer(const BridgeAnswer& answer) noexcept
     }
     goesOn_      = 0;
     seen_.answer = answer;
+    seen_.time   = Clock::now();
     ++seen_.good;
 }
 
@@ -188,7 +191,7 @@ void HidBridgeDevice::sendShare(double most)
     send(command);
 }
 
-/// Sends commands while exchange() is not called: a falling force, then zero repeatedly.
+/// Sends commands while render() is not called: a falling force, then zero repeatedly.
 void HidBridgeDevice::letFall()
 {
     const double age = secondsSince(lastAsked_), share = heldShare(age);
@@ -233,42 +236,52 @@ void HidBridgeDevice::sayZero() noexcept
     }
 }
 
-// --- exchange()
+// --- read() and render()
 
-HapticState HidBridgeDevice::exchange(const GovernedForce& force, double now) noexcept
+HapticState HidBridgeDevice::read(double now) noexcept
 {
     if (!open_ || state_.fault == DeviceFault::unplugged) return state_;
     const bool own = settings_.pace == HidPace::caller;
     if (own) readAndWrite(0);
     followClock(now);
     readInbox(now);
-    state_.fault = faultAt(force, now);
+    state_.fault = faultAt(now);
+    started_     = true;
+    lastRead_    = now;
+    if (!own) return state_;
+    command();
+    try {
+        sendNewest();
+    } catch (const HidLost&) {
+        seen_.lost = true; // seen by the next read()
+    }
+    return state_;
+}
 
+void HidBridgeDevice::render(const GovernedForce& force) noexcept
+{
+    wanted_ = force.newtons();
+    if (open_ && settings_.pace == HidPace::thread) command();
+}
+
+/// Leaves a command with the wanted force for whoever sends.
+void HidBridgeDevice::command() noexcept
+{
     BridgeCommand& command = outbox_.draft().command;
     outbox_.draft()        = {{}, Clock::now()};
-    command.enable         = state_.fault == DeviceFault::none && state_.homed && info_.maximumForce > 0;
-    command.force          = command.enable ? renderable(force.newtons()) : glm::dvec3(0);
-    command.home           = homing_ && !state_.homed;
-    command.lights         = lights_;
+    command.enable = state_.fault == DeviceFault::none && isFinite(wanted_) && state_.homed && info_.maximumForce > 0;
+    command.force  = command.enable ? renderable(wanted_) : glm::dvec3(0);
+    command.home   = homing_ && !state_.homed;
+    command.lights = lights_;
     outbox_.publish();
-    if (own) {
-        try {
-            sendNewest();
-        } catch (const HidLost&) {
-            seen_.lost = true; // seen by the next exchange
-        }
-    }
-    started_      = true;
-    lastExchange_ = now;
-    return state_;
 }
 
 /// Follows a servo's clock that starts anew: all times move back with it.
 void HidBridgeDevice::followClock(double now) noexcept
 {
-    if (!started_ || !(now < lastExchange_)) return;
-    const double back = lastExchange_ - now;
-    lastExchange_ -= back;
+    if (!started_ || !(now < lastRead_)) return;
+    const double back = lastRead_ - now;
+    lastRead_ -= back;
     lastAnswer_ -= back;
     state_.time -= back;
 }
@@ -282,7 +295,7 @@ void HidBridgeDevice::readInbox(double now) noexcept
         state_.fault = DeviceFault::unplugged;
         return;
     }
-    if (!started_) lastAnswer_ = now; // silence before the first exchange does not count
+    if (!started_) lastAnswer_ = now; // silence before the first read() does not count
     if (inbox.good == seenGood_) {
         ++state_.missed;
         return;
@@ -293,7 +306,8 @@ void HidBridgeDevice::readInbox(double now) noexcept
     lastAnswer_                = now;
     state_.missed              = 0;
     state_.sequence            = inbox.good;
-    state_.time                = now;
+    state_.time                = settings_.pace == HidPace::thread ? now - secondsSince(inbox.time) : now;
+    state_.age                 = kFrames;
     stopped_                   = answer.has(BridgeFlag::stopped);
     state_.homed               = answer.has(BridgeFlag::homed);
     impossible_                = glm::length(answer.position) > kFarOut * answer.workspaceRadius;
@@ -306,15 +320,15 @@ void HidBridgeDevice::readInbox(double now) noexcept
     state_.velocity = answer.velocity;
 }
 
-DeviceFault HidBridgeDevice::faultAt(const GovernedForce& force, double now) const noexcept
+DeviceFault HidBridgeDevice::faultAt(double now) const noexcept
 {
     if (state_.fault == DeviceFault::unplugged) return DeviceFault::unplugged;
     if (state_.missed > kMissed || now - lastAnswer_ > kSilence)
         return inbox_.held()->garbled != seenGarbled_ ? DeviceFault::garbled : DeviceFault::silent;
     if (impossible_) return DeviceFault::kinematics;
     if (stopped_) return DeviceFault::ownWatchdog;
-    if (!isFinite(force.newtons())) return DeviceFault::badForce;
-    if (started_ && now - lastExchange_ > kHostTooSlow) return DeviceFault::hostTooSlow;
+    if (!isFinite(wanted_)) return DeviceFault::badForce;
+    if (started_ && now - lastRead_ > kHostTooSlow) return DeviceFault::hostTooSlow;
     return DeviceFault::none;
 }
 

@@ -25,9 +25,9 @@ struct HidBridgeSettings {
 
 /// A device that speaks the bridge's report: position in, force out, at up to 1 kHz.
 ///
-/// exchange() leaves a command in one three-slot hand-off and takes the newest answer from another; the driver's thread
+/// render() leaves a command in one three-slot hand-off, read() takes the newest answer from another; the driver's thread
 /// does the reading and writing. Force flows only while the device is homed and there is no fault: every other command
-/// has zero force and motors off. Where the driver has a thread, a force that exchange() does not renew is held for 5
+/// has zero force and motors off. Where the driver has a thread, a force that render() does not renew is held for 5
 /// ms and falls to zero in 20 ms more; then, and on close, several zero commands are sent. The last safeguard is the
 /// device's own watchdog.
 ///
@@ -44,7 +44,8 @@ public:
 
     void        open() override;
     void        close() noexcept override;
-    HapticState exchange(const GovernedForce& force, double now) noexcept override;
+    HapticState read(double now) noexcept override;
+    void        render(const GovernedForce& force) noexcept override;
     void        home() noexcept override { homing_ = true; }
     void        light(std::uint8_t lights) noexcept override { lights_ = lights; }
 
@@ -52,10 +53,11 @@ private:
     using Clock = std::chrono::steady_clock;
 
     struct Inbox {
-        BridgeAnswer  answer;      ///< the last good one
-        std::uint64_t good    = 0; ///< answers with a new sequence number
-        std::uint64_t garbled = 0; ///< invalid reports
-        bool          lost    = false;
+        BridgeAnswer      answer;      ///< the last good one
+        Clock::time_point time;        ///< when that came
+        std::uint64_t     good    = 0; ///< answers with a new sequence number
+        std::uint64_t     garbled = 0; ///< invalid reports
+        bool              lost    = false;
     };
 
     struct TimedCommand {
@@ -63,7 +65,7 @@ private:
         Clock::time_point time;
     };
 
-    // Used by the thread, or by exchange() where that sets the pace.
+    // Used by the thread, or by read() where that sets the pace.
     void receive(double wait);
     void takeAnswer(const BridgeAnswer& answer) noexcept;
     void send(BridgeCommand command);
@@ -74,10 +76,11 @@ private:
     void run(const std::stop_token& stop) noexcept;
     void sayZero() noexcept;
 
-    // Used by exchange().
+    // Used by read() and render().
     void                      followClock(double now) noexcept;
     void                      readInbox(double now) noexcept;
-    [[nodiscard]] DeviceFault faultAt(const GovernedForce& force, double now) const noexcept;
+    void                      command() noexcept;
+    [[nodiscard]] DeviceFault faultAt(double now) const noexcept;
     [[nodiscard]] glm::dvec3  renderable(const glm::dvec3& force) const noexcept;
 
     void describe(const BridgeAnswer& answer);
@@ -91,7 +94,7 @@ private:
     Latest<TimedCommand>      outbox_;
     Latest<Inbox>             inbox_;
 
-    // Used by the thread, or by exchange() where that sets the pace.
+    // Used by the thread, or by read() where that sets the pace.
     std::unique_ptr<HidPort> port_;
     Inbox                    seen_;
     bool                     wrongVersion_ = false;
@@ -102,15 +105,16 @@ private:
     double                   share_        = 1;     ///< [1] share of the requested force that is sent
     Clock::time_point        lastAsked_, lastSent_;
 
-    // Used by exchange().
+    // Used by read() and render().
     HapticState   state_;
+    glm::dvec3    wanted_{}; ///< [N] of the last render()
     bool          open_     = false;
-    bool          started_  = false; ///< exchange() has been called since open()
+    bool          started_  = false; ///< read() has been called since open()
     std::uint64_t seenGood_ = 0, seenGarbled_ = 0;
-    bool          stopped_      = false; ///< the device reports it
-    bool          impossible_   = false; ///< the last position was impossible
-    double        lastAnswer_   = 0;     ///< [s]
-    double        lastExchange_ = 0;     ///< [s]
+    bool          stopped_    = false; ///< the device reports it
+    bool          impossible_ = false; ///< the last position was impossible
+    double        lastAnswer_ = 0;     ///< [s]
+    double        lastRead_   = 0;     ///< [s]
 
     std::jthread thread_; ///< last member: it ends before what it uses
 };

@@ -55,9 +55,9 @@ public:
     virtual void write(std::span<const std::uint8_t> report) = 0;
 };
 
-/// The reader of a driver's reports: a thread of its own that waits for them, or the caller of exchange(), which does
+/// The reader of a driver's reports: a thread of its own that waits for them, or the caller of read(), which does
 /// not wait. The second is for tests in virtual time and for fakes; with hardware it would cost system calls in
-/// exchange().
+/// read().
 enum class HidPace : std::uint8_t { thread, caller };
 
 /// The interface that lists and opens HID devices: hidapi, or a fake.

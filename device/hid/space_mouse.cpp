@@ -116,7 +116,7 @@ bool SpaceMouse::readAndWrite(double wait) noexcept
     return !seen_.lost;
 }
 
-HapticState SpaceMouse::exchange(const GovernedForce& /*force*/, double now) noexcept
+HapticState SpaceMouse::read(double now) noexcept
 {
     if (!port_ || state_.fault == DeviceFault::unplugged) return state_;
     if (settings_.pace == HidPace::caller) readAndWrite(0);

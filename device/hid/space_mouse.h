@@ -43,10 +43,11 @@ public:
 
     void        open() override;
     void        close() noexcept override;
-    HapticState exchange(const GovernedForce& force, double now) noexcept override;
+    HapticState read(double now) noexcept override;
+    void        render(const GovernedForce& /*force*/) noexcept override {}          ///< moves nothing
     void        light(std::uint8_t lights) noexcept override { lit_ = lights != 0; } ///< its ring, which has one colour
 
-    /// Returns the axes as of the newest exchange(), without the dead zone; for a camera.
+    /// Returns the axes as of the newest read(), without the dead zone; for a camera.
     [[nodiscard]] SpaceMouseAxes axes() noexcept;
 
 private:
@@ -71,7 +72,7 @@ private:
     Latest<SpaceMouseAxes>   camera_;
     HapticState              state_;
     std::uint64_t            lastReports_ = 0;
-    double                   lastReport_  = 0; ///< [s] by the clock of exchange()
+    double                   lastReport_  = 0; ///< [s] by the clock of read()
     std::jthread             thread_;          ///< last member: it ends before what it uses
 };
 

@@ -26,10 +26,9 @@ glm::dvec3 RecentMotion::velocity() const noexcept
     return oldest == &newest ? glm::dvec3(0) : (newest.position - oldest->position) / (newest.time - oldest->time);
 }
 
-glm::dvec3 aheadOf(ComplianceLaw law, const glm::dvec3& contact, const glm::dvec3& velocity, double period) noexcept
+glm::dvec3 aheadOf(ComplianceLaw law, const glm::dvec3& contact, const glm::dvec3& velocity, double lead) noexcept
 {
-    constexpr double kPeriodsAhead = 1.5; // see the header
-    return law == ComplianceLaw::table ? contact + kPeriodsAhead * period * velocity : contact;
+    return law == ComplianceLaw::table ? contact + lead * velocity : contact;
 }
 
 int tableSide(ComplianceLaw law, double period, double spacing) noexcept

@@ -34,12 +34,12 @@ private:
     std::size_t                      count_  = 0;
 };
 
-/// Returns the centre of the next patch window [m]: contact + 1.5 period velocity, the middle of the time during
-/// which its table will be in use (from one period after the contact to two). For the laws that hold one number: the
+/// Returns the centre of the next patch window [m]: contact + lead velocity. For the laws that hold one number: the
 /// contact.
-/// \param period  of the deformation thread, as measured [s]
+/// \param lead  [s] from the contact to the middle of the time during which the table will be in use: the time that a
+///              solve takes, and half a period of the deformation thread
 [[nodiscard]] glm::dvec3 aheadOf(ComplianceLaw law, const glm::dvec3& contact, const glm::dvec3& velocity,
-                                 double period) noexcept;
+                                 double lead) noexcept;
 
 /// Returns the number of entries along each axis of a table that covers what a hand can do before the next one
 /// arrives: 1 for the laws that hold one number, else 3, 5 or 7.

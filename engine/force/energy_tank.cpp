@@ -30,7 +30,8 @@ EnergyTankOutput EnergyTank::step(const EnergyTankInput& in) noexcept
 
     // Income.
     const double dt     = std::max(in.dt, 0.0);
-    const double income = settings_.damping * (in.normalSpeed * in.normalSpeed + speed * speed) + settings_.power;
+    const double arm    = std::clamp(in.spareDamping, 0.0, settings_.damping);
+    const double income = arm * (in.normalSpeed * in.normalSpeed + speed * speed) + settings_.power;
     energy_             = std::min(settings_.limit, energy_ + income * dt);
 
     // Cost of the step of stiffness at this depth, less what the hand paid. A fall that pushed nobody along the surface

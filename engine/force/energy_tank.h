@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 
 namespace palp {
 
@@ -7,8 +8,8 @@ namespace palp {
 struct EnergyTankSettings {
     double limit = 2e-3;   ///< [J] the most it holds; what one step of stiffness may inject at once
     double start = 0.2e-3; ///< [J] at the beginning
-    /// [N s/m] of the arm's own damping that fills it. An arm of 3.2 spends 1.5 on the sampled spring at the cap,
-    /// K (T/2 + delay) = 1000 (0.5 ms + 1 ms); 1 of the remaining 1.7.
+    /// [N s/m] the most of the arm's own damping that fills it. An arm of 3.2 spends 1.5 on the sampled spring at the
+    /// cap, K (T/2 + delay) = 1000 (0.5 ms + 1 ms); 1 of the remaining 1.7.
     double damping = 1;
     double power   = 1e-3; ///< [W] fills it at rest too; 0 is strict, and a still finger never feels a spot harden
 };
@@ -22,6 +23,8 @@ struct EnergyTankInput {
     /// [m^2] -pull · way of the proxy along the surface in this tick: times the stiffness it is what the hand paid to
     /// drag the proxy there, or below zero what it was given on the way down a slope
     double drag = 0;
+    /// [N s/m] that the spring leaves of the arm's damping: ForceGovernor::spareDamping().
+    double spareDamping = std::numeric_limits<double>::infinity();
 };
 
 struct EnergyTankOutput {

@@ -39,7 +39,6 @@ void check(const GovernorSettings& s)
     demand("passivitySpeed", s.passivitySpeed, 0, 0.1);
     demand("passivityDamping", s.passivityDamping, 0, 20);
     demand("passivityLeak", s.passivityLeak, 1e-3, 100);
-    demand("creditedDamping", s.creditedDamping, 0, 3.2);
     demand("energyReserve", s.energyReserve, 0, 0.1);
     demand("energyLimit", s.energyLimit, 0, 10);
     demand("energyTolerance", s.energyTolerance, 0, 0.01);
@@ -51,23 +50,43 @@ void check(const GovernorSettings& s)
     demand("calmTicks", s.calmTicks, 1, 1000);
     demand("engageTime", s.engageTime, 0.1, 10);
     demand("maximumStiffness", s.maximumStiffness, 0, 1e4);
-    demand("stiffnessAtOneMillisecond", s.stiffnessAtOneMillisecond, 0, 2000);
-    demand("delayTicks", s.delayTicks, 0, 7);
+    demand("mass", s.mass, 0, 100);
+    demand("ownDamping", s.ownDamping, 0, 100);
+    demand("statedStiffness", s.statedStiffness, 0, 1e4);
+}
+
+constexpr double kNominalLag = 1.5; ///< [1] periods: one from a position to its force, half for which it is held
+
+/// [1] of the arm's damping that may be used. The Falcon's was published as 2.8 net and as 3.2 to 4.0 without the loss
+/// of sampling; with less the cap is farther from what the arm bears, with more an arm worse than its figure swings.
+constexpr double kUsable = 0.8;
+
+/// [kg] of an arm whose mass is unknown: among haptic arms only pens are lighter.
+constexpr double kLeastMass = 0.1;
+
+/// [s] age of a velocity that drivers take over 15 ms.
+constexpr double kVelocityAge = 7.5e-3;
+
+/// Returns a time of the input that makes sense [s].
+double credible(double time, double most) noexcept
+{
+    return std::isfinite(time) ? std::clamp(time, 0.0, most) : most;
 }
 
 } // namespace
 
-ForceGovernor::ForceGovernor(const GovernorSettings& settings) : settings_(settings)
+ForceGovernor::ForceGovernor(const GovernorSettings& settings)
+    : settings_(settings), lag_(kNominalLag * settings.nominalPeriod)
 {
     check(settings_);
-    cap_ = capFor(settings_.nominalPeriod);
+    cap_ = capFor(lag_);
 }
 
 GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
 {
     GovernorOutput out;
     const Elapsed  passed = elapsed(in.dt);
-    cap_                  = capFor(in.loopPeriod);
+    measureLag(in);
 
     checkInput(in); // 1
     glm::dvec3 force = fault_ == GovernorFault::none ? in.force : glm::dvec3(0);
@@ -79,7 +98,9 @@ GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
     const double fresh = freshness(in.forceAge); // 3
     if (fresh < 1) mark(out, GovernorAction::stale);
     if (fresh == 0) release();
-    force *= fresh;
+    const double punctual = punctuality(in);
+    if (punctual < 1) mark(out, GovernorAction::late);
+    force *= fresh * punctual;
     if (engagement_ == Engagement::releasing || !in.homed || !in.inBox) force = glm::dvec3(0);
 
     observeEnergy(in, passed.fall); // 4
@@ -99,8 +120,7 @@ GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
     out.fault  = fault_;
     out.energy = energy_;
 
-    sent_[tick_ % kDelays] = out.force;
-    ++tick_;
+    note(out.force, in);
     return out;
 }
 
@@ -116,6 +136,7 @@ void ForceGovernor::reset() noexcept
     energy_       = 0;
     slewed_       = glm::dvec3(0);
     sent_         = {};
+    clock_        = 0;
     hasPosition_  = false;
 }
 
@@ -125,11 +146,50 @@ ForceGovernor::Elapsed ForceGovernor::elapsed(double dt) const noexcept
     return {std::min(dt, settings_.longestTick), dt};
 }
 
-double ForceGovernor::capFor(double period) const noexcept
+/// Lets the clock run, and takes the lag of this tick into the cap.
+void ForceGovernor::measureLag(const GovernorInput& in) noexcept
 {
-    if (!(period > 0) || !std::isfinite(period)) return 0;
-    const double lag = period * (0.5 + settings_.delayTicks);
-    return std::min(settings_.maximumStiffness, settings_.stiffnessAtOneMillisecond * 1.5e-3 / lag);
+    clock_ += credible(in.dt, settings_.stall);
+    if (!(in.dt > 0) || !std::isfinite(in.dt)) return;
+    periods_.add(in.exchangePeriod > 0 ? credible(in.exchangePeriod, settings_.stall) : in.dt);
+    lags_.add(lagOf(in) + credible(in.forceAge, settings_.stall));
+    lag_ = lags_.value(lag_);
+    cap_ = capFor(lag_);
+}
+
+/// Returns the lag of a loop whose ticks are all like this one, with a fresh force [s].
+double ForceGovernor::lagOf(const GovernorInput& in) const noexcept
+{
+    const double tick   = credible(in.dt, settings_.stall);
+    const double silent = credible(in.sinceAnswer, settings_.stall); // above the period if an answer is missing
+    const double period = in.exchangePeriod > 0 ? std::max(credible(in.exchangePeriod, settings_.stall), silent) : tick;
+    const double age    = settings_.ownDamping > 0 ? credible(in.answerAge, settings_.stall) : 0;
+    return age + period + std::max(period, tick) / 2;
+}
+
+double ForceGovernor::capFor(double lag) const noexcept
+{
+    const double known = usableDamping(), stated = settings_.statedStiffness * kNominalLag * 1e-3;
+    return std::min(settings_.maximumStiffness, (known > 0 ? known : stated) / lag);
+}
+
+double ForceGovernor::usableDamping() const noexcept
+{
+    return kUsable * settings_.ownDamping;
+}
+
+/// Returns what the spring at the cap takes of the arm's damping [N s/m].
+double ForceGovernor::creditedDamping() const noexcept
+{
+    return std::min(usableDamping(), cap_ * lag_);
+}
+
+/// Returns the share of the force that a tick as late as this one may have [1].
+double ForceGovernor::punctuality(const GovernorInput& in) const noexcept
+{
+    const double lag = lagOf(in);
+    if (!(in.stiffness > 0) || kUsable * lag <= lag_) return 1; // the damping that is kept in reserve bears it
+    return std::min(1.0, capFor(lag) / in.stiffness);
 }
 
 void ForceGovernor::latch(GovernorFault fault) noexcept
@@ -167,14 +227,15 @@ double ForceGovernor::freshness(double age) const noexcept
 
 void ForceGovernor::observeEnergy(const GovernorInput& in, double dt) noexcept
 {
-    const bool known = in.homed && finite(in.position);
+    const bool   known = in.homed && finite(in.position);
+    const double measured =
+        clock_ - credible(in.sinceAnswer, settings_.stall) - credible(in.answerAge, settings_.stall);
     if (engagement_ == Engagement::waiting) {
         energy_ = 0;
     } else if (known && hasPosition_) {
         // Energy of the force that acted on the way here, plus what the arm's damping and the tank account for.
-        const std::size_t acting = tick_ + kDelays - 1 - std::size_t(settings_.delayTicks);
-        energy_ -= glm::dot(sent_[acting % kDelays], in.position - lastPosition_);
-        energy_ += settings_.creditedDamping * glm::dot(in.velocity, in.velocity) * dt + in.admittedEnergy;
+        energy_ -= glm::dot(meanForce(lastMeasured_, measured), in.position - lastPosition_);
+        energy_ += creditedDamping() * glm::dot(in.velocity, in.velocity) * dt + in.admittedEnergy;
         if (in.force == glm::dvec3(0)) energy_ -= energy_ * std::min(1.0, dt / settings_.passivityLeak);
         // A contact gives back at most what it stores; the rest was dissipated and is gone.
         const double most = std::min(settings_.energyLimit, std::max(in.storedEnergy, 0.0) + settings_.energyReserve);
@@ -182,6 +243,34 @@ void ForceGovernor::observeEnergy(const GovernorInput& in, double dt) noexcept
     }
     hasPosition_ = known;
     if (known) lastPosition_ = in.position;
+    lastMeasured_ = measured;
+}
+
+/// Returns the mean of the force that acted in this time [N], by the governor's clock [s].
+glm::dvec3 ForceGovernor::meanForce(double from, double until) const noexcept
+{
+    glm::dvec3 sum{};
+    double     end = until;
+    for (std::size_t back = 1; back <= kSent; ++back) {
+        const SentForce& sent = sent_[(tick_ + kSent - back) % kSent];
+        if (sent.from <= from && end == until) return sent.force; // it acted all the time, or no time passed
+        const double begin = std::max(sent.from, from);
+        if (begin < end) {
+            sum += sent.force * (end - begin);
+            end = begin;
+        }
+        if (begin == from) break;
+    }
+    return until > from ? sum / (until - from) : glm::dvec3(0);
+}
+
+/// Notes the force of this tick, and when it will act: with the next packet.
+void ForceGovernor::note(const glm::dvec3& sent, const GovernorInput& in) noexcept
+{
+    const double wait    = periods_.value(settings_.nominalPeriod) - credible(in.sinceAnswer, settings_.stall);
+    const double after   = sent_[(tick_ + kSent - 1) % kSent].from; // forces act in their order
+    sent_[tick_ % kSent] = {sent, std::max(clock_ + std::max(wait, 0.0), after)};
+    ++tick_;
 }
 
 glm::dvec3 ForceGovernor::passiveForce(glm::dvec3 force, const GovernorInput& in, double dt,
@@ -191,7 +280,10 @@ glm::dvec3 ForceGovernor::passiveForce(glm::dvec3 force, const GovernorInput& in
     const double speed = glm::length(in.velocity);
     const bool   flows = engagement_ == Engagement::engaging || engagement_ == Engagement::engaged;
     if (!flows || energy_ >= 0 || !(speed > settings_.passivitySpeed)) return force;
-    out.damping = std::min(-energy_ / (speed * speed * dt), settings_.passivityDamping);
+    // A damper turns unstable where its own lag times it is more than the mass; half of that.
+    const double mass = settings_.mass > 0 ? settings_.mass : kLeastMass;
+    const double most = mass / (2 * (lag_ + kVelocityAge));
+    out.damping       = std::min({-energy_ / (speed * speed * dt), settings_.passivityDamping, most});
     // A force along the motion gives energy: it is reduced, but never turned round, or the surface would be sticky.
     const double along = glm::dot(force, in.velocity);
     if (along >= 0) out.damping = std::min(out.damping, along / (speed * speed));

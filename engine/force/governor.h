@@ -8,6 +8,7 @@
 
 #include "engine/core/enum_names.h"
 #include "engine/core/governed_force.h"
+#include "engine/core/running_median.h"
 
 namespace palp {
 
@@ -24,12 +25,9 @@ struct GovernorSettings {
     double staleRamp  = 20e-3; ///< [s] from there to zero
 
     double passivitySpeed   = 0.01; ///< [m/s] below it no damping: two encoder steps of 48 um in 15 ms are 0.006
-    double passivityDamping = 20;   ///< [N s/m] the most that the controller adds
+    double passivityDamping = 20;   ///< [N s/m] the most that the controller adds; less on a light arm
     double passivityLeak    = 1;    ///< [s] time constant with which the energy is forgotten out of contact
-    /// [N s/m] of the arm's own damping that the observer counts: the loss of the sampled spring at the cap,
-    /// K (T/2 + delay) = 1000 (0.5 ms + 1 ms). The tank counts another 1; the arm has 3.2.
-    double creditedDamping = 1.5;
-    double energyReserve   = 2e-3; ///< [J] that E may exceed what the contact stores: what was dissipated is forgotten
+    double energyReserve    = 2e-3; ///< [J] that E may exceed what the contact stores: what was dissipated is forgotten
     /// [J] most of E where the stored energy is unknown: 6 N in a spring of 100 N/m hold 0.18
     double energyLimit = 0.2;
     /// [J] E may be below zero by this without being called active: an encoder step of 48 um against 6 N.
@@ -49,10 +47,10 @@ struct GovernorSettings {
     double engageTime = 1.5; ///< [s] from zero force to all of it; 1 to 2
 
     double maximumStiffness = 1000; ///< [N/m] where the loop is not the limit
-    /// [N/m] at a period of 1 ms and one tick of delay. The released arm is stable there up to 2137 and passive up to
-    /// 2133, so this is a margin of two.
-    double stiffnessAtOneMillisecond = 1000;
-    int    delayTicks                = 1; ///< from a position to the effect of its force, beside the hold; 0 to 7
+    double mass             = 0.46; ///< [kg] of the arm; 0: unknown
+    double ownDamping       = 3.2;  ///< [N s/m] of the arm; 0: unknown, and nothing is credited
+    /// [N/m] of an arm whose damping is unknown: what its maker states for a loop of 1 kHz.
+    double statedStiffness = 1000;
 };
 
 /// Reasons for which no force flows. The numbers are recorded: never reuse one.
@@ -92,7 +90,8 @@ enum class GovernorAction : std::uint32_t {
     slewed     = 64,
     waiting    = 128, ///< no force until it was small for a while
     engaging   = 256, ///< coming on
-    releasing  = 512  ///< going down to zero, to wait again
+    releasing  = 512, ///< going down to zero, to wait again
+    late       = 1024 ///< a tick was so late that its force is less than wanted
 };
 
 /// Input of one tick. Vectors share one frame.
@@ -101,12 +100,16 @@ struct GovernorInput {
     double     forceAge = 0;        ///< [s] since it was computed; infinity if there has never been one
     glm::dvec3 position{};          ///< [m] of the grip
     glm::dvec3 velocity{};          ///< [m/s] of the grip, filtered
-    bool       homed      = false;  ///< the position is known
-    bool       inBox      = false;  ///< the grip is where the device's kinematics are good, and they could be solved
-    double     dt         = 0;      ///< [s] since the last tick
-    double     loopPeriod = 0;      ///< [s] measured, as a mean over some 0.1 s; sets stiffnessCap()
+    bool       homed = false;       ///< the position is known
+    bool       inBox = false;       ///< the grip is where the device's kinematics are good, and they could be solved
+    double     dt    = 0;           ///< [s] since the last tick
     int        missedExchanges = 0; ///< with the device, in a row
 
+    double answerAge      = 0; ///< [s] of the position when its answer came: HapticState::age
+    double sinceAnswer    = 0; ///< [s] from that answer to this tick
+    double exchangePeriod = 0; ///< [s] from the answer before to that one; 0: one answer a tick
+
+    double stiffness = 0; ///< [N/m] of the spring that `force` is of: EnergyTankOutput::stiffness; 0: it is of none
     double admittedEnergy = 0; ///< [J] that the tank let in this tick: EnergyTankOutput::used
     /// [J] in the contact's spring: EnergyTankOutput::stored. Infinity: unknown.
     double storedEnergy = std::numeric_limits<double>::infinity();
@@ -130,7 +133,8 @@ struct GovernorOutput {
 ///
 ///   1  the input is credible: finite, the clock runs, the device answers           else fault, 0
 ///   2  homed and in the box                                                        else 0, then engage anew
-///   3  fresh: held for 5 ms, to zero in 20 ms                                      then engage anew
+///   3  fresh: held for 5 ms, to zero in 20 ms                                      then engage anew;
+///      after a late tick as much of the force as a loop that is always so late bears
 ///   4  passivity: E -= f (x - x'); if E < 0, f -= alpha v
 ///   5  at most 6 N
 ///   6  at most 1 N/ms
@@ -140,13 +144,17 @@ struct GovernorOutput {
 /// While it waits (8) no force can flow, and a fast hand (7) only restarts the wait. A fault stays until reset(). Every
 /// failure ends at exactly zero within 20 ms of ticks. The device scales forces to its motors' torques.
 ///
+/// The lag of the loop, from the place of the hand to the middle of the time in which its force acts, is the age of the
+/// answer, one period of exchanges (what an answer waits for a tick, and its force for the next packet, adds up to one)
+/// and half the time for which a force is held. The cap, the energy and the tank's income all follow from it.
+///
 /// Invariants: the force is finite and at most maximumForce; nothing is allocated, locked or thrown.
 /// \source Hannaford & Ryu 2002 for step 4
 /// \thread the servo's
 /// \differs (a) E is taken from the force that acted, damping, limits and the device's delay included, so what the
-///          controller dissipates is not credited once more; (b) part of the arm's own damping is counted, without
-///          which an honest sampled spring looks active; (c) E is at most what the contact stores plus a reserve, so
-///          that energy that was dissipated does not hide what comes later
+///          controller dissipates is not credited once more; (b) the part of the arm's own damping that the spring at
+///          the cap takes is counted, without which an honest sampled spring looks active; (c) E is at most what the
+///          contact stores plus a reserve, so that energy that was dissipated does not hide what comes later
 class ForceGovernor {
 public:
     /// \throws Error naming a setting out of its range
@@ -155,21 +163,30 @@ public:
     GovernorOutput step(const GovernorInput& in) noexcept;
 
     /// Returns what the last step() let through, as devices take it.
-    [[nodiscard]] GovernedForce force() const noexcept { return GovernedForce(sent_[(tick_ - 1) % kDelays]); }
+    [[nodiscard]] GovernedForce force() const noexcept { return GovernedForce(sent_[(tick_ - 1) % kSent].force); }
 
     /// Ends a fault that the operator has seen. The next tick finds a cause that lasts again; the force engages anew.
     void reset() noexcept;
 
-    /// Returns the most that a force law may render [N/m], for the loop period of the last tick:
-    /// min(maximum, stiffnessAtOneMillisecond 1.5 ms / (T/2 + delayTicks T)); 0 if that period makes no sense. It
-    /// falls and rises at once: pass the result through the tank, which pays for a rise.
+    /// Returns the most that a force law may render [N/m]: min(maximum, 0.8 ownDamping / lag), with the median of the
+    /// lag over the last 100 ticks. A spring of K with that lag takes K lag of the arm's damping; a released arm settles
+    /// as long as some is left. Where the damping is unknown: min(maximum, statedStiffness 1.5 ms / lag), in which the
+    /// lag is without the age of the answer, because who states a stiffness has measured it with that age. It falls and
+    /// rises at once: pass the result through the tank, which pays for a rise.
     [[nodiscard]] double stiffnessCap() const noexcept { return cap_; }
+
+    /// Returns the lag that the cap is for [s].
+    [[nodiscard]] double lag() const noexcept { return lag_; }
+
+    /// Returns what the spring at the cap leaves of the arm's damping [N s/m]; 0 if it is unknown.
+    [[nodiscard]] double spareDamping() const noexcept { return usableDamping() - creditedDamping(); }
 
     [[nodiscard]] GovernorFault           fault() const noexcept { return fault_; }
     [[nodiscard]] const GovernorSettings& settings() const noexcept { return settings_; }
 
 private:
-    static constexpr std::size_t kDelays = 8;
+    static constexpr std::size_t kSent = 64; ///< ticks; the slowest lines have a lag of 10
+    static constexpr std::size_t kLags = 100;
 
     enum class Engagement : std::uint8_t { waiting, engaging, engaged, releasing };
 
@@ -177,9 +194,20 @@ private:
         double rise; ///< [s] by which a force may grow
         double fall; ///< [s] by which it may fall
     };
+    struct SentForce {
+        glm::dvec3 force{};  ///< [N]
+        double     from = 0; ///< [s] from when it acts, by the governor's clock
+    };
 
     [[nodiscard]] Elapsed    elapsed(double dt) const noexcept;
-    [[nodiscard]] double     capFor(double period) const noexcept;
+    void                     measureLag(const GovernorInput& in) noexcept;
+    [[nodiscard]] double     lagOf(const GovernorInput& in) const noexcept;
+    [[nodiscard]] double     capFor(double lag) const noexcept;
+    [[nodiscard]] double     usableDamping() const noexcept;
+    [[nodiscard]] double     creditedDamping() const noexcept;
+    [[nodiscard]] double     punctuality(const GovernorInput& in) const noexcept;
+    [[nodiscard]] glm::dvec3 meanForce(double from, double until) const noexcept;
+    void                     note(const glm::dvec3& sent, const GovernorInput& in) noexcept;
     void                     latch(GovernorFault fault) noexcept;
     void                     release() noexcept;
     void                     checkInput(const GovernorInput& in) noexcept;
@@ -191,20 +219,24 @@ private:
     void                     slewTo(glm::dvec3 force, Elapsed passed, GovernorOutput& out) noexcept;
     void                     engage(const GovernorInput& in, double rise, GovernorOutput& out) noexcept;
 
-    GovernorSettings                settings_;
-    double                          cap_;
-    GovernorFault                   fault_        = GovernorFault::none;
-    double                          faultGain_    = 1;
-    Engagement                      engagement_   = Engagement::waiting;
-    double                          engageGain_   = 0;
-    int                             calmTicks_    = 0;
-    int                             stoppedTicks_ = 0;
-    double                          energy_       = 0;
-    glm::dvec3                      slewed_{};       ///< [N] after step 6
-    std::array<glm::dvec3, kDelays> sent_{};         ///< [N] by the last ticks, a ring
-    std::size_t                     tick_ = 0;       ///< of the ring
-    glm::dvec3                      lastPosition_{}; ///< [m]
-    bool                            hasPosition_ = false;
+    GovernorSettings             settings_;
+    double                       lag_;            ///< [s]
+    double                       cap_;            ///< [N/m]
+    RunningMedian<kLags>         lags_, periods_; ///< [s] of loop and exchanges
+    GovernorFault                fault_        = GovernorFault::none;
+    double                       faultGain_    = 1;
+    Engagement                   engagement_   = Engagement::waiting;
+    double                       engageGain_   = 0;
+    int                          calmTicks_    = 0;
+    int                          stoppedTicks_ = 0;
+    double                       energy_       = 0;
+    double                       clock_        = 0; ///< [s] sum of all ticks
+    glm::dvec3                   slewed_{};         ///< [N] after step 6
+    std::array<SentForce, kSent> sent_{};           ///< by the last ticks, a ring
+    std::size_t                  tick_ = 0;         ///< of the ring
+    glm::dvec3                   lastPosition_{};   ///< [m]
+    double                       lastMeasured_ = 0; ///< [s] when that was measured, by the governor's clock
+    bool                         hasPosition_  = false;
 };
 
 } // namespace palp

@@ -30,25 +30,24 @@ Plane planeBy(const SoftObject& object, const glm::dvec3& place, const glm::dvec
 
 } // namespace
 
-std::optional<Landing> landingOf(const SoftObject& object, const FreeHand& hand, double period)
+std::optional<Landing> landingOf(const SoftObject& object, const FreeHand& hand, double lead)
 {
-    constexpr double kNear = 15e-3, kPeriodsNear = 2, kPeriodsAhead = 1.5; // [m], [1], [1]; see the header
+    constexpr double kNear = 15e-3, kLeadsNear = 1.5; // [m], [1]; see the header
 
     const glm::dvec3 beside =
         hand.position - object.positions()[object.index().nearest(hand.position, 1).front().point];
     const double away = glm::length(beside), speed = glm::length(hand.velocity);
-    if (!(away <= std::max(kNear, kPeriodsNear * period * speed)) || away == 0) return {};
+    if (!(away <= std::max(kNear, kLeadsNear * lead * speed)) || away == 0) return {};
 
     const Plane      below   = planeBy(object, hand.position, beside / away);
-    const double     ahead   = kPeriodsAhead * period;
     const double     closing = -glm::dot(hand.velocity, below.normal);
     const double     until   = closing > 0 ? std::max(0.0, below.height(hand.position)) / closing
                                            : std::numeric_limits<double>::infinity(); // [s]
-    const double     free    = std::min(ahead, until);
+    const double     free    = std::min(lead, until);
     const glm::dvec3 meets   = hand.position + free * hand.velocity;
     const Plane      there   = planeBy(object, meets, below.normal);
     const glm::dvec3 slides  = hand.velocity - glm::dot(hand.velocity, there.normal) * there.normal;
-    return Landing{there.foot(meets) + (ahead - free) * slides, there.normal};
+    return Landing{there.foot(meets) + (lead - free) * slides, there.normal};
 }
 
 } // namespace palp

@@ -42,10 +42,10 @@ void Deformation::repaint(const SoftObject& object)
     object_ = &object;
 }
 
-DeformationAnswer Deformation::solve(const Touch& touch, double period)
+DeformationAnswer Deformation::solve(const Touch& touch, double lead)
 {
-    if (!touch.touching) return solveAhead(touch, period);
-    const glm::dvec3  ahead = aheadOf(law_, touch.point, touch.velocity, period);
+    if (!touch.touching) return solveAhead(touch, lead);
+    const glm::dvec3  ahead = aheadOf(law_, touch.point, touch.velocity, lead);
     DeformationAnswer there = solveAt({ahead, touch.outward, true, true}, touch);
     if (there.update || ahead == touch.point) return there;
     DeformationAnswer here = solveAt({touch.point, touch.outward, true, true}, touch);
@@ -55,9 +55,9 @@ DeformationAnswer Deformation::solve(const Touch& touch, double period)
 
 /// Solves for where a hand in free space will land. Nobody is touching yet, so a failure is none: a rim may be what is
 /// nearest, and never be touched.
-DeformationAnswer Deformation::solveAhead(const Touch& touch, double period)
+DeformationAnswer Deformation::solveAhead(const Touch& touch, double lead)
 {
-    const auto landing = landingOf(*object_, {touch.point, touch.velocity}, period);
+    const auto landing = landingOf(*object_, {touch.point, touch.velocity}, lead);
     if (!landing) return {};
     DeformationAnswer answer = solveAt({landing->place, landing->outward, true, false}, touch);
     answer.why.clear();

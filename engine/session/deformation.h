@@ -16,8 +16,9 @@ struct DeformationAnswer {
     std::string                why;    ///< a failure, also one that a second try mended; may be empty
 };
 
-/// Turns a touch and the measured period of the deformation [s] into an answer. It may take long, and throw.
-using PatchSolver = std::function<DeformationAnswer(const Touch&, double period)>;
+/// Turns a touch into an answer. It may take long, and throw. `lead` is the time [s] from the touch to the middle of that
+/// in which the answer will be in use, see aheadOf().
+using PatchSolver = std::function<DeformationAnswer(const Touch&, double lead)>;
 
 /// The slow half of a session: solves the patch and the table of compliances for where a touch will be.
 /// \thread one at a time, together with its plate solver
@@ -28,7 +29,7 @@ public:
     /// \throws Error as PlateSolver and footprintLattice() do
     Deformation(const SoftObject& object, const Scene& scene);
 
-    /// Solves for where the touch will be 1.5 periods later. If that is off the object, or the points determine no
+    /// Solves for where the touch will be a lead later. If that is off the object, or the points determine no
     /// surface there, it solves for the touch itself; if that fails too there is no update, and the answer says why.
     ///
     /// In free space it solves for where the hand will land, see landingOf(), so that a tap finds a table that is made
@@ -39,13 +40,13 @@ public:
     /// that is meant. What fails is most often a wrong unit or a window that is too small, and then thickness, footprint
     /// and stiffness are as wrong: the hand would go on feeling something that is off by powers of ten, and recordings
     /// would hold forces that no plate gave. So a session says in words why it has no force.
-    /// \param period  of the deformation, as measured [s]
-    [[nodiscard]] DeformationAnswer solve(const Touch& touch, double period);
+    /// \param lead  [s] see PatchSolver
+    [[nodiscard]] DeformationAnswer solve(const Touch& touch, double lead);
 
     /// Returns solve() of this object, which must outlive it.
     [[nodiscard]] PatchSolver solver()
     {
-        return [this](const Touch& touch, double period) { return solve(touch, period); };
+        return [this](const Touch& touch, double lead) { return solve(touch, lead); };
     }
 
     /// Goes on with other stiffnesses of the same points. The table's lattice stays that of the first object: it
@@ -59,7 +60,7 @@ public:
     [[nodiscard]] const PlateSolver& plateSolver() const noexcept { return solver_; }
 
 private:
-    [[nodiscard]] DeformationAnswer solveAhead(const Touch& touch, double period);
+    [[nodiscard]] DeformationAnswer solveAhead(const Touch& touch, double lead);
     [[nodiscard]] DeformationAnswer solveAt(const Contact& contact, const Touch& touch);
 
     const SoftObject*    object_; ///< never null

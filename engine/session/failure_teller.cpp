@@ -29,10 +29,10 @@ public:
     {
     }
 
-    DeformationAnswer operator()(const Touch& touch, double period)
+    DeformationAnswer operator()(const Touch& touch, double lead)
     {
         try {
-            DeformationAnswer answer = solver_(touch, period);
+            DeformationAnswer answer = solver_(touch, lead);
             if (!answer.update && !answer.why.empty()) note(answer.why); // no reason: nobody touches
             solved_ = solved_ || answer.update;
             return answer;

@@ -41,9 +41,9 @@ GrippedArm::GrippedArm(const GrippingHand& hand, const SimulatedArmSettings& arm
     hand.demandWithin(arm.boxRadius);
 }
 
-HapticState GrippedArm::exchange(const GovernedForce& force, double now) noexcept
+HapticState GrippedArm::read(double now) noexcept
 {
-    HapticState state = arm_.exchange(force, now); // moves on to now, with the hand of the last tick
+    HapticState state = arm_.read(now); // moves on to now, with the hand of the last tick
     state.buttons     = hand_.path.buttons(hand_.path.begin() + now);
     arm_.holdBy(hand_.at(now));
     return state;

@@ -35,7 +35,8 @@ public:
 
     void        open() override { arm_.open(); }
     void        close() noexcept override { arm_.close(); }
-    HapticState exchange(const GovernedForce& force, double now) noexcept override;
+    HapticState read(double now) noexcept override;
+    void        render(const GovernedForce& force) noexcept override { arm_.render(force); }
 
 private:
     GrippingHand hand_;

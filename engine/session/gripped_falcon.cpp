@@ -10,7 +10,7 @@
 namespace palp {
 namespace {
 
-constexpr std::array kOptions{kFalconFirmware, kFalconCounts, kFalconEventCharacter, kFalconCold};
+constexpr std::array kOptions{kFalconFirmware, kFalconCounts, kFalconTimerOnly, kFalconCold};
 
 constexpr std::size_t kStandInFirmware = 8000; ///< [byte] of zeros, which the emulator takes as well as any
 
@@ -83,7 +83,7 @@ GrippedFalcon::GrippedFalcon(const GrippingHand& hand, const Ft232EmulatorSettin
     info_.needsHoming  = !falcon.falcon.homed;
 }
 
-HapticState GrippedFalcon::exchange(const GovernedForce& force, double now) noexcept
+HapticState GrippedFalcon::read(double now) noexcept
 {
     if (!running_ || now < last_) { // the servo's clock starts, or starts again
         begun_  = emulator_.now() - now;
@@ -95,7 +95,7 @@ HapticState GrippedFalcon::exchange(const GovernedForce& force, double now) noex
         emulator_.falcon().press(std::uint8_t(wanted));
         pressed_ = wanted;
     }
-    return device_.exchange(force, now);
+    return device_.read(now);
 }
 
 /// Returns the hand now, on its path or off it to home the Falcon.

@@ -17,7 +17,7 @@ inline constexpr DeviceOption kFalconCold{
     DeviceOption::Kind::flag};
 
 /// A Falcon in a scripted hand, emulated from the packets on its wire to the arm. The driver is that of a real Falcon.
-/// It follows the clock of exchange(), virtual or real. When the clock starts again, so does the hand's path.
+/// It follows the clock of read(), virtual or real. When the clock starts again, so does the hand's path.
 /// \thread as HapticDevice
 class GrippedFalcon : public HapticDevice {
 public:
@@ -32,7 +32,8 @@ public:
 
     void        open() override { device_.open(); }
     void        close() noexcept override { device_.close(); }
-    HapticState exchange(const GovernedForce& force, double now) noexcept override;
+    HapticState read(double now) noexcept override;
+    void        render(const GovernedForce& force) noexcept override { device_.render(force); }
     void        light(std::uint8_t lights) noexcept override { device_.light(lights); }
 
     /// Makes the hand leave its path and home the Falcon: out, in as far as it goes, and back. The path begins then.
@@ -41,7 +42,7 @@ public:
     /// Returns true while the hand has not come back from homing.
     [[nodiscard]] bool isBeingHomed() const noexcept { return homingSince_.has_value(); }
 
-    [[nodiscard]] Ft232Emulator& emulator() noexcept { return emulator_; } ///< \thread that of exchange()
+    [[nodiscard]] Ft232Emulator& emulator() noexcept { return emulator_; } ///< \thread that of read()
 
 private:
     [[nodiscard]] glm::dvec3    moved(const glm::dvec3& force, double dt);
@@ -51,8 +52,8 @@ private:
     SimulatedArm          arm_;
     double                emulated_ = 0;     ///< [s] of the emulator's clock that the arm has gone
     double                begun_    = 0;     ///< [s] of that clock when the servo's was 0
-    double                last_     = 0;     ///< [s] of the servo's clock at the last exchange
-    bool                  running_  = false; ///< exchange() was called
+    double                last_     = 0;     ///< [s] of the servo's clock at the last read()
+    bool                  running_  = false; ///< read() was called
     std::optional<double> homingSince_;      ///< [s] of the emulator's clock; empty: the hand is on its path
     double                waited_  = 0;      ///< [s] that the path began after the servo's clock was 0
     std::uint32_t         pressed_ = 0;      ///< buttons of the path that are down

@@ -12,6 +12,7 @@
 #include "engine/core/latest.h"
 #include "engine/core/real_time.h"
 #include "engine/core/thread_time.h"
+#include "engine/session/detail/solve_pace.h"
 
 namespace palp {
 namespace {
@@ -68,7 +69,7 @@ class RealSession {
 public:
     RealSession(const SessionParts& parts, const RealSessionSettings& settings)
         : parts_(parts), settings_(settings), contact_(parts.object, parts.scene),
-          force_(parts.scene, parts.device.info(), settings.threads, parts.first)
+          force_(parts.scene, parts.device.info(), parts.first)
     {
     }
 
@@ -80,7 +81,7 @@ private:
     const ProxyContact&             held(double time, const Hand& hand) noexcept;
     void                            proxyThread();
     void                            deformationThread();
-    [[nodiscard]] DeformationAnswer solved(const Touch& touch, double period);
+    [[nodiscard]] DeformationAnswer solved(const Touch& touch, double lead);
     void                            watch();
     void                            publish(const ProxyContact& held) noexcept;
 
@@ -100,25 +101,24 @@ private:
 /// Runs the servo.
 void RealSession::servoThread()
 {
-    constexpr double kMean = 0.1; // [s] over which the measured period is averaged
-    warning_               = askForRealTime();
-    Metronome     metronome{std::chrono::microseconds(1000)};
-    GovernedForce force;
-    const auto    start = metronome.wait(); // asking may take a quarter of a second
-    double        last = 0, period = kTick;
+    constexpr double kShare = 0.01; // of the newest tick in the mean that is shown [1]
+    warning_                = askForRealTime();
+    Metronome  metronome{std::chrono::microseconds(1000)};
+    const auto start = metronome.wait(); // asking may take a quarter of a second
+    double     last = 0, period = kTick;
     for (;;) {
         const auto   now  = metronome.wait();
         const double time = Seconds(now - start).count(), dt = time - last;
         if (time >= settings_.seconds || shared_.over || (settings_.stop && *settings_.stop)) break;
         last = lastTick_ = time;
-        period += (dt - period) * std::min(1.0, dt / kMean);
+        period += (dt - period) * kShare;
         summary_.period.add(dt);
         const double      began  = threadSeconds();
-        const HapticState state  = parts_.device.exchange(force, time);
-        TickRecord        record = tick({time, dt, period}, state);
-        force                    = parts_.frame.toDevice(force_.governor().force());
-        record.tickTime          = threadSeconds() - began;
-        shared_.shown.draft()    = {record, period, state.buttons};
+        const HapticState state  = parts_.device.read(time);
+        TickRecord        record = tick({time, dt}, state);
+        parts_.device.render(parts_.frame.toDevice(force_.governor().force())); // leaves in this tick
+        record.tickTime       = threadSeconds() - began;
+        shared_.shown.draft() = {record, period, state.buttons};
         shared_.shown.publish();
         summary_.add(record);
         if (settings_.onTick) settings_.onTick(record);
@@ -173,33 +173,12 @@ void RealSession::publish(const ProxyContact& held) noexcept
     shared_.touch.publish();
 }
 
-/// The time from one solve to the next, smoothed: how far ahead a window must be.
-class SolvePeriod {
-public:
-    explicit SolvePeriod(double nominal) : nominal_(nominal), mean_(nominal) {}
-
-    /// Notes that a solve begins.
-    /// \return [s] the smoothed time from one solve to the next
-    double begins(Clock::time_point now)
-    {
-        constexpr double kLongest = 0.5, kShare = 0.2; // [s] beyond it the hand was away; of the newest [1]
-        const double     dt = Seconds(now - last_).count();
-        last_               = now;
-        if (dt < kLongest) mean_ += kShare * (std::max(dt, nominal_) - mean_);
-        return mean_;
-    }
-
-private:
-    double            nominal_, mean_; ///< [s]
-    Clock::time_point last_{};
-};
-
 /// Runs the deformation: solves for the newest touch, once a period.
 void RealSession::deformationThread()
 {
     const double  nominal = 1 / parts_.scene.deformationRate;
     Metronome     metronome(std::chrono::duration_cast<std::chrono::nanoseconds>(Seconds(nominal)));
-    SolvePeriod   period(nominal);
+    SolvePace     pace(nominal);
     std::uint64_t done = 0;
     while (!shared_.over) {
         metronome.wait();
@@ -208,8 +187,9 @@ void RealSession::deformationThread()
         if (!touch || touch->sequence == done) continue;
         done                     = touch->sequence;
         const auto        began  = Clock::now();
-        DeformationAnswer answer = solved(*touch, period.begins(began));
+        DeformationAnswer answer = solved(*touch, pace.begins(Seconds(began.time_since_epoch()).count()));
         const double      took   = Seconds(Clock::now() - began).count();
+        pace.ended(took);
         if (!answer.update && !touch->touching) continue; // nothing is near
         slow_.solve.add(took);
         slow_.addPatch(answer.update.has_value(), answer.why);
@@ -222,10 +202,10 @@ void RealSession::deformationThread()
 }
 
 /// Solves one patch. If anything fails there is no patch for this touch, and the session goes on with the one before.
-DeformationAnswer RealSession::solved(const Touch& touch, double period)
+DeformationAnswer RealSession::solved(const Touch& touch, double lead)
 {
     try {
-        return parts_.solver(touch, period);
+        return parts_.solver(touch, lead);
     } catch (const std::exception& error) {
         return {{}, {}, error.what()};
     }

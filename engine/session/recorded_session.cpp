@@ -12,6 +12,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/json_object.h"
+#include "engine/force/governor.h"
 #include "engine/session/scene_keys.h"
 
 namespace palp {
@@ -207,6 +208,10 @@ RecordedSession readSession(const std::filesystem::path& folder)
         session.hand.model            = hand.text("model");
         session.hand.maximumForce     = hand.number("maximum_force_N");
         session.hand.maximumStiffness = hand.number("maximum_stiffness_N_per_m");
+        const GovernorSettings arm; // older recordings credited every device with this arm
+        session.hand.mass = hand.has("mass_kg") ? hand.number("mass_kg") : arm.mass;
+        session.hand.ownDamping =
+            hand.has("own_damping_N_s_per_m") ? hand.number("own_damping_N_s_per_m") : arm.ownDamping;
     }
     session.records = readColumns(folder, expected);
     return session;

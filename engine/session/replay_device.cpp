@@ -14,7 +14,7 @@ ReplayDevice::ReplayDevice(const std::vector<TickRecord>& records, const HapticD
     info_.isSimulation    = true;
 }
 
-HapticState ReplayDevice::exchange(const GovernedForce& /*force*/, double now) noexcept
+HapticState ReplayDevice::read(double now) noexcept
 {
     HapticState state;
     state.time = now;

@@ -20,7 +20,8 @@ public:
 
     void        open() override {}
     void        close() noexcept override {}
-    HapticState exchange(const GovernedForce& force, double now) noexcept override;
+    HapticState read(double now) noexcept override;
+    void        render(const GovernedForce& /*force*/) noexcept override {} ///< moves nothing
 
 private:
     const std::vector<TickRecord>& records_;

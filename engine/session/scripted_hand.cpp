@@ -11,7 +11,7 @@ ScriptedHand::ScriptedHand(const HandPath& hand) : hand_(hand)
     info_.isSimulation    = true;
 }
 
-HapticState ScriptedHand::exchange(const GovernedForce& /*force*/, double now) noexcept
+HapticState ScriptedHand::read(double now) noexcept
 {
     HapticState state;
     state.time     = now;

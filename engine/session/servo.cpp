@@ -13,45 +13,24 @@ std::uint32_t flag(SessionFlag which, bool set) noexcept
     return set ? static_cast<std::uint32_t>(which) : 0U;
 }
 
-/// Returns what the sampled spring at a cap takes of the arm's damping, K (T/2 + delay), with one tick of delay
-/// [N s/m].
-double spentDamping(double cap)
-{
-    return cap * 1.5e-3;
-}
-
-/// Returns the delay in ticks; with a thread of its own the proxy's answer is up to two more ticks old.
-int delayOf(SessionThreads threads)
-{
-    return threads == SessionThreads::paper ? 3 : 1;
-}
-
 /// Returns the lower of what the scene wants and the device can do; 0 in a device's list states nothing.
 double lower(double wanted, double possible)
 {
     return possible > 0 ? std::min(wanted, possible) : wanted;
 }
 
-/// Sets the governor. The longer the delay, the lower the cap at a period of 1 ms: the spring then spends what it does
-/// with a delay of one tick.
-GovernorSettings governorOf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads)
+/// Sets the governor. A device without force moves nothing, so nothing can swing: it is given what the simulated arm
+/// would be, whose figures are the defaults.
+GovernorSettings governorOf(const Scene& scene, const HapticDeviceInfo& limits)
 {
     GovernorSettings settings;
-    settings.maximumForce              = lower(scene.maxForce, limits.maximumForce);
-    settings.maximumStiffness          = lower(scene.stiffnessCap, limits.maximumStiffness);
-    settings.stiffnessAtOneMillisecond = settings.maximumStiffness;
-    settings.delayTicks                = delayOf(threads);
-    settings.creditedDamping           = spentDamping(settings.maximumStiffness);
-    return settings;
-}
-
-/// Sets the tank, which lives on what the cap leaves of an arm's 3.2 N s/m, less a reserve.
-EnergyTankSettings tankOf(const Scene& scene, const HapticDeviceInfo& limits)
-{
-    constexpr double   kArm = 2.5; // [N s/m] of 3.2
-    EnergyTankSettings settings;
-    const double       left = kArm - spentDamping(lower(scene.stiffnessCap, limits.maximumStiffness));
-    settings.damping        = std::clamp(left, 0.0, settings.damping);
+    settings.maximumForce     = lower(scene.maxForce, limits.maximumForce);
+    settings.maximumStiffness = lower(scene.stiffnessCap, limits.maximumStiffness);
+    if (limits.maximumForce > 0) {
+        settings.mass            = limits.mass;
+        settings.ownDamping      = limits.ownDamping;
+        settings.statedStiffness = lower(settings.statedStiffness, limits.maximumStiffness);
+    }
     return settings;
 }
 
@@ -75,11 +54,18 @@ const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip, const 
     return held_;
 }
 
-ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, SessionThreads threads,
-                     const HomogeneousLaw* first)
+double AnswerPeriod::add(std::uint64_t sequence, double time) noexcept
+{
+    if (sequence == sequence_) return period_;
+    if (sequence_ > 0 && sequence > sequence_ && time > time_) period_ = (time - time_) / double(sequence - sequence_);
+    sequence_ = sequence;
+    time_     = time;
+    return period_;
+}
+
+ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, const HomogeneousLaw* first)
     : law_(scene.patch.forceLaw), thickness_(scene.material.thickness), patchPeriod_(1 / scene.deformationRate),
-      compliance_(scene.complianceLaw, first), tank_(tankOf(scene, limits)),
-      governor_(governorOf(scene, limits, threads))
+      compliance_(scene.complianceLaw, first), governor_(governorOf(scene, limits))
 {
 }
 
@@ -98,7 +84,8 @@ ForceHalf::WantedForce ForceHalf::wantedForce(double stiffness, double dt, const
                                .normalSpeed     = along,
                                .tangentialSpeed = glm::length(tangent(hand.velocity)),
                                .dt              = dt,
-                               .drag            = -glm::dot(tangent(held.pull), tangent(way))});
+                               .drag            = -glm::dot(tangent(held.pull), tangent(way)),
+                               .spareDamping    = governor_.spareDamping()});
     result.force = result.tank.stiffness * held.pull;
     return result;
 }
@@ -158,11 +145,14 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     in.homed                 = hand.homed && hand.device == DeviceFault::none;
     in.inBox                 = hand.inBox;
     in.dt                    = now.dt;
-    in.loopPeriod            = now.loopPeriod;
     in.forceAge              = std::max(0.0, now.time - touch.time); // above 0 if the proxy has a thread of its own
     in.missedExchanges       = hand.missed;
     in.admittedEnergy        = want.tank.used;
     in.storedEnergy          = want.tank.stored;
+    in.stiffness             = want.tank.stiffness;
+    in.answerAge             = hand.answerAge;
+    in.sinceAnswer           = hand.sequence > 0 ? std::max(0.0, now.time - hand.answerTime) : 0;
+    in.exchangePeriod        = answers_.add(hand.sequence, hand.answerTime);
     const GovernorOutput out = governor_.step(in);
 
     TickRecord record;

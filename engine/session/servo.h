@@ -57,7 +57,11 @@ struct Hand {
     DeviceFault   device  = DeviceFault::none;
     std::uint32_t buttons = 0; ///< of the device, the lower 16
 
-    /// Packs all but position, velocity and missed into TickRecord::device; setBits() reads it back.
+    double        answerTime = 0; ///< [s] when the device's answer came
+    double        answerAge  = 0; ///< [s] of the position at that time
+    std::uint64_t sequence   = 0; ///< of the answer; 0: nothing is known of its time
+
+    /// Packs faults, flags and buttons into TickRecord::device; setBits() reads it back.
     [[nodiscard]] std::uint32_t bits() const noexcept
     {
         return static_cast<std::uint32_t>(device) | (homed ? kHomed : 0U) | (inBox ? kInBox : 0U) | buttons << 16U;
@@ -114,6 +118,19 @@ private:
     ProxyContact held_;
 };
 
+/// The time between two answers of a device.
+class AnswerPeriod {
+public:
+    /// Takes the newest answer, or the same one again.
+    /// \return [s] per answer from the one before to this one; 0: unknown
+    double add(std::uint64_t sequence, double time) noexcept;
+
+private:
+    std::uint64_t sequence_ = 0;
+    double        time_     = 0; ///< [s]
+    double        period_   = 0; ///< [s]
+};
+
 /// The second half of a tick: pull -> compliance -> stiffness -> tank -> governor -> force.
 /// \thread as ContactHalf
 class ForceHalf {
@@ -125,14 +142,12 @@ public:
 
     /// \param limits  of the device; they bound the values of the scene
     /// \param first   answers until there is a table, see ComplianceTracker; outlives this; null: nothing does
-    explicit ForceHalf(const Scene& scene, const HapticDeviceInfo& limits = {},
-                       SessionThreads threads = SessionThreads::servo, const HomogeneousLaw* first = nullptr);
+    explicit ForceHalf(const Scene& scene, const HapticDeviceInfo& limits = {}, const HomogeneousLaw* first = nullptr);
 
     /// The time of a tick, and its clock.
     struct TickTime {
-        double time;       ///< [s] of the session's clock
-        double dt;         ///< [s] since the last tick
-        double loopPeriod; ///< [s] measured, as a mean over some 0.1 s
+        double time; ///< [s] of the session's clock
+        double dt;   ///< [s] since the last tick
     };
 
     /// Runs one tick of the force.
@@ -159,6 +174,7 @@ private:
     ForceLaw          law_;
     double            thickness_;   ///< [m]
     double            patchPeriod_; ///< of the deformation [s]
+    AnswerPeriod      answers_;
     ComplianceTracker compliance_;
     LateralLean       lean_;
     EnergyTank        tank_;

@@ -20,7 +20,10 @@ struct DeviceFrame {
                 state.inBox,
                 state.missed,
                 state.fault,
-                state.buttons & 0xFFFFU};
+                state.buttons & 0xFFFFU,
+                state.time,
+                state.age,
+                state.sequence};
     }
 
     /// Converts a place of the scene into the device's frame [m].

@@ -14,6 +14,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kTick = 1e-3; ///< [s]
+constexpr double kLead = 1.5;  ///< [1] periods: a table is in use from one period after its touch to two
 
 double secondsSince(Clock::time_point start)
 {
@@ -41,7 +42,6 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
 {
     Servo                      servo(parts.object, parts.scene, parts.device.info(), parts.first);
     SessionSummary             summary;
-    GovernedForce              force;
     std::optional<PatchUpdate> inUse, underWay;
     ZeroAtLast                 zero(parts.device);
 
@@ -56,7 +56,7 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
             underWay.reset();
             if (const Touch& touch = servo.touch(); touch.sequence > 0) {
                 const auto        began  = Clock::now();
-                DeformationAnswer answer = parts.solver(touch, double(every) * kTick);
+                DeformationAnswer answer = parts.solver(touch, kLead * double(every) * kTick);
                 if (answer.update || touch.touching) {
                     summary.solve.add(secondsSince(began));
                     summary.addPatch(answer.update.has_value(), answer.why);
@@ -65,10 +65,10 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
             }
         }
         const double began  = threadSeconds();
-        const Hand   hand   = parts.frame.handOf(parts.device.exchange(force, time));
-        TickRecord   record = servo.tick({time, kTick, kTick}, hand, inUse ? &*inUse : nullptr);
-        force               = parts.frame.toDevice(servo.governor().force());
-        record.tickTime     = threadSeconds() - began;
+        const Hand   hand   = parts.frame.handOf(parts.device.read(time));
+        TickRecord   record = servo.tick({time, kTick}, hand, inUse ? &*inUse : nullptr);
+        parts.device.render(parts.frame.toDevice(servo.governor().force()));
+        record.tickTime = threadSeconds() - began;
         summary.add(record);
         if (onTick) onTick(record);
     }

@@ -58,9 +58,8 @@ struct Loop {
     Loop(const Law& stiffness, const SimulatedArmSettings& settings, const glm::dvec3& start)
         : arm(settings, start), law(stiffness)
     {
-        in.homed      = true;
-        in.dt         = kDt;
-        in.loopPeriod = kDt;
+        in.homed = true;
+        in.dt    = kDt;
     }
 
     /// The slope of what is rendered.

@@ -18,7 +18,7 @@ inline GovernedForce governed(const glm::dvec3& newtons)
     ForceGovernor governor;
     GovernorInput in;
     in.homed = in.inBox = true;
-    in.dt = in.loopPeriod = 1e-3;
+    in.dt               = 1e-3;
     for (int n = 0; n < 2000; ++n) {
         in.force = n < 20 ? glm::dvec3(0) : newtons; // small at first, or it waits
         governor.step(in);

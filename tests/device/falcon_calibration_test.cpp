@@ -59,15 +59,14 @@ struct Weighing {
     void tick(double& gain)
     {
         GovernorInput in;
-        in.force      = calibration.step(bench.state, bench.force, gain, 1e-3);
-        in.position   = bench.state.position;
-        in.velocity   = bench.state.velocity;
-        in.homed      = bench.state.homed;
-        in.inBox      = bench.state.inBox;
-        in.dt         = 1e-3;
-        in.loopPeriod = 1e-3;
-        gain          = governor.step(in).gain;
-        bench.force   = governor.force();
+        in.force    = calibration.step(bench.state, bench.force, gain, 1e-3);
+        in.position = bench.state.position;
+        in.velocity = bench.state.velocity;
+        in.homed    = bench.state.homed;
+        in.inBox    = bench.state.inBox;
+        in.dt       = 1e-3;
+        gain        = governor.step(in).gain;
+        bench.force = governor.force();
         bench.tick();
     }
 

@@ -12,7 +12,7 @@ namespace palp {
     ForceGovernor governor;
     GovernorInput in;
     in.homed = in.inBox = true;
-    in.dt = in.loopPeriod = 1e-3;
+    in.dt               = 1e-3;
     for (int n = 0; n < 1600; ++n) { // 10 ticks of calm, then 1.5 s
         governor.step(in);
     }

@@ -35,11 +35,11 @@ TEST(RecentMotion, TakesASlowClockAndLeavesOutATimeThatDoesNotAdvance)
     EXPECT_NEAR(motion.velocity().x, 0.1, 1e-12);
 }
 
-TEST(Ahead, IsTheMiddleOfTheTimeInWhichATableIsUsed)
+TEST(Ahead, IsALeadAheadForTheTableAndTheContactForTheOtherLaws)
 {
     const glm::dvec3 ahead = aheadOf(ComplianceLaw::table, {1, 2, 3}, {0.2, 0, -0.1}, 0.02);
-    EXPECT_NEAR(ahead.x, 1 + 1.5 * 0.02 * 0.2, 1e-15);
-    EXPECT_NEAR(ahead.z, 3 - 1.5 * 0.02 * 0.1, 1e-15);
+    EXPECT_NEAR(ahead.x, 1 + 0.02 * 0.2, 1e-15);
+    EXPECT_NEAR(ahead.z, 3 - 0.02 * 0.1, 1e-15);
     EXPECT_EQ(aheadOf(ComplianceLaw::hold, {1, 2, 3}, {0.2, 0, 0}, 0.02), glm::dvec3(1, 2, 3));
 }
 

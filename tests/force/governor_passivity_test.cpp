@@ -10,23 +10,46 @@ namespace {
 TEST(ForceGovernor, TheEnergyIsTheWorkOfTheForceThatActed)
 {
     for (int delay : {0, 1, 3}) {
-        GovernorSettings settings = strictObserver();
-        settings.delayTicks       = delay;
-        Servo servo(settings);
+        Servo servo(strictObserver());
+        servo.in.exchangePeriod = std::max(1, delay) * 1e-3;
+        servo.in.sinceAnswer    = delay == 0 ? 1e-3 : 0; // the next packet leaves now
         servo.pushing({0, 0, 2});
 
         servo.in.position.z = -1e-3; // the hand goes in against 2 N
         servo.in.force.z    = 1;
         EXPECT_NEAR(servo.tick().energy, 2e-3, 1e-15) << "1 N is sent only now";
-        for (int n = 0; n < delay; ++n) EXPECT_NEAR(servo.tick().energy, 2e-3, 1e-15) << "nothing moved";
+        const int later = delay + (delay == 0 ? 1 : 0); // the position of the next tick is still of before
+        for (int n = 0; n < later; ++n) EXPECT_NEAR(servo.tick().energy, 2e-3, 1e-15) << "nothing moved";
         servo.in.position.z = 0;
         EXPECT_NEAR(servo.tick().energy, 1e-3, 1e-15) << "1 N acts, delay " << delay;
-
-        servo.in.force.z = 2;
-        servo.tick();
-        servo.in.position.z = -1e-3;
-        EXPECT_NEAR(servo.tick().energy, delay == 0 ? 3e-3 : 2e-3, 1e-15) << "2 N acts at once or not yet";
     }
+}
+
+TEST(ForceGovernor, APositionIsOfTheTimeAtWhichItWasMeasured)
+{
+    Servo servo(strictObserver());
+    servo.in.exchangePeriod = 1e-3;
+    servo.in.answerAge      = 2e-3;
+    servo.pushing({0, 0, 2});
+    servo.in.force.z = 1;
+    servo.ticks(3); // 1 N has acted for a tick, but not yet where the position comes from
+    servo.in.position.z = -1e-3;
+    EXPECT_NEAR(servo.tick().energy, 2e-3, 1e-15);
+    servo.in.position.z = 0;
+    EXPECT_NEAR(servo.tick().energy, 1e-3, 1e-15);
+}
+
+TEST(ForceGovernor, TheForceThatActedWhileAnAnswerWasAwaitedIsAMean)
+{
+    Servo servo(strictObserver());
+    servo.in.exchangePeriod = 1e-3;
+    servo.pushing({0, 0, 2});
+    servo.in.force.z     = 1;
+    servo.in.sinceAnswer = 1e-3;
+    servo.tick(); // no answer this time; 1 N acts at once
+    servo.in.sinceAnswer = 0;
+    servo.in.position.z  = -1e-3;
+    EXPECT_NEAR(servo.tick().energy, 1.5e-3, 1e-12) << "2 N for a tick, then 1 N for a tick";
 }
 
 TEST(ForceGovernor, TheTanksEnergyAndTheArmsDampingAreCredited)

@@ -20,7 +20,7 @@ struct Servo {
     explicit Servo(const GovernorSettings& settings = {}) : governor(settings)
     {
         in.homed = in.inBox = true;
-        in.dt = in.loopPeriod = 1e-3;
+        in.dt               = 1e-3;
     }
 
     GovernorOutput tick() { return governor.step(in); }
@@ -64,7 +64,7 @@ inline void expectGoneIn20Ticks(Servo& servo, const std::string& what)
 inline GovernorSettings strictObserver()
 {
     GovernorSettings settings;
-    settings.creditedDamping = 0;
+    settings.ownDamping = 0;
     return settings;
 }
 

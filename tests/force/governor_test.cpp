@@ -461,30 +461,118 @@ TEST(ForceGovernorOrder, TheSlewComesBeforeTheEngagement)
 
 // ---- the cap, reasons, settings
 
-TEST(ForceGovernor, TheStiffnessCapFollowsTheLoopPeriod)
+TEST(ForceGovernor, TheStiffnessCapIsWhatTheArmsDampingBearsWithTheLagOfTheLoop)
 {
-    Servo      servo;
-    const auto cap = [&](double period) {
-        servo.in.loopPeriod = period;
-        servo.tick();
+    GovernorSettings settings;
+    settings.maximumStiffness = 5000;
+    EXPECT_NEAR(ForceGovernor(settings).stiffnessCap(), 0.8 * 3.2 / 1.5e-3, 1e-9) << "before the first tick";
+    const auto cap = [&](double tick, double period, double age) {
+        Servo servo(settings);
+        servo.in.dt             = tick;
+        servo.in.exchangePeriod = period;
+        servo.in.answerAge      = age;
+        servo.in.sinceAnswer    = period / 2; // what is waited before a tick is not waited after it
+        servo.ticks(100);
         return servo.governor.stiffnessCap();
     };
-    EXPECT_EQ(ForceGovernor().stiffnessCap(), 1000) << "before the first tick: the nominal period";
-    EXPECT_NEAR(cap(1e-3), 1000, 1e-9);
-    EXPECT_NEAR(cap(2e-3), 500, 1e-9);
-    EXPECT_NEAR(cap(4e-3), 250, 1e-9);
-    EXPECT_EQ(cap(0.5e-3), 1000) << "the maximum";
-    for (double senseless : {0.0, -1e-3, kNan, kInfinity}) EXPECT_EQ(cap(senseless), 0) << senseless;
+    EXPECT_NEAR(cap(1e-3, 0, 0), 2.56 / 1.5e-3, 1e-9) << "an answer a tick";
+    EXPECT_NEAR(cap(2e-3, 0, 0), 2.56 / 3e-3, 1e-9);
+    EXPECT_NEAR(cap(1e-3, 1e-3, 1e-3), 2.56 / 2.5e-3, 1e-9);
+    EXPECT_NEAR(cap(1e-3, 4e-3, 4e-3), 2.56 / 10e-3, 1e-9) << "the force is held until the next packet";
+    EXPECT_NEAR(cap(1e-3, 0.5e-3, 0.5e-3), 2.56 / 1.5e-3, 1e-9) << "the force is held until the next tick";
+    EXPECT_EQ(ForceGovernor().stiffnessCap(), 1000) << "the maximum";
+}
 
-    GovernorSettings late;
-    late.delayTicks = 2;
-    EXPECT_NEAR(ForceGovernor(late).stiffnessCap(), 600, 1e-9) << "1.5 of 2.5 ms";
-    late.delayTicks       = 1;
-    late.maximumStiffness = 5000;
-    Servo fast(late);
-    fast.in.loopPeriod = 0.5e-3;
-    fast.tick();
-    EXPECT_NEAR(fast.governor.stiffnessCap(), 2000, 1e-9);
+TEST(ForceGovernor, AForceOfAnOlderPositionIsLagToo)
+{
+    Servo servo;
+    servo.in.forceAge = 2e-3; // a proxy with a thread of its own
+    servo.ticks(100);
+    EXPECT_NEAR(servo.governor.stiffnessCap(), 2.56 / 3.5e-3, 1e-9);
+}
+
+TEST(ForceGovernor, AnArmOfUnknownDampingIsCreditedNothingAndCappedByWhatItsMakerStates)
+{
+    GovernorSettings settings;
+    settings.ownDamping      = 0;
+    settings.statedStiffness = 800;
+    Servo servo(settings);
+    servo.in.answerAge = 5e-3; // whoever states a stiffness has measured it with that age
+    servo.ticks(100);
+    EXPECT_NEAR(servo.governor.stiffnessCap(), 800, 1e-9);
+    EXPECT_EQ(servo.governor.spareDamping(), 0);
+    servo.in.exchangePeriod = 3e-3;
+    servo.ticks(100);
+    EXPECT_NEAR(servo.governor.stiffnessCap(), 800 * 1.5 / 4.5, 1e-9);
+
+    servo.in.answerAge = servo.in.exchangePeriod = 0;
+    servo.pushing({0, 0, 1});
+    servo.in.velocity = {0.1, 0, 0};
+    EXPECT_EQ(servo.tick().energy, 0);
+}
+
+TEST(ForceGovernor, WhatTheSpringLeavesOfTheDampingIsSpare)
+{
+    Servo servo;
+    servo.ticks(100);
+    EXPECT_NEAR(servo.governor.spareDamping(), 2.56 - 1000 * 1.5e-3, 1e-12);
+    servo.in.exchangePeriod = 2e-3;
+    servo.in.answerAge      = 2e-3;
+    servo.ticks(100);
+    EXPECT_NEAR(servo.governor.spareDamping(), 0, 1e-12) << "the cap takes it all";
+}
+
+// ---- late ticks
+
+TEST(ForceGovernor, OneLateTickScalesItsOwnForceAndLeavesTheCap)
+{
+    for (double late : {5e-3, 10e-3, 20e-3, 50e-3}) {
+        Servo servo;
+        servo.in.stiffness = 866;
+        servo.pushing({0, 0, 2});
+        servo.in.dt = late;
+
+        const GovernorOutput out = servo.tick();
+
+        EXPECT_NEAR(out.force.z, 2 * 2.56 / (1.5 * late) / 866, kRounding) << "as a loop that is always so late bears";
+        EXPECT_TRUE(out.did(GovernorAction::late));
+        EXPECT_EQ(servo.governor.stiffnessCap(), 1000) << late;
+        servo.in.dt = 1e-3;
+        EXPECT_EQ(servo.ticks(2).force.z, 2) << "1 N/ms";
+        EXPECT_EQ(servo.tick().actions, 0U);
+    }
+}
+
+TEST(ForceGovernor, ASoftSpringIsNotScaledByALateTick)
+{
+    Servo servo;
+    servo.in.stiffness = 300; // at 5 ms the arm bears 341
+    servo.pushing({0, 0, 2});
+    servo.in.dt              = 5e-3;
+    const GovernorOutput out = servo.tick();
+    EXPECT_EQ(out.force.z, 2);
+    EXPECT_EQ(out.actions, 0U);
+}
+
+TEST(ForceGovernor, ALoopThatStaysSlowIsCappedWithinATenthOfASecond)
+{
+    Servo servo;
+    servo.ticks(100);
+    servo.in.dt = 3e-3;
+    servo.ticks(51);
+    EXPECT_NEAR(servo.governor.stiffnessCap(), 2.56 / 4.5e-3, 1e-9) << "the median of 100 ticks";
+}
+
+TEST(ForceGovernor, ADeviceThatFallsSilentIsScaledWhileItIs)
+{
+    Servo servo;
+    servo.in.stiffness      = 866;
+    servo.in.exchangePeriod = 1e-3;
+    servo.pushing({0, 0, 2});
+    servo.in.sinceAnswer = 8e-3;
+    EXPECT_NEAR(servo.ticks(2).force.z, 2 * 2.56 / 12e-3 / 866, kRounding) << "1 N/ms";
+    servo.in.sinceAnswer = 0;
+    EXPECT_EQ(servo.ticks(2).force.z, 2);
 }
 
 TEST(ForceGovernor, EveryFaultHasItsOwnName)
@@ -533,7 +621,10 @@ TEST(ForceGovernor, StaysFiniteAndBoundedOnHostileInput)
             in.velocity[axis] = spoiled(0.2 * unit(random));
         }
         in.dt              = spoiled(1e-3 * (1 + 0.5 * unit(random)));
-        in.loopPeriod      = spoiled(1e-3);
+        in.exchangePeriod  = spoiled(1e-3);
+        in.answerAge       = spoiled(1e-3);
+        in.sinceAnswer     = spoiled(1e-3);
+        in.stiffness       = spoiled(800);
         in.forceAge        = spoiled(5e-3 * std::abs(unit(random)));
         in.admittedEnergy  = spoiled(1e-6);
         in.storedEnergy    = spoiled(1e-3);

@@ -240,8 +240,9 @@ TEST(DeformWithTable, AHandThatSlidesOverAHomogeneousEllipsoidFeelsNothing)
         motion.add(time, hand);
         if (time >= double(sequence) * kPeriod) {
             published          = coming;
-            const Contact next = {aheadOf(ComplianceLaw::table, hand, motion.velocity(), kPeriod), {0, 0, 1}, true};
-            const auto    both = deformWithTable(object, next, settings, lattice, solver, carried);
+            const Contact next = {
+                aheadOf(ComplianceLaw::table, hand, motion.velocity(), 1.5 * kPeriod), {0, 0, 1}, true};
+            const auto both = deformWithTable(object, next, settings, lattice, solver, carried);
             ASSERT_TRUE(both.table.has_value());
             carried          = both.patch.chart.frame;
             coming           = both.table;

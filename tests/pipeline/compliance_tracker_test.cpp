@@ -135,7 +135,7 @@ TEST(ComplianceTracker, OnARoundObjectOfRandomPointsTheForceFollowsTheObject)
             motion.add(time, hand);
             if (time >= double(sequence) / rate) {
                 published        = coming;
-                const auto both  = patchAt(aheadOf(ComplianceLaw::table, hand, motion.velocity(), 1 / rate), lattice);
+                const auto both  = patchAt(aheadOf(ComplianceLaw::table, hand, motion.velocity(), 1.5 / rate), lattice);
                 carried          = both.patch.chart.frame;
                 coming           = both.table;
                 coming->sequence = ++sequence;

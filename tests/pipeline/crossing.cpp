@@ -143,7 +143,7 @@ Crossed crossed(const Sheet& sheet, const Crossing& crossing, ComplianceLaw law,
         motion.add(time, contact);
         if (time >= double(sequence) * period) { // the thread is done, publishes, and takes the newest contact
             published       = coming;
-            coming          = sheet.tableAt(aheadOf(law, contact, motion.velocity(), period).x, side);
+            coming          = sheet.tableAt(aheadOf(law, contact, motion.velocity(), 1.5 * period).x, side);
             coming.sequence = ++sequence;
             coming.time     = time;
         }

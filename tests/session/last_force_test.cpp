@@ -19,15 +19,14 @@ class Listening : public ScriptedHand {
 public:
     using ScriptedHand::ScriptedHand;
 
-    HapticState exchange(const GovernedForce& force, double now) noexcept override
+    void render(const GovernedForce& force) noexcept override
     {
         last = glm::length(force.newtons());
         if (last > 0) ++pushed;
-        return ScriptedHand::exchange(force, now);
     }
 
     double last   = 0; ///< [N]
-    int    pushed = 0; ///< exchanges with a force
+    int    pushed = 0; ///< ticks with a force
 };
 
 constexpr double kPushes = 0.2; // [N] well below what the sheet answers in the end
@@ -88,9 +87,9 @@ TEST_F(LastForce, IsZeroWhenAVirtualSessionIsStopped)
 TEST_F(LastForce, IsZeroWhenTheSolverOfAVirtualSessionThrows)
 {
     const PatchSolver solves = solver_;
-    solver_                  = [&](const Touch& touch, double period) {
+    solver_                  = [&](const Touch& touch, double lead) {
         if (device_.pushed > 100) throw std::runtime_error("lost");
-        return solves(touch, period);
+        return solves(touch, lead);
     };
     EXPECT_THROW(runVirtual(parts(), 1000, {}), std::runtime_error);
     expectZeroAfterAForce();

@@ -170,16 +170,16 @@ TEST(Servo, TheFirstButtonHeldDownResetsAFault)
     const SheetSession session(sheetScene(kWart));
     Servo              servo(session.object, session.scene);
     Hand               hand{session.hand.position(0), {}};
-    (void)servo.tick({0, 1e-3, 1e-3}, hand, nullptr);
+    (void)servo.tick({0, 1e-3}, hand, nullptr);
     hand.velocity = {std::nan(""), 0, 0};
-    (void)servo.tick({1e-3, 1e-3, 1e-3}, hand, nullptr);
+    (void)servo.tick({1e-3, 1e-3}, hand, nullptr);
     hand.velocity = {};
-    (void)servo.tick({2e-3, 1e-3, 1e-3}, hand, nullptr);
+    (void)servo.tick({2e-3, 1e-3}, hand, nullptr);
     EXPECT_EQ(servo.governor().fault(), GovernorFault::velocityNotFinite) << "it stays";
     hand.buttons = ForceHalf::kOperatorsButton;
     for (int n = 0; n < ForceHalf::kPressTicks; ++n) {
         EXPECT_EQ(servo.governor().fault(), GovernorFault::velocityNotFinite) << "a glitch is no press: " << n;
-        (void)servo.tick({3e-3 + 1e-3 * n, 1e-3, 1e-3}, hand, nullptr);
+        (void)servo.tick({3e-3 + 1e-3 * n, 1e-3}, hand, nullptr);
     }
     EXPECT_EQ(servo.governor().fault(), GovernorFault::none);
 }
@@ -224,7 +224,7 @@ TEST(Servo, ATickAllocatesNothing)
         const double     time   = 1e-3 * n;
         const glm::dvec3 hip    = session.hand.position(time);
         const auto       before = allocationsOfThisThread();
-        (void)servo.tick({time, 1e-3, 1e-3}, {hip, {}}, news ? &*news : nullptr);
+        (void)servo.tick({time, 1e-3}, {hip, {}}, news ? &*news : nullptr);
         if (n > 0) allocated += allocationsOfThisThread() - before;
         if (n % 100 == 99 && servo.touch().touching) news = deformation.solve(servo.touch(), 0.1).update;
     }
@@ -245,7 +245,7 @@ TEST(Servo, AStalledDeformationIsFlaggedAndTheForceStaysSmooth)
     for (int n = 0; n < 6000; ++n) { // one patch at the first touch, then none for more than five seconds
         const double     time   = 1e-3 * n;
         const glm::dvec3 hip    = session.hand.position(std::min(time, 0.055));
-        const auto       record = servo.tick({time, 1e-3, 1e-3}, {hip, {}}, news ? &*news : nullptr);
+        const auto       record = servo.tick({time, 1e-3}, {hip, {}}, news ? &*news : nullptr);
         if (!news && servo.touch().touching) news = deformation.solve(servo.touch(), 1.0 / 60).update;
         ASSERT_TRUE(std::isfinite(glm::length(record.force)));
         EXPECT_LE(glm::length(record.force - last), 1 + 1e-9);
@@ -261,9 +261,9 @@ TEST(Servo, AHandThatIsNotANumberEndsAtZeroForceWithAReason)
 {
     const SheetSession session(sheetScene(kWart));
     Servo              servo(session.object, session.scene);
-    (void)servo.tick({0, 1e-3, 1e-3}, {session.hand.position(0), {}}, nullptr);
+    (void)servo.tick({0, 1e-3}, {session.hand.position(0), {}}, nullptr);
     TickRecord record;
-    for (int n = 1; n <= 20; ++n) record = servo.tick({1e-3 * n, 1e-3, 1e-3}, {glm::dvec3(std::nan("")), {}}, nullptr);
+    for (int n = 1; n <= 20; ++n) record = servo.tick({1e-3 * n, 1e-3}, {glm::dvec3(std::nan("")), {}}, nullptr);
     EXPECT_EQ(record.force, glm::dvec3(0));
     EXPECT_EQ(record.faults & 0xFFU, static_cast<std::uint32_t>(GovernorFault::positionNotFinite));
 }

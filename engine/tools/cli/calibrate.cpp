@@ -120,12 +120,11 @@ void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrati
     GovernedForce            force;
     Stage                    told  = Stage::done;
     const double             begin = bench.wait();
-    for (double last = begin, gain = 0, ill = 0, period = 1e-3; calibration.stage() < Stage::done;) {
+    for (double last = begin, gain = 0, ill = 0; calibration.stage() < Stage::done;) {
         if (stop) throw Error("the calibration was interrupted; the force is off");
         if (calibration.stage() != told) tell(o, told = calibration.stage());
         const double now = bench.wait(), dt = now - last;
         last = now;
-        period += (dt - period) * std::min(1.0, dt / 0.1);
         if (bench.act) bench.act(gain, told);
         const HapticState state = bench.device.exchange(force, now);
         GovernorInput     in;
@@ -135,7 +134,6 @@ void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrati
         in.homed           = state.homed && state.fault == DeviceFault::none;
         in.inBox           = state.inBox;
         in.dt              = dt;
-        in.loopPeriod      = period;
         in.missedExchanges = state.missed;
         const auto out     = governor.step(in);
         ill                = state.fault == DeviceFault::none ? 0 : ill + dt;

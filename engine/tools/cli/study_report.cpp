@@ -12,6 +12,7 @@
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/counted.h"
 #include "engine/tools/cli/study_run.h"
+#include "engine/tools/paper/perception.h"
 #include "engine/tools/study/study_analysis.h"
 
 namespace palp {
@@ -97,7 +98,8 @@ Json jsonOf(const AnswerSummary& s)
         all["rating"] = {{"mean", *s.mean},
                          {"median", *s.median},
                          {"mean_bootstrap_95", s.meanInterval ? listOf(*s.meanInterval) : Json()}};
-    all["prediction"] = {{"noticeable_steps", orNull(s.steps)}, {"right", orNull(s.predicted)}, {"weber", 0.07}};
+    all["prediction"] = {
+        {"noticeable_steps", orNull(s.steps)}, {"right", orNull(s.predicted)}, {"weber", report::kRigidHandleWeber}};
     return all;
 }
 
@@ -133,7 +135,8 @@ void printText(const AnswerSummary& s)
     if (s.right) std::cout << "  right: " << percent(*s.right) << "\n";
     if (s.predicted)
         std::cout << "  predicted, not measured: " << std::lround(100 * *s.predicted)
-                  << " % right, J = " << decimals(*s.steps) << " steps of 7 %\n";
+                  << " % right, J = " << decimals(*s.steps) << " steps of "
+                  << std::lround(100 * report::kRigidHandleWeber) << " %\n";
 }
 
 } // namespace

@@ -58,12 +58,12 @@ void Stage::takePaint()
 
 PatchSolver Stage::solver()
 {
-    return [this](const Touch& touch, double period) {
+    return [this](const Touch& touch, double lead) {
         if (fresh_.take()) {
             const auto before = std::exchange(solved_, *fresh_.held()); // repaint() looks at it once more
             deformation_->repaint(*solved_);
         }
-        return deformation_->solve(touch, period);
+        return deformation_->solve(touch, lead);
     };
 }
 

@@ -155,13 +155,13 @@ void TouchSession::noteRealTime(std::string_view warning)
 /// Returns the stage's solver; a patch that it cannot solve is reported to the window's thread.
 PatchSolver TouchSession::solver()
 {
-    return [this, solve = stage_->solver()](const Touch& touch, double period) {
+    return [this, solve = stage_->solver()](const Touch& touch, double lead) {
         const auto note = [this](const std::string& why) {
             unsolved_.draft() = why;
             unsolved_.publish();
         };
         try {
-            DeformationAnswer answer = solve(touch, period);
+            DeformationAnswer answer = solve(touch, lead);
             note(answer.update ? "" : answer.why);
             return answer;
         } catch (const std::exception& error) {

@@ -12,6 +12,12 @@ namespace palp::report {
 ///         the same, 0.22 where force and work give no cue), Jones & Hunter 1990 (0.23)
 inline constexpr std::array<double, 3> kWeberFractions = {0.07, 0.15, 0.22};
 
+/// The one of a person who feels through a rigid handle, as with every device of ours: the surface's dent, which a bare
+/// finger sees in its own skin, gives no cue.
+/// \source Bergmann Tiest & Kappers 2009, "Cues for haptic perception of compliance": without that cue thresholds are
+///         more than three times as high
+inline constexpr double kRigidHandleWeber = kWeberFractions.back();
+
 /// Returns J, the number of just noticeable steps between two stiffnesses, |ln(a/b)| / ln(1 + W) [1]. Below 1 most
 /// people notice no difference.
 /// \param a, b   [N/m], > 0

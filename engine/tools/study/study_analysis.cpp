@@ -104,7 +104,7 @@ AnswerSummary finished(const Group& group, const Stiffnesses& stiffnesses)
     }
     const auto a = stiffnesses.find(group.first), b = stiffnesses.find(group.second);
     if (!group.second.empty() && s.right && a != stiffnesses.end() && b != stiffnesses.end()) {
-        s.steps     = report::noticeableSteps(a->second, b->second, report::kWeberFractions.front());
+        s.steps     = report::noticeableSteps(a->second, b->second, report::kRigidHandleWeber);
         s.predicted = report::rightAnswers(*s.steps);
     }
     return s;
@@ -162,7 +162,7 @@ std::string analysisSvg(const std::vector<AnswerSummary>& summaries)
         return [=](SvgDrawing& drawing, glm::dvec2 at) { drawSymbol(drawing, symbol, at, kSymbol, colour); };
     };
     drawLegend(svg,
-               {{"answered", dot(Symbol::circle, ink)}, {"predicted for pairs, W = 0.07", dot(Symbol::diamond, other)}},
+               {{"answered", dot(Symbol::circle, ink)}, {"predicted for pairs, W = 0.22", dot(Symbol::diamond, other)}},
                {14, 36}, 600);
     for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
         svg.line({x(share), kTop}, {x(share), end}, {"#e4e4e4", 1});

@@ -37,7 +37,8 @@ struct AnswerSummary {
     std::optional<Share>  right;          ///< of right answers, if the question has one
     std::optional<double> mean, median;   ///< of ratings, 1 to 5 [1]
     std::optional<Interval> meanInterval; ///< 95 %; empty with a single participant
-    std::optional<double>   steps, predicted; ///< J and the share of right answers of a pair, W = 0.07: a prediction
+    std::optional<double>   steps,
+        predicted; ///< J and the share of right answers of a pair: a prediction for a rigid handle
 };
 
 /// The felt stiffness per condition, where it is known [N/m].

@@ -130,7 +130,7 @@ cut -d, -f1-3 study/P02/trials.csv >columns.txt
 printf 'participant,trial,block\nP02,1,1\nP02,2,1\nP02,3,2\n' | cmp -s - columns.txt && pass || complain "trials lost or repeated after a kill: $(cat study/P02/trials.csv)"
 : >input
 good 'analysed' study --analyse study --plot shares.svg --json
-for word in '"participants": 2' '"trials": 6' '"wilson_95"' '"noticeable_steps"' '"mean_bootstrap_95"'; do holds "$word"; done
+for word in '"participants": 2' '"trials": 6' '"weber": 0.22' '"wilson_95"' '"noticeable_steps"' '"mean_bootstrap_95"'; do holds "$word"; done
 good 'in words' study --analyse study
 holds 'predicted, not measured'
 grep -q 'share of trials' shares.svg && pass || complain 'the plot has no axis'

@@ -66,11 +66,15 @@ public:
     [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }
     void                                  open() override {}
     void                                  close() noexcept override {}
-    HapticState                           exchange(const GovernedForce& force, double now) noexcept override
+    void                                  render(const GovernedForce& force) noexcept override
     {
         last = glm::length(force.newtons());
         most = std::max<double>(most, last);
-        if (now < 2e-3) first = std::max<double>(first, last); // of a session: its clock begins anew
+        if (now_ < 1e-3) first = std::max<double>(first, last); // of a session: its clock begins anew
+    }
+    HapticState read(double now) noexcept override
+    {
+        now_ = now;
         HapticState state;
         state.time     = now;
         state.sequence = ++sequence_;
@@ -81,11 +85,12 @@ public:
         return state;
     }
     std::atomic<double> last = 0, most = 0,
-                        first = 0; ///< of the newest tick, of all, of the first two of any session [N]
+                        first = 0; ///< of the newest tick, of all, of the first of any session [N]
 
 private:
     HapticDeviceInfo info_;
     std::uint64_t    sequence_ = 0;
+    double           now_      = 0; ///< [s]
 };
 
 /// What a user does: steps one after the other, each once the one before has come to pass.

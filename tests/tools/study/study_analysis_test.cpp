@@ -86,13 +86,13 @@ TEST(Analysis, PairsInEitherOrderAreOneAndThePredictionStandsBeside)
                                rowOf("P01", "two-alternative", "stiff", "second", false, "soft"),
                                rowOf("P01", "two-alternative", "stiff", "first", true, "soft")};
 
-    const auto all = analyse(rows, {{"soft", 400}, {"stiff", 428}});
+    const auto all = analyse(rows, {{"soft", 400}, {"stiff", 488}});
 
     ASSERT_EQ(all.size(), 1u);
     EXPECT_EQ(all[0].what, "soft / stiff");
     EXPECT_EQ(all[0].right->k, 2u);
     EXPECT_EQ(all[0].right->n, 3u);
-    EXPECT_NEAR(*all[0].steps, 1, 1e-12) << "7 % are one step";
+    EXPECT_NEAR(*all[0].steps, 1, 1e-12) << "22 % are one step through a handle";
     EXPECT_NEAR(*all[0].predicted, 0.75, 1e-12) << "which is told right in three of four";
     EXPECT_FALSE(analyse(rows, {{"soft", 400}})[0].predicted);
 }
