@@ -193,7 +193,7 @@ class Servo {
 public:
     Servo(const SoftObject& object, const Scene& scene, const HapticDeviceInfo& limits = {},
           const HomogeneousLaw* first = nullptr)
-        : contact_(object, scene), force_(scene, limits, SessionThreads::servo, first)
+        : contact_(object, scene), force_(scene, limits, first)
     {
     }
 
