@@ -230,10 +230,14 @@ TEST(Servo, TheLagIsMeasuredFromTheDevicesAnswers)
 
 TEST(Servo, OnlyADeviceThatStatesItsDampingIsCreditedWithIt)
 {
-    const SheetSession     session(sheetScene(kWart));
-    const HapticDeviceInfo unknown{.maximumForce = 5, .maximumStiffness = 600};
-    const HapticDeviceInfo known{.maximumForce = 5, .maximumStiffness = 600, .mass = 0.1, .ownDamping = 0.2};
-    const ForceHalf        first(session.scene, unknown), second(session.scene, known), none(session.scene);
+    const SheetSession session(sheetScene(kWart));
+    HapticDeviceInfo   unknown;
+    unknown.maximumForce     = 5;
+    unknown.maximumStiffness = 600;
+    HapticDeviceInfo known   = unknown;
+    known.mass               = 0.1;
+    known.ownDamping         = 0.2;
+    const ForceHalf first(session.scene, unknown), second(session.scene, known), none(session.scene);
     EXPECT_EQ(first.governor().settings().ownDamping, 0);
     EXPECT_EQ(first.governor().stiffnessCap(), 600) << "what its maker states";
     EXPECT_NEAR(second.governor().stiffnessCap(), 0.8 * 0.2 / 1.5e-3, 1e-9) << "less than it states";
