@@ -15,7 +15,8 @@ constexpr std::uint8_t kEnable = 1, kHome = 2;     // flags of a command
 constexpr std::size_t  kChecked = kBridgeSize - 2; // [byte] before the checksum
 
 constexpr double kMicro = 1e-6, kMilli = 1e-3, kTenthOfMilli = 1e-4; // steps of fields
-constexpr double kUnit = 1.0 / 32767;                                // of a quaternion's parts
+constexpr double kFiftieth = 0.02;                                   // [N s/m] up to 5.1
+constexpr double kUnit     = 1.0 / 32767;                            // of a quaternion's parts
 
 /// Writes fields one after the other, low byte first.
 class Writer {
@@ -130,6 +131,7 @@ BridgeBytes encode(const BridgeAnswer& answer) noexcept
     out.put<std::uint16_t>(answer.maximumStiffness, 1);
     out.put<std::uint16_t>(answer.maximumDamping, kMilli);
     out.put(std::uint8_t(std::min(answer.buttonCount, 32U)));
+    out.put<std::uint8_t>(answer.ownDamping, kFiftieth);
     return out.done();
 }
 
@@ -165,6 +167,7 @@ BridgeVerdict decode(std::span<const std::uint8_t> report, BridgeAnswer& out) no
     answer.maximumStiffness = in.get<std::uint16_t>();
     answer.maximumDamping   = in.get<std::uint16_t>(kMilli);
     answer.buttonCount      = std::min<unsigned>(in.get<std::uint8_t>(), 32);
+    answer.ownDamping       = in.get<std::uint8_t>(kFiftieth); // 0 in version 1.0
     if (answer.has(BridgeFlag::rotates)) {
         const glm::dquat turn(w, x, y, z);
         if (glm::length(turn) < 0.5) return BridgeVerdict::damaged; // not a unit quaternion: the firmware left it empty

@@ -14,7 +14,7 @@ namespace palp {
 inline constexpr std::uint16_t kBridgeUsagePage = 0xFF00, kBridgeUsage = 0x0050; ///< by which a bridge is found
 inline constexpr std::size_t   kBridgeSize  = 64; ///< [byte] including the report's number: one packet at full speed
 inline constexpr unsigned      kBridgeMajor = 1;  ///< 0 to 15: another version has other bytes
-inline constexpr unsigned      kBridgeMinor = 0;  ///< 0 to 15: a later version only uses reserved bytes
+inline constexpr unsigned      kBridgeMinor = 1;  ///< 0 to 15: a later version only uses reserved bytes
 
 using BridgeBytes = std::array<std::uint8_t, kBridgeSize>;
 
@@ -56,6 +56,7 @@ struct BridgeAnswer {
     double   maximumStiffness = 0; ///< [N/m] in steps of 1
     double   maximumDamping   = 0; ///< [N s/m] in steps of 1e-3
     unsigned buttonCount      = 0; ///< at most 32
+    double   ownDamping       = 0; ///< [N s/m] of the arm without its motors, in steps of 0.02; 0: unknown
 
     [[nodiscard]] bool has(BridgeFlag flag) const noexcept { return (flags & std::uint16_t(flag)) != 0; }
 };

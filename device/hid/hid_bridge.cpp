@@ -107,6 +107,7 @@ void HidBridgeDevice::describe(const BridgeAnswer& answer)
     info_.maximumForce     = answer.maximumForce;
     info_.maximumStiffness = answer.maximumStiffness;
     info_.maximumDamping   = answer.maximumDamping;
+    info_.ownDamping       = answer.ownDamping;
     info_.buttons          = answer.buttonCount;
     info_.needsHoming      = answer.has(BridgeFlag::needsHoming);
     info_.rotates          = answer.has(BridgeFlag::rotates);

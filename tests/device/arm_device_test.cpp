@@ -101,5 +101,26 @@ TEST(ArmDevice, OpensAtItsStart)
     EXPECT_NEAR(device.exchange({}, 7).position.x, 0.0096, 1e-12) << "200 encoder steps of 48 um; rounding";
 }
 
+TEST(ArmDevice, SaysWhatItsArmIsAndHowOldItsPositionsAre)
+{
+    for (const auto& [delay, age] : {std::pair{0, 0.0}, {1, 0.0}, {3, 2e-3}}) { // the tick's own delay is the servo's
+        ArmDevice device({.mass = 0.2, .damping = 0.7, .delayTicks = delay});
+        EXPECT_EQ(device.info().mass, 0.2);
+        EXPECT_EQ(device.info().ownDamping, 0.7);
+        device.open();
+        device.read(0);
+        EXPECT_NEAR(device.read(kTick).age, age, 1e-12);
+    }
+}
+
+TEST(ArmDevice, WithoutADelayAForceActsFromItsTickOn)
+{
+    ArmDevice device({.encoderStep = 0, .delayTicks = 0});
+    device.open();
+    device.read(0);
+    device.render(governed({1, 0, 0}));
+    EXPECT_NEAR(device.read(kTick).position.x, 0.5 / 0.46 * kTick * kTick, 1e-8) << "damping takes 0.3 %";
+}
+
 } // namespace
 } // namespace palp

@@ -95,6 +95,15 @@ TEST(HeldForce, IsHeldThenFallsToZero)
     EXPECT_EQ(heldShare(1e9), 0);
 }
 
+TEST(FalconLoop, APositionIsAsOldAsItsPacket)
+{
+    LoopBench    bench;
+    const double before = bench.loop->now();
+    const double age    = bench.run(1, {}).age;
+    EXPECT_NEAR(age, bench.loop->now() - before, 1e-9) << "one packet, one answer";
+    EXPECT_GT(age, 0.4e-3) << "two wires and two transfers";
+}
+
 TEST(FalconLoop, AServoThatStopsLeavesNoForceAfter25msAndAnExchange)
 {
     LoopBench     bench;
@@ -117,7 +126,7 @@ TEST(FalconLoop, AServoThatStopsLeavesNoForceAfter25msAndAnExchange)
 
     std::printf("  motors at zero %.1f ms after the last request\n", gone * 1e3);
     EXPECT_LE(gone, 25e-3 + 1.2e-3) << "an exchange: the timer's 1 ms and the wires";
-    request.share = 1; // it is back
+    request.share = 1;                       // it is back
     for (int last = 0, n = 0; n < 60; ++n) { // 0.5 ms each
         bench.run(1, request);
         EXPECT_LE(bench.pushes() - last, full * 0.06) << "1 ms of 20, and rounding";

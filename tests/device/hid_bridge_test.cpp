@@ -58,9 +58,27 @@ TEST_F(Bridge, SaysWhatItIs)
     bridge.open();
     EXPECT_NEAR(bridge.info().workspaceRadius, 0.05, kStep);
     EXPECT_NEAR(bridge.info().maximumForce, 4, kStep);
+    EXPECT_EQ(bridge.info().mass, 0) << "unknown, since the report has no field for it";
     EXPECT_EQ(bridge.info().buttons, 2U);
     EXPECT_FALSE(bridge.info().isSimulation);
     EXPECT_FALSE(firmware.commands().at(0).enable) << "the first command says zero";
+}
+
+TEST_F(Bridge, ItsOwnDampingIsKnownIfItSaysSo)
+{
+    bridge.open();
+    EXPECT_EQ(bridge.info().ownDamping, 0) << "unknown";
+    bridge.close();
+    firmware.answer.ownDamping = 0.4;
+    firmware.tick(kTick);
+    bridge.open();
+    EXPECT_NEAR(bridge.info().ownDamping, 0.4, kStep);
+}
+
+TEST_F(Bridge, ItsPositionsAreAsOldAsUsbMakesThem)
+{
+    bridge.open();
+    EXPECT_EQ(after(3).age, 1e-3);
 }
 
 TEST_F(Bridge, ForceGoesOutAndPositionComesIn)

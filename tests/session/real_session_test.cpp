@@ -191,6 +191,31 @@ TEST_P(RealSessions, AStalledDeformationLeavesAFiniteSmoothForceAndAFlag)
     EXPECT_EQ(summary.fault, GovernorFault::none);
 }
 
+TEST_P(RealSessions, AForceLeavesInTheTickThatComputesIt)
+{
+    class Listening : public ScriptedHand {
+    public:
+        using ScriptedHand::ScriptedHand;
+        void   render(const GovernedForce& force) noexcept override { newest = glm::length(force.newtons()); }
+        double newest = 0; // [N]
+    };
+    const SheetSession  session(sheetScene(kWart), HandMotion::press);
+    Listening           device(session.hand);
+    Deformation         deformation(session.object, session.scene);
+    RealSessionSettings settings;
+    settings.threads = GetParam();
+    settings.seconds = 2;
+    double most = 0, apart = 0;
+    settings.onTick = [&](const TickRecord& s) {
+        apart = std::max(apart, std::abs(device.newest - glm::length(s.force)));
+        most  = std::max(most, device.newest);
+    };
+    std::string warning;
+    runReal({session.scene, session.object, deformation.solver(), device, {}}, settings, warning);
+    EXPECT_EQ(apart, 0);
+    EXPECT_GT(most, 0.01) << "or it says nothing";
+}
+
 TEST(Servo, TheCountersCount)
 {
     std::mutex mutex;

@@ -213,6 +213,56 @@ TEST(VirtualSession, TheDevicesLimitsBoundTheForce)
     EXPECT_GT(stiffest, 250);
 }
 
+TEST(Servo, TheLagIsMeasuredFromTheDevicesAnswers)
+{
+    const SheetSession session(sheetScene(kWart));
+    Servo              servo(session.object, session.scene);
+    Hand               hand{session.hand.position(0), {}};
+    hand.answerAge = 1.5e-3;
+    for (int n = 0; n < 200; ++n) { // two answers in five ticks, of which none is seen at once
+        hand.sequence   = std::uint64_t(n * 2 / 5) + 1;
+        hand.answerTime = 2.5e-3 * double(hand.sequence - 1) - 0.3e-3;
+        (void)servo.tick({1e-3 * n, 1e-3}, hand, nullptr);
+    }
+    EXPECT_NEAR(servo.governor().lag(), 1.5e-3 + 2.5e-3 * 1.5, 1e-9) << "age, period, half of it";
+    EXPECT_NEAR(servo.governor().stiffnessCap(), 0.8 * 3.2 / 5.25e-3, 1e-6);
+}
+
+TEST(Servo, OnlyADeviceThatStatesItsDampingIsCreditedWithIt)
+{
+    const SheetSession session(sheetScene(kWart));
+    HapticDeviceInfo   unknown;
+    unknown.maximumForce     = 5;
+    unknown.maximumStiffness = 600;
+    HapticDeviceInfo known   = unknown;
+    known.mass               = 0.1;
+    known.ownDamping         = 0.2;
+    const ForceHalf first(session.scene, unknown), second(session.scene, known), none(session.scene);
+    EXPECT_EQ(first.governor().settings().ownDamping, 0);
+    EXPECT_EQ(first.governor().stiffnessCap(), 600) << "what its maker states";
+    EXPECT_NEAR(second.governor().stiffnessCap(), 0.8 * 0.2 / 1.5e-3, 1e-9) << "less than it states";
+    EXPECT_EQ(none.governor().settings().ownDamping, 3.2) << "without motors: the simulated arm's";
+}
+
+TEST(VirtualSession, AForceLeavesInTheTickThatComputesIt)
+{
+    class Listening : public ScriptedHand {
+    public:
+        using ScriptedHand::ScriptedHand;
+        void   render(const GovernedForce& force) noexcept override { newest = glm::length(force.newtons()); }
+        double newest = 0; // [N]
+    };
+    const SheetSession session(sheetScene(kWart), HandMotion::press);
+    Listening          device(session.hand);
+    Deformation        deformation(session.object, session.scene);
+    double             most = 0;
+    runVirtual({session.scene, session.object, deformation.solver(), device, {}}, 2, [&](const TickRecord& s) {
+        EXPECT_EQ(device.newest, glm::length(s.force)) << s.time;
+        most = std::max(most, device.newest);
+    });
+    EXPECT_GT(most, 0.1) << "or it says nothing";
+}
+
 TEST(Servo, ATickAllocatesNothing)
 {
     const SheetSession         session(sheetScene(kWart));
