@@ -70,8 +70,9 @@ void replay(const ReplayOptions& o)
     again.records.clear();
     const double         seconds = double(session.records.size()) * 1e-3;
     ReplayDevice         hand(session.records, session.hand);
-    const SessionSummary summary = playVirtual({scene, object, deformation.solver(), hand, {}}, seconds,
-                                               [&](const TickRecord& record) { again.records.push_back(record); });
+    const SessionSummary summary =
+        playVirtual({scene, object, deformation.solver(), hand, {}, deformation.firstLaw()}, seconds,
+                    [&](const TickRecord& record) { again.records.push_back(record); });
     if (!o.compare) {
         o.json ? void(std::cout << jsonText(jsonOf(summary)))
                : printText(summary, deformation.plateSolver().name(), hand.info().model);
