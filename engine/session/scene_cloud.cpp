@@ -96,11 +96,15 @@ LoadedCloud loadCloud(const Scene& scene)
     return loaded;
 }
 
+LoadedObject objectOf(LoadedCloud loaded, const Scene& scene)
+{
+    SoftObject object(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals);
+    return {object.standingFor(std::move(loaded.mesh)), std::move(loaded.report)};
+}
+
 LoadedObject loadObject(const Scene& scene)
 {
-    LoadedCloud loaded = loadCloud(scene);
-    return {SoftObject(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals),
-            std::move(loaded.report)};
+    return objectOf(loadCloud(scene), scene);
 }
 
 bool haveSameCloud(const Scene& a, const Scene& b)

@@ -104,8 +104,9 @@ void scatterOverFaces(LoadedCloud& loaded, const ScatterPlan& plan)
         report.warnings.push_back(std::to_string(points.degenerate) + " of " + std::to_string(loaded.faces.size()) +
                                   " triangles have no area and hold no points");
     loaded.normals.assign(points.normals.begin(), points.normals.end());
-    loaded.cloud = PointCloud(std::move(points.positions), std::move(stiffness), loaded.cloud.kind());
-    loaded.faces.clear();
+    const auto vertices = loaded.cloud.positions();
+    loaded.mesh         = {{vertices.begin(), vertices.end()}, std::exchange(loaded.faces, {})};
+    loaded.cloud        = PointCloud(std::move(points.positions), std::move(stiffness), loaded.cloud.kind());
     loaded.pointOfRow.clear();
 }
 

@@ -120,6 +120,19 @@ TEST_F(SceneMesh, PointsAreAFifthOfAFingertipApartWithTheStiffnessBetweenTheCorn
     }
 }
 
+TEST_F(SceneMesh, TheFacesOfTheFileAreKeptForPictures)
+{
+    const Scene       scene  = sceneOf(kCube);
+    const SoftObject  object = loadObject(scene).object.withMaterial({}); // copies share it
+    const LoadedCloud file   = loadCloud(sceneOf(kCube, {{"scatter", "off"}}));
+
+    EXPECT_EQ(object.mesh().faces, file.faces);
+    EXPECT_EQ(file.faces.size(), 12u);
+    EXPECT_TRUE(std::ranges::equal(object.mesh().vertices, file.cloud.positions()));
+    EXPECT_TRUE(object.faces().empty());
+    EXPECT_TRUE(file.mesh.faces.empty()) << "its points are those of its faces";
+}
+
 TEST_F(SceneMesh, AScanAsDenseAsTheFingertipNeedsStaysTheSameToTheBit)
 {
     const std::string text = gridPly(40, 0.9e-3, false);

@@ -118,9 +118,7 @@ Scene SceneSource::load() const
 
 LoadedObject SceneSource::loadObject(const Scene& scene) const
 {
-    LoadedCloud loaded = loadCloud(scene);
-    return {SoftObject(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals),
-            std::move(loaded.report)};
+    return objectOf(loadCloud(scene), scene);
 }
 
 LoadedCloud SceneSource::loadCloud(const Scene& scene) const
