@@ -14,16 +14,45 @@
 namespace palp {
 namespace {
 
+/// Returns the law's values through the sheet below each point.
+std::vector<double> valuesBelow(const SpatialLaw& law, const LoadedCloud& loaded, const Scene& scene)
+{
+    const SoftObject object(loaded.cloud, scene.material, loaded.faces, loaded.normals); // settles normals and sides
+    object.survey().expectSurface();
+    std::vector<double> values;
+    for (std::size_t n = 0; n < object.size(); ++n) {
+        const SpatialLaw::Below below{object.survey().normal(n), object.survey().sided(n), scene.material.thickness};
+        values.push_back(law.valueBelow(object.positions()[n], below, "point " + std::to_string(n)));
+    }
+    return values;
+}
+
+/// Returns true if the cloud's stiffness depends on the thickness of the sheet.
+bool thicknessDecidesCloud(const Scene& scene)
+{
+    // A file of that name only costs that the cloud is made once more.
+    return scene.stiffness.find("grid") != std::string::npos && scene.stiffness.find("thickness") != std::string::npos;
+}
+
 /// Applies the scene's law at every place, instead of the stiffness that the cloud has.
 /// \param bounds  of the cloud as it is in its file: points on a mesh do not quite reach its corners
-PointCloud withLaw(const PointCloud& cloud, const Bounds& bounds, const Scene& scene, StiffnessKind kind)
+PointCloud withLaw(const LoadedCloud& loaded, const Bounds& bounds, const Scene& scene, StiffnessKind kind)
 {
     const SpatialLaw    law = parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume);
+    const auto          positions = loaded.cloud.positions();
     std::vector<double> stiffness;
-    stiffness.reserve(cloud.size());
-    for (const glm::dvec3& p : cloud.positions())
-        stiffness.push_back(law.valueAt(p, "point " + std::to_string(stiffness.size())));
-    return {{cloud.positions().begin(), cloud.positions().end()}, std::move(stiffness), kind};
+    if (law.along == SpatialLaw::Along::thickness) {
+        if (kind != StiffnessKind::modulus)
+            throw Error(
+                openingOf(scene, "stiffness") +
+                ": \"along\": \"thickness\" takes Young's modulus from a volume, found stiffness_unit N_m; omit "
+                "one of the two");
+        stiffness = valuesBelow(law, loaded, scene);
+    } else {
+        for (const glm::dvec3& p : positions)
+            stiffness.push_back(law.valueAt(p, "point " + std::to_string(stiffness.size())));
+    }
+    return {{positions.begin(), positions.end()}, std::move(stiffness), kind};
 }
 
 LoadedCloud sampleOf(const Scene& scene)
@@ -39,7 +68,7 @@ LoadedCloud sampleOf(const Scene& scene)
     report.lengthUnitSource = "m, by construction";
     report.stiffnessSource  = law ? "the scene's law [Pa]" : "the sample's own law [Pa]";
     if (law && law->kind == SpatialLaw::Kind::grid) // may have no value somewhere, and says so
-        return {withLaw(makeSample(sample, scene.points, scene.seed), bounds, scene, StiffnessKind::modulus),
+        return {withLaw({makeSample(sample, scene.points, scene.seed), {}}, bounds, scene, StiffnessKind::modulus),
                 std::move(report)};
     return {makeSample(sample, scene.points, scene.seed, law), std::move(report)};
 }
@@ -84,7 +113,7 @@ LoadedCloud loadBareCloud(const Scene& scene)
     if (const auto plan = scatterPlan(scene, loaded)) scatterOverFaces(loaded, *plan);
     if (scene.stiffness.empty()) return loaded;
     const StiffnessKind kind      = scene.reading.stiffnessKind.value_or(StiffnessKind::modulus);
-    loaded.cloud                  = withLaw(loaded.cloud, bounds, scene, kind);
+    loaded.cloud                  = withLaw(loaded, bounds, scene, kind);
     loaded.report.stiffnessSource = std::string("the scene's law [") + unitOf(kind) + "]";
     return loaded;
 }
@@ -110,6 +139,7 @@ LoadedObject loadObject(const Scene& scene)
 bool haveSameCloud(const Scene& a, const Scene& b)
 {
     if (fingertipDecidesCloud(a) && a.patch.footprintRadius != b.patch.footprintRadius) return false;
+    if (thicknessDecidesCloud(a) && a.material.thickness != b.material.thickness) return false;
     if (a.toolKeys != b.toolKeys) return false;
     return std::ranges::all_of(sceneKeysWith(a.toolKeys), [&](const SceneKey* key) {
         return !key->decidesCloud || key->write(a) == key->write(b);

@@ -44,7 +44,7 @@ std::string helpOf(const SceneKey& key)
            "  disc: from, to, centre or centres, radius\n"
            "  box: from, to, low, high\n"
            "  checker: from, to, edge\n"
-           "  grid: file (.npy, .nii or .nii.gz), factor, outside; of .npy origin, spacing; of .nii length_unit\n"
+           "  grid: file (.npy, .nii or .nii.gz), factor, outside, along (points or thickness); of .npy origin, spacing; of .nii length_unit\n"
            "such as linear:from=2e4,to=2e6,axis=x or gaussian:from=3e5,to=3e6,centre=0;0;0,sigma=0.003";
 }
 
