@@ -3,8 +3,10 @@
 #include <cstdio>
 
 #include "engine/cloud/cloud_format.h"
+#include "engine/cloud/mesh_points.h"
 #include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
+#include "engine/core/quantity.h"
 #include "engine/core/spatial_law.h"
 #include "engine/session/scene_keys.h"
 #include "engine/session/scene_mesh.h"
@@ -94,6 +96,16 @@ void refuseContradiction(const Scene& scene, const LoadedCloud& loaded)
                     "; omit stiffness_unit or correct the comment in " + scene.cloud);
 }
 
+/// Refuses a mesh on which so many points as can be made lie farther apart than the fingertip is wide.
+void refuseTooLarge(const Scene& scene, const ScatterPlan& plan)
+{
+    if (plan.distance <= std::max(plan.wanted, plan.fingertip)) return;
+    throw Error(scene.cloud + ": expected faces that " + std::to_string(kMostMeshPoints) +
+                " points can stand for, no farther apart than the fingertip's radius of " +
+                formatQuantity(plan.fingertip, "m") + ", found " + formatQuantity(plan.distance, "m") +
+                " between them; is length_unit right? scatter = off touches the vertices");
+}
+
 } // namespace
 
 std::string openingOf(const Scene& scene, const std::string& key)
@@ -110,7 +122,10 @@ LoadedCloud loadBareCloud(const Scene& scene)
     LoadedCloud loaded = readCloud(scene.cloud, scene.reading);
     refuseContradiction(scene, loaded);
     const Bounds bounds = loaded.cloud.bounds();
-    if (const auto plan = scatterPlan(scene, loaded)) scatterOverFaces(loaded, *plan);
+    if (const auto plan = scatterPlan(scene, loaded)) {
+        refuseTooLarge(scene, *plan);
+        scatterOverFaces(loaded, *plan);
+    }
     if (scene.stiffness.empty()) return loaded;
     const StiffnessKind kind      = scene.reading.stiffnessKind.value_or(StiffnessKind::modulus);
     loaded.cloud                  = withLaw(loaded, bounds, scene, kind);

@@ -112,10 +112,11 @@ TEST_F(SceneVolume, TheThicknessDecidesTheCloudOnlyIfTheLawLooksThroughIt)
 
 TEST_F(SceneVolume, ARigidityIsOfAWholeSheetAlready)
 {
-    EXPECT_TRUE(holds(refusalOf([&] {
-                          static_cast<void>(loadCloud(sceneOf(",along=thickness", {{"stiffness_unit", "N_m"}})));
-                      }),
-                      {"along", "stiffness_unit N_m"}));
+    const Scene scene = sceneOf(
+        ",along=thickness", {{"cloud", folder_.write("points.csv", "x,y,z,D\n0,0,0,1\n1,0,0,1\n0,1,0,1\n").string()},
+                             {"stiffness_unit", "N_m"}});
+
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(loadCloud(scene)); }), {"along", "stiffness_unit N_m"}));
 }
 
 TEST_F(SceneVolume, PointsOutsideAreRefusedOrHaveTheValueThatIsNamed)
