@@ -85,6 +85,7 @@ struct LoadedCloud {
     PointCloud            cloud;
     CloudFileReport       report;
     std::vector<Triangle> faces{}; ///< of the cloud's points; empty unless the file has faces
+    SurfaceMesh           mesh{};  ///< the file's, where the cloud's points were scattered over it; else empty
 
     /// For each point the outward normal that the file has for it, of unit length; zero where it has none. Empty if it
     /// has none at all.

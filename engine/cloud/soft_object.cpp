@@ -37,6 +37,7 @@ SoftObject::SoftObject(PointCloud cloud, const Material& material, std::vector<T
                        std::span<const glm::vec3> normals)
     : cloud_(std::move(cloud)), index_(std::make_shared<const NeighbourIndex>(cloud_.positions())),
       faces_(std::make_shared<const std::vector<Triangle>>(std::move(faces))),
+      mesh_(std::make_shared<const SurfaceMesh>()),
       survey_(std::make_shared<const SurfaceSurvey>(
           *index_, normals.empty() ? std::span<const glm::vec3>(normalsOf(*faces_, cloud_.positions())) : normals)),
       material_(material)
@@ -49,6 +50,13 @@ SoftObject SoftObject::repainted(std::vector<double> stiffness) const
     painted.cloud_     = PointCloud(cloud_, std::move(stiffness));
     painted.coarse_    = coarseShape();
     return painted;
+}
+
+SoftObject SoftObject::standingFor(SurfaceMesh mesh) const
+{
+    SoftObject other = *this;
+    other.mesh_      = std::make_shared<const SurfaceMesh>(std::move(mesh));
+    return other;
 }
 
 SoftObject SoftObject::withMaterial(const Material& material) const

@@ -17,7 +17,8 @@ class CoarseObject;
 /// A touched object: points with a stiffness, the index over them, perhaps a mesh, and the material of the sheet.
 ///
 /// Nothing of it changes while it is touched; a touch returns its deformation as a field beside the object. Copies,
-/// repainted() and withMaterial() share positions, index, survey and faces: of a million points only the stiffness is copied.
+/// repainted() and withMaterial() share positions, index, survey, faces and mesh: of a million points only the stiffness is
+/// copied.
 /// It may be moved and copied freely, because the index holds its own copy of the positions.
 /// \thread immutable, so free to share
 class SoftObject {
@@ -32,6 +33,9 @@ public:
     /// \throws Error as PointCloud does
     [[nodiscard]] SoftObject repainted(std::vector<double> stiffness) const;
 
+    /// Returns the same points, which stand for a mesh: pictures draw its faces in place of the points.
+    [[nodiscard]] SoftObject standingFor(SurfaceMesh mesh) const;
+
     /// Returns the same points, of another thickness or Poisson's ratio.
     [[nodiscard]] SoftObject withMaterial(const Material& material) const;
 
@@ -39,7 +43,8 @@ public:
     [[nodiscard]] const NeighbourIndex&     index() const noexcept { return *index_; }
     [[nodiscard]] const SurfaceSurvey&      survey() const noexcept { return *survey_; }
     [[nodiscard]] std::span<const Triangle> faces() const noexcept { return *faces_; } ///< may be empty
-    [[nodiscard]] const Material&           material() const noexcept { return material_; }
+    [[nodiscard]] const SurfaceMesh& mesh() const noexcept { return *mesh_; } ///< see standingFor(); may be empty
+    [[nodiscard]] const Material&    material() const noexcept { return material_; }
 
     [[nodiscard]] std::size_t                 size() const noexcept { return cloud_.size(); } ///< number of points
     [[nodiscard]] std::span<const glm::dvec3> positions() const noexcept { return cloud_.positions(); } ///< [m]
@@ -65,6 +70,7 @@ private:
     PointCloud                                   cloud_;
     std::shared_ptr<const NeighbourIndex>        index_;  ///< never null
     std::shared_ptr<const std::vector<Triangle>> faces_;  ///< never null
+    std::shared_ptr<const SurfaceMesh>           mesh_;   ///< never null
     std::shared_ptr<const SurfaceSurvey>         survey_; ///< never null
     Material                                     material_;
     std::shared_ptr<Coarse>                      coarse_ = std::make_shared<Coarse>(); ///< never null

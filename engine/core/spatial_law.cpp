@@ -22,7 +22,7 @@ namespace {
 constexpr double kRim = 1e-9;
 
 /// Returns the position along the line from `start` to `end`, within [0, 1].
-double along(const SpatialLaw& law, const glm::dvec3& p)
+double shareAlong(const SpatialLaw& law, const glm::dvec3& p)
 {
     const glm::dvec3 line = law.end - law.start;
     return std::clamp(glm::dot(p - law.start, line) / glm::dot(line, line), 0.0, 1.0);
@@ -150,9 +150,14 @@ glm::dvec3 spacingOf(const JsonObject& object)
 
 void readGrid(SpatialLaw& law, const JsonObject& object, const Region& region, LawFiles files)
 {
-    object.allowOnly({"law", "file", "factor", "outside", "length_unit", "origin", "spacing"});
+    object.allowOnly({"law", "file", "factor", "outside", "along", "length_unit", "origin", "spacing"});
     law.file = object.text("file");
     if (object.has("outside")) law.outside = object.positiveNumber("outside");
+    if (object.has("along")) {
+        const auto along = valueNamed<SpatialLaw::Along>(object.text("along"));
+        if (!along) object.refuse("along", "\"points\" or \"thickness\"");
+        law.along = *along;
+    }
     VolumeSettings settings;
     if (object.has("factor")) settings.factor = object.positiveNumber("factor");
     if (object.has("length_unit")) settings.lengthUnit = object.text("length_unit");
@@ -248,11 +253,11 @@ double SpatialLaw::operator()(const glm::dvec3& p) const noexcept
     case Kind::constant:
         return from;
     case Kind::linear:
-        return std::lerp(from, to, along(*this, p));
+        return std::lerp(from, to, shareAlong(*this, p));
     case Kind::hyperbolic:
-        return 1 / std::lerp(1 / from, 1 / to, along(*this, p));
+        return 1 / std::lerp(1 / from, 1 / to, shareAlong(*this, p));
     case Kind::exponential:
-        return from * std::pow(to / from, along(*this, p));
+        return from * std::pow(to / from, shareAlong(*this, p));
     case Kind::gaussian:
         return from + (to - from) * std::exp(-squaredDistanceToNearest(centres, p) / (2 * width * width));
     case Kind::disc:
@@ -269,13 +274,21 @@ double SpatialLaw::operator()(const glm::dvec3& p) const noexcept
     return from;
 }
 
+namespace {
+
+std::string placeOf(const glm::dvec3& p, const std::string& what)
+{
+    return what + " at " + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + " m";
+}
+
+} // namespace
+
 double SpatialLaw::valueAt(const glm::dvec3& p, const std::string& what) const
 {
     const double value = (*this)(p);
     if (kind != Kind::grid || !std::isnan(value) || !volume) return value;
-    const auto        found = volume->at(p);
-    const std::string place =
-        what + " at " + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + " m";
+    const auto        found  = volume->at(p);
+    const std::string place  = placeOf(p, what);
     const std::string advice = "; give the law \"outside\": PASCAL for such places";
     if (found.at == VolumeGrid::At::unknown)
         throw Error(file + ": expected a stiffness above zero for " + place + ", found zero at [" +
@@ -283,6 +296,20 @@ double SpatialLaw::valueAt(const glm::dvec3& p, const std::string& what) const
                     std::to_string(found.node[2]) + "], where nothing was measured" + advice);
     throw Error(file + ": expected a volume that holds " + place + ", found one over " + volume->extent() + advice +
                 ", or check unit and axes: some programs count x and y the other way");
+}
+
+double SpatialLaw::valueBelow(const glm::dvec3& p, const Below& below, const std::string& what) const
+{
+    VolumeGrid::Sheet sheet = volume->sheetAlong(p, -below.normal, below.thickness);
+    if (!below.outward) {
+        const VolumeGrid::Sheet other = volume->sheetAlong(p, below.normal, below.thickness);
+        if (sheet.share > 0 && sheet.share == other.share && sheet.value.value != other.value.value)
+            throw Error(file + ": expected to know on which side of " + placeOf(p, what) +
+                        " the object lies, found values on both; give the cloud normals or faces, or the law "
+                        "\"along\": \"points\"");
+        if (other.share > sheet.share) sheet = other;
+    }
+    return sheet.share > 0 ? sheet.value.value : valueAt(p, what);
 }
 
 SpatialLaw parseSpatialLaw(const JsonObject& object, const glm::dvec3& low, const glm::dvec3& high,

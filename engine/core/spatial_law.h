@@ -8,6 +8,8 @@
 
 #include <glm/vec3.hpp>
 
+#include "engine/core/enum_names.h"
+
 namespace palp {
 
 class JsonObject;
@@ -34,6 +36,16 @@ struct SpatialLaw {
     enum class Space { plane, volume }; ///< points given as [x, z] (a plate) or [x, y, z] (a cloud)
     enum class Kind { constant, linear, hyperbolic, exponential, gaussian, disc, box, checker, grid };
 
+    /// Where a volume is asked for the stiffness of a cloud's point.
+    enum class Along {
+        points,   ///< at the point
+        thickness ///< through the sheet below it, see VolumeGrid::sheetAlong()
+    };
+    friend constexpr auto namesOf(Along)
+    {
+        return std::to_array<NamedValue<Along>>({{Along::points, "points"}, {Along::thickness, "thickness"}});
+    }
+
     Kind                    kind = Kind::constant;
     double                  from = 1;     ///< [Pa] or [N m]
     double                  to   = 1;     ///< [Pa] or [N m]
@@ -47,6 +59,7 @@ struct SpatialLaw {
     std::shared_ptr<const VolumeGrid> volume{};  ///< of a grid
     std::string                       file{};    ///< of the volume
     std::optional<double>             outside{}; ///< where the volume has no value [Pa]; empty: nowhere else is asked
+    Along                             along = Along::points;
 
     /// Returns the value at a place; NaN where a volume has none.
     [[nodiscard]] double operator()(const glm::dvec3& p) const noexcept;
@@ -55,6 +68,19 @@ struct SpatialLaw {
     /// \param what  of the place, for the error: "point 7"
     /// \throws Error naming the place and the volume's extent, or its node, where the volume has no value
     [[nodiscard]] double valueAt(const glm::dvec3& p, const std::string& what) const;
+
+    /// The sheet below a point.
+    struct Below {
+        glm::dvec3 normal{};          ///< of unit length [1]
+        bool       outward   = false; ///< the normal is known to point outwards; else its side is not known
+        double     thickness = 0;     ///< [m]
+    };
+
+    /// Returns the value of a volume through the sheet below a place. Where the outside is not known, the sheet lies on
+    /// the side where the volume has more values.
+    /// \pre a grid that has been read
+    /// \throws Error as valueAt(), where no part of the sheet has a value, and where both sides have as many
+    [[nodiscard]] double valueBelow(const glm::dvec3& p, const Below& below, const std::string& what) const;
 };
 
 /// What becomes of the files that a law names.
@@ -76,6 +102,7 @@ enum class LawFiles { read, left };
 /// | file | grid, of a cloud | .npy, .nii or .nii.gz; a path as the caller has put it |
 /// | factor | grid | on the file's values, 1 if absent: 1000 for kPa |
 /// | outside | grid | value where the file has none; refused if absent |
+/// | along | grid | "points", or "thickness": of the sheet below each point, see VolumeGrid::sheetAlong |
 /// | length_unit | grid, NIfTI | of the file's lengths, if it states none |
 /// | origin, spacing | grid, .npy | place of the first value, 0 if absent; metres between values, one or three numbers |
 ///

@@ -89,20 +89,49 @@ VolumeGrid::Value VolumeGrid::at(const glm::dvec3& place) const noexcept
     return {At::inside, std::exp(sum), {}};
 }
 
-VolumeGrid::Value VolumeGrid::meanAlong(const glm::dvec3& place, const glm::dvec3& inward, double depth) const noexcept
+namespace {
+
+/// Gives each gap the nearest value before it, those at the beginning the first one.
+void fillGaps(std::vector<double>& values)
 {
-    constexpr double kMostSteps = 1000;
-    const Value      first      = at(place);
-    if (first.at != At::inside) return first;
-    const int steps = int(std::clamp(std::ceil(2 * depth / step_), 4.0, kMostSteps)); // half a voxel each
-    double    sum   = 0;
-    int       found = 0;
-    for (int n = 0; n < steps; ++n)
-        if (const Value value = at(place + depth * (n + 0.5) / steps * inward); value.at == At::inside) {
-            sum += value.value;
-            ++found;
-        }
-    return found > 0 ? Value{At::inside, sum / found, {}} : first;
+    double last = *std::ranges::find_if(values, [](double value) { return value > 0; });
+    for (double& value : values) last = value = value > 0 ? value : last;
+}
+
+/// Returns the modulus that bends like layers of equal thickness.
+double bendingModulus(const std::vector<double>& layers)
+{
+    const double thick = 1 / double(layers.size()); // [depths]
+    double       sum = 0, first = 0, inertia = 0;
+    for (std::size_t n = 0; n < layers.size(); ++n) {
+        sum += layers[n];
+        first += layers[n] * (double(n) + 0.5) * thick;
+    }
+    for (std::size_t n = 0; n < layers.size(); ++n) {
+        const double away = (double(n) + 0.5) * thick - first / sum;
+        inertia += layers[n] * thick * (away * away + thick * thick / 12);
+    }
+    return 12 * inertia;
+}
+
+} // namespace
+
+VolumeGrid::Sheet VolumeGrid::sheetAlong(const glm::dvec3& place, const glm::dvec3& inward, double depth) const
+{
+    // A quarter of a voxel each: a contrast of 10 between voxels is then right to 1 %. Thin sheets need as many for
+    // their own sake; a sheet of a thousand voxels is none.
+    constexpr double    kPerVoxel = 4, kLeastLayers = 16, kMostLayers = 1000;
+    const double        layers = std::clamp(std::ceil(kPerVoxel * depth / step_), kLeastLayers, kMostLayers);
+    std::vector<double> values;
+    double              found = 0;
+    for (double n = 0.5; n < layers; ++n) {
+        const Value value = at(place + n / layers * depth * inward);
+        values.push_back(value.at == At::inside ? value.value : 0);
+        found += value.at == At::inside;
+    }
+    if (found == 0) return {at(place), 0};
+    fillGaps(values);
+    return {{At::inside, bendingModulus(values), {}}, found / layers};
 }
 
 glm::dvec3 VolumeGrid::placeOf(double i, double j, double k) const noexcept

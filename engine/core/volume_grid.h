@@ -46,11 +46,22 @@ public:
     /// grows by equal factors along a line.
     [[nodiscard]] Value at(const glm::dvec3& place) const noexcept;
 
-    /// Returns the mean value along a way into the object: what a sheet has that thick. Places on the way that are
-    /// outside or unknown do not count, if the first is inside.
+    /// A sheet that is cut out of the volume.
+    struct Sheet {
+        Value  value;     ///< of a homogeneous sheet that bends alike; as at() has it where none of the way has a value
+        double share = 0; ///< of the way that has a value [1]
+    };
+
+    /// Returns the modulus of a homogeneous sheet that bends as the layers along a way do:
+    /// 12/h^3 int E(t) (t - t0)^2 dt, where t0 = int E t dt / int E dt is the neutral axis.
+    ///
+    /// For a plate it is exact: D = E h^3 / (12 (1 - nu^2)) is then that of the layers. Outer layers count for more than
+    /// inner ones, so no mean of the values alone is right: a hard skin on half the depth of a sheet that is soft by
+    /// contrast makes it bend like 1/8 of the skin, where the arithmetic mean says 1/2 and the geometric one almost 0. A place on the way without a value has that of the nearest one before it, else after it.
     /// \param inward  of unit length: against the outward normal
-    /// \param depth   > 0 [m]
-    [[nodiscard]] Value meanAlong(const glm::dvec3& place, const glm::dvec3& inward, double depth) const noexcept;
+    /// \param depth   h, > 0 [m]
+    /// \source Timoshenko & Woinowsky-Krieger 1959, "Theory of Plates and Shells", section 3, for layers of one nu
+    [[nodiscard]] Sheet sheetAlong(const glm::dvec3& place, const glm::dvec3& inward, double depth) const;
 
     [[nodiscard]] const std::array<int, 3>& size() const noexcept { return size_; }
     [[nodiscard]] float      node(int i, int j, int k) const noexcept { return values_[indexOf(i, j, k)]; }

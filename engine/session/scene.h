@@ -176,7 +176,10 @@ struct LoadedObject {
 /// Loads the cloud by loadCloud(), with its index and the scene's material.
 [[nodiscard]] LoadedObject loadObject(const Scene& scene);
 
-/// Does the same without the overlay.
+/// Makes the object of a loaded cloud: with its index, faces or mesh, normals and the scene's material.
+[[nodiscard]] LoadedObject objectOf(LoadedCloud loaded, const Scene& scene);
+
+/// Does the same as loadCloud() without the overlay.
 [[nodiscard]] LoadedCloud loadBareCloud(const Scene& scene);
 
 /// Returns 16 hexadecimal digits that tell clouds apart: FNV-1a over the bits of places and stiffnesses. They do not

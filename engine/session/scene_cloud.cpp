@@ -3,8 +3,10 @@
 #include <cstdio>
 
 #include "engine/cloud/cloud_format.h"
+#include "engine/cloud/mesh_points.h"
 #include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
+#include "engine/core/quantity.h"
 #include "engine/core/spatial_law.h"
 #include "engine/session/scene_keys.h"
 #include "engine/session/scene_mesh.h"
@@ -14,16 +16,45 @@
 namespace palp {
 namespace {
 
+/// Returns the law's values through the sheet below each point.
+std::vector<double> valuesBelow(const SpatialLaw& law, const LoadedCloud& loaded, const Scene& scene)
+{
+    const SoftObject object(loaded.cloud, scene.material, loaded.faces, loaded.normals); // settles normals and sides
+    object.survey().expectSurface();
+    std::vector<double> values;
+    for (std::size_t n = 0; n < object.size(); ++n) {
+        const SpatialLaw::Below below{object.survey().normal(n), object.survey().sided(n), scene.material.thickness};
+        values.push_back(law.valueBelow(object.positions()[n], below, "point " + std::to_string(n)));
+    }
+    return values;
+}
+
+/// Returns true if the cloud's stiffness depends on the thickness of the sheet.
+bool thicknessDecidesCloud(const Scene& scene)
+{
+    // A file of that name only costs that the cloud is made once more.
+    return scene.stiffness.find("grid") != std::string::npos && scene.stiffness.find("thickness") != std::string::npos;
+}
+
 /// Applies the scene's law at every place, instead of the stiffness that the cloud has.
 /// \param bounds  of the cloud as it is in its file: points on a mesh do not quite reach its corners
-PointCloud withLaw(const PointCloud& cloud, const Bounds& bounds, const Scene& scene, StiffnessKind kind)
+PointCloud withLaw(const LoadedCloud& loaded, const Bounds& bounds, const Scene& scene, StiffnessKind kind)
 {
     const SpatialLaw    law = parseSpatialLaw(scene.stiffness, bounds.low, bounds.high, SpatialLaw::Space::volume);
+    const auto          positions = loaded.cloud.positions();
     std::vector<double> stiffness;
-    stiffness.reserve(cloud.size());
-    for (const glm::dvec3& p : cloud.positions())
-        stiffness.push_back(law.valueAt(p, "point " + std::to_string(stiffness.size())));
-    return {{cloud.positions().begin(), cloud.positions().end()}, std::move(stiffness), kind};
+    if (law.along == SpatialLaw::Along::thickness) {
+        if (kind != StiffnessKind::modulus)
+            throw Error(
+                openingOf(scene, "stiffness") +
+                ": \"along\": \"thickness\" takes Young's modulus from a volume, found stiffness_unit N_m; omit "
+                "one of the two");
+        stiffness = valuesBelow(law, loaded, scene);
+    } else {
+        for (const glm::dvec3& p : positions)
+            stiffness.push_back(law.valueAt(p, "point " + std::to_string(stiffness.size())));
+    }
+    return {{positions.begin(), positions.end()}, std::move(stiffness), kind};
 }
 
 LoadedCloud sampleOf(const Scene& scene)
@@ -39,7 +70,7 @@ LoadedCloud sampleOf(const Scene& scene)
     report.lengthUnitSource = "m, by construction";
     report.stiffnessSource  = law ? "the scene's law [Pa]" : "the sample's own law [Pa]";
     if (law && law->kind == SpatialLaw::Kind::grid) // may have no value somewhere, and says so
-        return {withLaw(makeSample(sample, scene.points, scene.seed), bounds, scene, StiffnessKind::modulus),
+        return {withLaw({makeSample(sample, scene.points, scene.seed), {}}, bounds, scene, StiffnessKind::modulus),
                 std::move(report)};
     return {makeSample(sample, scene.points, scene.seed, law), std::move(report)};
 }
@@ -65,6 +96,16 @@ void refuseContradiction(const Scene& scene, const LoadedCloud& loaded)
                     "; omit stiffness_unit or correct the comment in " + scene.cloud);
 }
 
+/// Refuses a mesh on which so many points as can be made lie farther apart than the fingertip is wide.
+void refuseTooLarge(const Scene& scene, const ScatterPlan& plan)
+{
+    if (plan.distance <= std::max(plan.wanted, plan.fingertip)) return;
+    throw Error(scene.cloud + ": expected faces that " + std::to_string(kMostMeshPoints) +
+                " points can stand for, no farther apart than the fingertip's radius of " +
+                formatQuantity(plan.fingertip, "m") + ", found " + formatQuantity(plan.distance, "m") +
+                " between them; is length_unit right? scatter = off touches the vertices");
+}
+
 } // namespace
 
 std::string openingOf(const Scene& scene, const std::string& key)
@@ -81,10 +122,13 @@ LoadedCloud loadBareCloud(const Scene& scene)
     LoadedCloud loaded = readCloud(scene.cloud, scene.reading);
     refuseContradiction(scene, loaded);
     const Bounds bounds = loaded.cloud.bounds();
-    if (const auto plan = scatterPlan(scene, loaded)) scatterOverFaces(loaded, *plan);
+    if (const auto plan = scatterPlan(scene, loaded)) {
+        refuseTooLarge(scene, *plan);
+        scatterOverFaces(loaded, *plan);
+    }
     if (scene.stiffness.empty()) return loaded;
     const StiffnessKind kind      = scene.reading.stiffnessKind.value_or(StiffnessKind::modulus);
-    loaded.cloud                  = withLaw(loaded.cloud, bounds, scene, kind);
+    loaded.cloud                  = withLaw(loaded, bounds, scene, kind);
     loaded.report.stiffnessSource = std::string("the scene's law [") + unitOf(kind) + "]";
     return loaded;
 }
@@ -96,16 +140,21 @@ LoadedCloud loadCloud(const Scene& scene)
     return loaded;
 }
 
+LoadedObject objectOf(LoadedCloud loaded, const Scene& scene)
+{
+    SoftObject object(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals);
+    return {object.standingFor(std::move(loaded.mesh)), std::move(loaded.report)};
+}
+
 LoadedObject loadObject(const Scene& scene)
 {
-    LoadedCloud loaded = loadCloud(scene);
-    return {SoftObject(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals),
-            std::move(loaded.report)};
+    return objectOf(loadCloud(scene), scene);
 }
 
 bool haveSameCloud(const Scene& a, const Scene& b)
 {
     if (fingertipDecidesCloud(a) && a.patch.footprintRadius != b.patch.footprintRadius) return false;
+    if (thicknessDecidesCloud(a) && a.material.thickness != b.material.thickness) return false;
     if (a.toolKeys != b.toolKeys) return false;
     return std::ranges::all_of(sceneKeysWith(a.toolKeys), [&](const SceneKey* key) {
         return !key->decidesCloud || key->write(a) == key->write(b);

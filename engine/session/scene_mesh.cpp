@@ -22,8 +22,9 @@ constexpr double kKeptPart = 4, kScatteredPart = 5;
 /// Longest edge of a triangle between vertices that are kept, over their spacing [1].
 constexpr double kLongEdge = 4;
 
-/// Least share of points that are corners of faces for the faces to be the surface [1].
-constexpr double kMeshShare = 0.9;
+/// Most points that may lie in no face for the faces to be the surface: a share of all, or a few that were left over
+/// [1].
+constexpr double kStrayShare = 0.1, kStrayPoints = 100;
 
 /// Points on distance^2 that scatterOver() makes [1].
 constexpr double kDensity = 0.76;
@@ -68,7 +69,8 @@ std::optional<ScatterPlan> scatterPlan(const Scene& scene, const LoadedCloud& lo
                     ": expected a cloud with faces to scatter points over, found none in " + scene.cloud +
                     "; omit scatter");
     }
-    if (!asked && double(size.corners) < kMeshShare * double(loaded.cloud.size())) return std::nullopt;
+    const auto points = double(loaded.cloud.size());
+    if (!asked && points - double(size.corners) > std::max(kStrayShare * points, kStrayPoints)) return std::nullopt;
     ScatterPlan plan;
     plan.area        = size.area;
     plan.longestEdge = size.longestEdge;
@@ -104,8 +106,9 @@ void scatterOverFaces(LoadedCloud& loaded, const ScatterPlan& plan)
         report.warnings.push_back(std::to_string(points.degenerate) + " of " + std::to_string(loaded.faces.size()) +
                                   " triangles have no area and hold no points");
     loaded.normals.assign(points.normals.begin(), points.normals.end());
-    loaded.cloud = PointCloud(std::move(points.positions), std::move(stiffness), loaded.cloud.kind());
-    loaded.faces.clear();
+    const auto vertices = loaded.cloud.positions();
+    loaded.mesh         = {{vertices.begin(), vertices.end()}, std::exchange(loaded.faces, {})};
+    loaded.cloud        = PointCloud(std::move(points.positions), std::move(stiffness), loaded.cloud.kind());
     loaded.pointOfRow.clear();
 }
 

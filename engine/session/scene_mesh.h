@@ -33,8 +33,7 @@ struct ScatterPlan {
 [[nodiscard]] Scene withPointsOfFile(Scene scene);
 
 /// Puts points on the faces in place of the vertices, with the stiffness between their corners and the normals of the
-/// faces. The faces are gone then: the points draw the surface, because a dent between the corners of a face would not
-/// be seen on it. The report says so.
+/// faces. Vertices and faces become the cloud's mesh, which pictures draw. The report says so.
 void scatterOverFaces(LoadedCloud& loaded, const ScatterPlan& plan);
 
 } // namespace palp

@@ -27,7 +27,8 @@ line [m]", "type": "array", "items": {"type": "number"}, "minItems": 3, "maxItem
 [m]", "type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, "file": {"description": "of grid: a .npy, .nii or
 .nii.gz file", "type": "string"}, "factor": {"description": "of grid: on the values of its file, 1000
 for kPa [1]", "type": "number", "exclusiveMinimum": 0}, "outside": {"description": "of grid: where its
-file has no value [Pa]", "type": "number", "exclusiveMinimum": 0}, "length_unit": {"description": "of
+file has no value [Pa]", "type": "number", "exclusiveMinimum": 0}, "along": {"description": "of grid:
+at the points, or through the sheet below each", "enum": ["points", "thickness"]}, "length_unit": {"description": "of
 a grid's .nii file that states none", "enum": ["m", "mm", "cm", "um", "km", "in", "ft"]}, "origin":
 {"description": "of a grid's .npy file: place of the first value [m]", "type": "array", "items":
 {"type": "number"}, "minItems": 3, "maxItems": 3}, "spacing": {"description": "of a grid's .npy file:

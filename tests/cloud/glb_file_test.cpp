@@ -77,9 +77,73 @@ TEST(GlbFile, NodesPlaceTheirMeshesOneWithinTheOther)
         {"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 7, 0, 1]}])"));
 
     ASSERT_EQ(loaded.cloud.size(), 8u);
-    EXPECT_EQ(loaded.faces.size(), 4u);
+    EXPECT_EQ(loaded.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}));
     EXPECT_EQ(loaded.cloud.positions()[1], glm::dvec3(11, 7, 0)); // the last child comes first
     EXPECT_LT(glm::length(loaded.cloud.positions()[5] - glm::dvec3(10, 2, 5)), 1e-12);
+}
+
+TEST(GlbFile, EachAxisHasAScaleOfItsOwn)
+{
+    const LoadedCloud loaded =
+        read(with(R"({"mesh": 0})", R"({"mesh": 0, "scale": [2, 3, 4], "translation": [0, 0, 1]})"));
+
+    EXPECT_EQ(loaded.cloud.bounds().high, glm::dvec3(2, 3, 1));
+}
+
+TEST(GlbFile, PositionsMayBeInterleavedAndBeginWithinTheirView)
+{
+    // Eight bytes of something, then each corner with a number behind it.
+    std::string binary(8, '\7');
+    for (const auto& corner : {std::array{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}) {
+        for (const int number : corner) append(binary, float(number));
+        append(binary, 99.0F);
+    }
+    std::string view = with(R"("bufferView": 0, )", R"("bufferView": 0, "byteOffset": 8, )");
+    for (const auto& [before, after] :
+         std::vector<std::array<std::string, 2>>{{R"("byteLength": 48})", R"("byteLength": 72, "byteStride": 16})"},
+                                                 {R"("byteOffset": 48)", R"("byteOffset": 72)"}})
+        view.replace(view.find(before), before.size(), after);
+    for (const int corner : {0, 1, 2, 0, 2, 3}) append(binary, std::uint16_t(corner));
+
+    const LoadedCloud loaded = parsed(glb(view, binary), CloudFormat::glb);
+
+    EXPECT_EQ(loaded.cloud.bounds().high, glm::dvec3(1, 1, 0));
+    EXPECT_EQ(loaded.cloud.positions()[3], glm::dvec3(0, 1, 0));
+    EXPECT_EQ(loaded.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+    const std::string beyond = view.replace(view.find(R"("byteLength": 72)"), 16, R"("byteLength": 67)");
+    EXPECT_TRUE(
+        contains(refusalOf(glb(beyond, binary), CloudFormat::glb), {"accessor 0: expected 4 elements within 67"}))
+        << "the last corner ends at byte 68";
+}
+
+TEST(GlbFile, IndicesAreBytesShortsOrWords)
+{
+    const auto read = [](const char* type, const char* length, const std::string& indices) {
+        std::string json = with("5123", type);
+        json.replace(json.find(R"("byteLength": 12)"), 16, length);
+        return parsed(glb(json, squareBytes().substr(0, 48) + indices), CloudFormat::glb).faces;
+    };
+    std::string bytes, words;
+    for (const int corner : {0, 1, 2, 0, 2, 3}) {
+        append(bytes, std::uint8_t(corner));
+        append(words, std::uint32_t(corner));
+    }
+    const std::vector<Triangle> expected = {{0, 1, 2}, {0, 2, 3}};
+
+    EXPECT_EQ(read("5121", R"("byteLength": 6)", bytes), expected);
+    EXPECT_EQ(read("5125", R"("byteLength": 24)", words), expected);
+    std::string floats = with("5123", "5126");
+    floats.replace(floats.find(R"("count": 6)"), 10, R"("count": 3)");
+    EXPECT_TRUE(contains(refusal(floats), {"mesh 0: expected indices as whole numbers, found floats"}));
+}
+
+TEST(GlbFile, OtherVersionsAreRefused)
+{
+    for (const char version : {1, 3}) {
+        std::string bytes = glb(kSquare, squareBytes());
+        bytes[4]          = version;
+        EXPECT_TRUE(contains(refusalOf(bytes, CloudFormat::glb), {"test: byte 4: expected glTF 2, found version"}));
+    }
 }
 
 TEST(GlbFile, IndicesMayBeAbsentAndOtherPrimitivesAreCounted)

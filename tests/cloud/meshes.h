@@ -55,6 +55,17 @@ inline Mesh cube(double edge)
     return mesh;
 }
 
+/// A cube about the origin, seen from outside, whose sides share its 8 corners.
+inline Mesh sharedCube(double edge)
+{
+    Mesh mesh;
+    for (int k = 0; k < 8; ++k)
+        mesh.vertices.push_back(edge * (glm::dvec3(k & 1, k >> 1 & 1, k >> 2) - glm::dvec3(0.5)));
+    mesh.faces = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                  {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    return mesh;
+}
+
 /// A ball about the origin: an icosahedron whose triangles are quartered, the new corners put onto the sphere.
 inline Mesh ball(double radius, int times)
 {

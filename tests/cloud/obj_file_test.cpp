@@ -24,7 +24,7 @@ TEST(ObjFile, CornersHaveAnyFormAndMayBeCountedFromTheLastVertex)
     const std::vector<Triangle> expected = {{0, 1, 2}, {0, 2, 3}};
     for (const char* face :
          {"f 1 2 3 4", "f 1/1 2/2 3/3 4/4", "f 1//1 2//1 3//1 4//1", "f 1/1/1 2/2/1 3/3/1 4/4/1", "f -4 -3 -2 -1",
-          "f -4//7 2 -2/1 4", "f 1 2 \\\n  3 4", "f 1 2 3 4 # a remark", "\tf  1\t2 3 4\r"})
+          "f -4//7 2 -2/1 4", "f 1 2 \\\n  3 4", "f 1 2 3 4 # a remark", "fo 1 2 3 4", "\tf  1\t2 3 4\r"})
         EXPECT_EQ(obj(kFour + face + "\n").faces, expected) << face;
     // -1 is the last one above, not of the file.
     EXPECT_EQ(obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 0 1 0\n").faces, (std::vector<Triangle>{{0, 1, 2}}));
@@ -62,6 +62,8 @@ TEST(ObjFile, ACommentMayStateTheUnitAndASettingWins)
     cm.lengthUnit = "cm";
     EXPECT_EQ(obj(kFour, cm).cloud.bounds().high.x, 1e-2);
     EXPECT_TRUE(contains(refusal(kFour + "# length_unit mm\n"), {"test: line 5", "before the first vertex"}));
+    EXPECT_TRUE(contains(refusal(kFour + "# stiffness_unit Pa\n"), {"test: line 5", "before the first vertex"}));
+    EXPECT_EQ(obj(kFour + "v 2 0 0 # the last one\n").cloud.bounds().high.x, 2);
 }
 
 TEST(ObjFile, VerticesAtOnePlaceBecomeOneAndFacesFollow)

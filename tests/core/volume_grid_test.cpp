@@ -1,5 +1,6 @@
 #include "engine/core/volume_grid.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -193,19 +194,74 @@ TEST(VolumeGrid, ZeroIsUnknownAndDoesNotCountWhereItHasNoWeight)
     EXPECT_NEAR(valueAt(grid, {0, 0, 0.5e-3}), std::sqrt(5), 1e-12);
 }
 
-TEST(VolumeGrid, TheMeanAlongTheNormalIsThatOfTheSheet)
+/// A column of layers along z, each so thick [m]; the values repeat in x and y.
+VolumeGrid column(const std::vector<float>& layers, double step)
 {
-    // Layers of 1 and 100, in the direction of z: E = 100^z, whose mean over [0, h] is (100^h - 1)/(h ln 100).
-    const VolumeGrid grid = nifti(plain({1, 1, 1, 1, 100, 100, 100, 100}));
-    const double     h    = 0.8;
+    std::vector<float> values;
+    for (const float value : layers) values.insert(values.end(), 4, value);
+    glm::dmat3 toWorld(step);
+    return {{2, 2, int(layers.size())}, values, toWorld, {0, 0, 0}};
+}
 
-    const auto mean = grid.meanAlong({0.5e-3, 0.5e-3, 0}, {0, 0, 1}, h * 1e-3);
+TEST(VolumeGrid, ASheetWhoseModulusGrowsByEqualFactorsBendsAsTheClosedFormSays)
+{
+    // E = e^(a t) over [0, 1]: moments m0 = (e^a - 1)/a, m1 = (e^a - m0)/a, m2 = (e^a - 2 m1)/a, and
+    // int E (t - t0)^2 = m2 - m1^2/m0.
+    const double     a = std::log(100), e = 100, m0 = (e - 1) / a, m1 = (e - m0) / a, m2 = (e - 2 * m1) / a;
+    const VolumeGrid grid = column({1, 100}, 1e-3);
 
-    // Four steps of the midpoint rule: (h ln 100 / 4)^2 / 24 = 3.5 % at most.
-    EXPECT_NEAR(mean.value / ((std::pow(100, h) - 1) / (h * std::log(100))), 1, 0.035);
-    EXPECT_EQ(grid.meanAlong({0.5e-3, 0.5e-3, 0.5e-3}, {1, 0, 0}, 5e-3).at, VolumeGrid::At::inside); // leaves it
-    EXPECT_NEAR(grid.meanAlong({0.5e-3, 0.5e-3, 0.5e-3}, {1, 0, 0}, 5e-3).value, 10, 1e-6);
-    EXPECT_EQ(grid.meanAlong({0.5e-3, 0.5e-3, -1}, {0, 0, 1}, 5e-3).at, VolumeGrid::At::outside);
+    const auto inwards  = grid.sheetAlong({0.5e-3, 0.5e-3, 0}, {0, 0, 1}, 1e-3);
+    const auto outwards = grid.sheetAlong({0.5e-3, 0.5e-3, 1e-3}, {0, 0, -1}, 1e-3);
+
+    // Sixteen layers, each with the value in its middle: (a / 16)^2 / 24 = 0.35 % of a value.
+    EXPECT_NEAR(inwards.value.value / (12 * (m2 - m1 * m1 / m0)), 1, 0.005);
+    EXPECT_NEAR(outwards.value.value / inwards.value.value, 1, 1e-9) << "bending has no side";
+    EXPECT_EQ(inwards.share, 1);
+}
+
+TEST(VolumeGrid, TwoLayersBendAsTheClosedFormSays)
+{
+    // Two halves: (E1^2 + 14 E1 E2 + E2^2) / (8 (E1 + E2)), from 12 (sum of E (1/96 + (middle - t0)^2 / 2)).
+    for (const float hard : {1.0F, 3.0F, 100.0F, 1e6F}) {
+        std::vector<float> layers(400, 1.0F);
+        std::fill_n(layers.begin(), 200, hard);
+        const VolumeGrid grid = column(layers, 1e-5);
+        const double     h    = 400e-5;
+
+        const auto sheet = grid.sheetAlong({0.5e-5, 0.5e-5, -0.5e-5}, {0, 0, 1}, h);
+
+        const double expected = (hard * double(hard) + 14.0 * hard + 1) / (8 * (hard + 1.0));
+        EXPECT_NEAR(sheet.value.value / expected, 1, 0.01) << hard << ": the step takes one voxel of 400";
+    }
+}
+
+TEST(VolumeGrid, OneMaterialIsItselfWhereverTheVolumeEnds)
+{
+    const VolumeGrid grid = column({7, 7, 7}, 1e-3), gap = column({0, 0, 7, 7, 0, 0, 7, 7}, 1e-3);
+
+    for (const double depth : {1e-5, 1e-3, 2e-3, 9e-3}) {
+        EXPECT_NEAR(grid.sheetAlong({0, 0, 0}, {0, 0, 1}, depth).value.value, 7, 1e-5) << depth << ": nodes are floats";
+        EXPECT_NEAR(gap.sheetAlong({0, 0, 2e-3}, {0, 0, 1}, depth).value.value, 7, 1e-5);
+    }
+    const auto late = gap.sheetAlong({0, 0, 0}, {0, 0, 1}, 4e-3); // begins where nothing was measured
+    EXPECT_NEAR(late.value.value, 7, 1e-5);
+    EXPECT_NEAR(late.share, 0.25, 0.1) << "one of four voxels has values at both its ends";
+    EXPECT_EQ(grid.sheetAlong({0, 0, 0}, {0, 0, 1}, 4e-3).share, 0.5);
+    EXPECT_EQ(grid.sheetAlong({0, 0, -1}, {0, 0, 1}, 5e-3).value.at, VolumeGrid::At::outside);
+    EXPECT_EQ(gap.sheetAlong({0, 0, 0}, {0, 0, 1}, 1e-3).value.at, VolumeGrid::At::unknown);
+    EXPECT_EQ(gap.sheetAlong({0, 0, 0}, {0, 0, 1}, 1e-3).share, 0);
+}
+
+TEST(VolumeGrid, AGapHasTheNearestValueBeforeIt)
+{
+    // Half of 1 and half of 8 with nothing measured between: the gap counts as 1, for it comes first.
+    std::vector<float> layers(100, 1.0F), filled(100, 1.0F);
+    for (std::size_t n = 40; n < 100; ++n) layers[n] = n < 60 ? 0.0F : 8.0F, filled[n] = n < 60 ? 1.0F : 8.0F;
+
+    const auto found = column(layers, 1e-4).sheetAlong({0, 0, 0}, {0, 0, 1}, 9.9e-3);
+    const auto same  = column(filled, 1e-4).sheetAlong({0, 0, 0}, {0, 0, 1}, 9.9e-3);
+
+    EXPECT_NEAR(found.value.value / same.value.value, 1, 0.02) << "but for the voxel in which the values change";
 }
 
 TEST(VolumeGrid, ValuesThatAreNoStiffnessAreRefusedByTheirIndex)
@@ -336,6 +392,41 @@ TEST(GridLaw, GivesTheVolumesValueAndNamesThePlaceWhereThereIsNone)
             static_cast<void>(parseSpatialLaw("grid:file=" + file.string(), {}, {1, 0, 1}, SpatialLaw::Space::plane));
         }),
         {"unknown law \"grid\""}));
+}
+
+TEST(GridLaw, ThroughTheThicknessItTakesTheSheetBelow)
+{
+    const TemporaryFolder folder;
+    const auto            file = folder.write("e.nii", plain({1, 1, 1, 1, 100, 100, 100, 100}));
+    const auto            law  = [&](const std::string& more) {
+        return parseSpatialLaw("grid:file=" + file.string() + more, {0, 0, 0}, {1, 1, 1}, SpatialLaw::Space::volume);
+    };
+    const SpatialLaw through = law(",along=thickness,outside=3");
+    const auto       sheet   = through.volume->sheetAlong({0, 0, 0}, {0, 0, 1}, 1e-3),
+               thin          = through.volume->sheetAlong({0, 0, 1e-3}, {0, 0, -1}, 0.2e-3);
+    const glm::dvec3 up(0, 0, 1);
+
+    EXPECT_EQ(law("").along, SpatialLaw::Along::points);
+    EXPECT_EQ(law(",along=points").along, SpatialLaw::Along::points);
+    ASSERT_EQ(through.along, SpatialLaw::Along::thickness);
+    EXPECT_EQ(through.valueBelow({0, 0, 0}, {-up, true, 1e-3}, "point 0"), sheet.value.value);
+    // Without a side the sheet lies where the volume is.
+    EXPECT_EQ(through.valueBelow({0, 0, 1e-3}, {up, false, 0.2e-3}, "point 0"), thin.value.value);
+    EXPECT_EQ(through.valueBelow({0, 0, 1e-3}, {-up, false, 0.2e-3}, "point 0"), thin.value.value);
+    EXPECT_EQ(through.valueBelow({0, 0, -1}, {up, true, 1e-3}, "point 0"), 3) << "outside";
+    EXPECT_TRUE(holds(refusalOf([&] {
+                          static_cast<void>(through.valueBelow({0, 0, 0.5e-3}, {up, false, 0.2e-3}, "point 5"));
+                      }),
+                      {"e.nii: expected to know on which side of point 5", "normals or faces"}));
+    EXPECT_NEAR(through.valueBelow({0, 0, 0.5e-3}, {{1, 0, 0}, false, 1e-5}, "point 5"), 10, 1e-5)
+        << "both sides agree";
+    EXPECT_TRUE(
+        holds(refusalOf([&] { static_cast<void>(law(",along=depth")); }), {"along", "\"points\" or \"thickness\""}));
+    EXPECT_TRUE(
+        holds(refusalOf([&] {
+                  static_cast<void>(law(",along=thickness").valueBelow({0, 0, -1}, {up, true, 1e-3}, "point 6"));
+              }),
+              {"e.nii: expected a volume that holds point 6"}));
 }
 
 TEST(GridLaw, AFileOfASceneLiesInTheScenesFolder)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/contact/proxy.h"
+#include "engine/pipeline/deform.h"
 #include "engine/session/deformation.h"
 #include "engine/session/scene_keys.h"
 #include "engine/session/scripted_hand.h"
@@ -79,6 +81,24 @@ protected:
         return parseScene("{}", "a test", ".", {.flags = std::move(flags)});
     }
 
+    /// The largest force on a hand that presses 2 mm into the upper side of a body of OBJ text in mm [N].
+    double forceOn(const std::string& text) const
+    {
+        const Scene      scene  = sceneOf("", {{"cloud", folder_.write("bad.obj", text).string()},
+                                               {"length_unit", "mm"},
+                                               {"place", "-12mm,-9mm,40mm"},
+                                               {"from", "0,0,1"}});
+        const SoftObject object = loadObject(scene).object;
+        const HandPath   hand = makeHand({.motion = HandMotion::press, .depth = 2e-3, .height = 1e-3, .duration = 0.3},
+                                         {{-12e-3, -9e-3, 40e-3}, {0, 0, 1}});
+        ScriptedHand     device(hand);
+        Deformation      deformation(object, scene);
+        double           most = 0;
+        runVirtual({scene, object, deformation.solver(), device, {}}, 0.3,
+                   [&](const TickRecord& tick) { most = std::max(most, double(tick.force.z)); });
+        return most;
+    }
+
     TemporaryFolder folder_;
 };
 
@@ -118,6 +138,80 @@ TEST_F(SceneMesh, PointsAreAFifthOfAFingertipApartWithTheStiffnessBetweenTheCorn
         ASSERT_NEAR(loaded.cloud.stiffness()[n], 1e5 * std::pow(10, (p.x + 40e-3) / 80e-3), 1); // 1e-6 relative: floats
         ASSERT_GT(glm::dot(glm::dvec3(loaded.normals[n]), p), 39e-3);                           // outwards
     }
+}
+
+TEST_F(SceneMesh, TheFacesOfTheFileAreKeptForPictures)
+{
+    const Scene       scene  = sceneOf(kCube);
+    const SoftObject  object = loadObject(scene).object.withMaterial({}); // copies share it
+    const LoadedCloud file   = loadCloud(sceneOf(kCube, {{"scatter", "off"}}));
+
+    EXPECT_EQ(object.mesh().faces, file.faces);
+    EXPECT_EQ(file.faces.size(), 12u);
+    EXPECT_TRUE(std::ranges::equal(object.mesh().vertices, file.cloud.positions()));
+    EXPECT_TRUE(object.faces().empty());
+    EXPECT_TRUE(file.mesh.faces.empty()) << "its points are those of its faces";
+}
+
+TEST_F(SceneMesh, AMeshThatNoNumberOfPointsCanStandForIsRefusedAtOnce)
+{
+    const std::map<std::string, std::string, std::less<>> km{{"length_unit", "km"}};
+
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(loadCloud(sceneOf(kCube, km))); }),
+                      {"mesh.ply: expected faces that 4000000 points can stand for", "length_unit"}));
+    auto off = km;
+    off.emplace("scatter", "off");
+    EXPECT_EQ(loadCloud(sceneOf(kCube, off)).cloud.size(), 8u);
+}
+
+/// Meshes that programs write although they should not.
+TEST_F(SceneMesh, BadMeshesAreTouchedWithTheForceOfGoodOnes)
+{
+    const std::string header  = "v -40 -40 -40\nv 40 -40 -40\nv 40 40 -40\nv -40 40 -40\nv -40 -40 40\nv 40 -40 40\n"
+                                "v 40 40 40\nv -40 40 40\n";
+    const std::string cube    = "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    const std::string flipped = "f 1 4 3 2\nf 5 6 7\nf 8 7 5\nf 1 5 6 2\nf 2 3 7 6\nf 3 7 8 4\nf 4 1 5 8\n";
+    const std::map<std::string, std::string> meshes{
+        {"good", header + cube},
+        {"half of a side turned round", header + flipped},
+        {"every face twice, once turned round",
+         header + cube + "f 2 3 4 1\nf 8 7 6 5\nf 5 6 2 1\nf 6 7 3 2\nf 7 8 4 3\nf 8 5 1 4\n"},
+        {"without area", header + "v 0 0 40\nv 40 0 40\nv -40 0 40\n" + cube + "f 9 10 11\nf 9 9 10\nf 5 6 5\n"},
+        {"three faces at an edge", header + cube + "v 0 -40 90\nf 5 6 9\n"},
+        {"another body through it", header + cube + "v 10 10 20\nv 60 10 20\nv 60 60 20\nv 10 60 20\nf 9 10 11 12\n"},
+        {"a corner beside the middle of an edge",
+         header + "v 0 40 40\n" + cube.substr(0, 10) +
+             "f 5 6 9\nf 6 7 9\nf 5 9 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"},
+        {"a vertex far away in no face", header + cube + "v 1e6 0 0\n"}};
+    const double good = forceOn(meshes.at("good"));
+
+    EXPECT_GT(good, 0.05); // [N]
+    for (const auto& [what, text] : meshes) EXPECT_NEAR(forceOn(text) / good, 1, 0.02) << what;
+}
+
+TEST_F(SceneMesh, AMeshThatIsNoSurfaceIsRefused)
+{
+    const char* const nanometres = "v 0 0 0\nv 1e-9 0 0\nv 0 1e-9 0\nf 1 2 3\n";
+    const Scene       scene      = sceneOf("", {{"cloud", folder_.write("tiny.obj", nanometres).string()}});
+    const SoftObject  object     = loadObject(scene).object;
+    PlateSolver       solver("host");
+
+    EXPECT_TRUE(holds(refusalOf([&] {
+                          static_cast<void>(deform(object, Contact{{0, 0, 0}, {0, 0, 1}}, scene.patch, solver));
+                      }),
+                      {"fewer than seven points"}));
+}
+
+TEST_F(SceneMesh, PointsBesideAFewFacesAreACloud)
+{
+    std::string text = gridPly(40, 5e-3, false);
+    const auto  cut  = [&](const std::string& from, const std::string& to) {
+        text.replace(text.find(from), from.size(), to);
+    };
+    cut("element face 1600", "element face 1");
+    text.erase(text.find('\n', text.find("\n4 ") + 1) + 1);
+
+    EXPECT_EQ(loadCloud(sceneOf(text)).report.scatteredPoints, 0u) << "1677 of 1681 lie in no face";
 }
 
 TEST_F(SceneMesh, AScanAsDenseAsTheFingertipNeedsStaysTheSameToTheBit)

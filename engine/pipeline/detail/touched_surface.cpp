@@ -140,6 +140,7 @@ bool isOneSheet(const TouchedSurface& surface, const SoftObject& object, const g
 
 double spacingAt(const SoftObject& object, const glm::dvec3& place)
 {
+    object.survey().expectSurface();
     const double here = object.survey().spacing(object.index().nearest(place, 1).front().point);
     const double all  = object.spacing();
     return here > kUneven * all || all > kUneven * here ? here : all;

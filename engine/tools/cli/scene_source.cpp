@@ -44,7 +44,7 @@ std::string helpOf(const SceneKey& key)
            "  disc: from, to, centre or centres, radius\n"
            "  box: from, to, low, high\n"
            "  checker: from, to, edge\n"
-           "  grid: file (.npy, .nii or .nii.gz), factor, outside; of .npy origin, spacing; of .nii length_unit\n"
+           "  grid: file (.npy, .nii or .nii.gz), factor, outside, along (points or thickness); of .npy origin, spacing; of .nii length_unit\n"
            "such as linear:from=2e4,to=2e6,axis=x or gaussian:from=3e5,to=3e6,centre=0;0;0,sigma=0.003";
 }
 
@@ -118,9 +118,7 @@ Scene SceneSource::load() const
 
 LoadedObject SceneSource::loadObject(const Scene& scene) const
 {
-    LoadedCloud loaded = loadCloud(scene);
-    return {SoftObject(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals),
-            std::move(loaded.report)};
+    return objectOf(loadCloud(scene), scene);
 }
 
 LoadedCloud SceneSource::loadCloud(const Scene& scene) const

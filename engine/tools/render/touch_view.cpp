@@ -52,6 +52,7 @@ TouchView::TouchView(const SoftObject& object, const PatchSettings& settings)
       normals_(restNormals_), positions_(object.positions().begin(), object.positions().end()),
       deflections_(object.size()), stiffness_(object.cloud().stiffness())
 {
+    if (!object.mesh().faces.empty()) mesh_.emplace(object);
     findRelief();
 }
 
@@ -60,6 +61,7 @@ void TouchView::findRelief()
     // Each point sees it in the noise of its own normal.
     relief_ = skin_.smoothed(restRelief(object_.positions(), restNormals_, object_.spacing(), kCue * settings_.window));
     hollows_ = relief_;
+    if (mesh_) mesh_->relieve(relief_, restNormals_);
 }
 
 void TouchView::use(const PatchSettings& settings)
@@ -78,10 +80,12 @@ void TouchView::take(const Patch* patch)
     if (patch ? same(*patch) : shown_.points == 0) return;
     surface_ = patch ? PatchSurface(*patch, object_.positions(), kCue * settings_.window) : PatchSurface();
     shown_   = patch ? Shown{patch->contact.point, patch->compliance, patch->points.size()} : Shown{};
+    if (mesh_) mesh_->take(surface_);
 }
 
 void TouchView::bend(double force, double exaggeration)
 {
+    if (mesh_) return mesh_->bend(force, exaggeration);
     for (const std::uint32_t n : moved_) {
         positions_[n]   = object_.positions()[n];
         normals_[n]     = restNormals_[n];
@@ -121,6 +125,23 @@ void TouchView::paint(double force, const TouchLook& look)
             scene_.colours = {look.map, scale, widened(range, scale), "Young's modulus", "Pa"};
         else
             scene_.colours = {look.map, scale, widened(range, scale), "rigidity", "N m"};
+    }
+}
+
+/// Puts the faces of the mesh in place of the points.
+void TouchView::drawMesh(const TouchLook& look)
+{
+    scene_.positions = mesh_->positions();
+    scene_.normals   = mesh_->normals();
+    scene_.radii     = mesh_->radii();
+    scene_.cores     = mesh_->radii();
+    scene_.hollows   = mesh_->hollows();
+    scene_.oneSided  = {};
+    scene_.faces     = mesh_->faces();
+    if (look.paint == ViewPaint::deflection) scene_.values = mesh_->deflections();
+    if (look.paint == ViewPaint::stiffness) {
+        mesh_->paint(stiffness_);
+        scene_.values = mesh_->painted();
     }
 }
 
@@ -191,6 +212,7 @@ void TouchView::show(const Patch* patch, double force, const TouchLook& look, co
     scene_.cueRadius     = kCue * settings_.window;
     scene_.faces         = object_.faces();
     paint(force, look);
+    if (mesh_) drawMesh(look);
     if (patch) {
         addHand(*patch, force, look, hand);
         if (look.overlays.outline) addOutline(force, look.exaggeration);

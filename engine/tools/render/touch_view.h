@@ -6,6 +6,7 @@
 #include "engine/pipeline/patch.h"
 #include "engine/tools/render/camera.h"
 #include "engine/tools/render/cloud_skin.h"
+#include "engine/tools/render/mesh_skin.h"
 #include "engine/tools/render/patch_surface.h"
 #include "engine/tools/render/view_scene.h"
 
@@ -51,7 +52,7 @@ struct TouchHand {
     std::optional<glm::dvec3> proxy{}; ///< on the surface at rest [m]; empty: where the patch's contact is
 };
 
-/// A cloud and a touch of it as a scene to draw.
+/// A cloud and a touch of it as a scene to draw; of a cloud that stands for a mesh, the mesh.
 class TouchView {
 public:
     /// \param object    outlives the view
@@ -90,6 +91,7 @@ private:
     void take(const Patch* patch);
     void bend(double force, double exaggeration);
     void paint(double force, const TouchLook& look);
+    void drawMesh(const TouchLook& look);
     void addHand(const Patch& patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand);
     void addOutline(double force, double exaggeration);
     void addFit(const Patch& patch, const Overlays& overlays);
@@ -107,6 +109,7 @@ private:
 
     Shown                      shown_;
     PatchSurface               surface_; // of that patch
+    std::optional<MeshSkin>    mesh_;    // of an object that stands for one
     std::vector<std::uint32_t> moved_;   // points that are not at rest in positions_
     ViewScene                  scene_;
 };
