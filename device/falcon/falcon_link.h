@@ -56,6 +56,9 @@ public:
     /// before it throws, so that zero force reaches a device that still listens.
     virtual void write(std::span<const std::uint8_t> bytes) = 0;
 
+    /// Returns whether, since the last call, a guardian process took the force because nothing was written for 25 ms.
+    [[nodiscard]] virtual bool wasSilenced() noexcept { return false; }
+
     /// Reads bytes that came in, without the chip's status bytes; waits up to `timeout` [s] for the first.
     /// \return how many of `bytes` were filled; 0 if nothing came in time
     /// \throws LinkLost if the link fails

@@ -135,6 +135,10 @@ void FalconLoop::send(const FalconRequest& request, double now)
     command_.lights = settings_.showsState ? std::uint8_t(falconLight(state_)) : request.lights;
     sent_           = now;
     link_->write(encode(command_));
+    if (!link_->wasSilenced()) return;
+    // What went out was zero. The fault makes the governor engage anew.
+    line_ = state_.fault = DeviceFault::silenced;
+    gain_ = good_ = 0;
 }
 
 FalconDrive FalconLoop::drive(const FalconRequest& request, double now) noexcept
@@ -254,7 +258,7 @@ void FalconLoop::miss() noexcept
 void FalconLoop::lose(Loss loss) noexcept
 {
     loss_ = loss == Loss::broken && !release() ? Loss::gone : loss;
-    line_ = state_.fault = loss_ == Loss::gone ? DeviceFault::unplugged : DeviceFault::silent;
+    line_ = state_.fault = loss_ == Loss::gone ? DeviceFault::unplugged : DeviceFault::linkLost;
     state_.homed = state_.inBox = false;
     state_.velocity             = {};
     ++state_.missed;

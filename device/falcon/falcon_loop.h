@@ -41,7 +41,7 @@ struct FalconRequest {
 ///
 /// A force is sent only while the arm is homed and in its workspace, the last answer is less than 10 ms old and there
 /// is no fault; after any break it rises within 20 ms. A fault of the line ends after 20 good answers in a row, but a
-/// lost link stays lost: `unplugged` if the device is gone, else `silent`. An answer that comes sooner than possible
+/// lost link stays lost: `unplugged` if the device is gone, else `linkLost`. An answer that comes sooner than possible
 /// belongs to another packet, late or repeated: it counts, but the loop waits for the next.
 ///
 /// An answer by which the grip moves faster than 4 m/s is not believed. From then on there is no force until the grip

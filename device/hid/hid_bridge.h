@@ -55,6 +55,7 @@ private:
         BridgeAnswer  answer;      ///< the last good one
         std::uint64_t good    = 0; ///< answers with a new sequence number
         std::uint64_t garbled = 0; ///< invalid reports
+        std::uint64_t silenced = 0; ///< times that the guardian took the force
         bool          lost    = false;
     };
 
@@ -106,7 +107,8 @@ private:
     HapticState   state_;
     bool          open_     = false;
     bool          started_  = false; ///< exchange() has been called since open()
-    std::uint64_t seenGood_ = 0, seenGarbled_ = 0;
+    std::uint64_t seenGood_ = 0, seenGarbled_ = 0, seenSilenced_ = 0;
+    double        silencedUntil_ = 0; ///< [s]
     bool          stopped_      = false; ///< the device reports it
     bool          impossible_   = false; ///< the last position was impossible
     double        lastAnswer_   = 0;     ///< [s]

@@ -18,6 +18,7 @@ struct FakeUsbDevice {
     std::uint16_t             vendor = 0x0403, product = 0xCB48;
     std::uint8_t              bus = 1;
     std::vector<std::uint8_t> ports{2};
+    int                       node = -1; ///< our end of its node, once that is open: what the guardian writes
 
     int                                        openError = 0, claimError = 0, controlError = 0, submitError = 0;
     std::deque<std::vector<unsigned char>>     incoming; ///< each completes one IN transfer, status bytes and all
