@@ -12,6 +12,7 @@
 #include "engine/core/latest.h"
 #include "engine/core/real_time.h"
 #include "engine/core/thread_time.h"
+#include "engine/session/interrupt.h"
 
 namespace palp {
 namespace {
@@ -96,6 +97,29 @@ private:
     double                     lastTick_ = 0; ///< [s] of the servo's
 };
 
+/// Ctrl-Z: the force goes to zero, the device hears it, and only then the program stops.
+class Stopping {
+public:
+    [[nodiscard]] bool isAsked() const noexcept { return program_.isAsked(); }
+
+    /// Counts a tick with this force; stops the program if that is asked for and zero was sent often enough.
+    /// \return for how long it was stopped, which is no time of the session
+    Clock::duration stopAtZero(const GovernedForce& force) noexcept
+    {
+        constexpr int kZeros = 10; // ticks: three exchanges of a slow line
+        zeros_               = isAsked() && force.newtons() == glm::dvec3(0) ? zeros_ + 1 : 0;
+        if (zeros_ < kZeros) return {};
+        const auto since = Clock::now();
+        program_.stop();
+        zeros_ = 0;
+        return Clock::now() - since;
+    }
+
+private:
+    ZeroBeforeStop program_;
+    int            zeros_ = 0;
+};
+
 /// Runs the servo.
 void RealSession::servoThread()
 {
@@ -103,8 +127,9 @@ void RealSession::servoThread()
     warning_               = askForRealTime();
     Metronome     metronome{std::chrono::microseconds(1000)};
     GovernedForce force;
-    const auto    start = metronome.wait(); // asking may take a quarter of a second
+    auto          start = metronome.wait(); // asking may take a quarter of a second
     double        last = 0, period = kTick;
+    Stopping      stopping;
     for (;;) {
         const auto   now  = metronome.wait();
         const double time = Seconds(now - start).count(), dt = time - last;
@@ -113,7 +138,8 @@ void RealSession::servoThread()
         period += (dt - period) * std::min(1.0, dt / kMean);
         summary_.period.add(dt);
         const double      began  = threadSeconds();
-        const HapticState state  = parts_.device.exchange(force, time);
+        HapticState       state  = parts_.device.exchange(force, time);
+        if (stopping.isAsked()) state.homed = false; // the governor lets go, and engages anew
         TickRecord        record = tick({time, dt, period}, state);
         force                    = parts_.frame.toDevice(force_.governor().force());
         record.tickTime          = threadSeconds() - began;
@@ -121,7 +147,8 @@ void RealSession::servoThread()
         shared_.shown.publish();
         summary_.add(record);
         if (settings_.onTick) settings_.onTick(record);
-        if (state.fault == DeviceFault::unplugged) break; // it does not come back without close() and open()
+        start += stopping.stopAtZero(force);
+        if (isFinal(state.fault)) break; // it does not come back without close() and open()
     }
 }
 
