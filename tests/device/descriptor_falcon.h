@@ -139,6 +139,8 @@ public:
         serve(until, [] { return false; });
     }
 
+    void press(std::uint8_t buttons) { falcon_.press(buttons); }
+
     [[nodiscard]] bool   pushes() const { return falcon_.motors() != std::array<std::int16_t, 3>{}; }
     [[nodiscard]] double zeroSince() const { return zeroSince_; }                ///< [s] while it does not push
     [[nodiscard]] double pushesSince() const { return pushesSince_; }            ///< [s] while it does

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "device/falcon/falcon_device.h"
+#include "engine/core/real_time.h"
 #include "engine/session/interrupt.h"
 #include "engine/session/real_session.h"
 #include "tests/device/descriptor_falcon.h"
@@ -35,6 +36,7 @@ INSTANTIATE_TEST_SUITE_P(By, StoppedSession, ::testing::Values(SIGTSTP, SIGSTOP)
 
 TEST_P(StoppedSession, IsAtZeroAndEngagesAnewOnceTheHandWasLifted)
 {
+    static_cast<void>(askForRealTime()); // whoever measures must not be late
     double           target = kAway, height = kAway; // [m]
     DescriptorFalcon falcon([&](const glm::dvec3&, double dt) {
         height += std::clamp(target - height, -0.1 * dt, 0.1 * dt);
@@ -49,7 +51,7 @@ TEST_P(StoppedSession, IsAtZeroAndEngagesAnewOnceTheHandWasLifted)
         return falcon.pushes();
     };
     falcon.serve(steadyTime() + 10, [&] { return falcon.packets() > 100; });
-    for (int n = 0; n < 3; ++n) {
+    for (int n = 0; n < 2; ++n) {
         ASSERT_TRUE(press());
         const double asked = steadyTime();
         kill(child, GetParam());
@@ -58,6 +60,7 @@ TEST_P(StoppedSession, IsAtZeroAndEngagesAnewOnceTheHandWasLifted)
             falcon.serve(steadyTime() + 200e-6);
         ASSERT_TRUE(WIFSTOPPED(status)) << "it is stopped in the end";
         if (GetParam() == SIGTSTP) {
+            falcon.serve(steadyTime() + 5e-3); // what was sent before
             ASSERT_FALSE(falcon.pushes()) << "and before that at zero";
         }
         falcon.serve(asked + 0.1);
@@ -67,6 +70,12 @@ TEST_P(StoppedSession, IsAtZeroAndEngagesAnewOnceTheHandWasLifted)
         kill(child, SIGCONT);
         falcon.serve(steadyTime() + 1, [&] { return falcon.pushes(); });
         ASSERT_FALSE(falcon.pushes()) << "the hand still presses: it must be lifted first";
+        if (GetParam() == SIGSTOP) { // a servo that stood still is a fault, which the operator resets
+            ASSERT_FALSE(press());
+            falcon.press(1);
+            falcon.serve(steadyTime() + 0.1);
+            falcon.press(0);
+        }
     }
     EXPECT_TRUE(press()) << "it goes on";
     kill(child, SIGKILL);
