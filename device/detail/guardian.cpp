@@ -50,8 +50,9 @@ private:
 
 [[noreturn]] void refuse(const std::string& device, const char* what, int error)
 {
-    throw Error(device + " is not driven: the guardian process, which takes the force away if this program crashes, "
-                         "cannot be started: " +
+    throw Error(device +
+                " is not driven: the guardian process, which takes the force away if this program crashes, "
+                "cannot be started: " +
                 what + ": " + std::strerror(error) +
                 "; it is an executable in memory (memfd_create): see that a sandbox allows it, and that the setting "
                 "vm.memfd_noexec is below 2");
@@ -80,8 +81,8 @@ int start(int file, const std::array<int, 3>& descriptors, int endpoint, int& er
         posix_spawn_file_actions_adddup2(&actions, descriptors[std::size_t(n)], kGuardianPageFd + n);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
 
-    const std::string path  = "/proc/self/fd/" + std::to_string(file);
-    std::string       words[] = {"palpate-guardian", endpoint > 0 ? "bulk" : "write", std::to_string(endpoint)};
+    const std::string path        = "/proc/self/fd/" + std::to_string(file);
+    std::string       words[]     = {"palpate-guardian", endpoint > 0 ? "bulk" : "write", std::to_string(endpoint)};
     char*             arguments[] = {words[0].data(), words[1].data(), words[2].data(), nullptr};
     char*             nothing[]   = {nullptr};
     pid_t             process     = -1;
@@ -108,8 +109,8 @@ Guardian::Guardian(const Line& line, const ZeroRule& rule, const std::string& de
 {
     int ends[2] = {-1, -1};
     if (pipe2(ends, O_CLOEXEC) != 0) refuse(device, "a pipe", errno);
-    Descriptor its(ends[0]), ours(ends[1]), program(executable()), memory(memfd_create("palpate-guardian-page", MFD_CLOEXEC)),
-        shared(fcntl(line.fd, F_DUPFD_CLOEXEC, 0));
+    Descriptor its(ends[0]), ours(ends[1]), program(executable()),
+        memory(memfd_create("palpate-guardian-page", MFD_CLOEXEC)), shared(fcntl(line.fd, F_DUPFD_CLOEXEC, 0));
     if (!program.isOpen() || !memory.isOpen()) refuse(device, "a file in memory", errno);
     if (!shared.isOpen()) refuse(device, "the device's descriptor", errno);
     if (ftruncate(memory.get(), sizeof(GuardianPage)) != 0) refuse(device, "its memory", errno);

@@ -43,7 +43,7 @@ public:
     /// \return what is to be sent in its place, from this memory, before the next pass(): the packet, or zero force if
     ///         the program was silent for too long. Bytes that are too many for a packet are returned as they are.
     [[nodiscard]] std::span<const std::uint8_t> pass(std::span<const std::uint8_t> packet) noexcept;
-    void passed() noexcept; ///< says that it was sent
+    void                                        passed() noexcept; ///< says that it was sent
 
     /// Says that the program lives though it sends nothing.
     void keepAlive() noexcept;
@@ -59,11 +59,11 @@ private:
 
     GuardianPage* page_ = nullptr;
     ZeroRule      rule_;
-    int           life_      = -1;
-    int           process_   = -1;
-    bool          isPush_    = false; ///< the packet between pass() and passed()
-    bool          hasTaken_  = false; ///< for hasSilenced()
-    std::uint32_t known_     = 0;     ///< GuardianPage::silenced when that packet was checked
+    int           life_     = -1;
+    int           process_  = -1;
+    bool          isPush_   = false; ///< the packet between pass() and passed()
+    bool          hasTaken_ = false; ///< for hasSilenced()
+    std::uint32_t known_    = 0;     ///< GuardianPage::silenced when that packet was checked
 };
 
 } // namespace palp

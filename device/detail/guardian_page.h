@@ -18,7 +18,7 @@ struct GuardianPage {
     std::atomic<std::uint32_t> silenced{0}; ///< times that the guardian took the force of a program that was silent
     std::atomic<std::uint32_t> noticed{0};  ///< of these, the program knows, and has sent zero itself
 
-    std::atomic<std::uint32_t>                       zero{0}; ///< which of `zeros` is whole
+    std::atomic<std::uint32_t>                       zero{0};  ///< which of `zeros` is whole
     std::uint32_t                                    size = 0; ///< [byte] of each packet below
     std::array<std::array<std::uint8_t, kPacket>, 2> zeros{};  ///< zero force, as the device takes it now
     std::array<std::uint8_t, kPacket>                packet{}; ///< what the program sends: it goes out from here

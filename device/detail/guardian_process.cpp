@@ -24,10 +24,10 @@ namespace {
 
 using namespace palp;
 
-constexpr int          kZeros   = 3;  // one packet may be lost, hardly three
-constexpr unsigned int kBulk    = 10; // [ms] for a transfer
-constexpr int          kRoom    = 5;  // [ms] for a descriptor that is full
-constexpr int          kAbove   = 81; // [1] priority: the program's threads have 80
+constexpr int          kZeros = 3;  // one packet may be lost, hardly three
+constexpr unsigned int kBulk  = 10; // [ms] for a transfer
+constexpr int          kRoom  = 5;  // [ms] for a descriptor that is full
+constexpr int          kAbove = 81; // [1] priority: the program's threads have 80
 
 unsigned int endpoint = 0; // of usbfs; 0: write()
 
@@ -62,7 +62,7 @@ void silence(GuardianPage& page)
 /// Makes this process hard to delay and to end. What is refused is not missed on an idle machine.
 void settle()
 {
-    prctl(PR_SET_NAME, "palpate-guardian");                                    // in lists of processes
+    prctl(PR_SET_NAME, "palpate-guardian");                                     // in lists of processes
     for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_IGN); // Ctrl-C is for the program
     syscall(SYS_close_range, kGuardianDeviceFd + 1, ~0U, 0U); // a pipe of the program must end with it
     for (int standard = 0; standard < 3; ++standard) close(standard);
@@ -76,8 +76,7 @@ void settle()
 int main(int count, char** words)
 {
     if (count == 3 && std::strcmp(words[1], "bulk") == 0) endpoint = unsigned(std::atoi(words[2]));
-    void* const memory =
-        mmap(nullptr, sizeof(GuardianPage), PROT_READ | PROT_WRITE, MAP_SHARED, kGuardianPageFd, 0);
+    void* const memory = mmap(nullptr, sizeof(GuardianPage), PROT_READ | PROT_WRITE, MAP_SHARED, kGuardianPageFd, 0);
     if (memory == MAP_FAILED) return 1;
     auto& page = *static_cast<GuardianPage*>(memory);
     settle();

@@ -55,11 +55,19 @@ void FalconDevice::close() noexcept
 HapticState FalconDevice::exchange(const GovernedForce& force, double now) noexcept
 {
     if (!line_) return {};
-    const FalconRequest request{.force = force.newtons(), .lights = lights_};
+    if (stopsFor_ > 0) silentUntil_ = now + std::exchange(stopsFor_, 0);
+    if (silentUntil_ && !(now < *silentUntil_)) silentUntil_.reset();
+    const FalconRequest request{.force = force.newtons(), .lights = lights_, .silent = silentUntil_.has_value()};
     if (settings_.pace == FalconPace::stepped) return step(request, now);
     line_->requests.draft() = {request, Clock::now()};
     line_->requests.publish();
     return newest(now);
+}
+
+void FalconDevice::stopSending(double time) noexcept
+{
+    constexpr double kMost = 0.5; // [s]
+    stopsFor_              = time > 0 ? std::min(time, kMost) : 0;
 }
 
 /// Runs the I/O thread: sends the newest force, and less of it the longer the servo does not call.
@@ -75,6 +83,7 @@ void FalconDevice::converse(Line& line, bool asksForRealTime) noexcept
             request          = asked->request;
             request.share    = heldShare(age);
             if (age > kHostTooSlow) request.host = DeviceFault::hostTooSlow;
+            request.silent = request.silent && age < kForceHold; // a servo that hangs asks for no silence
         }
         const HapticState& state = line.loop->exchange(request);
         line.answers.draft()     = {state, Clock::now(), line.loop->now() - state.time};

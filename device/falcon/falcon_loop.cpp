@@ -81,6 +81,10 @@ const HapticState& FalconLoop::exchange(const FalconRequest& request) noexcept
 {
     if (isLost()) return state_;
     try {
+        if (request.silent) {
+            keepSilent();
+            return state_;
+        }
         const double now = link_->now();
         state_.fault     = line_ != DeviceFault::none ? line_ : request.host;
         if (state_.fault == DeviceFault::none && inDoubt_ && now - placed_ > kBlink)
@@ -101,6 +105,14 @@ const HapticState& FalconLoop::exchange(const FalconRequest& request) noexcept
         lose(Loss::broken);
     }
     return state_;
+}
+
+/// Passes a millisecond in which the device hears nothing.
+void FalconLoop::keepSilent()
+{
+    link_->keepAlive();
+    const double until = link_->now() + 1e-3;
+    for (double left = 1e-3; left > 0; left = until - link_->now()) collect(left);
 }
 
 void FalconLoop::listen(double until) noexcept

@@ -31,9 +31,10 @@ struct FalconLoopSettings {
 
 /// The host's request to one exchange.
 struct FalconRequest {
-    glm::dvec3   force{};    ///< [N] on the hand, device's frame
-    std::uint8_t lights = 0; ///< a sum of DeviceLight, where settings.showsState is off
-    double       share  = 1; ///< [1] most share of the force; if it rises the force comes on as after a break
+    glm::dvec3   force{};        ///< [N] on the hand, device's frame
+    std::uint8_t lights = 0;     ///< a sum of DeviceLight, where settings.showsState is off
+    double       share  = 1;     ///< [1] most share of the force; if it rises the force comes on as after a break
+    bool         silent = false; ///< nothing is sent: the motors keep the last force until the firmware lets go
     DeviceFault  host   = DeviceFault::none; ///< the host's own fault; no force flows while there is one
 };
 
@@ -70,6 +71,7 @@ public:
 private:
     enum class Loss : std::uint8_t { none, broken, gone }; ///< of the link; a broken one may still take a packet
 
+    void                      keepSilent();
     void                      send(const FalconRequest& request, double now);
     [[nodiscard]] glm::dvec3  allowed(const FalconRequest& request, double now) noexcept;
     [[nodiscard]] FalconDrive drive(const FalconRequest& request, double now) noexcept;

@@ -14,13 +14,13 @@
 namespace palp {
 namespace {
 
-constexpr double kSilence = 0.1;  // [s] without an answer, see DeviceFault::silent
-constexpr int    kMissed  = 20;   // exchanges without an answer, likewise
-constexpr double kQuiet   = 0.02; // [s] between zero commands while exchange() is not called: far from flooding
-constexpr double kStep    = 1e-3; // [s] at least between commands while a force falls
-constexpr double kLongest = 4e-3; // [s] most time between two commands that is counted, as in the governor
-constexpr int    kZeros   = 3;    // commands at the end: one packet may be lost, hardly three
-constexpr double kSilencedTime = 0.1; // [s] of DeviceFault::silenced: the governor must see it, to engage anew
+constexpr double kSilence      = 0.1;  // [s] without an answer, see DeviceFault::silent
+constexpr int    kMissed       = 20;   // exchanges without an answer, likewise
+constexpr double kQuiet        = 0.02; // [s] between zero commands while exchange() is not called: far from flooding
+constexpr double kStep         = 1e-3; // [s] at least between commands while a force falls
+constexpr double kLongest      = 4e-3; // [s] most time between two commands that is counted, as in the governor
+constexpr int    kZeros        = 3;    // commands at the end: one packet may be lost, hardly three
+constexpr double kSilencedTime = 0.1;  // [s] of DeviceFault::silenced: the governor must see it, to engage anew
 constexpr int    kRestart = 20; // answers that count on from an old number before the device is taken to have restarted
 constexpr int    kMostReports = 64; // per pass, so that a flooded host still writes
 constexpr double kFarOut      = 2;  // [1] times the workspace's radius: no arm reaches that far
@@ -61,7 +61,7 @@ HidBridgeDevice::~HidBridgeDevice()
 void HidBridgeDevice::open()
 {
     if (open_) return;
-    port_         = system_.open(listing_.path);
+    port_ = system_.open(listing_.path);
     port_->guard(kBridgeZero);
     seen_         = {};
     wrongVersion_ = false;
@@ -71,8 +71,8 @@ void HidBridgeDevice::open()
     homing_       = false;
     started_ = stopped_ = impossible_ = false;
     seenGood_ = seenGarbled_ = seenSilenced_ = 0;
-    silencedUntil_ = 0;
-    state_                   = {};
+    silencedUntil_                           = 0;
+    state_                                   = {};
     outbox_.take(); // commands of an earlier opening are discarded
 
     const auto deadline = Clock::now() + std::chrono::duration<double>(settings_.openWait);

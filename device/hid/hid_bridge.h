@@ -52,11 +52,11 @@ private:
     using Clock = std::chrono::steady_clock;
 
     struct Inbox {
-        BridgeAnswer  answer;      ///< the last good one
-        std::uint64_t good    = 0; ///< answers with a new sequence number
-        std::uint64_t garbled = 0; ///< invalid reports
+        BridgeAnswer  answer;       ///< the last good one
+        std::uint64_t good     = 0; ///< answers with a new sequence number
+        std::uint64_t garbled  = 0; ///< invalid reports
         std::uint64_t silenced = 0; ///< times that the guardian took the force
-        bool          lost    = false;
+        bool          lost     = false;
     };
 
     struct TimedCommand {
@@ -108,11 +108,11 @@ private:
     bool          open_     = false;
     bool          started_  = false; ///< exchange() has been called since open()
     std::uint64_t seenGood_ = 0, seenGarbled_ = 0, seenSilenced_ = 0;
-    double        silencedUntil_ = 0; ///< [s]
-    bool          stopped_      = false; ///< the device reports it
-    bool          impossible_   = false; ///< the last position was impossible
-    double        lastAnswer_   = 0;     ///< [s]
-    double        lastExchange_ = 0;     ///< [s]
+    double        silencedUntil_ = 0;     ///< [s]
+    bool          stopped_       = false; ///< the device reports it
+    bool          impossible_    = false; ///< the last position was impossible
+    double        lastAnswer_    = 0;     ///< [s]
+    double        lastExchange_  = 0;     ///< [s]
 
     std::jthread thread_; ///< last member: it ends before what it uses
 };

@@ -137,13 +137,13 @@ void RealSession::servoThread()
         last = lastTick_ = time;
         period += (dt - period) * std::min(1.0, dt / kMean);
         summary_.period.add(dt);
-        const double      began  = threadSeconds();
-        HapticState       state  = parts_.device.exchange(force, time);
+        const double began = threadSeconds();
+        HapticState  state = parts_.device.exchange(force, time);
         if (stopping.isAsked()) state.homed = false; // the governor lets go, and engages anew
-        TickRecord        record = tick({time, dt, period}, state);
-        force                    = parts_.frame.toDevice(force_.governor().force());
-        record.tickTime          = threadSeconds() - began;
-        shared_.shown.draft()    = {record, period, state.buttons};
+        TickRecord record     = tick({time, dt, period}, state);
+        force                 = parts_.frame.toDevice(force_.governor().force());
+        record.tickTime       = threadSeconds() - began;
+        shared_.shown.draft() = {record, period, state.buttons};
         shared_.shown.publish();
         summary_.add(record);
         if (settings_.onTick) settings_.onTick(record);

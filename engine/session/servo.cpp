@@ -131,15 +131,15 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     const WantedForce want      = wantedForce(stiffness, now.dt, hand, held);
 
     GovernorInput in;
-    in.force                 = want.force;
-    in.position              = hand.position;
-    in.velocity              = hand.velocity;
-    in.homed                 = hand.homed && hand.device == DeviceFault::none;
-    in.inBox                 = hand.inBox;
-    in.dt                    = now.dt;
-    in.loopPeriod            = now.loopPeriod;
-    in.forceAge              = std::max(0.0, now.time - touch.time); // above 0 if the proxy has a thread of its own
-    const double overdue     = tableOverdue(now, touch.touching, newest);
+    in.force             = want.force;
+    in.position          = hand.position;
+    in.velocity          = hand.velocity;
+    in.homed             = hand.homed && hand.device == DeviceFault::none;
+    in.inBox             = hand.inBox;
+    in.dt                = now.dt;
+    in.loopPeriod        = now.loopPeriod;
+    in.forceAge          = std::max(0.0, now.time - touch.time); // above 0 if the proxy has a thread of its own
+    const double overdue = tableOverdue(now, touch.touching, newest);
     if (overdue > 0) in.forceAge = std::max(in.forceAge, governor_.settings().staleAfter + overdue);
     in.missedExchanges       = hand.missed;
     in.admittedEnergy        = want.tank.used;
@@ -166,14 +166,13 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
         record.patchAge   = handed->age;
     }
     constexpr double kStalePeriods = 3; // two are ordinary: one to solve, one in use [1]
-    record.faults                  = static_cast<std::uint32_t>(out.fault) |
-                    flag(SessionFlag::stalePatch, record.patchAge > kStalePeriods * patchPeriod_) |
-                    flag(SessionFlag::beyondTable, touch.touching && handed && handed->clamped) |
-                    flag(SessionFlag::noPatch, touch.touching && !handed) |
-                    flag(SessionFlag::proxyLimited, held.limited) |
-                    flag(SessionFlag::beyondTheory, record.maxDeflection > thickness_ / 2) |
-                    flag(SessionFlag::oldTable, overdue > 0) |
-                    flag(SessionFlag::governed, touch.touching && out.actions != 0);
+    record.faults =
+        static_cast<std::uint32_t>(out.fault) |
+        flag(SessionFlag::stalePatch, record.patchAge > kStalePeriods * patchPeriod_) |
+        flag(SessionFlag::beyondTable, touch.touching && handed && handed->clamped) |
+        flag(SessionFlag::noPatch, touch.touching && !handed) | flag(SessionFlag::proxyLimited, held.limited) |
+        flag(SessionFlag::beyondTheory, record.maxDeflection > thickness_ / 2) |
+        flag(SessionFlag::oldTable, overdue > 0) | flag(SessionFlag::governed, touch.touching && out.actions != 0);
     return record;
 }
 

@@ -18,7 +18,10 @@ void showLine(const SessionView& view)
                  formatQuantity(glm::length(s.force), "N").c_str(),
                  formatQuantity(glm::length(s.proxy - s.hip), "m").c_str(),
                  formatQuantity(view.loopPeriod, "s").c_str(), formatQuantity(view.solveTime, "s").c_str(),
-                 old ? "  no force: the plate does not answer" : stale ? "  stale" : "", fault == GovernorFault::none ? "" : "  no force, button 0 resets: ",
+                 old     ? "  no force: the plate does not answer"
+                 : stale ? "  stale"
+                         : "",
+                 fault == GovernorFault::none ? "" : "  no force, button 0 resets: ",
                  fault == GovernorFault::none ? "" : name(fault));
 }
 

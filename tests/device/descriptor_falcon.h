@@ -35,7 +35,8 @@ template <class Content>
 class SharedMemory {
 public:
     SharedMemory()
-        : content_(new (mmap(nullptr, sizeof(Content), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) Content)
+        : content_(new (mmap(nullptr, sizeof(Content), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0))
+                       Content)
     {
     }
     SharedMemory(const SharedMemory&)            = delete;
@@ -61,13 +62,15 @@ public:
     [[nodiscard]] double now() const noexcept override { return steadyTime(); }
     void                 control(FtdiRequest, std::uint16_t) override {}
     [[nodiscard]] bool   wasSilenced() noexcept override { return guardian_.hasSilenced(); }
+    void                 keepAlive() noexcept override { guardian_.keepAlive(); }
 
     void write(std::span<const std::uint8_t> bytes) override
     {
         if (!guardian_.isWatching()) throw LinkLost("its guardian has ended");
         const std::span out = guardian_.pass(bytes);
         while (hangs_ && *hangs_) std::this_thread::sleep_for(std::chrono::microseconds(100));
-        if (send(fd_, out.data(), out.size(), MSG_NOSIGNAL) != ssize_t(out.size())) throw LinkGone(std::strerror(errno));
+        if (send(fd_, out.data(), out.size(), MSG_NOSIGNAL) != ssize_t(out.size()))
+            throw LinkGone(std::strerror(errno));
         guardian_.passed();
     }
 
@@ -141,11 +144,11 @@ public:
 
     void press(std::uint8_t buttons) { falcon_.press(buttons); }
 
-    [[nodiscard]] bool   pushes() const { return falcon_.motors() != std::array<std::int16_t, 3>{}; }
-    [[nodiscard]] double zeroSince() const { return zeroSince_; }                ///< [s] while it does not push
-    [[nodiscard]] double pushesSince() const { return pushesSince_; }            ///< [s] while it does
-    [[nodiscard]] std::uint64_t packets() const { return falcon_.packets(); }    ///< received so far
-    [[nodiscard]] std::uint64_t zeros() const { return zeros_; }                 ///< of these, in a row until now
+    [[nodiscard]] bool          pushes() const { return falcon_.motors() != std::array<std::int16_t, 3>{}; }
+    [[nodiscard]] double        zeroSince() const { return zeroSince_; }      ///< [s] while it does not push
+    [[nodiscard]] double        pushesSince() const { return pushesSince_; }  ///< [s] while it does
+    [[nodiscard]] std::uint64_t packets() const { return falcon_.packets(); } ///< received so far
+    [[nodiscard]] std::uint64_t zeros() const { return zeros_; }              ///< of these, in a row until now
 
 private:
     static EmulatedFalconSettings settings()
@@ -184,7 +187,7 @@ private:
 
     std::array<int, 2> ends_{-1, -1};
     EmulatedFalcon     falcon_;
-    double             start_ = steadyTime(); ///< [s] when its clock was 0
+    double             start_     = steadyTime();        ///< [s] when its clock was 0
     double             zeroSince_ = 0, pushesSince_ = 0; ///< [s]
     std::uint64_t      zeros_ = 0;
 };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <libusb.h>
+#include <unistd.h>
 
 namespace palp {
 
@@ -35,6 +36,11 @@ struct FakeUsbDevice {
     std::vector<std::pair<std::uint8_t, std::uint16_t>> controls; ///< request and value
     bool                                                autoDetach = false;
     int                                                 claims     = 0; ///< now
+
+    ~FakeUsbDevice()
+    {
+        if (node >= 0) close(node);
+    }
 };
 
 /// The stand-in of libusb of this program.

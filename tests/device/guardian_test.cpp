@@ -116,8 +116,8 @@ protected:
     {
         if (took_.empty()) return;
         std::ranges::sort(took_);
-        std::printf("  zero after %.1f ms at the median, %.1f ms at most, %zu instants\n", 1e3 * took_[took_.size() / 2],
-                    1e3 * took_.back(), took_.size());
+        std::printf("  zero after %.1f ms at the median, %.1f ms at most, %zu instants\n",
+                    1e3 * took_[took_.size() / 2], 1e3 * took_.back(), took_.size());
     }
 
     const GovernedForce                    force_ = governed({1, 1, 1});

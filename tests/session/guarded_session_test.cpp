@@ -24,9 +24,9 @@ void touchSheet(int fd)
     FalconDevice       device([fd] { return std::make_unique<DescriptorLink>(fd, nullptr); });
     device.open();
     std::string warning;
-    static_cast<void>(runReal({session.scene, session.object, deformation.solver(), device,
-                               deviceFrame({0, 0, 6e-3}, {0, 0, 1})},
-                              {.seconds = 60}, warning));
+    static_cast<void>(
+        runReal({session.scene, session.object, deformation.solver(), device, deviceFrame({0, 0, 6e-3}, {0, 0, 1})},
+                {.seconds = 60}, warning));
 }
 
 class StoppedSession : public ::testing::TestWithParam<int> {};
@@ -36,7 +36,7 @@ INSTANTIATE_TEST_SUITE_P(By, StoppedSession, ::testing::Values(SIGTSTP, SIGSTOP)
 
 TEST_P(StoppedSession, IsAtZeroAndEngagesAnewOnceTheHandWasLifted)
 {
-    static_cast<void>(askForRealTime()); // whoever measures must not be late
+    static_cast<void>(askForRealTime());             // whoever measures must not be late
     double           target = kAway, height = kAway; // [m]
     DescriptorFalcon falcon([&](const glm::dvec3&, double dt) {
         height += std::clamp(target - height, -0.1 * dt, 0.1 * dt);

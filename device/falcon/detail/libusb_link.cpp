@@ -128,11 +128,11 @@ private:
 /// \param node  of the device, which stays open; if it could not be opened, libusb says why, as it fails to as well
 Handle claim(libusb_context* context, libusb_device* device, const Node& node, FalconListing& listing)
 {
-    listing.path                = pathOf(device);
-    libusb_device_handle* open  = nullptr;
-    int                   found = node.line().fd >= 0 ? libusb_wrap_sys_device(context, node.line().fd, &open)
-                                                      : libusb_open(device, &open);
-    Handle                handle(found == 0 ? open : nullptr);
+    listing.path               = pathOf(device);
+    libusb_device_handle* open = nullptr;
+    int                   found =
+        node.line().fd >= 0 ? libusb_wrap_sys_device(context, node.line().fd, &open) : libusb_open(device, &open);
+    Handle handle(found == 0 ? open : nullptr);
     if (handle) {
         // A serial driver of the kernel may hold it. Not every system can detach one; then the claim fails.
         static_cast<void>(libusb_set_auto_detach_kernel_driver(open, 1));
@@ -210,6 +210,8 @@ public:
     }
 
     [[nodiscard]] bool wasSilenced() noexcept override { return guardian_.hasSilenced(); }
+
+    void keepAlive() noexcept override { guardian_.keepAlive(); }
 
     void throwIfLost() const
     {
