@@ -138,7 +138,7 @@ struct GovernorOutput {
 ///   8  engaged: below 0.2 N for 10 ticks in the box, then from nothing to all in 1.5 s
 ///
 /// While it waits (8) no force can flow, and a fast hand (7) only restarts the wait. A fault stays until reset(). Every
-/// failure ends at exactly zero within 20 ms of ticks. The device scales forces to its motors' torques.
+/// failure that a tick can see ends at exactly zero within 20 ms of ticks. The device scales forces to its motors.
 ///
 /// Invariants: the force is finite and at most maximumForce; nothing is allocated, locked or thrown.
 /// \source Hannaford & Ryu 2002 for step 4

@@ -30,8 +30,8 @@ public:
     /// Solves for where the touch will be 1.5 periods later. If that is off the object, or the points determine no
     /// surface there, it solves for the touch itself; if that fails too there is no update, and the answer says why.
     ///
-    /// Then the servo goes on with its last table: k_c of the contact in series with the last known compliance, flagged
-    /// as stale. Before the first table there is no force, and that is meant. A plate could be made up there, of the
+    /// Then the servo goes on with its last table for a quarter of a second of contact: k_c of the contact in series with
+    /// the last known compliance, flagged as stale; after that the force fades. Before the first table there is no force, and that is meant. A plate could be made up there, of the
     /// nearest point's rigidity everywhere; but what fails is most often a wrong unit or a window that is too small,
     /// and then thickness, footprint and stiffness are as wrong: the hand would feel something that is off by powers of
     /// ten, and recordings would hold forces that no plate gave. So a session says in words why it has no force.
