@@ -33,15 +33,17 @@ struct HapticDeviceInfo {
 /// Why a device gives no valid state. Numbers are recorded: never reuse one.
 enum class DeviceFault : std::uint8_t {
     none        = 0,
-    closed      = 1, ///< not opened yet, or closed
-    unplugged   = 2, ///< it went away while open; call close(), and open() once it is back
-    silent      = 3, ///< more than 20 exchanges or 100 ms without an answer, or a broken link: call close(), open()
-    garbled     = 4, ///< as many answers that are invalid
-    kinematics  = 5, ///< a position that is impossible for the arm
-    ownWatchdog = 6, ///< the device reports that it stopped by itself
-    badForce    = 7, ///< the requested force was not finite; it rendered none
-    startingUp  = 8, ///< it is being opened: upload, first exchange
-    hostTooSlow = 9  ///< render() was not called for 100 ms; the force was already zero
+    closed      = 1,  ///< not opened yet, or closed
+    unplugged   = 2,  ///< it went away while open; call close(), and open() once it is back
+    silent      = 3,  ///< more than 20 exchanges or 100 ms without an answer
+    garbled     = 4,  ///< as many answers that are invalid
+    kinematics  = 5,  ///< a position that is impossible for the arm
+    ownWatchdog = 6,  ///< the device reports that it stopped by itself
+    badForce    = 7,  ///< the requested force was not finite; it rendered none
+    startingUp  = 8,  ///< it is being opened: upload, first exchange
+    hostTooSlow = 9,  ///< render() was not called for 100 ms; the force was already zero
+    linkLost    = 10, ///< the link to it broke and stays broken: call close(), and open() anew
+    silenced    = 11  ///< the guardian process took the force, because nothing was sent for 25 ms; it passes
 };
 constexpr auto namesOf(DeviceFault)
 {
@@ -55,7 +57,15 @@ constexpr auto namesOf(DeviceFault)
                                                    {ownWatchdog, "own-watchdog"},
                                                    {badForce, "bad-force"},
                                                    {startingUp, "starting-up"},
-                                                   {hostTooSlow, "host-too-slow"}});
+                                                   {hostTooSlow, "host-too-slow"},
+                                                   {linkLost, "link-lost"},
+                                                   {silenced, "silenced"}});
+}
+
+/// Returns whether a fault stays until close(): the session with that device is over.
+[[nodiscard]] constexpr bool isFinal(DeviceFault fault) noexcept
+{
+    return fault == DeviceFault::unplugged || fault == DeviceFault::linkLost;
 }
 
 /// The device as of its last good answer, in its own frame: x right, y up, z towards the user, the origin in the middle

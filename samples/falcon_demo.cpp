@@ -80,6 +80,9 @@ void report(const SessionSummary& s)
     std::printf("engine  a tick comes every %s, a patch takes %s\n", text(s.period.quantile(0.5), "s").c_str(),
                 text(s.solve.quantile(0.5), "s").c_str());
     std::printf("faults  governor: %s; Falcon: %s\n", name(s.fault), name(s.deviceFault));
+    if (s.oldTable > 0)
+        std::printf("plate   it did not answer for a quarter of a second; there was no force for %s ticks\n",
+                    std::to_string(s.oldTable).c_str());
     if (s.beyondTheory > 0) std::puts("theory  it bent by more than half its thickness; press more gently");
 }
 

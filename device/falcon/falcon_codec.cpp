@@ -1,5 +1,7 @@
 #include "device/falcon/falcon_codec.h"
 
+#include <algorithm>
+
 #include "device/haptic_device.h"
 
 namespace palp {
@@ -48,6 +50,28 @@ constexpr bool fits(std::size_t place, std::uint8_t byte, std::uint8_t mostOfFla
     return byte - kZero <= (place == kFlags ? mostOfFlags : kMostOfNibble);
 }
 
+/// The bytes of the motors in a command.
+template <class Bytes>
+auto motorsOf(std::span<Bytes> packet)
+{
+    return packet.subspan(1, 3 * kNumberSize);
+}
+
+bool isCommand(std::span<const std::uint8_t> packet) noexcept
+{
+    return packet.size() == sizeof(FalconPacket) && packet.front() == kStart && packet.back() == kEnd;
+}
+
+bool pushes(std::span<const std::uint8_t> packet) noexcept
+{
+    return isCommand(packet) && std::ranges::any_of(motorsOf(packet), [](std::uint8_t byte) { return byte != kZero; });
+}
+
+void silence(std::span<std::uint8_t> packet) noexcept
+{
+    if (isCommand(packet)) std::ranges::fill(motorsOf(packet), kZero); // firmware that is uploaded is none
+}
+
 struct Content {
     std::array<std::int16_t, 3> numbers{};
     std::uint8_t                flags = 0;
@@ -70,6 +94,8 @@ std::optional<Content> unpack(std::span<const std::uint8_t, 16> bytes, std::uint
 }
 
 } // namespace
+
+const ZeroRule kFalconZero{pushes, silence};
 
 FalconPacket encode(const FalconCommand& command) noexcept
 {

@@ -5,6 +5,8 @@
 #include <optional>
 #include <span>
 
+#include "device/zero_rule.h"
+
 namespace palp {
 
 /// The host's command to a Falcon in one packet.
@@ -48,6 +50,9 @@ using FalconPacket = std::array<std::uint8_t, 16>;
 /// \thread pure, as the functions above; no allocation
 [[nodiscard]] std::optional<FalconCommand> decodeCommand(std::span<const std::uint8_t, 16> bytes) noexcept;
 [[nodiscard]] std::optional<FalconReply>   decodeReply(std::span<const std::uint8_t, 16> bytes) noexcept;
+
+/// Packets that push, and their zero: motors at rest, lights and homing as they were. For a guardian process.
+extern const ZeroRule kFalconZero;
 
 /// Finds the replies in a stream of bytes that may be cut anywhere and may have lost or gained bytes.
 ///

@@ -57,7 +57,7 @@ void FalconDevice::close() noexcept
 void FalconDevice::render(const GovernedForce& force) noexcept
 {
     if (!line_) return;
-    line_->asked = {.force = force.newtons(), .lights = lights_};
+    line_->asked = {.force = force.newtons(), .lights = lights_, .silent = silentUntil_.has_value()};
     if (settings_.pace == FalconPace::stepped) return;
     line_->requests.draft() = {line_->asked, Clock::now()};
     line_->requests.publish();
@@ -66,7 +66,16 @@ void FalconDevice::render(const GovernedForce& force) noexcept
 HapticState FalconDevice::read(double now) noexcept
 {
     if (!line_) return {};
+    if (stopsFor_ > 0) silentUntil_ = now + std::exchange(stopsFor_, 0);
+    if (silentUntil_ && !(now < *silentUntil_)) silentUntil_.reset();
+    line_->asked.silent = silentUntil_.has_value();
     return settings_.pace == FalconPace::stepped ? step(line_->asked, now) : newest(now);
+}
+
+void FalconDevice::stopSending(double time) noexcept
+{
+    constexpr double kMost = 0.5; // [s]
+    stopsFor_              = time > 0 ? std::min(time, kMost) : 0;
 }
 
 /// Runs the I/O thread: sends the newest force, and less of it the longer the servo does not call.
@@ -82,6 +91,7 @@ void FalconDevice::converse(Line& line, bool asksForRealTime) noexcept
             request          = asked->request;
             request.share    = heldShare(age);
             if (age > kHostTooSlow) request.host = DeviceFault::hostTooSlow;
+            request.silent = request.silent && age < kForceHold; // a servo that hangs asks for no silence
         }
         const HapticState& state = line.loop->exchange(request);
         line.answers.draft()     = {state, Clock::now(), line.loop->now() - state.time};

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -50,6 +51,10 @@ public:
     void                                  close() noexcept override;
     HapticState                           read(double now) noexcept override;
     void                                  render(const GovernedForce& force) noexcept override;
+    /// Sends nothing from the next exchange on, for a time [s] of 0.5 s at most, so that the motors keep the last force
+    /// until the firmware lets go: FalconHold measures when. The guardian waits, and no other check is weakened.
+    void stopSending(double time) noexcept;
+
     void light(std::uint8_t lights) noexcept override { lights_ = lights; } ///< if settings.loop.showsState is off
 
 private:
@@ -85,8 +90,10 @@ private:
     FalconLinkOpener      open_;
     FalconDeviceSettings  settings_;
     HapticDeviceInfo      info_;
-    std::uint8_t          lights_ = 0;
-    std::unique_ptr<Line> line_; ///< null: closed
+    std::uint8_t          lights_   = 0;
+    double                stopsFor_ = 0; ///< [s] that is asked of the next exchange
+    std::optional<double> silentUntil_;  ///< [s] by the clock of exchange()
+    std::unique_ptr<Line> line_;         ///< null: closed
 };
 
 } // namespace palp

@@ -56,6 +56,12 @@ public:
     /// before it throws, so that zero force reaches a device that still listens.
     virtual void write(std::span<const std::uint8_t> bytes) = 0;
 
+    /// Returns whether, since the last call, a guardian process took the force because nothing was written for 25 ms.
+    [[nodiscard]] virtual bool wasSilenced() noexcept { return false; }
+
+    /// Says to that process that the program lives, though it writes nothing on purpose.
+    virtual void keepAlive() noexcept {}
+
     /// Reads bytes that came in, without the chip's status bytes; waits up to `timeout` [s] for the first.
     /// \return how many of `bytes` were filled; 0 if nothing came in time
     /// \throws LinkLost if the link fails

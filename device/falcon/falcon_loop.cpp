@@ -81,6 +81,10 @@ const HapticState& FalconLoop::exchange(const FalconRequest& request) noexcept
 {
     if (isLost()) return state_;
     try {
+        if (request.silent) {
+            keepSilent();
+            return state_;
+        }
         const double now = link_->now();
         state_.fault     = line_ != DeviceFault::none ? line_ : request.host;
         if (state_.fault == DeviceFault::none && inDoubt_ && now - placed_ > kBlink)
@@ -101,6 +105,14 @@ const HapticState& FalconLoop::exchange(const FalconRequest& request) noexcept
         lose(Loss::broken);
     }
     return state_;
+}
+
+/// Passes a millisecond in which the device hears nothing.
+void FalconLoop::keepSilent()
+{
+    link_->keepAlive();
+    const double until = link_->now() + 1e-3;
+    for (double left = 1e-3; left > 0; left = until - link_->now()) collect(left);
 }
 
 void FalconLoop::listen(double until) noexcept
@@ -135,6 +147,10 @@ void FalconLoop::send(const FalconRequest& request, double now)
     command_.lights = settings_.showsState ? std::uint8_t(falconLight(state_)) : request.lights;
     sent_           = now;
     link_->write(encode(command_));
+    if (!link_->wasSilenced()) return;
+    // What went out was zero. The fault makes the governor engage anew.
+    line_ = state_.fault = DeviceFault::silenced;
+    gain_ = good_ = 0;
 }
 
 FalconDrive FalconLoop::drive(const FalconRequest& request, double now) noexcept
@@ -255,7 +271,7 @@ void FalconLoop::miss() noexcept
 void FalconLoop::lose(Loss loss) noexcept
 {
     loss_ = loss == Loss::broken && !release() ? Loss::gone : loss;
-    line_ = state_.fault = loss_ == Loss::gone ? DeviceFault::unplugged : DeviceFault::silent;
+    line_ = state_.fault = loss_ == Loss::gone ? DeviceFault::unplugged : DeviceFault::linkLost;
     state_.homed = state_.inBox = false;
     state_.velocity             = {};
     ++state_.missed;

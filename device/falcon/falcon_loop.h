@@ -31,9 +31,10 @@ struct FalconLoopSettings {
 
 /// The host's request to one exchange.
 struct FalconRequest {
-    glm::dvec3   force{};    ///< [N] on the hand, device's frame
-    std::uint8_t lights = 0; ///< a sum of DeviceLight, where settings.showsState is off
-    double       share  = 1; ///< [1] most share of the force; if it rises the force comes on as after a break
+    glm::dvec3   force{};        ///< [N] on the hand, device's frame
+    std::uint8_t lights = 0;     ///< a sum of DeviceLight, where settings.showsState is off
+    double       share  = 1;     ///< [1] most share of the force; if it rises the force comes on as after a break
+    bool         silent = false; ///< nothing is sent: the motors keep the last force until the firmware lets go
     DeviceFault  host   = DeviceFault::none; ///< the host's own fault; no force flows while there is one
 };
 
@@ -41,7 +42,7 @@ struct FalconRequest {
 ///
 /// A force is sent only while the arm is homed and in its workspace, the last answer is less than 10 ms old and there
 /// is no fault; after any break it rises within 20 ms. A fault of the line ends after 20 good answers in a row, but a
-/// lost link stays lost: `unplugged` if the device is gone, else `silent`. An answer that comes sooner than possible
+/// lost link stays lost: `unplugged` if the device is gone, else `linkLost`. An answer that comes sooner than possible
 /// belongs to another packet, late or repeated: it counts, but the loop waits for the next.
 ///
 /// An answer by which the grip moves faster than 4 m/s is not believed. From then on there is no force until the grip
@@ -70,6 +71,7 @@ public:
 private:
     enum class Loss : std::uint8_t { none, broken, gone }; ///< of the link; a broken one may still take a packet
 
+    void                      keepSilent();
     void                      send(const FalconRequest& request, double now);
     [[nodiscard]] glm::dvec3  allowed(const FalconRequest& request, double now) noexcept;
     [[nodiscard]] FalconDrive drive(const FalconRequest& request, double now) noexcept;

@@ -193,4 +193,19 @@ BridgeVerdict decode(std::span<const std::uint8_t> report, BridgeCommand& out) n
     return verdict;
 }
 
+const ZeroRule kBridgeZero{.pushes =
+                               [](std::span<const std::uint8_t> report) noexcept {
+                                   BridgeCommand command;
+                                   return decode(report, command) == BridgeVerdict::good && command.enable;
+                               },
+                           .silence =
+                               [](std::span<std::uint8_t> report) noexcept {
+                                   BridgeCommand command;
+                                   if (decode(report, command) != BridgeVerdict::good) return;
+                                   command.sequence = std::uint16_t(command.sequence + kBridgeZeroAhead);
+                                   command.enable   = false;
+                                   command.force    = {};
+                                   std::ranges::copy(encode(command), report.begin());
+                               }};
+
 } // namespace palp

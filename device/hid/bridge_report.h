@@ -7,6 +7,8 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
+#include "device/zero_rule.h"
+
 // The bridge: an open report for haptic devices that people build themselves. device/README.md defines its bytes and
 // rules; this header has the same fields in SI units and converts between the two.
 namespace palp {
@@ -86,6 +88,13 @@ enum class BridgeVerdict : std::uint8_t {
 /// \param out  written only if the verdict is good
 [[nodiscard]] BridgeVerdict decode(std::span<const std::uint8_t> report, BridgeAnswer& out) noexcept;
 [[nodiscard]] BridgeVerdict decode(std::span<const std::uint8_t> report, BridgeCommand& out) noexcept;
+
+/// [1] by which the number of a guardian's zero is ahead of the report's that it follows, so that reports of a program
+/// that was stopped and goes on are old; the program then counts on from beyond it.
+inline constexpr std::uint16_t kBridgeZeroAhead = 0x2000;
+
+/// Commands that push, and their zero: without enable, and ahead. For a guardian process.
+extern const ZeroRule kBridgeZero;
 
 /// Computes CRC-16/CCITT-FALSE: polynomial 0x1021, start 0xFFFF, no reflection. "123456789" gives 0x29B1.
 [[nodiscard]] std::uint16_t bridgeChecksum(std::span<const std::uint8_t> bytes) noexcept;

@@ -14,12 +14,13 @@
 namespace palp {
 namespace {
 
-constexpr double kSilence = 0.1;  // [s] without an answer, see DeviceFault::silent
-constexpr int    kMissed  = 20;   // exchanges without an answer, likewise
-constexpr double kQuiet   = 0.02; // [s] between zero commands while render() is not called: far from flooding
-constexpr double kStep    = 1e-3; // [s] at least between commands while a force falls
-constexpr double kLongest = 4e-3; // [s] most time between two commands that is counted, as in the governor
-constexpr int    kZeros   = 3;    // commands at the end: one packet may be lost, hardly three
+constexpr double kSilence      = 0.1;  // [s] without an answer, see DeviceFault::silent
+constexpr int    kMissed       = 20;   // exchanges without an answer, likewise
+constexpr double kQuiet        = 0.02; // [s] between zero commands while render() is not called: far from flooding
+constexpr double kStep         = 1e-3; // [s] at least between commands while a force falls
+constexpr double kLongest      = 4e-3; // [s] most time between two commands that is counted, as in the governor
+constexpr int    kZeros        = 3;    // commands at the end: one packet may be lost, hardly three
+constexpr double kSilencedTime = 0.1;  // [s] of DeviceFault::silenced: the governor must see it, to engage anew
 constexpr int    kRestart = 20; // answers that count on from an old number before the device is taken to have restarted
 constexpr int    kMostReports = 64;   // per pass, so that a flooded host still writes
 constexpr double kFrames      = 1e-3; // [s] that USB holds a report and a command back: on average half a frame each
@@ -61,7 +62,8 @@ HidBridgeDevice::~HidBridgeDevice()
 void HidBridgeDevice::open()
 {
     if (open_) return;
-    port_         = system_.open(listing_.path);
+    port_ = system_.open(listing_.path);
+    port_->guard(kBridgeZero);
     seen_         = {};
     wrongVersion_ = false;
     goesOn_       = 0;
@@ -70,8 +72,9 @@ void HidBridgeDevice::open()
     homing_       = false;
     wanted_       = {};
     started_ = stopped_ = impossible_ = false;
-    seenGood_ = seenGarbled_ = 0;
-    state_                   = {};
+    seenGood_ = seenGarbled_ = seenSilenced_ = 0;
+    silencedUntil_                           = 0;
+    state_                                   = {};
     outbox_.take(); // commands of an earlier opening are discarded
 
     const auto deadline = Clock::now() + std::chrono::duration<double>(settings_.openWait);
@@ -172,6 +175,9 @@ void HidBridgeDevice::send(BridgeCommand command)
     hot_             = command.enable;
     lastSent_        = Clock::now();
     port_->write(encode(command));
+    if (!port_->wasSilenced()) return;
+    sent_ = std::uint16_t(sent_ + kBridgeZeroAhead); // the guardian's zeros have counted ahead
+    ++seen_.silenced;
 }
 
 void HidBridgeDevice::sendNewest()
@@ -284,6 +290,7 @@ void HidBridgeDevice::followClock(double now) noexcept
     const double back = lastRead_ - now;
     lastRead_ -= back;
     lastAnswer_ -= back;
+    silencedUntil_ -= back;
     state_.time -= back;
 }
 
@@ -296,6 +303,8 @@ void HidBridgeDevice::readInbox(double now) noexcept
         state_.fault = DeviceFault::unplugged;
         return;
     }
+    if (inbox.silenced != seenSilenced_) silencedUntil_ = now + kSilencedTime;
+    seenSilenced_ = inbox.silenced;
     if (!started_) lastAnswer_ = now; // silence before the first read() does not count
     if (inbox.good == seenGood_) {
         ++state_.missed;
@@ -326,6 +335,7 @@ DeviceFault HidBridgeDevice::faultAt(double now) const noexcept
     if (state_.fault == DeviceFault::unplugged) return DeviceFault::unplugged;
     if (state_.missed > kMissed || now - lastAnswer_ > kSilence)
         return inbox_.held()->garbled != seenGarbled_ ? DeviceFault::garbled : DeviceFault::silent;
+    if (now < silencedUntil_) return DeviceFault::silenced;
     if (impossible_) return DeviceFault::kinematics;
     if (stopped_) return DeviceFault::ownWatchdog;
     if (!isFinite(wanted_)) return DeviceFault::badForce;

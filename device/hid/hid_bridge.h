@@ -53,11 +53,12 @@ private:
     using Clock = std::chrono::steady_clock;
 
     struct Inbox {
-        BridgeAnswer      answer;      ///< the last good one
-        Clock::time_point time;        ///< when that came
-        std::uint64_t     good    = 0; ///< answers with a new sequence number
-        std::uint64_t     garbled = 0; ///< invalid reports
-        bool              lost    = false;
+        BridgeAnswer      answer;       ///< the last good one
+        Clock::time_point time;         ///< when that came
+        std::uint64_t     good     = 0; ///< answers with a new sequence number
+        std::uint64_t     garbled  = 0; ///< invalid reports
+        std::uint64_t     silenced = 0; ///< times that the guardian took the force
+        bool              lost     = false;
     };
 
     struct TimedCommand {
@@ -110,11 +111,12 @@ private:
     glm::dvec3    wanted_{}; ///< [N] of the last render()
     bool          open_     = false;
     bool          started_  = false; ///< read() has been called since open()
-    std::uint64_t seenGood_ = 0, seenGarbled_ = 0;
-    bool          stopped_    = false; ///< the device reports it
-    bool          impossible_ = false; ///< the last position was impossible
-    double        lastAnswer_ = 0;     ///< [s]
-    double        lastRead_   = 0;     ///< [s]
+    std::uint64_t seenGood_ = 0, seenGarbled_ = 0, seenSilenced_ = 0;
+    double        silencedUntil_ = 0;     ///< [s]
+    bool          stopped_       = false; ///< the device reports it
+    bool          impossible_    = false; ///< the last position was impossible
+    double        lastAnswer_    = 0;     ///< [s]
+    double        lastRead_      = 0;     ///< [s]
 
     std::jthread thread_; ///< last member: it ends before what it uses
 };

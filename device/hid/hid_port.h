@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "device/zero_rule.h"
 #include "engine/core/contract.h"
 
 namespace palp {
@@ -53,6 +54,14 @@ public:
     /// Writes one output report with its number in front.
     /// \throws HidLost if the device went away
     virtual void write(std::span<const std::uint8_t> report) = 0;
+
+    /// Starts a guardian process that takes the force from the device when this program cannot. A port that has no
+    /// descriptor to pass on, such as a fake, does nothing.
+    /// \throws Error saying why it cannot be started
+    virtual void guard(const ZeroRule& /*rule*/) {}
+
+    /// Returns whether, since the last call, that process took the force because nothing was written for 25 ms.
+    [[nodiscard]] virtual bool wasSilenced() noexcept { return false; }
 };
 
 /// The reader of a driver's reports: a thread of its own that waits for them, or the caller of read(), which does

@@ -1,13 +1,19 @@
 #include "device/hid/hidapi_system.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <climits>
 #include <cmath>
+#include <cstring>
 #include <cwchar>
 #include <mutex>
+#include <optional>
 
+#include <fcntl.h>
 #include <hidapi/hidapi.h>
+#include <unistd.h>
 
+#include "device/detail/guardian.h"
 #include "device/hid/detail/udev_line.h"
 
 namespace palp {
@@ -42,7 +48,12 @@ std::string utf8(const wchar_t* wide)
 class HidapiPort : public HidPort {
 public:
     HidapiPort(hid_device* device, std::string path) : device_(device), path_(std::move(path)) {}
-    ~HidapiPort() override { hid_close(device_); }
+    ~HidapiPort() override
+    {
+        guardian_.reset();
+        if (node_ >= 0) close(node_);
+        hid_close(device_);
+    }
 
     std::size_t read(std::span<std::uint8_t> report, double timeout) override
     {
@@ -55,8 +66,23 @@ public:
 
     void write(std::span<const std::uint8_t> report) override
     {
-        if (hid_write(device_, report.data(), report.size()) < 0) lost("writing");
+        if (guardian_ && !guardian_->isWatching()) throw HidLost(path_ + ": its guardian process has ended");
+        const std::span out = guardian_ ? guardian_->pass(report) : report;
+        if (hid_write(device_, out.data(), out.size()) < 0) lost("writing");
+        if (guardian_) guardian_->passed();
     }
+
+    /// The node is opened once more, because hidapi keeps its descriptor for itself; it takes reports from both.
+    void guard(const ZeroRule& rule) override
+    {
+        node_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+        if (node_ < 0)
+            throw HidRefused(path_ + " cannot be opened by its guardian process: " + std::strerror(errno),
+                             "plug it in anew, and list the devices again");
+        guardian_.emplace(Guardian::Line{.fd = node_}, rule, path_);
+    }
+
+    [[nodiscard]] bool wasSilenced() noexcept override { return guardian_ && guardian_->hasSilenced(); }
 
 private:
     [[noreturn]] void lost(const char* doing) const
@@ -64,8 +90,10 @@ private:
         throw HidLost(path_ + ": " + doing + " failed: " + utf8(hid_error(device_)));
     }
 
-    hid_device* device_;
-    std::string path_;
+    hid_device*             device_;
+    std::string             path_;
+    int                     node_ = -1; ///< the guardian's descriptor
+    std::optional<Guardian> guardian_;
 };
 
 HidListing listingOf(const hid_device_info& info)

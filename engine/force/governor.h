@@ -142,7 +142,7 @@ struct GovernorOutput {
 ///   8  engaged: below 0.2 N for 10 ticks in the box, then from nothing to all in 1.5 s
 ///
 /// While it waits (8) no force can flow, and a fast hand (7) only restarts the wait. A fault stays until reset(). Every
-/// failure ends at exactly zero within 20 ms of ticks. The device scales forces to its motors' torques.
+/// failure that a tick can see ends at exactly zero within 20 ms of ticks. The device scales forces to its motors.
 ///
 /// The lag of the loop, from the place of the hand to the middle of the time in which its force acts, is the age of the
 /// answer, one period of exchanges (what an answer waits for a tick, and its force for the next packet, adds up to one)

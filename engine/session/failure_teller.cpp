@@ -45,11 +45,11 @@ public:
 private:
     void note(const std::string& why)
     {
-        const std::string start = solved_
-                                      ? "the plate cannot be solved where the hand touches, which goes on feeling its "
-                                        "last answer: "
-                                      : "the hand touches and feels nothing, because the plate cannot be solved: ";
-        const std::string kind  = kindOf(start + why);
+        const std::string start =
+            solved_ ? "the plate cannot be solved where the hand touches, which feels its last answer "
+                      "for a quarter of a second more: "
+                    : "the hand touches and feels nothing, because the plate cannot be solved: ";
+        const std::string kind = kindOf(start + why);
         if (std::ranges::find(told_, kind) != told_.end()) return;
         told_.push_back(kind);
         tell_(start + why);

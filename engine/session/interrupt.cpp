@@ -14,12 +14,47 @@ void onInterrupt(int signal)
     std::signal(signal, SIG_DFL);
 }
 
+std::atomic<int>  sessions    = 0; ///< that send zero before the program stops
+std::atomic<bool> asksForZero = false;
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler reads it");
+
+void onStop(int /*signal*/)
+{
+    if (sessions > 0)
+        asksForZero = true;
+    else
+        raise(SIGSTOP);
+}
+
 } // namespace
 
 const std::atomic<bool>& catchInterrupts()
 {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, onInterrupt);
+    std::signal(SIGTSTP, onStop);
     return interrupted;
+}
+
+ZeroBeforeStop::ZeroBeforeStop() noexcept
+{
+    ++sessions;
+}
+
+ZeroBeforeStop::~ZeroBeforeStop()
+{
+    --sessions;
+    if (isAsked()) stop();
+}
+
+bool ZeroBeforeStop::isAsked() const noexcept
+{
+    return asksForZero;
+}
+
+void ZeroBeforeStop::stop() noexcept
+{
+    asksForZero = false;
+    raise(SIGSTOP);
 }
 
 } // namespace palp

@@ -13,6 +13,7 @@
 #include "engine/core/real_time.h"
 #include "engine/core/thread_time.h"
 #include "engine/session/detail/solve_pace.h"
+#include "engine/session/interrupt.h"
 
 namespace palp {
 namespace {
@@ -98,14 +99,38 @@ private:
     double                     lastTick_ = 0; ///< [s] of the servo's
 };
 
+/// Ctrl-Z: the force goes to zero, the device hears it, and only then the program stops.
+class Stopping {
+public:
+    [[nodiscard]] bool isAsked() const noexcept { return program_.isAsked(); }
+
+    /// Counts a tick with this force; stops the program if that is asked for and zero was sent often enough.
+    /// \return for how long it was stopped, which is no time of the session
+    Clock::duration stopAtZero(const GovernedForce& force) noexcept
+    {
+        constexpr int kZeros = 10; // ticks: three exchanges of a slow line
+        zeros_               = isAsked() && force.newtons() == glm::dvec3(0) ? zeros_ + 1 : 0;
+        if (zeros_ < kZeros) return {};
+        const auto since = Clock::now();
+        program_.stop();
+        zeros_ = 0;
+        return Clock::now() - since;
+    }
+
+private:
+    ZeroBeforeStop program_;
+    int            zeros_ = 0;
+};
+
 /// Runs the servo.
 void RealSession::servoThread()
 {
     constexpr double kShare = 0.01; // of the newest tick in the mean that is shown [1]
     warning_                = askForRealTime();
-    Metronome  metronome{std::chrono::microseconds(1000)};
-    const auto start = metronome.wait(); // asking may take a quarter of a second
-    double     last = 0, period = kTick;
+    Metronome metronome{std::chrono::microseconds(1000)};
+    auto      start = metronome.wait(); // asking may take a quarter of a second
+    double    last = 0, period = kTick;
+    Stopping  stopping;
     for (;;) {
         const auto   now  = metronome.wait();
         const double time = Seconds(now - start).count(), dt = time - last;
@@ -113,16 +138,18 @@ void RealSession::servoThread()
         last = lastTick_ = time;
         period += (dt - period) * kShare;
         summary_.period.add(dt);
-        const double      began  = threadSeconds();
-        const HapticState state  = parts_.device.read(time);
-        TickRecord        record = tick({time, dt}, state);
+        const double began = threadSeconds();
+        HapticState  state = parts_.device.read(time);
+        if (stopping.isAsked()) state.homed = false; // the governor lets go, and engages anew
+        TickRecord record = tick({time, dt}, state);
         parts_.device.render(parts_.frame.toDevice(force_.governor().force())); // leaves in this tick
         record.tickTime       = threadSeconds() - began;
         shared_.shown.draft() = {record, period, state.buttons};
         shared_.shown.publish();
         summary_.add(record);
         if (settings_.onTick) settings_.onTick(record);
-        if (state.fault == DeviceFault::unplugged) break; // it does not come back without close() and open()
+        start += stopping.stopAtZero(force_.governor().force());
+        if (isFinal(state.fault)) break; // it does not come back without close() and open()
     }
 }
 

@@ -38,9 +38,10 @@ struct RealSessionSettings {
 ///     paper:  force 1 ms --Hand--> proxy 1 ms --Touch--> deformation; the force takes the proxy's latest answer, a
 ///     tick old
 ///
-/// A deformation that fails or stalls leaves the servo with its last patch, flagged as stale. A solver that throws has
-/// failed to solve one patch; SessionSummary::why has the reason. A device that is unplugged ends the session. However
-/// a session ends, also by an exception of onView, the device is given zero force.
+/// A deformation that fails or stalls leaves the servo with its last patch, flagged as stale; after a quarter of a
+/// second of contact the force fades within 20 ms, and engages anew once there are patches. A solver that throws has
+/// failed to solve one patch; SessionSummary::why has the reason. A device that is unplugged, or whose link is lost,
+/// ends the session. However a session ends, also by an exception of onView, the device is given zero force.
 /// \param warning  the real-time rights that the system refused; empty if none
 /// \throws anything that onView or onTick threw, once all threads have ended
 /// \differs the paper has a thread each for proxy and force, which makes the force a tick or two late; here one thread

@@ -125,6 +125,19 @@ void ForceHalf::leanOn(const ProxyContact& held, const Hand& hand) noexcept
     last_     = held;
 }
 
+/// Returns by how much the plate's answer is too old to be felt [s]; at most 0 while it is not. Time in the air does not
+/// count, because nothing is asked then. A deformation at less than 12 Hz has three of its periods.
+double ForceHalf::tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest) noexcept
+{
+    constexpr double kOldest = 0.25, kPeriods = 3; // [s] a hand moves 5 cm in it; [1]
+    if (newest && newest->table.sequence != answered_ && newest->table.usable()) {
+        answered_ = newest->table.sequence;
+        asked_    = now.time - newest->table.time;
+    }
+    if (touching) asked_ += now.dt;
+    return touching ? asked_ - std::max(kOldest, kPeriods * patchPeriod_) : 0;
+}
+
 TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyContact& held,
                            const PatchUpdate* newest) noexcept
 {
@@ -139,13 +152,15 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     leanOn(held, hand);
 
     GovernorInput in;
-    in.force                 = want.force;
-    in.position              = hand.position;
-    in.velocity              = hand.velocity;
-    in.homed                 = hand.homed && hand.device == DeviceFault::none;
-    in.inBox                 = hand.inBox;
-    in.dt                    = now.dt;
-    in.forceAge              = std::max(0.0, now.time - touch.time); // above 0 if the proxy has a thread of its own
+    in.force             = want.force;
+    in.position          = hand.position;
+    in.velocity          = hand.velocity;
+    in.homed             = hand.homed && hand.device == DeviceFault::none;
+    in.inBox             = hand.inBox;
+    in.dt                = now.dt;
+    in.forceAge          = std::max(0.0, now.time - touch.time); // above 0 if the proxy has a thread of its own
+    const double overdue = tableOverdue(now, touch.touching, newest);
+    if (overdue > 0) in.forceAge = std::max(in.forceAge, governor_.settings().staleAfter + overdue);
     in.missedExchanges       = hand.missed;
     in.admittedEnergy        = want.tank.used;
     in.storedEnergy          = want.tank.stored;
@@ -175,13 +190,13 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
         record.patchAge   = handed->age;
     }
     constexpr double kStalePeriods = 3; // two are ordinary: one to solve, one in use [1]
-    record.faults                  = static_cast<std::uint32_t>(out.fault) |
-                    flag(SessionFlag::stalePatch, record.patchAge > kStalePeriods * patchPeriod_) |
-                    flag(SessionFlag::beyondTable, touch.touching && handed && handed->clamped) |
-                    flag(SessionFlag::noPatch, touch.touching && !handed) |
-                    flag(SessionFlag::proxyLimited, held.limited) |
-                    flag(SessionFlag::beyondTheory, record.maxDeflection > thickness_ / 2) |
-                    flag(SessionFlag::governed, touch.touching && out.actions != 0);
+    record.faults =
+        static_cast<std::uint32_t>(out.fault) |
+        flag(SessionFlag::stalePatch, record.patchAge > kStalePeriods * patchPeriod_) |
+        flag(SessionFlag::beyondTable, touch.touching && handed && handed->clamped) |
+        flag(SessionFlag::noPatch, touch.touching && !handed) | flag(SessionFlag::proxyLimited, held.limited) |
+        flag(SessionFlag::beyondTheory, record.maxDeflection > thickness_ / 2) |
+        flag(SessionFlag::oldTable, overdue > 0) | flag(SessionFlag::governed, touch.touching && out.actions != 0);
     return record;
 }
 

@@ -44,7 +44,8 @@ enum class SessionFlag : std::uint32_t {
     noPatch      = 1U << 10, ///< in contact, and no answer of the plate yet: no force
     proxyLimited = 1U << 11, ///< the proxy ran out of iterations
     beyondTheory = 1U << 12, ///< the deflection exceeds half the thickness: Kirchhoff's plate does not hold
-    governed     = 1U << 13  ///< the governor held the force back: damped, clamped, slewed, waiting or coming on
+    governed     = 1U << 13, ///< the governor held the force back: damped, clamped, slewed, waiting or coming on
+    oldTable     = 1U << 14  ///< the plate's answer is too old to feel: the force fades in 20 ms, and engages anew
 };
 
 /// The state of the hand as a device reports it.
@@ -171,6 +172,8 @@ private:
     [[nodiscard]] StiffnessSlope slopeAt(const glm::dvec3& place, const glm::dvec3& outward) const noexcept;
     void                         leanOn(const ProxyContact& held, const Hand& hand) noexcept;
 
+    [[nodiscard]] double tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest) noexcept;
+
     ForceLaw          law_;
     double            thickness_;   ///< [m]
     double            patchPeriod_; ///< of the deformation [s]
@@ -179,9 +182,11 @@ private:
     LateralLean       lean_;
     EnergyTank        tank_;
     ForceGovernor     governor_;
-    ProxyContact      last_;        ///< of the tick before
-    glm::dvec3        lastHand_{};  ///< [m]
-    int               pressed_ = 0; ///< ticks that the operator's button has been down
+    ProxyContact      last_;         ///< of the tick before
+    glm::dvec3        lastHand_{};   ///< [m]
+    std::uint64_t     answered_ = 0; ///< sequence of the last table
+    double            asked_    = 0; ///< [s] of contact since that of the last table, or since the first
+    int               pressed_  = 0; ///< ticks that the operator's button has been down
 };
 
 /// Both halves of a tick of touch.

@@ -14,7 +14,7 @@ namespace palp {
 struct SessionSummary {
     std::uint64_t     ticks = 0, contactTicks = 0;
     std::uint64_t     patches = 0, failedPatches = 0;
-    std::uint64_t     staleTicks = 0, beyondTable = 0;
+    std::uint64_t     staleTicks = 0, oldTable = 0, beyondTable = 0;
     std::uint64_t     beyondTheory = 0, patchless = 0;         ///< see SessionFlag
     double            mostForce       = 0;                     ///< [N]
     double            mostDepth       = 0;                     ///< [m] of the hand below the proxy, along the normal

@@ -7,6 +7,11 @@
 #include <chrono>
 #include <thread>
 
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "device/falcon/detail/usb_node.h"
+
 struct libusb_context {};
 struct libusb_device {
     std::shared_ptr<palp::FakeUsbDevice> fake;
@@ -19,6 +24,19 @@ struct libusb_device_handle {
 };
 
 namespace palp {
+
+/// The node of a device that is no node of usbfs: a socket, which the guardian writes to.
+Guardian::Line openUsbNode(int /*bus*/, int address, int /*endpoint*/) noexcept
+{
+    int ends[2] = {-1, -1};
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return {};
+    const auto name = std::uint8_t(address);
+    static_cast<void>(!write(ends[1], &name, 1));
+    FakeUsbDevice& fake = *fakeUsb().devices.at(name);
+    if (fake.node >= 0) close(fake.node);
+    fake.node = ends[1];
+    return {.fd = ends[0]};
+}
 
 FakeUsb& fakeUsb()
 {
@@ -187,6 +205,22 @@ int libusb_get_port_numbers(libusb_device* device, std::uint8_t* ports, int room
     if (int(all.size()) > room) return LIBUSB_ERROR_OVERFLOW;
     std::copy(all.begin(), all.end(), ports);
     return int(all.size());
+}
+
+std::uint8_t libusb_get_device_address(libusb_device* device)
+{
+    return std::uint8_t(std::ranges::find(fakeUsb().devices, device->fake) - fakeUsb().devices.begin());
+}
+
+int libusb_wrap_sys_device(libusb_context* context, intptr_t node, libusb_device_handle** handle)
+{
+    std::uint8_t address = 0;
+    if (recv(int(node), &address, 1, MSG_PEEK) != 1) return LIBUSB_ERROR_IO; // openUsbNode() has put it there
+    auto* const device = new libusb_device{fakeUsb().devices.at(address), context};
+    ++fakeUsb().objects;
+    const int failed = libusb_open(device, handle);
+    release(device);
+    return failed;
 }
 
 int libusb_open(libusb_device* device, libusb_device_handle** handle)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <libusb.h>
+#include <unistd.h>
 
 namespace palp {
 
@@ -18,6 +19,7 @@ struct FakeUsbDevice {
     std::uint16_t             vendor = 0x0403, product = 0xCB48;
     std::uint8_t              bus = 1;
     std::vector<std::uint8_t> ports{2};
+    int                       node = -1; ///< our end of its node, once that is open: what the guardian writes
 
     int                                        openError = 0, claimError = 0, controlError = 0, submitError = 0;
     std::deque<std::vector<unsigned char>>     incoming; ///< each completes one IN transfer, status bytes and all
@@ -34,6 +36,11 @@ struct FakeUsbDevice {
     std::vector<std::pair<std::uint8_t, std::uint16_t>> controls; ///< request and value
     bool                                                autoDetach = false;
     int                                                 claims     = 0; ///< now
+
+    ~FakeUsbDevice()
+    {
+        if (node >= 0) close(node);
+    }
 };
 
 /// The stand-in of libusb of this program.

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "device/falcon/falcon_hold.h"
 #include "device/simulated_arm.h"
 #include "engine/core/contract.h"
 #include "tests/device/falcon_bench.h"
@@ -168,6 +169,46 @@ TEST(FalconCalibration, RefusesSettingsOutOfRange)
 {
     EXPECT_THROW(FalconCalibration({.mass = 0}), Error);
     EXPECT_THROW(FalconCalibration({.mass = 0.2, .up = {0, 2, 0}}), Error);
+}
+
+/// Arm and mass hang on the motors; each silence ends in a drop of a few millimetres at most.
+TEST(FalconHold, IsFoundByTheFallOfTheGrip)
+{
+    for (const double truth : {10e-3, 20e-3, 60e-3}) {
+        SimulatedArm arm(Weighing::like(0.05), {0, 0.004, -0.006});
+        auto         settings    = runningFalcon();
+        settings.falcon.holdTime = truth;
+        double        lowest = 0, weight = 0; // [m], [N], which the user puts on it gradually
+        FalconBench   bench(settings, [&](const glm::dvec3& force, double dt) {
+            arm.step(force - glm::dvec3(0, weight, 0), dt);
+            return arm.position();
+        });
+        ForceGovernor governor;
+        FalconHold    hold({0, 0, 0});
+        bench.tick();
+        for (double gain = 0, time = 0; !hold.isDone() && time < 120; time += 1e-3) {
+            GovernorInput in;
+            if (gain >= 1) weight = std::min(4.0, weight + 4e-3);
+            arm.holdBy(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = {0, 0.004, -0.006}}
+                                : SimulatedHand{});
+            in.force      = hold.step(*bench.device, bench.state, weight < 4 ? std::min(gain, 0.99) : gain, 1e-3);
+            in.position   = bench.state.position;
+            in.velocity   = bench.state.velocity;
+            in.homed      = bench.state.homed;
+            in.inBox      = bench.state.inBox;
+            in.dt         = 1e-3;
+            in.loopPeriod = 1e-3;
+            gain          = governor.step(in).gain;
+            bench.force   = governor.force();
+            bench.tick();
+            if (weight >= 4 && time > 8) lowest = std::min(lowest, arm.position().y - 0.004);
+        }
+        ASSERT_TRUE(hold.hold().has_value()) << truth;
+        std::printf("  hold %.1f ms, found %.2f ms, dropped by %.1f mm\n", 1e3 * truth, 1e3 * *hold.hold(),
+                    -1e3 * lowest);
+        EXPECT_NEAR(*hold.hold(), truth, 1e-3) << "an exchange";
+        EXPECT_GT(lowest, -20e-3);
+    }
 }
 
 } // namespace

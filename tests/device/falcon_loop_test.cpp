@@ -154,7 +154,7 @@ TEST(FalconLoop, ForcesThatTheMotorsCannotMakeHaveTheirReasons)
     EXPECT_EQ(singular.run(1, {}).fault, DeviceFault::none) << "where it is is known";
 }
 
-TEST(FalconLoop, ALinkThatBreaksGetsZeroPacketsAndIsSilent)
+TEST(FalconLoop, ALinkThatBreaksGetsZeroPacketsAndIsLost)
 {
     struct Case {
         const char*           name;
@@ -163,8 +163,8 @@ TEST(FalconLoop, ALinkThatBreaksGetsZeroPacketsAndIsSilent)
         std::size_t           packets; // tried at once
     };
     for (const auto& [name, fail, fault, packets] :
-         {Case{"broken", [] { throw LinkLost("it took too long"); }, DeviceFault::silent, 3},
-          Case{"no memory", [] { throw std::bad_alloc(); }, DeviceFault::silent, 3},
+         {Case{"broken", [] { throw LinkLost("it took too long"); }, DeviceFault::linkLost, 3},
+          Case{"no memory", [] { throw std::bad_alloc(); }, DeviceFault::linkLost, 3},
           Case{"gone", [] { throw LinkGone("it was unplugged"); }, DeviceFault::unplugged, 0}}) {
         LoopBench bench;
         bench.run(50, {.force = {1, 0, 0}});

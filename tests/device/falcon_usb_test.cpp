@@ -6,6 +6,8 @@
 #include <string>
 #include <thread>
 
+#include <sys/socket.h>
+
 #include "device/falcon/detail/libusb_link.h"
 #include "tests/device/falcon_usb_fixture.h"
 #include "tests/support/temporary_folder.h"
@@ -388,6 +390,41 @@ TEST_F(FalconUsb, ALinkMayBeHandedFromThreadToThread)
     std::jthread([&] { link.reset(); }).join();
 
     EXPECT_EQ(falcon_->written.size(), 1u);
+}
+
+/// What a guardian's descriptor got within 5 s, if it is anything.
+Bytes heardAt(int node, std::size_t size)
+{
+    Bytes heard(size);
+    for (const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+         recv(node, heard.data(), size, MSG_DONTWAIT | MSG_PEEK) < ssize_t(size);) {
+        if (std::chrono::steady_clock::now() > end) return {};
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return heard;
+}
+
+TEST_F(FalconUsb, ALinkThatPushesAndFallsSilentIsTakenOverThroughItsOwnDescriptor)
+{
+    const FalconPacket push = encode(FalconCommand{.motors = {100, -200, 300}, .lights = 2});
+    const FalconPacket zero = encode(FalconCommand{.lights = 2});
+    auto               link = openFalcon();
+    link->write(encode(FalconCommand{}));
+    EXPECT_FALSE(link->wasSilenced());
+    link->write(push);
+    std::array<std::uint8_t, 8> bytes{};
+    static_cast<void>(link->read(bytes, 0));
+    ASSERT_EQ(falcon_->written.back(), Bytes(push.begin(), push.end()));
+
+    EXPECT_EQ(heardAt(falcon_->node, push.size()), Bytes(zero.begin(), zero.end())) << "the guardian, 25 ms later";
+    link->write(push);
+    static_cast<void>(link->read(bytes, 0));
+    EXPECT_EQ(falcon_->written.back(), Bytes(zero.begin(), zero.end())) << "zero comes first";
+    EXPECT_TRUE(link->wasSilenced());
+    EXPECT_FALSE(link->wasSilenced()) << "it is said once";
+    link->write(push);
+    static_cast<void>(link->read(bytes, 0));
+    EXPECT_EQ(falcon_->written.back(), Bytes(push.begin(), push.end()));
 }
 
 } // namespace

@@ -2,11 +2,16 @@
 #include "device/hid/hidapi_system.h"
 
 #include <array>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "device/hid/bridge_report.h"
 #include "tests/device/hidapi_fake.h"
 
 namespace palp {
@@ -149,6 +154,38 @@ TEST_F(Hidapi, SystemsOnSeveralThreadsTakeTurns)
     listAndOpen();
     other.join();
     EXPECT_EQ(fake.opened, 400);
+}
+
+TEST_F(Hidapi, APortWhoseProgramFallsSilentIsTakenOverThroughADescriptorOfItsOwn)
+{
+    const std::string path = testing::TempDir() + "palpate_hidapi_test";
+    std::ofstream(path).close(); // in place of a node: the guardian's zero arrives in it
+    fake.devices     = {{path, 1, 2, 3, 4, L""}};
+    const auto list  = system.list();
+    const auto port  = system.open(path);
+    const auto bytes = [&](const BridgeBytes& report) { return std::vector(report.begin(), report.end()); };
+    port->guard(kBridgeZero);
+
+    BridgeCommand push{.sequence = 7, .enable = true, .force = {1, 2, 3}, .watchdog = 0.02, .lights = 2};
+    port->write(encode(push));
+    EXPECT_EQ(fake.written, bytes(encode(push)));
+    std::vector<std::uint8_t> got(kBridgeSize);
+    for (const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+         std::filesystem::file_size(path) < kBridgeSize && std::chrono::steady_clock::now() < end;)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(got.data()), std::streamsize(got.size()));
+    BridgeCommand zero;
+    ASSERT_EQ(decode(got, zero), BridgeVerdict::good);
+    EXPECT_FALSE(zero.enable);
+    EXPECT_EQ(zero.sequence, 7 + kBridgeZeroAhead) << "what the program still sends is old";
+    EXPECT_EQ(zero.lights, 2);
+
+    ++push.sequence;
+    port->write(encode(push));
+    ASSERT_EQ(decode(fake.written, zero), BridgeVerdict::good);
+    EXPECT_FALSE(zero.enable) << "zero comes first";
+    EXPECT_TRUE(port->wasSilenced());
+    std::filesystem::remove(path);
 }
 
 } // namespace

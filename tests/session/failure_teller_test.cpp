@@ -42,7 +42,7 @@ TEST(FailureTeller, SaysEachKindOfReasonOnceWhateverItsNumbers)
     EXPECT_NE(told[2].find("the processor is lost"), std::string::npos);
     round(); // after an answer: the hand feels that one, which is another thing to say
     ASSERT_EQ(told.size(), 6U);
-    EXPECT_NE(told[3].find("goes on feeling its last answer: at (1, 2, 3) m"), std::string::npos);
+    EXPECT_NE(told[3].find("for a quarter of a second more: at (1, 2, 3) m"), std::string::npos);
     round();
     EXPECT_EQ(told.size(), 6U) << "nothing is said twice";
 }

@@ -282,29 +282,47 @@ TEST(Servo, ATickAllocatesNothing)
     EXPECT_EQ(allocated, 0U);
 }
 
-TEST(Servo, AStalledDeformationIsFlaggedAndTheForceStaysSmooth)
+TEST(Servo, AForceWhoseTableIsTooOldFadesAndEngagesAnewOnceThereAreTables)
 {
     const SheetSession         session(sheetScene(kWart), HandMotion::press, 2);
     Servo                      servo(session.object, session.scene);
     Deformation                deformation(session.object, session.scene);
     std::optional<PatchUpdate> news;
     glm::dvec3                 last{};
-    bool                       flagged = false;
-    double                     most    = 0;
-    // pressing, the hand is deepest after pi (h + d) / (2 speed) = 0.055 s, and stays there
-    for (int n = 0; n < 6000; ++n) { // one patch at the first touch, then none for more than five seconds
-        const double     time   = 1e-3 * n;
-        const glm::dvec3 hip    = session.hand.position(std::min(time, 0.055));
-        const auto       record = servo.tick({time, 1e-3}, {hip, {}}, news ? &*news : nullptr);
-        if (!news && servo.touch().touching) news = deformation.solve(servo.touch(), 1.0 / 60).update;
-        ASSERT_TRUE(std::isfinite(glm::length(record.force)));
-        EXPECT_LE(glm::length(record.force - last), 1 + 1e-9);
-        last    = record.force;
-        flagged = flagged || has(record, SessionFlag::stalePatch);
-        most    = std::max(most, glm::length(record.force));
+    double                     most = 0, again = 0, step = 0; // [N]
+    // Pressing, the hand is deepest after pi (h + d) / (2 speed) = 0.055 s, and stays there, but for a moment at 3.2 s.
+    for (int n = 0; n < 6000; ++n) {
+        const double     time    = 1e-3 * n;
+        const bool       isDead  = time > 2 && time < 3;
+        const bool       isAway  = time > 3.2 && time < 3.3;
+        const glm::dvec3 hip     = session.hand.position(isAway ? 0 : std::min(time < 3.2 ? time : time - 3.3, 0.055));
+        const auto       record  = servo.tick({time, 1e-3}, {hip, {}}, news ? &*news : nullptr);
+        const double     force   = glm::length(record.force);
+        const double     without = time - 2; // [s] a table
+        if (!isDead && n % 16 == 0 && servo.touch().touching) news = deformation.solve(servo.touch(), 1.0 / 60).update;
+        if (time > 1.9 && time < 2) most = std::max(most, force);
+        if (isDead && without < 0.22) {
+            EXPECT_GT(force, 0.9 * most) << time;
+        }
+        if (isDead && without > 0.25 + 0.02 + 2e-3) {
+            EXPECT_EQ(force, 0) << time;
+        }
+        if (isDead && without > 0.25 + 2e-3) {
+            EXPECT_TRUE(has(record, SessionFlag::oldTable)) << time;
+        }
+        if (time < 2 || time > 3.02) {
+            EXPECT_FALSE(has(record, SessionFlag::oldTable)) << time;
+        }
+        if (time > 3 && time < 3.3) {
+            EXPECT_EQ(force, 0) << time << ": the hand has not been lifted";
+        }
+        if (time > 3.36 && time < 4.5) step = std::max(step, glm::length(record.force - last));
+        if (time > 5.5) again = std::max(again, force);
+        last = record.force;
     }
-    EXPECT_TRUE(flagged);
-    EXPECT_GT(most, 0.1) << "the hand rests in the sheet and feels it";
+    EXPECT_GT(most, 0.3) << "the hand rests in the sheet and feels it";
+    EXPECT_LT(step, 2e-3 * most) << "it comes on within 1.5 s, 0.7 thousandths a tick, and kicks nobody";
+    EXPECT_NEAR(again, most, 0.02 * most);
 }
 
 TEST(Servo, AHandThatIsNotANumberEndsAtZeroForceWithAReason)

@@ -10,9 +10,12 @@
 #include <utility>
 
 #include <libusb.h>
+#include <unistd.h>
 
+#include "device/detail/guardian.h"
 #include "device/falcon/detail/byte_ring.h"
 #include "device/falcon/detail/libusb_words.h"
+#include "device/falcon/detail/usb_node.h"
 #include "engine/core/contract.h"
 
 namespace palp {
@@ -96,13 +99,40 @@ private:
     std::vector<libusb_device*> falcons_;
 };
 
+/// A node of usbfs that closes itself.
+class Node {
+public:
+    Node() = default;
+    explicit Node(libusb_device* device)
+        : line_(openUsbNode(libusb_get_bus_number(device), libusb_get_device_address(device), kOut))
+    {
+    }
+    ~Node()
+    {
+        if (line_.fd >= 0) close(line_.fd);
+    }
+    Node(Node&& other) noexcept : line_(std::exchange(other.line_, {})) {}
+    Node& operator=(Node&& other) noexcept
+    {
+        std::swap(line_, other.line_);
+        return *this;
+    }
+
+    [[nodiscard]] const Guardian::Line& line() const noexcept { return line_; }
+
+private:
+    Guardian::Line line_;
+};
+
 /// Opens a device for exclusive use; returns null if that fails. `listing` receives the outcome.
-Handle claim(libusb_device* device, FalconListing& listing)
+/// \param node  of the device, which stays open; if it could not be opened, libusb says why, as it fails to as well
+Handle claim(libusb_context* context, libusb_device* device, const Node& node, FalconListing& listing)
 {
-    listing.path                = pathOf(device);
-    libusb_device_handle* open  = nullptr;
-    int                   found = libusb_open(device, &open);
-    Handle                handle(found == 0 ? open : nullptr);
+    listing.path               = pathOf(device);
+    libusb_device_handle* open = nullptr;
+    int                   found =
+        node.line().fd >= 0 ? libusb_wrap_sys_device(context, node.line().fd, &open) : libusb_open(device, &open);
+    Handle handle(found == 0 ? open : nullptr);
     if (handle) {
         // A serial driver of the kernel may hold it. Not every system can detach one; then the claim fails.
         static_cast<void>(libusb_set_auto_detach_kernel_driver(open, 1));
@@ -121,8 +151,9 @@ Handle claim(libusb_device* device, FalconListing& listing)
 /// to libusb until its callback, which is only called from inside pump() and the control requests.
 class LibusbLink final : public FalconLink {
 public:
-    LibusbLink(Context context, Handle handle, std::string path)
-        : context_(std::move(context)), handle_(std::move(handle)), path_(std::move(path))
+    LibusbLink(Context context, Node node, Handle handle, std::string path)
+        : context_(std::move(context)), node_(std::move(node)), handle_(std::move(handle)), path_(std::move(path)),
+          guardian_(node_.line(), kFalconZero, nameOf(path_))
     {
         for (Transfer& transfer : in_) prepare(transfer, kIn, onIn);
         prepare(out_, kOut, onOut);
@@ -178,6 +209,10 @@ public:
         return inbox_.take(bytes);
     }
 
+    [[nodiscard]] bool wasSilenced() noexcept override { return guardian_.hasSilenced(); }
+
+    void keepAlive() noexcept override { guardian_.keepAlive(); }
+
     void throwIfLost() const
     {
         if (!lost_) return;
@@ -222,9 +257,17 @@ private:
 
     void submitWrite(std::span<const std::uint8_t> part) noexcept
     {
+        if (!lost_ && !guardian_.isWatching()) return lose("it is not driven: ", "its guardian process has ended");
+        const std::span out = guardian_.pass(part);
+        if (out.data() == part.data()) { // no packet of the firmware that runs
+            std::ranges::copy(part, out_.buffer.begin());
+            out_.raw->buffer = out_.buffer.data();
+        } else {
+            out_.raw->buffer = const_cast<unsigned char*>(out.data()); // libusb only reads it
+        }
         out_.raw->length = int(part.size());
-        std::ranges::copy(part, out_.buffer.begin());
         submitAnyway(out_);
+        guardian_.passed();
     }
 
     /// Writes on a lost link to a device that may still listen, see FalconLink::write(); one buffer at most.
@@ -317,8 +360,10 @@ private:
 
     // Destroyed from the last to the first: transfers, handle, context.
     Context                       context_;
+    Node                          node_;
     Handle                        handle_;
     std::string                   path_;
+    Guardian                      guardian_; ///< the packets that go out lie in it
     ByteRing<kInbox>              inbox_;
     std::array<Transfer, kQueued> in_;
     Transfer                      out_;
@@ -343,13 +388,15 @@ std::vector<FalconListing> findFalcons()
 {
     const Context              context = start();
     std::vector<FalconListing> listings;
-    for (libusb_device* device : Falcons(context.get())) static_cast<void>(claim(device, listings.emplace_back()));
+    for (libusb_device* device : Falcons(context.get()))
+        static_cast<void>(claim(context.get(), device, Node(), listings.emplace_back()));
     return listings;
 }
 
 std::unique_ptr<FalconLink> openFalcon(const std::string& path)
 {
     Context       context = start();
+    Node          node;
     Handle        handle;
     FalconListing listing;
     std::string   refused, elsewhere;
@@ -359,7 +406,8 @@ std::unique_ptr<FalconLink> openFalcon(const std::string& path)
             elsewhere += pathOf(device);
             continue;
         }
-        if ((handle = claim(device, listing))) break;
+        node = Node(device);
+        if ((handle = claim(context.get(), device, node, listing))) break;
         refused += refused.empty() ? "" : "; ";
         refused += nameOf(listing.path) + ": " + listing.why + "; " + listing.help;
     }
@@ -370,7 +418,7 @@ std::unique_ptr<FalconLink> openFalcon(const std::string& path)
         throw Error(
             "no Novint Falcon is plugged in: USB has no device 0403:cb48; check its cable and its power supply");
 
-    auto link = std::make_unique<LibusbLink>(std::move(context), std::move(handle), listing.path);
+    auto link = std::make_unique<LibusbLink>(std::move(context), std::move(node), std::move(handle), listing.path);
     try {
         link->throwIfLost();
     } catch (const LinkLost& lost) {

@@ -7,11 +7,13 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "device/falcon/falcon_calibration.h"
+#include "device/falcon/falcon_hold.h"
 #include "device/falcon/falcon_record.h"
 #include "device/falcon/ft232_emulator.h"
 #include "device/hid/hidapi_system.h"
@@ -89,6 +91,9 @@ void tell(const CalibrateOptions& o, Stage stage)
     if (stage == Stage::hang)
         std::cerr << "palpate: hang " << o.mass
                   << " on the grip and release it; the weighing continues when the mass hangs still\n";
+    if (stage == Stage::done)
+        std::cerr << "palpate: hands off: the Falcon now gets no packet for a moment, again and again and longer each "
+                     "time, until its motors let go and the mass drops by some millimetres\n";
     if (stage == Stage::loaded) std::cerr << "palpate: hands off: arm and mass are weighed for 16 s\n";
 }
 
@@ -110,17 +115,25 @@ void demandWell(const HapticState& state, double ill, GovernorFault fault)
                "; start again and move the grip slowly");
 }
 
+/// What the weighing found.
+struct Found {
+    std::optional<double> hold; ///< [s] empty: it holds for longer than half a second, or was not measured
+};
+
 /// Goes through all stages. However it ends, the device is closed, so its last force is zero.
-void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibration)
+Found weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibration)
 {
-    constexpr double         kPatience = 300; // [s] for all stages
-    const std::atomic<bool>& stop      = catchInterrupts();
-    ForceGovernor            governor;
-    HangsStill               hangsStill;
-    GovernedForce            force;
-    Stage                    told  = Stage::done;
-    const double             begin = bench.wait();
-    for (double last = begin, gain = 0, ill = 0; calibration.stage() < Stage::done;) {
+    constexpr double          kPatience = 300; // [s] for all stages
+    const std::atomic<bool>&  stop      = catchInterrupts();
+    ForceGovernor             governor;
+    HangsStill                hangsStill;
+    GovernedForce             force;
+    Stage                     told = Stage::failed;
+    std::optional<FalconHold> hold;
+    double                    weighed = 0; // [s] when the hold is begun to be measured
+    auto* const               falcon  = dynamic_cast<FalconDevice*>(&bench.device);
+    const double              begin   = bench.wait();
+    for (double last = begin, gain = 0, ill = 0; calibration.stage() < Stage::done || (hold && !hold->isDone());) {
         if (stop) throw Error("the calibration was interrupted; the force is off");
         if (calibration.stage() != told) tell(o, told = calibration.stage());
         const double now = bench.wait(), dt = now - last;
@@ -128,15 +141,23 @@ void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrati
         if (bench.act) bench.act(gain, told);
         const HapticState state = bench.device.exchange(force, now);
         GovernorInput     in;
-        in.force           = calibration.step(state, force, gain, dt);
-        in.position        = state.position;
-        in.velocity        = state.velocity;
-        in.homed           = state.homed && state.fault == DeviceFault::none;
-        in.inBox           = state.inBox;
-        in.dt              = dt;
-        in.missedExchanges = state.missed;
-        const auto out     = governor.step(in);
-        ill                = state.fault == DeviceFault::none ? 0 : ill + dt;
+        in.force = hold ? hold->step(*falcon, state, gain, dt) : calibration.step(state, force, gain, dt);
+        if (!hold && falcon && calibration.stage() == Stage::done) {
+            hold.emplace(force.newtons());
+            weighed  = now;
+            in.force = force.newtons();
+        }
+        in.position                    = state.position;
+        in.velocity                    = state.velocity;
+        in.homed                       = state.homed && state.fault == DeviceFault::none;
+        in.inBox                       = state.inBox;
+        in.dt                          = dt;
+        in.missedExchanges             = state.missed;
+        const auto out                 = governor.step(in);
+        ill                            = state.fault == DeviceFault::none ? 0 : ill + dt;
+        constexpr double kHoldPatience = 120; // [s]
+        const bool       isLost        = ill > 1 || out.fault != GovernorFault::none;
+        if (hold && (isLost || now > weighed + kHoldPatience)) break; // the weighing counts all the same
         demandWell(state, ill, out.fault);
         gain  = out.gain;
         force = governor.force();
@@ -146,9 +167,10 @@ void weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrati
         if (now > begin + kPatience) giveUp("the calibration took more than 5 minutes; nothing was weighed");
     }
     if (calibration.stage() == Stage::failed) giveUp(calibration.failure());
+    return {hold ? hold->hold() : std::nullopt};
 }
 
-void weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
+Found weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
 {
     HidapiSystem hid; // not used by a Falcon
     const auto   falcon = kFalconRecord.make({.hid = hid, .options = o.falcon});
@@ -159,7 +181,7 @@ void weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
     Metronome  metronome{std::chrono::milliseconds(1)};
     const auto start = metronome.wait();
     Bench      bench{*falcon, [&] { return std::chrono::duration<double>(metronome.wait() - start).count(); }, {}};
-    weigh(o, bench, calibration);
+    return weigh(o, bench, calibration);
 }
 
 /// The emulated Falcon's true values, which its driver does not know.
@@ -218,24 +240,26 @@ struct EmulatedBench {
     }
 };
 
-void weighEmulated(const CalibrateOptions& o, double mass, FalconCalibration& calibration)
+Found weighEmulated(const CalibrateOptions& o, double mass, FalconCalibration& calibration)
 {
     std::cerr << "palpate: this Falcon and the hand that acts on it are emulated, faster than real time\n";
     EmulatedBench emulated(countsBefore(o));
     Bench bench{emulated.falcon, [&] { return emulated.now = std::max(emulated.now + 1e-3, emulated.emulator.now()); },
                 [&](double gain, Stage stage) { emulated.act(gain, stage, mass); }};
-    weigh(o, bench, calibration);
+    return weigh(o, bench, calibration);
 }
 
-void print(const CalibrateOptions& o, double mass, const FalconCalibration& calibration)
+void print(const CalibrateOptions& o, double mass, const FalconCalibration& calibration, const Found& found)
 {
     const double counts = calibration.countsPerTorque().value(), arm = calibration.armMass().value();
     if (o.json) {
         nlohmann::ordered_json report{{"counts_per_torque", counts},
                                       {"counts_per_torque_before", countsBefore(o)},
                                       {"arm_kg", arm},
+                                      {"hold_s", nullptr},
                                       {"mass_kg", mass},
                                       {"emulated", nullptr}};
+        if (found.hold) report["hold_s"] = *found.hold;
         if (o.emulator) report["emulated"] = {{"counts_per_torque", kEmulatedCounts}, {"arm_kg", kEmulatedArm}};
         std::cout << jsonText(report);
         return;
@@ -243,6 +267,14 @@ void print(const CalibrateOptions& o, double mass, const FalconCalibration& cali
     std::printf("counts per N m   %.0f   (%.0f before: the forces were %.2f times those asked for)\n", counts,
                 countsBefore(o), countsBefore(o) / counts);
     std::printf("the arm          %.0f g weigh on the grip\n", 1000 * arm);
+    if (found.hold)
+        std::printf(
+            "its own hold     after %.0f ms without a packet its motors let go: so long a force lasts where only "
+            "they can end it\n",
+            1000 * *found.hold);
+    else
+        std::printf("its own hold     not found: the grip did not fall within half a second without a packet. Unplug "
+                    "its power, not its cable, to be sure of no force\n");
     if (o.emulator)
         std::printf("true values      %.0f and %.0f g: this Falcon is emulated, do not use its numbers with another\n",
                     kEmulatedCounts, 1000 * kEmulatedArm);
@@ -254,11 +286,8 @@ void calibrate(const CalibrateOptions& o)
 {
     const double      mass = kilograms(o.mass);
     FalconCalibration calibration({.mass = mass, .countsPerTorque = countsBefore(o)});
-    if (o.emulator)
-        weighEmulated(o, mass, calibration);
-    else
-        weighReal(o, calibration);
-    print(o, mass, calibration);
+    const Found       found = o.emulator ? weighEmulated(o, mass, calibration) : weighReal(o, calibration);
+    print(o, mass, calibration, found);
 }
 
 } // namespace

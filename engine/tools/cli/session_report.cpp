@@ -25,6 +25,7 @@ nlohmann::json jsonOf(const SessionSummary& s)
             {"patches", s.patches},
             {"failed_patches", s.failedPatches},
             {"stale_ticks", s.staleTicks},
+            {"ticks_with_old_table", s.oldTable},
             {"ticks_beyond_table", s.beyondTable},
             {"ticks_beyond_theory", s.beyondTheory},
             {"ticks_without_patch", s.patchless},
@@ -83,6 +84,9 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
     if (s.beyondTable > 0)
         say("the contact left the table's reach in " + std::to_string(s.beyondTable) +
             " ticks: raise table_size or deformation_rate for fast hands");
+    if (s.oldTable > 0)
+        say("the plate did not answer for a quarter of a second, which took the force for " +
+            std::to_string(s.oldTable) + " ticks: lower cells, deformation_rate or table_size");
     if (10 * s.staleTicks > s.contactTicks) // one late patch is no slow machine
         say(std::to_string(s.staleTicks) + " ticks had a patch older than three of its periods: lower cells, "
                                            "deformation_rate or table_size");

@@ -141,7 +141,7 @@ void printText(const SessionRun& run)
 
 void demandWhole(const SessionRun& run)
 {
-    if (run.summary.fault != GovernorFault::none || run.summary.deviceFault == DeviceFault::unplugged)
+    if (run.summary.fault != GovernorFault::none || isFinal(run.summary.deviceFault))
         throw CheckFailed("the force was stopped");
     if (run.recorded && run.recorded->lost > 0)
         throw CheckFailed(run.folder + ": " + std::to_string(run.recorded->lost) + " ticks were lost");

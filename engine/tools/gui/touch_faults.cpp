@@ -45,6 +45,9 @@ std::vector<std::string> notesOn(const TickRecord& record)
     };
     static constexpr Note kNotes[] = {
         {SessionFlag::noPatch, "The plate has no answer yet, so there is no force: wait, or choose fewer cells."},
+        {SessionFlag::oldTable,
+         "The plate has not answered for a quarter of a second, so the force is off: lift the hand, or choose fewer "
+         "cells."},
         {SessionFlag::beyondTheory, "The dent is deeper than half the thickness, where plate theory ends: press less."},
         {SessionFlag::beyondTable,
          "The contact is beyond the table of compliances: move more slowly, or raise the rate."},

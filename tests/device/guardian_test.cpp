@@ -1,0 +1,235 @@
+// Real processes that push and come to grief, and how long an emulated Falcon then goes on pushing.
+#include "device/detail/guardian.h"
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "device/falcon/falcon_device.h"
+#include "engine/core/real_time.h"
+#include "tests/device/descriptor_falcon.h"
+#include "tests/device/falcon_bench.h"
+
+namespace palp {
+namespace {
+
+constexpr int    kInstants = 200;
+constexpr double kZeroBy   = 30e-3; // [s] 25 ms of silence, a packet, and what the guardian may have to wait
+
+enum class End { killed, writesToNowhere, aborts, runsOutOfMemory };
+constexpr std::array kNames{"IsKilled", "Crashes", "Aborts", "RunsOutOfMemory"}; ///< in the same order
+
+/// What parent and child know of each other.
+struct Fate {
+    std::atomic<double> at{1e18};        ///< [s] when the child comes to grief; it does so by itself
+    std::atomic<bool>   hangs{false};    ///< its driver's thread hangs in a write
+    std::atomic<bool>   silenced{false}; ///< its servo saw DeviceFault::silenced
+};
+
+[[noreturn]] void comeToGrief(End end, Fate& fate) noexcept
+{
+    fate.at = steadyTime();
+    switch (end) {
+    case End::killed:
+        kill(getpid(), SIGKILL);
+        break;
+    case End::writesToNowhere:
+        *reinterpret_cast<volatile int*>(std::uintptr_t(64)) = 1;
+        break;
+    case End::aborts:
+        std::abort();
+    case End::runsOutOfMemory: {
+        const rlimit little{1U << 20U, 1U << 20U}; // less than it has: the next allocation fails
+        setrlimit(RLIMIT_AS, &little);
+        try {
+            for (;;) std::fill_n(new char[1U << 20U], 1U << 20U, 'x');
+        } catch (const std::bad_alloc&) {
+            fate.at = steadyTime();
+            std::terminate(); // as where nobody catches it
+        }
+    }
+    }
+    std::_Exit(9);
+}
+
+/// The child: a servo that pushes with 2 N, the Falcon's driver and its thread, and one that waits for its fate.
+void drive(int fd, Fate& fate, End end, const GovernedForce& force)
+{
+    const rlimit none{0, 0};
+    setrlimit(RLIMIT_CORE, &none);
+    FalconDevice device([&] { return std::make_unique<DescriptorLink>(fd, &fate.hangs); });
+    device.open();
+    std::freopen("/dev/null", "w", stderr); // what std::terminate() says
+    std::thread grief([&] {
+        while (steadyTime() < fate.at) std::this_thread::sleep_for(std::chrono::microseconds(50));
+        comeToGrief(end, fate);
+    });
+    Metronome   metronome{std::chrono::milliseconds(1)};
+    for (;;) {
+        metronome.wait();
+        if (device.exchange(force, steadyTime()).fault == DeviceFault::silenced) fate.silenced = true;
+    }
+}
+
+class GuardianTest : public ::testing::Test {
+protected:
+    GuardianTest() { static_cast<void>(askForRealTime()); } // whoever measures must not be late
+
+    pid_t start(DescriptorFalcon& falcon, Fate& fate, End end = End::killed)
+    {
+        return falcon.start([&](int fd) { drive(fd, fate, end, force_); });
+    }
+
+    /// Waits until the child pushes with all of its force, and a random time more.
+    bool waitForForce(DescriptorFalcon& falcon)
+    {
+        for (const double end = steadyTime() + 5; steadyTime() < end;) { // a busy machine makes the driver let go
+            falcon.serve(end, [&] { return falcon.pushes() && steadyTime() - falcon.pushesSince() > 22e-3; });
+            falcon.serve(steadyTime() + wait_(random_));
+            if (falcon.pushes()) return true;
+        }
+        return false;
+    }
+
+    /// Notes how long the Falcon pushed from `failed` on [s].
+    double zeroAfter(DescriptorFalcon& falcon, double failed)
+    {
+        double late = 0; // [s] that a busy machine kept this process, which has the clock, from its processor
+        for (double last = steadyTime(); falcon.pushes() && last < failed + 0.2;) {
+            falcon.serve(last + 200e-6, [&] { return !falcon.pushes(); });
+            const double now = steadyTime();
+            late             = std::max(late, now - last - 1e-3);
+            last             = now;
+        }
+        const double took = falcon.pushes() ? 1 : falcon.zeroSince() - failed;
+        took_.push_back(took);
+        return took - std::max(0.0, late);
+    }
+
+    ~GuardianTest() override
+    {
+        if (took_.empty()) return;
+        std::ranges::sort(took_);
+        std::printf("  zero after %.1f ms at the median, %.1f ms at most, %zu instants\n",
+                    1e3 * took_[took_.size() / 2], 1e3 * took_.back(), took_.size());
+    }
+
+    const GovernedForce                    force_ = governed({1, 1, 1});
+    std::mt19937                           random_{1};
+    std::uniform_real_distribution<double> wait_{0, 5e-3}; ///< [s]
+    std::vector<double>                    took_;          ///< [s]
+};
+
+class Ends : public GuardianTest, public ::testing::WithParamInterface<End> {};
+
+INSTANTIATE_TEST_SUITE_P(Program, Ends,
+                         ::testing::Values(End::killed, End::writesToNowhere, End::aborts, End::runsOutOfMemory),
+                         [](const auto& which) { return kNames[std::size_t(which.param)]; });
+
+TEST_P(Ends, AndTheMotorsAreAtZeroWithin30Milliseconds)
+{
+    for (int n = 0; n < kInstants; ++n) {
+        DescriptorFalcon   falcon;
+        SharedMemory<Fate> fate;
+        const pid_t        child = start(falcon, *fate, GetParam());
+        ASSERT_TRUE(waitForForce(falcon)) << n;
+        fate->at   = steadyTime() + wait_(random_);
+        int status = 0;
+        while (waitpid(child, &status, WNOHANG) == 0) falcon.serve(steadyTime() + 200e-6);
+        ASSERT_TRUE(WIFSIGNALED(status)) << n << ": it came to grief";
+        ASSERT_LT(zeroAfter(falcon, fate->at), kZeroBy) << n;
+        falcon.serve(steadyTime() + 5e-3);
+        ASSERT_FALSE(falcon.pushes()) << n << ": and so they stay";
+    }
+}
+
+/// SIGSTOP, as a debugger and Ctrl-Z in some programs do.
+TEST_F(GuardianTest, AStoppedProgramLosesTheForceAndGoesOnWithZero)
+{
+    DescriptorFalcon   falcon;
+    SharedMemory<Fate> fate;
+    const pid_t        child = start(falcon, *fate);
+    for (int n = 0; n < kInstants; ++n) {
+        ASSERT_TRUE(waitForForce(falcon)) << n;
+        fate->silenced       = false;
+        const double stopped = steadyTime();
+        kill(child, SIGSTOP);
+        ASSERT_LT(zeroAfter(falcon, stopped), kZeroBy) << n;
+        falcon.serve(steadyTime() + wait_(random_) * 5);
+        ASSERT_FALSE(falcon.pushes()) << n << ": and so they stay";
+
+        const std::uint64_t packets = falcon.packets(), zeros = falcon.zeros();
+        kill(child, SIGCONT);
+        falcon.serve(steadyTime() + 1, [&] { return falcon.pushes() || falcon.packets() >= packets + 10; });
+        ASSERT_EQ(falcon.zeros() - zeros, falcon.packets() - packets) << n << ": zero comes first";
+        falcon.serve(steadyTime() + 1, [&] { return falcon.pushes(); });
+        ASSERT_TRUE(fate->silenced) << n << ": the governor was told, and engages anew";
+    }
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+}
+
+TEST_F(GuardianTest, ADriverThatHangsLosesTheForceAndGoesOnWithZero)
+{
+    DescriptorFalcon   falcon;
+    SharedMemory<Fate> fate;
+    const pid_t        child = start(falcon, *fate);
+    for (int n = 0; n < kInstants; ++n) {
+        ASSERT_TRUE(waitForForce(falcon)) << n;
+        const double hung = steadyTime();
+        fate->hangs       = true;
+        ASSERT_LT(zeroAfter(falcon, hung), kZeroBy) << n;
+        const std::uint64_t packets = falcon.packets(), zeros = falcon.zeros();
+        fate->hangs = false;
+        falcon.serve(steadyTime() + 1, [&] { return falcon.pushes() || falcon.packets() >= packets + 10; });
+        ASSERT_EQ(falcon.zeros() - zeros, falcon.packets() - packets) << n << ": zero comes first";
+    }
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+}
+
+TEST_F(GuardianTest, AProgramThatEndsInOrderLeavesNoGuardianBehind)
+{
+    int ends[2];
+    ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+    {
+        Guardian guardian({.fd = ends[0]}, kFalconZero, "");
+        static_cast<void>(guardian.pass(encode(FalconCommand{.motors = {1, 2, 3}})));
+        guardian.passed();
+        static_cast<void>(guardian.pass(encode(FalconCommand{})));
+        guardian.passed();
+        EXPECT_TRUE(guardian.isWatching());
+        EXPECT_FALSE(guardian.hasSilenced());
+    }
+    close(ends[0]);
+    std::array<std::uint8_t, 16> bytes;
+    EXPECT_EQ(read(ends[1], bytes.data(), bytes.size()), 0) << "it wrote nothing, and its end is closed";
+    close(ends[1]);
+    EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "no child is left";
+}
+
+TEST_F(GuardianTest, AProgramWhoseGuardianHasEndedPushesNoMore)
+{
+    DescriptorFalcon   falcon;
+    SharedMemory<Fate> fate;
+    const pid_t        child = start(falcon, *fate);
+    ASSERT_TRUE(waitForForce(falcon));
+    const std::string ask = "pkill -KILL -P " + std::to_string(child) + " palpate-guardia"; // its only child
+    ASSERT_EQ(std::system(ask.c_str()), 0);
+    falcon.serve(steadyTime() + 1, [&] { return !falcon.pushes(); });
+    EXPECT_FALSE(falcon.pushes());
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+}
+
+} // namespace
+} // namespace palp
