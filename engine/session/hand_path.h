@@ -56,7 +56,7 @@ private:
 };
 
 /// Reads a hand from a file of rows time [s], x, y, z [m]. Further columns are skipped where a header line has them
-/// too, so that samples.csv of a recorded session is a hand; in text, one that is called "buttons" is read: a whole
+/// too, so that the table of a recorded session is a hand; in text, one that is called "buttons" is read: a whole
 /// number, whose bit i is set if button i is down.
 ///
 /// .npy: an array of shape (n, 4) or wider. Any other extension: text, one waypoint a line, numbers between commas,

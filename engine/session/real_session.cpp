@@ -131,6 +131,7 @@ void RealSession::servoThread()
     auto      start = metronome.wait(); // asking may take a quarter of a second
     double    last = 0, period = kTick;
     Stopping  stopping;
+    if (settings_.onStart) settings_.onStart(start);
     for (;;) {
         const auto   now  = metronome.wait();
         const double time = Seconds(now - start).count(), dt = time - last;

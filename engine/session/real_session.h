@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <string>
@@ -24,7 +25,9 @@ struct SessionView {
 struct RealSessionSettings {
     double         seconds = 5; ///< [s]
     SessionThreads threads = SessionThreads::servo;
-    OnTick         onTick{}; ///< on the servo's thread, every tick: must neither wait nor allocate; may be empty
+    /// Is given the instant of time 0, on the servo's thread, before the first tick; as onTick.
+    std::function<void(std::chrono::steady_clock::time_point)> onStart{};
+    OnTick onTick{}; ///< on the servo's thread, every tick: must neither wait nor allocate; may be empty
     std::function<void(const SessionView&)> onView{};         ///< on the calling thread, every viewPeriod; may be empty
     double                                  viewPeriod = 0.1; ///< [s]
     const std::atomic<bool>*                stop       = nullptr; ///< ends the session once it is true; may be null

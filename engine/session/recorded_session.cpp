@@ -14,94 +14,47 @@
 #include "engine/core/json_object.h"
 #include "engine/force/governor.h"
 #include "engine/session/scene_keys.h"
+#include "engine/session/tick_source.h"
 
 namespace palp {
 namespace {
 
 constexpr std::size_t kMostOfDescription = std::size_t(4) << 20; // [bytes] of session.json
 
-/// The number of rows in the header of a column, and where its numbers begin.
-struct Extent {
-    std::uint64_t rows  = 0;
-    std::uint64_t begin = 0; ///< [bytes]
-};
-
-/// Reads a header. It must be that of `column` as numpy writes it, but for the number of rows: (rows,) or (rows, 3).
-Extent readHeader(std::istream& in, const SessionColumn& column, const std::string& name)
+/// Reads markers.jsonl, one object a line. What follows the last line's end was cut by a kill.
+std::vector<Marker> readMarkers(const std::filesystem::path& path)
 {
-    constexpr std::size_t     kBefore = 10; // [bytes] magic, version 1, length of the header
-    std::array<char, kBefore> start{};
-    in.read(start.data(), start.size());
-    if (!in || std::memcmp(start.data(), "\x93NUMPY\x01", 7) != 0)
-        throw Error(name + ": expected a .npy file of version 1, found something else");
-    std::string header(std::size_t(static_cast<unsigned char>(start[8])) + 256u * static_cast<unsigned char>(start[9]),
-                       '\0');
-    in.read(header.data(), std::streamsize(header.size()));
-    if (!in) throw Error(name + ": the file ends within its header");
-
-    const std::string before =
-        "{'descr': '" + std::string(column.numpyType()) + "', 'fortran_order': False, 'shape': (";
-    const std::string after = column.components > 1 ? ", " + std::to_string(column.components) + ")" : ",)";
-    std::uint64_t     rows  = 0;
-    const char*       rest  = header.data() + std::min(before.size(), header.size());
-    const char*       end   = header.data() + header.size();
-    const auto        read  = std::from_chars(rest, end, rows);
-    if (!header.starts_with(before) || read.ec != std::errc() || !std::string_view(read.ptr, end).starts_with(after))
-        throw Error(name + ": expected " + before + "N" + after + ", found " + header.substr(0, 100));
-    return {rows, kBefore + header.size()};
+    constexpr std::size_t kMost = std::size_t(64) << 20; // [bytes]
+    std::error_code       none;
+    if (!std::filesystem::exists(path, none)) return {}; // format 1 had none
+    const std::string   whole = readWhole(path, kMost, "the markers of a session");
+    std::vector<Marker> markers;
+    std::string_view    rest = whole;
+    for (std::size_t end; (end = rest.find('\n')) != std::string_view::npos; rest.remove_prefix(end + 1)) {
+        const JsonObject line =
+            JsonObject::parse(rest.substr(0, end), path.string() + ": line " + std::to_string(markers.size() + 1));
+        if (markers.size() == Recording::kMostMarkers)
+            throw Error(path.string() + ": expected at most " + std::to_string(Recording::kMostMarkers) + " markers");
+        markers.push_back({line.number("time"), markerText(line.text("text"))});
+    }
+    return markers;
 }
 
-struct OpenColumn {
-    std::ifstream in;
-    std::string   name;
-    std::uint64_t rows;
-};
-
-OpenColumn openColumn(const std::filesystem::path& folder, const SessionColumn& column)
+/// Returns the clocks of time 0, which may be null or, in an older file, absent.
+std::optional<SessionClocks> clocksOf(const JsonObject& file)
 {
-    const std::filesystem::path path   = folder / (std::string(column.name) + ".npy");
-    std::ifstream               in     = openForReading(path);
-    const Extent                extent = readHeader(in, column, path.string());
-    std::error_code             failure;
-    const std::uint64_t         bytes = std::filesystem::file_size(path, failure);
-    if (failure) throw Error(path.string() + ": cannot be read: " + failure.message());
-    if (extent.rows > (bytes - extent.begin) / column.bytes())
-        throw Error(path.string() + ": the header counts " + std::to_string(extent.rows) + " ticks of " +
-                    std::to_string(column.bytes()) + " bytes, found " + std::to_string(bytes - extent.begin) +
-                    " bytes");
-    return {std::move(in), path.string(), extent.rows};
-}
-
-/// Reads the columns of a folder.
-/// \param expected  records of a session that was finished: all columns have as many
-std::vector<TickRecord> readColumns(const std::filesystem::path& folder, std::optional<std::uint64_t> expected)
-{
-    std::vector<OpenColumn> open;
-    std::uint64_t           rows = std::numeric_limits<std::uint64_t>::max();
-    for (const SessionColumn& column : sessionColumns()) {
-        open.push_back(openColumn(folder, column));
-        rows = std::min(rows, open.back().rows);
-        if (expected && open.back().rows != *expected)
-            throw Error(open.back().name + ": expected the " + std::to_string(*expected) +
-                        " ticks that session.json counts, found " + std::to_string(open.back().rows) +
-                        "; the recording is damaged");
-    }
-    std::vector<TickRecord> records(rows);
-    std::vector<char>       part;
-    for (std::size_t k = 0; k < open.size(); ++k) {
-        const SessionColumn&  column = sessionColumns()[k];
-        constexpr std::size_t kPart  = 65536; // rows at a time
-        for (std::size_t begin = 0; begin < rows; begin += kPart) {
-            const std::size_t count = std::min<std::size_t>(kPart, rows - begin);
-            part.resize(count * column.bytes());
-            open[k].in.read(part.data(), std::streamsize(part.size()));
-            if (!open[k].in) throw Error(open[k].name + ": the file ends within its numbers");
-            for (std::size_t i = 0; i < count; ++i)
-                std::memcpy(reinterpret_cast<char*>(&records[begin + i]) + column.offset,
-                            part.data() + i * column.bytes(), column.bytes());
-        }
-    }
-    return records;
+    const auto nanoseconds = [&](std::string_view key) -> std::optional<std::int64_t> {
+        std::int64_t value = 0;
+        if (!file.has(key)) return {};
+        const std::string text    = file.json(key);
+        const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (failure == std::errc() && end == text.data() + text.size()) return value;
+        if (text != "null") file.refuse(key, "a whole number of nanoseconds, or null");
+        return {};
+    };
+    const auto realtime = nanoseconds("realtime_ns"), monotonic = nanoseconds("monotonic_ns");
+    if (!realtime || !monotonic) return {};
+    return SessionClocks{*realtime, *monotonic};
 }
 
 /// Returns the scene of a recording of format 1, whose keys had other names, with the names of today.
@@ -112,6 +65,13 @@ std::string withNamesOfToday(const std::string& scene)
     Json       today = Json::object();
     for (const auto& [name, value] : then.items()) today[std::string(keyNamedOnce(name).value_or(name))] = value;
     return today.dump();
+}
+
+/// Returns true if a column is among those of RecordedSession::columns.
+bool holds(std::uint64_t columns, std::string_view name)
+{
+    const auto place = std::ranges::find(sessionColumns(), name, &SessionColumn::name) - sessionColumns().begin();
+    return (columns & std::uint64_t(1) << place) != 0;
 }
 
 const char* bytesOf(const TickRecord& record, const SessionColumn& column)
@@ -133,6 +93,12 @@ std::string valueText(const SessionColumn& column, const char* bytes)
     switch (column.type) {
     case SessionColumn::Type::float64:
         return numberText<double>(bytes);
+    case SessionColumn::Type::float32: {
+        double wide = 0;
+        std::memcpy(&wide, bytes, sizeof wide);
+        const auto value = static_cast<float>(wide);
+        return numberText<float>(reinterpret_cast<const char*>(&value));
+    }
     case SessionColumn::Type::int32:
         return numberText<std::int32_t>(bytes);
     case SessionColumn::Type::uint32:
@@ -154,7 +120,7 @@ std::string bitsText(const char* bytes)
 /// Finds the first component in which one column of two records differs.
 std::optional<SessionDifference> differenceIn(const SessionColumn& column, const TickRecord& a, const TickRecord& b)
 {
-    const std::size_t each = column.bytes() / column.components;
+    const std::size_t each = column.recordBytes();
     for (std::size_t k = 0; k < column.components; ++k) {
         const char *x = bytesOf(a, column) + k * each, *y = bytesOf(b, column) + k * each;
         if (std::memcmp(x, y, each) == 0) continue;
@@ -178,7 +144,7 @@ SessionClock clockOf(const JsonObject& file, const std::filesystem::path& path)
     throw Error(path.string() + ": key \"clock\": expected " + wordsOf<SessionClock>() + ", found \"" + word + "\"");
 }
 
-RecordedSession readSession(const std::filesystem::path& folder)
+RecordedSession readDescription(const std::filesystem::path& folder)
 {
     const std::filesystem::path path = folder / "session.json";
     std::error_code             none;
@@ -187,9 +153,9 @@ RecordedSession readSession(const std::filesystem::path& folder)
         throw Error(folder.string() + ": expected the folder of a recorded session, found " +
                     (isFolder ? "no session.json in it; " : "a file; ") +
                     "palpate run --record makes one, and so does F5 in the window");
-    const JsonObject file =
-        JsonObject::parse(readWhole(path, kMostOfDescription, "the description of a session"), path.string());
-    const int format = file.has("format") ? file.wholeNumber("format", 1, std::numeric_limits<int>::max()) : 0;
+    const std::string text   = readWhole(path, kMostOfDescription, "the description of a session");
+    const JsonObject  file   = JsonObject::parse(text, path.string());
+    const int         format = file.has("format") ? file.wholeNumber("format", 1, std::numeric_limits<int>::max()) : 0;
     if (format < 1 || format > kSessionFormat)
         throw Error(path.string() + ": expected \"format\": 1 or " + std::to_string(kSessionFormat) + ", found " +
                     (format > 0 ? std::to_string(format) + "; a later palpate wrote it" : "none"));
@@ -200,9 +166,9 @@ RecordedSession readSession(const std::filesystem::path& folder)
     session.command = file.text("command");
     session.scene   = format == 1 ? withNamesOfToday(file.json("scene")) : file.json("scene");
     if (file.has("finished")) session.finished = file.json("finished") == "true";
-    std::optional<std::uint64_t> expected;
-    if (session.finished) expected = file.wholeNumber("samples", 0, std::numeric_limits<int>::max());
-    session.cloud = file.has("cloud") ? file.text("cloud") : "";
+    if (session.finished) session.counted = file.wholeNumber("samples", 0, std::numeric_limits<int>::max());
+    session.clocks = clocksOf(file);
+    session.cloud  = file.has("cloud") ? file.text("cloud") : "";
     if (file.has("hand")) {
         const JsonObject hand         = file.object("hand");
         session.hand.model            = hand.text("model");
@@ -213,8 +179,33 @@ RecordedSession readSession(const std::filesystem::path& folder)
         session.hand.ownDamping =
             hand.has("own_damping_N_s_per_m") ? hand.number("own_damping_N_s_per_m") : arm.ownDamping;
     }
-    session.records = readColumns(folder, expected);
+    session.markers = readMarkers(folder / "markers.jsonl");
     return session;
+}
+
+RecordedSession readSession(const std::filesystem::path& folder)
+{
+    RecordedSession session = readDescription(folder);
+    const auto      ticks   = openTicks(session);
+    session.columns         = ticks->columns();
+    session.records.resize(ticks->rows());
+    ticks->read(session.records);
+    if (!holds(session.columns, "answers")) // as format 1: one at each tick, which is what simulated devices answer
+        for (std::size_t i = 0; i < session.records.size(); ++i) {
+            session.records[i].answers    = std::uint32_t(i + 1);
+            session.records[i].answerTime = session.records[i].time;
+        }
+    return session;
+}
+
+std::unique_ptr<TickSource> openTicks(const RecordedSession& session)
+{
+    auto ticks = openTicks(session.folder, session.finished);
+    if (session.counted && ticks->rows() != *session.counted)
+        throw Error(session.folder.string() + ": expected the " + std::to_string(*session.counted) +
+                    " ticks that session.json counts, found " + std::to_string(ticks->rows()) +
+                    "; the recording is damaged");
+    return ticks;
 }
 
 Scene sceneOf(const RecordedSession& session, const std::vector<SceneKey>* toolKeys)
@@ -229,9 +220,11 @@ std::optional<SessionDifference> compareSessions(const RecordedSession& a, const
     const std::size_t both = std::min(a.records.size(), b.records.size());
     for (std::size_t i = 0; i < both; ++i) {
         if (std::memcmp(&a.records[i], &b.records[i], sizeof(TickRecord)) == 0) continue;
-        for (const SessionColumn& column : sessionColumns()) {
-            if (column.measured) continue;
-            if (auto difference = differenceIn(column, a.records[i], b.records[i])) {
+        const TickRecord x = asStored(a.records[i]), y = asStored(b.records[i]);
+        for (std::size_t k = 0; k < sessionColumns().size(); ++k) {
+            const SessionColumn& column = sessionColumns()[k];
+            if (column.measured || (a.columns & b.columns & std::uint64_t(1) << k) == 0) continue;
+            if (auto difference = differenceIn(column, x, y)) {
                 difference->tick = i;
                 return difference;
             }
@@ -250,7 +243,7 @@ std::string describe(const SessionDifference& d, const RecordedSession& a, const
     const auto column   = std::ranges::find(sessionColumns(), d.column, &SessionColumn::name);
     const bool isVector = column != sessionColumns().end() && column->components > 1;
     return "tick " + std::to_string(d.tick) + " (" + numberText<double>(reinterpret_cast<const char*>(&d.time)) +
-           " s): " + d.column + (isVector ? std::string(" ") + "xyz"[d.component] : "") + " is " + d.first + " in " +
+           " s): " + d.column + (isVector ? std::string(" ") + "xyzw"[d.component] : "") + " is " + d.first + " in " +
            first + " and " + d.second + " in " + second;
 }
 

@@ -1,27 +1,21 @@
 #include "engine/session/recording.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <bit>
-#include <cerrno>
-#include <charconv>
 #include <chrono>
-#include <csignal>
-#include <cstring>
 #include <ctime>
 #include <iostream>
+#include <mutex>
 #include <thread>
 #include <utility>
 #include <vector>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
+#include "engine/session/detail/growing_file.h"
+#include "engine/session/detail/quiet_thread.h"
 #include "engine/session/recorded_session.h"
 #include "engine/session/tick_ring.h"
 
@@ -30,191 +24,107 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-static_assert(std::endian::native == std::endian::little, ".npy numbers are written as they lie in memory");
+constexpr std::size_t kRing   = 4096; // records: 4 s at 1 kHz, longer than a disk should ever make us wait
+constexpr auto        kVisits = std::chrono::milliseconds(2); // of the writer; a kill may cost 10 ms
+constexpr std::size_t kBatch  = 256; // records written at once, all or none: what the end of a disk may cost
 
-constexpr std::size_t kRing       = 4096; // records: 4 s at 1 kHz, longer than a disk should ever make us wait
-constexpr auto        kVisits     = std::chrono::milliseconds(2); // of the writer; a kill may cost 10 ms
-constexpr std::size_t kBatch      = 256;  // records written at once, all or none: what the end of a disk may cost
-constexpr std::size_t kHeader     = 128;  // [bytes] of each .npy file, for every count below 2^64; a multiple of 64
-constexpr std::size_t kMostOfLine = 1024; // [bytes] of samples.csv: 23 numbers of up to 25 characters
-
-std::string reasonOfErrno()
-{
-    return errno ? std::strerror(errno) : "unknown reason";
-}
-
-std::string npyHeader(const SessionColumn& column, std::uint64_t rows)
-{
-    std::string text = "{'descr': '" + std::string(column.numpyType()) + "', 'fortran_order': False, 'shape': (" +
-                       std::to_string(rows) + (column.components > 1 ? ", " + std::to_string(column.components) : ",") +
-                       "), }";
-    constexpr std::size_t kBefore = 10; // [bytes] magic, version, length
-    text.resize(kHeader - kBefore - 1, ' ');
-    const std::uint16_t length = std::uint16_t(text.size() + 1);
-    return std::string("\x93NUMPY\x01\x00", 8) + char(length & 0xff) + char(length >> 8) + text + "\n";
-}
-
-/// A file that grows, and whose beginning may be written again.
-class GrowingFile {
+/// The header of ticks.npy, as numpy spells it. The count of rows is its last word, and has room for every count below
+/// 2^64.
+class RowsHeader {
 public:
-    /// Makes the file.
-    /// \throws Error if there is one of that name, or none can be made
-    explicit GrowingFile(std::filesystem::path path)
-        : path_(std::move(path)), handle_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644))
+    RowsHeader()
     {
-        if (handle_ < 0) throw Error(path_.string() + ": cannot be made: " + reasonOfErrno());
-    }
-    ~GrowingFile()
-    {
-        if (handle_ >= 0) ::close(handle_);
-    }
-    GrowingFile(GrowingFile&& other) noexcept
-        : path_(std::move(other.path_)), handle_(std::exchange(other.handle_, -1)), whole_(other.whole_)
-    {
-    }
-    GrowingFile& operator=(GrowingFile&&) = delete;
-
-    /// Writes bytes at a place.
-    /// \throws Error naming the file and the reason; then some of the bytes may stand in it
-    void write(std::string_view bytes, std::uint64_t at)
-    {
-        while (!bytes.empty()) {
-            errno               = 0;
-            const ssize_t count = ::pwrite(handle_, bytes.data(), bytes.size(), off_t(at));
-            if (count < 0 && errno == EINTR) continue;
-            if (count <= 0) throw Error(path_.string() + ": cannot be written: " + reasonOfErrno());
-            bytes.remove_prefix(std::size_t(count));
-            at += std::uint64_t(count);
+        text_ = "{'descr': [";
+        for (const SessionColumn& column : sessionColumns()) {
+            text_ += "('" + std::string(column.name) + "', '" + std::string(column.numpyType()) + "'";
+            if (column.components > 1) text_ += ", (" + std::to_string(column.components) + ",)";
+            text_ += column.name == sessionColumns().back().name ? ")" : "), ";
         }
+        text_ += "], 'fortran_order': False, 'shape': (";
+        constexpr std::size_t kBefore = 10, kMultiple = 64; // [bytes] magic, version, length; numpy's alignment
+        countAt_                 = kBefore + text_.size();
+        const std::size_t whole  = (countAt_ + kRoom + 1 + kMultiple - 1) / kMultiple * kMultiple;
+        const std::size_t length = whole - kBefore;
+        text_ = std::string("\x93NUMPY\x01\x00", 8) + char(length & 0xff) + char(length >> 8) + text_ + counting(0);
+        text_.resize(whole - 1, ' ');
+        text_ += '\n';
     }
 
-    /// Writes at the end of the complete part.
-    void append(std::string_view bytes)
+    [[nodiscard]] const std::string& text() const noexcept { return text_; } ///< of no rows
+    [[nodiscard]] std::size_t        countAt() const noexcept { return countAt_; }
+    /// Returns what stands at countAt() for a number of rows, always of the same length.
+    [[nodiscard]] static std::string counting(std::uint64_t rows)
     {
-        write(bytes, whole_ + pending_);
-        pending_ += bytes.size();
+        std::string end = std::to_string(rows) + ",), }";
+        end.resize(kRoom, ' ');
+        return end;
     }
-    void accept() noexcept { whole_ += std::exchange(pending_, 0); } ///< counts the appended bytes as complete
-    void undo() noexcept                                             ///< drops the appended bytes
-    {
-        pending_ = 0;
-        if (::ftruncate(handle_, off_t(whole_)) != 0) errno = 0; // then it stays, and the header does not count it
-    }
-
-    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
 private:
-    std::filesystem::path path_;
-    int                   handle_;
-    std::uint64_t         whole_   = 0; ///< [bytes]
-    std::uint64_t         pending_ = 0; ///< [bytes]
+    static constexpr std::size_t kRoom = 26; // [bytes] 20 digits and the brackets
+
+    std::string text_;
+    std::size_t countAt_ = 0; ///< [bytes]
 };
 
-std::string csvHeader()
-{
-    std::string line;
-    for (const SessionColumn& column : sessionColumns())
-        for (std::size_t k = 0; k < column.components; ++k) {
-            line += column.name;
-            if (column.components > 1) {
-                line += '_';
-                line += "xyz"[k];
-            }
-            line += ',';
-        }
-    line.back() = '\n';
-    return line;
-}
-
-/// Appends one number as text that brings the same bits back. `text` must have room.
-void appendNumber(std::string& text, const SessionColumn& column, const char* bytes)
-{
-    std::array<char, 32> digits;
-    const auto           append = [&](auto number) {
-        std::memcpy(&number, bytes, sizeof number);
-        const auto [end, status] = std::to_chars(digits.data(), digits.data() + digits.size(), number);
-        text.append(digits.data(), end);
-    };
-    switch (column.type) {
-    case SessionColumn::Type::float64:
-        return append(double{});
-    case SessionColumn::Type::int32:
-        return append(std::int32_t{});
-    case SessionColumn::Type::uint32:
-        return append(std::uint32_t{});
-    }
-}
-
-void appendLine(std::string& text, const TickRecord& record)
-{
-    const char* const bytes = reinterpret_cast<const char*>(&record);
-    for (const SessionColumn& column : sessionColumns())
-        for (std::size_t k = 0; k < column.components; ++k) {
-            appendNumber(text, column, bytes + column.offset + k * column.bytes() / column.components);
-            text += ',';
-        }
-    text.back() = '\n';
-}
-
-/// The column files of a folder, which always end together.
+/// The files of a folder that grow.
 class TickFiles {
 public:
-    explicit TickFiles(const std::filesystem::path& folder) : csv_(folder / "samples.csv")
+    explicit TickFiles(const std::filesystem::path& folder)
+        : ticks_(folder / "ticks.npy"), markers_(folder / "markers.jsonl")
     {
-        buffer_.reserve(kBatch * kMostOfLine);
-        for (const SessionColumn& column : sessionColumns())
-            columns_.emplace_back(folder / (std::string(column.name) + ".npy"));
-        for (std::size_t k = 0; k < columns_.size(); ++k) columns_[k].append(npyHeader(sessionColumns()[k], 0));
-        csv_.append(csvHeader());
-        accept();
+        rowsOf_.reserve(kBatch * tickRowBytes());
+        ticks_.append(header_.text());
+        ticks_.accept();
     }
 
     /// Appends all of the records, at most kBatch, or none.
     /// \throws Error naming the file and the reason
     void append(std::span<const TickRecord> records)
     {
+        rowsOf_.resize(records.size() * tickRowBytes());
+        for (std::size_t i = 0; i < records.size(); ++i) packTick(records[i], &rowsOf_[i * tickRowBytes()]);
         try {
-            for (std::size_t k = 0; k < columns_.size(); ++k) {
-                const SessionColumn& column = sessionColumns()[k];
-                buffer_.clear();
-                for (const TickRecord& record : records)
-                    buffer_.append(reinterpret_cast<const char*>(&record) + column.offset, column.bytes());
-                columns_[k].append(buffer_);
-            }
-            buffer_.clear();
-            for (const TickRecord& record : records) appendLine(buffer_, record);
-            csv_.append(buffer_);
-            for (std::size_t k = 0; k < columns_.size(); ++k)
-                columns_[k].write(npyHeader(sessionColumns()[k], rows_ + records.size()), 0);
+            ticks_.append(rowsOf_);
+            ticks_.write(RowsHeader::counting(rows_ + records.size()), header_.countAt());
         } catch (const Error&) {
-            // A header lies within blocks that the file has, so usually data found no room; but if not:
-            for (std::size_t k = 0; k < columns_.size(); ++k) {
-                columns_[k].undo();
-                try {
-                    columns_[k].write(npyHeader(sessionColumns()[k], rows_), 0);
-                } catch (const Error&) { // the first complaint is the one to report
-                }
+            ticks_.undo();
+            try { // the header lies within blocks that the file has, so the rows found no room; but if not:
+                ticks_.write(RowsHeader::counting(rows_), header_.countAt());
+            } catch (const Error&) { // the first complaint is the one to report
             }
-            csv_.undo();
             throw;
         }
         rows_ += records.size();
-        accept();
+        ticks_.accept();
+    }
+
+    /// Appends a line for each marker, all or none.
+    /// \throws Error as append()
+    void append(const std::vector<Marker>& markers)
+    {
+        std::string lines;
+        for (const Marker& marker : markers)
+            lines += nlohmann::ordered_json{{"time", marker.time}, {"text", marker.text}}.dump() + "\n";
+        try {
+            markers_.append(lines);
+        } catch (const Error&) {
+            markers_.undo();
+            throw;
+        }
+        markers_.accept();
+        marked_ += markers.size();
     }
 
     [[nodiscard]] std::uint64_t rows() const noexcept { return rows_; }
+    [[nodiscard]] std::uint64_t marked() const noexcept { return marked_; }
 
 private:
-    void accept() noexcept
-    {
-        for (GrowingFile& column : columns_) column.accept();
-        csv_.accept();
-    }
-
-    GrowingFile              csv_;
-    std::vector<GrowingFile> columns_;
-    std::string              buffer_;
-    std::uint64_t            rows_ = 0;
+    RowsHeader    header_;
+    GrowingFile   ticks_, markers_;
+    std::string   rowsOf_; ///< the batch that is being written
+    std::uint64_t rows_   = 0;
+    std::uint64_t marked_ = 0;
 };
 
 std::string now()
@@ -240,6 +150,8 @@ nlohmann::ordered_json describe(const SessionInfo& info)
     return {{"format", kSessionFormat},
             {"versions", info.versions},
             {"started", now()},
+            {"realtime_ns", nullptr}, // of time 0, which has not come yet
+            {"monotonic_ns", nullptr},
             {"command", info.command},
             {"clock", name(info.clock)},
             {"solver", info.solver},
@@ -275,19 +187,6 @@ void makeFresh(const std::filesystem::path& folder)
     if (failure) throw Error(folder.string() + ": cannot be read: " + failure.message());
 }
 
-/// Starts a thread that gets no signals: those are for the program's own thread, and a write beyond the limit on sizes
-/// is then an error instead of the end.
-template <class Work>
-std::thread quietThread(Work work)
-{
-    sigset_t all, before;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before);
-    std::thread thread(std::move(work));
-    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    return thread;
-}
-
 } // namespace
 
 struct Recording::Impl {
@@ -298,12 +197,22 @@ struct Recording::Impl {
         writer = quietThread([this] { work(); });
     }
 
+    /// Takes the clocks of the first record, unless begin() did.
+    void beginNow() noexcept
+    {
+        if (begun.load(std::memory_order_relaxed)) return;
+        clocks = SessionClocks::at(Clock::now());
+        begun.store(true, std::memory_order_release);
+    }
+
     void work()
     {
         Clock::time_point last = Clock::now();
         for (bool more = true; more;) {
             more = !finishing.load(std::memory_order_acquire); // before the last look: earlier records are seen
+            noteClocks();
             drain();
+            writeMarkers();
             const Clock::time_point time = Clock::now();
             longestGap                   = std::max(longestGap, std::chrono::duration<double>(time - last).count());
             last                         = time;
@@ -320,7 +229,31 @@ struct Recording::Impl {
         }
     }
 
-    void write(std::span<const TickRecord> batch)
+    /// Completes session.json once time 0 has come. If that fails, describeEnd() tries again.
+    void noteClocks()
+    {
+        if (noted || !begun.load(std::memory_order_acquire)) return;
+        noted                       = true;
+        description["realtime_ns"]  = clocks.realtime;
+        description["monotonic_ns"] = clocks.monotonic;
+        try {
+            writeDescription(folder, description);
+        } catch (const Error&) { // the one from the start is still there
+        }
+    }
+
+    void writeMarkers()
+    {
+        std::vector<Marker> batch;
+        {
+            const std::lock_guard lock(mutex);
+            batch.swap(markers);
+        }
+        if (!batch.empty() && !stopped.load(std::memory_order_relaxed)) write(batch);
+    }
+
+    template <class Batch>
+    void write(const Batch& batch)
     {
         try {
             files.append(batch);
@@ -339,7 +272,8 @@ struct Recording::Impl {
         if (writer.joinable()) {
             finishing.store(true, std::memory_order_release);
             writer.join();
-            report = {files.rows(), pushed - files.rows(), longestGap, why};
+            report = {files.rows(), pushed - files.rows(), longestGap,
+                      why,          files.marked(),        marksHeard - files.marked()};
             describeEnd();
         }
         return report;
@@ -348,8 +282,10 @@ struct Recording::Impl {
     void describeEnd()
     {
         description["finished"]      = true;
-        description["samples"]       = report.ticks; // the format's word, as in samples.csv
+        description["samples"]       = report.ticks; // the format's word, for a tick
         description["lost"]          = report.lost;
+        description["markers"]       = report.markers;
+        description["markers_lost"]  = report.markersLost;
         description["longest_gap_s"] = report.longestGap;
         description["stopped"]       = report.stopped ? nlohmann::ordered_json(*report.stopped) : nullptr;
         try {
@@ -365,6 +301,12 @@ struct Recording::Impl {
     TickRing<TickRecord>       ring;
     TickFiles                  files;
     std::uint64_t              pushed = 0; ///< by the producer; read after finish() only
+    SessionClocks              clocks;     ///< by the producer, before `begun`
+    std::atomic<bool>          begun{false};
+    bool                       noted = false; ///< of the writer: session.json has the clocks
+    std::mutex                 mutex;         ///< of the next two; the producer never takes it
+    std::vector<Marker>        markers;
+    std::uint64_t              marksHeard = 0;
     std::atomic<bool>          finishing{false};
     std::atomic<bool>          stopped{false};
     double                     longestGap = 0; ///< [s] of the writer
@@ -391,16 +333,29 @@ Recording::~Recording()
     impl_->finish();
 }
 
+void Recording::begin(const SessionClocks& clocks) noexcept
+{
+    impl_->clocks = clocks;
+    impl_->begun.store(true, std::memory_order_release);
+}
+
 void Recording::push(const TickRecord& record) noexcept
 {
-    ++impl_->pushed;
+    if (impl_->pushed++ == 0) impl_->beginNow();
     if (!impl_->stopped.load(std::memory_order_relaxed)) static_cast<void>(impl_->ring.push(record));
 }
 
 void Recording::pushWaiting(const TickRecord& record) noexcept
 {
-    ++impl_->pushed;
+    if (impl_->pushed++ == 0) impl_->beginNow();
     while (!impl_->stopped.load(std::memory_order_acquire) && !impl_->ring.push(record)) std::this_thread::yield();
+}
+
+void Recording::mark(const Marker& marker)
+{
+    const std::lock_guard lock(impl_->mutex);
+    if (impl_->marksHeard++ < kMostMarkers && impl_->markers.size() < kMostMarkersAtOnce)
+        impl_->markers.push_back(marker);
 }
 
 RecordingReport Recording::finish()

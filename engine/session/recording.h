@@ -9,7 +9,9 @@
 
 #include "device/haptic_device.h"
 #include "engine/core/enum_names.h"
+#include "engine/session/marker.h"
 #include "engine/session/scene.h"
+#include "engine/session/session_clocks.h"
 #include "engine/session/tick_record.h"
 
 namespace palp {
@@ -41,24 +43,30 @@ struct RecordingReport {
     std::uint64_t lost       = 0;         ///< pushed and not on disk: the ring was full, or writing had stopped
     double        longestGap = 0;         ///< [s] between two visits of the writer: what a kill would have cost at most
     std::optional<std::string> stopped{}; ///< why writing stopped early: a sentence
+    std::uint64_t              markers     = 0; ///< on disk
+    std::uint64_t              markersLost = 0; ///< came too fast, were too many, or writing had stopped
 };
 
-/// Writes a session while it runs: a folder with session.json, a .npy file per column, and samples.csv. What the
-/// format calls a sample is the record of a tick.
+/// Writes a session while it runs: a folder with session.json, ticks.npy with a row for each tick, and markers.jsonl
+/// with a line for each marker. recordings.md describes them; what the format calls a sample is the record of a tick.
 ///
-///     servo ---push()---> ring of 4096 records (4 s) ---writer thread, every 2 ms---> data, then headers
+///     servo ---push()---> ring of 4096 records (4 s) ---writer thread, every 2 ms---> rows, then the header
+///     others --mark()---> list behind a lock -------------'
 ///
-/// Each .npy header has room for any count and is written again after the data that it counts, so that numpy reads
-/// every file at every moment, also after kill -9: then the records since the writer's last visit are missing, some 2
-/// ms (longer where the machine does not schedule the writer for longer; see RecordingReport::longestGap). A kill
-/// between two headers leaves columns whose lengths differ by one visit; readSession() takes the shortest.
+/// The header of ticks.npy has room for any count and is written again after the rows that it counts, so that numpy
+/// reads the file at every moment, also after kill -9: then the records since the writer's last visit are missing, some
+/// 2 ms (longer where the machine does not schedule the writer for longer; see RecordingReport::longestGap).
 ///
-/// When a file cannot be written (a full disk, a limit on sizes) all columns end at the same, last whole record, one
-/// sentence gives the reason, and pushing goes on without effect: the touch does not depend on the disk.
-/// \thread  push(): one thread, wait-free, no allocation, lock or throw; all else: the thread that made it
+/// When a file cannot be written (a full disk, a limit on sizes) the rows end at a whole record, one sentence gives the
+/// reason, and pushing goes on without effect: the touch does not depend on the disk.
+/// \thread  begin(), push(), pushWaiting(): one thread; wait-free but for the last, no allocation, lock or throw;
+///          mark(): any other; all else: the thread that made it
 class Recording {
 public:
     using Complain = std::function<void(const std::string&)>;
+
+    /// The most markers of a recording, and the most between two visits of the writer [1].
+    static constexpr std::size_t kMostMarkers = 100'000, kMostMarkersAtOnce = 256;
 
     /// \param folder    is made; it must not exist or be empty: sessions are never overwritten
     /// \param complain  is called, at most once and on the writer's thread, with why recording stopped; empty: standard
@@ -69,11 +77,18 @@ public:
     Recording(const Recording&)            = delete;
     Recording& operator=(const Recording&) = delete;
 
+    /// Takes the clocks of time 0. Without it the first record does, with the clocks of that moment.
+    /// \pre no record has been pushed
+    void begin(const SessionClocks& clocks) noexcept;
+
     /// Takes one record; if the ring is full it is counted as lost.
     void push(const TickRecord& record) noexcept;
 
     /// Takes one record and waits for room: for the virtual clock, which is faster than any disk.
     void pushWaiting(const TickRecord& record) noexcept;
+
+    /// Takes a marker whose text markerText() made; if there are too many it is counted as lost.
+    void mark(const Marker& marker);
 
     /// Writes what is left, marks session.json as finished, and ends the writer. Later calls return the same.
     RecordingReport finish();

@@ -25,14 +25,19 @@ HapticState ReplayDevice::read(double now) noexcept
     const TickRecord& record = records_[next_];
     Hand              hand;
     hand.setBits(record.device);
-    state.sequence = ++next_;
-    state.position = record.hip;
-    state.velocity = record.hipVelocity;
-    state.buttons  = hand.buttons;
-    state.homed    = hand.homed;
-    state.inBox    = hand.inBox;
-    state.missed   = record.missed;
-    state.fault    = hand.device;
+    ++next_;
+    // As old as it was then, and on the clock of then to the bit.
+    state.time        = now == record.time ? record.answerTime : now - (record.time - record.answerTime);
+    state.age         = record.answerAge;
+    state.sequence    = record.answers;
+    state.orientation = record.orientation;
+    state.position    = record.hip;
+    state.velocity    = record.hipVelocity;
+    state.buttons     = hand.buttons;
+    state.homed       = hand.homed;
+    state.inBox       = hand.inBox;
+    state.missed      = record.missed;
+    state.fault       = hand.device;
     return state;
 }
 

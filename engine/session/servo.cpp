@@ -171,14 +171,23 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     const GovernorOutput out = governor_.step(in);
 
     TickRecord record;
-    record.time        = now.time;
-    record.hip         = hand.position;
-    record.hipVelocity = hand.velocity;
-    record.device      = hand.bits();
-    record.missed      = hand.missed;
-    record.proxy       = touch.point;
-    record.force       = out.force;
-    record.normal      = touch.touching ? touch.outward : glm::dvec3(0);
+    record.time           = now.time;
+    record.hip            = hand.position;
+    record.hipVelocity    = hand.velocity;
+    record.orientation    = hand.orientation;
+    record.device         = hand.bits();
+    record.missed         = hand.missed;
+    record.answers        = static_cast<std::uint32_t>(hand.sequence);
+    record.answerTime     = hand.answerTime;
+    record.answerAge      = hand.answerAge;
+    record.proxy          = touch.point;
+    record.wanted         = want.force;
+    record.force          = out.force;
+    record.actions        = out.actions;
+    record.stiffness      = want.tank.stiffness;
+    record.tankEnergy     = tank_.energy();
+    record.observerEnergy = out.energy;
+    record.normal         = touch.touching ? touch.outward : glm::dvec3(0);
     if (newest && touch.touching) {
         record.rigidity      = newest->rigidity;
         record.maxDeflection = newest->mostResponse * std::max(0.0, glm::dot(out.force, touch.outward));

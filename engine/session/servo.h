@@ -3,6 +3,7 @@
 #include <optional>
 #include <string_view>
 
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
 #include "device/haptic_device.h"
@@ -58,9 +59,10 @@ struct Hand {
     DeviceFault   device  = DeviceFault::none;
     std::uint32_t buttons = 0; ///< of the device, the lower 16
 
-    double        answerTime = 0; ///< [s] when the device's answer came
-    double        answerAge  = 0; ///< [s] of the position at that time
-    std::uint64_t sequence   = 0; ///< of the answer; 0: nothing is known of its time
+    double        answerTime = 0;          ///< [s] when the device's answer came
+    double        answerAge  = 0;          ///< [s] of the position at that time
+    std::uint64_t sequence   = 0;          ///< of the answer; 0: nothing is known of its time
+    glm::dquat    orientation{1, 0, 0, 0}; ///< of the grip; recorded only
 
     /// Packs faults, flags and buttons into TickRecord::device; setBits() reads it back.
     [[nodiscard]] std::uint32_t bits() const noexcept

@@ -11,7 +11,8 @@ struct DeviceFrame {
     glm::dvec3 origin{};                    ///< [m] of the scene: place of the middle of the workspace
     glm::dquat sceneFromDevice{1, 0, 0, 0}; ///< rotation, a unit quaternion
 
-    /// Converts the hand of this state into the scene.
+    /// Converts the hand of this state into the scene. No part of the orientation is a negative zero, so that a replay,
+    /// whose frame is the scene's, gives the same bits.
     [[nodiscard]] Hand handOf(const HapticState& state) const noexcept
     {
         return {origin + sceneFromDevice * state.position,
@@ -23,7 +24,8 @@ struct DeviceFrame {
                 state.buttons & 0xFFFFU,
                 state.time,
                 state.age,
-                state.sequence};
+                state.sequence,
+                sceneFromDevice * state.orientation + glm::dquat(0, 0, 0, 0)};
     }
 
     /// Converts a place of the scene into the device's frame [m].

@@ -40,13 +40,21 @@ TEST_P(RealSessions, TheThreadsServeAHandAndEnd)
     Deformation         deformation(session.object, session.scene);
     std::uint64_t       seen = 0, patches = 0;
     RealSessionSettings settings;
-    bool                finite = true;
-    settings.threads           = GetParam();
-    settings.seconds           = 0.6;
-    settings.viewPeriod        = 0.02;
-    settings.onTick            = [&](const TickRecord& s) {
+    bool                finite = true, afterTheStart = true;
+    settings.threads    = GetParam();
+    settings.seconds    = 0.6;
+    settings.viewPeriod = 0.02;
+    std::optional<std::chrono::steady_clock::time_point> start;
+    settings.onStart = [&](std::chrono::steady_clock::time_point at) {
+        EXPECT_FALSE(start) << "once";
+        EXPECT_EQ(seen, 0U);
+        start = at;
+    };
+    settings.onTick = [&](const TickRecord& s) {
         ++seen;
-        finite = finite && std::isfinite(glm::length(s.force));
+        const std::chrono::duration<double> since = std::chrono::steady_clock::now() - *start;
+        afterTheStart = afterTheStart && since.count() >= s.time && since.count() < s.time + 0.5; // a busy machine
+        finite        = finite && std::isfinite(glm::length(s.force));
     };
     std::string warned = "nothing was seen";
     settings.onView    = [&](const SessionView& view) {
@@ -63,6 +71,7 @@ TEST_P(RealSessions, TheThreadsServeAHandAndEnd)
     EXPECT_GT(summary.ticks, 20U);
     EXPECT_LE(summary.ticks, 601U);
     EXPECT_TRUE(finite);
+    EXPECT_TRUE(afterTheStart) << "a tick's time is that since the start";
     EXPECT_GT(summary.patches, 0U);
     EXPECT_GT(patches, 0U);
     EXPECT_EQ(summary.failedPatches, 0U) << summary.why;

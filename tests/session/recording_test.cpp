@@ -27,6 +27,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/session/recorded_session.h"
+#include "engine/session/session_table.h"
 #include "tests/session/sessions.h"
 #include "tests/support/allocations.h"
 #include "tests/support/temporary_folder.h"
@@ -66,7 +67,8 @@ TEST(Recording, WhatIsPushedIsReadBackByteForByte)
     EXPECT_EQ(report.lost, 0u);
     EXPECT_FALSE(report.stopped) << *report.stopped;
     ASSERT_EQ(session.records.size(), 20'000u);
-    for (int i = 0; i < 20'000; ++i) ASSERT_TRUE(sameBytes(session.records[std::size_t(i)], recordNumber(i))) << i;
+    for (int i = 0; i < 20'000; ++i)
+        ASSERT_TRUE(sameBytes(session.records[std::size_t(i)], asStored(recordNumber(i)))) << i;
     EXPECT_TRUE(session.finished);
     EXPECT_EQ(session.clock, SessionClock::virtualTime);
 }
@@ -90,43 +92,134 @@ TEST(Recording, TheDescriptionSaysWhatWasRunAndHow)
     EXPECT_EQ(json["started"].get<std::string>().size(), std::string("2026-01-01T00:00:00Z").size());
 }
 
-TEST(Recording, TheTableHoldsTheSameNumbersAsTheColumns)
+TEST(Recording, NumbersThatAreNoDoublesAreRoundedToFloatsAndNothingElseChanges)
+{
+    const TickRecord whole = recordNumber(7), stored = asStored(whole);
+
+    EXPECT_EQ(stored.hip, whole.hip);
+    EXPECT_EQ(stored.force, whole.force);
+    EXPECT_EQ(stored.answerAge, whole.answerAge);
+    EXPECT_EQ(stored.stiffness, double(float(whole.stiffness)));
+    EXPECT_NE(stored.stiffness, whole.stiffness) << "or this record shows nothing";
+    EXPECT_EQ(stored.orientation.y, double(float(0.6)));
+    EXPECT_EQ(stored.answers, whole.answers);
+    EXPECT_TRUE(sameBytes(asStored(stored), stored));
+}
+
+TEST(Recording, ATickTakesTheBytesOfItsRow)
 {
     const TemporaryFolder folder;
-    static_cast<void>(recorded(folder / "run", 100));
+    static_cast<void>(recorded(folder / "run", 10'000));
 
-    std::istringstream csv(contentsOf(folder / "run" / "samples.csv"));
+    std::uintmax_t bytes = 0;
+    for (const auto& file : std::filesystem::directory_iterator(folder / "run")) bytes += file.file_size();
+
+    EXPECT_EQ(tickRowBytes(), 15 * 8 + 19 * 4 + 6 * 4) << "recordings.md says so, and Python that reads datagrams";
+    // The description and the header take some 8 kB however long the session is.
+    EXPECT_LT(double(bytes), 10'000 * 220.0 + 20'000);
+}
+
+TEST(Recording, TheTableHoldsTheSameNumbers)
+{
+    const TemporaryFolder folder;
+    static_cast<void>(recorded(folder / "run", 5'000)); // more than are in memory at once
+
+    std::ostringstream written;
+    EXPECT_EQ(writeTable(readDescription(folder / "run"), written), 5'000u);
+    std::istringstream csv(written.str());
     std::string        line;
     std::getline(csv, line);
-    EXPECT_EQ(line, "time,hip_x,hip_y,hip_z,hip_velocity_x,hip_velocity_y,hip_velocity_z,proxy_x,proxy_y,proxy_z,force_"
-                    "x,force_y,force_z,normal_x,normal_y,normal_z,"
-                    "rigidity,compliance,w_max,error_estimate,patch_age,tick_time,iterations,faults,device,missed");
-    for (int i = 0; i < 100; ++i) {
+    EXPECT_TRUE(line.starts_with("time,hip_x,hip_y,hip_z,hip_velocity_x,hip_velocity_y,hip_velocity_z,proxy_x,proxy_y,"
+                                 "proxy_z,force_x,force_y,force_z,answer_time,answer_age,wanted_x,"))
+        << line;
+    EXPECT_TRUE(line.ends_with(",iterations,missed,faults,actions,device,answers")) << line;
+    for (int i = 0; i < 5'000; ++i) {
         std::getline(csv, line);
         std::ranges::replace(line, ',', ' ');
         std::istringstream  words(line);
         std::vector<double> numbers;
         for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
-        ASSERT_EQ(numbers.size(), 26u);
-        EXPECT_EQ(numbers[1], recordNumber(i).hip.x);
-        EXPECT_EQ(numbers[12], recordNumber(i).force.z);
-        EXPECT_EQ(numbers[22], recordNumber(i).iterations);
-        EXPECT_EQ(numbers[23], recordNumber(i).faults);
+        ASSERT_EQ(numbers.size(), 40u);
+        ASSERT_EQ(numbers[1], recordNumber(i).hip.x);
+        ASSERT_EQ(numbers[12], recordNumber(i).force.z);
+        ASSERT_EQ(float(numbers[17]), float(recordNumber(i).wanted.z)) << "the shortest text brings the float back";
+        ASSERT_EQ(numbers[34], recordNumber(i).iterations);
+        ASSERT_EQ(numbers[36], recordNumber(i).faults);
     }
     EXPECT_FALSE(std::getline(csv, line));
-    EXPECT_EQ(readHand(folder / "run" / "samples.csv").position(0.05), recordNumber(50).hip) << "a hand again";
+    EXPECT_EQ(readHand(folder.write("table.csv", written.str())).position(0.05), recordNumber(50).hip)
+        << "a hand again";
+}
+
+TEST(Recording, TheClocksOfTimeZeroAreInItWhileItRuns)
+{
+    const TemporaryFolder folder;
+    Recording             recording(folder / "run", someInfo());
+    EXPECT_FALSE(readSession(folder / "run").clocks) << "time 0 has not come";
+    const auto start = std::chrono::steady_clock::now() - std::chrono::milliseconds(1500);
+
+    recording.begin(SessionClocks::at(start));
+    recording.push(recordNumber(0));
+    for (int n = 0; n < 2000 && !readSession(folder / "run").clocks; ++n)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const auto clocks = readSession(folder / "run").clocks;
+
+    ASSERT_TRUE(clocks);
+    EXPECT_EQ(clocks->monotonic, std::chrono::nanoseconds(start.time_since_epoch()).count());
+    const auto now = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+    EXPECT_LT(clocks->realtime, now - 1'400'000'000);
+    EXPECT_GT(clocks->realtime, now - 60'000'000'000) << "a busy machine may take seconds for the above";
+    EXPECT_FALSE(readSession(folder / "run").finished);
+}
+
+TEST(Recording, MarkersAreLinesOfJsonThatNothingCanBreak)
+{
+    const TemporaryFolder folder;
+    {
+        Recording recording(folder / "run", someInfo());
+        recording.push(recordNumber(0));
+        recording.mark({0.125, markerText("start \"A\"")});
+        recording.mark({0.25, markerText("\x1b[31mred\n{\"time\": 9}")});
+        const RecordingReport report = recording.finish();
+        EXPECT_EQ(report.markers, 2u);
+        EXPECT_EQ(report.markersLost, 0u);
+    }
+    const std::string lines_ = contentsOf(folder / "run" / "markers.jsonl");
+    std::ofstream(folder / "run" / "markers.jsonl", std::ios::app) << "{\"time\": 0.5, \"te"; // cut by a kill
+
+    const RecordedSession session = readSession(folder / "run");
+
+    EXPECT_EQ(lines(lines_), 2u);
+    ASSERT_EQ(session.markers.size(), 2u);
+    EXPECT_EQ(session.markers[0].time, 0.125);
+    EXPECT_EQ(session.markers[0].text, "start \"A\"");
+    EXPECT_EQ(session.markers[1].text, "[31mred {\"time\": 9}");
+}
+
+TEST(Recording, AFloodOfMarkersIsCutAndCounted)
+{
+    const TemporaryFolder folder;
+    Recording             recording(folder / "run", someInfo());
+
+    for (int i = 0; i < 200'000; ++i) recording.mark({0, "x"});
+    const RecordingReport report = recording.finish();
+
+    EXPECT_EQ(report.markers + report.markersLost, 200'000u);
+    EXPECT_LE(report.markers, Recording::kMostMarkers);
+    EXPECT_GE(report.markers, 1u);
+    EXPECT_EQ(readSession(folder / "run").markers.size(), report.markers);
 }
 
 TEST(Recording, NoSessionIsOverwritten)
 {
     const TemporaryFolder folder;
     static_cast<void>(recorded(folder / "run", 5));
-    const std::string before = contentsOf(folder / "run" / "time.npy");
+    const std::string before = contentsOf(folder / "run" / "ticks.npy");
 
     const auto sentence = refusalOf([&] { const Recording second(folder / "run", someInfo()); });
 
     EXPECT_TRUE(holds(sentence, {"run", "new or empty folder", "overwritten"})) << sentence;
-    EXPECT_EQ(contentsOf(folder / "run" / "time.npy"), before);
+    EXPECT_EQ(contentsOf(folder / "run" / "ticks.npy"), before);
     static_cast<void>(folder.write("file", ""));
     EXPECT_TRUE(holds(refusalOf([&] { const Recording r(folder / "file", someInfo()); }), {"file", "cannot be made"}));
     EXPECT_TRUE(holds(refusalOf([&] { const Recording r(folder / "file" / "run", someInfo()); }), {"cannot be made"}));
@@ -146,7 +239,7 @@ TEST(Recording, FilesAreWholeAtEveryMoment)
         const RecordedSession session = readSession(folder / "run");
         ASSERT_LE(session.records.size(), std::size_t(i) + 1);
         for (std::size_t k = 0; k < session.records.size(); ++k)
-            ASSERT_TRUE(sameBytes(session.records[k], recordNumber(int(k)))) << k;
+            ASSERT_TRUE(sameBytes(session.records[k], asStored(recordNumber(int(k))))) << k;
         ASSERT_FALSE(session.finished);
     }
 }
@@ -258,10 +351,8 @@ double lossOfAKill(const std::filesystem::path& place, int afterTicks)
     const RecordedSession session = readSession(place / "run");
     EXPECT_FALSE(session.finished);
     const std::size_t kept = session.records.size();
-    for (std::size_t k = 0; k < kept; ++k) EXPECT_TRUE(sameBytes(session.records[k], recordNumber(int(k)))) << k;
-    const std::string csv = contentsOf(place / "run" / "samples.csv");
-    EXPECT_TRUE(csv.ends_with('\n')) << "no half line";
-    EXPECT_GE(lines(csv), kept);
+    for (std::size_t k = 0; k < kept; ++k)
+        EXPECT_TRUE(sameBytes(session.records[k], asStored(recordNumber(int(k))))) << k;
     const int    pushed = shared->pushed;
     const double loss   = int(kept) < pushed ? double(killed - shared->times[kept]) * 1e-6 : 0;
     ::munmap(shared, sizeof(Shared));
@@ -289,24 +380,19 @@ void recordUntilFull(const std::filesystem::path& folder, const char* reason)
 {
     std::vector<std::string> said;
     Recording     recording(folder, someInfo(), [&](const std::string& sentence) { said.push_back(sentence); });
-    constexpr int kFar = 100'000; // 16 MB
+    constexpr int kFar = 100'000; // 22 MB
     for (int i = 0; i < kFar; ++i) recording.pushWaiting(recordNumber(i));
     const RecordingReport report = recording.finish();
 
     ASSERT_EQ(said.size(), 1u);
-    EXPECT_TRUE(holds(said[0], {"recording stopped after", "ticks", ".npy", reason}) ||
-                holds(said[0], {"recording stopped after", "ticks", ".csv", reason}))
-        << said[0];
+    EXPECT_TRUE(holds(said[0], {"recording stopped after", "ticks.npy", reason})) << said[0];
     EXPECT_EQ(report.stopped, said[0]);
     EXPECT_EQ(report.ticks + report.lost, std::uint64_t(kFar));
     EXPECT_GT(report.ticks, 0u);
     const RecordedSession session = readSession(folder);
-    ASSERT_EQ(session.records.size(), report.ticks) << "all columns end together";
+    ASSERT_EQ(session.records.size(), report.ticks) << "it ends at a whole row";
     for (std::size_t k = 0; k < session.records.size(); ++k)
-        ASSERT_TRUE(sameBytes(session.records[k], recordNumber(int(k)))) << k;
-    const std::string csv = contentsOf(folder / "samples.csv");
-    EXPECT_TRUE(csv.ends_with('\n'));
-    EXPECT_EQ(lines(csv), report.ticks + 1);
+        ASSERT_TRUE(sameBytes(session.records[k], asStored(recordNumber(int(k))))) << k;
 }
 
 TEST(RecordingChild, DISABLED_MeetsTheLimitOnSizes)
@@ -339,7 +425,7 @@ TEST(Recording, AFullDiskStopsItWithOneSentenceAndTheTouchGoesOn)
 TEST(Recording, AFolderOnAFullDiskIsRefusedAndLeftEmpty)
 {
     const TemporaryFolder folder;
-    if (::mount("none", folder.path().c_str(), "tmpfs", 0, "size=16k") != 0)
+    if (::mount("none", folder.path().c_str(), "tmpfs", 0, "size=8k") != 0)
         GTEST_SKIP() << "a small disk can be mounted by root only";
     const auto sentence = refusalOf([&] { const Recording r(folder / "run", someInfo()); });
     EXPECT_TRUE(holds(sentence, {"cannot be written", "No space left"})) << sentence;
@@ -347,31 +433,67 @@ TEST(Recording, AFolderOnAFullDiskIsRefusedAndLeftEmpty)
     ::umount(folder.path().c_str());
 }
 
+/// The python3 that the tests use; PALPATE_PYTHON names another one.
+std::string python()
+{
+    const char* const named = std::getenv("PALPATE_PYTHON");
+    return named ? named : "python3";
+}
+
+bool hasNumpy()
+{
+    return std::system((python() + " -c 'import numpy' >/dev/null 2>&1").c_str()) == 0;
+}
+
 TEST(Recording, NumpyReadsAKilledSession)
 {
-    const char* const named  = std::getenv("PALPATE_PYTHON");
-    const std::string python = named ? named : "python3";
-    if (std::system((python + " -c 'import numpy' >/dev/null 2>&1").c_str()) != 0)
-        GTEST_SKIP() << "no python3 with numpy; the other tests read the files by our own reader";
+    if (!hasNumpy()) GTEST_SKIP() << "no python3 with numpy; the other tests read the files by our own reader";
     const TemporaryFolder folder;
     static_cast<void>(lossOfAKill(folder / "killed", 300));
     const auto script = folder.write("check.py", R"(
 import json, sys, numpy
 columns = json.load(open(sys.argv[1] + '/session.json'))['columns']
-arrays = {name: numpy.load(sys.argv[1] + '/' + name + '.npy') for name in columns}
-n = min(len(a) for a in arrays.values())
+ticks = numpy.load(sys.argv[1] + '/ticks.npy')
+n = len(ticks)
 assert n > 200, n
+assert list(ticks.dtype.names) == list(columns), ticks.dtype
 for name, column in columns.items():
-    a = arrays[name]
+    a = ticks[name]
     assert a.dtype == column['type'], (name, a.dtype)
     assert a.shape[1:] == ((column['components'],) if column['components'] > 1 else ()), (name, a.shape)
-    assert len(numpy.load(sys.argv[1] + '/' + name + '.npy', mmap_mode='r')) == len(a)
+assert len(numpy.load(sys.argv[1] + '/ticks.npy', mmap_mode='r')) == n
 i = numpy.arange(n)
-assert (arrays['time'][:n] == i * 1e-3).all()
-assert (arrays['force'][:n, 2] == i / 3.0).all()
-assert (arrays['faults'][:n:5] == 0x80000001).all()
+assert (ticks['time'] == i * 1e-3).all()
+assert (ticks['force'][:, 2] == i / 3.0).all()
+assert (ticks['stiffness'] == (400 + i / 3.0).astype('<f4')).all()
+assert (ticks['faults'][::5] == 0x80000001).all()
 )");
-    EXPECT_EQ(std::system((python + " " + script.string() + " " + (folder / "killed" / "run").string()).c_str()), 0);
+    EXPECT_EQ(std::system((python() + " " + script.string() + " " + (folder / "killed" / "run").string()).c_str()), 0);
+}
+
+TEST(Recording, TheLinesOfPythonInItsPageReadIt)
+{
+    const std::string page  = contentsOf(PALPATE_RECORDINGS_PAGE);
+    const std::string begin = "```python\n# read.py";
+    const std::size_t at    = page.find(begin);
+    ASSERT_NE(at, std::string::npos);
+    const std::string block = page.substr(at + 10, page.find("```", at + 10) - at - 10);
+    EXPECT_LE(lines(block), 11u) << "ten lines and the name";
+    if (!hasNumpy()) GTEST_SKIP() << "no python3 with numpy";
+    const TemporaryFolder folder;
+    {
+        Recording recording(folder / "run", someInfo());
+        for (int i = 0; i < 100; ++i) recording.pushWaiting(recordNumber(i));
+        recording.mark({0.05, "a word"});
+    }
+
+    const auto script = folder.write("read.py", block);
+    EXPECT_EQ(std::system((python() + " " + script.string() + " " + (folder / "run").string() + " >" +
+                           (folder / "said").string())
+                              .c_str()),
+              0);
+
+    EXPECT_TRUE(holds(contentsOf(folder / "said"), {"100 ticks", "33.0 N", "a word"})) << contentsOf(folder / "said");
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
 
@@ -47,6 +48,46 @@ TEST(VirtualSession, TheWartIsFeltWhereItIs)
         if (away > 9e-3) off = std::min(off, 1 / s.compliance);
     }
     EXPECT_GT(on, 1.3 * off) << "stiffer on the wart than 9 mm beside it, where three deviations of it are left behind";
+}
+
+TEST(VirtualSession, ARecordSaysWhatWasWantedAndWhyTheForceIsAnother)
+{
+    const SheetSession session(sheetScene(kWart), HandMotion::scan, 2.5);
+    std::uint64_t      tick = 0, held = 0, passed = 0;
+    for (const TickRecord& s : session.run(2.5)) {
+        EXPECT_EQ(s.answers, ++tick);
+        EXPECT_GE(s.tankEnergy, 0);
+        EXPECT_LE(s.tankEnergy, EnergyTankSettings().limit);
+        EXPECT_TRUE(std::isfinite(s.observerEnergy));
+        const double missing = glm::length(s.wanted - s.force);
+        EXPECT_LE(s.actions == 0 ? missing : 0, 1e-9) << "rounding; at " << s.time;
+        if (glm::length(s.wanted) == 0) continue;
+        EXPECT_GT(s.stiffness, 0);
+        EXPECT_LE(s.stiffness, session.scene.stiffnessCap);
+        ++(s.actions == 0 ? passed : held);
+        const bool engaging = (s.actions & static_cast<std::uint32_t>(GovernorAction::engaging)) != 0;
+        EXPECT_TRUE(engaging || s.time > 1) << s.time;
+    }
+    EXPECT_GT(held, 300U) << "while the force comes on";
+    EXPECT_GT(passed, 300U) << "then";
+}
+
+TEST(VirtualSession, AHandIsTurnedIntoTheSceneWithItsOrientation)
+{
+    const double      half = std::sqrt(0.5);
+    const DeviceFrame frame{{}, {half, 0, 0, half}}; // a quarter turn about z
+    HapticState       state;
+    state.orientation = {half, half, 0, 0}; // a quarter turn about x
+    state.sequence    = (std::uint64_t(1) << 32U) + 7;
+
+    const Hand hand = frame.handOf(state), again = DeviceFrame().handOf({.orientation = hand.orientation});
+
+    const glm::dvec3 up = hand.orientation * glm::dvec3(0, 1, 0), right = hand.orientation * glm::dvec3(1, 0, 0);
+    EXPECT_NEAR(up.z, 1, 1e-12) << "rounding";
+    EXPECT_NEAR(right.y, 1, 1e-12) << "rounding";
+    EXPECT_EQ(hand.sequence, state.sequence);
+    EXPECT_EQ(std::memcmp(&hand.orientation, &again.orientation, sizeof hand.orientation), 0) << "a replay's bits";
+    for (int k = 0; k < 4; ++k) EXPECT_FALSE(hand.orientation[k] == 0 && std::signbit(hand.orientation[k]));
 }
 
 TEST(VirtualSession, TheSameInputGivesTheSameBits)

@@ -50,6 +50,11 @@ std::string commandOf(const CLI::App& command)
     std::string line = "palpate " + command.get_name();
     for (const CLI::Option* option : command.get_options()) {
         if (option->count() == 0) continue;
+        if (option->get_expected_max() > 1 && !option->get_allow_extra_args()) { // repeated, once for each value
+            for (const std::string& value : option->results())
+                line.append(" --").append(option->get_lnames().front()).append(" ").append(quoted(value));
+            continue;
+        }
         if (!option->get_positional()) line.append(" --").append(option->get_lnames().front());
         if (option->get_items_expected_max() == 0) continue; // a flag
         for (const std::string& value : option->results()) line.append(" ").append(quoted(value));

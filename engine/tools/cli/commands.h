@@ -19,6 +19,7 @@ void addSolveCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
 void addDoctorCommand(CLI::App& app);
 void addRunCommand(CLI::App& app); ///< adds run and replay
+void addExportCommand(CLI::App& app);
 void addHuntCommand(CLI::App& app);
 void addStudyCommand(CLI::App& app);
 void addRenderCommand(CLI::App& app);

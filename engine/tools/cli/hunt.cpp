@@ -97,7 +97,7 @@ void addHuntCommand(CLI::App& app)
     command->add_option("--score", o->score, "folder of a recorded session, which is scored without touching anything")
         ->excludes(command->get_option("SCENE"));
     addSessionOptions(*command, o->session);
-    command->add_option("--record", o->session.record, "a new folder for the session");
+    addOutputOptions(*command, o->session);
     command->add_option("--out", o->out, "a picture from above of hidden, found, missed and declared places (.svg)");
     command->add_flag("--json", o->json, "machine-readable, SI units");
     command->footer(

@@ -92,6 +92,7 @@ int main(int argumentCount, char** arguments)
                "                                                 a stiff spot on it; the rest of the file is kept\n"
                "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
                "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
+               "  palpate export session --csv session.csv       a recorded session as a table\n"
                "  palpate hunt samples/scenes/nodule_hunt.json   a hand's search for hidden nodules, scored\n"
                "  palpate study samples/studies/paper.json --participant P01 --out study   blinded trials, a table of "
                "answers\n"
@@ -111,6 +112,7 @@ int main(int argumentCount, char** arguments)
     palp::addDevicesCommand(app);
     palp::addDoctorCommand(app);
     palp::addRunCommand(app);
+    palp::addExportCommand(app);
     palp::addHuntCommand(app);
     palp::addStudyCommand(app);
     palp::addRenderCommand(app);

@@ -95,7 +95,7 @@ void addRunCommand(CLI::App& app)
     auto* run_ = app.add_subcommand("run", "touches a scene with a hand, in real or virtual time");
     auto  o    = std::make_shared<RunOptions>();
     addSessionOptions(*run_, o->session);
-    run_->add_option("--record", o->session.record, "a new folder for the session");
+    addOutputOptions(*run_, o->session);
     run_->add_flag("--print-config", o->printConfig,
                    "prints every value of the scene and its source, and touches nothing");
     run_->add_flag("--json", o->json, "machine-readable");
@@ -103,6 +103,8 @@ void addRunCommand(CLI::App& app)
     run_->footer("Examples:\n"
                  "  palpate run samples/scenes/palm_wart.json --hand scan --seconds 5\n"
                  "  palpate run samples/scenes/palm_wart.json --clock virtual --record session --max-force '4 N'\n"
+                 "  palpate run samples/scenes/palm_wart.json --record session --markers udp:9871 --stream "
+                 "udp:127.0.0.1:9870\n"
                  "  palpate run scan.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa\n"
                  "  palpate run samples/scenes/skin_wart.json --print-config");
     run_->callback([run_, o] {

@@ -1,6 +1,7 @@
 #include "engine/tools/cli/session_run.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -12,12 +13,15 @@
 #include "engine/pipeline/patch_warnings.h"
 #include "engine/session/failure_teller.h"
 #include "engine/session/interrupt.h"
+#include "engine/session/marker_input.h"
 #include "engine/session/real_session.h"
 #include "engine/session/session_line.h"
+#include "engine/session/session_tap.h"
 #include "engine/session/tick_ring.h"
 #include "engine/session/virtual_session.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/counted.h"
 #include "engine/tools/cli/named_option.h"
 #include "engine/tools/cli/session_report.h"
 
@@ -37,6 +41,11 @@ std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object
     }
 }
 
+UdpAddress markerAddress(const std::string& text)
+{
+    return parseUdpAddress(text, "--markers", "127.0.0.1"); // nobody else's, unless the user says so
+}
+
 /// Shows on a terminal how much of the time has passed, while a participant is told nothing else.
 void showTime(Progress& progress, double time, double seconds)
 {
@@ -44,7 +53,7 @@ void showTime(Progress& progress, double time, double seconds)
 }
 
 /// Runs a session in real time, with a line that shows what the hand feels.
-SessionSummary playLive(const SessionOptions& o, double seconds, const SessionParts& parts, Recording* recording,
+SessionSummary playLive(const SessionOptions& o, double seconds, const SessionParts& parts, SessionTap& tap,
                         const OnTick& also)
 {
     const bool           line = isatty(STDERR_FILENO) != 0 && !o.json && !o.blind;
@@ -60,8 +69,9 @@ SessionSummary playLive(const SessionOptions& o, double seconds, const SessionPa
     settings.seconds = seconds;
     settings.threads = *valueNamed<SessionThreads>(o.threads);
     settings.stop    = &catchInterrupts();
+    settings.onStart = [&](std::chrono::steady_clock::time_point start) { tap.begin(start); };
     settings.onTick  = [&, heard = bool(also)](const TickRecord& record) {
-        if (recording) recording->push(record);
+        tap.push(record);
         if (heard) static_cast<void>(ring.push(record)); // a reader that stops for four seconds has a gap
     };
     settings.onView = [&, heard = bool(also)](const SessionView& view) {
@@ -84,6 +94,24 @@ PatchSolver telling(PatchSolver solver)
         if (isatty(STDERR_FILENO) != 0) clearLine(); // which shows what the hand feels
         warn({sentence});
     });
+}
+
+/// Opens the outlets that the user names.
+std::vector<std::unique_ptr<TickStream>> streamsOf(const SessionOptions& o)
+{
+    std::vector<std::unique_ptr<TickStream>> streams;
+    for (const std::string& outlet : o.streams) streams.push_back(std::make_unique<TickStream>(openOutlet(outlet)));
+    return streams;
+}
+
+/// Opens the address of markers, if anything takes them. A participant's keys are none.
+std::unique_ptr<MarkerInput> markersOf(const SessionOptions& o)
+{
+    if (o.record.empty() && o.streams.empty()) return nullptr;
+    MarkerSources sources;
+    sources.keys = !o.blind && isatty(STDERR_FILENO) != 0;
+    if (!o.markers.empty()) sources.address = markerAddress(o.markers);
+    return std::make_unique<MarkerInput>(sources);
 }
 
 std::unique_ptr<Recording> recordingOf(const SessionOptions& o, const SessionParts& parts, SessionClock clock,
@@ -129,14 +157,29 @@ nlohmann::json jsonOf(const SessionRun& run)
     all["solver"]      = run.solver;
     all["warnings"]    = run.warnings;
     if (run.recorded) // "samples" is the word of session.json
-        all["recorded"] = {{"folder", run.folder}, {"samples", run.recorded->ticks}, {"lost", run.recorded->lost}};
+        all["recorded"] = {{"folder", run.folder},
+                           {"samples", run.recorded->ticks},
+                           {"lost", run.recorded->lost},
+                           {"markers", run.recorded->markers},
+                           {"markers_lost", run.recorded->markersLost}};
+    for (const StreamReport& stream : run.streams)
+        all["streams"].push_back(
+            {{"to", stream.to}, {"sent", stream.sent}, {"dropped", stream.dropped}, {"markers", stream.markers}});
     return all;
 }
 
 void printText(const SessionRun& run)
 {
     printText(run.summary, run.solver, run.hand);
-    if (run.recorded) std::cout << "  " << run.recorded->ticks << " ticks in " << run.folder << "\n";
+    if (run.recorded) {
+        std::cout << "  " << run.recorded->ticks << " ticks in " << run.folder;
+        if (run.recorded->markers > 0) std::cout << ", " << counted(run.recorded->markers, "marker");
+        std::cout << "\n";
+        if (run.recorded->markersLost > 0)
+            std::cout << "  " << counted(run.recorded->markersLost, "marker") << " lost: they came too fast\n";
+    }
+    for (const StreamReport& stream : run.streams)
+        std::cout << "  " << stream.sent << " ticks sent to " << stream.to << ", " << stream.dropped << " dropped\n";
 }
 
 void demandWhole(const SessionRun& run)
@@ -152,7 +195,9 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     demandGood(o);
     const SessionClock clock = optionNamed<SessionClock>("--clock", o.clock);
     Deformation        deformation(loaded.object, scene); // what can fail fails before a folder is made
-    SessionHand        hand = handFor(o.hand, scene, loaded.object);
+    const auto         streams = streamsOf(o);
+    auto               markers = markersOf(o);
+    SessionHand        hand    = handFor(o.hand, scene, loaded.object);
     if (hand.isHeldByPerson() && clock != SessionClock::real)
         throw Error("--hand " + o.hand.hand + ": a person holds it, in real time; omit --clock virtual");
 
@@ -170,13 +215,20 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
         *hand.device, hand.frame,    deformation.firstLaw()};
     const auto recording = recordingOf(o, parts, clock, run.solver);
     if (!o.blind) warn(run.warnings);
+    std::vector<TickStream*> outlets;
+    for (const auto& stream : streams) outlets.push_back(stream.get());
+    SessionTap   tap(recording.get(), std::move(outlets));
     const OnTick each = [&](const TickRecord& record) {
-        if (recording) recording->pushWaiting(record);
+        tap.pushWaiting(record);
         if (onTick) onTick(record);
     };
-    run.summary = clock == SessionClock::real ? playLive(o, hand.seconds, parts, recording.get(), onTick)
+    if (markers) markers->listen([&tap](std::string_view text) { tap.mark(text); });
+    if (markers && markers->hearsKeys()) std::cerr << "palpate: each key marks its moment; Ctrl-C ends\n";
+    run.summary = clock == SessionClock::real ? playLive(o, hand.seconds, parts, tap, onTick)
                                               : playVirtual(parts, hand.seconds, each, &stop);
+    markers.reset();
     if (recording) run.recorded = recording->finish();
+    for (const auto& stream : streams) run.streams.push_back(stream->finish());
     run.hand         = hand.device->info().model;
     run.interrupted  = stop;
     const auto after = warningsOf(run.summary);
@@ -191,6 +243,28 @@ void demandGood(const SessionOptions& options)
     const auto threads = optionNamed<SessionThreads>("--threads", options.threads);
     if (threads == SessionThreads::paper && clock != SessionClock::real)
         throw Error("--threads paper: a virtual clock has no threads; omit one of the two");
+    if (options.markers.empty()) return;
+    static_cast<void>(markerAddress(options.markers));
+    if (options.record.empty() && options.streams.empty())
+        throw Error("--markers: nothing takes them; add --record FOLDER or --stream");
+}
+
+void addStreamOption(CLI::App& command, std::vector<std::string>& outlets)
+{
+    command
+        .add_option("--stream", outlets,
+                    "sends each tick to another program at once: udp:HOST:PORT, or lsl or lsl:NAME for a Lab Streaming "
+                    "Layer; may be repeated")
+        ->allow_extra_args(false);
+}
+
+void addOutputOptions(CLI::App& command, SessionOptions& options)
+{
+    command.add_option("--record", options.record, "a new folder for the session");
+    addStreamOption(command, options.streams);
+    command.add_option("--markers", options.markers,
+                       "takes each datagram of text at udp:PORT of this machine, or at udp:HOST:PORT, as a marker of "
+                       "its moment; keys pressed in the terminal are markers too");
 }
 
 void addSessionOptions(CLI::App& command, SessionOptions& options)

@@ -9,25 +9,34 @@
 
 #include "engine/session/recording.h"
 #include "engine/session/session_summary.h"
+#include "engine/session/tick_stream.h"
 #include "engine/tools/cli/hand_source.h"
 
 namespace palp {
 
 /// The options of a session apart from the scene, shared by run, hunt and study.
 struct SessionOptions {
-    HandOptions hand;
-    std::string clock = name(SessionClock::real), threads = name(SessionThreads::servo);
-    std::string record;        ///< a new folder; empty: nothing is recorded
-    std::string command;       ///< the command line, quoted for a shell
-    bool        json  = false; ///< prints JSON, and so no live line
-    bool        blind = false; ///< tells nothing about what is touched: neither warnings nor numbers
+    HandOptions              hand;
+    std::string              clock = name(SessionClock::real), threads = name(SessionThreads::servo);
+    std::string              record;        ///< a new folder; empty: nothing is recorded
+    std::vector<std::string> streams{};     ///< outlets that get each tick, see openOutlet()
+    std::string              markers{};     ///< an address where markers are awaited; empty: none
+    std::string              command;       ///< the command line, quoted for a shell
+    bool                     json  = false; ///< prints JSON, and so no live line
+    bool                     blind = false; ///< tells nothing about what is touched: neither warnings nor numbers
 };
 
 /// Adds --hand and its options, --clock and --threads.
 void addSessionOptions(CLI::App& command, SessionOptions& options);
 
-/// Checks --clock and --threads.
-/// \throws Error naming --clock or --threads
+/// Adds --stream, which may be repeated.
+void addStreamOption(CLI::App& command, std::vector<std::string>& outlets);
+
+/// Adds --record, --stream and --markers.
+void addOutputOptions(CLI::App& command, SessionOptions& options);
+
+/// Checks --clock, --threads and --markers.
+/// \throws Error naming the option
 void demandGood(const SessionOptions& options);
 
 /// The result of a session.
@@ -37,7 +46,8 @@ struct SessionRun {
     std::string                    hand;
     std::vector<std::string>       warnings;
     std::optional<RecordingReport> recorded;
-    std::string                    folder;              ///< of the recording
+    std::string                    folder; ///< of the recording
+    std::vector<StreamReport>      streams{};
     bool                           interrupted = false; ///< by the user
 };
 

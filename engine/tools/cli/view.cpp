@@ -19,6 +19,7 @@
 #include "engine/tools/cli/hunt_report.h"
 #include "engine/tools/cli/named_option.h"
 #include "engine/tools/cli/scene_source.h"
+#include "engine/tools/cli/session_run.h"
 #include "engine/tools/gui/glfw_window.h"
 #include "engine/tools/gui/panel_frame.h"
 #include "engine/tools/gui/window_memory.h"
@@ -30,11 +31,12 @@ namespace palp {
 namespace {
 
 struct ViewOptions {
-    HandOptions hand;
-    std::string drawOn = "auto", colour = "stiffness", map = "viridis", size;
-    SceneSource scene{"sample:palm", {}};
-    std::string command;
-    bool        dark = false, json = false, noPanels = false, validate = false;
+    HandOptions              hand;
+    std::string              drawOn = "auto", colour = "stiffness", map = "viridis", size;
+    SceneSource              scene{"sample:palm", {}};
+    std::string              command;
+    std::vector<std::string> streams{};
+    bool                     dark = false, json = false, noPanels = false, validate = false;
 };
 
 #ifdef PALPATE_WINDOW
@@ -78,6 +80,16 @@ void tell(const ViewOptions& o, const WorkbenchReport& report, const SurfaceRend
     std::cout << "\n";
 }
 
+/// Says what was sent and what was dropped, beside a report for scripts on standard error.
+void tellStreams(const std::vector<std::unique_ptr<TickStream>>& streams, bool json)
+{
+    for (const auto& stream : streams) {
+        const StreamReport report = stream->finish();
+        (json ? std::cerr : std::cout) << report.sent << " ticks sent to " << report.to << ", " << report.dropped
+                                       << " dropped\n";
+    }
+}
+
 SessionInfo infoOf(const ViewOptions& o, const Stage& stage, const HapticDevice& device)
 {
     SessionInfo info;
@@ -118,8 +130,9 @@ std::optional<study::HuntScorer> scorerFor(const SceneSource& source)
 
 void view(const ViewOptions& o)
 {
-    WorkbenchSettings settings;
-    auto              scorer = scorerFor(o.scene);
+    std::vector<std::unique_ptr<TickStream>> streams; // outlive the window
+    WorkbenchSettings                        settings;
+    auto                                     scorer = scorerFor(o.scene);
     if (scorer) settings.onTick = [&scorer](const TickRecord& record) { scorer->add(record); };
     settings.what     = o.scene.name;
     settings.values   = o.scene.flags;
@@ -144,6 +157,8 @@ void view(const ViewOptions& o)
     settings.state.look.map    = optionNamed<ColourMap>("--colour-map", o.map);
     settings.state.look.ground = o.dark ? Ground::dark : Ground::light;
     settings.stop              = &catchInterrupts();
+    for (const std::string& outlet : o.streams) streams.push_back(std::make_unique<TickStream>(openOutlet(outlet)));
+    for (const auto& stream : streams) settings.streams.push_back(stream.get());
 
     HidapiSystem hid;
     const auto   cap = capFor(o, hid);
@@ -167,6 +182,7 @@ void view(const ViewOptions& o)
         },
         panels ? &*panels : nullptr);
     if (o.size.empty()) rememberSize(last);
+    tellStreams(streams, o.json);
     if (!report.said.empty()) std::cerr << "palpate: " << report.said << "\n";
     const auto score = scorer ? std::optional(scorer->score()) : std::nullopt;
     tell(o, report, renderer, score);
@@ -213,6 +229,7 @@ void addViewCommand(CLI::App& app)
         ->capture_default_str();
     command->add_flag("--validate", o->validate,
                       "runs under Vulkan's validation layer; exit code 1 if it has a message");
+    addStreamOption(*command, o->streams);
     command->add_flag("--json", o->json, "machine-readable, SI units");
     addHandOptions(*command, o->hand, deviceRecords());
     command->footer("Hold Space over the object and move to touch it; the wheel sets the depth. F1 shows all keys.\n"

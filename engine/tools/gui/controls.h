@@ -44,6 +44,7 @@ public:
     void declare() { parts_.session.declare(); }
     void toggleRecording() { parts_.session.toggleRecording(); }
     void replayLast();
+    void mark() { parts_.session.mark(); }
     /// Takes the object again after a fault or letting go.
     void goOn();
     void goOnIfHalted()

@@ -49,6 +49,8 @@ int keyOf(int key)
         return kF5Key;
     case GLFW_KEY_F6:
         return kF6Key;
+    case GLFW_KEY_F7:
+        return kF7Key;
     default:
         return key > ' ' && key < 128 ? key : 0; // GLFW's numbers are ASCII there
     }

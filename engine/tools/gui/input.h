@@ -19,7 +19,8 @@ enum SpecialKey : int {
     kEndKey,
     kF1Key,
     kF5Key,
-    kF6Key
+    kF6Key,
+    kF7Key
 };
 
 struct KeyPress {

@@ -54,7 +54,8 @@ constexpr KeyBinding kBindings[] = {
     {'Z', control, nothingHidden, touch, "Ctrl+Z", "undo, redo", [](Controls& c) { c.undo(); }},
     {'Y', control, nothingHidden, touch, "Ctrl+Y", nullptr, [](Controls& c) { c.redo(); }},
     {'S', control, nothingHidden, touch, "Ctrl+S", "save what is painted", [](Controls& c) { c.savePaint(); }},
-    {kF5Key, none, always, touch, "F5", "record", [](Controls& c) { c.toggleRecording(); }, "F5 record"},
+    {kF5Key, none, always, touch, "F5", "record, mark a moment", [](Controls& c) { c.toggleRecording(); }, "F5 record"},
+    {kF7Key, none, always, touch, "F7", nullptr, [](Controls& c) { c.mark(); }},
     {kF6Key, none, always, touch, "F6", "replay the last recording", [](Controls& c) { c.replayLast(); }},
 
     {kTabKey, none, nothingHidden, program, "Tab", "panels", [](Controls& c) { flip(c.state().panels); }},

@@ -35,6 +35,7 @@ void TouchSession::run(const ReadyHand& readyHand, const OnView& onView)
         else if (const auto hand = readyHand())
             runWith(*hand, onView);
     } catch (const Error&) {
+        tap_.reset();
         recorder_.end();
         throw;
     }
@@ -51,11 +52,15 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
     real.viewPeriod = 1e-4; // the next picture begins as soon as one is done
     real.stop       = &ended_;
     real.onView     = onView;
-    real.onTick     = [this, recording = recorder_.recording()](const TickRecord& record) {
+    tap_.emplace(recorder_.recording(), settings_.streams);
+    real.onStart = [this](std::chrono::steady_clock::time_point start) { tap_->begin(start); };
+    real.onTick  = [this](const TickRecord& record) {
         static_cast<void>(ring_.push(record)); // curves may have gaps
-        if (recording) recording->push(record);
+        tap_->push(record);
     };
-    conclude(runReal(parts, real, realTime_));
+    const SessionSummary summary = runReal(parts, real, realTime_);
+    tap_.reset();
+    conclude(summary);
 }
 
 /// Shows why a session has ended by itself.
@@ -105,6 +110,14 @@ void TouchSession::toggleRecording()
         recorder_.request();
     }
     end();
+}
+
+void TouchSession::mark()
+{
+    if (!tap_ || (!recorder_.recording() && settings_.streams.empty()))
+        return notices_.say("nothing is recorded now: F5 starts a recording");
+    tap_->mark("F7");
+    notices_.say("marker " + std::to_string(tap_->marked()) + " of this session");
 }
 
 void TouchSession::followPointer(const WindowInput& input, const std::optional<Hit>& hit, double& depth)

@@ -8,6 +8,7 @@
 #include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
 #include "engine/session/replay_device.h"
+#include "engine/session/session_tap.h"
 #include "engine/session/tick_ring.h"
 #include "engine/tools/gui/notices.h"
 #include "engine/tools/gui/pointer_touch.h"
@@ -56,7 +57,9 @@ public:
     [[nodiscard]] bool byPointer() const { return !settings_.hand && !replay_; }
 
     /// Begins a recording with a new session, or ends the one that runs.
-    void                                 toggleRecording();
+    void toggleRecording();
+    /// Marks the newest tick in the recording and in the settings' streams.
+    void                                 mark();
     [[nodiscard]] const SessionRecorder& recorder() const { return recorder_; }
     void                                 endRecording() { recorder_.end(); }
 
@@ -87,6 +90,7 @@ private:
     Stage*                        stage_ = nullptr;
     std::optional<PointerTouch>   pointer_;
     SessionRecorder               recorder_;
+    std::optional<SessionTap>     tap_; ///< of the session that runs
     std::unique_ptr<ReplayDevice> replay_;
     double                        replaySeconds_ = 0; ///< [s]
     WorkbenchHand                 hand_;              ///< of the session that runs, or ran last

@@ -10,6 +10,7 @@
 #include "engine/session/recording.h"
 #include "engine/session/session_parts.h"
 #include "engine/session/session_summary.h"
+#include "engine/session/tick_stream.h"
 #include "engine/tools/gui/stage.h"
 #include "engine/tools/gui/view_state.h"
 
@@ -60,6 +61,9 @@ struct WorkbenchSettings {
 
     /// Is given the records of the object that was opened first, on the window's thread. May be empty.
     OnTick onTick;
+
+    /// Get every tick and marker of all sessions. They outlive the window's use.
+    std::vector<TickStream*> streams{};
 
     const std::atomic<bool>* stop   = nullptr; ///< closes the window once it is true; may be null
     SpaceMouse*              camera = nullptr; ///< moves the camera; may be null

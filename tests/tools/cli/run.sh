@@ -32,7 +32,7 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert paint render view hunt study perceive paper devices doctor calibrate bench; do
+for command in touch solve info convert paint render view export hunt study perceive paper devices doctor calibrate bench; do
     # shellcheck disable=SC2086  # a command, or one within another
     good "help of $command" $command --help; holds 'Examples:'
     mv out.txt help.txt
@@ -226,6 +226,19 @@ good 'run' run scene.json --clock virtual --seconds 0.5 --record session --json
 for key in '"ticks": 500' '"fault": "none"' '"samples": 500' '"p99.9_s"'; do holds "$key"; done
 good 'replay' replay session --compare
 holds 'equal to the bit'
+good 'a table of a session' export session --csv session.csv
+holds '500 ticks in session.csv'
+[ "$(wc -l <session.csv)" -eq 501 ] && head -1 session.csv | grep -q '^time,hip_x,' && passed=$((passed + 1)) || complain "the table: $(head -c 300 session.csv)"
+good 'a table is a hand' run scene.json --hand session.csv --clock virtual --seconds 0.1
+bad 'a table over a recording' 'ends in .csv' export session --csv session/ticks.npy
+bad 'a table of nothing' 'session.json' export nowhere --csv nowhere.csv
+[ ! -e nowhere.csv ] && passed=$((passed + 1)) || complain 'a table of nothing was written'
+bad 'markers that nothing takes' 'add --record' run scene.json --markers udp:9871
+bad 'a stream to nowhere' 'udp:HOST:PORT, lsl or lsl:NAME' run scene.json --stream nowhere
+env LD_LIBRARY_PATH="$place" "$palpate" run scene.json --stream lsl --record unmade >out.txt 2>err.txt
+[ $? -eq 2 ] && grep -q 'needs no library' err.txt && [ ! -e unmade ] && passed=$((passed + 1)) || complain "a library that is not there: $(cat err.txt)"
+good 'a stream' run scene.json --clock virtual --seconds 0.2 --stream udp:127.0.0.1:9 --stream udp:127.0.0.1:9 --json
+holds '"to": "udp:127.0.0.1:9"'
 good 'replay on lavapipe' replay session --compare --solver lavapipe
 good 'the configuration' run scene.json --print-config --max-force '4 N'
 holds '4 '
@@ -285,13 +298,13 @@ bad 'a damaged recording' 'the recording is damaged' replay held-arm --compare
 "$palpate" run scene.json --clock virtual --seconds 3000 --record stopped >out.txt 2>err.txt &
 session=$!
 n=0
-until [ -s stopped/samples.csv ] || [ $n -gt 300 ]; do sleep 0.1; n=$((n + 1)); done
+until [ -n "$(find stopped -name ticks.npy -size +4k 2>/dev/null)" ] || [ $n -gt 300 ]; do sleep 0.1; n=$((n + 1)); done
 kill -TERM $session
 wait $session && grep -q '"finished": true' stopped/session.json && passed=$((passed + 1)) || complain "a session that is stopped: exit $? $(cat err.txt)"
 bad 'an unknown clock' 'expected real or virtual' run scene.json --clock wall
 python3 -c "
-import sys
-data = bytearray(open('session/force.npy', 'rb').read()); data[-1] ^= 1; open('session/force.npy', 'wb').write(data)" 2>/dev/null && {
+# the lowest bit of the last tick's force z, 124 bytes before the end
+data = bytearray(open('session/ticks.npy', 'rb').read()); data[-124] ^= 1; open('session/ticks.npy', 'wb').write(data)" 2>/dev/null && {
     "$palpate" replay session --compare >out.txt 2>err.txt
     [ $? -eq 1 ] && grep -qF 'tick 499' out.txt && passed=$((passed + 1)) || complain "one changed bit is not found: $(cat out.txt err.txt)"
 }

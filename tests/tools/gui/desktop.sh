@@ -73,10 +73,10 @@ xdotool click 4 click 5
 for key in v c l o s g j x t 1 3 7 f r F1 F1; do xdotool key --window "$window" $key sleep 0.1; done
 # touch, recorded
 xdotool key --window "$window" F5
-until_ 'a recording' 20 test -s session-0001/samples.csv
+until_ 'a recording' 20 test -s session-0001/ticks.npy
 xdotool mousemove --window "$window" 420 260 keydown space sleep 1 mousemove --window "$window" 440 260 sleep 1 \
     click 5 sleep 0.5 keyup space
-xdotool key --window "$window" F5 sleep 0.5
+xdotool key --window "$window" F7 sleep 0.2 key --window "$window" F5 sleep 0.5
 # a recording that begins while the hand presses begins outside of the object, and letting go leaves no force
 xdotool keydown space sleep 0.7 key F5 sleep 1.5 keyup space sleep 0.7 key F5 sleep 0.5
 # paint, take back, paint, save
@@ -105,11 +105,15 @@ grep -q '"frames": [1-9]' out || fail 'no picture was shown'
 grep -q stiffness info || fail 'the painted cloud has no stiffness'
 "$palpate" replay session-0001 >/dev/null 2>replay # real time: refused, but read
 grep -q 'real time' replay || { fail 'the recording cannot be read'; cat replay; }
-last=$(tail -1 session-0002/samples.csv | cut -d, -f11-13) # its force [N]
+grep -q '"text":"F7"' session-0001/markers.jsonl || fail 'the key F7 left no marker'
+for number in 1 2; do
+    "$palpate" export session-000$number --csv session-000$number.csv >/dev/null || fail "no table of recording $number"
+done
+last=$(tail -1 session-0002.csv | cut -d, -f11-13) # its force [N]
 [ "$last" = 0,0,0 ] || fail "a force was left after letting go: $last"
 # did the hand feel anything?
-awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n ~ /^force.*z/ || $n == "force_z") column = n } NR > 1 && column && ($column > 0.05 || $column < -0.05) { felt = 1 } END { exit !felt }' session-0001/samples.csv ||
-    { fail 'no force was felt while touching'; head -2 session-0001/samples.csv; }
+awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n ~ /^force.*z/ || $n == "force_z") column = n } NR > 1 && column && ($column > 0.05 || $column < -0.05) { felt = 1 } END { exit !felt }' session-0001.csv ||
+    { fail 'no force was felt while touching'; head -2 session-0001.csv; }
 
 # Files that fall on the window: what is shown then, a recording tells.
 says() { grep -q -- "$1" err; }
@@ -117,7 +121,7 @@ recorded_as() { # description, name of the cloud
     number=$((number + 1))
     session=session-000$number
     xdotool key --window "$window" F5
-    until_ "$1: a recording" 20 test -s $session/samples.csv
+    until_ "$1: a recording" 20 test -s $session/ticks.npy
     grep -q -- "$2" $session/session.json || { fail "$1: not what is shown"; grep -o '"cloud"[^,]*' $session/session.json; }
     xdotool key --window "$window" F5 sleep 0.3
 }

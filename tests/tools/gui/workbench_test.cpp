@@ -294,6 +294,28 @@ TEST_F(WorkbenchTest, APointersRecordingBeginsWithoutAForceWhileItPresses)
     EXPECT_GT(*std::ranges::max_element(forces), 0.05) << "it goes on pressing";
 }
 
+TEST_F(WorkbenchTest, AKeyMarksTheMomentOfARecording)
+{
+    record();
+    wait("the object", [this] { return screen_.points == 2000; });
+    press(kF7Key);
+    press(kF5Key);
+    touch([this] { return sinceStep() > 0.5; });
+    press(kF7Key);
+    rest(0.2);
+    press(kF5Key);
+    rest(0.1);
+    run();
+
+    EXPECT_TRUE(screen_.said_("nothing is recorded now"));
+    EXPECT_TRUE(screen_.said_("marker 1 of this session"));
+    const RecordedSession session = readSession("session-0001");
+    ASSERT_EQ(session.markers.size(), 1U);
+    EXPECT_EQ(session.markers[0].text, "F7");
+    EXPECT_GT(session.markers[0].time, 0.5);
+    EXPECT_LT(session.markers[0].time, session.records.back().time);
+}
+
 TEST_F(WorkbenchTest, WhatWasRecordedIsReplayedAndThenThePointerIsBack)
 {
     record();

@@ -1,0 +1,57 @@
+#include "engine/session/detail/growing_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+std::string reasonOfErrno()
+{
+    return errno ? std::strerror(errno) : "unknown reason";
+}
+
+} // namespace
+
+GrowingFile::GrowingFile(std::filesystem::path path)
+    : path_(std::move(path)), handle_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644))
+{
+    if (handle_ < 0) throw Error(path_.string() + ": cannot be made: " + reasonOfErrno());
+}
+
+GrowingFile::~GrowingFile()
+{
+    ::close(handle_);
+}
+
+void GrowingFile::write(std::string_view bytes, std::uint64_t at)
+{
+    while (!bytes.empty()) {
+        errno               = 0;
+        const ssize_t count = ::pwrite(handle_, bytes.data(), bytes.size(), off_t(at));
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) throw Error(path_.string() + ": cannot be written: " + reasonOfErrno());
+        bytes.remove_prefix(std::size_t(count));
+        at += std::uint64_t(count);
+    }
+}
+
+void GrowingFile::append(std::string_view bytes)
+{
+    write(bytes, whole_ + pending_);
+    pending_ += bytes.size();
+}
+
+void GrowingFile::undo() noexcept
+{
+    pending_ = 0;
+    if (::ftruncate(handle_, off_t(whole_)) != 0) errno = 0; // then it stays, and no header counts it
+}
+
+} // namespace palp

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+namespace palp {
+
+/// A new file that grows, and whose beginning may be written again.
+class GrowingFile {
+public:
+    /// Makes the file.
+    /// \throws Error if there is one of that name, or none can be made
+    explicit GrowingFile(std::filesystem::path path);
+    ~GrowingFile();
+    GrowingFile(const GrowingFile&)            = delete;
+    GrowingFile& operator=(const GrowingFile&) = delete;
+
+    /// Writes bytes at a place.
+    /// \throws Error naming the file and the reason; then some of the bytes may stand in it
+    void write(std::string_view bytes, std::uint64_t at);
+
+    /// Writes at the end of the complete part; accept() counts the bytes as complete, undo() drops them.
+    /// \throws Error as write()
+    void append(std::string_view bytes);
+    void accept() noexcept { whole_ += std::exchange(pending_, 0); }
+    void undo() noexcept;
+
+private:
+    std::filesystem::path path_;
+    int                   handle_;
+    std::uint64_t         whole_   = 0; ///< [bytes]
+    std::uint64_t         pending_ = 0; ///< [bytes]
+};
+
+} // namespace palp

@@ -1,0 +1,153 @@
+#include "engine/session/marker_input.h"
+
+#include <array>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "engine/core/contract.h"
+#include "engine/session/detail/quiet_thread.h"
+
+namespace palp {
+namespace {
+
+/// The program's terminal, set so that each key is read at once, and set back in the end.
+class KeyTerminal {
+public:
+    explicit KeyTerminal(bool wanted)
+    {
+        if (!wanted || !ours() || ::tcgetattr(STDIN_FILENO, &before_) != 0) return;
+        termios now = before_;
+        now.c_lflag &= ~tcflag_t(ICANON | ECHO);
+        now.c_cc[VMIN] = now.c_cc[VTIME] = 0;
+        open_                            = ::tcsetattr(STDIN_FILENO, TCSADRAIN, &now) == 0;
+    }
+    ~KeyTerminal()
+    {
+        if (open_ && ours()) ::tcsetattr(STDIN_FILENO, TCSADRAIN, &before_);
+    }
+    KeyTerminal(const KeyTerminal&)            = delete;
+    KeyTerminal& operator=(const KeyTerminal&) = delete;
+
+    [[nodiscard]] bool isOpen() const noexcept { return open_; }
+
+    /// Returns true if standard input is a terminal and the program is in its foreground: another one would be stopped.
+    [[nodiscard]] static bool ours() noexcept
+    {
+        return ::isatty(STDIN_FILENO) != 0 && ::tcgetpgrp(STDIN_FILENO) == ::getpgrp();
+    }
+
+private:
+    termios before_{};
+    bool    open_ = false;
+};
+
+} // namespace
+
+struct MarkerInput::Impl {
+    explicit Impl(const MarkerSources& sources) : wantsKeys(sources.keys)
+    {
+        if (sources.address) socket.emplace(*sources.address, UdpEnd::here, "--markers");
+    }
+
+    ~Impl()
+    {
+        if (thread.joinable()) {
+            const std::uint64_t one     = 1;
+            const ssize_t       written = ::write(wake, &one, sizeof one); // into an empty counter: it cannot fail
+            static_cast<void>(written);
+            thread.join();
+        }
+        if (wake >= 0) ::close(wake);
+    }
+
+    void listen(Hear to)
+    {
+        hear = std::move(to);
+        wake = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+        if (wake < 0) throw Error("--markers: the system has no handle left");
+        terminal.emplace(wantsKeys);
+        thread = quietThread([this] { work(); });
+    }
+
+    Impl(const Impl&)            = delete;
+    Impl& operator=(const Impl&) = delete;
+
+    void work()
+    {
+        // A negative handle is one that poll() passes over.
+        std::array<pollfd, 3> from = {{{wake, POLLIN, 0},
+                                       {socket ? socket->handle() : -1, POLLIN, 0},
+                                       {terminal->isOpen() ? STDIN_FILENO : -1, POLLIN, 0}}};
+        for (;;) {
+            if (::poll(from.data(), from.size(), -1) < 0) continue; // interrupted
+            if (from[0].revents != 0) return;
+            if (from[1].revents != 0) readDatagrams();
+            if (from[2].revents != 0 && !readKeys()) from[2].fd = -1;
+        }
+    }
+
+    void readDatagrams()
+    {
+        constexpr int          kAtOnce = 256; // then the end is looked at again: a flood cannot hold it up
+        std::array<char, 1024> text;          // what is longer is cut by the system
+        for (int n = 0; n < kAtOnce; ++n) {
+            const ssize_t size = ::recv(socket->handle(), text.data(), text.size(), MSG_DONTWAIT);
+            if (size < 0) return;
+            hear({text.data(), std::size_t(size)});
+        }
+    }
+
+    /// Returns false if no more keys will come.
+    bool readKeys()
+    {
+        if (!KeyTerminal::ours()) return false; // in the background by now
+        std::array<char, 64> keys;
+        const ssize_t        size = ::read(STDIN_FILENO, keys.data(), keys.size());
+        if (size <= 0) return false;
+        std::string_view pressed(keys.data(), std::size_t(size));
+        if (pressed.front() == '\x1b') return true; // an arrow, a function key
+        while (!pressed.empty()) {
+            std::size_t bytes = 1; // of a character of UTF-8: those that follow begin with the bits 10
+            while (bytes < pressed.size() && (static_cast<unsigned char>(pressed[bytes]) & 0xC0U) == 0x80) ++bytes;
+            const std::string_view key = pressed.substr(0, bytes);
+            hear(key == " " ? "space" : key == "\n" || key == "\r" ? "enter" : key);
+            pressed.remove_prefix(bytes);
+        }
+        return true;
+    }
+
+    bool                       wantsKeys;
+    Hear                       hear;
+    std::optional<KeyTerminal> terminal;
+    std::optional<UdpSocket>   socket;
+    int                        wake = -1;
+    std::thread                thread;
+};
+
+MarkerInput::MarkerInput(const MarkerSources& sources) : impl_(std::make_unique<Impl>(sources)) {}
+
+MarkerInput::~MarkerInput() = default;
+
+void MarkerInput::listen(Hear hear)
+{
+    impl_->listen(std::move(hear));
+}
+
+std::uint16_t MarkerInput::port() const noexcept
+{
+    return impl_->socket ? impl_->socket->port() : std::uint16_t(0);
+}
+
+bool MarkerInput::hearsKeys() const noexcept
+{
+    return impl_->terminal && impl_->terminal->isOpen();
+}
+
+} // namespace palp

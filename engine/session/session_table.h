@@ -1,0 +1,15 @@
+#pragma once
+#include <iosfwd>
+
+#include "engine/session/recorded_session.h"
+
+namespace palp {
+
+/// Writes the ticks of a session as a table: a line of names, then a line for each tick, commas between the numbers.
+/// Each number is the shortest text that brings the stored one back; only columns that were recorded are there. The
+/// memory that is used does not grow with the session.
+/// \return the number of ticks
+/// \throws Error naming a file of the recording
+std::uint64_t writeTable(const RecordedSession& session, std::ostream& out);
+
+} // namespace palp

@@ -1,0 +1,46 @@
+#include "engine/session/session_tap.h"
+
+#include <utility>
+
+#include "engine/session/marker.h"
+
+namespace palp {
+
+SessionTap::SessionTap(Recording* recording, std::vector<TickStream*> streams)
+    : recording_(recording), streams_(std::move(streams))
+{
+}
+
+void SessionTap::begin(std::chrono::steady_clock::time_point start) noexcept
+{
+    const SessionClocks clocks = SessionClocks::at(start);
+    begun_                     = true;
+    newest_.store(0, std::memory_order_relaxed);
+    if (recording_) recording_->begin(clocks);
+    for (TickStream* const stream : streams_) stream->begin(clocks);
+}
+
+void SessionTap::push(const TickRecord& record) noexcept
+{
+    newest_.store(record.time, std::memory_order_relaxed);
+    if (recording_) recording_->push(record);
+    for (TickStream* const stream : streams_) stream->push(record);
+}
+
+void SessionTap::pushWaiting(const TickRecord& record) noexcept
+{
+    if (!begun_) begin(std::chrono::steady_clock::now()); // of the virtual clock's first tick
+    newest_.store(record.time, std::memory_order_relaxed);
+    if (recording_) recording_->pushWaiting(record);
+    for (TickStream* const stream : streams_) stream->pushWaiting(record);
+}
+
+void SessionTap::mark(std::string_view text)
+{
+    const Marker marker{newest_.load(std::memory_order_relaxed), markerText(text)};
+    if (recording_) recording_->mark(marker);
+    for (TickStream* const stream : streams_) stream->mark(marker);
+    ++marked_;
+}
+
+} // namespace palp
