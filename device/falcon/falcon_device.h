@@ -91,8 +91,8 @@ private:
     FalconDeviceSettings  settings_;
     HapticDeviceInfo      info_;
     std::uint8_t          lights_   = 0;
-    double                stopsFor_ = 0; ///< [s] that is asked of the next exchange
-    std::optional<double> silentUntil_;  ///< [s] by the clock of exchange()
+    double                stopsFor_ = 0; ///< [s] that is asked of the next read()
+    std::optional<double> silentUntil_;  ///< [s] by the clock of read()
     std::unique_ptr<Line> line_;         ///< null: closed
 };
 

@@ -191,15 +191,14 @@ TEST(FalconHold, IsFoundByTheFallOfTheGrip)
             if (gain >= 1) weight = std::min(4.0, weight + 4e-3);
             arm.holdBy(gain < 1 ? SimulatedHand{.stiffness = 500, .damping = 20, .target = {0, 0.004, -0.006}}
                                 : SimulatedHand{});
-            in.force      = hold.step(*bench.device, bench.state, weight < 4 ? std::min(gain, 0.99) : gain, 1e-3);
-            in.position   = bench.state.position;
-            in.velocity   = bench.state.velocity;
-            in.homed      = bench.state.homed;
-            in.inBox      = bench.state.inBox;
-            in.dt         = 1e-3;
-            in.loopPeriod = 1e-3;
-            gain          = governor.step(in).gain;
-            bench.force   = governor.force();
+            in.force    = hold.step(*bench.device, bench.state, weight < 4 ? std::min(gain, 0.99) : gain, 1e-3);
+            in.position = bench.state.position;
+            in.velocity = bench.state.velocity;
+            in.homed    = bench.state.homed;
+            in.inBox    = bench.state.inBox;
+            in.dt       = 1e-3;
+            gain        = governor.step(in).gain;
+            bench.force = governor.force();
             bench.tick();
             if (weight >= 4 && time > 8) lowest = std::min(lowest, arm.position().y - 0.004);
         }
