@@ -181,27 +181,52 @@ std::vector<std::optional<ChartPoint>> unroll(const Patch& patch, const SoftObje
                           gatherRadius(settings, patch.spacing));
 }
 
+/// Returns the share of the window's points whose normal is turned away from the sphere's, fully from 60 degrees on.
+double turnedShare(const Patch& patch, const SoftObject& object, const TouchedSurface& surface,
+                   const PatchSettings& settings)
+{
+    constexpr double kAlong = 0.77, kTurned = 0.5; // cosines of 40 and 60 degrees [1]
+    const double     side   = glm::dot(patch.sphere.fit.normal(surface.anchor), surface.normal) < 0 ? -1 : 1;
+    double           turned = 0, all = 0;
+    for (std::size_t k = 0; k < surface.points.size(); ++k) {
+        const glm::dvec3 p = object.positions()[surface.points[k]];
+        if (glm::length(p - surface.anchor) > settings.window / 2) continue;
+        const double cosine = side * glm::dot(surface.normals[k], patch.sphere.fit.normal(p));
+        turned += std::clamp((kAlong - cosine) / (kAlong - kTurned), 0.0, 1.0);
+        ++all;
+    }
+    return all > 0 ? turned / all : 0;
+}
+
 /// Returns the share of the exponential map in the positions: none where the sphere follows the surface, all of it on
 /// fingers, edges and folds, and in between a blend, so that no step is felt where one gives way to the other.
 ///
 /// A surface that lies off the sphere by a share e of the window slopes against it by some 4 e, which shortens lengths
 /// by 8 e^2: 0.3 % at the first bound, 2 % at the second.
-double unrolledShare(const Patch& patch, const PatchSettings& settings)
+///
+/// Where a part of the window stands against the sphere by some 50 degrees, as behind a sharp rim, the misfit need not be
+/// large: then that part decides, before it comes to lie over the rest.
+double unrolledShare(const Patch& patch, const SoftObject& object, const TouchedSurface& surface,
+                     const PatchSettings& settings)
 {
     if (settings.map != Map::lambertAzimuthal) return 0; // the user has chosen how a sphere is laid flat
     if (patch.normalFelt) return 1;
     constexpr double kFollows = 0.02, kAstray = 0.05; // misfit over the window [1]
     const double     misfit = patch.sphere.fit.misfit, noise = patch.noise;
     const double     shape = std::sqrt(std::max(0.0, misfit * misfit - noise * noise)) / settings.window;
-    const double     t     = std::clamp((shape - kFollows) / (kAstray - kFollows), 0.0, 1.0);
-    return t * t * (3 - 2 * t);
+    constexpr double kFew = 0.02, kMany = 0.06; // share of the points that stand against the sphere [1]
+    const auto       risen = [](double x, double from, double to) {
+        const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+        return t * t * (3 - 2 * t);
+    };
+    return std::max(risen(shape, kFollows, kAstray), risen(turnedShare(patch, object, surface, settings), kFew, kMany));
 }
 
 /// Lays the touched surface flat, by the sphere's map, by the exponential map, or by both in parts.
 void layTouched(Patch& patch, const SoftObject& object, const TouchedSurface& surface, const PatchSettings& settings)
 {
     if (settings.neighbourhood == Neighbourhood::ball) return projectPoints(patch, object, surface.points);
-    patch.unrolled = unrolledShare(patch, settings);
+    patch.unrolled = unrolledShare(patch, object, surface, settings);
     std::vector<std::optional<ChartPoint>> unrolled(surface.points.size());
     if (patch.unrolled > 0) unrolled = unroll(patch, object, surface, settings);
     for (std::size_t k = 0; k < surface.points.size(); ++k) {

@@ -71,7 +71,7 @@ void lsl_destroy_outlet(void* outlet)
 std::int32_t lsl_push_sample_dtp(void* outlet, const double* values, double time, std::int32_t through)
 {
     std::string line = "sample " + std::to_string(time) + " " + std::to_string(through) + ":";
-    for (int k = 0; k < static_cast<Info*>(outlet)->channels; ++k) line += " " + std::to_string(values[k]);
+    for (int k = 0; k < static_cast<Info*>(outlet)->channels; ++k) line.append(" ").append(std::to_string(values[k]));
     log(line);
     return 0;
 }
