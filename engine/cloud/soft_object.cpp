@@ -1,5 +1,6 @@
 #include "engine/cloud/soft_object.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -48,7 +49,7 @@ SoftObject SoftObject::repainted(std::vector<double> stiffness) const
 {
     SoftObject painted = *this;
     painted.cloud_     = PointCloud(cloud_, std::move(stiffness));
-    painted.coarse_    = coarseShape();
+    painted.coarse_    = coarseShapes();
     return painted;
 }
 
@@ -63,30 +64,32 @@ SoftObject SoftObject::withMaterial(const Material& material) const
 {
     SoftObject other = *this;
     other.material_  = material;
-    other.coarse_    = coarseShape();
+    other.coarse_    = coarseShapes();
     return other;
 }
 
 std::shared_ptr<const CoarseObject> SoftObject::coarse(double side) const
 {
+    constexpr std::size_t kMost = 4; // sides: scenes ask for one or two
     const std::lock_guard lock(coarse_->mutex);
-    auto&                 known = coarse_->object;
-    if (!known || known->side() != side)
-        known = std::make_shared<const CoarseObject>(*this, side);
-    else if (!coarse_->own)
-        known = std::make_shared<const CoarseObject>(*known, *this);
-    coarse_->own = true;
-    return known;
+    auto&                 made  = coarse_->made;
+    const auto            known = std::ranges::find_if(made, [&](const Coarse& c) { return c.object->side() == side; });
+    if (known != made.end()) {
+        if (!known->own) *known = {std::make_shared<const CoarseObject>(*known->object, *this)};
+        return known->object;
+    }
+    if (made.size() == kMost) made.erase(made.begin());
+    made.push_back({std::make_shared<const CoarseObject>(*this, side)});
+    return made.back().object;
 }
 
-/// Returns the coarse object, if there is one, for others of the same points.
-std::shared_ptr<SoftObject::Coarse> SoftObject::coarseShape() const
+/// Returns the coarse objects that there are for others of the same points.
+std::shared_ptr<SoftObject::CoarseObjects> SoftObject::coarseShapes() const
 {
-    auto                  shape = std::make_shared<Coarse>();
+    auto                  shapes = std::make_shared<CoarseObjects>();
     const std::lock_guard lock(coarse_->mutex);
-    shape->object = coarse_->object;
-    shape->own    = false;
-    return shape;
+    for (const Coarse& c : coarse_->made) shapes->made.push_back({c.object, false});
+    return shapes;
 }
 
 } // namespace palp

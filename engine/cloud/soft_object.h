@@ -58,14 +58,17 @@ public:
     [[nodiscard]] double rigidity(std::size_t point) const noexcept { return cloud_.rigidity(point, material_); }
 
 private:
-    /// The coarse object of the side asked for last.
+    /// A coarse object that was made.
     struct Coarse {
-        std::mutex                          mutex;
-        std::shared_ptr<const CoarseObject> object;     ///< of these points; null: none yet
+        std::shared_ptr<const CoarseObject> object;     ///< of these points
         bool                                own = true; ///< of this stiffness and material too
     };
+    struct CoarseObjects {
+        std::mutex          mutex;
+        std::vector<Coarse> made; ///< a few, one for each side that was asked for
+    };
 
-    [[nodiscard]] std::shared_ptr<Coarse> coarseShape() const;
+    [[nodiscard]] std::shared_ptr<CoarseObjects> coarseShapes() const;
 
     PointCloud                                   cloud_;
     std::shared_ptr<const NeighbourIndex>        index_;  ///< never null
@@ -73,7 +76,7 @@ private:
     std::shared_ptr<const SurfaceMesh>           mesh_;   ///< never null
     std::shared_ptr<const SurfaceSurvey>         survey_; ///< never null
     Material                                     material_;
-    std::shared_ptr<Coarse>                      coarse_ = std::make_shared<Coarse>(); ///< never null
+    std::shared_ptr<CoarseObjects>               coarse_ = std::make_shared<CoarseObjects>(); ///< never null
 };
 
 } // namespace palp

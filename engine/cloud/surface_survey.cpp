@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include <glm/geometric.hpp>
 
@@ -24,10 +23,13 @@ constexpr double kNarrow = 0.08, kPlanar = 0.3, kGrowth = 1.4;
 /// Points within a spacing of each other that share the shape about one of them.
 constexpr std::size_t kSharing = 8;
 
-/// Returns the ranks of a run.
-auto pointsOf(const RankRun& run)
+/// Returns whether that is so for any point of a run.
+template <class Holds>
+bool anyOf(const RankRun& run, Holds&& holds)
 {
-    return std::views::iota(run.begin, run.end);
+    for (std::uint32_t point = run.begin; point < run.end; ++point)
+        if (holds(point)) return true;
+    return false;
 }
 
 /// Returns whether two spacings are nearly the same.
@@ -136,7 +138,7 @@ void SurfaceSurvey::Measuring::measureShapes(const RankRun& run)
 /// tangent planes it lies.
 void SurfaceSurvey::Measuring::adoptSides(const RankRun& run, std::span<const std::uint8_t> sided)
 {
-    if (std::ranges::none_of(pointsOf(run), [&](std::uint32_t point) { return sided[point] != 0; })) return;
+    if (!anyOf(run, [&](std::uint32_t point) { return sided[point] != 0; })) return;
     const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
     neighbourhoods_.each(run, radius, [&](std::uint32_t point, std::span<const NearCandidate> near) {
         if (sided[point]) return;
@@ -197,9 +199,7 @@ void SurfaceSurvey::Measuring::measureNoise(const RankRun& run)
 
 void SurfaceSurvey::Measuring::settleNoise(const RankRun& run, std::span<const float> raw)
 {
-    if (std::ranges::none_of(pointsOf(run),
-                             [&](std::uint32_t point) { return raw[point] > kClean * survey_.spacings_[point]; }))
-        return;
+    if (!anyOf(run, [&](std::uint32_t point) { return raw[point] > kClean * survey_.spacings_[point]; })) return;
     const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
     neighbourhoods_.each(run, radius, [&](std::uint32_t point, std::span<const NearCandidate> near) {
         values_.clear();

@@ -403,19 +403,39 @@ double cellOf(const PatchSettings& settings)
     return settings.window / settings.cells;
 }
 
-constexpr double kDense = 0.3; ///< spacing over the cell below which a point per cell will do [1]
+constexpr double kDense = 0.3; ///< spacing over the side of the cubes below which one point per cube will do [1]
 
-/// Returns the object of a point or so per cell, where the points are much denser than that; else nothing. Noise must
-/// not reach from one cube into the next, or the surface would become two.
+/// Returns whether the surface hardly turns within a few cubes of a place, so that their mean points show what it is.
+bool isSmoothAbout(const SoftObject& object, std::uint32_t nearest, const glm::dvec3& place, double side)
+{
+    constexpr double           kReach = 3, kAlike = 0.77, kFew = 0.02; // [cubes], cosine of 40 degrees, share [1]
+    constexpr std::size_t      kLooked = 500;                          // points
+    const SurfaceSurvey&       survey  = object.survey();
+    std::vector<std::uint32_t> near;
+    object.index().gather(place, kReach * side, near);
+    const std::size_t step   = near.size() / kLooked + 1;
+    double            turned = 0, all = 0;
+    for (std::size_t k = 0; k < near.size(); k += step, ++all)
+        turned += std::abs(glm::dot(survey.normal(near[k]), survey.normal(nearest))) < kAlike;
+    return turned <= kFew * all;
+}
+
+/// Returns the object of a point or so per cell where the points are much denser than that, or a finer one beside a
+/// rim; else nothing. Noise must not reach from one cube into the next, or the surface would become two.
 std::shared_ptr<const CoarseObject> coarseFor(const SoftObject& object, const Contact& contact,
                                               const PatchSettings& settings)
 {
-    constexpr double kQuiet = 0.1; // noise over the cell [1]
+    constexpr double kQuiet = 0.1; // noise over the side of the cubes [1]
     if (settings.neighbourhood == Neighbourhood::ball || object.survey().spacings().empty()) return {};
     const std::uint32_t nearest = object.index().nearest(contact.point, 1).front().point;
-    const bool          dense   = object.survey().spacing(nearest) < kDense * cellOf(settings);
-    const bool          quiet   = object.survey().noise(nearest) < kQuiet * cellOf(settings);
-    return dense && quiet ? object.coarse(cellOf(settings)) : nullptr;
+    for (const double cubes : {1.0, 4.0}) { // along a cell
+        const double side  = cellOf(settings) / cubes;
+        const bool   dense = object.survey().spacing(nearest) < kDense * side;
+        const bool   quiet = object.survey().noise(nearest) < kQuiet * side;
+        if (!dense || !quiet) return {};
+        if (isSmoothAbout(object, nearest, contact.point, side)) return object.coarse(side);
+    }
+    return {};
 }
 
 /// Does everything up to the plate; false if the points determine no surface.

@@ -219,6 +219,36 @@ TEST(TouchedSurface, TheRimOfAThinBodyIsTouched)
     EXPECT_GT(glm::dot(patch.chart.frame.normal, glm::dvec3(1, 0, 0)), 0.5);
 }
 
+/// Beside a sharp rim: the wall behind it must not come to lie over the place that is touched.
+TEST(TouchedSurface, TheStiffnessBesideARimIsThatOfThePlaceInEveryWindow)
+{
+    constexpr double kAngle = 1.2;                                  // [rad] 70 degrees of body between face and wall
+    const glm::dvec3 down{-std::cos(kAngle), 0, -std::sin(kAngle)}; // along the wall, away from the rim at x = z = 0
+    Cloud            cloud;
+    for (const glm::dvec3& p : sheet(40'000, 0, 11)) {
+        const double along = p.x + kEdge / 2; // 0 at the rim, to 60 mm away from it
+        cloud.add({{-along, p.y, 0}}, [](const glm::dvec3& q) { return wart(q + glm::dvec3(2e-3, 0, 0)); });
+    }
+    for (const glm::dvec3& p : sheet(40'000, 0, 12)) {
+        const double along = p.x + kEdge / 2;
+        cloud.add({along * down + glm::dvec3(0, p.y, 0)}, uniform);
+    }
+    const SoftObject body  = cloud.object();
+    double           first = 0;
+    for (const double window : {20e-3, 24e-3, 30e-3, 40e-3}) {
+        PatchSettings settings = kTouch;
+        settings.window        = window;
+        settings.cells         = 2 * int(std::lround(window / 2e-3)); // of 1 mm in each window
+        const Patch patch      = deform(body, {{-2e-3, 0, 0}, glm::normalize(glm::dvec3(0.5, 0, 0.9))}, settings);
+
+        if (first == 0) first = patch.contactStiffness;
+        EXPECT_NEAR(patch.contactStiffness / first, 1, 0.03)
+            << window << " m: what lies behind the rim is as soft as kSoft";
+        EXPECT_GT(patch.plate.rigidity(settings.cells / 2, settings.cells / 2) / body.material().rigidity(kSoft), 8)
+            << "in the middle of a tenfold wart";
+    }
+}
+
 /// A cloud that is far denser than the grid is touched by a point or so per cell, and all of it moves.
 TEST(DenseCloud, FeelsAsTheSparseOneAndMovesSmoothly)
 {

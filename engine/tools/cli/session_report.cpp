@@ -55,6 +55,9 @@ void printText(const SessionSummary& s, const std::string& solver, const std::st
     if (s.forceless > 0)
         std::cout << "  without force for " << s.forceless
                   << " ticks that pressed, the last because: " << s.whyForceless() << "\n";
+    else if (s.contactTicks > 0 && s.patches == 0 && s.failedPatches > 0)
+        std::cout << "  what was felt is the homogeneous law of each place, as no window was solved; the last because: "
+                  << s.why << "\n";
     std::cout << "  a tick computes " << seconds(s.tick.quantile(0.5)) << " (p99 " << seconds(s.tick.quantile(0.99))
               << ", p99.9 " << seconds(s.tick.quantile(0.999)) << ", most " << seconds(s.tick.most()) << "), a patch "
               << seconds(s.solve.quantile(0.5)) << " (most " << seconds(s.solve.most()) << ")\n";

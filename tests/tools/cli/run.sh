@@ -279,14 +279,17 @@ holds 'no force came on'
 holds '"ticks_without_force"'
 # contact is never silent: 12 mm between points, and a window that holds one of them
 awk 'BEGIN { print "x,y,z"; for (i = -15; i < 15; ++i) for (j = -15; j < 15; ++j) print 12 * i + 6 "," 12 * j + 6 ",0" }' >coarse.csv
-coarse='coarse.csv --length-unit mm --window 20 --footprint-radius 4 --thickness 4 --place 6,6,0 --from 0,0,1 --hand press --clock virtual --seconds 1 --cells 32'
+coarse='coarse.csv --length-unit mm --window 20 --footprint-radius 4 --thickness 4 --place 6,6,0 --from 0,0,1 --hand press --clock virtual --seconds 2 --cells 32'
 # shellcheck disable=SC2086  # a list of words
 {
-    good 'a touch without a patch' run $coarse
+    good 'a touch without a patch' run $coarse --speed 10mm/s
     holds 'ticks that pressed, the last because: at ('
     holds '1 points of the touched surface'
     [ "$(grep -c 'the hand touches and feels nothing' err.txt)" -eq 1 ] && passed=$((passed + 1)) || complain "a touch without a patch is not said once: $(cat err.txt)"
-    good 'a touch without a patch, for scripts' run $coarse --json
+    good 'a touch without a patch that ends before its law does' run $coarse --speed 50mm/s
+    holds 'homogeneous law of each place'
+    holds '1 points of the touched surface'
+    good 'a touch without a patch, for scripts' run $coarse --speed 10mm/s --json
     holds '"patches": 0'
     grep -q '"why_without_force": "at (.*1 points of the touched surface' out.txt && passed=$((passed + 1)) || complain "no reason in the summary: $(cat out.txt)"
     good 'which info foretells' info coarse.csv --length-unit mm
