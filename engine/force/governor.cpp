@@ -95,7 +95,7 @@ GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
     if (!in.inBox) mark(out, GovernorAction::outsideBox);
     if (!in.homed || !in.inBox) release();
 
-    const double fresh = freshness(in.forceAge); // 3
+    const double fresh = freshness(usableAge(in)); // 3
     if (fresh < 1) mark(out, GovernorAction::stale);
     if (fresh == 0) release();
     const double punctual = punctuality(in);
@@ -218,6 +218,13 @@ void ForceGovernor::checkInput(const GovernorInput& in) noexcept
     if (in.missedExchanges > settings_.missedTicks) latch(GovernorFault::deviceLost);
 }
 
+/// Returns the age that decides whether the force is used: one that was computed from something too old counts as old.
+/// It is no lag of the loop, so it is no part of the cap's.
+double ForceGovernor::usableAge(const GovernorInput& in) const noexcept
+{
+    return in.overdue > 0 ? std::max(in.forceAge, settings_.staleAfter + in.overdue) : in.forceAge;
+}
+
 double ForceGovernor::freshness(double age) const noexcept
 {
     if (age <= settings_.staleAfter) return 1;
@@ -316,7 +323,7 @@ void ForceGovernor::slewTo(glm::dvec3 force, Elapsed passed, GovernorOutput& out
 
 void ForceGovernor::engage(const GovernorInput& in, double rise, GovernorOutput& out) noexcept
 {
-    const bool calm = fault_ == GovernorFault::none && in.homed && in.inBox && in.forceAge <= settings_.staleAfter &&
+    const bool calm = fault_ == GovernorFault::none && in.homed && in.inBox && usableAge(in) <= settings_.staleAfter &&
                       glm::length(in.velocity) <= settings_.maximumSpeed && glm::length(slewed_) < settings_.calmForce;
     switch (engagement_) {
     case Engagement::waiting:

@@ -98,6 +98,7 @@ enum class GovernorAction : std::uint32_t {
 struct GovernorInput {
     glm::dvec3 force{};             ///< [N] on the hand, wanted; the newest there is, however old
     double     forceAge = 0;        ///< [s] since it was computed; infinity if there has never been one
+    double     overdue  = 0;        ///< [s] by which what it was computed from is too old; at most 0: it is not
     glm::dvec3 position{};          ///< [m] of the grip
     glm::dvec3 velocity{};          ///< [m/s] of the grip, filtered
     bool       homed = false;       ///< the position is known
@@ -211,6 +212,7 @@ private:
     void                     latch(GovernorFault fault) noexcept;
     void                     release() noexcept;
     void                     checkInput(const GovernorInput& in) noexcept;
+    [[nodiscard]] double     usableAge(const GovernorInput& in) const noexcept;
     [[nodiscard]] double     freshness(double age) const noexcept;
     void                     observeEnergy(const GovernorInput& in, double dt) noexcept;
     [[nodiscard]] glm::dvec3 passiveForce(glm::dvec3 force, const GovernorInput& in, double dt,

@@ -152,15 +152,14 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     leanOn(held, hand);
 
     GovernorInput in;
-    in.force             = want.force;
-    in.position          = hand.position;
-    in.velocity          = hand.velocity;
-    in.homed             = hand.homed && hand.device == DeviceFault::none;
-    in.inBox             = hand.inBox;
-    in.dt                = now.dt;
-    in.forceAge          = std::max(0.0, now.time - touch.time); // above 0 if the proxy has a thread of its own
-    const double overdue = tableOverdue(now, touch.touching, newest);
-    if (overdue > 0) in.forceAge = std::max(in.forceAge, governor_.settings().staleAfter + overdue);
+    in.force                 = want.force;
+    in.position              = hand.position;
+    in.velocity              = hand.velocity;
+    in.homed                 = hand.homed && hand.device == DeviceFault::none;
+    in.inBox                 = hand.inBox;
+    in.dt                    = now.dt;
+    in.forceAge              = std::max(0.0, now.time - touch.time); // above 0 if the proxy has a thread of its own
+    in.overdue               = tableOverdue(now, touch.touching, newest);
     in.missedExchanges       = hand.missed;
     in.admittedEnergy        = want.tank.used;
     in.storedEnergy          = want.tank.stored;
@@ -205,7 +204,7 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
         flag(SessionFlag::beyondTable, touch.touching && handed && handed->clamped) |
         flag(SessionFlag::noPatch, touch.touching && !handed) | flag(SessionFlag::proxyLimited, held.limited) |
         flag(SessionFlag::beyondTheory, record.maxDeflection > thickness_ / 2) |
-        flag(SessionFlag::oldTable, overdue > 0) | flag(SessionFlag::governed, touch.touching && out.actions != 0);
+        flag(SessionFlag::oldTable, in.overdue > 0) | flag(SessionFlag::governed, touch.touching && out.actions != 0);
     return record;
 }
 

@@ -49,7 +49,8 @@ std::string SessionSummary::whyForceless() const
     if (const auto stopped = static_cast<GovernorFault>(forcelessFaults & 0xFFU); stopped != GovernorFault::none)
         return std::string("the governor stopped the force: ") + name(stopped);
     if (has(SessionFlag::noPatch)) return whyPatchless.empty() ? "the plate had no answer yet" : whyPatchless;
-    if (has(SessionFlag::oldTable)) return "the plate did not answer for a quarter of a second";
+    if (has(SessionFlag::oldTable))
+        return "the plate did not answer for a quarter of a second" + (why.empty() ? why : ": " + why);
     if (has(SessionFlag::governed))
         return "the governor waits: the hand must stay slower than 1.2 m/s for 1.5 s, and the device must be homed and "
                "in its workspace";

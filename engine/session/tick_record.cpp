@@ -52,11 +52,11 @@ constexpr std::array kColumns = {
     SessionColumn{
         "faults", Type::uint32, 1, offsetof(S, faults), "1",
         "bits 0 to 7 why the governor stopped, 256 stale patch, 512 beyond the table, 1024 no patch yet, 2048 "
-        "proxy limited, 4096 beyond plate theory, 8192 held back by the governor",
+        "proxy limited, 4096 beyond plate theory, 8192 held back by the governor, 16384 the table is too old to feel",
         false},
     SessionColumn{"actions", Type::uint32, 1, offsetof(S, actions), "1",
                   "of the governor: 1 not homed, 2 outside of the box, 4 stale, 8 damped, 16 active, 32 clamped, 64 "
-                  "slewed, 128 waiting, 256 engaging, 512 releasing",
+                  "slewed, 128 waiting, 256 engaging, 512 releasing, 1024 late",
                   false},
     SessionColumn{"device", Type::uint32, 1, offsetof(S, device), "1",
                   "bits 0 to 7 its fault, 8 homed, 9 in its box, 16 to 31 buttons", false},

@@ -77,9 +77,8 @@ private:
 class RowsFile {
 public:
     RowsFile(const std::filesystem::path& path)
-        : name_(path.string()), in_(openForReading(path)), bytes_(sizeOfFile(path))
+        : name_(path.string()), in_(openForReading(path)), header_(readHeader(in_, name_)), bytes_(sizeOfFile(path))
     {
-        header_ = readHeader(in_, name_);
     }
 
     void demandRows(std::uint64_t rows, std::size_t rowBytes) const
@@ -102,8 +101,8 @@ public:
 private:
     std::string   name_;
     std::ifstream in_;
-    std::uint64_t bytes_; ///< of the file
     Header        header_;
+    std::uint64_t bytes_; ///< of the file, asked for after the header was read: a session may still write
 };
 
 constexpr std::size_t kPart = 4096; ///< rows that are read at once [1]
