@@ -1,4 +1,4 @@
-#include "engine/plate/host/frame.h"
+#include "engine/plate/host/together.h"
 
 // The coarsest level: coarse_factor.comp and coarse_solve.comp.
 //
@@ -136,18 +136,46 @@ void forward(const Real* factor, int reach, int unknowns, Real* y)
     }
 }
 
+/// The same for several loads: four unknowns at a time, because one alone would wait for each of its sums.
+template <class Real>
+void forward(const Real* factor, int reach, int unknowns, Together<Real>* y)
+{
+    constexpr int kAtOnce = 4;
+    const int     slots   = reach + 1;
+    int           n       = 0;
+    for (; reach >= kAtOnce && n + kAtOnce <= unknowns; n += kAtOnce) {
+        Together<Real> sums[kAtOnce];
+        for (int t = 0; t < kAtOnce; ++t) sums[t] = y[n + t];
+        // The farthest columns reach only the first unknowns.
+        const int all = max(0, n + kAtOnce - 1 - reach);
+        for (int k = max(0, n - reach); k < all; ++k)
+            for (int t = 0; n + t - k <= reach; ++t) sums[t] -= factor[k * slots + n + t - k] * y[k];
+        for (int k = all; k < n; ++k)
+            for (int t = 0; t < kAtOnce; ++t) sums[t] -= factor[k * slots + n + t - k] * y[k];
+        for (int t = 0; t < kAtOnce; ++t) {
+            const Real* column = factor + (n + t) * slots;
+            y[n + t]           = column[0] * sums[t];
+            for (int u = t + 1; u < kAtOnce; ++u) sums[u] -= column[u - t] * y[n + t];
+        }
+    }
+    for (; n < unknowns; ++n) {
+        for (int k = max(0, n - reach); k < n; ++k) y[n] -= factor[k * slots + n - k] * y[k];
+        y[n] *= factor[n * slots];
+    }
+}
+
 /// Solves L' w = y, from the last unknown on.
 /// \param w  y, then the result; followed by zeros
 template <class Real>
-void backward(const Real* factor, int reach, int unknowns, Real* w)
+void backward(const NumberOf<Real>* factor, int reach, int unknowns, Real* w)
 {
     // Several unknowns side by side, as long as they are independent: one alone would wait for each of its sums.
-    constexpr int kTogether = 8;
+    constexpr int kTogether = sizeof(Real) > sizeof(double) ? 4 : 8;
     const int     slots     = reach + 1;
     int           n         = unknowns;
     for (; reach >= kTogether && n >= kTogether; n -= kTogether) {
         Real*       here   = w + n - kTogether;
-        const Real* column = factor + (n - kTogether) * slots;
+        const auto* column = factor + (n - kTogether) * slots;
         Real        sums[kTogether];
         for (int t = 0; t < kTogether; ++t) sums[t] = here[t];
         for (int e = reach; e >= kTogether; --e)
@@ -156,7 +184,7 @@ void backward(const Real* factor, int reach, int unknowns, Real* w)
         for (int t = kTogether - 1; t >= 0; --t) {
 #pragma GCC unroll 8
             for (int e = kTogether - 1; e >= 1; --e) sums[t] -= column[t * slots + e] * here[t + e];
-            here[t] = sums[t] * column[t * slots];
+            here[t] = column[t * slots] * sums[t];
         }
     }
     for (n = n - 1; n >= 0; --n) {
@@ -168,29 +196,30 @@ void backward(const Real* factor, int reach, int unknowns, Real* w)
 template <class Real>
 void coarseSolveOf(const HostDispatch& d)
 {
+    using Single               = AsMany<float, Real>;
     const PlateLevel& g        = pushed<LevelPush>(d).level;
-    const auto*       factor   = bound<const Real>(d, 0);
+    const auto*       factor   = bound<const NumberOf<Real>>(d, 0);
     const int         unknowns = int(nodesOf(g)), nodes = g.cellsZ + 1;
     const int         perI = zIsShorter(g) ? nodes : 1, perJ = zIsShorter(g) ? 1 : g.cellsX + 1;
-    Sides<Real>       sides;
+    Sides<float>      sides;
 
     Real right[kMostCoarseNodes + kMostHalfBand] = {};
-    for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
-        const float* force = bound<const float>(d, 1) + load * unknowns;
-        float*       w     = bound<float>(d, 2) + load * unknowns;
+    for (std::ptrdiff_t load = 0; load < fieldsOf<Real>(d); ++load) {
+        const Single* force = bound<const Single>(d, 1) + load * unknowns;
+        Single*       w     = bound<Single>(d, 2) + load * unknowns;
         for (int i = 0; i <= g.cellsX; ++i)
             for (int j = 0; j < nodes; ++j)
                 right[i * perI + j * perJ] = sides.isHeld(g, i, j) ? Real(0) : Real(force[i * nodes + j]);
         forward(factor, halfBand(g), unknowns, right);
         backward(factor, halfBand(g), unknowns, right);
         for (int i = 0; i <= g.cellsX; ++i)
-            for (int j = 0; j < nodes; ++j) w[i * nodes + j] = float(right[i * perI + j * perJ]);
+            for (int j = 0; j < nodes; ++j) w[i * nodes + j] = Single(right[i * perI + j * perJ]);
     }
 }
 
 } // namespace
 
 PALPATE_IN_BOTH_PRECISIONS(factor)
-PALPATE_IN_BOTH_PRECISIONS(coarseSolve)
+PALPATE_REALS_ALONE_AND_TOGETHER(coarseSolve)
 
 } // namespace palp::PALPATE_ISA

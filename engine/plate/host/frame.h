@@ -117,7 +117,7 @@ public:
             free();
             data_ = static_cast<T*>(::operator new(sizeof(T) * std::size_t(count), kLine));
             size_ = count;
-            for (std::ptrdiff_t n = 0; n < count; ++n) data_[n] = 0;
+            for (std::ptrdiff_t n = 0; n < count; ++n) data_[n] = T(0);
         }
         return data_;
     }

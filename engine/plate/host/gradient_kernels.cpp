@@ -1,4 +1,4 @@
-#include "engine/plate/host/frame.h"
+#include "engine/plate/host/together.h"
 
 // Conjugate gradients: cg_dot.comp, cg_scalars.comp, cg_direction.comp, cg_update.comp and plate_result.comp.
 
@@ -15,11 +15,42 @@ struct Scalars {
 template <class Real, class Term>
 void addTerms(std::ptrdiff_t nodes, std::ptrdiff_t partials, Real* sums, const Term& term)
 {
-    for (std::ptrdiff_t t = 0; t < partials; ++t) sums[t] = 0;
+    for (std::ptrdiff_t t = 0; t < partials; ++t) sums[t] = Real(0);
     for (std::ptrdiff_t first = 0; first < nodes; first += partials) {
         const std::ptrdiff_t count = nodes - first < partials ? nodes - first : partials;
 #pragma GCC ivdep
         for (std::ptrdiff_t t = 0; t < count; ++t) sums[t] += term(first + t);
+    }
+}
+
+/// Computes the partial sums of the loads that lie in one field; those of each load follow one another.
+/// \param apart  from the first partial sum of a load to that of the next
+template <class At, class Term>
+void addTermsOf(std::ptrdiff_t nodes, std::ptrdiff_t partials, NumberOf<At>* sums, std::ptrdiff_t apart,
+                const Term& term)
+{
+    if constexpr (NodeOf<At>::kLoads == 1) {
+        addTerms(nodes, partials, sums, term);
+    } else {
+        static thread_local Scratch<At> scratch;
+        At* const                       together = scratch.of(partials);
+        addTerms(nodes, partials, together, term);
+        for (int load = 0; load < NodeOf<At>::kLoads; ++load)
+            for (std::ptrdiff_t t = 0; t < partials; ++t) sums[load * apart + t] = together[t][load];
+    }
+}
+
+/// Returns a scalar of the loads in a field.
+template <class At>
+At scalarOf(const NumberOf<At>* state, std::ptrdiff_t field, int word)
+{
+    if constexpr (NodeOf<At>::kLoads == 1) {
+        return state[field * kStateWords + word];
+    } else {
+        At all;
+        for (int load = 0; load < NodeOf<At>::kLoads; ++load)
+            all[load] = state[(field * NodeOf<At>::kLoads + load) * kStateWords + word];
+        return all;
     }
 }
 
@@ -39,30 +70,31 @@ Real total(const Real* partials, uint count, uint width)
 template <class Real>
 void dotsOf(const HostDispatch& d)
 {
+    using Single     = AsMany<float, Real>;
     const auto& push = pushed<VectorPush>(d);
-    auto*       sums = bound<Real>(d, 4);
-    for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
-        const std::ptrdiff_t base = load * push.nodes;
+    for (std::ptrdiff_t field = 0; field < fieldsOf<Real>(d); ++field) {
+        const std::ptrdiff_t base = field * push.nodes, apart = 2 * std::ptrdiff_t(push.partials);
         const auto*          r    = bound<const Real>(d, 0) + base;
-        const auto*          z    = bound<const float>(d, 1) + base;
+        const auto*          z    = bound<const Single>(d, 1) + base;
         const auto*          x    = bound<const Real>(d, 2) + base;
-        const auto*          f    = bound<const float>(d, 3) + base;
-        addTerms(push.nodes, push.partials, sums + 2 * load * push.partials,
-                 [=](std::ptrdiff_t n) { return r[n] * Real(z[n]); });
-        addTerms(push.nodes, push.partials, sums + (2 * load + 1) * push.partials,
-                 [=](std::ptrdiff_t n) { return Real(f[n]) * x[n]; });
+        const auto*          f    = bound<const Single>(d, 3) + base;
+        auto* const          sums = bound<NumberOf<Real>>(d, 4) + field * NodeOf<Real>::kLoads * apart;
+        addTermsOf<Real>(push.nodes, push.partials, sums, apart, [=](std::ptrdiff_t n) { return r[n] * Real(z[n]); });
+        addTermsOf<Real>(push.nodes, push.partials, sums + push.partials, apart,
+                         [=](std::ptrdiff_t n) { return Real(f[n]) * x[n]; });
     }
 }
 
 template <class Real>
 void stepDotsOf(const HostDispatch& d)
 {
-    const auto& push = pushed<VectorPush>(d);
-    auto*       sums = bound<Real>(d, 2);
-    for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
-        const auto* p = bound<const Real>(d, 0) + load * push.nodes;
-        const auto* q = bound<const Real>(d, 1) + load * push.nodes;
-        addTerms(push.nodes, push.partials, sums + load * push.partials, [=](std::ptrdiff_t n) { return p[n] * q[n]; });
+    const auto&          push  = pushed<VectorPush>(d);
+    const std::ptrdiff_t apart = push.partials;
+    for (std::ptrdiff_t field = 0; field < fieldsOf<Real>(d); ++field) {
+        const auto* p    = bound<const Real>(d, 0) + field * push.nodes;
+        const auto* q    = bound<const Real>(d, 1) + field * push.nodes;
+        auto* const sums = bound<NumberOf<Real>>(d, 2) + field * NodeOf<Real>::kLoads * apart;
+        addTermsOf<Real>(push.nodes, apart, sums, apart, [=](std::ptrdiff_t n) { return p[n] * q[n]; });
     }
 }
 
@@ -110,16 +142,30 @@ void stepOf(const HostDispatch& d)
 }
 
 template <class Real>
+bool isZero(const Real& number)
+{
+    return number == 0;
+}
+
+template <class Real>
+bool isZero(const Together<Real>& numbers)
+{
+    bool all = true;
+    for (int load = 0; load < kLoadsTogether; ++load) all = all && numbers[load] == 0;
+    return all;
+}
+
+template <class Real>
 void directionOf(const HostDispatch& d)
 {
     const auto&          push  = pushed<VectorPush>(d);
-    const auto*          state = bound<const Real>(d, 0);
+    const auto*          state = bound<const NumberOf<Real>>(d, 0);
     const std::ptrdiff_t nodes = push.nodes;
-    for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
-        const Real  beta = state[load * kStateWords + kStateBeta];
-        const auto* z    = bound<const float>(d, 1) + load * nodes;
-        auto*       p    = bound<Real>(d, 2) + load * nodes;
-        if (beta == 0)
+    for (std::ptrdiff_t field = 0; field < fieldsOf<Real>(d); ++field) {
+        const Real  beta = scalarOf<Real>(state, field, kStateBeta);
+        const auto* z    = bound<const AsMany<float, Real>>(d, 1) + field * nodes;
+        auto*       p    = bound<Real>(d, 2) + field * nodes;
+        if (isZero(beta)) // p may hold anything before the first step
             for (std::ptrdiff_t n = 0; n < nodes; ++n) p[n] = Real(z[n]);
         else
 #pragma GCC ivdep
@@ -130,23 +176,26 @@ void directionOf(const HostDispatch& d)
 template <class Real>
 void updateOf(const HostDispatch& d)
 {
-    const auto&          push  = pushed<VectorPush>(d);
-    const auto*          state = bound<const Real>(d, 0);
+    const auto& push           = pushed<VectorPush>(d);
+    using Single               = AsMany<float, Real>;
+    const auto*          state = bound<const NumberOf<Real>>(d, 0);
     const std::ptrdiff_t nodes = push.nodes;
-    for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
-        if (state[load * kStateWords + kStateSteps] != Real(float(push.iteration))) continue;
-        const Real  alpha   = state[load * kStateWords + kStateAlpha];
-        const auto* p       = bound<const Real>(d, 1) + load * nodes;
-        const auto* q       = bound<const Real>(d, 2) + load * nodes;
-        auto*       x       = bound<Real>(d, 3) + load * nodes;
-        auto*       r       = bound<Real>(d, 4) + load * nodes;
-        auto*       rounded = bound<float>(d, 5) + load * nodes;
+    for (std::ptrdiff_t field = 0; field < fieldsOf<Real>(d); ++field) {
+        // All loads of a dispatch have taken as many steps.
+        const auto taken = state[field * NodeOf<Real>::kLoads * kStateWords + kStateSteps];
+        if (taken != NumberOf<Real>(float(push.iteration))) continue;
+        const Real  alpha   = scalarOf<Real>(state, field, kStateAlpha);
+        const auto* p       = bound<const Real>(d, 1) + field * nodes;
+        const auto* q       = bound<const Real>(d, 2) + field * nodes;
+        auto*       x       = bound<Real>(d, 3) + field * nodes;
+        auto*       r       = bound<Real>(d, 4) + field * nodes;
+        auto*       rounded = bound<Single>(d, 5) + field * nodes;
 #pragma GCC ivdep
         for (std::ptrdiff_t n = 0; n < nodes; ++n) {
             x[n] += alpha * p[n];
             const Real left = r[n] - alpha * q[n];
             r[n]            = left;
-            rounded[n]      = float(left);
+            rounded[n]      = Single(left);
         }
     }
 }
@@ -154,24 +203,25 @@ void updateOf(const HostDispatch& d)
 template <class Real>
 void resultOf(const HostDispatch& d)
 {
+    using Single               = AsMany<float, Real>;
     const std::ptrdiff_t nodes = pushed<VectorPush>(d).nodes;
-    for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
-        const auto* x      = bound<const Real>(d, 0) + load * nodes;
-        const float metres = bound<const float>(d, 1)[load];
-        auto*       w      = bound<float>(d, 2) + load * nodes;
+    for (std::ptrdiff_t field = 0; field < fieldsOf<Real>(d); ++field) {
+        const auto*  x      = bound<const Real>(d, 0) + field * nodes;
+        const Single metres = bound<const Single>(d, 1)[field];
+        auto*        w      = bound<Single>(d, 2) + field * nodes;
 #pragma GCC ivdep
-        for (std::ptrdiff_t n = 0; n < nodes; ++n) w[n] = float(x[n]) * metres;
+        for (std::ptrdiff_t n = 0; n < nodes; ++n) w[n] = Single(x[n]) * metres;
     }
 }
 
 } // namespace
 
-PALPATE_IN_BOTH_PRECISIONS(dots)
-PALPATE_IN_BOTH_PRECISIONS(stepDots)
 PALPATE_IN_BOTH_PRECISIONS(beta)
 PALPATE_IN_BOTH_PRECISIONS(step)
-PALPATE_IN_BOTH_PRECISIONS(direction)
-PALPATE_IN_BOTH_PRECISIONS(update)
-PALPATE_IN_BOTH_PRECISIONS(result)
+PALPATE_REALS_ALONE_AND_TOGETHER(dots)
+PALPATE_REALS_ALONE_AND_TOGETHER(stepDots)
+PALPATE_REALS_ALONE_AND_TOGETHER(direction)
+PALPATE_REALS_ALONE_AND_TOGETHER(update)
+PALPATE_REALS_ALONE_AND_TOGETHER(result)
 
 } // namespace palp::PALPATE_ISA

@@ -10,26 +10,26 @@
 namespace palp {
 
 namespace portable {
-extern const HostKernels kTable;
+extern const HostKernels kTable, kTogether;
 }
 #ifdef PALPATE_X86_VARIANTS
 namespace avx2 {
-extern const HostKernels kTable;
+extern const HostKernels kTable, kTogether;
 }
 namespace avx512 {
-extern const HostKernels kTable;
+extern const HostKernels kTable, kTogether;
 }
 #endif
 
 const std::vector<HostVariant>& hostVariants()
 {
     static const std::vector<HostVariant> all = [] {
-        std::vector<HostVariant> found{{"portable", &portable::kTable}};
+        std::vector<HostVariant> found{{"portable", &portable::kTable, &portable::kTogether}};
 #ifdef PALPATE_X86_VARIANTS
-        if (__builtin_cpu_supports("avx2")) found.push_back({"avx2", &avx2::kTable});
+        if (__builtin_cpu_supports("avx2")) found.push_back({"avx2", &avx2::kTable, &avx2::kTogether});
         if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
             __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
-            found.push_back({"avx512", &avx512::kTable});
+            found.push_back({"avx512", &avx512::kTable, &avx512::kTogether});
 #endif
         return found;
     }();

@@ -14,10 +14,16 @@ struct HostKernels {
 #include "compute_shaders/shared/plate_kernels.def"
 };
 
+/// Loads that the kernels take side by side in HostVariant::together.
+inline constexpr int kLoadsTogether = 8;
+
 /// The same kernels compiled for instruction sets; all give the same bits.
 struct HostVariant {
     std::string_view   isa; ///< "portable", "avx2", "avx512"
     const HostKernels* kernels;
+    /// For fields of kLoadsTogether loads each, whose numbers lie side by side at every node: the bits of each load are
+    /// those of `kernels`.
+    const HostKernels* together;
 };
 
 /// Lists the variants that this processor can run, best last.

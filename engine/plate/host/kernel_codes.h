@@ -15,18 +15,18 @@ namespace palp::kernels {
 #name, name##_spv, buffers, int(sizeof(shared::Push)), function                                                \
     }
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape)                                              \
-    inline compute::KernelCode name()                                                                                  \
+    inline compute::KernelCode name(const HostKernels& host = *hostVariant().kernels)                                  \
     {                                                                                                                  \
-        return PALPATE_CODE(spirv, hostVariant().kernels->name, Push, buffers);                                        \
+        return PALPATE_CODE(spirv, host.name, Push, buffers);                                                          \
     }
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)                                               \
     template <class Real>                                                                                              \
-    compute::KernelCode name()                                                                                         \
+    compute::KernelCode name(const HostKernels& host = *hostVariant().kernels)                                         \
     {                                                                                                                  \
         if constexpr (sizeof(Real) == sizeof(double))                                                                  \
-            return PALPATE_CODE(spirv##_f64, hostVariant().kernels->name##_f64, Push, buffers);                        \
+            return PALPATE_CODE(spirv##_f64, host.name##_f64, Push, buffers);                                          \
         else                                                                                                           \
-            return PALPATE_CODE(spirv##_f32, hostVariant().kernels->name##_f32, Push, buffers);                        \
+            return PALPATE_CODE(spirv##_f32, host.name##_f32, Push, buffers);                                          \
     }
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)                                               \
     inline compute::KernelCode name()                                                                                  \

@@ -1,5 +1,5 @@
 #pragma once
-#include "engine/plate/host/frame.h"
+#include "engine/plate/host/together.h"
 
 // The operator row by row. Moments, and changes from row to row, are computed once per node and cell and kept, where an
 // invocation of a shader computes those around its node anew: the numbers are the same, with a third of the work.
@@ -64,7 +64,7 @@ public:
         // Room at either end, where no moment acts. The first node lies on a cache line: loops begin there.
         const std::ptrdiff_t line = 64 / sizeof(Real), stride = (count_ + 1 + line + line - 1) / line * line;
         Real*                at = scratch.of(kRows * stride);
-        for (std::ptrdiff_t n = 0; n < kRows * stride; ++n) at[n] = 0;
+        for (std::ptrdiff_t n = 0; n < kRows * stride; ++n) at[n] = Real(0);
         for (Real** row : {&slope_[0], &slope_[1], &mz_[0], &mz_[1], &bending_.moment, &bending_.change,
                            &bending_.second, &twisting_.moment, &twisting_.change}) {
             *row = at + line;
@@ -166,18 +166,19 @@ private:
     void afterTheLast()
     {
         for (int n = 0; n < count_; ++n) {
-            bending_.goOn(n, 0);
-            twisting_.goOn(n, 0);
+            bending_.goOn(n, Real(0));
+            twisting_.goOn(n, Real(0));
         }
     }
 
     // Twisting moment of the cell between a row of the rigidity and the one before.
     Real twistOf(const float* D, const Real* changes, int n) const
     {
+        using Number    = NumberOf<Real>;
         const float* Dw = D - nodes_;
         return rules.twistingMoment(middleOf(g), kMiddle, kMiddle,
-                                    (Real(Dw[n]) + Real(D[n])) + (Real(Dw[n + 1]) + Real(D[n + 1])), changes[n],
-                                    changes[n + 1]);
+                                    Real((Number(Dw[n]) + Number(D[n])) + (Number(Dw[n + 1]) + Number(D[n + 1]))),
+                                    changes[n], changes[n + 1]);
     }
 
     /// Twisting moments of a row of cells and how they differ from the row before.

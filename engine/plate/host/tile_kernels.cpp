@@ -7,11 +7,11 @@ namespace palp::PALPATE_ISA {
 namespace {
 
 /// Calls visit(first node of the load's field, first row, last row, columns) for listed tiles.
-template <class Visit>
+template <class Real, class Visit>
 void forEachRun(const HostDispatch& d, const uint* list, Visit&& visit)
 {
     const PlateLevel& g = pushed<RelaxPush>(d).level;
-    for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load)
+    for (std::ptrdiff_t load = 0; load < fieldsOf<Real>(d); ++load)
         for (uint n = 0; n < d.groups.x;) {
             const int tile = int(list[1 + n]), firstI = tile / tilesZ(g) * kTile, firstJ = tile % tilesZ(g) * kTile;
             int       lastJ = firstJ - 1;
@@ -22,51 +22,59 @@ void forEachRun(const HostDispatch& d, const uint* list, Visit&& visit)
         }
 }
 
-} // namespace
-
-void relaxTile(const HostDispatch& d)
+template <class Real>
+void relaxTileOf(const HostDispatch& d)
 {
     const auto& [g, colour] = pushed<RelaxPush>(d);
     const auto* D           = bound<const float>(d, 0);
     const auto* inverse     = bound<const float>(d, 1);
-    const auto* force       = bound<const float>(d, 2);
-    const auto* w           = bound<const float>(d, 3);
-    auto*       aside       = bound<float>(d, 5);
+    const auto* force       = bound<const Real>(d, 2);
+    const auto* w           = bound<const Real>(d, 3);
+    auto*       aside       = bound<Real>(d, 5);
     const int   nodes       = g.cellsZ + 1;
-    forEachRun(d, bound<const uint>(d, 4),
-               [&, level = g, parity = colour](std::ptrdiff_t first, int i, int lastI, ColumnRange columns) {
-                   PlainField<float>                      field{w + first, nodes};
-                   OperatorRows<float, PlainField<float>> rows(level, D, field, i, columns);
-                   for (; i <= lastI; ++i) {
-                       const std::ptrdiff_t at  = std::ptrdiff_t(i) * nodes;
-                       const float *        inv = inverse + at, *f = force + first + at, *before = field.row(i);
-                       float*               to  = aside + first + at;
-                       const int            odd = int((unsigned(i) + parity) & 1U);
-                       rows.next(i, RowTo{[=](int j, float a) {
-                                              const float relaxed = Rules<float>{}.relaxed(before[j], f[j], a, inv[j]);
-                                              return (j & 1) == odd ? relaxed : to[j];
-                                          },
-                                          [=](int j, float value) { to[j] = value; }});
-                   }
-               });
+    forEachRun<Real>(d, bound<const uint>(d, 4),
+                     [&, level = g, parity = colour](std::ptrdiff_t first, int i, int lastI, ColumnRange columns) {
+                         PlainField<Real>                     field{w + first, nodes};
+                         OperatorRows<Real, PlainField<Real>> rows(level, D, field, i, columns);
+                         for (; i <= lastI; ++i) {
+                             const std::ptrdiff_t at  = std::ptrdiff_t(i) * nodes;
+                             const float*         inv = inverse + at;
+                             const Real *         f = force + first + at, *before = field.row(i);
+                             Real*                to  = aside + first + at;
+                             const int            odd = int((unsigned(i) + parity) & 1U);
+                             rows.next(i, RowTo{[=](int j, const Real& a) {
+                                                    const Real relaxed =
+                                                        Rules<Real>{}.relaxed(before[j], f[j], a, Real(inv[j]));
+                                                    return (j & 1) == odd ? relaxed : to[j];
+                                                },
+                                                [=](int j, const Real& value) { to[j] = value; }});
+                         }
+                     });
 }
 
-void copyTile(const HostDispatch& d)
+template <class Real>
+void copyTileOf(const HostDispatch& d)
 {
-    const auto* aside       = bound<const float>(d, 1);
-    auto*       w           = bound<float>(d, 2);
+    const auto* aside       = bound<const Real>(d, 1);
+    auto*       w           = bound<Real>(d, 2);
     const auto& [g, colour] = pushed<RelaxPush>(d);
     const int nodes         = g.cellsZ + 1;
-    forEachRun(d, bound<const uint>(d, 0),
-               [&, parity = colour](std::ptrdiff_t first, int i, int lastI, ColumnRange columns) {
-                   for (; i <= lastI; ++i) {
-                       const float* from = aside + first + std::ptrdiff_t(i) * nodes;
-                       float*       to   = w + first + std::ptrdiff_t(i) * nodes;
-                       const int    odd  = int((unsigned(i) + parity) & 1U);
+    forEachRun<Real>(d, bound<const uint>(d, 0),
+                     [&, parity = colour](std::ptrdiff_t first, int i, int lastI, ColumnRange columns) {
+                         for (; i <= lastI; ++i) {
+                             const Real* from = aside + first + std::ptrdiff_t(i) * nodes;
+                             Real*       to   = w + first + std::ptrdiff_t(i) * nodes;
+                             const int   odd  = int((unsigned(i) + parity) & 1U);
 #pragma GCC ivdep
-                       for (int j = columns.first; j <= columns.last; ++j) to[j] = (j & 1) == odd ? from[j] : to[j];
-                   }
-               });
+                             for (int j = columns.first; j <= columns.last; ++j)
+                                 to[j] = (j & 1) == odd ? from[j] : to[j];
+                         }
+                     });
 }
+
+} // namespace
+
+PALPATE_ALONE_AND_TOGETHER(relaxTile, float)
+PALPATE_ALONE_AND_TOGETHER(copyTile, float)
 
 } // namespace palp::PALPATE_ISA

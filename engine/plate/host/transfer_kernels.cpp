@@ -1,4 +1,4 @@
-#include "engine/plate/host/frame.h"
+#include "engine/plate/host/together.h"
 
 // plate_restrict.comp and plate_prolong.comp. The shaders nest sums along x and z node by node; each inner sum is made
 // once here, a row at a time. Weights of 0 are omitted, and away from the sides all entries of a table are alike.
@@ -50,10 +50,10 @@ template <class Real, class Term = Real>
 struct Terms {
     static constexpr int kMost = kCoarseWeights;
     int                  count = 0;
-    Real                 weights[kMost];
+    NumberOf<Real>       weights[kMost];
     const Term*          rows[kMost];
 
-    void add(Real weight, const Term* row)
+    void add(NumberOf<Real> weight, const Term* row)
     {
         if (weight == 0) return;
         weights[count] = weight;
@@ -83,8 +83,8 @@ private:
     template <int kCount, class Put>
     void sumOf(int nodes, Put&& put) const
     {
-        Real        w[kCount];
-        const Term* r[kCount];
+        NumberOf<Real> w[kCount];
+        const Term*    r[kCount];
         for (int n = 0; n < kCount; ++n) {
             w[n] = weights[n];
             r[n] = rows[n];
@@ -116,8 +116,8 @@ void prolongRow(const Table& z, const Run& run, const Coarse* from, Real* halves
 {
     const auto one = [&](int j) {
         const float* entry = z.entry(j);
-        Real         value = 0;
-        for (int n = 0; n < kFineWeights; ++n) value += Real(entry[1 + n]) * Real(from[int(entry[0]) + n]);
+        Real         value = Real(0);
+        for (int n = 0; n < kFineWeights; ++n) value += NumberOf<Real>(entry[1 + n]) * Real(from[int(entry[0]) + n]);
         to[j] = value;
     };
     const int pairs = max((run.end - run.begin) / 2, 0), end = run.begin + 2 * pairs;
@@ -129,8 +129,8 @@ void prolongRow(const Table& z, const Run& run, const Coarse* from, Real* halves
     for (int odd : {0, 1}) {
         const float*        entry = z.entry(run.begin + odd);
         Terms<Real, Coarse> terms;
-        for (int n = 0; n < kFineWeights; ++n) terms.add(Real(entry[1 + n]), from + int(entry[0]) + n);
-        terms.sum(pairs, [put = half[odd]](int n, Real value) { put[n] = value; });
+        for (int n = 0; n < kFineWeights; ++n) terms.add(NumberOf<Real>(entry[1 + n]), from + int(entry[0]) + n);
+        terms.sum(pairs, [put = half[odd]](int n, const Real& value) { put[n] = value; });
     }
     const Real *even = half[0], *odd = half[1];
     Real*       out = to + run.begin;
@@ -159,7 +159,7 @@ void prolong(const TransferPush& push, const float* tableX, const float* tableZ,
         for (; made < x.first(i) + kFineWeights; ++made)
             prolongRow(z, run, coarse + std::ptrdiff_t(made) * coarseNodes, halves, rowOf(made));
         Terms<Real> terms;
-        for (int m = 0; m < kFineWeights; ++m) terms.add(Real(entry[1 + m]), rowOf(x.first(i) + m));
+        for (int m = 0; m < kFineWeights; ++m) terms.add(NumberOf<Real>(entry[1 + m]), rowOf(x.first(i) + m));
         terms.sum(fineNodes, visitRow(i));
     }
 }
@@ -171,21 +171,22 @@ void interpolateFrom(const HostDispatch& d)
     const auto* coarse = bound<const Coarse>(d, 2);
     auto*       fine   = bound<Real>(d, 3);
     const int   nodes  = push.fine.cellsZ + 1;
-    for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load)
+    for (std::ptrdiff_t load = 0; load < fieldsOf<Real>(d); ++load)
         prolong<Real>(push, bound<const float>(d, 0), bound<const float>(d, 1), coarse + load * nodesOf(push.coarse),
                       [&](int i) {
                           Real* to = fine + load * nodesOf(push.fine) + std::ptrdiff_t(i) * nodes;
-                          return [=](int j, Real value) { to[j] = value; };
+                          return [=](int j, const Real& value) { to[j] = value; };
                       });
 }
 
 /// Gathers a row of column sums at the coarse nodes of table z.
 /// \param halves  room for as many numbers
-void restrictRow(const Table& z, const Run& run, const float* column, int fineNodes, float* halves, float* to)
+template <class Real>
+void restrictRow(const Table& z, const Run& run, const Real* column, int fineNodes, Real* halves, Real* to)
 {
     const auto one = [&](int j) {
         const float* entry = z.entry(j);
-        float        value = 0;
+        Real         value = Real(0.0f);
         for (int n = 0; n < kCoarseWeights; ++n) value += entry[1 + n] * column[min(int(entry[0]) + n, fineNodes - 1)];
         to[j] = value;
     };
@@ -194,82 +195,81 @@ void restrictRow(const Table& z, const Run& run, const float* column, int fineNo
     if (run.end <= run.begin) return;
 
     // Every second number has a row of its own, so that the numbers for coarse nodes lie side by side.
-    const float* from = column + z.first(run.begin);
-    const int    each = (fineNodes - z.first(run.begin)) / 2, uneven = (fineNodes - z.first(run.begin)) % 2;
-    float *      even = halves, *odd = halves + each + 1;
+    const Real* from = column + z.first(run.begin);
+    const int   each = (fineNodes - z.first(run.begin)) / 2, uneven = (fineNodes - z.first(run.begin)) % 2;
+    Real *      even = halves, *odd = halves + each + 1;
 #pragma GCC ivdep
     for (int n = 0; n < each; ++n) {
         even[n] = from[2 * n];
         odd[n]  = from[2 * n + 1];
     }
     if (uneven) even[each] = from[2 * each];
-    Terms<float> terms;
+    Terms<Real> terms;
     for (int n = 0; n < kCoarseWeights; ++n) terms.add(z.entry(run.begin)[1 + n], (n % 2 ? odd : even) + n / 2);
-    float* out = to + run.begin;
-    terms.sum(run.end - run.begin, [=](int j, float value) { out[j] = value; });
+    Real* out = to + run.begin;
+    terms.sum(run.end - run.begin, [=](int j, const Real& value) { out[j] = value; });
 }
 
-} // namespace
-
-void correct(const HostDispatch& d)
+template <class Real>
+void correctOf(const HostDispatch& d)
 {
     const auto& push   = pushed<TransferPush>(d);
-    const auto* coarse = bound<const float>(d, 2);
-    auto*       after  = bound<float>(d, 3);
-    const auto* before = bound<const float>(d, 4);
+    const auto* coarse = bound<const Real>(d, 2);
+    auto*       after  = bound<Real>(d, 3);
+    const auto* before = bound<const Real>(d, 4);
     const int   nodes  = push.fine.cellsZ + 1;
-    for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load)
-        prolong<float>(push, bound<const float>(d, 0), bound<const float>(d, 1), coarse + load * nodesOf(push.coarse),
-                       [&](int i) {
-                           const std::ptrdiff_t at = load * nodesOf(push.fine) + std::ptrdiff_t(i) * nodes;
-                           const float*         w  = before + at;
-                           float*               to = after + at;
-                           return [=](int j, float value) { to[j] = w[j] + value; };
-                       });
+    for (std::ptrdiff_t load = 0; load < fieldsOf<Real>(d); ++load)
+        prolong<Real>(push, bound<const float>(d, 0), bound<const float>(d, 1), coarse + load * nodesOf(push.coarse),
+                      [&](int i) {
+                          const std::ptrdiff_t at = load * nodesOf(push.fine) + std::ptrdiff_t(i) * nodes;
+                          const Real*          w  = before + at;
+                          Real*                to = after + at;
+                          return [=](int j, const Real& value) { to[j] = w[j] + value; };
+                      });
 }
 
-void interpolate_f32(const HostDispatch& d)
+template <class Real>
+void interpolateOf(const HostDispatch& d)
 {
-    interpolateFrom<float, float>(d);
+    interpolateFrom<Real, Real>(d);
 }
 
-void interpolate_f64(const HostDispatch& d)
+template <class Real>
+void interpolateFirstOf(const HostDispatch& d)
 {
-    interpolateFrom<double, double>(d);
+    interpolateFrom<Real, AsMany<float, Real>>(d);
 }
 
-void interpolateFirst_f32(const HostDispatch& d)
+template <class Real>
+void restrictOf(const HostDispatch& d)
 {
-    interpolateFrom<float, float>(d);
-}
-
-void interpolateFirst_f64(const HostDispatch& d)
-{
-    interpolateFrom<double, float>(d);
-}
-
-void restrict(const HostDispatch& d)
-{
-    static thread_local Scratch<float> scratch;
-    const auto&                        push      = pushed<TransferPush>(d);
-    const int                          fineNodes = push.fine.cellsZ + 1, coarseNodes = push.coarse.cellsZ + 1;
-    const int                          fineRows = push.fine.cellsX + 1;
+    static thread_local Scratch<Real> scratch;
+    const auto&                       push      = pushed<TransferPush>(d);
+    const int                         fineNodes = push.fine.cellsZ + 1, coarseNodes = push.coarse.cellsZ + 1;
+    const int                         fineRows = push.fine.cellsX + 1;
     const Table x{bound<const float>(d, 0) + std::ptrdiff_t(kFineStride) * fineRows, push.coarse.cellsX + 1,
                   kCoarseWeights};
     const Table z{bound<const float>(d, 1) + std::ptrdiff_t(kFineStride) * fineNodes, coarseNodes, kCoarseWeights};
     const Run   run(z, 1, 2);
-    float*      column = scratch.of(2 * std::ptrdiff_t(fineNodes) + 2);
-    for (std::ptrdiff_t load = 0; load < std::ptrdiff_t(d.groups.z); ++load) {
-        const float* fine   = bound<const float>(d, 2) + load * nodesOf(push.fine);
-        float*       coarse = bound<float>(d, 3) + load * nodesOf(push.coarse);
+    Real*       column = scratch.of(2 * std::ptrdiff_t(fineNodes) + 2);
+    for (std::ptrdiff_t load = 0; load < fieldsOf<Real>(d); ++load) {
+        const Real* fine   = bound<const Real>(d, 2) + load * nodesOf(push.fine);
+        Real*       coarse = bound<Real>(d, 3) + load * nodesOf(push.coarse);
         for (int i = 0; i < x.count; ++i) {
-            Terms<float> terms;
+            Terms<Real> terms;
             for (int m = 0; m < kCoarseWeights; ++m)
                 terms.add(x.entry(i)[1 + m], fine + std::ptrdiff_t(min(x.first(i) + m, fineRows - 1)) * fineNodes);
-            terms.sum(fineNodes, [=](int j, float value) { column[j] = value; });
+            terms.sum(fineNodes, [=](int j, const Real& value) { column[j] = value; });
             restrictRow(z, run, column, fineNodes, column + fineNodes, coarse + std::ptrdiff_t(i) * coarseNodes);
         }
     }
 }
+
+} // namespace
+
+PALPATE_ALONE_AND_TOGETHER(correct, float)
+PALPATE_ALONE_AND_TOGETHER(restrict, float)
+PALPATE_REALS_ALONE_AND_TOGETHER(interpolate)
+PALPATE_REALS_ALONE_AND_TOGETHER(interpolateFirst)
 
 } // namespace palp::PALPATE_ISA

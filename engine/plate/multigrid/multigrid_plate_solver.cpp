@@ -202,6 +202,18 @@ struct MultigridPlateSolver::Impl {
 
     // --- a solve
 
+    /// The place of a load's numbers in the memory of all of them: the first node's, and how far apart those of two
+    /// nodes are.
+    struct Place {
+        std::size_t first, apart;
+    };
+
+    [[nodiscard]] Place placeOf(std::size_t load) const
+    {
+        const auto together = std::size_t(k.together);
+        return {load / together * together * plate.grid.nodes() + load % together, together};
+    }
+
     [[nodiscard]] double stateOf(std::uint32_t load, int word) const
     {
         const std::size_t at = std::size_t(load) * shared::kStateWords + std::size_t(word);
@@ -245,9 +257,10 @@ struct MultigridPlateSolver::Impl {
                                metres < double(std::numeric_limits<float>::max())))
                 throw Error("plate: forces of " + formatQuantity(scales[n], "N") + " on a rigidity of " +
                             formatQuantity(unitRigidity, "N m") + " give deflections that 32 bits cannot hold");
-            float*        to   = hostLoads.floats().data() + n * nodes;
+            const Place   at   = placeOf(n);
+            float*        to   = hostLoads.floats().data() + at.first;
             const double* from = nodalForces[n].values().data();
-            for (std::size_t m = 0; m < nodes; ++m) to[m] = float(from[m] * scale);
+            for (std::size_t m = 0; m < nodes; ++m) to[m * at.apart] = float(from[m] * scale);
             hostUnits.floats()[n] = float(metres);
         }
     }
@@ -310,8 +323,10 @@ struct MultigridPlateSolver::Impl {
         std::vector<PlateSolution> answers;
         const std::size_t          nodes = plate.grid.nodes();
         for (std::uint32_t load = 0; load < loads; ++load) {
-            const float* from = result.as<float>().data() + load * nodes;
-            NodeField    w(plate.grid.nodesX(), plate.grid.nodesZ(), std::vector<double>(from, from + nodes));
+            const Place  at   = placeOf(load);
+            const float* from = result.as<float>().data() + at.first;
+            NodeField    w(plate.grid);
+            for (std::size_t m = 0; m < nodes; ++m) w.values()[m] = double(from[m * at.apart]);
             if (!extremesOf(w.values()).finite)
                 throw Error("plate: the deflection is not finite; the rigidity or the load is out of range");
             answers.push_back({std::move(w), report});
@@ -333,6 +348,7 @@ MultigridPlateSolver::MultigridPlateSolver(compute::Context& context, const Plat
         throw Error("plate: " + std::to_string(plate.grid.nodes()) + " nodes are more than the " +
                     std::to_string(most) + " that the solver takes; try fewer cells");
     PALP_EXPECT(settings.loads >= 1 && settings.maxIterations >= 1, "loads and iterations are at least 1");
+    PALP_EXPECT(settings.loads % kernels.all().together == 0, "loads lie side by side by eights");
     impl_ = std::make_unique<Impl>(context, kernels.all(), plate, settings);
     impl_->uploadRigidity(plate.rigidity);
 }

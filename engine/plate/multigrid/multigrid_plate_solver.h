@@ -40,12 +40,19 @@ enum class Smoother {
     chebyshev  ///< all nodes from the values before: half the work for rows of nodes
 };
 
+/// The order of the fields of several loads in memory. The answers are the same.
+enum class FieldLayout {
+    apart,     ///< one after the other
+    sideBySide ///< the numbers of eight loads at each node, then those at the next: on the host, for loads by eights
+};
+
 /// The plate's kernels, compiled for one processor; solvers of any size share them.
 /// \thread as its context
 class PlateKernels {
 public:
     explicit PlateKernels(compute::Context& context, Schedule schedule = Schedule::automatic,
-                          Precision precision = Precision::best, Smoother smoother = Smoother::automatic);
+                          Precision precision = Precision::best, Smoother smoother = Smoother::automatic,
+                          FieldLayout layout = FieldLayout::apart);
     ~PlateKernels();
     PlateKernels(PlateKernels&&) noexcept;
     PlateKernels& operator=(PlateKernels&&) noexcept;

@@ -397,6 +397,37 @@ TEST_F(MultigridPlate, LoadsOfABatchDoNotTouchEachOther)
     }
 }
 
+/// All edges, jumps of the rigidity, both precisions and smoothers; a load without force is among those side by side.
+TEST_F(MultigridPlate, LoadsSideBySideHaveTheBitsOfLoadsApart)
+{
+    if (!onHost()) GTEST_SKIP() << "only the host has kernels for loads side by side";
+    using enum Edge;
+    for (const Precision precision : {Precision::best, Precision::floats})
+        for (const Smoother smoother : {Smoother::automatic, Smoother::redBlack}) {
+            const PlateKernels apart(context(), Schedule::automatic, precision, smoother);
+            const PlateKernels together(context(), Schedule::automatic, precision, smoother, FieldLayout::sideBySide);
+            for (const Plate& plate :
+                 {plateOf(40, 33, {clamped, free, supported, clamped}, kLaws[6]), plateOf(64, 64, {}, kLaws[1]),
+                  plateOf(13, 9, {free, supported, clamped, free}, kLaws[3])}) {
+                std::vector<NodeField> loads;
+                for (int n = 0; n < 16; ++n)
+                    loads.push_back(
+                        gaussianLoad(plate.grid, n == 11 ? 0 : std::pow(10, n / 4), 0.2 + 0.03 * n, 0.4, 0.05));
+                const Settings       settings{.tolerance = 1e-4, .loads = 16};
+                const auto           expected = MultigridPlateSolver(context(), apart, plate, settings).solve(loads);
+                MultigridPlateSolver solver(context(), together, plate, settings);
+                for (const char* const which : {"first", "second"}) {
+                    const auto found = solver.solve(loads);
+                    EXPECT_EQ(found[0].report.iterations, expected[0].report.iterations);
+                    EXPECT_EQ(found[0].report.errorEstimate, expected[0].report.errorEstimate);
+                    for (std::size_t n = 0; n < loads.size(); ++n)
+                        EXPECT_EQ(found[n].deflection.values(), expected[n].deflection.values())
+                            << "load " << n << " of " << plate.grid.nodesX() << " nodes, " << which << " solve";
+                }
+            }
+        }
+}
+
 TEST_F(MultigridPlate, RepeatsAreEqualToTheBitAndSoIsANewSolver)
 {
     const Plate          plate  = plateOf(50, 41, {}, kLaws[6]);

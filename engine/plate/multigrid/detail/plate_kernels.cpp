@@ -81,17 +81,23 @@ PlateKernels::All::Fused fusedKernels(compute::Context& context, const Shapes& s
 
 } // namespace
 
-PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precision precision, Smoother smoother)
+PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precision precision, Smoother smoother,
+                           FieldLayout layout)
 {
-    const Shapes shapes = shapesFor(context);
-    const bool   f64    = context.processor().float64 && precision == Precision::best;
+    PALP_EXPECT(layout == FieldLayout::apart || context.processor().kind == compute::ProcessorKind::host,
+                "only the host has kernels for loads side by side");
+    const bool         sideBySide = layout == FieldLayout::sideBySide;
+    const HostKernels& host       = sideBySide ? *hostVariant().together : *hostVariant().kernels;
+    const Shapes       shapes     = shapesFor(context);
+    const bool         f64        = context.processor().float64 && precision == Precision::best;
     all_.reset(new All{
         .doubles   = f64,
         .smoothing = smoothingBy(smoother, schedule, context),
+        .together  = sideBySide ? kLoadsTogether : 1,
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape)                                              \
-    .name = compute::Kernel(context, kernels::name(), shapes.shape),
+    .name = compute::Kernel(context, kernels::name(host), shapes.shape),
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)                                               \
-    .name = compute::Kernel(context, f64 ? kernels::name<double>() : kernels::name<float>(), shapes.shape),
+    .name = compute::Kernel(context, f64 ? kernels::name<double>(host) : kernels::name<float>(host), shapes.shape),
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"
     });

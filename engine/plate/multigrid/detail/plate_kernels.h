@@ -29,6 +29,7 @@ struct PlateKernels::All {
 
     bool      doubles = false;
     Smoothing smoothing;
+    int       together = 1; ///< loads whose numbers lie side by side at every node of a field
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
