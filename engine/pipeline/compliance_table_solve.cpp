@@ -27,20 +27,18 @@ NodeField slopeOf(const NodeField& ahead, const NodeField& behind, double distan
     return slope;
 }
 
-/// Returns ln c of a footprint, with its slopes.
-ComplianceTable::Entry complianceOf(const FootprintLattice& lattice, std::size_t n, const NodeField& response)
+/// Returns ln c of a footprint of 1 N, with its slopes.
+ComplianceTable::Entry complianceOf(const FootprintResponse& felt)
 {
-    const double compliance = dot(lattice.loads[n], response);
-    return {std::log(compliance), 2 * dot(lattice.slopesX[n], response) / compliance,
-            2 * dot(lattice.slopesZ[n], response) / compliance};
+    return {std::log(felt.work), 2 * felt.changeX / felt.work, 2 * felt.changeZ / felt.work};
 }
 
 /// Returns ln k_c of a footprint, with its slopes.
 /// \param over  ln D over that of some node
 ComplianceTable::Entry contactOf(const FootprintLattice& lattice, std::size_t n, const NodeField& over, double node)
 {
-    return {std::log(lattice.shape.contactPerRigidity * node) + dot(lattice.loads[n], over),
-            dot(lattice.slopesX[n], over), dot(lattice.slopesZ[n], over)};
+    const FootprintResponse mean = responseOf(lattice.loads[n], over);
+    return {std::log(lattice.shape.contactPerRigidity * node) + mean.work, mean.changeX, mean.changeZ};
 }
 
 /// Returns the root mean square radius [m] of the bending energy of a homogeneous plate about its middle:
@@ -103,9 +101,8 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
     for (int i = 0; i < shape.side; ++i)
         for (int j = 0; j < shape.side; ++j) {
             const double x = (i - shape.side / 2) * shape.radius, z = (j - shape.side / 2) * shape.radius;
-            lattice.loads.push_back(loadAt(x, z));
-            lattice.slopesX.push_back(slopeOf(loadAt(x + dx, z), loadAt(x - dx, z), 2 * dx));
-            lattice.slopesZ.push_back(slopeOf(loadAt(x, z + dz), loadAt(x, z - dz), 2 * dz));
+            lattice.loads.emplace_back(loadAt(x, z), slopeOf(loadAt(x + dx, z), loadAt(x - dx, z), 2 * dx),
+                                       slopeOf(loadAt(x, z + dz), loadAt(x, z - dz), 2 * dz));
         }
     // The middle rung comes first: a solver counts rigidities in units of the first, and it must be exactly one.
     const int reach  = homogeneous.foundation > 0 ? kRungs : 0;
@@ -156,8 +153,9 @@ double FootprintLattice::lnCompliance(double ofRigidity) const
 
 TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver, double tolerance)
 {
-    std::vector<PlateSolution> solutions = solver.solveAll(plate, lattice.loads, tolerance);
-    TableSolution              result;
+    const std::size_t middle = lattice.loads.size() / 2;
+    FootprintSolution solved = solver.solveFootprints(plate, lattice.loads, middle, tolerance);
+    TableSolution     result;
     result.table.side    = lattice.shape.side;
     result.table.spacing = lattice.shape.radius;
 
@@ -167,14 +165,14 @@ TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, Pl
     for (std::size_t n = 0; n < over.values().size(); ++n)
         sum += over.values()[n] = std::log(plate.rigidity.values()[n] / node);
     const auto homogeneous = lattice.homogeneous(node * std::exp(sum / double(over.values().size())));
-    for (std::size_t n = 0; n < solutions.size(); ++n) {
-        const ComplianceTable::Entry felt = complianceOf(lattice, n, solutions[n].deflection);
+    for (std::size_t n = 0; n < solved.responses.size(); ++n) {
+        const ComplianceTable::Entry felt = complianceOf(solved.responses[n]);
         const ComplianceTable::Entry own  = homogeneous[n];
         result.table.compliance[n]       = {felt.value - own.value, felt.slopeX - own.slopeX, felt.slopeZ - own.slopeZ};
         result.table.contactStiffness[n] = contactOf(lattice, n, over, node);
     }
-    result.middle     = std::move(solutions[solutions.size() / 2]);
-    result.compliance = dot(lattice.loads[solutions.size() / 2], result.middle.deflection);
+    result.middle     = std::move(solved.whole);
+    result.compliance = solved.responses[middle].work;
     return result;
 }
 

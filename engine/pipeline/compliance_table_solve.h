@@ -3,6 +3,7 @@
 
 #include "engine/force/compliance_table.h"
 #include "engine/pipeline/patch.h"
+#include "engine/plate/footprint.h"
 #include "engine/plate/plate_solver.h"
 
 namespace palp {
@@ -23,9 +24,7 @@ struct FootprintTable {
 /// is kept for a ladder of rigidities, and a plate takes that of its geometric mean.
 struct FootprintLattice {
     FootprintTable         shape{};
-    std::vector<NodeField> loads{};      ///< 1 N each, in the order of ComplianceTable's entries [N]
-    std::vector<NodeField> slopesX{};    ///< change of each load as its footprint moves along x [N/m]
-    std::vector<NodeField> slopesZ{};    ///< along z [N/m]
+    std::vector<Footprint> loads{};      ///< 1 N each, in the order of ComplianceTable's entries
     double                 rigidity = 1; ///< D of the middle rung [N m]
     /// ln c(e)/c(0) of homogeneous windows, with its slopes, by rigidity; one rung without a foundation.
     std::vector<ComplianceTable::Entries> rungs{};
@@ -61,12 +60,13 @@ struct TableSolution {
     double          compliance; ///< c there [m/N]
 };
 
-/// Solves the self-compliances of all footprints on one plate, in one batch.
+/// Solves the self-compliances of all footprints on one plate: the middle to the tolerance, and the others so far that
+/// their c is right to it, see PlateSolver::solveFootprints().
 ///
 /// c(q) = p_q . w_q with A w_q = p_q. A is symmetric, so that dc/dq = 2 (dp_q/dq) . w_q: slopes need no further solve.
 /// k_c(q) is that of the rigidity's geometric mean over the footprint, weighted as the load is: at a step of the
 /// object it then changes over the width of a footprint, as c does.
-/// \throws Error as PlateSolver::solveAll()
+/// \throws Error as PlateSolver::solveFootprints()
 [[nodiscard]] TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver,
                                        double tolerance);
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
+#include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -23,6 +24,11 @@ bool fitsReference(const PlateGrid& grid)
     return grid.nodes() <= 513 * 513;
 }
 
+std::string stoppedAt(const SolveReport& report)
+{
+    return "the multigrid solver stopped at an error of about " + formatNumber(*report.errorEstimate);
+}
+
 bool sameButRigidity(const Plate& a, const Plate& b)
 {
     return a.grid == b.grid && a.edges == b.edges && a.poissonRatio == b.poissonRatio && a.foundation == b.foundation;
@@ -31,57 +37,125 @@ bool sameButRigidity(const Plate& a, const Plate& b)
 } // namespace
 
 struct PlateSolver::Multigrid {
-    compute::Context                    context;
-    bool                                likeTheHost; ///< smooths as the host does, and takes one load after the other
-    PlateKernels                        kernels;
-    std::optional<MultigridPlateSolver> solver;
-    Plate                               plate; ///< of the solver
-    double                              tolerance = 0;
-    std::size_t                         loads     = 0; ///< that the solver takes together
+    /// A solver for one number of loads, and the plate that it was made for.
+    struct Prepared {
+        std::optional<MultigridPlateSolver> solver;
+        Plate                               plate;
+        double                              tolerance = 0;
+        std::size_t                         loads     = 0; ///< that it takes together
+
+        /// Makes the solver ready for a rigidity.
+        /// \return milliseconds that it took
+        double prepare(compute::Context& context, const PlateKernels& kernels, const Plate& wanted,
+                       std::size_t wantedLoads, double wantedTolerance)
+        {
+            const auto began = std::chrono::steady_clock::now();
+            if (solver && sameButRigidity(plate, wanted) && tolerance == wantedTolerance && loads == wantedLoads) {
+                solver->setRigidity(wanted.rigidity);
+            } else {
+                solver.reset(); // its memory goes before the next one's comes
+                solver.emplace(context, kernels, wanted,
+                               MultigridPlateSolver::Settings{.tolerance = wantedTolerance, .loads = int(wantedLoads)});
+                plate     = wanted;
+                tolerance = wantedTolerance;
+                loads     = wantedLoads;
+            }
+            return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
+        }
+    };
+
+    compute::Context            context;
+    bool                        likeTheHost; ///< smooths as the host does, and takes one load after the other
+    PlateKernels                kernels;
+    std::optional<PlateKernels> kernelsOfEights; ///< once they are needed
+    Prepared                    loads, eights;
 
     Multigrid(const compute::ContextSettings& settings, SoftwareBits bits)
-        : context(settings), likeTheHost(context.processor().kind == compute::ProcessorKind::host ||
-                                         (bits == SoftwareBits::ofTheHost &&
-                                          context.processor().kind == compute::ProcessorKind::software)),
+        : context(settings), likeTheHost(isHost() || (bits == SoftwareBits::ofTheHost &&
+                                                      context.processor().kind == compute::ProcessorKind::software)),
           kernels(context, Schedule::automatic, Precision::best,
                   likeTheHost ? Smoother::chebyshev : Smoother::automatic)
     {
     }
+
+    [[nodiscard]] bool isHost() const { return context.processor().kind == compute::ProcessorKind::host; }
 
     /// Returns how many loads are solved together. A GPU has lanes to fill. On the host the fields of one load fit its
     /// cache and those of 49 do not: one after the other they take two thirds of the time (65 nodes: 15 in place of 24
     /// ms).
     [[nodiscard]] std::size_t batchOf(std::size_t all) const { return likeTheHost ? 1 : all; }
 
-    /// \return milliseconds that it took
-    double prepare(const Plate& wanted, std::size_t wantedLoads, double wantedTolerance)
-    {
-        const auto began = std::chrono::steady_clock::now();
-        if (solver && sameButRigidity(plate, wanted) && tolerance == wantedTolerance && loads == wantedLoads) {
-            solver->setRigidity(wanted.rigidity);
-        } else {
-            solver.reset(); // its memory goes before the next one's comes
-            solver.emplace(context, kernels, wanted,
-                           MultigridPlateSolver::Settings{.tolerance = wantedTolerance, .loads = int(wantedLoads)});
-            plate     = wanted;
-            tolerance = wantedTolerance;
-            loads     = wantedLoads;
-        }
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
-    }
-
     [[nodiscard]] std::vector<PlateSolution> solve(const Plate& wanted, std::span<const NodeField> nodalForces,
-                                                   double wantedTolerance)
+                                                   double tolerance)
     {
         const std::size_t          batch = batchOf(nodalForces.size());
-        const double               setUp = prepare(wanted, batch, wantedTolerance);
+        const double               setUp = loads.prepare(context, kernels, wanted, batch, tolerance);
         std::vector<PlateSolution> solutions;
         for (; !nodalForces.empty(); nodalForces = nodalForces.subspan(batch))
-            for (PlateSolution& solution : solver->solve(nodalForces.first(batch))) {
+            for (PlateSolution& solution : loads.solver->solve(nodalForces.first(batch))) {
                 solution.report.setUpMilliseconds = setUp;
                 solutions.push_back(std::move(solution));
             }
         return solutions;
+    }
+
+    /// \return the solution; not converged if that of any load is not
+    [[nodiscard]] FootprintSolution solve(const Plate& wanted, std::span<const Footprint> given, std::size_t whole,
+                                          double tolerance)
+    {
+        FootprintSolution solution;
+        solution.responses.resize(given.size());
+        const std::vector<std::size_t>     all    = indices(given.size());
+        const std::span<const std::size_t> first  = batchOf(all.size()) == 1 ? std::span(all).subspan(whole, 1) : all;
+        const double                       setUp  = loads.prepare(context, kernels, wanted, first.size(), tolerance);
+        SolveReport                        report = solveTogether(loads, given, first, solution);
+        report.setUpMilliseconds                  = setUp;
+        solution.whole                            = {loads.solver->deflectionOf(first.size() == 1 ? 0 : whole), report};
+        if (first.size() == all.size()) return solution;
+
+        std::vector<std::size_t> others = all;
+        others.erase(others.begin() + std::ptrdiff_t(whole));
+        if (others.size() >= kEight) prepareEights(wanted, tolerance);
+        for (std::span<const std::size_t> left = others; !left.empty();) {
+            const auto eight = left.first(std::min(kEight, left.size()));
+            left             = left.subspan(eight.size());
+            if (eight.size() == kEight && solveTogether(eights, given, eight, solution).converged) continue;
+            for (const std::size_t n : eight) { // too few, or too much contrast for floats
+                const SolveReport own = solveTogether(loads, given, {&n, 1}, solution);
+                if (!own.converged) solution.whole.report = own;
+            }
+        }
+        return solution;
+    }
+
+private:
+    static constexpr std::size_t kEight = 8;
+
+    [[nodiscard]] static std::vector<std::size_t> indices(std::size_t count)
+    {
+        std::vector<std::size_t> all(count);
+        std::iota(all.begin(), all.end(), std::size_t(0));
+        return all;
+    }
+
+    void prepareEights(const Plate& wanted, double tolerance)
+    {
+        constexpr double kLoosest = 1e-2; // beyond it the estimate of the first steps is a guess
+        if (!kernelsOfEights)
+            kernelsOfEights.emplace(context, Schedule::automatic, Precision::floatGradients, Smoother::chebyshev,
+                                    isHost() ? FieldLayout::sideBySide : FieldLayout::apart);
+        eights.prepare(context, *kernelsOfEights, wanted, kEight, std::min(kLoosest, std::sqrt(tolerance)));
+    }
+
+    /// Solves for these loads in one batch.
+    static SolveReport solveTogether(Prepared& by, std::span<const Footprint> given, std::span<const std::size_t> which,
+                                     FootprintSolution& to)
+    {
+        std::vector<Footprint> batch;
+        for (const std::size_t n : which) batch.push_back(given[n]);
+        const MultigridPlateSolver::Responses found = by.solver->solveFootprints(batch);
+        for (std::size_t n = 0; n < which.size(); ++n) to.responses[which[n]] = found.of[n];
+        return found.report;
     }
 };
 
@@ -132,13 +206,47 @@ std::vector<PlateSolution> PlateSolver::solveAll(const Plate& plate, std::span<c
             const auto                 failed =
                 std::ranges::find_if(solutions, [](const PlateSolution& s) { return !s.report.converged; });
             if (failed == solutions.end() || !fitsReference(plate.grid)) return solutions;
-            note_ = "the multigrid solver stopped at an error of about " + formatNumber(*failed->report.errorEstimate);
+            note_ = stoppedAt(failed->report);
         } catch (const compute::ProcessorLost& error) {
-            note_ = error.what();
-            name_ = kReference;
-            multigrid_.reset();
+            lose(error);
         }
     }
+    return byReference(plate, nodalForces, tolerance);
+}
+
+FootprintSolution PlateSolver::solveFootprints(const Plate& plate, std::span<const Footprint> loads, std::size_t whole,
+                                               double tolerance)
+{
+    PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
+    if (multigrid_) {
+        try {
+            FootprintSolution solution = multigrid_->solve(plate, loads, whole, tolerance);
+            if (solution.whole.report.converged || !fitsReference(plate.grid)) return solution;
+            note_ = stoppedAt(solution.whole.report);
+        } catch (const compute::ProcessorLost& error) {
+            lose(error);
+        }
+    }
+    std::vector<NodeField> fields;
+    for (const Footprint& load : loads) fields.push_back(load.load(plate.grid));
+    std::vector<PlateSolution> solutions = byReference(plate, fields, tolerance);
+    FootprintSolution          solution;
+    for (std::size_t n = 0; n < loads.size(); ++n)
+        solution.responses.push_back(responseOf(loads[n], solutions[n].deflection));
+    solution.whole = std::move(solutions[whole]);
+    return solution;
+}
+
+void PlateSolver::lose(const std::exception& why)
+{
+    note_ = why.what();
+    name_ = kReference;
+    multigrid_.reset();
+}
+
+std::vector<PlateSolution> PlateSolver::byReference(const Plate& plate, std::span<const NodeField> nodalForces,
+                                                    double tolerance)
+{
     const ReferencePlateSolver solver(plate);
     std::vector<PlateSolution> solutions;
     for (const NodeField& load : nodalForces) {

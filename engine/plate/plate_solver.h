@@ -1,10 +1,12 @@
 #pragma once
+#include <exception>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/plate/footprint.h"
 #include "engine/plate/plate.h"
 
 namespace palp {
@@ -13,6 +15,12 @@ namespace palp {
 enum class SoftwareBits {
     itsOwn,   ///< the way that is fastest there
     ofTheHost ///< the host's way, with the same bits as the host: for replays
+};
+
+/// What footprints on one plate feel.
+struct FootprintSolution {
+    std::vector<FootprintResponse> responses; ///< in the order of the loads
+    PlateSolution                  whole;     ///< under the load whose whole deflection was asked for
 };
 
 /// Solves plates: on a GPU or the host by multigrid, or by the reference solver.
@@ -59,8 +67,22 @@ public:
     [[nodiscard]] std::vector<PlateSolution> solveAll(const Plate& plate, std::span<const NodeField> nodalForces,
                                                       double tolerance = 1e-4);
 
+    /// Solves for loads on few nodes of one plate, with the whole deflection under one of them.
+    ///
+    /// That one is solved to the tolerance, in doubles. The works of the others are as accurate although they are solved
+    /// less far: to the square root of the tolerance, at most 1e-2, see MultigridPlateSolver::solveFootprints(). On the
+    /// host they are solved by eights, in floats; on a GPU all in one batch.
+    /// \param whole  index of that load
+    [[nodiscard]] FootprintSolution solveFootprints(const Plate& plate, std::span<const Footprint> loads,
+                                                    std::size_t whole, double tolerance = 1e-4);
+
 private:
     struct Multigrid;
+
+    void lose(const std::exception& why); ///< the processor, for good
+    [[nodiscard]] static std::vector<PlateSolution>
+    byReference(const Plate& plate, std::span<const NodeField> nodalForces, double tolerance);
+
     std::unique_ptr<Multigrid> multigrid_; ///< null: the reference solver is used
     std::string                name_{kReference};
     std::string                note_;

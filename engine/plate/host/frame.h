@@ -7,6 +7,7 @@
 
 #include "compute_shaders/shared/cg_state.h"
 #include "compute_shaders/shared/coarse_band.h"
+#include "compute_shaders/shared/footprint_layout.h"
 #include "compute_shaders/shared/plate_push.h"
 #include "compute_shaders/shared/tile_layout.h"
 #include "compute_shaders/shared/transfer_layout.h"

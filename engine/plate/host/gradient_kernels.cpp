@@ -1,6 +1,7 @@
 #include "engine/plate/host/together.h"
 
-// Conjugate gradients: cg_dot.comp, cg_scalars.comp, cg_direction.comp, cg_update.comp and plate_result.comp.
+// Conjugate gradients: cg_dot.comp, cg_scalars.comp, cg_direction.comp, cg_update.comp,
+// plate_result.comp and plate_footprints.comp.
 
 namespace palp::PALPATE_ISA {
 namespace {
@@ -214,6 +215,42 @@ void resultOf(const HostDispatch& d)
     }
 }
 
+template <class At>
+void footprintsOf(const HostDispatch& d)
+{
+    using Real = NumberOf<At>;
+    static thread_local Scratch<At> scratch;
+    const std::ptrdiff_t            nodes = pushed<VectorPush>(d).nodes, width = d.workgroup.x;
+    const auto*                     words     = bound<const uint>(d, 2);
+    auto*                           responses = bound<Real>(d, 3);
+    At* const                       left      = scratch.of(width);
+    for (std::ptrdiff_t field = 0; field < fieldsOf<At>(d); ++field) {
+        const auto* r = bound<const At>(d, 0) + field * nodes;
+        const auto* x = bound<const At>(d, 1) + field * nodes;
+        addTerms(nodes, width, left, [=](std::ptrdiff_t n) { return r[n] * x[n]; });
+        for (int lane = 0; lane < NodeOf<At>::kLoads; ++lane) {
+            const std::ptrdiff_t load = field * NodeOf<At>::kLoads + lane;
+            Real                 sums[kResponseWords][1024];
+            for (std::ptrdiff_t t = 0; t < width; ++t) {
+                sums[kResponseWork][t]    = numberOf(left[t], lane);
+                sums[kResponseChangeX][t] = sums[kResponseChangeZ][t] = 0;
+            }
+            const uint* part  = words + words[load * kFootprintHead];
+            const uint  count = words[load * kFootprintHead + 1];
+            for (uint k = 0; k < count; ++k, part += kPartWords) {
+                const Real w = numberOf(x[part[0]], lane);
+                for (int n = 0; n < kResponseWords; ++n) {
+                    float number;
+                    __builtin_memcpy(&number, part + 1 + n, sizeof number);
+                    sums[n][k % width] += Real(number) * w;
+                }
+            }
+            for (int n = 0; n < kResponseWords; ++n)
+                responses[load * kResponseWords + n] = total(sums[n], uint(width), uint(width));
+        }
+    }
+}
+
 } // namespace
 
 PALPATE_IN_BOTH_PRECISIONS(beta)
@@ -223,5 +260,6 @@ PALPATE_REALS_ALONE_AND_TOGETHER(stepDots)
 PALPATE_REALS_ALONE_AND_TOGETHER(direction)
 PALPATE_REALS_ALONE_AND_TOGETHER(update)
 PALPATE_REALS_ALONE_AND_TOGETHER(result)
+PALPATE_REALS_ALONE_AND_TOGETHER(footprints)
 
 } // namespace palp::PALPATE_ISA

@@ -25,51 +25,36 @@ constexpr HostKernels kTable{
 #include "compute_shaders/shared/plate_kernels.def"
 };
 
-// The kernels on fields of several loads. What is prepared for a rigidity, and scalars, have no fields.
-#define PALPATE_TOGETHER(name) void name##_together(const compute::HostDispatch& d);
-#define PALPATE_REALS_TOGETHER(name) PALPATE_TOGETHER(name##_f32) PALPATE_TOGETHER(name##_f64)
-PALPATE_TOGETHER(relaxFirst)
-PALPATE_TOGETHER(relax)
-PALPATE_TOGETHER(smoothFirst)
-PALPATE_TOGETHER(smooth)
-PALPATE_TOGETHER(relaxTile)
-PALPATE_TOGETHER(copyTile)
-PALPATE_TOGETHER(residual)
-PALPATE_TOGETHER(restrict)
-PALPATE_TOGETHER(correct)
-PALPATE_REALS_TOGETHER(coarseSolve)
-PALPATE_REALS_TOGETHER(start)
-PALPATE_REALS_TOGETHER(interpolate)
-PALPATE_REALS_TOGETHER(interpolateFirst)
-PALPATE_REALS_TOGETHER(apply)
-PALPATE_REALS_TOGETHER(dots)
-PALPATE_REALS_TOGETHER(stepDots)
-PALPATE_REALS_TOGETHER(direction)
-PALPATE_REALS_TOGETHER(update)
-PALPATE_REALS_TOGETHER(result)
-#undef PALPATE_TOGETHER
-#undef PALPATE_REALS_TOGETHER
-
-#define PALPATE_TOGETHER(name) .name = &name##_together,
-#define PALPATE_REALS_TOGETHER(name) .name##_f32 = &name##_f32_together, .name##_f64 = &name##_f64_together,
-constexpr HostKernels kTogether{
-    .coarsen      = &coarsen,
-    .divisor      = &divisor,
-    .jumpMark     = &jumpMark,
-    .jumpList     = &jumpList,
-    .assemble_f32 = &assemble_f32,
-    .assemble_f64 = &assemble_f64,
-    .factor_f32   = &factor_f32,
-    .factor_f64   = &factor_f64,
-    PALPATE_TOGETHER(relaxFirst) PALPATE_TOGETHER(relax) PALPATE_TOGETHER(smoothFirst) PALPATE_TOGETHER(smooth)
-        PALPATE_TOGETHER(relaxTile) PALPATE_TOGETHER(copyTile) PALPATE_TOGETHER(residual) PALPATE_TOGETHER(restrict)
-            PALPATE_TOGETHER(correct) PALPATE_REALS_TOGETHER(coarseSolve) PALPATE_REALS_TOGETHER(start)
-                PALPATE_REALS_TOGETHER(interpolate) PALPATE_REALS_TOGETHER(interpolateFirst)
-                    PALPATE_REALS_TOGETHER(apply) PALPATE_REALS_TOGETHER(dots) PALPATE_REALS_TOGETHER(stepDots)
-                        .beta_f32 = &beta_f32,
-    .beta_f64                     = &beta_f64,
-    .step_f32                     = &step_f32,
-    .step_f64                     = &step_f64,
-    PALPATE_REALS_TOGETHER(direction) PALPATE_REALS_TOGETHER(update) PALPATE_REALS_TOGETHER(result)};
+// The same, with those on fields for several loads. What is prepared for a rigidity, and scalars, have no fields.
+#define PALPATE_TOGETHER(name)                                                                                         \
+    void name##_together(const compute::HostDispatch& d);                                                              \
+    all.name = &name##_together;
+#define PALPATE_REALS_TOGETHER(name)                                                                                   \
+    PALPATE_TOGETHER(name##_f32)                                                                                       \
+    PALPATE_TOGETHER(name##_f64)
+constexpr HostKernels kTogether = [] {
+    HostKernels all = kTable;
+    PALPATE_TOGETHER(relaxFirst)
+    PALPATE_TOGETHER(relax)
+    PALPATE_TOGETHER(smoothFirst)
+    PALPATE_TOGETHER(smooth)
+    PALPATE_TOGETHER(relaxTile)
+    PALPATE_TOGETHER(copyTile)
+    PALPATE_TOGETHER(residual)
+    PALPATE_TOGETHER(restrict)
+    PALPATE_TOGETHER(correct)
+    PALPATE_REALS_TOGETHER(coarseSolve)
+    PALPATE_REALS_TOGETHER(start)
+    PALPATE_REALS_TOGETHER(interpolate)
+    PALPATE_REALS_TOGETHER(interpolateFirst)
+    PALPATE_REALS_TOGETHER(apply)
+    PALPATE_REALS_TOGETHER(dots)
+    PALPATE_REALS_TOGETHER(stepDots)
+    PALPATE_REALS_TOGETHER(direction)
+    PALPATE_REALS_TOGETHER(update)
+    PALPATE_REALS_TOGETHER(result)
+    PALPATE_REALS_TOGETHER(footprints)
+    return all;
+}();
 
 } // namespace palp::PALPATE_ISA

@@ -86,6 +86,18 @@ using NumberOf = typename NodeOf<At>::Number;
 template <class Real, class At>
 using AsMany = typename NodeOf<At>::template Of<Real>;
 
+/// Returns the number of one load at a node.
+template <class Real>
+Real numberOf(Real number, int)
+{
+    return number;
+}
+template <class Real>
+Real numberOf(const Together<Real>& numbers, int load)
+{
+    return numbers[load];
+}
+
 /// Returns how many fields a dispatch has, each with what At says at its nodes.
 template <class At>
 std::ptrdiff_t fieldsOf(const HostDispatch& d)

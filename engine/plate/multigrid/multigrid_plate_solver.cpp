@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +12,7 @@
 #include <utility>
 
 #include "compute_shaders/shared/cg_state.h"
+#include "compute_shaders/shared/footprint_layout.h"
 #include "compute_shaders/shared/plate_push.h"
 #include "compute_shaders/shared/tile_layout.h"
 #include "engine/compute/command_list.h"
@@ -99,6 +101,22 @@ struct MultigridPlateSolver::Impl {
         int                        dispatchesPerCycle = 0;
         PlateWork                  nestedWork, stepsWork; ///< before the steps on the finest level; kStepsPerList steps
     };
+    /// Memory for loads on few nodes: what the host writes and reads.
+    struct FootprintBuffers {
+        Buffer  words; ///< see shared/footprint_layout.h
+        Staging hostWords;
+        Buffer  responses, hostResponses;
+
+        FootprintBuffers(compute::Context& context, std::size_t count, std::size_t responseBytes)
+            : words(context, "footprints", 4 * count, Intent::processor), hostWords(context, words),
+              responses(context, "responses", responseBytes, Intent::processor),
+              hostResponses(context, "responses for the host", responseBytes, Intent::readback)
+        {
+        }
+    };
+    std::optional<FootprintBuffers> footprints; ///< once they are asked for
+    std::vector<double>             works;      ///< of a unit of each load along a unit of its deflection [N m]
+
     std::optional<CommandList> prepareList;
     std::array<Lists, 3>       lists;               ///< by how the rigidity jumps
     Jumps                      jumps = Jumps::none; ///< chooses among them
@@ -144,6 +162,12 @@ struct MultigridPlateSolver::Impl {
         list.dispatch(k.result, {passes.levels[0].answer, units, result},
                       shared::VectorPush{std::uint32_t(passes.nodes()), passes.partials(), 0},
                       passes.inOrder(k.result, 0));
+        if (footprints) {
+            list.dispatch(k.footprints,
+                          {passes.levels[0].left, passes.levels[0].answer, footprints->words, footprints->responses},
+                          shared::VectorPush{std::uint32_t(passes.nodes()), 0, 0}, {1, 1, loads});
+            list.copy(footprints->responses, footprints->hostResponses);
+        }
         list.copy(passes.state, hostState);
         list.timestamp();
         list.end();
@@ -167,6 +191,7 @@ struct MultigridPlateSolver::Impl {
         list.timestamp();
         hostLoads.record(list);
         hostUnits.record(list);
+        if (footprints) footprints->hostWords.record(list);
         passes.enableSteps(list);
         passes.work = {};
         if (passes.levels.size() == 1) {
@@ -251,18 +276,71 @@ struct MultigridPlateSolver::Impl {
         const std::vector<double> scales = largestForces(nodalForces);
         const std::size_t         nodes  = plate.grid.nodes();
         for (std::size_t n = 0; n < nodalForces.size(); ++n) {
-            const double scale  = scales[n] > 0 ? 1 / scales[n] : 0;
-            const double metres = scales[n] / stiffness;
-            if (scale > 0 && !(metres > double(std::numeric_limits<float>::min()) &&
-                               metres < double(std::numeric_limits<float>::max())))
-                throw Error("plate: forces of " + formatQuantity(scales[n], "N") + " on a rigidity of " +
-                            formatQuantity(unitRigidity, "N m") + " give deflections that 32 bits cannot hold");
-            const Place   at   = placeOf(n);
-            float*        to   = hostLoads.floats().data() + at.first;
-            const double* from = nodalForces[n].values().data();
+            const double  scale = perUnit(n, scales[n]);
+            const Place   at    = placeOf(n);
+            float*        to    = hostLoads.floats().data() + at.first;
+            const double* from  = nodalForces[n].values().data();
             for (std::size_t m = 0; m < nodes; ++m) to[m * at.apart] = float(from[m] * scale);
-            hostUnits.floats()[n] = float(metres);
         }
+    }
+
+    /// Takes the largest force [N] of a load as its unit; returns units per newton.
+    double perUnit(std::size_t load, double largest)
+    {
+        const double metres = largest / stiffness;
+        if (largest > 0 &&
+            !(metres > double(std::numeric_limits<float>::min()) && metres < double(std::numeric_limits<float>::max())))
+            throw Error("plate: forces of " + formatQuantity(largest, "N") + " on a rigidity of " +
+                        formatQuantity(unitRigidity, "N m") + " give deflections that 32 bits cannot hold");
+        hostUnits.floats()[load] = float(metres);
+        return largest > 0 ? 1 / largest : 0;
+    }
+
+    /// Writes the same from loads on few nodes, and the parts of which their works are summed.
+    void upload(std::span<const Footprint> given)
+    {
+        PALP_EXPECT(given.size() == loads,
+                    std::to_string(given.size()) + " footprints for a solver of " + std::to_string(loads));
+        makeFootprints(given);
+        const std::span<float> forces = hostLoads.floats();
+        std::ranges::fill(forces, 0.0F);
+        works.assign(given.size(), 0);
+        std::uint32_t* const words = reinterpret_cast<std::uint32_t*>(footprints->hostWords.floats().data());
+        std::size_t          next  = shared::kFootprintHead * given.size();
+        for (std::size_t n = 0; n < given.size(); ++n) {
+            double largest = 0;
+            for (const Footprint::Part& part : given[n].parts) {
+                PALP_EXPECT(part.node < plate.grid.nodes(), "a footprint lies on nodes that the plate does not have");
+                if (!std::isfinite(part.force + part.changeX + part.changeZ))
+                    throw Error("plate: expected finite forces, found a footprint that is not a number or infinite");
+                largest = std::max(largest, std::abs(part.force));
+            }
+            const double scale                    = perUnit(n, largest);
+            const Place  at                       = placeOf(n);
+            works[n]                              = largest * largest / stiffness;
+            words[shared::kFootprintHead * n]     = std::uint32_t(next);
+            words[shared::kFootprintHead * n + 1] = std::uint32_t(given[n].parts.size());
+            for (const Footprint::Part& part : given[n].parts) {
+                const float force                       = float(part.force * scale);
+                forces[at.first + part.node * at.apart] = force;
+                words[next]                             = part.node;
+                words[next + 1]                         = std::bit_cast<std::uint32_t>(force);
+                words[next + 2]                         = std::bit_cast<std::uint32_t>(float(part.changeX * scale));
+                words[next + 3]                         = std::bit_cast<std::uint32_t>(float(part.changeZ * scale));
+                next += shared::kPartWords;
+            }
+        }
+    }
+
+    /// Makes room for these footprints. Lists that were recorded for less are recorded anew.
+    void makeFootprints(std::span<const Footprint> given)
+    {
+        std::size_t words = shared::kFootprintHead * given.size();
+        for (const Footprint& footprint : given) words += shared::kPartWords * footprint.parts.size();
+        if (footprints && 4 * words <= footprints->words.bytes()) return;
+        for (Lists& recorded : lists) recorded = {};
+        footprints.reset();
+        footprints.emplace(context, words, k.realBytes() * shared::kResponseWords * loads);
     }
 
     void uploadRigidity(const NodeField& rigidity)
@@ -291,6 +369,34 @@ struct MultigridPlateSolver::Impl {
     {
         const auto began = Clock::now();
         upload(nodalForces);
+        return readAnswers(iterate(began));
+    }
+
+    [[nodiscard]] Responses solve(std::span<const Footprint> given)
+    {
+        const auto began = Clock::now();
+        upload(given);
+        Responses responses{{}, iterate(began)};
+        footprints->hostResponses.makeVisibleToHost();
+        for (std::size_t n = 0; n < given.size(); ++n)
+            responses.of.push_back({response(n, shared::kResponseWork), response(n, shared::kResponseChangeX),
+                                    response(n, shared::kResponseChangeZ)});
+        return responses;
+    }
+
+    [[nodiscard]] double response(std::size_t load, int word) const
+    {
+        const Buffer&     from  = footprints->hostResponses;
+        const std::size_t at    = load * shared::kResponseWords + std::size_t(word);
+        const double      value = works[load] * (k.doubles ? from.as<double>()[at] : double(from.as<float>()[at]));
+        if (!std::isfinite(value))
+            throw Error("plate: the deflection is not finite; the rigidity or the load is out of range");
+        return value;
+    }
+
+    /// Takes steps for the loads that were uploaded, until the estimate is small enough.
+    [[nodiscard]] SolveReport iterate(Clock::time_point began)
+    {
         CommandList*          list                  = &run(&Lists::begin, &Impl::recordBegin);
         int                   done                  = int(worst(shared::kStateSteps));
         std::optional<double> processorMilliseconds = 0;
@@ -314,24 +420,29 @@ struct MultigridPlateSolver::Impl {
         report.workUnits = passes.workUnits(used.nestedWork) + done * passes.workUnits(used.stepsWork) / kStepsPerList;
         report.processorMilliseconds = processorMilliseconds;
         report.milliseconds          = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
-        return readAnswers(report);
+        return report;
     }
 
     [[nodiscard]] std::vector<PlateSolution> readAnswers(const SolveReport& report) const
     {
-        result.makeVisibleToHost();
         std::vector<PlateSolution> answers;
-        const std::size_t          nodes = plate.grid.nodes();
-        for (std::uint32_t load = 0; load < loads; ++load) {
-            const Place  at   = placeOf(load);
-            const float* from = result.as<float>().data() + at.first;
-            NodeField    w(plate.grid);
-            for (std::size_t m = 0; m < nodes; ++m) w.values()[m] = double(from[m * at.apart]);
-            if (!extremesOf(w.values()).finite)
-                throw Error("plate: the deflection is not finite; the rigidity or the load is out of range");
-            answers.push_back({std::move(w), report});
-        }
+        for (std::uint32_t load = 0; load < loads; ++load) answers.push_back({readAnswer(load), report});
         return answers;
+    }
+
+    [[nodiscard]] NodeField readAnswer(std::size_t load) const
+    {
+        result.makeVisibleToHost();
+        const Place  at   = placeOf(load);
+        const float* from = result.as<float>().data() + at.first;
+        NodeField    w(plate.grid);
+        for (double& value : w.values()) {
+            value = double(*from);
+            from += at.apart;
+        }
+        if (!extremesOf(w.values()).finite)
+            throw Error("plate: the deflection is not finite; the rigidity or the load is out of range");
+        return w;
     }
 };
 
@@ -370,6 +481,17 @@ std::vector<PlateSolution> MultigridPlateSolver::solve(std::span<const NodeField
 PlateSolution MultigridPlateSolver::solve(const NodeField& nodalForce)
 {
     return std::move(impl_->solve({&nodalForce, 1}).front());
+}
+
+MultigridPlateSolver::Responses MultigridPlateSolver::solveFootprints(std::span<const Footprint> loads)
+{
+    return impl_->solve(loads);
+}
+
+NodeField MultigridPlateSolver::deflectionOf(std::size_t load) const
+{
+    PALP_EXPECT(load < impl_->loads, "there is no load " + std::to_string(load));
+    return impl_->readAnswer(load);
 }
 
 int MultigridPlateSolver::dispatchesPerCycle() const noexcept

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/core/enum_names.h"
+#include "engine/plate/footprint.h"
 #include "engine/plate/plate.h"
 
 namespace palp {
@@ -28,8 +29,9 @@ constexpr auto namesOf(Schedule)
 
 /// The precision of conjugate gradients and the coarsest level.
 enum class Precision {
-    best,  ///< doubles where the processor has them
-    floats ///< as on a processor without doubles
+    best,           ///< doubles where the processor has them
+    floatGradients, ///< the same on the coarsest level, and conjugate gradients in floats: for tolerances of 1e-3 and more
+    floats          ///< as on a processor without doubles
 };
 
 /// The smoother of the errors that coarser grids cannot represent. Two steps of Chebyshev's iteration smooth better
@@ -114,6 +116,23 @@ public:
     /// \throws compute::ProcessorLost if the processor fails
     [[nodiscard]] std::vector<PlateSolution> solve(std::span<const NodeField> nodalForces);
     [[nodiscard]] PlateSolution              solve(const NodeField& nodalForce);
+
+    /// What footprints feel, and the report of the batch.
+    struct Responses {
+        std::vector<FootprintResponse> of;
+        SolveReport                    report;
+    };
+
+    /// Solves for loads on few nodes and returns what each feels. No field of numbers comes back, except by
+    /// deflectionOf().
+    ///
+    /// The work of a load is (f, x) + (r, x), with the residual r = f - A x that conjugate gradients have: its relative
+    /// error is the square of that of the answer in the energy norm, so that a tolerance of 1e-2 gives a compliance to
+    /// 1e-4. The works of the changes are as wrong as the answer.
+    /// \throws Error and compute::ProcessorLost as solve()
+    [[nodiscard]] Responses solveFootprints(std::span<const Footprint> loads);
+    /// Returns the deflection [m] under a load of the last solveFootprints().
+    [[nodiscard]] NodeField deflectionOf(std::size_t load) const;
 
     [[nodiscard]] int dispatchesPerCycle() const noexcept; ///< of the finest level, in the last solve
     [[nodiscard]] int levels() const noexcept;

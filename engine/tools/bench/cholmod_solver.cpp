@@ -64,6 +64,11 @@ public:
 
     void solve(std::span<const double> right, std::span<double> answer) override
     {
+        const std::size_t columns = right.size() / matrix_.nrow;
+        if (right_->ncol != columns) {
+            cholmod_free_dense(&right_, &common_);
+            right_ = cholmod_allocate_dense(matrix_.nrow, columns, matrix_.nrow, CHOLMOD_REAL, &common_);
+        }
         std::copy(right.begin(), right.end(), static_cast<double*>(right_->x));
         // This form of the solve keeps its work space from call to call.
         if (!cholmod_solve2(CHOLMOD_A, factor_, right_, nullptr, &answer_, nullptr, &y_, &e_, &common_))

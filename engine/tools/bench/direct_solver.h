@@ -21,7 +21,8 @@ public:
     /// \throws Error if it is not positive definite
     virtual void factorise(const PlateMatrix& matrix) = 0;
 
-    /// Solves with the last factors: right side [N] to deflection [m], by unknown.
+    /// Solves with the last factors: right side [N] to deflection [m], by unknown; several right sides, one after the
+    /// other, are solved at once.
     virtual void solve(std::span<const double> right, std::span<double> answer) = 0;
 
     /// Returns the most memory that it has held at once [byte]; empty if the library does not report it.

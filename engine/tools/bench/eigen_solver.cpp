@@ -30,8 +30,9 @@ public:
 
     void solve(std::span<const double> right, std::span<double> answer) override
     {
-        Eigen::Map<Eigen::VectorXd>(answer.data(), Eigen::Index(answer.size())) =
-            factors_.solve(Eigen::Map<const Eigen::VectorXd>(right.data(), Eigen::Index(right.size())));
+        const Eigen::Index unknowns = matrix_.rows(), columns = Eigen::Index(right.size()) / unknowns;
+        Eigen::Map<Eigen::MatrixXd>(answer.data(), unknowns, columns) =
+            factors_.solve(Eigen::Map<const Eigen::MatrixXd>(right.data(), unknowns, columns));
     }
 
     [[nodiscard]] std::optional<std::size_t> peakBytes() const override { return {}; }

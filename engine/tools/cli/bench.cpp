@@ -15,6 +15,7 @@
 #include "engine/tools/bench/outside_peers.h"
 #include "engine/tools/bench/plate_bench.h"
 #include "engine/tools/bench/point_bench.h"
+#include "engine/tools/bench/table_bench.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/named_option.h"
 #include "engine/tools/cli/solver_choice.h"
@@ -39,6 +40,7 @@ std::vector<std::string> allCases()
 {
     std::vector<std::string> names = plateCases();
     names.insert(names.end(), pointCases().begin(), pointCases().end());
+    names.insert(names.end(), tableCases().begin(), tableCases().end());
     return names;
 }
 
@@ -143,6 +145,11 @@ BenchReport measure(const BenchOptions& o)
         for (BenchRow& row : measurePoints(cases, o.solver, nodes, o.runs, onStep))
             report.rows.push_back(std::move(row));
     }
+    if (wants(tableCases())) {
+        const std::vector<int> nodes = o.nodes.empty() ? std::vector<int>{65, 129} : o.nodes;
+        for (BenchRow& row : measureTables(o.solver, nodes, o.maps, o.runs, onStep))
+            report.rows.push_back(std::move(row));
+    }
     return report;
 }
 
@@ -186,15 +193,16 @@ void addBenchCommand(CLI::App& app)
         ->add_option(
             "--cases", o->cases,
             "what to measure, separated by commas: new_map, new_load, contrast, jacobi, memory, batch, update, gather, "
-            "grid_map [all]")
+            "grid_map, table [all]")
         ->delimiter(',');
     bench
         ->add_option("--nodes", o->nodes, "nodes a side of the square grids, 33 to 1025, one more than a multiple of 4")
         ->delimiter(',');
     bench
-        ->add_option("--maps", o->maps,
-                     "rigidities of new_map, new_load and contrast, separated by commas: linear, hyperbolic, wart, "
-                     "disc_100, disc_0.1, discs [all]")
+        ->add_option(
+            "--maps", o->maps,
+            "rigidities of new_map, new_load, contrast and table, separated by commas: linear, hyperbolic, wart, "
+            "disc_100, disc_0.1, discs [all; of table linear, wart, disc_100]")
         ->delimiter(',');
     bench
         ->add_option("--schedule", o->schedule,

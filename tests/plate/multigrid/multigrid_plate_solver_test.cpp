@@ -11,6 +11,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/plate/load.h"
+#include "engine/plate/reference/plate_matrix.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "tests/support/shader_fixture.h"
 
@@ -426,6 +427,45 @@ TEST_F(MultigridPlate, LoadsSideBySideHaveTheBitsOfLoadsApart)
                 }
             }
         }
+}
+
+/// Energy of a field, w' A w [N m], from the reference's matrix.
+double energyOf(const Plate& plate, const NodeField& w)
+{
+    PlateMatrix matrix(plate);
+    matrix.assemble(plate);
+    std::vector<double> x(std::size_t(matrix.unknowns()));
+    matrix.gather(w, x);
+    double sum = 0;
+    for (std::size_t column = 0; column < x.size(); ++column)
+        for (int at = matrix.columnStart()[column]; at < matrix.columnStart()[column + 1]; ++at) {
+            const auto row = std::size_t(matrix.row()[std::size_t(at)]);
+            sum += (row == column ? 1 : 2) * matrix.value()[std::size_t(at)] * x[row] * x[column];
+        }
+    return sum;
+}
+
+/// What (f, x) + (r, x) lacks is the energy of the answer's error, exactly: nothing of the first order.
+TEST_F(MultigridPlate, AComplianceIsWrongByTheSquareOfTheAnswersError)
+{
+    for (const int law : {1, 3, 6}) {
+        const Plate     plate = plateOf(64, 64, {}, kLaws[law]);
+        const NodeField load  = loadOn(plate.grid), none(plate.grid),
+                        w     = ReferencePlateSolver(plate).solve(load).deflection;
+        const double    truth = dot(load, w);
+        const Footprint footprint(load, load, none);
+        for (const double tolerance : {0.5, 0.03, 0.003}) {
+            MultigridPlateSolver solver = solverFor(plate, {.tolerance = tolerance});
+            const auto           felt   = solver.solveFootprints({&footprint, 1}).of[0];
+            NodeField            error  = solver.deflectionOf(0);
+            EXPECT_NEAR(felt.changeX, dot(load, error), 1e-6 * truth) << "read back in floats";
+            EXPECT_EQ(felt.changeZ, 0);
+            for (std::size_t n = 0; n < error.values().size(); ++n) error.values()[n] -= w.values()[n];
+            const double left = energyOf(plate, error);
+            EXPECT_NEAR(truth - felt.work, left, 0.01 * left + 1e-7 * truth) << "1e-7: rigidities in floats";
+            EXPECT_LT(std::abs(truth - felt.work) / truth, 1.1 * tolerance * tolerance + 1e-6);
+        }
+    }
 }
 
 TEST_F(MultigridPlate, RepeatsAreEqualToTheBitAndSoIsANewSolver)

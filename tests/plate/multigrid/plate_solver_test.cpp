@@ -74,6 +74,54 @@ TEST(PlateSolver, WhatTheDeviceCannotConvergeTheReferenceSolves)
     EXPECT_NE(solver.solve(plateOf(64, 10), load).report.solver, "reference") << "for that plate only";
 }
 
+/// Tables: one load alone, the others by eights where the host's way is taken, and some left over.
+TEST(PlateSolver, WhatFootprintsFeelIsRightToTheToleranceOnEveryProcessor)
+{
+    const Plate            plate = plateOf(64, 100);
+    ReferencePlateSolver   reference(plate);
+    std::vector<Footprint> loads;
+    for (int n = 0; n < 12; ++n) {
+        const double x = 0.3 + 0.03 * n, z = 0.6 - 0.02 * n, step = 1.0 / 128;
+        NodeField    change = footprintLoad(plate.grid, 1, x + step, z, 0.1);
+        for (std::size_t m = 0; m < change.values().size(); ++m)
+            change.values()[m] -= footprintLoad(plate.grid, 1, x, z, 0.1).values()[m];
+        loads.emplace_back(footprintLoad(plate.grid, 1, x, z, 0.1), change, NodeField(plate.grid));
+    }
+    for (const std::string& name :
+         {processorOfTests(), std::string(compute::kHostProcessor), std::string(PlateSolver::kReference)}) {
+        PlateSolver             solver(name);
+        const FootprintSolution found = solver.solveFootprints(plate, loads, 5, 1e-4);
+        ASSERT_EQ(found.responses.size(), loads.size());
+        for (std::size_t n = 0; n < loads.size(); ++n) {
+            const NodeField         w     = reference.solve(loads[n].load(plate.grid)).deflection;
+            const FootprintResponse truth = responseOf(loads[n], w);
+            EXPECT_NEAR(found.responses[n].work, truth.work, 1e-4 * truth.work) << name << ", load " << n;
+            EXPECT_NEAR(found.responses[n].changeX, truth.changeX, 2e-2 * std::abs(truth.changeX) + 1e-3 * truth.work)
+                << "changes are as wrong as the answer, 1e-2";
+            if (n == 5) {
+                EXPECT_LT(difference(found.whole.deflection, w), 1e-4);
+            }
+        }
+        EXPECT_EQ(found.whole.report.solver, solver.name());
+    }
+}
+
+/// A replay on Vulkan in software repeats a session of the host, tables included.
+TEST(PlateSolver, FootprintsHaveTheBitsOfTheHostWhereTheyAreAskedFor)
+{
+    if (compute::listProcessors().empty()) GTEST_SKIP() << "no Vulkan";
+    const Plate            plate = plateOf(40, 100);
+    std::vector<Footprint> loads;
+    for (int n = 0; n < 9; ++n)
+        loads.emplace_back(footprintLoad(plate.grid, 1, 0.3 + 0.04 * n, 0.5, 0.1), NodeField(plate.grid),
+                           NodeField(plate.grid));
+    PlateSolver host(compute::kHostProcessor), software("lavapipe", 0, SoftwareBits::ofTheHost);
+    const auto  expected = host.solveFootprints(plate, loads, 4), found = software.solveFootprints(plate, loads, 4);
+    for (std::size_t n = 0; n < loads.size(); ++n)
+        EXPECT_EQ(found.responses[n].work, expected.responses[n].work) << "load " << n;
+    EXPECT_EQ(found.whole.deflection.values(), expected.whole.deflection.values());
+}
+
 /// As many as the table of a moving contact has, on every processor and by the reference alone.
 TEST(PlateSolver, SeveralLoadsOfOnePlateAreThoseOfEachAlone)
 {

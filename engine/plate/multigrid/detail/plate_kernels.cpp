@@ -90,10 +90,12 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
     const HostKernels& host       = sideBySide ? *hostVariant().together : *hostVariant().kernels;
     const Shapes       shapes     = shapesFor(context);
     const bool         f64        = context.processor().float64 && precision == Precision::best;
+    const bool         coarse     = context.processor().float64 && precision != Precision::floats;
     all_.reset(new All{
-        .doubles   = f64,
-        .smoothing = smoothingBy(smoother, schedule, context),
-        .together  = sideBySide ? kLoadsTogether : 1,
+        .doubles       = f64,
+        .coarseDoubles = coarse,
+        .smoothing     = smoothingBy(smoother, schedule, context),
+        .together      = sideBySide ? kLoadsTogether : 1,
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape)                                              \
     .name = compute::Kernel(context, kernels::name(host), shapes.shape),
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)                                               \
@@ -101,6 +103,11 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"
     });
+    if (coarse && !f64) {
+        all_->assemble    = compute::Kernel(context, kernels::assemble<double>(host), shapes.tile);
+        all_->factor      = compute::Kernel(context, kernels::factor<double>(host), shapes.alone);
+        all_->coarseSolve = compute::Kernel(context, kernels::coarseSolve<double>(host), shapes.alone);
+    }
     if (isFused(context, schedule, all_->smoothing.by)) all_->fused.emplace(fusedKernels(context, shapes));
 }
 

@@ -27,7 +27,8 @@ struct PlateKernels::All {
 #include "compute_shaders/shared/plate_kernels.def"
     };
 
-    bool      doubles = false;
+    bool      doubles       = false; ///< in conjugate gradients
+    bool      coarseDoubles = false; ///< on the coarsest level
     Smoothing smoothing;
     int       together = 1; ///< loads whose numbers lie side by side at every node of a field
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
@@ -39,6 +40,10 @@ struct PlateKernels::All {
     [[nodiscard]] std::size_t realBytes() const noexcept
     {
         return doubles ? sizeof(double) : sizeof(float);
+    }
+    [[nodiscard]] std::size_t coarseBytes() const noexcept
+    {
+        return coarseDoubles ? sizeof(double) : sizeof(float);
     }
 };
 

@@ -48,8 +48,9 @@ PlatePasses::PlatePasses(compute::Context& context, const PlateKernels::All& ker
                          std::uint32_t loads)
     : state(context, "state", kernels.realBytes() * shared::kStateWords * loads, Intent::processor), context_(context),
       k(kernels), grids_(std::move(grids)), loads_(loads), partials_(partialsFor(nodesOf(level(0)))),
-      band_(reals("band", bandSize())), factor_(reals("factor", bandSize())), lost_(floats("lost pivots", 1)),
-      sums_(reals("partial sums", 2 * std::size_t(loads_) * partials_)),
+      band_(context, "band", kernels.coarseBytes() * bandSize(), Intent::processor),
+      factor_(context, "factor", kernels.coarseBytes() * bandSize(), Intent::processor),
+      lost_(floats("lost pivots", 1)), sums_(reals("partial sums", 2 * std::size_t(loads_) * partials_)),
       arguments_(context, "groups of dispatches", argumentBytes(), Intent::processor),
       hostArguments_(context, "groups from the host", argumentBytes(), Intent::upload),
       hostTiles_(context, "numbers of tiles for the host", 4 * grids_.levels.size(), Intent::readback)
