@@ -361,11 +361,10 @@ void keep(Patch& patch, PlateSolution solution, double compliance)
 
 void bendPlate(Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 {
-    const StageClock clock(patch.times.solve);
-    const NodeField  load     = unitLoad(patch.plate.grid, settings);
-    PlateSolution    solution = solver.solve(patch.plate, load, settings.tolerance);
-    const double     softness = dot(load, solution.deflection);
-    keep(patch, std::move(solution), softness);
+    const StageClock  clock(patch.times.solve);
+    const Footprint   finger(unitLoad(patch.plate.grid, settings));
+    FootprintSolution solved = solver.solveFootprints(patch.plate, {&finger, 1}, 0, settings.tolerance);
+    keep(patch, std::move(solved.whole), solved.responses.front().work);
 }
 
 /// Bends the plate also under each footprint of a lattice.
@@ -503,8 +502,9 @@ std::optional<double> discretisationError(const Patch& patch, const PatchSetting
     for (int i = 0; i < coarse.grid.nodesX(); ++i)
         for (int j = 0; j < coarse.grid.nodesZ(); ++j) coarse.rigidity(i, j) = patch.plate.rigidity(2 * i, 2 * j);
     if (whyUnsolvable(coarse)) return {};
-    const NodeField load       = unitLoad(coarse.grid, settings);
-    const double    compliance = dot(load, solver.solve(coarse, load, settings.tolerance).deflection);
+    const Footprint finger(unitLoad(coarse.grid, settings));
+    const double    compliance =
+        solver.solveFootprints(coarse, {&finger, 1}, 0, settings.tolerance).responses.front().work;
     return std::abs(compliance - patch.compliance) / 3 / patch.compliance;
 }
 

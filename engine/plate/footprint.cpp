@@ -12,6 +12,11 @@ Footprint::Footprint(const NodeField& load, const NodeField& changeX, const Node
         if (force[n] != 0 || x[n] != 0 || z[n] != 0) parts.push_back({std::uint32_t(n), force[n], x[n], z[n]});
 }
 
+Footprint::Footprint(const NodeField& load)
+    : Footprint(load, NodeField(load.nodesX(), load.nodesZ()), NodeField(load.nodesX(), load.nodesZ()))
+{
+}
+
 NodeField Footprint::load(const PlateGrid& grid) const
 {
     NodeField field(grid);

@@ -20,6 +20,8 @@ struct Footprint {
     std::vector<Part> parts{}; ///< nodes ascending
 
     Footprint() = default;
+    /// Takes the nodes at which the load is not 0; it does not move.
+    explicit Footprint(const NodeField& load);
     /// Takes the nodes at which any of these fields is not 0; the fields lie on one grid.
     Footprint(const NodeField& load, const NodeField& changeX, const NodeField& changeZ);
 

@@ -42,12 +42,17 @@ void relaxTileOf(const HostDispatch& d)
                              const Real *         f = force + first + at, *before = field.row(i);
                              Real*                to  = aside + first + at;
                              const int            odd = int((unsigned(i) + parity) & 1U);
+                             // A row of numbers is a loop without branches. copyTile() ignores the other colour.
+                             constexpr bool kAlone  = NodeOf<Real>::kLoads == 1;
+                             const auto     relaxes = [odd](int j) { return (j & 1) == odd; };
                              rows.next(i, RowTo{[=](int j, const Real& a) {
                                                     const Real relaxed =
                                                         Rules<Real>{}.relaxed(before[j], f[j], a, Real(inv[j]));
-                                                    return (j & 1) == odd ? relaxed : to[j];
+                                                    return !kAlone || relaxes(j) ? relaxed : to[j];
                                                 },
-                                                [=](int j, const Real& value) { to[j] = value; }});
+                                                [=](int j, const Real& value) {
+                                                    if (kAlone || relaxes(j)) to[j] = value;
+                                                }});
                          }
                      });
 }
