@@ -8,6 +8,7 @@
 #include <cwchar>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include <fcntl.h>
 #include <hidapi/hidapi.h>
@@ -66,7 +67,9 @@ public:
 
     void write(std::span<const std::uint8_t> report) override
     {
-        if (guardian_ && !guardian_->isWatching()) throw HidLost(path_ + ": its guardian process has ended");
+        // Told once; the zeros that end a session still pass.
+        if (guardian_ && !guardian_->isWatching() && !std::exchange(unguarded_, true))
+            throw HidLost(path_ + ": its guardian process has ended");
         const std::span out = guardian_ ? guardian_->pass(report) : report;
         if (hid_write(device_, out.data(), out.size()) < 0) lost("writing");
         if (guardian_) guardian_->passed();
@@ -92,7 +95,8 @@ private:
 
     hid_device*             device_;
     std::string             path_;
-    int                     node_ = -1; ///< the guardian's descriptor
+    int                     node_      = -1;    ///< the guardian's descriptor
+    bool                    unguarded_ = false; ///< it has ended, and that was told
     std::optional<Guardian> guardian_;
 };
 
