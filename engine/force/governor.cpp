@@ -53,6 +53,8 @@ void check(const GovernorSettings& s)
     demand("mass", s.mass, 0, 100);
     demand("ownDamping", s.ownDamping, 0, 100);
     demand("statedStiffness", s.statedStiffness, 0, 1e4);
+    demand("the size of weight", glm::length(s.weight), 0, s.kMostWeight);
+    demand("motorForce", s.motorForce, 0, s.kMostForce);
 }
 
 constexpr double kNominalLag = 1.5; ///< [1] periods: one from a position to its force, half for which it is held
@@ -109,8 +111,7 @@ GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
     force = clampedForce(force, out); // 5
     slewTo(force, passed, out);       // 6
 
-    const bool slow = glm::length(in.velocity) <= settings_.maximumSpeed; // 7; while waiting, engage() checks it
-    if (!slow && engagement_ != Engagement::waiting) latch(GovernorFault::tooFast);
+    watchSpeed(in); // 7
     if (fault_ != GovernorFault::none) faultGain_ = std::max(0.0, faultGain_ - passed.fall / settings_.faultRamp);
 
     engage(in, passed.rise, out); // 8
@@ -119,8 +120,10 @@ GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
     out.force  = slewed_ * out.gain;
     out.fault  = fault_;
     out.energy = energy_;
+    forceless_ = out.force == glm::dvec3(0) ? forceless_ + passed.fall : 0;
 
     note(out.force, in);
+    carry(in, passed, out); // 9
     return out;
 }
 
@@ -138,6 +141,7 @@ void ForceGovernor::reset() noexcept
     sent_         = {};
     clock_        = 0;
     hasPosition_  = false;
+    forceless_    = 0;
 }
 
 ForceGovernor::Elapsed ForceGovernor::elapsed(double dt) const noexcept
@@ -321,6 +325,17 @@ void ForceGovernor::slewTo(glm::dvec3 force, Elapsed passed, GovernorOutput& out
     }
 }
 
+/// A force that drives a hand too fast is a fault; a hand that is fast by itself, in free space, only waits anew.
+void ForceGovernor::watchSpeed(const GovernorInput& in) noexcept
+{
+    constexpr double kFree = 0.05; // [s] the velocity of a hand that was driven shows within some 15 ms
+    if (engagement_ == Engagement::waiting || glm::length(in.velocity) <= settings_.maximumSpeed) return;
+    if (forceless_ > kFree && slewed_ == glm::dvec3(0))
+        release();
+    else
+        latch(GovernorFault::tooFast);
+}
+
 void ForceGovernor::engage(const GovernorInput& in, double rise, GovernorOutput& out) noexcept
 {
     const bool calm = fault_ == GovernorFault::none && in.homed && in.inBox && usableAge(in) <= settings_.staleAfter &&
@@ -348,6 +363,28 @@ void ForceGovernor::engage(const GovernorInput& in, double rise, GovernorOutput&
         }
         break;
     }
+}
+
+/// Carries the arm's weight, eased in and out, and sets what the device is given.
+void ForceGovernor::carry(const GovernorInput& in, Elapsed passed, GovernorOutput& out) noexcept
+{
+    const bool may = fault_ == GovernorFault::none && in.homed && in.inBox && freshness(usableAge(in)) > 0 &&
+                     glm::length(in.velocity) <= settings_.maximumSpeed;
+    carryTicks_ = may ? std::min(carryTicks_ + 1, settings_.calmTicks) : 0;
+    if (carryTicks_ == settings_.calmTicks) carryGain_ = std::min(1.0, carryGain_ + passed.rise / settings_.engageTime);
+    constexpr double kNothing = 1e-9; // [1] what rounding leaves of a ramp
+    if (!may) carryGain_ -= passed.fall / settings_.faultRamp;
+    if (!(carryGain_ > kNothing)) carryGain_ = 0;
+
+    out.carried        = -carryGain_ * settings_.weight;
+    toDevice_          = out.force + out.carried;
+    const double whole = glm::length(toDevice_);
+    if (whole > settings_.motorForce) {
+        mark(out, GovernorAction::clamped);
+        toDevice_ *= settings_.motorForce / whole;
+        out.force = toDevice_ - out.carried;
+    }
+    if (carryGain_ < 1 && settings_.weight != glm::dvec3(0)) mark(out, GovernorAction::lifting);
 }
 
 } // namespace palp

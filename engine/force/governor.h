@@ -36,8 +36,10 @@ struct GovernorSettings {
     /// [N] the bound of every force that a scene may ask for: what the Falcon holds (published: 8.9 N and more for
     /// short)
     static constexpr double kMostForce = 8;
+    /// [N] the bound of every weight that is carried: twice a Falcon's arm
+    static constexpr double kMostWeight = 4;
 
-    double maximumForce = 6;     ///< [N] at most kMostForce
+    double maximumForce = 6;     ///< [N] that the hand feels, at most kMostForce
     double slew         = 1000;  ///< [N/s] an honest contact of 1000 N/m at 0.5 m/s needs 500
     double maximumSpeed = 1.2;   ///< [m/s] beyond it is a fault (OpenHaptics: 1.2)
     double faultRamp    = 20e-3; ///< [s] from a fault to zero force, at the latest
@@ -51,6 +53,11 @@ struct GovernorSettings {
     double ownDamping       = 3.2;  ///< [N s/m] of the arm; 0: unknown, and nothing is credited
     /// [N/m] of an arm whose damping is unknown: what its maker states for a loop of 1 kHz.
     double statedStiffness = 1000;
+
+    /// [N] by which gravity pulls the arm, in the frame of GovernorInput; at most kMostWeight. Nothing: unknown, or
+    /// balanced by its maker. The output carries it.
+    glm::dvec3 weight{};
+    double     motorForce = kMostForce; ///< [N] of what the hand feels and what carries the arm together, at most
 };
 
 /// Reasons for which no force flows. The numbers are recorded: never reuse one.
@@ -88,10 +95,11 @@ enum class GovernorAction : std::uint32_t {
     active     = 16, ///< the observed energy is below minus settings.energyTolerance
     clamped    = 32,
     slewed     = 64,
-    waiting    = 128, ///< no force until it was small for a while
-    engaging   = 256, ///< coming on
-    releasing  = 512, ///< going down to zero, to wait again
-    late       = 1024 ///< a tick was so late that its force is less than wanted
+    waiting    = 128,  ///< no force until it was small for a while
+    engaging   = 256,  ///< coming on
+    releasing  = 512,  ///< going down to zero, to wait again
+    late       = 1024, ///< a tick was so late that its force is less than wanted
+    lifting    = 2048  ///< less than the arm's weight is carried: it comes on, or goes
 };
 
 /// Input of one tick. Vectors share one frame.
@@ -117,7 +125,8 @@ struct GovernorInput {
 };
 
 struct GovernorOutput {
-    glm::dvec3    force{}; ///< [N] to the device
+    glm::dvec3    force{};   ///< [N] that the hand feels
+    glm::dvec3    carried{}; ///< [N] against the arm's weight; the device is given the sum of both
     GovernorFault fault   = GovernorFault::none;
     std::uint32_t actions = 0; ///< see GovernorAction
     double        energy  = 0; ///< [J] E of the observer: what the hand has put in and not got back
@@ -139,11 +148,17 @@ struct GovernorOutput {
 ///   4  passivity: E -= f (x - x'); if E < 0, f -= alpha v
 ///   5  at most 6 N
 ///   6  at most 1 N/ms
-///   7  at most 1.2 m/s                                                             else fault, to zero in 20 ms
+///   7  at most 1.2 m/s                                 else fault, to zero in 20 ms; in free space engage anew
 ///   8  engaged: below 0.2 N for 10 ticks in the box, then from nothing to all in 1.5 s
+///   9  the arm's weight is carried: from nothing to all in 1.5 s once 1, 2, 3 and 7 have been passed for 10 ticks
+///      in a row, else to nothing in 20 ms
 ///
 /// While it waits (8) no force can flow, and a fast hand (7) only restarts the wait. A fault stays until reset(). Every
 /// failure that a tick can see ends at exactly zero within 20 ms of ticks. The device scales forces to its motors.
+///
+/// What carries the arm (9) is a constant vector, so that it does no work in a closed cycle and has no lag; neither the
+/// energy (4) nor the limits (5, 6) count it. It does not wait for a calm hand (8): uncarried, the arm presses 2 N into
+/// the object, and the hand would never be calm.
 ///
 /// The lag of the loop, from the place of the hand to the middle of the time in which its force acts, is the age of the
 /// answer, one period of exchanges (what an answer waits for a tick, and its force for the next packet, adds up to one)
@@ -164,7 +179,7 @@ public:
     GovernorOutput step(const GovernorInput& in) noexcept;
 
     /// Returns what the last step() let through, as devices take it.
-    [[nodiscard]] GovernedForce force() const noexcept { return GovernedForce(sent_[(tick_ - 1) % kSent].force); }
+    [[nodiscard]] GovernedForce force() const noexcept { return GovernedForce(toDevice_); }
 
     /// Ends a fault that the operator has seen. The next tick finds a cause that lasts again; the force engages anew.
     void reset() noexcept;
@@ -219,7 +234,9 @@ private:
                                           GovernorOutput& out) const noexcept;
     [[nodiscard]] glm::dvec3 clampedForce(glm::dvec3 force, GovernorOutput& out) const noexcept;
     void                     slewTo(glm::dvec3 force, Elapsed passed, GovernorOutput& out) noexcept;
+    void                     watchSpeed(const GovernorInput& in) noexcept;
     void                     engage(const GovernorInput& in, double rise, GovernorOutput& out) noexcept;
+    void                     carry(const GovernorInput& in, Elapsed passed, GovernorOutput& out) noexcept;
 
     GovernorSettings             settings_;
     double                       lag_;            ///< [s]
@@ -239,6 +256,10 @@ private:
     glm::dvec3                   lastPosition_{};   ///< [m]
     double                       lastMeasured_ = 0; ///< [s] when that was measured, by the governor's clock
     bool                         hasPosition_  = false;
+    double                       forceless_    = 0; ///< [s] since a force was felt
+    double                       carryGain_    = 0; ///< [1] share of the weight that is carried
+    int                          carryTicks_   = 0; ///< in a row in which it may be
+    glm::dvec3                   toDevice_{};       ///< [N]
 };
 
 } // namespace palp
