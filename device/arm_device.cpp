@@ -23,6 +23,7 @@ ArmDevice::ArmDevice(const SimulatedArmSettings& settings, const glm::dvec3& sta
     info_.maximumStiffness = 1000; // N/m: half of the 2137 N/m up to which the released arm is stable at 1 kHz
     info_.mass             = settings.mass;
     info_.ownDamping       = settings.damping;
+    info_.weight           = settings.weight;
     info_.isSimulation     = true;
 }
 

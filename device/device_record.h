@@ -36,6 +36,7 @@ struct DeviceListing {
     bool        usable = false; ///< it can be opened now
     std::string why{};          ///< why it is not usable, or what it still needs; empty if it is ready
     std::string help{};         ///< one line that helps; may be empty
+    std::string calibration{};  ///< what is known of its force; empty: its kind needs none
 };
 
 /// An option of a device on the command line.
@@ -81,8 +82,7 @@ struct DeviceRecord {
     std::string_view model; ///< name for people: "Novint Falcon"
     DeviceHolder     holder = DeviceHolder::person;
 
-    bool simulated      = false; ///< it has no hardware
-    bool keepsSceneAxes = false; ///< its frame is not turned to face the surface, unlike that of a device on a table
+    bool simulated = false; ///< it has no hardware
 
     std::span<const DeviceOption> options{};
 

@@ -22,12 +22,17 @@ struct HapticDeviceInfo {
     double maximumDamping   = 0; ///< [N s/m]
     double mass             = 0; ///< [kg] of the arm as the grip feels it; 0: unknown
     double ownDamping       = 0; ///< [N s/m] of the arm without its motors; 0: unknown, and nothing is credited
+    /// [N] by which gravity pulls the grip, in the device's frame. Nothing: unknown, or balanced by its maker; then the
+    /// user carries what there is.
+    glm::dvec3 weight{};
 
     unsigned buttons      = 0;     ///< number of buttons
     bool     needsHoming  = false; ///< its position is unknown until the user has moved it to its stops
     bool     rotates      = false; ///< senses its orientation
     bool     hasGripper   = false; ///< senses how far the grip is closed
     bool     isSimulation = false; ///< it has no hardware
+
+    std::string note; ///< a sentence that the user should read before a session; may be empty
 };
 
 /// Why a device gives no valid state. Numbers are recorded: never reuse one.

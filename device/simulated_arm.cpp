@@ -16,6 +16,13 @@ constexpr int    kOrder = 10;     ///< of the Taylor series; the rest is below 1
 
 } // namespace
 
+SimulatedArmSettings fallingArm()
+{
+    SimulatedArmSettings settings;
+    settings.weight = {0, -0.21 * 9.81, 0};
+    return settings;
+}
+
 SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, const glm::dvec3& position, const glm::dvec3& velocity)
     : settings_(settings), position_(position), velocity_(velocity), velocityFilter_(settings.velocityWindow)
 {
@@ -27,6 +34,7 @@ SimulatedArm::SimulatedArm(const SimulatedArmSettings& settings, const glm::dvec
     demandRange("simulated arm", "halfWorkspace", settings.halfWorkspace, 1e-3, 1e3);
     demandRange("simulated arm", "boxRadius", settings.boxRadius, 0, 1e3);
     demandRange("simulated arm", "delayTicks", settings.delayTicks, 0, int(kDelays) - 1);
+    demandRange("simulated arm", "the size of weight", glm::length(settings.weight), 0, 1e3);
     velocityFilter_.add(time_, encoded());
 }
 
@@ -63,7 +71,7 @@ void SimulatedArm::move(const glm::dvec3& force, double dt) noexcept
 
     // m x'' = push + drag - k x - b x', where the hand pulls towards its own place and velocity. Friction acts against
     // the motion; at rest it balances the force as far as it can.
-    const glm::dvec3 push   = force + k * hand_.target + hand_.damping * hand_.targetVelocity;
+    const glm::dvec3 push   = force + settings_.weight + k * hand_.target + hand_.damping * hand_.targetVelocity;
     const glm::dvec3 pull   = push - k * position_;
     const bool       rests  = velocity_ == glm::dvec3(0);
     const bool       sticks = rests && glm::length(pull) <= settings_.friction;

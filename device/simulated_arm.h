@@ -12,15 +12,20 @@ namespace palp {
 /// net, 3.2 to 4.0 with the loss of sampling added back), friction lumped into the damping. Encoder: 320 slots x 4 on a
 /// drive of 7.72 move the grip by 25 to 55 um a count, 48 um sideways at the centre. Workspace: a cube of 4 inches.
 struct SimulatedArmSettings {
-    double mass           = 0.46;  ///< [kg]
-    double damping        = 3.2;   ///< [N s/m]
-    double friction       = 0;     ///< [N] Coulomb's, against the motion; a few 0.01 N are plausible
-    double encoderStep    = 48e-6; ///< [m] per axis; 0 means continuous
-    double velocityWindow = 15e-3; ///< [s] over which positions are differenced; drivers use 15 to 20 ms
-    double halfWorkspace  = 0.05;  ///< [m] per axis; the arm stops dead there
-    double boxRadius      = 0.045; ///< [m] of the sphere about the origin in which ArmState::inBox is true
-    int    delayTicks     = 1;     ///< from a force to its effect, 0 to 7; in addition to the hold over a tick
+    double     mass           = 0.46;  ///< [kg]
+    double     damping        = 3.2;   ///< [N s/m]
+    double     friction       = 0;     ///< [N] Coulomb's, against the motion; a few 0.01 N are plausible
+    double     encoderStep    = 48e-6; ///< [m] per axis; 0 means continuous
+    double     velocityWindow = 15e-3; ///< [s] over which positions are differenced; drivers use 15 to 20 ms
+    double     halfWorkspace  = 0.05;  ///< [m] per axis; the arm stops dead there
+    double     boxRadius      = 0.045; ///< [m] of the sphere about the origin in which ArmState::inBox is true
+    int        delayTicks     = 1;     ///< from a force to its effect, 0 to 7; in addition to the hold over a tick
+    glm::dvec3 weight{};               ///< [N] by which gravity pulls the grip; see fallingArm()
 };
+
+/// Returns an arm that gravity pulls: 0.21 kg of it weigh on the grip, along -y. One author's driver carries a Falcon by
+/// a command that means 0.21 kg at 4200 counts per N m [I].
+[[nodiscard]] SimulatedArmSettings fallingArm();
 
 /// A hand that pulls the grip by a spring and a damper to a place that moves at constant velocity.
 struct SimulatedHand {

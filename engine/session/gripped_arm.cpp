@@ -7,12 +7,11 @@
 
 namespace palp {
 
-const DeviceRecord kArmRecord{.name           = "arm",
-                              .model          = "a simulated arm like the Falcon's",
-                              .holder         = DeviceHolder::scriptedHand,
-                              .simulated      = true,
-                              .keepsSceneAxes = true,
-                              .make           = [](const DeviceRequest& request) -> std::unique_ptr<HapticDevice> {
+const DeviceRecord kArmRecord{.name      = "arm",
+                              .model     = "a simulated arm like the Falcon's",
+                              .holder    = DeviceHolder::scriptedHand,
+                              .simulated = true,
+                              .make      = [](const DeviceRequest& request) -> std::unique_ptr<HapticDevice> {
                                   return std::make_unique<GrippedArm>(*request.hand);
                               }};
 

@@ -24,12 +24,12 @@ struct GrippingHand {
     void demandWithin(double radius) const;
 };
 
-/// A simulated arm in a scripted hand.
+/// A simulated arm in a scripted hand. Gravity pulls it, and the session carries it.
 /// \thread as HapticDevice
 class GrippedArm : public HapticDevice {
 public:
     /// \throws Error naming a setting out of its range, or where the path leaves the arm's workspace
-    explicit GrippedArm(const GrippingHand& hand, const SimulatedArmSettings& arm = {});
+    explicit GrippedArm(const GrippingHand& hand, const SimulatedArmSettings& arm = fallingArm());
 
     [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return arm_.info(); }
 

@@ -43,9 +43,9 @@ std::optional<double> homingPlace(double time)
 /// Returns the settings of an arm alone: the emulator has the encoders, the delays and the stops.
 SimulatedArmSettings bareArm()
 {
-    SimulatedArmSettings arm;
-    arm.encoderStep = 0;
-    arm.delayTicks  = 0;
+    SimulatedArmSettings arm = fallingArm();
+    arm.encoderStep          = 0;
+    arm.delayTicks           = 0;
     return arm;
 }
 
@@ -81,6 +81,7 @@ GrippedFalcon::GrippedFalcon(const GrippingHand& hand, const Ft232EmulatorSettin
     info_.model        = "emulated Falcon";
     info_.isSimulation = true;
     info_.needsHoming  = !falcon.falcon.homed;
+    info_.weight       = bareArm().weight; // as after a calibration
 }
 
 HapticState GrippedFalcon::read(double now) noexcept

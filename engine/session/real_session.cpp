@@ -70,7 +70,7 @@ class RealSession {
 public:
     RealSession(const SessionParts& parts, const RealSessionSettings& settings)
         : parts_(parts), settings_(settings), contact_(parts.object, parts.scene),
-          force_(parts.scene, parts.device.info(), parts.first)
+          force_(parts.scene, parts.frame.inScene(parts.device.info()), parts.first)
     {
     }
 

@@ -178,6 +178,10 @@ RecordedSession readDescription(const std::filesystem::path& folder)
         session.hand.mass = hand.has("mass_kg") ? hand.number("mass_kg") : arm.mass;
         session.hand.ownDamping =
             hand.has("own_damping_N_s_per_m") ? hand.number("own_damping_N_s_per_m") : arm.ownDamping;
+        if (hand.has("weight_N")) {
+            const std::vector<double> weight = hand.numbers("weight_N", 3);
+            session.hand.weight              = {weight[0], weight[1], weight[2]};
+        }
     }
     session.markers = readMarkers(folder / "markers.jsonl");
     return session;

@@ -30,6 +30,8 @@ GovernorSettings governorOf(const Scene& scene, const HapticDeviceInfo& limits)
         settings.mass            = limits.mass;
         settings.ownDamping      = limits.ownDamping;
         settings.statedStiffness = lower(settings.statedStiffness, limits.maximumStiffness);
+        settings.weight          = kCarried * limits.weight;
+        settings.motorForce      = lower(settings.motorForce, limits.maximumForce);
     }
     return settings;
 }

@@ -143,7 +143,7 @@ public:
     static constexpr std::uint32_t kOperatorsButton = 1;
     static constexpr int           kPressTicks      = 20;
 
-    /// \param limits  of the device; they bound the values of the scene
+    /// \param limits  of the device, its weight in the scene's frame; they bound the values of the scene
     /// \param first   answers until there is a table, see ComplianceTracker; outlives this; null: nothing does
     explicit ForceHalf(const Scene& scene, const HapticDeviceInfo& limits = {}, const HomogeneousLaw* first = nullptr);
 
@@ -190,6 +190,10 @@ private:
     double            asked_    = 0; ///< [s] of contact since that of the last table, or since the first
     int               pressed_  = 0; ///< ticks that the operator's button has been down
 };
+
+/// [1] of the arm's weight that is carried. A calibration errs by one percent; carried whole, an arm that is let go
+/// might rise through the room at 6 mm/s. So it sinks, and rests on the surface, some 0.05 N deep.
+inline constexpr double kCarried = 0.98;
 
 /// Both halves of a tick of touch.
 ///

@@ -64,8 +64,7 @@ void readPath(SessionHand& hand, const HandChoice& choice, const SoftObject& obj
 DeviceFrame frameOf(const SessionHand& hand, const Scene& scene, const SoftObject& object)
 {
     const glm::dvec3 start = hand.path ? hand.path->position(hand.path->begin()) : glm::dvec3(0);
-    if (hand.path && hand.record->keepsSceneAxes) return {start};
-    const HandPlace place = handPlace(scene, object);
+    const HandPlace  place = handPlace(scene, object);
     return deviceFrame(hand.path ? start : place.point + scene.startHeight * place.outward, place.outward);
 }
 
@@ -135,6 +134,7 @@ SessionHand openHand(const HandChoice& choice, const Scene& scene, const SoftObj
     else
         hand.device = std::make_unique<ScriptedHand>(*hand.path);
     hand.device->open();
+    if (const std::string& note = hand.device->info().note; !note.empty()) hand.warnings.push_back(note);
     return hand;
 }
 

@@ -34,6 +34,13 @@ struct DeviceFrame {
         return glm::conjugate(sceneFromDevice) * (place - origin);
     }
 
+    /// Returns what a device states, its weight turned into the scene's frame.
+    [[nodiscard]] HapticDeviceInfo inScene(HapticDeviceInfo info) const
+    {
+        info.weight = sceneFromDevice * info.weight;
+        return info;
+    }
+
     /// Turns a force of the scene into the device's frame.
     [[nodiscard]] GovernedForce toDevice(const GovernedForce& force) const noexcept
     {

@@ -40,7 +40,7 @@ private:
 SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTick& onTick,
                           const std::atomic<bool>* stop)
 {
-    Servo                      servo(parts.object, parts.scene, parts.device.info(), parts.first);
+    Servo                      servo(parts.object, parts.scene, parts.frame.inScene(parts.device.info()), parts.first);
     SessionSummary             summary;
     std::optional<PatchUpdate> inUse, underWay;
     ZeroAtLast                 zero(parts.device);

@@ -26,7 +26,7 @@ struct Felt {
 Felt released(const SheetSession& session, double grip, double seconds)
 {
     const HandPath     down({{0, {0, 0, 5e-3}}, {1.8, {0, 0, 5e-3}}, {1.85, {0, 0, -4e-3}}, {2, {0, 0, -4e-3}}});
-    const GrippingHand hand{down, {.stiffness = grip, .damping = 2}, {{0, 0, 5e-3}}};
+    const GrippingHand hand{down, {.stiffness = grip, .damping = 2}, deviceFrame({0, 0, 5e-3}, {0, 0, 1})};
     GrippedArm         arm(hand);
     arm.open();
     Deformation deformation(session.object, session.scene);

@@ -125,7 +125,7 @@ std::unique_ptr<Recording> recordingOf(const SessionOptions& o, const SessionPar
     info.clock    = clock;
     info.command  = o.command;
     info.cloud    = fingerprint(parts.object.cloud());
-    info.hand     = parts.device.info();
+    info.hand     = parts.frame.inScene(parts.device.info());
     return std::make_unique<Recording>(o.record, info);
 }
 

@@ -45,7 +45,11 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
 {
     hand_  = hand;
     state_ = State::ready;
-    recorder_.begin([this] { return settings_.recorded(*stage_, *hand_.device); });
+    recorder_.begin([this] {
+        SessionInfo info = settings_.recorded(*stage_, *hand_.device);
+        info.hand        = hand_.frame.inScene(info.hand);
+        return info;
+    });
     const SessionParts parts{stage_->scene(), stage_->object(), solver(), *hand.device, hand.frame, stage_->firstLaw()};
     RealSessionSettings real;
     real.seconds    = hand.seconds;
