@@ -13,6 +13,13 @@ namespace {
 
 constexpr double kMostWait = 0.1; ///< [s] by which a step follows the servo's clock; beyond it the clocks are set anew
 
+/// Returns the weight of an arm [N], in the device's frame.
+glm::dvec3 weightOf(double armMass)
+{
+    constexpr double kGravity = 9.81; // [m/s2]
+    return {0, -armMass * kGravity, 0};
+}
+
 double seconds(std::chrono::steady_clock::duration duration)
 {
     return std::chrono::duration<double>(duration).count();
@@ -34,13 +41,23 @@ FalconDevice::FalconDevice(FalconLinkOpener open, const FalconDeviceSettings& se
     info_.ownDamping       = 3.2;  // with the loss of sampling added back
     info_.buttons          = 4;
     info_.needsHoming      = true;
+    info_.weight           = weightOf(settings.armMass);
 }
 
 void FalconDevice::open()
 {
     if (line_) return;
-    StartedFalcon started = startFalcon(open_, settings_.firmware, settings_.start);
-    auto          line = std::make_unique<Line>(std::make_unique<FalconLoop>(std::move(started.link), settings_.loop));
+    StartedFalcon      started = startFalcon(open_, settings_.firmware, settings_.start);
+    FalconLoopSettings loop    = settings_.loop;
+    if (settings_.tune) {
+        info_.serial              = started.link->serial();
+        const FalconTuning tuning = settings_.tune(info_.serial);
+        loop.countsPerTorque      = tuning.countsPerTorque;
+        info_.weight              = weightOf(tuning.armMass);
+        info_.note                = tuning.note;
+    }
+    counts_   = 0;
+    auto line = std::make_unique<Line>(std::make_unique<FalconLoop>(std::move(started.link), loop));
     if (settings_.pace == FalconPace::thread)
         line->thread = std::thread(converse, std::ref(*line), settings_.asksForRealTime);
     line_ = std::move(line);
@@ -57,7 +74,8 @@ void FalconDevice::close() noexcept
 void FalconDevice::render(const GovernedForce& force) noexcept
 {
     if (!line_) return;
-    line_->asked = {.force = force.newtons(), .lights = lights_, .silent = silentUntil_.has_value()};
+    line_->asked = {
+        .force = force.newtons(), .lights = lights_, .silent = silentUntil_.has_value(), .countsPerTorque = counts_};
     if (settings_.pace == FalconPace::stepped) return;
     line_->requests.draft() = {line_->asked, Clock::now()};
     line_->requests.publish();
@@ -70,6 +88,11 @@ HapticState FalconDevice::read(double now) noexcept
     if (silentUntil_ && !(now < *silentUntil_)) silentUntil_.reset();
     line_->asked.silent = silentUntil_.has_value();
     return settings_.pace == FalconPace::stepped ? step(line_->asked, now) : newest(now);
+}
+
+void FalconDevice::useCounts(double counts) noexcept
+{
+    counts_ = std::clamp(counts, FalconMotors::kLeastCountsPerTorque, FalconMotors::kMostCountsPerTorque);
 }
 
 void FalconDevice::stopSending(double time) noexcept

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "device/falcon/falcon_constants.h"
 #include "device/falcon/falcon_driver.h"
 #include "device/falcon/falcon_loop.h"
 #include "device/haptic_device.h"
@@ -29,7 +31,11 @@ struct FalconDeviceSettings {
     std::string               serial;                 ///< for HapticDeviceInfo
     bool                      asksForRealTime = true; ///< for its thread, if it may; without, packets may be late
     FalconStartSettings       start{};
-    FalconLoopSettings        loop{};
+    double armMass = 0; ///< [kg] that weighs on the grip, see FalconCalibration; 0: unknown, and nothing carries it
+    FalconLoopSettings loop{};
+    /// Returns the values for the Falcon that was opened, in place of loop.countsPerTorque and armMass; may throw an
+    /// Error. Empty: those hold.
+    std::function<FalconTuning(const std::string& serial)> tune{};
 };
 
 /// A Novint Falcon behind any FalconLink. FalconLoop decides when forces flow. In addition, a force that render()
@@ -54,6 +60,11 @@ public:
     /// Sends nothing from the next exchange on, for a time [s] of 0.5 s at most, so that the motors keep the last force
     /// until the firmware lets go: FalconHold measures when. The guardian waits, and no other check is weakened.
     void stopSending(double time) noexcept;
+
+    /// Sets the counts per torque with which forces become motor numbers, from the next exchange on; see
+    /// FalconCalibration.
+    /// \param counts  [counts/(N m)] moved into the bounds of FalconMotors
+    void useCounts(double counts) noexcept;
 
     void light(std::uint8_t lights) noexcept override { lights_ = lights; } ///< if settings.loop.showsState is off
 
@@ -91,6 +102,7 @@ private:
     FalconDeviceSettings  settings_;
     HapticDeviceInfo      info_;
     std::uint8_t          lights_   = 0;
+    double                counts_   = 0; ///< [counts/(N m)] 0: those of the settings
     double                stopsFor_ = 0; ///< [s] that is asked of the next read()
     std::optional<double> silentUntil_;  ///< [s] by the clock of read()
     std::unique_ptr<Line> line_;         ///< null: closed

@@ -85,6 +85,7 @@ const HapticState& FalconLoop::exchange(const FalconRequest& request) noexcept
             keepSilent();
             return state_;
         }
+        if (request.countsPerTorque > 0) motors_.setCountsPerTorque(request.countsPerTorque);
         const double now = link_->now();
         state_.fault     = line_ != DeviceFault::none ? line_ : request.host;
         if (state_.fault == DeviceFault::none && inDoubt_ && now - placed_ > kBlink)

@@ -31,11 +31,12 @@ struct FalconLoopSettings {
 
 /// The host's request to one exchange.
 struct FalconRequest {
-    glm::dvec3   force{};        ///< [N] on the hand, device's frame
-    std::uint8_t lights = 0;     ///< a sum of DeviceLight, where settings.showsState is off
-    double       share  = 1;     ///< [1] most share of the force; if it rises the force comes on as after a break
-    bool         silent = false; ///< nothing is sent: the motors keep the last force until the firmware lets go
-    DeviceFault  host   = DeviceFault::none; ///< the host's own fault; no force flows while there is one
+    glm::dvec3   force{};             ///< [N] on the hand, device's frame
+    std::uint8_t lights = 0;          ///< a sum of DeviceLight, where settings.showsState is off
+    double       share  = 1;          ///< [1] most share of the force; if it rises the force comes on as after a break
+    bool         silent = false;      ///< nothing is sent: the motors keep the last force until the firmware lets go
+    double       countsPerTorque = 0; ///< [counts/(N m)] from now on; 0: as before
+    DeviceFault  host            = DeviceFault::none; ///< the host's own fault; no force flows while there is one
 };
 
 /// The conversation with a Falcon whose firmware runs: packet out, packet in.

@@ -20,6 +20,11 @@ void FalconMotors::demandCountsPerTorque(double countsPerTorque)
                 kMostCountsPerTorque);
 }
 
+void FalconMotors::setCountsPerTorque(double countsPerTorque) noexcept
+{
+    countsPerTorque_ = std::clamp(countsPerTorque, kLeastCountsPerTorque, kMostCountsPerTorque);
+}
+
 FalconDrive FalconMotors::drive(const glm::dvec3& position, const glm::dvec3& force) const noexcept
 {
     FalconDrive out;

@@ -50,6 +50,9 @@ public:
     explicit FalconMotors(const FalconKinematics& kinematics      = FalconKinematics{},
                           double                  countsPerTorque = kCountsPerTorque);
 
+    /// \param countsPerTorque  [counts/(N m)] moved into the bounds
+    void setCountsPerTorque(double countsPerTorque) noexcept;
+
     /// Computes the motor numbers for a force.
     /// \param position  [m] of the grip, in the frame of the kinematics
     /// \param force     [N] on the hand

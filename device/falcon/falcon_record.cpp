@@ -5,6 +5,9 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <optional>
+#include <utility>
 
 #include "device/falcon/detail/libusb_link.h"
 #include "device/falcon/falcon_firmware.h"
@@ -20,15 +23,29 @@ std::vector<DeviceListing> list(HidSystem& /*hid*/)
 {
     std::vector<DeviceListing> devices;
     for (const FalconListing& falcon : listFalcons())
-        devices.push_back({.path = falcon.path, .usable = falcon.usable, .why = falcon.why, .help = falcon.help});
+        devices.push_back({.path        = falcon.path,
+                           .usable      = falcon.usable,
+                           .why         = falcon.why,
+                           .help        = falcon.help,
+                           .calibration = falcon.usable ? describeConstants(falcon.serial) : ""});
     return devices;
+}
+
+std::unique_ptr<FalconDevice> falcon(const DeviceRequest&                                   request,
+                                     std::function<FalconTuning(const std::string& serial)> tune)
+{
+    FalconDeviceSettings settings = falconSettings(request);
+    settings.firmware             = falconFirmware(request);
+    settings.tune                 = std::move(tune);
+    return std::make_unique<FalconDevice>([path = request.path] { return openFalcon(path); }, settings);
 }
 
 std::unique_ptr<HapticDevice> make(const DeviceRequest& request)
 {
-    FalconDeviceSettings settings = falconSettings(request);
-    settings.firmware             = falconFirmware(request);
-    return std::make_unique<FalconDevice>([path = request.path] { return openFalcon(path); }, settings);
+    std::optional<double> byHand;
+    if (const std::string counts = textOf(request.options, kFalconCounts); !counts.empty())
+        byHand = numberOf(kFalconCounts, counts);
+    return falcon(request, [byHand](const std::string& serial) { return tuningOf(serial, byHand); });
 }
 
 DeviceSupport support()
@@ -106,6 +123,12 @@ FalconDeviceSettings falconSettings(const DeviceRequest& request)
     settings.start.onUpload            = request.onUpload;
     settings.start.cancel              = request.cancel;
     return settings;
+}
+
+std::unique_ptr<FalconDevice> makeFalconToCalibrate(const DeviceRequest& request)
+{
+    const double counts = falconSettings(request).loop.countsPerTorque;
+    return falcon(request, [counts](const std::string&) { return FalconTuning{.countsPerTorque = counts}; });
 }
 
 std::vector<std::uint8_t> falconFirmware(const DeviceRequest& request)

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "device/device_record.h"
@@ -11,8 +12,8 @@ namespace palp {
 extern const DeviceRecord kFalconRecord;
 
 inline constexpr DeviceOption kFalconCounts{
-    "--falcon-counts", "counts per N m of a Falcon's motors, see palpate calibrate [4200]", DeviceOption::Kind::number,
-    FalconMotors::kLeastCountsPerTorque, FalconMotors::kMostCountsPerTorque};
+    "--falcon-counts", "counts per N m of a Falcon's motors [as palpate calibrate found, else 4200]",
+    DeviceOption::Kind::number, FalconMotors::kLeastCountsPerTorque, FalconMotors::kMostCountsPerTorque};
 inline constexpr DeviceOption kFalconTimerOnly{
     "--falcon-timer-only", "does not try whether the Falcon's bridge is faster if it passes on each answer at once",
     DeviceOption::Kind::flag};
@@ -22,6 +23,10 @@ inline constexpr DeviceOption kFalconFirmware{"--falcon-firmware",
 /// Returns the settings that the options ask for, without the firmware.
 /// \throws Error naming an option out of its bounds
 [[nodiscard]] FalconDeviceSettings falconSettings(const DeviceRequest& request);
+
+/// Makes a Falcon for its calibration: it runs with the counts of the options, whatever was found of it before.
+/// \throws Error as DeviceRecord::make
+[[nodiscard]] std::unique_ptr<FalconDevice> makeFalconToCalibrate(const DeviceRequest& request);
 
 /// Reads the firmware that the options or FALCON_FIRMWARE name; empty if neither does.
 /// \throws Error naming the file

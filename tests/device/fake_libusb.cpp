@@ -191,7 +191,19 @@ int libusb_get_device_descriptor(libusb_device* device, libusb_device_descriptor
 {
     descriptor->idVendor  = device->fake->vendor;
     descriptor->idProduct = device->fake->product;
+
+    descriptor->iSerialNumber = device->fake->serial.empty() ? 0 : 3;
     return 0;
+}
+
+int libusb_get_string_descriptor_ascii(libusb_device_handle* handle, std::uint8_t index, unsigned char* text, int room)
+{
+    const std::string& serial = handle->device->fake->serial;
+    if (index != 3) ++fakeUsb().mistakes;
+    if (handle->device->fake->controlError != 0) return handle->device->fake->controlError;
+    const int size = std::min(int(serial.size()), room);
+    std::copy_n(serial.begin(), size, text);
+    return size;
 }
 
 std::uint8_t libusb_get_bus_number(libusb_device* device)

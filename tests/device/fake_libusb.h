@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct FakeUsbDevice {
     std::uint16_t             vendor = 0x0403, product = 0xCB48;
     std::uint8_t              bus = 1;
     std::vector<std::uint8_t> ports{2};
+    std::string               serial;    ///< empty: it has none
     int                       node = -1; ///< our end of its node, once that is open: what the guardian writes
 
     int                                        openError = 0, claimError = 0, controlError = 0, submitError = 0;

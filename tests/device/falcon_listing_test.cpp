@@ -36,6 +36,18 @@ TEST_F(FalconUsb, ListsFalconsByTheirPlacesAndNothingElse)
     EXPECT_TRUE(hasFalconSupport());
 }
 
+/// It names a file and stands in JSON, so it has no signs that those know.
+TEST_F(FalconUsb, TheSerialNumberIsReadWithoutUnusualSigns)
+{
+    falcon_->serial = "FT\"1\\2\n 3\x80";
+    EXPECT_EQ(listFalcons().at(0).serial, "FT123");
+    EXPECT_EQ(openFalcon()->serial(), "FT123");
+    falcon_->serial = std::string(200, 'x');
+    EXPECT_EQ(openFalcon()->serial(), std::string(64, 'x'));
+    falcon_->serial = "";
+    EXPECT_EQ(openFalcon()->serial(), "");
+}
+
 TEST_F(FalconUsb, TheListingSaysWhatAFalconStillNeeds)
 {
     using enum FalconReadiness;

@@ -73,6 +73,21 @@ std::string nameOf(const std::string& path)
     return "Novint Falcon at USB " + path;
 }
 
+/// Returns the serial number of an open device as FalconLink::serial() does.
+std::string serialOf(libusb_device* device, libusb_device_handle* open)
+{
+    libusb_device_descriptor      descriptor{};
+    std::array<unsigned char, 65> text{};
+    if (libusb_get_device_descriptor(device, &descriptor) != 0 || descriptor.iSerialNumber == 0) return {};
+    const int size = libusb_get_string_descriptor_ascii(open, descriptor.iSerialNumber, text.data(), int(text.size()));
+    std::string serial;
+    for (int n = 0; n < std::min(size, 64); ++n) {
+        const auto c = char(text[std::size_t(n)]);
+        if (c > ' ' && c < '\x7F' && c != '"' && c != '\\') serial += c;
+    }
+    return serial;
+}
+
 /// The devices of a context that are Falcons; they are valid as long as this object lives.
 class Falcons {
 public:
@@ -139,7 +154,10 @@ Handle claim(libusb_context* context, libusb_device* device, const Node& node, F
         found = libusb_claim_interface(open, kInterface);
     }
     listing.usable = found == 0;
-    if (listing.usable) return handle;
+    if (listing.usable) {
+        listing.serial = serialOf(device, open);
+        return handle;
+    }
 
     const UsbRefusal because = refusal(found);
     listing.why              = because.why;
@@ -151,9 +169,9 @@ Handle claim(libusb_context* context, libusb_device* device, const Node& node, F
 /// to libusb until its callback, which is only called from inside pump() and the control requests.
 class LibusbLink final : public FalconLink {
 public:
-    LibusbLink(Context context, Node node, Handle handle, std::string path)
-        : context_(std::move(context)), node_(std::move(node)), handle_(std::move(handle)), path_(std::move(path)),
-          guardian_(node_.line(), kFalconZero, nameOf(path_))
+    LibusbLink(Context context, Node node, Handle handle, const FalconListing& listing)
+        : context_(std::move(context)), node_(std::move(node)), handle_(std::move(handle)), path_(listing.path),
+          serial_(listing.serial), guardian_(node_.line(), kFalconZero, nameOf(path_))
     {
         for (Transfer& transfer : in_) prepare(transfer, kIn, onIn);
         prepare(out_, kOut, onOut);
@@ -210,6 +228,8 @@ public:
     }
 
     [[nodiscard]] bool wasSilenced() noexcept override { return guardian_.hasSilenced(); }
+
+    [[nodiscard]] std::string serial() const override { return serial_; }
 
     void keepAlive() noexcept override { guardian_.keepAlive(); }
 
@@ -362,7 +382,7 @@ private:
     Context                       context_;
     Node                          node_;
     Handle                        handle_;
-    std::string                   path_;
+    std::string                   path_, serial_;
     Guardian                      guardian_; ///< the packets that go out lie in it
     ByteRing<kInbox>              inbox_;
     std::array<Transfer, kQueued> in_;
@@ -418,7 +438,7 @@ std::unique_ptr<FalconLink> openFalcon(const std::string& path)
         throw Error(
             "no Novint Falcon is plugged in: USB has no device 0403:cb48; check its cable and its power supply");
 
-    auto link = std::make_unique<LibusbLink>(std::move(context), std::move(node), std::move(handle), listing.path);
+    auto link = std::make_unique<LibusbLink>(std::move(context), std::move(node), std::move(handle), listing);
     try {
         link->throwIfLost();
     } catch (const LinkLost& lost) {

@@ -23,6 +23,7 @@ struct FalconListing {
     bool        usable = false; ///< it can be opened now; no other program holds it
     std::string why;            ///< why it is not usable, or what it still needs; empty if it is ready
     std::string help;           ///< what to do about it
+    std::string serial{};       ///< as FalconLink::serial(); empty also if it is not usable
 
     std::optional<FalconReadiness> readiness{}; ///< its answer; empty: it was not asked
 };

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -13,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "device/falcon/falcon_calibration.h"
+#include "device/falcon/falcon_constants.h"
 #include "device/falcon/falcon_hold.h"
 #include "device/falcon/falcon_record.h"
 #include "device/falcon/ft232_emulator.h"
@@ -85,9 +87,10 @@ private:
 
 void tell(const CalibrateOptions& o, Stage stage)
 {
-    if (stage == Stage::bare)
+    if (stage == Stage::lift)
         std::cerr << "palpate: lift the grip to the middle of its workspace and hold it there loosely; release it when "
-                     "the force begins, within 2 s; the arm then moves up and down for 16 s and is weighed\n";
+                     "the force begins, within 2 s; the motors then find the command that carries the arm\n";
+    if (stage == Stage::bare) std::cerr << "palpate: hands off: the arm moves up and down for 16 s and is weighed\n";
     if (stage == Stage::hang)
         std::cerr << "palpate: hang " << o.mass
                   << " on the grip and release it; the weighing continues when the mass hangs still\n";
@@ -117,7 +120,8 @@ void demandWell(const HapticState& state, double ill, GovernorFault fault)
 
 /// What the weighing found.
 struct Found {
-    std::optional<double> hold; ///< [s] empty: it holds for longer than half a second, or was not measured
+    std::string           serial; ///< of the Falcon
+    std::optional<double> hold;   ///< [s] empty: it holds for longer than half a second, or was not measured
 };
 
 /// Goes through all stages. However it ends, the device is closed, so its last force is zero.
@@ -139,6 +143,7 @@ Found weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrat
         const double now = bench.wait(), dt = now - last;
         last = now;
         if (bench.act) bench.act(gain, told);
+        if (falcon) falcon->useCounts(calibration.countsInUse());
         const HapticState state = bench.device.exchange(force, now);
         GovernorInput     in;
         in.force = hold ? hold->step(*falcon, state, gain, dt) : calibration.step(state, force, gain, dt);
@@ -167,13 +172,13 @@ Found weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrat
         if (now > begin + kPatience) giveUp("the calibration took more than 5 minutes; nothing was weighed");
     }
     if (calibration.stage() == Stage::failed) giveUp(calibration.failure());
-    return {hold ? hold->hold() : std::nullopt};
+    return {{}, hold ? hold->hold() : std::nullopt};
 }
 
 Found weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
 {
     HidapiSystem hid; // not used by a Falcon
-    const auto   falcon = kFalconRecord.make({.hid = hid, .options = o.falcon});
+    const auto   falcon = makeFalconToCalibrate({.hid = hid, .options = o.falcon});
     falcon->open();
     waitForHoming(*falcon, catchInterrupts());
     if (const std::string refused = askForRealTime(); !refused.empty())
@@ -181,7 +186,9 @@ Found weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
     Metronome  metronome{std::chrono::milliseconds(1)};
     const auto start = metronome.wait();
     Bench      bench{*falcon, [&] { return std::chrono::duration<double>(metronome.wait() - start).count(); }, {}};
-    return weigh(o, bench, calibration);
+    Found      found = weigh(o, bench, calibration);
+    found.serial     = falcon->info().serial;
+    return found;
 }
 
 /// The emulated Falcon's true values, which its driver does not know.
@@ -249,16 +256,45 @@ Found weighEmulated(const CalibrateOptions& o, double mass, FalconCalibration& c
     return weigh(o, bench, calibration);
 }
 
-void print(const CalibrateOptions& o, double mass, const FalconCalibration& calibration, const Found& found)
+std::string today()
+{
+    const std::time_t    now = std::time(nullptr);
+    std::tm              local{};
+    std::array<char, 11> text{};
+    localtime_r(&now, &local);
+    std::strftime(text.data(), text.size(), "%F", &local);
+    return text.data();
+}
+
+/// Stores what was found where every command finds it.
+/// \return the file; empty, with a warning, if it cannot be stored: the numbers are printed all the same
+std::string store(const FalconCalibration& calibration, const Found& found)
+{
+    try {
+        return writeFalconConstants({.serial          = found.serial,
+                                     .countsPerTorque = calibration.countsPerTorque().value(),
+                                     .armMass         = calibration.armMass().value(),
+                                     .date            = today()})
+            .string();
+    } catch (const Error& error) {
+        std::cerr << "palpate: warning: " << error.what() << "\n";
+        return {};
+    }
+}
+
+void print(const CalibrateOptions& o, double mass, const FalconCalibration& calibration, const Found& found,
+           const std::string& file)
 {
     const double counts = calibration.countsPerTorque().value(), arm = calibration.armMass().value();
     if (o.json) {
-        nlohmann::ordered_json report{{"counts_per_torque", counts},
-                                      {"counts_per_torque_before", countsBefore(o)},
-                                      {"arm_kg", arm},
-                                      {"hold_s", nullptr},
-                                      {"mass_kg", mass},
-                                      {"emulated", nullptr}};
+        nlohmann::ordered_json report{
+            {"counts_per_torque", counts},
+            {"counts_per_torque_before", countsBefore(o)},
+            {"arm_kg", arm},
+            {"hold_s", nullptr},
+            {"mass_kg", mass},
+            {"file", file.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(file)},
+            {"emulated", nullptr}};
         if (found.hold) report["hold_s"] = *found.hold;
         if (o.emulator) report["emulated"] = {{"counts_per_torque", kEmulatedCounts}, {"arm_kg", kEmulatedArm}};
         std::cout << jsonText(report);
@@ -278,8 +314,11 @@ void print(const CalibrateOptions& o, double mass, const FalconCalibration& cali
     if (o.emulator)
         std::printf("true values      %.0f and %.0f g: this Falcon is emulated, do not use its numbers with another\n",
                     kEmulatedCounts, 1000 * kEmulatedArm);
-    std::printf("use it           palpate run SCENE --hand %s %s %.0f\n", kFalconRecord.name.data(),
-                kFalconCounts.flag.data(), counts);
+    if (file.empty())
+        std::printf("use it           palpate run SCENE --hand %s %s %.0f\n", kFalconRecord.name.data(),
+                    kFalconCounts.flag.data(), counts);
+    else
+        std::printf("use it           every command does from now on: %s\n", file.c_str());
 }
 
 void calibrate(const CalibrateOptions& o)
@@ -287,7 +326,7 @@ void calibrate(const CalibrateOptions& o)
     const double      mass = kilograms(o.mass);
     FalconCalibration calibration({.mass = mass, .countsPerTorque = countsBefore(o)});
     const Found       found = o.emulator ? weighEmulated(o, mass, calibration) : weighReal(o, calibration);
-    print(o, mass, calibration, found);
+    print(o, mass, calibration, found, o.emulator ? "" : store(calibration, found));
 }
 
 } // namespace
@@ -303,8 +342,10 @@ void addCalibrateCommand(CLI::App& app)
                       "calibrates an emulated Falcon with an emulated hand, in virtual time, as a demonstration");
     command->add_flag("--json", o->json, "machine-readable; instructions still go to standard error");
     command->footer(
-        "The grip moves up and down by 8 mm while the mean force is measured, first without and then with the mass.\n"
-        "This takes a minute; nothing may touch the grip meanwhile. Exit code 1: the weighing failed.\n"
+        "The motors first find the command that carries the arm. Then the grip moves up and down by 8 mm while the\n"
+        "mean force is measured, first without and then with the mass. This takes a minute; nothing may touch the\n"
+        "grip meanwhile. The result is stored in $XDG_CONFIG_HOME/palpate (~/.config/palpate) by the Falcon's serial\n"
+        "number; every command uses it, and carries the arm. Exit code 1: the weighing failed.\n"
         "Examples:\n"
         "  palpate calibrate --mass '200 g'\n"
         "  palpate calibrate --mass 0.1 --falcon-firmware falcon.bin\n"

@@ -89,6 +89,7 @@ void printText(const DeviceList& haptics)
                                          : ": ")
                   << device.why << "\n";
         if (!device.help.empty()) std::cout << "   help     " << device.help << "\n";
+        if (!device.calibration.empty()) std::cout << "   force    " << device.calibration << "\n";
     }
     std::cout << "looked for with " << hapticSupport() << "\n";
 }

@@ -58,7 +58,8 @@ nlohmann::ordered_json jsonOf(const std::vector<DeviceListing>& devices)
                         {"path", orNull(device.path)},
                         {"usable", device.usable},
                         {"why", orNull(device.why)},
-                        {"help", orNull(device.help)}});
+                        {"help", orNull(device.help)},
+                        {"calibration", orNull(device.calibration)}});
     return list;
 }
 
