@@ -66,7 +66,8 @@ public:
     /// \param counts  [counts/(N m)] moved into the bounds of FalconMotors
     void useCounts(double counts) noexcept;
 
-    void light(std::uint8_t lights) noexcept override { lights_ = lights; } ///< if settings.loop.showsState is off
+    /// Shows green only where its own state lets forces flow, see falconLight().
+    void light(std::uint8_t lights) noexcept override { lights_ = lights; }
 
 private:
     using Clock = std::chrono::steady_clock;

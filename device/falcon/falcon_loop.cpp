@@ -41,10 +41,11 @@ bool isFinite(const glm::dvec3& v)
 
 } // namespace
 
-DeviceLight falconLight(const HapticState& state) noexcept
+DeviceLight falconLight(const HapticState& state, std::uint8_t host) noexcept
 {
     if (!state.homed) return DeviceLight::red;
-    return state.fault == DeviceFault::none && state.inBox ? DeviceLight::green : DeviceLight::blue;
+    const bool flows = (host & std::uint8_t(DeviceLight::green)) != 0;
+    return flows && state.fault == DeviceFault::none && state.inBox ? DeviceLight::green : DeviceLight::blue;
 }
 
 const char* meaningOf(DeviceLight light) noexcept
@@ -53,9 +54,9 @@ const char* meaningOf(DeviceLight light) noexcept
     case DeviceLight::red:
         return "red    it is to be homed";
     case DeviceLight::blue:
-        return "blue   no force flows: the grip is out of its workspace, or something is wrong";
+        return "blue   no force flows: no session, a hand that is awaited, a grip out of its workspace, or a fault";
     case DeviceLight::green:
-        return "green  forces flow";
+        return "green  forces flow, or come on";
     default:
         return "none";
     }
@@ -145,7 +146,7 @@ void FalconLoop::send(const FalconRequest& request, double now)
 {
     command_.motors = drive(request, now).motors;
     command_.homing = !state_.homed;
-    command_.lights = settings_.showsState ? std::uint8_t(falconLight(state_)) : request.lights;
+    command_.lights = settings_.showsState ? std::uint8_t(falconLight(state_, request.lights)) : request.lights;
     sent_           = now;
     link_->write(encode(command_));
     if (!link_->wasSilenced()) return;

@@ -20,11 +20,12 @@ struct FalconLoopSettings {
     double         workspaceRadius = 0.04;   ///< [m] sphere about the middle; 44 mm is the largest in reach of all legs
     double         velocityWindow  = 15e-3;  ///< [s] as in the simulated arm and CHAI3D
     double         answerTimeout   = 2.5e-3; ///< [s] for an answer; with a latency timer of 1 ms it takes 1 to 1.5
-    bool           showsState      = true;   ///< by falconLight()
+    bool           showsState      = true;   ///< by falconLight(); else the light is as the host says
 };
 
 /// Returns the light of a Falcon that shows its state, see FalconLoopSettings::showsState.
-[[nodiscard]] DeviceLight falconLight(const HapticState& state) noexcept;
+/// \param host  a sum of DeviceLight: forces flow only where the host's light is green too
+[[nodiscard]] DeviceLight falconLight(const HapticState& state, std::uint8_t host = 0) noexcept;
 
 /// Returns the meaning of that light for the user: "green  forces flow".
 [[nodiscard]] const char* meaningOf(DeviceLight light) noexcept;
@@ -32,7 +33,7 @@ struct FalconLoopSettings {
 /// The host's request to one exchange.
 struct FalconRequest {
     glm::dvec3   force{};             ///< [N] on the hand, device's frame
-    std::uint8_t lights = 0;          ///< a sum of DeviceLight, where settings.showsState is off
+    std::uint8_t lights = 0;          ///< a sum of DeviceLight: green where the host lets forces flow
     double       share  = 1;          ///< [1] most share of the force; if it rises the force comes on as after a break
     bool         silent = false;      ///< nothing is sent: the motors keep the last force until the firmware lets go
     double       countsPerTorque = 0; ///< [counts/(N m)] from now on; 0: as before

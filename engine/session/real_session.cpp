@@ -13,6 +13,7 @@
 #include "engine/core/real_time.h"
 #include "engine/core/thread_time.h"
 #include "engine/session/detail/solve_pace.h"
+#include "engine/session/force_state.h"
 #include "engine/session/interrupt.h"
 
 namespace palp {
@@ -143,6 +144,7 @@ void RealSession::servoThread()
         HapticState  state = parts_.device.read(time);
         if (stopping.isAsked()) state.homed = false; // the governor lets go, and engages anew
         TickRecord record = tick({time, dt}, state);
+        parts_.device.light(std::uint8_t(lightOf(forceState(record))));
         parts_.device.render(parts_.frame.toDevice(force_.governor().force())); // leaves in this tick
         record.tickTime       = threadSeconds() - began;
         shared_.shown.draft() = {record, period, state.buttons};
@@ -294,6 +296,7 @@ SessionSummary RealSession::run(std::string& warning)
             } catch (...) { // onTick's, against its promise
                 failure_ = std::current_exception();
             }
+            parts_.device.light(std::uint8_t(DeviceLight::blue));
             parts_.device.exchange(GovernedForce(), lastTick_);
             shared_.serveNoMore();
         });

@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/session/force_state.h"
 #include "engine/session/servo.h"
 
 namespace palp {
@@ -12,7 +13,7 @@ void SessionSummary::add(const TickRecord& record) noexcept
 {
     const auto has   = [&](SessionFlag flag) { return (record.faults & static_cast<std::uint32_t>(flag)) != 0; };
     const auto state = static_cast<DeviceFault>(record.device & 0xFFU);
-    if (deviceFault == DeviceFault::none && state != DeviceFault::startingUp) deviceFault = state;
+    if ((deviceFault == DeviceFault::none && state != DeviceFault::startingUp) || isFinal(state)) deviceFault = state;
     ++ticks;
     tick.add(record.tickTime);
     staleTicks += has(SessionFlag::stalePatch);
@@ -27,7 +28,7 @@ void SessionSummary::add(const TickRecord& record) noexcept
     mostDepth          = std::max(mostDepth, depth);
     if (depth > 0 && record.force == glm::dvec3(0)) {
         ++forceless;
-        forcelessFaults = record.faults;
+        lastForceless = record;
     }
     if (!(record.compliance > 0)) return;
     const bool first = mostCompliance == 0;
@@ -44,16 +45,21 @@ void SessionSummary::addPatch(bool solved, const std::string& reason)
 
 std::string SessionSummary::whyForceless() const
 {
-    const auto has = [&](SessionFlag flag) { return (forcelessFaults & static_cast<std::uint32_t>(flag)) != 0; };
+    const auto has = [&](SessionFlag flag) { return (lastForceless.faults & static_cast<std::uint32_t>(flag)) != 0; };
     if (forceless == 0) return {};
-    if (const auto stopped = static_cast<GovernorFault>(forcelessFaults & 0xFFU); stopped != GovernorFault::none)
-        return std::string("the governor stopped the force: ") + name(stopped);
+    const ForceState state = forceState(lastForceless);
+    if (state == ForceState::stopped)
+        return std::string("the governor stopped the force: ") +
+               name(static_cast<GovernorFault>(lastForceless.faults & 0xFFU));
+    if (state == ForceState::deviceLost || state == ForceState::deviceFaulty)
+        return std::string("the device reported ") + name(static_cast<DeviceFault>(lastForceless.device & 0xFFU));
+    if (state == ForceState::notHomed) return "the device was not homed";
+    if (state == ForceState::outOfBox) return "the grip was out of the device's workspace";
     if (has(SessionFlag::noPatch)) return whyPatchless.empty() ? "the plate had no answer yet" : whyPatchless;
     if (has(SessionFlag::oldTable))
         return "the plate did not answer for a quarter of a second" + (why.empty() ? why : ": " + why);
     if (has(SessionFlag::governed))
-        return "the governor waits: the hand must stay slower than 1.2 m/s for 1.5 s, and the device must be homed and "
-               "in its workspace";
+        return "the governor waited: the hand must stay slower than 1.2 m/s, and begin off the object, for 1.5 s";
     return "the computed force was zero";
 }
 

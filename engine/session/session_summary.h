@@ -12,22 +12,23 @@ namespace palp {
 
 /// The summary of a session, for a report.
 struct SessionSummary {
-    std::uint64_t     ticks = 0, contactTicks = 0;
-    std::uint64_t     patches = 0, failedPatches = 0;
-    std::uint64_t     staleTicks = 0, oldTable = 0, beyondTable = 0;
-    std::uint64_t     beyondTheory = 0, patchless = 0;         ///< see SessionFlag
-    double            mostForce       = 0;                     ///< [N]
-    double            mostDepth       = 0;                     ///< [m] of the hand below the proxy, along the normal
-    double            leastCompliance = 0, mostCompliance = 0; ///< in use [m/N]; 0: never in contact
-    GovernorFault     fault       = GovernorFault::none;       ///< the last
-    DeviceFault       deviceFault = DeviceFault::none;         ///< the first, except while starting up
-    std::string       why;                                     ///< the last patch that failed; may be empty
-    std::uint64_t     forceless       = 0;                     ///< ticks that pressed on the surface without a force
-    std::uint32_t     forcelessFaults = 0;                     ///< of the last of them, see TickRecord
-    std::string       whyPatchless; ///< the last patch that failed before the first that did not; may be empty
-    DurationHistogram tick;         ///< computing a tick [s]
-    DurationHistogram solve;        ///< computing a patch [s]
-    DurationHistogram period;       ///< from tick to tick [s]; empty on a virtual clock
+    std::uint64_t ticks = 0, contactTicks = 0;
+    std::uint64_t patches = 0, failedPatches = 0;
+    std::uint64_t staleTicks = 0, oldTable = 0, beyondTable = 0;
+    std::uint64_t beyondTheory = 0, patchless = 0;         ///< see SessionFlag
+    double        mostForce       = 0;                     ///< [N]
+    double        mostDepth       = 0;                     ///< [m] of the hand below the proxy, along the normal
+    double        leastCompliance = 0, mostCompliance = 0; ///< in use [m/N]; 0: never in contact
+    GovernorFault fault = GovernorFault::none;             ///< the last
+    /// The first, except while starting up; but one that ended the session.
+    DeviceFault       deviceFault = DeviceFault::none;
+    std::string       why;             ///< the last patch that failed; may be empty
+    std::uint64_t     forceless = 0;   ///< ticks that pressed on the surface without a force
+    TickRecord        lastForceless{}; ///< the last of them
+    std::string       whyPatchless;    ///< the last patch that failed before the first that did not; may be empty
+    DurationHistogram tick;            ///< computing a tick [s]
+    DurationHistogram solve;           ///< computing a patch [s]
+    DurationHistogram period;          ///< from tick to tick [s]; empty on a virtual clock
 
     /// Counts a record in.
     void add(const TickRecord& record) noexcept;

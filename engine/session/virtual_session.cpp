@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/core/thread_time.h"
+#include "engine/session/force_state.h"
 
 namespace palp {
 namespace {
@@ -27,7 +28,11 @@ public:
     explicit ZeroAtLast(HapticDevice& device) : device_(device) {}
     ZeroAtLast(const ZeroAtLast&)            = delete;
     ZeroAtLast& operator=(const ZeroAtLast&) = delete;
-    ~ZeroAtLast() { device_.exchange(GovernedForce(), now); }
+    ~ZeroAtLast()
+    {
+        device_.light(std::uint8_t(DeviceLight::blue));
+        device_.exchange(GovernedForce(), now);
+    }
 
     double now = 0; ///< [s] of the servo's clock
 
@@ -67,6 +72,7 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
         const double began  = threadSeconds();
         const Hand   hand   = parts.frame.handOf(parts.device.read(time));
         TickRecord   record = servo.tick({time, kTick}, hand, inUse ? &*inUse : nullptr);
+        parts.device.light(std::uint8_t(lightOf(forceState(record))));
         parts.device.render(parts.frame.toDevice(servo.governor().force()));
         record.tickTime = threadSeconds() - began;
         summary.add(record);

@@ -80,6 +80,7 @@ TEST(FalconDevice, UnhomedItNeverPushesAndHomingIsNoSpeed)
     settings.falcon.homed          = false;
     FalconBench bench(settings, [&](const glm::dvec3&, double dt) { return glm::dvec3(0, 0, way(clock += dt)); });
     bench.force = governed({0, 0, 2});
+    bench.device->light(std::uint8_t(DeviceLight::green));
 
     double fastest = 0, homedAt = -1;
     bench.run(3, [&] {
@@ -98,6 +99,9 @@ TEST(FalconDevice, UnhomedItNeverPushesAndHomingIsNoSpeed)
     EXPECT_FALSE(bench.emulator.falcon().command().homing);
     EXPECT_EQ(bench.emulator.falcon().command().lights, std::uint8_t(DeviceLight::green));
     EXPECT_TRUE(bench.pushes());
+    bench.device->light(std::uint8_t(DeviceLight::blue));
+    bench.tick();
+    EXPECT_EQ(bench.emulator.falcon().command().lights, std::uint8_t(DeviceLight::blue)) << "the governor waits";
 }
 
 TEST(FalconDevice, OutsideItsWorkspaceItDoesNotPush)
@@ -105,6 +109,7 @@ TEST(FalconDevice, OutsideItsWorkspaceItDoesNotPush)
     glm::dvec3  place{};
     FalconBench bench(runningFalcon(), [&](const glm::dvec3&, double) { return place; });
     bench.force = governed({1, 0, 0});
+    bench.device->light(std::uint8_t(DeviceLight::green));
     bench.run(0.1);
     ASSERT_TRUE(bench.pushes());
 

@@ -166,6 +166,7 @@ Found weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrat
         demandWell(state, ill, out.fault);
         gain  = out.gain;
         force = governor.force();
+        bench.device.light(std::uint8_t(gain > 0 ? DeviceLight::green : DeviceLight::blue));
         if (told == Stage::hang && hangsStill(force.newtons().y, glm::length(state.velocity), dt)) calibration.hung();
         if (told == Stage::hang && !state.inBox)
             giveUp("the grip was pulled out of its workspace: take a lighter mass and lower it gently");

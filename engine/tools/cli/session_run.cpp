@@ -46,18 +46,11 @@ UdpAddress markerAddress(const std::string& text)
     return parseUdpAddress(text, "--markers", "127.0.0.1"); // nobody else's, unless the user says so
 }
 
-/// Shows on a terminal how much of the time has passed, while a participant is told nothing else.
-void showTime(Progress& progress, double time, double seconds)
-{
-    progress.at(std::size_t(std::llround(1000 * time)), std::size_t(std::llround(1000 * seconds)));
-}
-
 /// Runs a session in real time, with a line that shows what the hand feels.
 SessionSummary playLive(const SessionOptions& o, double seconds, const SessionParts& parts, SessionTap& tap,
                         const OnTick& also)
 {
-    const bool           line = isatty(STDERR_FILENO) != 0 && !o.json && !o.blind;
-    Progress             progress("touching");
+    const bool           line = isatty(STDERR_FILENO) != 0 && !o.json;
     TickRing<TickRecord> ring(also ? 4096 : 1); // four seconds; from the servo to this thread
     const auto           drain = [&] {
         for (auto records = ring.front(); !records.empty(); records = ring.front()) {
@@ -76,8 +69,8 @@ SessionSummary playLive(const SessionOptions& o, double seconds, const SessionPa
     };
     settings.onView = [&, heard = bool(also)](const SessionView& view) {
         if (heard) drain();
-        if (line) showLine(view);
-        if (o.blind) showTime(progress, view.record.time, seconds);
+        if (!line) return;
+        o.blind ? showTime(view, seconds) : showLine(view);
     };
     std::string          warning;
     const SessionSummary summary = runReal(parts, settings, warning);

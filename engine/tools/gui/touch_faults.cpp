@@ -1,5 +1,6 @@
 #include "engine/tools/gui/touch_faults.h"
 
+#include "engine/session/force_state.h"
 #include "engine/session/servo.h"
 
 namespace palp {
@@ -54,6 +55,14 @@ std::vector<std::string> notesOn(const TickRecord& record)
         {SessionFlag::proxyLimited, "The proxy ran out of iterations: move more slowly."},
     };
     std::vector<std::string> notes;
+    switch (forceState(record)) {
+    case ForceState::flows:
+    case ForceState::stopped:     // which has its advice
+    case ForceState::plateSilent: // a note below says more
+        break;
+    default:
+        notes.push_back(describeForces(record));
+    }
     for (const Note& note : kNotes)
         if (record.faults & static_cast<std::uint32_t>(note.flag)) notes.emplace_back(note.text);
     return notes;
