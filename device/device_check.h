@@ -26,4 +26,7 @@ struct Finding {
     std::string help{}; ///< one line that helps; empty if nothing is to be done
 };
 
+/// Tries whether the guardian process, without which no device is driven that pushes, can be started.
+[[nodiscard]] Finding checkGuardian();
+
 } // namespace palp

@@ -5,12 +5,14 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "device/device_check.h"
+#include "device/exchange_rate.h"
 #include "device/haptic_device.h"
 #include "device/hid/hid_port.h"
 
@@ -30,13 +32,15 @@ enum class DeviceHolder : std::uint8_t {
 
 /// A device that was found.
 struct DeviceListing {
-    std::string name{};         ///< name of its record; listDevices() fills it in
-    std::string model{};        ///< "SpaceMouse Compact"; empty: the record's
-    std::string path{};         ///< where it is plugged in; empty for simulations
-    bool        usable = false; ///< it can be opened now
-    std::string why{};          ///< why it is not usable, or what it still needs; empty if it is ready
-    std::string help{};         ///< one line that helps; may be empty
-    std::string calibration{};  ///< what is known of its force; empty: its kind needs none
+    std::string                 name{};         ///< name of its record; listDevices() fills it in
+    std::string                 model{};        ///< "SpaceMouse Compact"; empty: the record's
+    std::string                 path{};         ///< where it is plugged in; empty for simulations
+    bool                        usable = false; ///< it can be opened now
+    std::string                 why{};          ///< why it is not usable, or what it still needs; empty if it is ready
+    std::string                 help{};         ///< one line that helps; may be empty
+    std::string                 calibration{};  ///< what is known of its force; empty: its kind needs none
+    std::optional<ExchangeRate> exchange{};     ///< how fast it answers; empty: not measured
+    bool answers = false; ///< it can be opened and asked at zero force without sending it anything first
 };
 
 /// An option of a device on the command line.

@@ -27,7 +27,8 @@ std::vector<DeviceListing> list(HidSystem& /*hid*/)
                            .usable      = falcon.usable,
                            .why         = falcon.why,
                            .help        = falcon.help,
-                           .calibration = falcon.usable ? describeConstants(falcon.serial) : ""});
+                           .calibration = falcon.usable ? describeConstants(falcon.serial) : "",
+                           .answers     = falcon.usable && falcon.readiness != FalconReadiness::noFirmware});
     return devices;
 }
 

@@ -64,8 +64,13 @@ DeviceSupport support()
 
 const DeviceRecord kBridgeRecord{.name  = "bridge",
                                  .model = "a device that speaks the bridge's report",
-                                 .list  = [](HidSystem& hid) { return listHid(hid, modelOfBridge); },
-                                 .make  = [](const DeviceRequest& request) -> std::unique_ptr<HapticDevice> {
+                                 .list =
+                                     [](HidSystem& hid) {
+                                         auto devices = listHid(hid, modelOfBridge);
+                                         for (DeviceListing& device : devices) device.answers = device.usable;
+                                         return devices;
+                                     },
+                                 .make = [](const DeviceRequest& request) -> std::unique_ptr<HapticDevice> {
                                      return std::make_unique<HidBridgeDevice>(
                                          request.hid, listingFor(request, modelOfBridge, "bridge"));
                                  },

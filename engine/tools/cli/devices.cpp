@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -7,6 +8,7 @@
 
 #include "engine/compute/processor_list.h"
 #include "engine/core/processor.h"
+#include "engine/core/quantity.h"
 #include "engine/plate/host/host_kernels.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/haptic_list.h"
@@ -89,6 +91,10 @@ void printText(const DeviceList& haptics)
                                          : ": ")
                   << device.why << "\n";
         if (!device.help.empty()) std::cout << "   help     " << device.help << "\n";
+        if (const auto& rate = device.exchange)
+            std::cout << "   answers  " << std::lround(rate->perSecond) << " a second, "
+                      << formatQuantity(rate->age, "s") << " old when they come, at most "
+                      << formatQuantity(rate->longest, "s") << " apart\n";
         if (!device.calibration.empty()) std::cout << "   force    " << device.calibration << "\n";
     }
     std::cout << "looked for with " << hapticSupport() << "\n";
@@ -129,6 +135,7 @@ void printProcessors(const DevicesOptions& options, const Machine& machine)
 DeviceList lookForHaptics()
 {
     DeviceList haptics = listHaptics();
+    measureExchanges(haptics.devices);
     for (const std::string& trouble : haptics.troubles) std::cerr << "palpate: " << trouble << "\n";
     return haptics;
 }
@@ -175,7 +182,9 @@ void addDevicesCommand(CLI::App& app)
                       "\"processors\"; \"auto\" is true for the processor that auto takes");
     command->footer(
         "Each haptic device is opened and closed again as a test; for one that cannot be used the list gives the\n"
-        "reason and a remedy. \"palpate doctor\" examines the rest of the machine.\n"
+        "reason and a remedy. One with motors is asked for half a second, at zero force, how often it answers and how\n"
+        "old its answers are: from that follows how stiff a wall may be. \"palpate doctor\" examines the rest of the\n"
+        "machine.\n"
         "A GPU is named by its index or by a part of its name; \"host\" is this processor, with native code for the\n"
         "best instruction set that it has; the environment variable PALPATE_HOST_ISA sets a limit (portable,\n"
         "avx2 or avx512). auto takes a GPU, discrete before integrated before virtual, else the host. It never takes\n"

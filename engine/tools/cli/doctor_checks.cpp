@@ -120,7 +120,7 @@ Finding ofDevice(const DeviceRecord& record, const DeviceList& haptics)
 std::vector<Finding> examine(const DeviceList& haptics)
 {
     std::vector<Finding> findings{realTime()}; // first, because GPU drivers map memory that would be locked too
-    for (const Finding& finding : {vulkan(), host(), display(), usb()}) findings.push_back(finding);
+    for (const Finding& finding : {vulkan(), host(), display(), usb(), checkGuardian()}) findings.push_back(finding);
     for (const DeviceRecord* record : deviceRecords()) {
         if (record->support) findings.push_back(ofDevice(*record, haptics));
         if (!record->findings) continue;

@@ -1,8 +1,11 @@
 #include "engine/tools/cli/haptic_list.h"
 
+#include <chrono>
 #include <cstdlib>
 
 #include "device/hid/hidapi_system.h"
+#include "engine/core/contract.h"
+#include "engine/core/real_time.h"
 #include "engine/session/device_registry.h"
 
 namespace palp {
@@ -12,6 +15,12 @@ bool isSet(const char* variable)
 {
     const char* value = std::getenv(variable);
     return value && *value;
+}
+
+nlohmann::ordered_json jsonOf(const std::optional<ExchangeRate>& rate)
+{
+    if (!rate) return nullptr;
+    return {{"per_second", rate->perSecond}, {"age_s", rate->age}, {"longest_s", rate->longest}};
 }
 
 } // namespace
@@ -46,6 +55,27 @@ std::string displayName()
     return isSet("WAYLAND_DISPLAY") ? "Wayland" : isSet("DISPLAY") ? "X11" : "";
 }
 
+void measureExchanges(std::vector<DeviceListing>& devices)
+{
+    constexpr double kSeconds = 0.5;
+    HidapiSystem     hid;
+    for (DeviceListing& listing : devices) {
+        const DeviceRecord* record = deviceNamed(listing.name);
+        if (!listing.answers || !record) continue;
+        try {
+            const auto device = record->make({.hid = hid, .path = listing.path});
+            device->open();
+            Metronome  metronome{std::chrono::milliseconds(1)};
+            const auto start = metronome.wait();
+            listing.exchange = measureExchanges(
+                *device, kSeconds, [&] { return std::chrono::duration<double>(metronome.wait() - start).count(); });
+        } catch (const Error& error) {
+            listing.why +=
+                (listing.why.empty() ? "" : "; ") + std::string("its rate was not measured: ") + error.what();
+        }
+    }
+}
+
 nlohmann::ordered_json jsonOf(const std::vector<DeviceListing>& devices)
 {
     const auto orNull = [](const std::string& text) {
@@ -59,7 +89,8 @@ nlohmann::ordered_json jsonOf(const std::vector<DeviceListing>& devices)
                         {"usable", device.usable},
                         {"why", orNull(device.why)},
                         {"help", orNull(device.help)},
-                        {"calibration", orNull(device.calibration)}});
+                        {"calibration", orNull(device.calibration)},
+                        {"exchange", jsonOf(device.exchange)}});
     return list;
 }
 

@@ -17,6 +17,10 @@ namespace palp {
 /// Returns the name of the window system: "Wayland", "X11", or empty without one.
 [[nodiscard]] std::string displayName();
 
+/// Measures how fast each device answers that can be asked, for half a second at zero force. One that does not answer
+/// is told in its listing.
+void measureExchanges(std::vector<DeviceListing>& devices);
+
 [[nodiscard]] nlohmann::ordered_json jsonOf(const std::vector<DeviceListing>& devices);
 
 } // namespace palp

@@ -164,10 +164,10 @@ doctor() {
     while [ "$1" != -- ]; do variables="$variables $1"; shift; done
     shift
     # shellcheck disable=SC2086  # a list of words on purpose
-    env -u DISPLAY -u WAYLAND_DISPLAY -u FALCON_FIRMWARE $variables "$palpate" doctor >out.txt 2>err.txt && [ ! -s err.txt ] || complain "doctor: exit $? $(cat err.txt)"
+    env -u DISPLAY -u WAYLAND_DISPLAY -u FALCON_FIRMWARE $variables "$palpate" doctor --quick >out.txt 2>err.txt && [ ! -s err.txt ] || complain "doctor: exit $? $(cat err.txt)"
     tr -s ' ' <out.txt | grep -qF -- "$*" && passed=$((passed + 1)) || complain "doctor$variables lacks '$*': $(cat out.txt)"
 }
-for part in vulkan host display 'real time' usb 'udev rule' falcon 'falcon firmware' bridge spacemouse; do doctor -- " $part "; done
+for part in vulkan host display 'real time' usb guardian 'udev rule' falcon 'falcon firmware' bridge spacemouse; do doctor -- " $part "; done
 doctor -- 'Embree '
 doctor -- 'missing display neither DISPLAY nor WAYLAND_DISPLAY'
 doctor DISPLAY=:0 -- 'ok display X11'
@@ -182,7 +182,12 @@ doctor PALPATE_HOST_ISA=portable -- 'code for portable'
 doctor PALPATE_HOST_ISA=sse9 -- '-> unset PALPATE_HOST_ISA'
 doctor VK_DRIVER_FILES=none.json VK_ICD_FILENAMES=none.json -- 'warning vulkan no processor'
 doctor -- 'warning vulkan only in software: '
+doctor -- 'ok guardian it starts'
+good 'doctor, with the clock of the servo' doctor
+holds "a servo's tick of 1 ms is late by"
+holds 'up to 50'
 good 'doctor, for scripts' doctor --json
+for key in '"part": "servo"' '"late_up_to_s": [' '"busy": {' '"counts": [' '"p99.9_s"'; do holds "$key"; done
 for key in '"palpate": "0.' '"compiler"' '"libraries"' '"system"' '"part": "real time"' '"verdict": "' '"found"' '"help"' '"name": "arm"'; do holds "$key"; done
 good 'list of GPUs' devices --gpus
 holds 'usable   yes'
