@@ -11,6 +11,7 @@
 #include "engine/compute/processor_error.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
+#include "engine/session/force_state.h"
 #include "engine/session/gripped_falcon.h"
 #include "engine/session/interrupt.h"
 #include "engine/session/real_session.h"
@@ -105,14 +106,22 @@ void run(Options& o)
         o.hand.hand                                   = kFalconEmulatorRecord.name;
         o.hand.options[std::string(kFalconCold.flag)] = "true";
     }
-    SessionHand hand     = openHand(o.hand, scene, loaded.object);
-    auto*       emulated = dynamic_cast<GrippedFalcon*>(hand.device.get());
+    SessionHand hand = openHand(o.hand, scene, loaded.object);
+    for (const std::string& warning : hand.warnings) std::printf("note    %s\n", warning.c_str());
+    auto* emulated = dynamic_cast<GrippedFalcon*>(hand.device.get());
     home(*hand.device, emulated);
     std::puts("feel    now; Ctrl-C ends it, at zero force");
     RealSessionSettings settings{.seconds = hand.seconds, .stop = &interrupted};
-    if (isatty(STDERR_FILENO) != 0) settings.onView = showLine;
+    settings.onView = [line = isatty(STDERR_FILENO) != 0, told = DeviceLight::blue](const SessionView& view) mutable {
+        if (const auto light = lightOf(forceState(view.record)); light != told) {
+            if (line) clearLine();
+            std::printf("light   %s\n", meaningOf(told = light));
+        }
+        if (line) showLine(view);
+    };
     std::string warning;
-    report(runReal({scene, loaded.object, deformation.solver(), *hand.device, hand.frame}, settings, warning));
+    report(runReal({scene, loaded.object, deformation.solver(), *hand.device, hand.frame, deformation.firstLaw()},
+                   settings, warning));
     hand.device->close();
     if (!warning.empty()) std::fprintf(stderr, "falcon_demo: warning: %s\n", warning.c_str());
     if (!emulated) return;

@@ -107,8 +107,8 @@ private:
 };
 
 struct Rest {
-    double depth = 0; // [m] below the surface, at the end
-    bool   lies  = false;
+    double depth   = 0; // [m] below the surface, at the end
+    double touched = 0; // [s] when it last did; an encoder step of 48 um is 0.04 N, more than may weigh on it
 };
 
 /// The shipped palm, where the hand stays in one place.
@@ -135,7 +135,7 @@ struct Palm {
                                      kEnd, [&](const TickRecord& record) {
                                          EXPECT_EQ(record.faults & 0xFFU, 0U);
                                          rest.depth = glm::dot(record.proxy - record.hip, outward);
-                                         rest.lies  = record.normal != glm::dvec3(0);
+                                         if (record.normal != glm::dvec3(0)) rest.touched = record.time;
                                      }));
         return rest;
     }
@@ -154,7 +154,7 @@ void expectRestOnTheSurface(const char* which)
         const Rest with = palm.released(carried, place), without = palm.released(uncarried, place);
         std::printf("  %s, %s: rests %.2f mm deep, uncarried %.2f mm\n", which, stated > 1 ? "on the wart" : "on skin",
                     1e3 * with.depth, 1e3 * without.depth);
-        EXPECT_TRUE(with.lies) << which << ": it must not rise";
+        EXPECT_GT(with.touched, kEnd - 0.5) << which << ": it must not rise";
         EXPECT_LE(with.depth, 0.3e-3) << which;
         EXPECT_GT(without.depth, 2e-3) << which << ": 2 N on less than 1000 N/m, or there was nothing to carry";
     }

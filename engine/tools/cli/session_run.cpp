@@ -41,11 +41,6 @@ std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object
     }
 }
 
-UdpAddress markerAddress(const std::string& text)
-{
-    return parseUdpAddress(text, "--markers", "127.0.0.1"); // nobody else's, unless the user says so
-}
-
 /// Runs a session in real time, with a line that shows what the hand feels.
 SessionSummary playLive(const SessionOptions& o, double seconds, const SessionParts& parts, SessionTap& tap,
                         const OnTick& also)
@@ -123,6 +118,11 @@ std::unique_ptr<Recording> recordingOf(const SessionOptions& o, const SessionPar
 }
 
 } // namespace
+
+UdpAddress markerAddress(const std::string& text)
+{
+    return parseUdpAddress(text, "--markers", "127.0.0.1"); // nobody else's, unless the user says so
+}
 
 void warn(const std::vector<std::string>& sentences)
 {
@@ -255,9 +255,15 @@ void addOutputOptions(CLI::App& command, SessionOptions& options)
 {
     command.add_option("--record", options.record, "a new folder for the session");
     addStreamOption(command, options.streams);
-    command.add_option("--markers", options.markers,
-                       "takes each datagram of text at udp:PORT of this machine, or at udp:HOST:PORT, as a marker of "
-                       "its moment; keys pressed in the terminal are markers too");
+    addMarkersOption(command, options.markers);
+}
+
+void addMarkersOption(CLI::App& command, std::string& address)
+{
+    command.add_option(
+        "--markers", address,
+        "takes each datagram of text at udp:PORT of this machine, or at udp:HOST:PORT, as a marker of "
+        "its moment; keys pressed in the terminal of run and hunt, and F7 in the window, are markers too");
 }
 
 void addSessionOptions(CLI::App& command, SessionOptions& options)

@@ -10,6 +10,7 @@
 #include "engine/session/recording.h"
 #include "engine/session/session_summary.h"
 #include "engine/session/tick_stream.h"
+#include "engine/session/udp_address.h"
 #include "engine/tools/cli/hand_source.h"
 
 namespace palp {
@@ -31,6 +32,13 @@ void addSessionOptions(CLI::App& command, SessionOptions& options);
 
 /// Adds --stream, which may be repeated.
 void addStreamOption(CLI::App& command, std::vector<std::string>& outlets);
+
+/// Adds --markers.
+void addMarkersOption(CLI::App& command, std::string& address);
+
+/// Reads the address of --markers; without a host it is this machine's, so that nobody else is heard.
+/// \throws Error naming the option
+[[nodiscard]] UdpAddress markerAddress(const std::string& text);
 
 /// Adds --record, --stream and --markers.
 void addOutputOptions(CLI::App& command, SessionOptions& options);

@@ -13,6 +13,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/session/interrupt.h"
+#include "engine/session/marker_input.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/hand_source.h"
@@ -36,6 +37,7 @@ struct ViewOptions {
     SceneSource              scene{"sample:palm", {}};
     std::string              command;
     std::vector<std::string> streams{};
+    std::string              markers{}; ///< an address where markers are awaited; empty: none
     bool                     dark = false, json = false, noPanels = false, validate = false;
 };
 
@@ -130,7 +132,8 @@ std::optional<study::HuntScorer> scorerFor(const SceneSource& source)
 
 void view(const ViewOptions& o)
 {
-    std::vector<std::unique_ptr<TickStream>> streams; // outlive the window
+    if (!o.markers.empty()) static_cast<void>(markerAddress(o.markers)); // before a window opens
+    std::vector<std::unique_ptr<TickStream>> streams;                    // outlive the window
     WorkbenchSettings                        settings;
     auto                                     scorer = scorerFor(o.scene);
     if (scorer) settings.onTick = [&scorer](const TickRecord& record) { scorer->add(record); };
@@ -172,15 +175,19 @@ void view(const ViewOptions& o)
     if (!o.noPanels && PanelFrame::available()) panels.emplace(window.scale());
     glm::ivec2 last{};
     settings.titled = [&window](const std::string& name) { window.setTitle(name + " - Palpate"); };
-    WindowScreen screen(renderer);
-    Workbench    bench(settings, screen);
-    const auto   report = bench.run(
+    WindowScreen               screen(renderer);
+    Workbench                  bench(settings, screen);
+    std::optional<MarkerInput> markers; // ends before what it marks
+    if (!o.markers.empty()) markers.emplace(MarkerSources{.address = markerAddress(o.markers)});
+    if (markers) markers->listen([&bench](std::string_view text) { bench.mark(text); });
+    const auto report = bench.run(
         [&](double patience) {
             WindowInput input = window.poll(patience);
             if (input.size.x > 0) last = input.size;
             return input;
         },
         panels ? &*panels : nullptr);
+    markers.reset();
     if (o.size.empty()) rememberSize(last);
     tellStreams(streams, o.json);
     if (!report.said.empty()) std::cerr << "palpate: " << report.said << "\n";
@@ -230,6 +237,7 @@ void addViewCommand(CLI::App& app)
     command->add_flag("--validate", o->validate,
                       "runs under Vulkan's validation layer; exit code 1 if it has a message");
     addStreamOption(*command, o->streams);
+    addMarkersOption(*command, o->markers);
     command->add_flag("--json", o->json, "machine-readable, SI units");
     addHandOptions(*command, o->hand, deviceRecords());
     command->footer("Hold Space over the object and move to touch it; the wheel sets the depth. F1 shows all keys.\n"

@@ -35,6 +35,7 @@ void Stage::change(const Scene& scene)
     painted_     = std::move(object);
     solved_      = painted_;
     fresh_.take(); // the waiting paint is older
+    lawIsOld_ = false;
     scene_    = scene;
     place_    = startPlace(scene, loaded_.object);
     solvedOn_ = deformation_->plateSolver().name();
@@ -56,13 +57,26 @@ void Stage::takePaint()
     fresh_.publish();
 }
 
+/// Has the deformation use the newest paint.
+void Stage::solveFresh()
+{
+    if (!fresh_.take()) return;
+    const auto before = std::exchange(solved_, *fresh_.held()); // repaint() looks at it once more
+    deformation_->repaint(*solved_);
+    lawIsOld_ = true;
+}
+
+const HomogeneousLaw* Stage::firstLaw()
+{
+    solveFresh();
+    if (std::exchange(lawIsOld_, false)) deformation_->renewFirstLaw();
+    return deformation_->firstLaw();
+}
+
 PatchSolver Stage::solver()
 {
     return [this](const Touch& touch, double lead) {
-        if (fresh_.take()) {
-            const auto before = std::exchange(solved_, *fresh_.held()); // repaint() looks at it once more
-            deformation_->repaint(*solved_);
-        }
+        solveFresh();
         return deformation_->solve(touch, lead);
     };
 }

@@ -47,14 +47,16 @@ public:
         takePaint();
     }
 
-    /// Returns what answers until the first table. It must not outlive this.
-    [[nodiscard]] const HomogeneousLaw* firstLaw() const noexcept { return deformation_->firstLaw(); }
+    /// Returns what answers until the first table, of the paint as it is now. It must not outlive this.
+    /// \pre no session runs
+    [[nodiscard]] const HomogeneousLaw* firstLaw();
 
     /// Returns the solver for the deformation's thread, with the newest paint. It must not outlive this.
     [[nodiscard]] PatchSolver solver();
 
 private:
     void takePaint();
+    void solveFresh();
 
     Scene             scene_;
     LoadedObject      loaded_;
@@ -66,6 +68,7 @@ private:
     Latest<std::shared_ptr<const SoftObject>> fresh_;   ///< to the deformation's
     std::shared_ptr<const SoftObject>         solved_;  ///< of the deformation's
     std::unique_ptr<Deformation>              deformation_;
+    bool                                      lawIsOld_ = false; ///< painted since its first law
     std::string                               solvedOn_;
 };
 

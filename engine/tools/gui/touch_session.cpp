@@ -35,7 +35,7 @@ void TouchSession::run(const ReadyHand& readyHand, const OnView& onView)
         else if (const auto hand = readyHand())
             runWith(*hand, onView);
     } catch (const Error&) {
-        tap_.reset();
+        closeTap();
         recorder_.end();
         throw;
     }
@@ -56,15 +56,24 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
     real.viewPeriod = 1e-4; // the next picture begins as soon as one is done
     real.stop       = &ended_;
     real.onView     = onView;
-    tap_.emplace(recorder_.recording(), settings_.streams);
+    {
+        const std::lock_guard lock(tapMutex_);
+        tap_.emplace(recorder_.recording(), settings_.streams);
+    }
     real.onStart = [this](std::chrono::steady_clock::time_point start) { tap_->begin(start); };
     real.onTick  = [this](const TickRecord& record) {
         static_cast<void>(ring_.push(record)); // curves may have gaps
         tap_->push(record);
     };
     const SessionSummary summary = runReal(parts, real, realTime_);
-    tap_.reset();
+    closeTap();
     conclude(summary);
+}
+
+void TouchSession::closeTap()
+{
+    const std::lock_guard lock(tapMutex_);
+    tap_.reset();
 }
 
 /// Shows why a session has ended by itself.
@@ -120,8 +129,14 @@ void TouchSession::mark()
 {
     if (!tap_ || (!recorder_.recording() && settings_.streams.empty()))
         return notices_.say("nothing is recorded now: F5 starts a recording");
-    tap_->mark("F7");
+    mark("F7");
     notices_.say("marker " + std::to_string(tap_->marked()) + " of this session");
+}
+
+void TouchSession::mark(std::string_view text)
+{
+    const std::lock_guard lock(tapMutex_);
+    if (tap_) tap_->mark(text);
 }
 
 void TouchSession::followPointer(const WindowInput& input, const std::optional<Hit>& hit, double& depth)

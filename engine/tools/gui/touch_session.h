@@ -2,8 +2,10 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "engine/session/real_session.h"
 #include "engine/session/recorded_session.h"
@@ -59,7 +61,10 @@ public:
     /// Begins a recording with a new session, or ends the one that runs.
     void toggleRecording();
     /// Marks the newest tick in the recording and in the settings' streams.
-    void                                 mark();
+    void mark();
+    /// Does the same with a text from anywhere, and says nothing; nothing takes it where nothing is recorded or sent.
+    /// \thread any
+    void                                 mark(std::string_view text);
     [[nodiscard]] const SessionRecorder& recorder() const { return recorder_; }
     void                                 endRecording() { recorder_.end(); }
 
@@ -83,6 +88,7 @@ private:
 
     [[nodiscard]] PatchSolver solver();
     void                      runWith(const WorkbenchHand& hand, const OnView& onView);
+    void                      closeTap();
     void                      conclude(const SessionSummary& summary);
 
     const WorkbenchSettings&      settings_;
@@ -90,7 +96,8 @@ private:
     Stage*                        stage_ = nullptr;
     std::optional<PointerTouch>   pointer_;
     SessionRecorder               recorder_;
-    std::optional<SessionTap>     tap_; ///< of the session that runs
+    std::mutex                    tapMutex_; ///< of whether there is a tap, and of its markers
+    std::optional<SessionTap>     tap_;      ///< of the session that runs
     std::unique_ptr<ReplayDevice> replay_;
     double                        replaySeconds_ = 0; ///< [s]
     WorkbenchHand                 hand_;              ///< of the session that runs, or ran last

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "engine/tools/gui/controls.h"
 #include "engine/tools/gui/input.h"
@@ -31,6 +32,10 @@ public:
     /// Sets values of the scene from the next session on, which begins at once; the object stays if it can. Values
     /// that a scene refuses change nothing and show a fault. Must be called from `poll`, or as a panel does.
     void change(const SceneValues& values) { controls_.change(values); }
+
+    /// Marks the newest tick in a recording and in streams with a text from anywhere.
+    /// \thread any
+    void mark(std::string_view text) { session_.mark(text); }
 
 private:
     // Between two sessions.

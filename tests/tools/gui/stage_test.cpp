@@ -41,6 +41,20 @@ TEST(Stage, PaintIsFeltWithTheNextPatchAndSoIsTakingItBack)
     EXPECT_EQ(complianceAt(stage), before) << "to the bit";
 }
 
+/// What answers until a session's first table.
+TEST(Stage, TheFirstTouchOfASessionFeelsThePaintToo)
+{
+    Stage        stage(sceneOf());
+    const auto   lnCompliance = [&] { return stage.firstLaw()->at(stage.place().point)->lnCompliance; };
+    const double before       = lnCompliance();
+    const Brush  brush{stage.place().point, 20e-3, 1};
+    stage.paint([&](StiffnessPainting& painting) { painting.paint(brush, 30e6); });
+    EXPECT_LT(lnCompliance(), before - 0.7) << "less than half, painted between two sessions";
+    stage.paint([](StiffnessPainting& painting) { painting.undo(); });
+    static_cast<void>(complianceAt(stage)); // taken by the deformation's thread, in a session
+    EXPECT_EQ(lnCompliance(), before) << "to the bit";
+}
+
 TEST(Stage, OtherValuesChangeThePlateAndKeepThePaint)
 {
     Stage       stage(sceneOf());

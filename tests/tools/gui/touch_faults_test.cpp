@@ -34,5 +34,18 @@ TEST(TouchFaults, NotesAreOfTheBitsThatAreSet)
     EXPECT_EQ(governorFault(record), GovernorFault::tooFast);
 }
 
+/// A fault has its own badge; every other reason for no force is a note.
+TEST(TouchFaults, WhyNoForceFlowsIsANote)
+{
+    TickRecord record;
+    record.actions = static_cast<std::uint32_t>(GovernorAction::outsideBox);
+    ASSERT_EQ(notesOn(record).size(), 1U);
+    EXPECT_EQ(notesOn(record).front(), "no force: the grip is out of its workspace");
+    record.actions = static_cast<std::uint32_t>(GovernorAction::waiting);
+    EXPECT_EQ(notesOn(record).size(), 1U);
+    record.faults = static_cast<std::uint32_t>(SessionFlag::oldTable);
+    EXPECT_EQ(notesOn(record).size(), 1U) << "said once";
+}
+
 } // namespace
 } // namespace palp

@@ -303,17 +303,22 @@ TEST_F(WorkbenchTest, AKeyMarksTheMomentOfARecording)
     touch([this] { return sinceStep() > 0.5; });
     press(kF7Key);
     rest(0.2);
+    step("a datagram", [this](WindowInput&) { std::thread([this] { bench_->mark("left hand"); }).join(); });
+    rest(0.1);
     press(kF5Key);
     rest(0.1);
+    step("another", [this](WindowInput&) { bench_->mark("nobody records"); });
     run();
 
     EXPECT_TRUE(screen_.said_("nothing is recorded now"));
     EXPECT_TRUE(screen_.said_("marker 1 of this session"));
     const RecordedSession session = readSession("session-0001");
-    ASSERT_EQ(session.markers.size(), 1U);
+    ASSERT_EQ(session.markers.size(), 2U);
     EXPECT_EQ(session.markers[0].text, "F7");
     EXPECT_GT(session.markers[0].time, 0.5);
-    EXPECT_LT(session.markers[0].time, session.records.back().time);
+    EXPECT_EQ(session.markers[1].text, "left hand");
+    EXPECT_GT(session.markers[1].time, session.markers[0].time);
+    EXPECT_LT(session.markers[1].time, session.records.back().time);
 }
 
 TEST_F(WorkbenchTest, WhatWasRecordedIsReplayedAndThenThePointerIsBack)
