@@ -105,7 +105,7 @@ SimulatedHand GrippedFalcon::handNow()
     if (homingSince_) {
         if (const auto place = homingPlace(emulated_ - *homingSince_)) {
             SimulatedHand hand  = hand_.at(0);
-            hand.target         = {0, 0, *place};
+            hand.target         = glm::dvec3(0, 0, *place) - bareArm().weight / hand.stiffness; // it carries the arm
             hand.targetVelocity = {};
             return hand;
         }
