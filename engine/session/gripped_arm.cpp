@@ -1,5 +1,7 @@
 #include "engine/session/gripped_arm.h"
 
+#include <algorithm>
+
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
@@ -15,13 +17,15 @@ const DeviceRecord kArmRecord{.name      = "arm",
                                   return std::make_unique<GrippedArm>(*request.hand);
                               }};
 
-SimulatedHand GrippingHand::at(double time) const noexcept
+SimulatedHand GrippingHand::at(double time, const glm::dvec3& weight) const noexcept
 {
-    constexpr double kStep = 1e-3; // [s] over which the target's velocity is taken
-    const double     there = path.begin() + time;
-    SimulatedHand    hand  = grip;
-    hand.target            = frame.toDevice(path.position(there));
-    hand.targetVelocity    = (frame.toDevice(path.position(there + kStep)) - hand.target) / kStep;
+    constexpr double kStep  = 1e-3; // [s] over which the target's velocity is taken
+    constexpr double kCarry = 1.5;  // [s] in which the governor takes the weight over
+    const double     there  = path.begin() + time;
+    SimulatedHand    hand   = grip;
+    hand.target             = frame.toDevice(path.position(there));
+    hand.targetVelocity     = (frame.toDevice(path.position(there + kStep)) - hand.target) / kStep;
+    if (grip.stiffness > 0) hand.target -= std::clamp(1 - time / kCarry, 0.0, 1.0) * weight / grip.stiffness;
     return hand;
 }
 
@@ -35,7 +39,7 @@ void GrippingHand::demandWithin(double radius) const
 }
 
 GrippedArm::GrippedArm(const GrippingHand& hand, const SimulatedArmSettings& arm)
-    : hand_(hand), arm_(arm, hand.at(0).target)
+    : hand_(hand), weight_(arm.weight), arm_(arm, hand.at(0).target)
 {
     hand.demandWithin(arm.boxRadius);
 }
@@ -44,7 +48,7 @@ HapticState GrippedArm::read(double now) noexcept
 {
     HapticState state = arm_.read(now); // moves on to now, with the hand of the last tick
     state.buttons     = hand_.path.buttons(hand_.path.begin() + now);
-    arm_.holdBy(hand_.at(now));
+    arm_.holdBy(hand_.at(now, weight_));
     return state;
 }
 

@@ -17,7 +17,9 @@ struct GrippingHand {
     DeviceFrame     frame{};
 
     /// Returns the hand at a time [s] of the session, in the device's frame.
-    [[nodiscard]] SimulatedHand at(double time) const noexcept;
+    /// \param weight  [N] of the arm. Like a person the hand holds it up until the session does, which is 1.5 s long;
+    ///                else it would lie in the object when the session begins
+    [[nodiscard]] SimulatedHand at(double time, const glm::dvec3& weight = {}) const noexcept;
 
     /// Checks that the path stays within the device's reach.
     /// \throws Error naming the first time at which the path is farther than `radius` [m] from the frame's origin
@@ -40,6 +42,7 @@ public:
 
 private:
     GrippingHand hand_;
+    glm::dvec3   weight_; ///< [N]
     ArmDevice    arm_;
 };
 

@@ -49,6 +49,8 @@ SimulatedArmSettings bareArm()
     return arm;
 }
 
+const glm::dvec3 kWeight = bareArm().weight; ///< [N]
+
 FalconDeviceSettings stepped(FalconDeviceSettings settings)
 {
     settings.pace = FalconPace::stepped;
@@ -81,7 +83,7 @@ GrippedFalcon::GrippedFalcon(const GrippingHand& hand, const Ft232EmulatorSettin
     info_.model        = "emulated Falcon";
     info_.isSimulation = true;
     info_.needsHoming  = !falcon.falcon.homed;
-    info_.weight       = bareArm().weight; // as after a calibration
+    info_.weight       = kWeight; // as after a calibration
 }
 
 HapticState GrippedFalcon::read(double now) noexcept
@@ -104,15 +106,15 @@ SimulatedHand GrippedFalcon::handNow()
 {
     if (homingSince_) {
         if (const auto place = homingPlace(emulated_ - *homingSince_)) {
-            SimulatedHand hand  = hand_.at(0);
-            hand.target         = glm::dvec3(0, 0, *place) - bareArm().weight / hand.stiffness; // it carries the arm
+            SimulatedHand hand  = hand_.at(0, kWeight);
+            hand.target         = hand.target - hand_.at(0).target + glm::dvec3(0, 0, *place); // it carries the arm
             hand.targetVelocity = {};
             return hand;
         }
         homingSince_.reset();
         waited_ = emulated_ - begun_;
     }
-    return hand_.at(running_ ? std::max(0.0, emulated_ - begun_ - waited_) : 0);
+    return hand_.at(running_ ? std::max(0.0, emulated_ - begun_ - waited_) : 0, kWeight);
 }
 
 glm::dvec3 GrippedFalcon::moved(const glm::dvec3& force, double dt)
