@@ -2,7 +2,7 @@
 // Domain     one workgroup; unknown after unknown, the columns within reach updated side by side
 // Reads      columns of the lower triangle of A (real)
 // Writes     columns of L (real), with the inverse of the diagonal in its place, 0 where rounding has left no pivot;
-//            the number of such pivots
+//            the number of pivots that rounding has left nothing of, or nothing that can be relied on
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -15,9 +15,9 @@ layout(std430, binding = 1) writeonly buffer Factor { real factor[]; };
 layout(std430, binding = 2) writeonly buffer Lost { uint lostPivots[]; };
 
 #ifdef PALPATE_DOUBLE
-const real kLeast = real(kLeastPivotDouble);
+const real kLeast = real(kLeastPivotDouble), kDoubtful = kLeast;
 #else
-const real kLeast = kLeastPivot;
+const real kLeast = kLeastPivot, kDoubtful = kDoubtfulPivot;
 #endif
 
 shared real window[kMostHalfBand + 1][kMostHalfBand + 1]; // column n, updated so far, at n mod (halfBand + 1)
@@ -36,7 +36,7 @@ void main()
         real pivot = window[slot][0];
         bool holds = !(pivot > kLeast * band[n * slots]);
         real inverse = holds ? real(0.0f) : real(1.0f) / sqrt(pivot);
-        if (holds) ++lost;
+        if (!(pivot > kDoubtful * band[n * slots])) ++lost;
         for (int d = lane; d <= reach; d += lanes) {
             column[d] = window[slot][d] * inverse;
             factor[n * slots + d] = d == 0 ? inverse : column[d];
@@ -49,5 +49,6 @@ void main()
         // The slot of column n is free: the column that comes into reach next.
         int next = n + slots;
         for (int d = lane; d <= reach; d += lanes) window[slot][d] = next < unknowns ? band[next * slots + d] : real(0.0f);
-    }    if (lane == 0) lostPivots[0] = lost;
+    }
+    if (lane == 0) lostPivots[0] = lost;
 }

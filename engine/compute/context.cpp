@@ -1,5 +1,6 @@
 #include "engine/compute/context.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "engine/compute/backend.h"
@@ -109,12 +110,28 @@ Handles openToDraw(const ContextSettings& settings)
     refuseToDraw(list);
 }
 
-Handles open(const ContextSettings& settings)
+Handles openAny(const ContextSettings& settings)
 {
     if (settings.purpose != Purpose::compute) return openToDraw(settings);
     if (isProcessorWord(settings.processor, kHostProcessor)) return openHost(settings); // loads no driver
     const bool best = isProcessorWord(settings.processor, kAutoProcessor) && settings.validation == Validation::off;
     return best ? openBest(settings) : openWanted(settings);
+}
+
+template <class Number>
+void lower(Number& limit, Number most)
+{
+    if (most > 0) limit = std::min(limit, most);
+}
+
+Handles open(const ContextSettings& settings)
+{
+    Handles opened = openAny(settings);
+    lower(opened->limits.buffer, settings.most.buffer);
+    lower(opened->limits.invocations, settings.most.invocations);
+    lower(opened->limits.sharedMemory, settings.most.sharedMemory);
+    opened->description.float64 = opened->description.float64 && settings.float64;
+    return opened;
 }
 
 } // namespace

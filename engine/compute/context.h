@@ -28,19 +28,21 @@ enum class Purpose {
     show     ///< pictures in a window
 };
 
+/// The limits of a processor.
+struct Limits {
+    std::size_t   buffer       = 0; ///< [byte] one Buffer
+    std::uint32_t invocations  = 0; ///< per workgroup
+    std::size_t   sharedMemory = 0; ///< [byte] per workgroup
+};
+
 struct ContextSettings {
     std::string              processor  = "auto"; ///< see chooseProcessor()
     Validation               validation = Validation::off;
     double                   patience   = 0; ///< [s] limit of a submission; 0: 10 s, or 300 s for Vulkan in software
     Purpose                  purpose    = Purpose::compute;
     std::vector<std::string> windowExtensions{}; ///< of Vulkan, that windows need on this desktop; with Purpose::show
-};
-
-/// The limits of a processor.
-struct Limits {
-    std::size_t   buffer       = 0; ///< [byte] one Buffer
-    std::uint32_t invocations  = 0; ///< per workgroup
-    std::size_t   sharedMemory = 0; ///< [byte] per workgroup
+    Limits                   most{};         ///< what to use of it at most, as if it were a smaller one; 0: all it has
+    bool                     float64 = true; ///< false: as if its shaders had no doubles
 };
 
 /// A processor that is open for computing, with one queue: one of Vulkan, or the host, whose kernels are functions

@@ -17,11 +17,17 @@ public:
     using Error::Error;
 };
 
-/// Says that the processor went away, hangs or has no memory left while it was in use. What lived on it is gone; a new
-/// Context or a smaller problem may work.
+/// Says that the processor went away, hangs or has no memory left while it was in use. Unless it is
+/// ProcessorOutOfMemory, what lived on it is gone, and only a new Context may work.
 class ProcessorLost : public Error {
 public:
     using Error::Error;
+};
+
+/// Says that a buffer is larger than the processor has memory for. The processor itself can go on with smaller ones.
+class ProcessorOutOfMemory : public ProcessorLost {
+public:
+    using ProcessorLost::ProcessorLost;
 };
 
 } // namespace palp::compute

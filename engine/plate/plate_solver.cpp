@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -10,7 +11,9 @@
 #include "engine/compute/context.h"
 #include "engine/compute/processor_error.h"
 #include "engine/core/contract.h"
+#include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
+#include "engine/plate/multigrid/detail/plate_kernels.h"
 #include "engine/plate/multigrid/multigrid_plate_solver.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 
@@ -32,6 +35,25 @@ std::string stoppedAt(const SolveReport& report)
 bool sameButRigidity(const Plate& a, const Plate& b)
 {
     return a.grid == b.grid && a.edges == b.edges && a.poissonRatio == b.poissonRatio && a.foundation == b.foundation;
+}
+
+/// Returns the largest over the least rigidity [1].
+double contrastOf(const Plate& plate)
+{
+    const Extremes of = extremesOf(plate.rigidity.values());
+    return of.most / of.least;
+}
+
+/// Returns the report of all loads, or one of a load that did not converge.
+const SolveReport& reportOf(const std::vector<PlateSolution>& solutions)
+{
+    const auto failed = std::ranges::find_if(solutions, [](const PlateSolution& s) { return !s.report.converged; });
+    return failed == solutions.end() ? solutions.front().report : failed->report;
+}
+
+const SolveReport& reportOf(const FootprintSolution& solution)
+{
+    return solution.whole.report;
 }
 
 } // namespace
@@ -69,6 +91,7 @@ struct PlateSolver::Multigrid {
     PlateKernels                kernels;
     std::optional<PlateKernels> kernelsOfEights; ///< once they are needed
     Prepared                    loads, eights;
+    std::size_t                 mostNumbers = std::size_t(-1); ///< of a field of all loads, for which there is memory
 
     Multigrid(const compute::ContextSettings& settings, SoftwareBits bits)
         : context(settings), likeTheHost(isHost() || (bits == SoftwareBits::ofTheHost &&
@@ -79,41 +102,111 @@ struct PlateSolver::Multigrid {
     }
 
     [[nodiscard]] bool isHost() const { return context.processor().kind == compute::ProcessorKind::host; }
+    [[nodiscard]] bool hasDoubles() const { return context.processor().float64; }
+    [[nodiscard]] bool reaches(double tolerance) const
+    {
+        return hasDoubles() || !(tolerance < MultigridPlateSolver::kLeastFloatTolerance);
+    }
 
     /// Returns how many loads are solved together. A GPU has lanes to fill. On the host the fields of one load fit its
     /// cache and those of 49 do not: one after the other they take two thirds of the time (65 nodes: 15 in place of 24
-    /// ms).
-    [[nodiscard]] std::size_t batchOf(std::size_t all) const { return likeTheHost ? 1 : all; }
+    /// ms). Several batches are as equal as can be.
+    [[nodiscard]] std::size_t batchOf(const PlateGrid& grid, std::size_t all) const
+    {
+        if (likeTheHost) return 1;
+        const std::size_t most    = std::min(mostNumbers, context.limits().buffer / kernels.all().realBytes());
+        const std::size_t each    = std::max<std::size_t>(1, most / grid.nodes());
+        const std::size_t batches = (all + each - 1) / each;
+        return (all + batches - 1) / batches;
+    }
+
+    /// Calls solve(batch) with the number of loads that are solved together: half as many where memory runs out.
+    template <class Solve>
+    auto inBatches(const Plate& plate, std::size_t all, const Solve& solve)
+    {
+        for (;;) {
+            const std::size_t batch = batchOf(plate.grid, all);
+            try {
+                return solve(batch);
+            } catch (const compute::ProcessorOutOfMemory&) {
+                if (batch == 1) throw;
+                mostNumbers = batch / 2 * plate.grid.nodes();
+            }
+        }
+    }
 
     [[nodiscard]] std::vector<PlateSolution> solve(const Plate& wanted, std::span<const NodeField> nodalForces,
                                                    double tolerance)
     {
-        const std::size_t          batch = batchOf(nodalForces.size());
-        const double               setUp = loads.prepare(context, kernels, wanted, batch, tolerance);
-        std::vector<PlateSolution> solutions;
-        for (; !nodalForces.empty(); nodalForces = nodalForces.subspan(batch))
-            for (PlateSolution& solution : loads.solver->solve(nodalForces.first(batch))) {
-                solution.report.setUpMilliseconds = setUp;
-                solutions.push_back(std::move(solution));
+        return inBatches(wanted, nodalForces.size(), [&](std::size_t batch) {
+            std::vector<PlateSolution> solutions;
+            double                     setUp = 0;
+            for (auto left = nodalForces; !left.empty();) {
+                const auto now = left.first(std::min(batch, left.size()));
+                left           = left.subspan(now.size());
+                if (solutions.empty() || now.size() != loads.loads)
+                    setUp += loads.prepare(context, kernels, wanted, now.size(), tolerance);
+                for (PlateSolution& solution : loads.solver->solve(now)) solutions.push_back(std::move(solution));
             }
-        return solutions;
+            for (PlateSolution& solution : solutions) solution.report.setUpMilliseconds = setUp;
+            return solutions;
+        });
     }
 
     /// \return the solution; not converged if that of any load is not
     [[nodiscard]] FootprintSolution solve(const Plate& wanted, std::span<const Footprint> given, std::size_t whole,
                                           double tolerance)
     {
+        return inBatches(wanted, given.size(), [&](std::size_t batch) {
+            return likeTheHost ? solveByEights(wanted, given, whole, tolerance)
+                               : solveByBatches(wanted, given, whole, tolerance, batch);
+        });
+    }
+
+private:
+    static constexpr std::size_t kEight = 8;
+
+    [[nodiscard]] static std::vector<std::size_t> indices(std::size_t count)
+    {
+        std::vector<std::size_t> all(count);
+        std::iota(all.begin(), all.end(), std::size_t(0));
+        return all;
+    }
+
+    [[nodiscard]] FootprintSolution solveByBatches(const Plate& wanted, std::span<const Footprint> given,
+                                                   std::size_t whole, double tolerance, std::size_t batch)
+    {
         FootprintSolution solution;
         solution.responses.resize(given.size());
-        const std::vector<std::size_t>     all    = indices(given.size());
-        const std::span<const std::size_t> first  = batchOf(all.size()) == 1 ? std::span(all).subspan(whole, 1) : all;
-        const double                       setUp  = loads.prepare(context, kernels, wanted, first.size(), tolerance);
-        SolveReport                        report = solveTogether(loads, given, first, solution);
-        report.setUpMilliseconds                  = setUp;
-        solution.whole                            = {loads.solver->deflectionOf(first.size() == 1 ? 0 : whole), report};
-        if (first.size() == all.size()) return solution;
+        const std::vector<std::size_t> all   = indices(given.size());
+        double                         setUp = 0;
+        std::optional<SolveReport>     worst;
+        for (std::span<const std::size_t> left = all; !left.empty();) {
+            const auto now = left.first(std::min(batch, left.size()));
+            left           = left.subspan(now.size());
+            if (!worst || now.size() != loads.loads)
+                setUp += loads.prepare(context, kernels, wanted, now.size(), tolerance);
+            const SolveReport report = solveTogether(loads, given, now, solution);
+            if (!worst || (worst->converged && !report.converged)) worst = report;
+            if (whole >= now.front() && whole <= now.back())
+                solution.whole.deflection = loads.solver->deflectionOf(whole - now.front());
+        }
+        solution.whole.report                   = *worst;
+        solution.whole.report.setUpMilliseconds = setUp;
+        return solution;
+    }
 
-        std::vector<std::size_t> others = all;
+    [[nodiscard]] FootprintSolution solveByEights(const Plate& wanted, std::span<const Footprint> given,
+                                                  std::size_t whole, double tolerance)
+    {
+        FootprintSolution solution;
+        solution.responses.resize(given.size());
+        const double setUp       = loads.prepare(context, kernels, wanted, 1, tolerance);
+        SolveReport  report      = solveTogether(loads, given, {&whole, 1}, solution);
+        report.setUpMilliseconds = setUp;
+        solution.whole           = {loads.solver->deflectionOf(0), report};
+
+        std::vector<std::size_t> others = indices(given.size());
         others.erase(others.begin() + std::ptrdiff_t(whole));
         if (others.size() >= kEight) prepareEights(wanted, tolerance);
         for (std::span<const std::size_t> left = others; !left.empty();) {
@@ -126,16 +219,6 @@ struct PlateSolver::Multigrid {
             }
         }
         return solution;
-    }
-
-private:
-    static constexpr std::size_t kEight = 8;
-
-    [[nodiscard]] static std::vector<std::size_t> indices(std::size_t count)
-    {
-        std::vector<std::size_t> all(count);
-        std::iota(all.begin(), all.end(), std::size_t(0));
-        return all;
     }
 
     void prepareEights(const Plate& wanted, double tolerance)
@@ -160,21 +243,23 @@ private:
 };
 
 PlateSolver::PlateSolver(std::string_view wanted, double patience, SoftwareBits bits)
+    : PlateSolver(compute::ContextSettings{.processor = std::string(wanted), .patience = patience}, bits)
 {
+}
+
+PlateSolver::PlateSolver(compute::ContextSettings settings, SoftwareBits bits) : bits_(bits)
+{
+    const std::string wanted = settings.processor;
     if (compute::isProcessorWord(wanted, kReference)) return;
-    compute::ContextSettings settings;
-    settings.processor = std::string(wanted);
-    settings.patience  = patience;
     try {
-        multigrid_ = std::make_unique<Multigrid>(settings, bits);
-        note_      = multigrid_->context.note();
+        processor_ = std::make_unique<Multigrid>(settings, bits);
+        note_      = processor_->context.note();
     } catch (const std::exception& error) { // the kernels do not compile, or the requested processor is refused
         if (!compute::isProcessorWord(wanted, compute::kAutoProcessor)) throw;
-        note_              = error.what();
-        settings.processor = compute::kHostProcessor;
-        multigrid_         = std::make_unique<Multigrid>(settings, bits);
+        note_      = error.what();
+        processor_ = makeHost();
     }
-    name_ = multigrid_->context.processor().name;
+    name_ = processor_->context.processor().name;
 }
 
 PlateSolver::~PlateSolver()                                 = default;
@@ -196,37 +281,112 @@ PlateSolution PlateSolver::solve(const Plate& plate, const NodeField& nodalForce
     return std::move(solveAll(plate, {&nodalForce, 1}, tolerance).front());
 }
 
+std::unique_ptr<PlateSolver::Multigrid> PlateSolver::makeHost() const
+{
+    return std::make_unique<Multigrid>(compute::ContextSettings{.processor = std::string(compute::kHostProcessor)},
+                                       bits_);
+}
+
+PlateSolver::Multigrid& PlateSolver::host()
+{
+    if (processor_->isHost()) return *processor_;
+    if (!host_) host_ = makeHost();
+    return *host_;
+}
+
+PlateSolver::Multigrid& PlateSolver::bestFor(const Plate& plate, double tolerance)
+{
+    if (plate.grid.nodes() >= tooManyNodes_) return host();
+    if (processor_->reaches(tolerance)) return *processor_;
+    note_ = processor_->context.processor().name + " has no doubles, which a tolerance of " + formatNumber(tolerance) +
+            " needs";
+    return host();
+}
+
+template <class Answer, class Solve>
+std::optional<Answer> PlateSolver::byMultigrid(const Plate& plate, double tolerance, const Solve& solve)
+{
+    if (!processor_) return std::nullopt;
+    const bool orByReference = fitsReference(plate.grid);
+    if (const HardPlate* known = orByReference ? knownAsHard(plate, tolerance) : nullptr) {
+        note_ = known->why;
+        return std::nullopt;
+    }
+    std::optional<Answer> answer;
+    std::exception_ptr    broken;
+    for (Multigrid* by = &bestFor(plate, tolerance); by;) {
+        const bool last = by->isHost();
+        bool       sure = last; // that the host does no better
+        try {
+            answer                    = solve(*by);
+            const SolveReport& report = reportOf(*answer);
+            if (report.converged) return answer;
+            note_ = stoppedAt(report);
+            sure  = last || by->hasDoubles();
+        } catch (const compute::ProcessorOutOfMemory& error) {
+            if (last) throw;
+            note_         = error.what();
+            tooManyNodes_ = std::min(tooManyNodes_, plate.grid.nodes());
+        } catch (const compute::ProcessorLost& error) {
+            if (last) throw;
+            loseProcessor(error);
+        } catch (const SolverBrokeDown& error) {
+            note_  = error.what();
+            broken = std::current_exception();
+        }
+        by = sure ? nullptr : &host();
+    }
+    if (orByReference) {
+        if (answer) rememberHard(plate, tolerance);
+        return std::nullopt;
+    }
+    if (!answer) std::rethrow_exception(broken);
+    return answer;
+}
+
+void PlateSolver::loseProcessor(const std::exception& why)
+{
+    note_ = why.what();
+    if (!host_) host_ = makeHost();
+    processor_ = std::move(host_);
+    name_      = processor_->context.processor().name;
+}
+
+const PlateSolver::HardPlate* PlateSolver::knownAsHard(const Plate& plate, double tolerance) const
+{
+    constexpr double kSimilar = 0.5; // share of a contrast: patches of one map show more of it, or less [1]
+    const auto       known    = std::ranges::find_if(hard_, [&](const HardPlate& one) {
+        return sameButRigidity(one.plate, plate) && tolerance <= one.tolerance &&
+               contrastOf(plate) >= kSimilar * one.contrast;
+    });
+    return known == hard_.end() ? nullptr : &*known;
+}
+
+void PlateSolver::rememberHard(const Plate& plate, double tolerance)
+{
+    constexpr std::size_t kMost = 8; // those of several grids, or of one that becomes softer
+    if (hard_.size() == kMost) hard_.erase(hard_.begin());
+    hard_.push_back(
+        {{plate.grid, plate.edges, plate.poissonRatio, plate.foundation, {}}, contrastOf(plate), tolerance, note_});
+}
+
 std::vector<PlateSolution> PlateSolver::solveAll(const Plate& plate, std::span<const NodeField> nodalForces,
                                                  double tolerance)
 {
     PALP_EXPECT(!nodalForces.empty(), "there is no load to solve for");
-    if (multigrid_) {
-        try {
-            std::vector<PlateSolution> solutions = multigrid_->solve(plate, nodalForces, tolerance);
-            const auto                 failed =
-                std::ranges::find_if(solutions, [](const PlateSolution& s) { return !s.report.converged; });
-            if (failed == solutions.end() || !fitsReference(plate.grid)) return solutions;
-            note_ = stoppedAt(failed->report);
-        } catch (const compute::ProcessorLost& error) {
-            lose(error);
-        }
-    }
-    return byReference(plate, nodalForces, tolerance);
+    using Answer = std::vector<PlateSolution>;
+    const auto answer =
+        byMultigrid<Answer>(plate, tolerance, [&](Multigrid& by) { return by.solve(plate, nodalForces, tolerance); });
+    return answer ? *answer : byReference(plate, nodalForces, tolerance);
 }
 
 FootprintSolution PlateSolver::solveFootprints(const Plate& plate, std::span<const Footprint> loads, std::size_t whole,
                                                double tolerance)
 {
     PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
-    if (multigrid_) {
-        try {
-            FootprintSolution solution = multigrid_->solve(plate, loads, whole, tolerance);
-            if (solution.whole.report.converged || !fitsReference(plate.grid)) return solution;
-            note_ = stoppedAt(solution.whole.report);
-        } catch (const compute::ProcessorLost& error) {
-            lose(error);
-        }
-    }
+    const auto answer = byMultigrid<FootprintSolution>(
+        plate, tolerance, [&](Multigrid& by) { return by.solve(plate, loads, whole, tolerance); });
+    if (answer) return *answer;
     std::vector<NodeField> fields;
     for (const Footprint& load : loads) fields.push_back(load.load(plate.grid));
     std::vector<PlateSolution> solutions = byReference(plate, fields, tolerance);
@@ -235,13 +395,6 @@ FootprintSolution PlateSolver::solveFootprints(const Plate& plate, std::span<con
         solution.responses.push_back(responseOf(loads[n], solutions[n].deflection));
     solution.whole = std::move(solutions[whole]);
     return solution;
-}
-
-void PlateSolver::lose(const std::exception& why)
-{
-    note_ = why.what();
-    name_ = kReference;
-    multigrid_.reset();
 }
 
 std::vector<PlateSolution> PlateSolver::byReference(const Plate& plate, std::span<const NodeField> nodalForces,

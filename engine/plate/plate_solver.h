@@ -1,6 +1,7 @@
 #pragma once
 #include <exception>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,6 +11,10 @@
 #include "engine/plate/plate.h"
 
 namespace palp {
+
+namespace compute {
+struct ContextSettings;
+}
 
 /// The way in which Vulkan in software solves a plate.
 enum class SoftwareBits {
@@ -24,6 +29,17 @@ struct FootprintSolution {
 };
 
 /// Solves plates: on a GPU or the host by multigrid, or by the reference solver.
+///
+/// The host's multigrid takes over from another processor
+///  - for good, if that one is lost or hangs;
+///  - for plates of as many nodes or more, if one does not fit its memory; loads that do not fit it together are split
+///    into batches before;
+///  - for one plate, if the processor has no doubles and the tolerance needs them, if it stops short of the tolerance
+///    for want of them, or if something is no longer a number.
+/// The reference takes over for a plate that multigrid in doubles does not solve within its 200 steps, up to 513 x 513
+/// nodes: beyond, factorising takes minutes and gigabytes, and an answer that is reported as not converged is better.
+/// Such a plate is remembered, and the reference solves those like it at once: of the same grid, edges and foundation,
+/// at least half the contrast, and no looser tolerance. Each time note() says why.
 ///
 /// It keeps the solver of the last plate. Another rigidity on the same grid, edges and foundation costs no new memory,
 /// nor does the same number of loads.
@@ -41,22 +57,22 @@ public:
     /// \throws compute::ProcessorError if the requested processor cannot be used
     explicit PlateSolver(std::string_view wanted = "auto", double patience = 0,
                          SoftwareBits bits = SoftwareBits::itsOwn);
+    /// Opens the processor that settings.processor names, with other settings than the usual ones.
+    explicit PlateSolver(compute::ContextSettings settings, SoftwareBits bits = SoftwareBits::itsOwn);
     ~PlateSolver();
     PlateSolver(PlateSolver&&) noexcept;
     PlateSolver& operator=(PlateSolver&&) noexcept;
 
     [[nodiscard]] const std::string& name() const noexcept; ///< of the GPU, "host" or "reference"
 
-    /// Returns what went wrong last: a GPU that "auto" skipped as broken, or why the reference solved a plate; empty if
-    /// nothing went wrong.
+    /// Returns what went wrong last: a GPU that "auto" skipped as broken, or why the host or the reference took over; empty
+    /// if nothing went wrong.
     [[nodiscard]] const std::string& note() const noexcept;
 
     /// Solves for the deflection under forces at the nodes [N]; see MultigridPlateSolver and ReferencePlateSolver for
     /// the report.
     ///
-    /// The reference solves this and all later plates if the processor is lost or runs out of memory, and this plate
-    /// alone, up to 513 x 513 nodes, if multigrid does not reach the tolerance; note() reports it. See
-    /// report.converged.
+    /// report.solver is the name of what solved it, see above; report.converged whether the tolerance was reached.
     /// \param tolerance  of the error estimate, relative [1]; the reference solver is as accurate as doubles allow, and
     ///                   reports whether that suffices
     /// \throws Error if the plate, the load or the tolerance is not acceptable
@@ -79,11 +95,34 @@ public:
 private:
     struct Multigrid;
 
-    void lose(const std::exception& why); ///< the processor, for good
+    /// A plate that multigrid did not solve, and others like it will hardly be.
+    struct HardPlate {
+        Plate       plate;     ///< without its rigidity
+        double      contrast;  ///< [1]
+        double      tolerance; ///< [1]
+        std::string why;       ///< see note()
+    };
+
+    [[nodiscard]] std::unique_ptr<Multigrid> makeHost() const;
+    [[nodiscard]] Multigrid&                 host(); ///< the host's multigrid, which takes over; made when first needed
+    [[nodiscard]] Multigrid&                 bestFor(const Plate& plate, double tolerance);
+
+    /// Calls solve(multigrid) on the processor and, where that fails, on the host.
+    /// \return nothing if the reference should solve the plate
+    template <class Answer, class Solve>
+    [[nodiscard]] std::optional<Answer> byMultigrid(const Plate& plate, double tolerance, const Solve& solve);
+
+    void loseProcessor(const std::exception& why); ///< for good: the host is the processor then
+    [[nodiscard]] const HardPlate* knownAsHard(const Plate& plate, double tolerance) const;
+    void                           rememberHard(const Plate& plate, double tolerance);
     [[nodiscard]] static std::vector<PlateSolution>
     byReference(const Plate& plate, std::span<const NodeField> nodalForces, double tolerance);
 
-    std::unique_ptr<Multigrid> multigrid_; ///< null: the reference solver is used
+    SoftwareBits               bits_;
+    std::unique_ptr<Multigrid> processor_; ///< null: the reference solver is used
+    std::unique_ptr<Multigrid> host_;      ///< what takes over where the processor cannot; null: not needed yet
+    std::size_t                tooManyNodes_ = std::size_t(-1); ///< for the processor's memory, by what was tried
+    std::vector<HardPlate>     hard_;
     std::string                name_{kReference};
     std::string                note_;
 };

@@ -28,8 +28,8 @@ struct HostBuffer : Buffer::Handles {
         const std::size_t whole = (size + kAlignment - 1) / kAlignment * kAlignment + 2 * kMargin;
         memory_                 = static_cast<std::byte*>(std::aligned_alloc(kAlignment, whole));
         if (!memory_)
-            throw ProcessorLost("this machine has no " + std::to_string(size >> 20) + " MiB for the buffer '" + name +
-                                "'; try fewer cells");
+            throw ProcessorOutOfMemory("this machine has no " + std::to_string(size >> 20) + " MiB for the buffer '" +
+                                       name + "'; try fewer cells");
         std::memset(memory_, 0, kMargin);
         std::memset(memory_ + whole - 2 * kMargin, 0, 2 * kMargin);
         mapped = memory_ + kMargin;

@@ -59,11 +59,11 @@ VulkanBuffer::~VulkanBuffer()
 std::unique_ptr<Buffer::Handles> VulkanContext::makeBuffer(std::string name, std::size_t bytes, Intent intent)
 {
     if (bytes > limits.buffer)
-        throw Error("the buffer '" + name + "' of " + mebibytes(bytes) + " is larger than the GPU " + description.name +
-                    " allows (" + mebibytes(limits.buffer) + "); try fewer cells");
+        throw ProcessorOutOfMemory("the buffer '" + name + "' of " + mebibytes(bytes) + " is larger than the GPU " +
+                                   description.name + " allows (" + mebibytes(limits.buffer) + "); try fewer cells");
     if (allocations >= native.maxMemoryAllocationCount)
-        throw Error("the buffer '" + name + "' is one too many: the GPU " + description.name + " allows " +
-                    std::to_string(native.maxMemoryAllocationCount));
+        throw ProcessorOutOfMemory("the buffer '" + name + "' is one too many: the GPU " + description.name +
+                                   " allows " + std::to_string(native.maxMemoryAllocationCount));
     auto          made = std::make_unique<VulkanBuffer>(*this, std::move(name), bytes);
     VulkanBuffer& h    = *made;
 

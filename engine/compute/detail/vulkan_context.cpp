@@ -47,7 +47,7 @@ void check(VkResult result, const char* what)
     switch (result) {
     case VK_ERROR_OUT_OF_HOST_MEMORY:
     case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-        throw ProcessorLost(sentence + "; try fewer cells");
+        throw ProcessorOutOfMemory(sentence + "; try fewer cells");
     case VK_ERROR_DEVICE_LOST:
         throw ProcessorLost(sentence);
     default:

@@ -14,10 +14,10 @@ void refuseWhatDoesNotFit(const VulkanContext& gpu, const KernelCode& code, Work
     const std::string             limit  = " than the GPU " + gpu.description.name + " allows (";
     const std::uint64_t           all    = std::uint64_t(workgroup.x) * workgroup.y * workgroup.z;
     if (workgroup.x > limits.maxComputeWorkGroupSize[0] || workgroup.y > limits.maxComputeWorkGroupSize[1] ||
-        workgroup.z > limits.maxComputeWorkGroupSize[2] || all > limits.maxComputeWorkGroupInvocations)
+        workgroup.z > limits.maxComputeWorkGroupSize[2] || all > gpu.limits.invocations)
         throw Error(who + "wants a workgroup of " + std::to_string(workgroup.x) + "x" + std::to_string(workgroup.y) +
-                    "x" + std::to_string(workgroup.z) + ", more" + limit +
-                    std::to_string(limits.maxComputeWorkGroupInvocations) + " in all)");
+                    "x" + std::to_string(workgroup.z) + ", more" + limit + std::to_string(gpu.limits.invocations) +
+                    " in all)");
     if (std::uint32_t(code.buffers) > limits.maxPerStageDescriptorStorageBuffers)
         throw Error(who + "wants " + std::to_string(code.buffers) + " buffers, more" + limit +
                     std::to_string(limits.maxPerStageDescriptorStorageBuffers) + ")");

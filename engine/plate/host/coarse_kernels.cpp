@@ -82,9 +82,11 @@ void factorOf(const HostDispatch& d)
     const int                         reach = halfBand(g), slots = reach + 1;
     const int                         unknowns = int(nodesOf(g));
 
-    const Real  least = Real(sizeof(Real) == sizeof(double) ? kLeastPivotDouble : kLeastPivot);
-    uint        lost  = 0;
-    Real* const L     = scratch.of(std::ptrdiff_t(kMostCoarseNodes) * C::kStride);
+    const bool  isDouble = sizeof(Real) == sizeof(double);
+    const Real  least    = Real(isDouble ? kLeastPivotDouble : kLeastPivot);
+    const Real  doubtful = Real(isDouble ? kLeastPivotDouble : kDoubtfulPivot);
+    uint        lost     = 0;
+    Real* const L        = scratch.of(std::ptrdiff_t(kMostCoarseNodes) * C::kStride);
     for (int n = 0; n < unknowns; ++n) {
         const Real* entries = band + n * slots;
         Real*       column  = L + std::ptrdiff_t(n) * C::kStride;
@@ -94,7 +96,7 @@ void factorOf(const HostDispatch& d)
         C::template subtract<1>(sums, column, reach, min(n, reach));
         const Real pivot   = sums[0][0];
         const Real inverse = pivot > least * entries[0] ? Real(1) / sqrt(pivot) : Real(0);
-        if (inverse == 0) ++lost;
+        if (!(pivot > doubtful * entries[0])) ++lost;
         for (int v = 0; v < C::kVectors; ++v) C::store(column + v * C::kLanes, sums[v] * inverse);
         for (int e = 0; e <= reach; ++e) result[n * slots + e] = column[e];
         result[n * slots] = inverse;

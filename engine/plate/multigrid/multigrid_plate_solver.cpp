@@ -23,6 +23,7 @@
 #include "engine/plate/detail/rigidity_unit.h"
 #include "engine/plate/multigrid/detail/grid_hierarchy.h"
 #include "engine/plate/multigrid/detail/plate_passes.h"
+#include "engine/plate/multigrid/detail/worst.h"
 
 // Each command list is recorded once:
 //
@@ -247,12 +248,9 @@ struct MultigridPlateSolver::Impl {
 
     [[nodiscard]] double worst(int word) const
     {
-        double most = 0;
-        for (std::uint32_t load = 0; load < loads; ++load) {
-            const double value = stateOf(load, word);
-            if (!(value <= most)) most = value; // a NaN is the worst
-        }
-        return most;
+        std::vector<double> values;
+        for (std::uint32_t load = 0; load < loads; ++load) values.push_back(stateOf(load, word));
+        return worstOf(values);
     }
 
     /// Returns the largest force of each load [N].
@@ -390,7 +388,7 @@ struct MultigridPlateSolver::Impl {
         const std::size_t at    = load * shared::kResponseWords + std::size_t(word);
         const double      value = works[load] * (k.doubles ? from.as<double>()[at] : double(from.as<float>()[at]));
         if (!std::isfinite(value))
-            throw Error("plate: the deflection is not finite; the rigidity or the load is out of range");
+            throw SolverBrokeDown("plate: the deflection is not finite; the rigidity or the load is out of range");
         return value;
     }
 
@@ -406,7 +404,7 @@ struct MultigridPlateSolver::Impl {
                 times.empty() ? std::nullopt : std::optional(processorMilliseconds.value_or(0) + times.back());
             const double estimate = worst(shared::kStateEstimate);
             if (std::isnan(estimate))
-                throw Error("plate: the solver broke down; the rigidity or the load is out of range");
+                throw SolverBrokeDown("plate: the solver broke down; the rigidity or the load is out of range");
             if (!(estimate > settings.tolerance) || done >= settings.maxIterations) break;
             list = &run(&Lists::resume, &Impl::recordResume);
             done += int(worst(shared::kStateSteps));
@@ -441,7 +439,7 @@ struct MultigridPlateSolver::Impl {
             from += at.apart;
         }
         if (!extremesOf(w.values()).finite)
-            throw Error("plate: the deflection is not finite; the rigidity or the load is out of range");
+            throw SolverBrokeDown("plate: the deflection is not finite; the rigidity or the load is out of range");
         return w;
     }
 };

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/contract.h"
 #include "engine/core/enum_names.h"
 #include "engine/plate/footprint.h"
 #include "engine/plate/plate.h"
@@ -13,6 +14,12 @@ namespace palp {
 namespace compute {
 class Context;
 }
+
+/// Says that a solve gave something that is not a number: the rigidity or a load is beyond what its numbers can hold.
+class SolverBrokeDown : public Error {
+public:
+    using Error::Error;
+};
 
 /// The division of a cycle into dispatches. The answers are the same.
 enum class Schedule {
@@ -112,7 +119,8 @@ public:
     /// steps, and includes rounding; converged is false after maxIterations, or if rounding hides how a part of the
     /// plate is held; iterations counts steps of conjugate gradients on the finest grid; workUnits include the nested
     /// iteration. Every solution has the same report, of the whole batch and its worst load.
-    /// \throws Error if a load is not finite or the deflection is not
+    /// \throws Error if a load is not finite
+    /// \throws SolverBrokeDown if an estimate or a deflection is not
     /// \throws compute::ProcessorLost if the processor fails
     [[nodiscard]] std::vector<PlateSolution> solve(std::span<const NodeField> nodalForces);
     [[nodiscard]] PlateSolution              solve(const NodeField& nodalForce);
@@ -129,7 +137,7 @@ public:
     /// The work of a load is (f, x) + (r, x), with the residual r = f - A x that conjugate gradients have: its relative
     /// error is the square of that of the answer in the energy norm, so that a tolerance of 1e-2 gives a compliance to
     /// 1e-4. The works of the changes are as wrong as the answer.
-    /// \throws Error and compute::ProcessorLost as solve()
+    /// \throws Error, SolverBrokeDown and compute::ProcessorLost as solve()
     [[nodiscard]] Responses solveFootprints(std::span<const Footprint> loads);
     /// Returns the deflection [m] under a load of the last solveFootprints().
     [[nodiscard]] NodeField deflectionOf(std::size_t load) const;
