@@ -2,6 +2,9 @@
 // Domain     one workgroup per load
 // Reads      columns of L with inverse diagonal (real), forces of the coarsest level
 // Writes     deflection of the coarsest level
+//
+// With PALPATE_INVERTS load n is a unit force at node n, and column n of the inverse is written, as pairs of floats: a
+// plate that is softly held sinks by a thousand times more than it bends, and floats would round the bending away.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -11,8 +14,16 @@
 
 layout(push_constant) uniform Constants { LevelPush push; };
 layout(std430, binding = 0) readonly buffer Factor { real factor[]; };
+#ifdef PALPATE_INVERTS
+layout(std430, binding = 1) writeonly buffer Inverse { vec2 inverse[]; };
+real forceAt(int base, int node) { return node == int(gl_WorkGroupID.z) ? real(1.0f) : real(0.0f); }
+void write(int at, real value) { inverse[at] = vec2(float(value), float(value - real(float(value)))); }
+#else
 layout(std430, binding = 1) readonly buffer Force { float force[]; };
 layout(std430, binding = 2) writeonly buffer Deflection { float w[]; };
+real forceAt(int base, int node) { return real(force[base + node]); }
+void write(int at, real value) { w[at] = float(value); }
+#endif
 
 shared real right[kMostCoarseNodes], middle[kMostCoarseNodes];
 shared bool moves[kMostCoarseNodes];
@@ -27,7 +38,7 @@ void main()
     int lane = int(gl_LocalInvocationID.x), lanes = int(gl_WorkGroupSize.x);
     for (int n = lane; n < unknowns; n += lanes) {
         bool held = isHeld(g, columnOf(g, n), rowOf(g, n));
-        right[n]  = held ? real(0.0f) : real(force[base + nodeOf(g, n)]);
+        right[n]  = held ? real(0.0f) : forceAt(base, nodeOf(g, n));
         middle[n] = real(0.0f);
         moves[n]  = !held;
     }
@@ -48,5 +59,5 @@ void main()
             middle[n - d] -= factor[(n - d) * slots + d] * solved;
     }
     barrier();
-    for (int n = lane; n < unknowns; n += lanes) w[base + nodeOf(g, n)] = float(right[n]);
+    for (int n = lane; n < unknowns; n += lanes) write(base + nodeOf(g, n), right[n]);
 }

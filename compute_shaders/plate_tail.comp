@@ -1,18 +1,20 @@
 // plate_tail.comp - a whole cycle on the coarse levels, from forces to deflection, by one workgroup per load.
 // Domain     x: one workgroup; z: loads
 // Reads      the levels (see tail_level.h), for all of them rigidity [1], inverse divisor [1] and transfer tables; the
-//            inverse of the coarsest level's matrix, column after column; force of the first level
+//            inverse of the coarsest level's matrix, column after column, as pairs of floats; force of the first level
 // Writes     deflection of the first level, 0 on held nodes; deflections put aside on the way down, each invocation its
 //            own nodes'
 //
 // A dispatch on a small level costs mainly the wait for it, so a cycle on all small levels is one dispatch. Invocations
 // exchange numbers through shared memory only. Sweeps, residual and transfers equal those of single dispatches, to the
-// bit; the coarsest level is solved by its inverse, which invocations share better than substitution.
+// bit; the coarsest level is solved by its inverse, which invocations share better than substitution. It is summed as
+// accurately as in doubles, by pairs of floats: on many GPUs a double takes 32 to 64 times as long as a float.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require // unrolled sweeps take a driver seconds to compile
 
 #include "compute_shaders/plate_prelude.glsl"
+#include "compute_shaders/shared/float_pair.h"
 #include "compute_shaders/shared/tail_level.h"
 
 layout(constant_id = 3) const int kSweeps = 2; // before and after the correction
@@ -24,7 +26,7 @@ layout(std430, binding = 1) readonly buffer Rigidity { float D[]; };
 layout(std430, binding = 2) readonly buffer Divisor { float inverseDivisor[]; };
 layout(std430, binding = 3) readonly buffer TableX { float tablesX[]; };
 layout(std430, binding = 4) readonly buffer TableZ { float tablesZ[]; };
-layout(std430, binding = 5) readonly buffer Inverse { float inverse[]; };
+layout(std430, binding = 5) readonly buffer Inverse { FloatPair inverse[]; };
 layout(std430, binding = 6) readonly buffer Force { float force[]; };
 layout(std430, binding = 7) buffer Aside { float aside[]; };
 layout(std430, binding = 8) writeonly buffer Deflection { float w[]; };
@@ -145,9 +147,9 @@ void main()
     enter(last);
     int nodes = nodesOf(here.plate);
     for (int n = lane; n < nodes; n += kLanes) {
-        float sum = 0.0f;
-        for (int m = 0; m < nodes; ++m) sum += inverse[m * nodes + n] * forceAt(m);
-        pool[here.w + n] = sum;
+        FloatPair sum = FloatPair(0.0f, 0.0f);
+        for (int m = 0; m < nodes; ++m) sum = plusProduct(sum, inverse[m * nodes + n], forceAt(m));
+        pool[here.w + n] = sum.high;
     }
     barrier();
     for (int l = last - 1; l >= first; --l) {

@@ -276,6 +276,15 @@ const std::string& PlateSolver::note() const noexcept
     return note_;
 }
 
+std::string PlateSolver::takeoverSince(const std::string& noteBefore, const std::string& solvedBy) const
+{
+    if (note_ == noteBefore) return {};
+    const std::string who = solvedBy == kReference                ? "the reference solver"
+                            : solvedBy == compute::kHostProcessor ? "the host"
+                                                                  : solvedBy;
+    return who + " took over: " + note_;
+}
+
 PlateSolution PlateSolver::solve(const Plate& plate, const NodeField& nodalForce, double tolerance)
 {
     return std::move(solveAll(plate, {&nodalForce, 1}, tolerance).front());

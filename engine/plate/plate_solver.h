@@ -92,6 +92,10 @@ public:
     [[nodiscard]] FootprintSolution solveFootprints(const Plate& plate, std::span<const Footprint> loads,
                                                     std::size_t whole, double tolerance = 1e-4);
 
+    /// Returns in a sentence without a full stop who took over, and why, if note() is not `noteBefore`; else empty.
+    /// \param solvedBy  report.solver of the newest answer
+    [[nodiscard]] std::string takeoverSince(const std::string& noteBefore, const std::string& solvedBy) const;
+
 private:
     struct Multigrid;
 

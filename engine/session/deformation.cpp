@@ -44,6 +44,15 @@ void Deformation::repaint(const SoftObject& object)
 
 DeformationAnswer Deformation::solve(const Touch& touch, double lead)
 {
+    DeformationAnswer  answer = solveSomewhere(touch, lead);
+    const std::string& by     = answer.patch ? answer.patch->report.solver : solver_.name();
+    answer.takeover           = solver_.takeoverSince(told_, by);
+    if (!answer.takeover.empty()) told_ = solver_.note();
+    return answer;
+}
+
+DeformationAnswer Deformation::solveSomewhere(const Touch& touch, double lead)
+{
     if (!touch.touching) return solveAhead(touch, lead);
     const glm::dvec3  ahead = aheadOf(law_, touch.point, touch.velocity, lead);
     DeformationAnswer there = solveAt({ahead, touch.outward, true, true}, touch);

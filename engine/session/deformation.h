@@ -11,9 +11,10 @@ namespace palp {
 
 /// The answer to a touch: the result of the slow half of a session.
 struct DeformationAnswer {
-    std::optional<PatchUpdate> update; ///< for the servo; empty: nothing could be solved there
-    std::optional<Patch>       patch;  ///< for an observer; there whenever `update` is
-    std::string                why;    ///< a failure, also one that a second try mended; may be empty
+    std::optional<PatchUpdate> update;     ///< for the servo; empty: nothing could be solved there
+    std::optional<Patch>       patch;      ///< for an observer; there whenever `update` is
+    std::string                why;        ///< a failure, also one that a second try mended; may be empty
+    std::string                takeover{}; ///< who solves plates now, and why; empty: who did before
 };
 
 /// Turns a touch into an answer. It may take long, and throw. `lead` is the time [s] from the touch to the middle of that
@@ -64,6 +65,7 @@ public:
     [[nodiscard]] const PlateSolver& plateSolver() const noexcept { return solver_; }
 
 private:
+    [[nodiscard]] DeformationAnswer solveSomewhere(const Touch& touch, double lead);
     [[nodiscard]] DeformationAnswer solveAhead(const Touch& touch, double lead);
     [[nodiscard]] DeformationAnswer solveAt(const Contact& contact, const Touch& touch);
 
@@ -71,6 +73,7 @@ private:
     ComplianceLaw        law_;
     PatchSettings        settings_;
     PlateSolver          solver_;
+    std::string          told_; ///< the solver's note that an answer has told
     FootprintLattice     lattice_;
     HomogeneousLaw       firstLaw_;
     std::optional<Frame> frame_; ///< of the last patch, carried to the next

@@ -33,6 +33,7 @@ public:
     {
         try {
             DeformationAnswer answer = solver_(touch, lead);
+            if (!answer.takeover.empty()) tellOnce(kindOf(answer.takeover), answer.takeover);
             if (!answer.update && !answer.why.empty()) note(answer.why); // no reason: nobody touches
             solved_ = solved_ || answer.update;
             return answer;
@@ -49,10 +50,14 @@ private:
             solved_ ? "the plate cannot be solved where the hand touches, which feels its last answer "
                       "for a quarter of a second more: "
                     : "the hand touches and feels nothing, because the plate cannot be solved: ";
-        const std::string kind = kindOf(start + why);
+        tellOnce(kindOf(start + why), start + why);
+    }
+
+    void tellOnce(const std::string& kind, const std::string& sentence)
+    {
         if (std::ranges::find(told_, kind) != told_.end()) return;
         told_.push_back(kind);
-        tell_(start + why);
+        tell_(sentence);
     }
 
     PatchSolver                             solver_;

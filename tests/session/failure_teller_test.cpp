@@ -47,6 +47,27 @@ TEST(FailureTeller, SaysEachKindOfReasonOnceWhateverItsNumbers)
     EXPECT_EQ(told.size(), 6U) << "nothing is said twice";
 }
 
+TEST(FailureTeller, SaysWhoTookOverThoughTheTouchHasAPatch)
+{
+    std::vector<std::string> told;
+    std::string              takeover;
+    const PatchSolver        solver = tellingFailures(
+        [&](const Touch&, double) -> DeformationAnswer {
+            return {PatchUpdate(), {}, {}, takeover};
+        },
+        [&](const std::string& sentence) { told.push_back(sentence); });
+    static_cast<void>(solver(Touch(), 1.0 / 60));
+    EXPECT_TRUE(told.empty());
+    for (const char* const next : {"the reference solver took over: it stopped at an error of about 0.2",
+                                   "the reference solver took over: it stopped at an error of about 0.3",
+                                   "the host took over: the GPU is lost"}) {
+        takeover = next;
+        static_cast<void>(solver(Touch(), 1.0 / 60));
+    }
+    ASSERT_EQ(told.size(), 2U) << "each kind once";
+    EXPECT_EQ(told[1], "the host took over: the GPU is lost");
+}
+
 /// A sheet whose points are so far apart that a patch window holds no more than four.
 SoftObject coarseSheet(const Material& material)
 {

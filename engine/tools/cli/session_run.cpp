@@ -84,6 +84,16 @@ PatchSolver telling(PatchSolver solver)
     });
 }
 
+/// Returns the solver, which also keeps who took over last. The session's thread for deformations writes it.
+PatchSolver keeping(PatchSolver solver, std::string& takeover)
+{
+    return [solver = std::move(solver), &takeover](const Touch& touch, double lead) {
+        DeformationAnswer answer = solver(touch, lead);
+        if (!answer.takeover.empty()) takeover = answer.takeover;
+        return answer;
+    };
+}
+
 /// Opens the outlets that the user names.
 std::vector<std::unique_ptr<TickStream>> streamsOf(const SessionOptions& o)
 {
@@ -148,6 +158,7 @@ nlohmann::json jsonOf(const SessionRun& run)
     nlohmann::json all = jsonOf(run.summary);
     all["hand"]        = run.hand;
     all["solver"]      = run.solver;
+    all["takeover"]    = run.takeover.empty() ? nlohmann::json(nullptr) : nlohmann::json(run.takeover);
     all["warnings"]    = run.warnings;
     if (run.recorded) // "samples" is the word of session.json
         all["recorded"] = {{"folder", run.folder},
@@ -164,6 +175,7 @@ nlohmann::json jsonOf(const SessionRun& run)
 void printText(const SessionRun& run)
 {
     printText(run.summary, run.solver, run.hand);
+    if (!run.takeover.empty()) std::cout << "  " << run.takeover << "\n";
     if (run.recorded) {
         std::cout << "  " << run.recorded->ticks << " ticks in " << run.folder;
         if (run.recorded->markers > 0) std::cout << ", " << counted(run.recorded->markers, "marker");
@@ -203,10 +215,13 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     const std::atomic<bool>& stop = catchInterrupts();
     waitForHoming(*hand.device, stop);
 
-    const SessionParts parts{
-        scene,        loaded.object, o.blind ? deformation.solver() : telling(deformation.solver()),
-        *hand.device, hand.frame,    deformation.firstLaw()};
-    const auto recording = recordingOf(o, parts, clock, run.solver);
+    const SessionParts parts{scene,
+                             loaded.object,
+                             keeping(o.blind ? deformation.solver() : telling(deformation.solver()), run.takeover),
+                             *hand.device,
+                             hand.frame,
+                             deformation.firstLaw()};
+    const auto         recording = recordingOf(o, parts, clock, run.solver);
     if (!o.blind) warn(run.warnings);
     std::vector<TickStream*> outlets;
     for (const auto& stream : streams) outlets.push_back(stream.get());
@@ -222,6 +237,7 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     markers.reset();
     if (recording) run.recorded = recording->finish();
     for (const auto& stream : streams) run.streams.push_back(stream->finish());
+    run.solver       = deformation.plateSolver().name();
     run.hand         = hand.device->info().model;
     run.interrupted  = stop;
     const auto after = warningsOf(run.summary);

@@ -50,7 +50,8 @@ void demandGood(const SessionOptions& options);
 /// The result of a session.
 struct SessionRun {
     SessionSummary                 summary;
-    std::string                    solver; ///< of the plate
+    std::string                    solver;     ///< of the plate, at the end
+    std::string                    takeover{}; ///< who took over from another solver last, and why; may be empty
     std::string                    hand;
     std::vector<std::string>       warnings;
     std::optional<RecordingReport> recorded;

@@ -62,7 +62,7 @@ Solved solved(const SolveOptions& options)
     const auto  told   = solver.note();
     s.solution         = solvedWithProgress(solver, s.problem, options.solver.tolerance);
     s.note             = solver.note();
-    if (s.note != told) std::cerr << "palpate: the reference solver took over: " << s.note << "\n";
+    sayTakeover(solver.takeoverSince(told, s.solution.report.solver));
     if (const SolveReport& report = s.solution.report; !report.converged)
         s.problem.warnings.push_back("the solution misses --tolerance: its error is about " +
                                      formatNumber(*report.errorEstimate) +

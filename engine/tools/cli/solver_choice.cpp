@@ -31,6 +31,11 @@ void sayPassedOver(const std::string& name, const std::string& note)
     if (!note.empty()) std::cerr << "palpate: auto takes " << name << ": " << note << "\n";
 }
 
+void sayTakeover(const std::string& sentence)
+{
+    if (!sentence.empty()) std::cerr << "palpate: " << sentence << "\n";
+}
+
 void checkTolerance(double tolerance)
 {
     const SceneKey& key = sceneKey("tolerance");

@@ -31,6 +31,9 @@ void checkTolerance(double tolerance);
 /// Says on standard error which processor "auto" took in place of a broken one, if there is a note of that.
 void sayPassedOver(const std::string& name, const std::string& note);
 
+/// Says on standard error who took over, if the sentence is not empty; see PlateSolver::takeoverSince().
+void sayTakeover(const std::string& sentence);
+
 /// Returns open(); where the processor is refused, the sentence adds that --solver takes the reference solver too.
 template <class Open>
 [[nodiscard]] auto orTheReference(const Open& open)

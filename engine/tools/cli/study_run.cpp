@@ -280,6 +280,7 @@ std::string Sitting::touch(std::size_t condition, const std::string& name, Force
     const SessionRun session = runSession(plan_.conditions[condition].scene, felt_[condition].loaded, options,
                                           [&](const TickRecord& record) { force.add(record); });
     if (session.interrupted) throw Paused();
+    if (!session.takeover.empty()) std::cerr << "palpate: " << session.takeover << "\n";
     try {
         demandWhole(session);
     } catch (const CheckFailed& failed) {

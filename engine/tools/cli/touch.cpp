@@ -165,7 +165,7 @@ void touch(const TouchOptions& options)
     PlateSolver          solver   = openSolver(scene.solver);
     const auto           told     = solver.note();
     const Patch          patch    = deform(object, contact, settings, solver);
-    if (solver.note() != told) std::cerr << "palpate: the reference solver took over: " << solver.note() << "\n";
+    sayTakeover(solver.takeoverSince(told, patch.report.solver));
     demandDeformed(patch);
 
     nlohmann::json report = patchJson(patch, scene.material, settings, force, solver);

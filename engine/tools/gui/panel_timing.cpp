@@ -82,6 +82,7 @@ void drawTimingSection(PanelDesk& desk)
     reading(desk, Half::left, "frame", orDash(draws, formatted("%.1f ms", 1e3 * content.frameTime)));
     reading(desk, Half::right, "frames", orDash(draws, formatted("%.0f per s", draws ? 1 / content.frameTime : 0)));
     drawProcessor(desk, "plate on", content.solvedOn, false);
+    if (!content.takeover.empty()) tonedWrapped(desk, Tone::warning, content.takeover);
     drawProcessor(desk, "drawn on", content.drawnOn, content.drawnInSoftware);
 }
 

@@ -21,7 +21,8 @@ struct PanelContent {
     double                   loopPeriod = 0, solveTime = 0, frameTime = 0; ///< [s]
     std::string              hand{};                                       ///< "mouse", "Novint Falcon"
     std::string              solvedOn{};                                   ///< solver of the plate
-    std::string              drawnOn{};                                    ///< processor of the pictures
+    std::string              takeover{}; ///< who took over from it, and why; may be empty
+    std::string              drawnOn{};  ///< processor of the pictures
     bool                     drawnInSoftware = false;
     bool                     touching        = false; ///< a session runs
     bool                     replaying       = false; ///< of a recording

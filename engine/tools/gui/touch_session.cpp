@@ -164,6 +164,7 @@ void TouchSession::declare()
 void TouchSession::collect(const OnTick& onTick)
 {
     unsolved_.take();
+    takeover_.take();
     for (auto records = ring_.front(); !records.empty(); records = ring_.front()) {
         for (const TickRecord& record : records) {
             history_.add(record);
@@ -177,6 +178,12 @@ std::string TouchSession::unsolved() const
 {
     const std::string* const why = unsolved_.held();
     return why ? *why : "";
+}
+
+std::string TouchSession::takeover() const
+{
+    const std::string* const who = takeover_.held();
+    return who ? *who : "";
 }
 
 void TouchSession::noteRealTime(std::string_view warning)
@@ -195,6 +202,10 @@ PatchSolver TouchSession::solver()
         try {
             DeformationAnswer answer = solve(touch, lead);
             note(answer.update ? "" : answer.why);
+            if (!answer.takeover.empty()) {
+                takeover_.draft() = answer.takeover;
+                takeover_.publish();
+            }
             return answer;
         } catch (const std::exception& error) {
             note(error.what());

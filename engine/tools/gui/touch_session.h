@@ -79,9 +79,10 @@ public:
     void                              collect(const OnTick& onTick);
     [[nodiscard]] const TouchHistory& history() const { return history_; }
     [[nodiscard]] std::string         unsolved() const; ///< why the last patch could not be solved; empty: it was
-    [[nodiscard]] std::string         handModel() const { return hand_.device->info().model; }
-    [[nodiscard]] const std::string&  realTime() const { return realTime_; } ///< as WorkbenchReport::realTime
-    void                              noteRealTime(std::string_view warning);
+    [[nodiscard]] std::string takeover() const; ///< who took over from another solver last, and why; may be empty
+    [[nodiscard]] std::string handModel() const { return hand_.device->info().model; }
+    [[nodiscard]] const std::string& realTime() const { return realTime_; } ///< as WorkbenchReport::realTime
+    void                             noteRealTime(std::string_view warning);
 
 private:
     enum class State { neverRan, ready, halted };
@@ -106,7 +107,7 @@ private:
     std::string                   realTime_;
     TickRing<TickRecord>          ring_{4096}; ///< from the servo: four seconds
     TouchHistory                  history_;
-    Latest<std::string>           unsolved_; ///< from the deformation
+    Latest<std::string>           unsolved_, takeover_; ///< from the deformation
 };
 
 } // namespace palp

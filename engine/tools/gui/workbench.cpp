@@ -326,6 +326,7 @@ PanelContent Workbench::content(const SessionView* view) const
     }
     now.frameTime       = pictures_.frameTime();
     now.solvedOn        = stage.solvedOn();
+    now.takeover        = session_.takeover();
     now.drawnOn         = screen_.processor().name;
     now.drawnInSoftware = screen_.processor().kind == compute::ProcessorKind::software;
     now.replaying       = session_.replaying();

@@ -175,6 +175,51 @@ TEST_F(CoarseLevelTest, TheAnswerIsThatOfADenseCholeskyInDoubles)
     });
 }
 
+TEST_F(CoarseLevelTest, TheInverseIsTheAnswersToUnitForcesWithTwiceTheDigits)
+{
+    inEachPrecision([](auto real) {
+        using Real = decltype(real);
+        for (const compute::Workgroup shape : lines()) {
+            const compute::Kernel invert(context(), kernels::coarseInvert<Real>(), shape);
+            for (const Plate& plate : coarsePlates()) {
+                SCOPED_TRACE(describe(plate) + " by " + describe(shape));
+                const RoughLevel        level(plate);
+                const std::size_t       nodes = nodesOf(level.g);
+                const std::vector<Real> factor =
+                    host::factored(level.g, host::assembled<Real>(level.g, level.rigidity));
+                std::vector<float> words(2 * nodes * nodes);
+                dispatchTwice(invert, {in(factor), out(words)}, shared::LevelPush{level.g},
+                              {1, 1, std::uint32_t(nodes)});
+
+                std::vector<float> units(nodes * nodes, 0.0F), high;
+                for (std::size_t n = 0; n < nodes; ++n) units[n * nodes + n] = 1;
+                for (std::size_t n = 0; n < words.size(); n += 2) high.push_back(words[n]);
+                const auto expected = host::coarseSolved(level.g, factor, units);
+                EXPECT_TRUE(agree(high, expected, sizesOf(expected), kFactorRounding));
+                if (sizeof(Real) == sizeof(float)) {
+                    for (std::size_t n = 1; n < words.size(); n += 2) ASSERT_EQ(words[n], 0) << "floats have no more";
+                    continue;
+                }
+                // A unit of force is balanced by the whole numbers as by doubles; by their upper parts as by floats.
+                const Eigen::MatrixXd A     = denseMatrix(level);
+                double                whole = 0, upper = 0;
+                for (std::size_t n = 0; n < nodes; n += 7) {
+                    if (holds(level.g, int(n) / (level.g.cellsZ + 1), int(n) % (level.g.cellsZ + 1))) continue;
+                    Eigen::VectorXd both(A.rows()), above(A.rows()),
+                        unit = Eigen::VectorXd::Unit(A.rows(), Eigen::Index(n));
+                    for (std::size_t m = 0; m < nodes; ++m) {
+                        above[Eigen::Index(m)] = double(words[2 * (n * nodes + m)]);
+                        both[Eigen::Index(m)]  = above[Eigen::Index(m)] + double(words[2 * (n * nodes + m) + 1]);
+                    }
+                    whole = std::max(whole, (A * both - unit).cwiseAbs().maxCoeff());
+                    upper = std::max(upper, (A * above - unit).cwiseAbs().maxCoeff());
+                }
+                EXPECT_LT(whole, 1e-4 * upper) << "2^-24 of it, and the rounding of doubles";
+            }
+        }
+    });
+}
+
 /// A plate of which a stiff part hangs on soft ones, more loosely than floats can tell.
 Plate loosePlate(Edge edge)
 {

@@ -1,3 +1,4 @@
+#include "compute_shaders/shared/float_pair.h"
 #include "compute_shaders/shared/region_layout.h"
 #include "engine/plate/multigrid/detail/plate_tail.h"
 #include "tests/plate/kernels/plate_shader_test.h"
@@ -52,15 +53,18 @@ struct Levels {
 
     /// The cycle from level l down, pass by pass; `inverse` of the coarsest level column after column.
     [[nodiscard]] std::vector<float> cycle(std::size_t l, const std::vector<float>& force,
-                                           const std::vector<float>& inverse, int sweeps) const
+                                           const std::vector<shared::FloatPair>& inverse, int sweeps) const
     {
         const RoughLevel&  level = levels[l];
         const std::size_t  nodes = nodesOf(level.g);
         std::vector<float> w(force.size(), 0.0F);
         if (l + 1 == levels.size()) {
-            for (std::size_t n = 0; n < w.size(); ++n)
+            for (std::size_t n = 0; n < w.size(); ++n) {
+                shared::FloatPair total{0, 0};
                 for (std::size_t m = 0; m < nodes; ++m)
-                    w[n] += inverse[m * nodes + n % nodes] * force[n - n % nodes + m];
+                    total = shared::plusProduct(total, inverse[m * nodes + n % nodes], force[n - n % nodes + m]);
+                w[n] = total.high;
+            }
             return w;
         }
         w                     = swept(level, w, force, 0, sweeps);
@@ -70,6 +74,15 @@ struct Levels {
         return swept(level, sum(w, host::interpolated(both, below)), force, 1, sweeps);
     }
 };
+
+/// Numbers with 48 digits.
+std::vector<shared::FloatPair> roughPairs(std::size_t count, unsigned seed)
+{
+    const auto                     high = roughValues<float>(count, seed), low = roughValues<float>(count, seed + 1);
+    std::vector<shared::FloatPair> pairs;
+    for (std::size_t n = 0; n < count; ++n) pairs.push_back({high[n], high[n] * low[n] * 1e-8F});
+    return pairs;
+}
 
 class FusedCycleTest : public PlateShaderTest {
 protected:
@@ -179,7 +192,7 @@ TEST_F(FusedCycleTest, TheTailIsAWholeCycle)
                     divisor.insert(divisor.end(), inverse.begin(), inverse.end());
                 }
                 const std::size_t coarsest = nodesOf(levels.levels.back().g);
-                const auto        inverse  = roughValues<float>(coarsest * coarsest, 35);
+                const auto        inverse  = roughPairs(coarsest * coarsest, 35);
                 for (std::size_t first = 0; first < levels.levels.size(); ++first) {
                     SCOPED_TRACE(describe(plate) + " by " + describe(shape) + ", sweeps: " + std::to_string(sweeps) +
                                  ", from level " + std::to_string(first));

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "compute_shaders/shared/float_pair.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "tests/plate/kernels/host_passes.h"
 
@@ -376,6 +377,26 @@ TEST(SharedTransferTest, AConstantRigidityStaysAsItIs)
 
             EXPECT_EQ(host::coarsened(pair, rigidity), std::vector<float>(nodesOf(pair.coarse), constant));
         }
+}
+
+/// Terms that cancel but for a millionth: floats keep one or two digits of such a sum, pairs as many as doubles.
+TEST(FloatPairTest, ASumOfProductsKeepsWhatFloatsLose)
+{
+    const auto high = roughValues<float>(200, 41), low = roughValues<float>(200, 42), b = roughValues<float>(200, 43);
+    shared::FloatPair sum{0, 0};
+    double            expected = 0, sizes = 0;
+    for (int sign : {1, -1})
+        for (std::size_t n = 0; n < high.size(); ++n) {
+            const float             kept = n % 50 == 0 && sign < 0 ? b[n] * 0.999999F : b[n];
+            const shared::FloatPair a{float(sign) * 1e6F * high[n], float(sign) * 0.01F * low[n]};
+            sum = shared::plusProduct(sum, a, kept);
+            expected += (double(a.high) + double(a.low)) * double(kept);
+            sizes += std::abs(double(a.high) * double(kept));
+        }
+    EXPECT_LT(std::abs(expected), 1e-6 * sizes) << "else this test shows nothing";
+    EXPECT_NEAR(double(sum.high) + double(sum.low), expected, 400 * std::ldexp(sizes, -46))
+        << "a rounding of 2^-47 or less for each sum and product";
+    EXPECT_EQ(sum.high + sum.low, sum.high);
 }
 
 TEST(SharedTransferTest, CoarsenedRigidityIsAGeometricMean)

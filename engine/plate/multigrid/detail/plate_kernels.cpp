@@ -104,9 +104,10 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
 #include "compute_shaders/shared/plate_kernels.def"
     });
     if (coarse && !f64) {
-        all_->assemble    = compute::Kernel(context, kernels::assemble<double>(host), shapes.tile);
-        all_->factor      = compute::Kernel(context, kernels::factor<double>(host), shapes.alone);
-        all_->coarseSolve = compute::Kernel(context, kernels::coarseSolve<double>(host), shapes.alone);
+        all_->assemble     = compute::Kernel(context, kernels::assemble<double>(host), shapes.tile);
+        all_->factor       = compute::Kernel(context, kernels::factor<double>(host), shapes.alone);
+        all_->coarseSolve  = compute::Kernel(context, kernels::coarseSolve<double>(host), shapes.alone);
+        all_->coarseInvert = compute::Kernel(context, kernels::coarseInvert<double>(host), shapes.alone);
     }
     if (isFused(context, schedule, all_->smoothing.by)) all_->fused.emplace(fusedKernels(context, shapes));
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "compute_shaders/shared/float_pair.h"
 #include "compute_shaders/shared/plate_push.h"
 #include "engine/compute/context.h"
 
@@ -30,13 +31,6 @@ template <class T>
 std::size_t bytesOf(const std::vector<T>& values)
 {
     return sizeof(T) * values.size();
-}
-
-std::vector<float> identity(std::size_t size)
-{
-    std::vector<float> unit(size * size, 0.0F);
-    for (std::size_t n = 0; n < size; ++n) unit[n * size + n] = 1;
-    return unit;
 }
 
 } // namespace
@@ -76,8 +70,8 @@ PlateTail::PlateTail(compute::Context& context, const PlateKernels::All& kernels
       divisor_(context, "divisor of the tail", 4 * std::size_t(layout_.nodes), Intent::processor),
       tableX_(context, "tables x of the tail", bytesOf(layout_.tablesX), Intent::processor),
       tableZ_(context, "tables z of the tail", bytesOf(layout_.tablesZ), Intent::processor),
-      units_(context, "unit forces", 4 * std::size_t(coarsestNodes_) * coarsestNodes_, Intent::processor),
-      inverse_(context, "inverse of the coarsest level", units_.bytes(), Intent::processor),
+      inverse_(context, "inverse of the coarsest level",
+               sizeof(shared::FloatPair) * std::size_t(coarsestNodes_) * coarsestNodes_, Intent::processor),
       aside_(context, "deflections put aside", 4 * std::size_t(layout_.nodes) * loads, Intent::processor)
 {
     std::vector<Buffer> staging;
@@ -90,7 +84,6 @@ PlateTail::PlateTail(compute::Context& context, const PlateKernels::All& kernels
     upload(layout_.levels, levels_);
     upload(layout_.tablesX, tableX_);
     upload(layout_.tablesZ, tableZ_);
-    upload(identity(coarsestNodes_), units_);
     list.end();
     context.run(list);
 }
@@ -104,7 +97,7 @@ void PlateTail::copyLevel(CommandList& list, std::size_t level, const Buffer& ri
 
 void PlateTail::invertFactor(CommandList& list, const Buffer& factor) const
 {
-    list.dispatch(k.coarseSolve, {factor, units_, inverse_}, shared::LevelPush{layout_.levels.back().plate},
+    list.dispatch(k.coarseInvert, {factor, inverse_}, shared::LevelPush{layout_.levels.back().plate},
                   {1, 1, coarsestNodes_});
 }
 

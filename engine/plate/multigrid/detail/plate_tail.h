@@ -50,7 +50,7 @@ private:
     const PlateKernels::All& k;
     TailLayout               layout_;
     std::uint32_t            loads_, coarsestNodes_;
-    compute::Buffer          levels_, rigidity_, divisor_, tableX_, tableZ_, units_, inverse_, aside_;
+    compute::Buffer          levels_, rigidity_, divisor_, tableX_, tableZ_, inverse_, aside_;
 };
 
 } // namespace palp
