@@ -45,8 +45,10 @@ void main()
         int at = int(load) * kStateWords;
 #ifdef PALPATE_STEP
         real pq = total(load * push.partials);
-        CgStep now = stepOf(pq, state[at + kStateRz], state[at + kStateEnergy], state[at + kStateGain],
-                            state[at + kStateRatio], state[at + kStateSteps]);
+        CgSlowest slowest = CgSlowest(state[at + kStateSlowest], state[at + kStateLast], state[at + kStateAlong]);
+        CgStep now = stepOf(pq, state[at + kStateRz], state[at + kStateBeta], state[at + kStateEnergy],
+                            state[at + kStateAlpha], state[at + kStateGain], state[at + kStateRatio],
+                            state[at + kStateSteps], slowest);
         barrier(); // every invocation has read the state
         if (leads) {
             state[at + kStateAlpha]    = now.alpha;
@@ -54,6 +56,9 @@ void main()
             state[at + kStateRatio]    = now.ratio;
             state[at + kStateEstimate] = now.estimate;
             state[at + kStateSteps]    = now.steps;
+            state[at + kStateSlowest]  = now.slowest.most;
+            state[at + kStateLast]     = now.slowest.last;
+            state[at + kStateAlong]    = now.slowest.along;
         }
         unfinished = unfinished || push.tolerance == 0.0f || now.estimate > real(push.tolerance);
 #else

@@ -43,6 +43,23 @@ TEST_F(ContextTest, ADeviceThatIsNotThereIsRefusedAndEachDeviceNamed)
         EXPECT_TRUE(holds(sentence, {one.name})) << sentence;
 }
 
+TEST_F(ContextTest, AProcessorCanBeUsedAsIfItWereASmallerOne)
+{
+    compute::ContextSettings settings;
+    settings.processor = processorOfTests();
+    settings.most      = {.buffer = 4096, .invocations = 64, .sharedMemory = 1024};
+    settings.float64   = false;
+    compute::Context small(settings);
+    EXPECT_EQ(small.limits().buffer, 4096U);
+    EXPECT_EQ(small.limits().invocations, 64U);
+    EXPECT_EQ(small.limits().sharedMemory, 1024U);
+    EXPECT_FALSE(small.processor().float64);
+    EXPECT_THROW(compute::Buffer(small, "too large", 4100, compute::Intent::processor), compute::ProcessorOutOfMemory);
+    const compute::Buffer fits(small, "fits", 4096, compute::Intent::processor); // the processor goes on
+    settings.most.buffer = ~std::size_t(0);
+    EXPECT_EQ(compute::Context(settings).limits().buffer, context().limits().buffer) << "never a larger one";
+}
+
 TEST_F(ContextTest, AMovedContextStillServesWhatWasMadeFromIt)
 {
     compute::ContextSettings settings;

@@ -129,13 +129,17 @@ void stepOf(const HostDispatch& d)
     for (uint load = 0; load < push.loads; ++load) {
         Real* const at     = state + std::ptrdiff_t(load) * kStateWords;
         const Real  pq     = total(partials + std::ptrdiff_t(load) * push.partials, push.partials, d.workgroup.x);
-        const auto  now    = Scalars<Real>{}.stepOf(pq, at[kStateRz], at[kStateEnergy], at[kStateGain], at[kStateRatio],
-                                                    at[kStateSteps]);
+        const auto  now    = Scalars<Real>{}.stepOf(pq, at[kStateRz], at[kStateBeta], at[kStateEnergy], at[kStateAlpha],
+                                                    at[kStateGain], at[kStateRatio], at[kStateSteps],
+                                                    {at[kStateSlowest], at[kStateLast], at[kStateAlong]});
         at[kStateAlpha]    = now.alpha;
         at[kStateGain]     = now.gain;
         at[kStateRatio]    = now.ratio;
         at[kStateEstimate] = now.estimate;
         at[kStateSteps]    = now.steps;
+        at[kStateSlowest]  = now.slowest.most;
+        at[kStateLast]     = now.slowest.last;
+        at[kStateAlong]    = now.slowest.along;
         unfinished         = unfinished || push.tolerance == 0 || now.estimate > Real(push.tolerance);
     }
     if (unfinished) return;

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 
 #include "tests/plate/kernels/plate_shader_test.h"
@@ -7,13 +8,16 @@
 namespace palp {
 namespace {
 
+using shared::kStateAlong;
 using shared::kStateAlpha;
 using shared::kStateBeta;
 using shared::kStateEnergy;
 using shared::kStateEstimate;
 using shared::kStateGain;
+using shared::kStateLast;
 using shared::kStateRatio;
 using shared::kStateRz;
+using shared::kStateSlowest;
 using shared::kStateSteps;
 using shared::kStateWords;
 
@@ -52,6 +56,9 @@ protected:
             at[kStateGain]   = Real(0.1) + std::abs(at[kStateGain]);
             at[kStateRatio]  = std::abs(at[kStateRatio]);
             at[kStateSteps]  = Real(3 + load);
+            for (const int word : {kStateAlpha, kStateBeta, kStateLast}) at[word] = Real(0.1) + std::abs(at[word]);
+            at[kStateSlowest] = at[kStateAlpha] + at[kStateLast];
+            at[kStateAlong]   = Real(0.5) * at[kStateLast];
         }
         return state;
     }
@@ -270,14 +277,70 @@ TEST_F(CgStepTest, ALuckyRatioIsNotBelievedAtOnceAndASlowOneIsNotForgottenAtOnce
         using Real               = decltype(number);
         std::vector<Real> second = stateOf<Real>({Real(0.125)}); // gain 1/64 of a last gain of 64: ratio 1/4096
         second[kStateGain]       = 64;
-        const auto        lucky  = stepped<Real>({1}, second, 1e-3F);
-        std::vector<Real> later  = second;
-        later[kStateRatio]       = Real(0.5);
-        const auto afterOne      = stepped<Real>({1}, later, 1e-3F);
+        second[kStateAlpha] = second[kStateSlowest] = 1;
+        second[kStateBeta]                          = 100; // nothing slow is known: the bound is 0
+        const auto        lucky                     = stepped<Real>({1}, second, 1e-3F);
+        std::vector<Real> later                     = second;
+        later[kStateRatio]                          = Real(0.5);
+        const auto afterOne                         = stepped<Real>({1}, later, 1e-3F);
         EXPECT_NEAR(double(lucky.state[kStateEstimate]), tail(1.0 / 64, 0.09375), 1e-6)
             << "3/32 is the least of a second step";
         EXPECT_EQ(afterOne.state[kStateRatio], Real(0.40625)) << "13/16 of it is kept";
         EXPECT_NEAR(double(afterOne.state[kStateEstimate]), tail(1.0 / 64, 0.40625), 1e-6);
+    });
+}
+
+/// Steps of conjugate gradients on a matrix of four eigenvalues, with a right side in which the slowest part is small.
+TEST_F(CgStepTest, TheSlowestPartIsTheSmallestRitzValueAndBoundsTheError)
+{
+    constexpr double                 kEigenvalues[] = {2.0, 1.0, 0.5, 0.01};
+    std::array                       r{1.0, 1.0, 1.0, 0.02}, p = r;
+    host::Scalars<double>::CgSlowest slowest{};
+    double                           rz = 0, lastAlpha = 0, beta = 0, truth = 0;
+    for (int n = 0; n < 4; ++n) truth += r[std::size_t(n)] * r[std::size_t(n)] / kEigenvalues[n];
+    for (int step = 0; step < 4; ++step) {
+        double next = 0, pq = 0;
+        for (const double value : r) next += value * value;
+        beta = step > 0 ? next / rz : 0;
+        rz   = next;
+        for (std::size_t n = 0; n < 4; ++n) p[n] = r[n] + beta * p[n];
+        for (std::size_t n = 0; n < 4; ++n) pq += p[n] * p[n] * kEigenvalues[n];
+        const auto now = host::Scalars<double>{}.stepOf(pq, rz, beta, 0, lastAlpha, 0, 0, step, slowest);
+        for (std::size_t n = 0; n < 4; ++n) r[n] -= now.alpha * kEigenvalues[n] * p[n];
+        truth -= now.gain;
+        const double smallest = 1 / now.slowest.most;
+        EXPECT_GT(smallest, 0.999 * kEigenvalues[3]) << "a Ritz value is never below the spectrum";
+        EXPECT_LE(now.slowest.most, 1.001 / kEigenvalues[3]);
+        if (step == 0) {
+            EXPECT_DOUBLE_EQ(now.slowest.most, now.alpha);
+        }
+        if (step == 3) {
+            EXPECT_NEAR(smallest, kEigenvalues[3], 0.05 * kEigenvalues[3]) << "the last one is the spectrum's";
+            EXPECT_NEAR(truth, 0, 1e-12);
+        } else if (smallest < 2 * kEigenvalues[3]) {
+            EXPECT_LT(truth, host::Scalars<double>{}.leftAtMost(now.slowest, now.alpha, beta, lastAlpha, rz));
+        }
+        slowest   = now.slowest;
+        lastAlpha = now.alpha;
+    }
+}
+
+TEST_F(CgStepTest, AGainThatIsSmallByLuckIsNotBelievedWhereASlowPartIsKnown)
+{
+    inEachPrecision([](auto number) {
+        using Real              = decltype(number);
+        std::vector<Real> state = stateOf<Real>({Real(0.125)});
+        state[kStateGain]       = 64; // of which 1/64 is 1/4096
+        state[kStateAlpha]      = 1;
+        state[kStateBeta]       = Real(0.5);
+        state[kStateSlowest]    = 4;
+        state[kStateLast]       = 1;
+        state[kStateAlong]      = 0;
+        const auto   after      = stepped<Real>({1}, state, 1e-3F);
+        const double atNode = 4 * 1.421875, rest = atNode - 1, bound = rest / (rest / atNode + 0.5) - 0.125;
+        const double left = 0.40625 * bound * 0.125;
+        EXPECT_NEAR(double(after.state[kStateSlowest]), 4, 1e-5) << "it is not forgotten";
+        EXPECT_NEAR(double(after.state[kStateEstimate]), std::sqrt(left / (1 + 1.0 / 64)), 1e-6);
     });
 }
 

@@ -257,15 +257,19 @@ bool step(const ScalarsPush& push, const std::vector<Real>& partials, std::size_
 {
     bool finished = true;
     for (std::size_t load = 0; load < push.loads; ++load) {
-        Real* const at = state.data() + load * kStateWords;
-        const auto  now =
-            Scalars<Real>{}.stepOf(total(partials.data() + load * push.partials, push.partials, width), at[kStateRz],
-                                   at[kStateEnergy], at[kStateGain], at[kStateRatio], at[kStateSteps]);
+        Real* const at     = state.data() + load * kStateWords;
+        const Real  pq     = total(partials.data() + load * push.partials, push.partials, width);
+        const auto  now    = Scalars<Real>{}.stepOf(pq, at[kStateRz], at[kStateBeta], at[kStateEnergy], at[kStateAlpha],
+                                                    at[kStateGain], at[kStateRatio], at[kStateSteps],
+                                                    {at[kStateSlowest], at[kStateLast], at[kStateAlong]});
         at[kStateAlpha]    = now.alpha;
         at[kStateGain]     = now.gain;
         at[kStateRatio]    = now.ratio;
         at[kStateEstimate] = now.estimate;
         at[kStateSteps]    = now.steps;
+        at[kStateSlowest]  = now.slowest.most;
+        at[kStateLast]     = now.slowest.last;
+        at[kStateAlong]    = now.slowest.along;
         finished           = finished && push.tolerance != 0 && !(now.estimate > Real(push.tolerance));
     }
     return finished;

@@ -197,9 +197,10 @@ int PlatePasses::smoothFromZero(Recorder& pass, std::size_t l, int sweeps)
         return at;
     }
     const auto steps = chebyshevSteps(sweeps, kSmallest, kLargest);
+    at               = 1;
     pass(k.smoothFirst, {b.divisor, b.force, b.w[0], b.w[1]}, shared::SmoothPush{level(l), 0, steps.front().step},
          everyNode(k.smoothFirst, l));
-    for (std::size_t n = 1; n < steps.size(); ++n) at = takeChebyshevStep(pass, l, int(n) % 2, steps[n]);
+    for (std::size_t n = 1; n < steps.size(); ++n) at = takeChebyshevStep(pass, l, at, steps[n]);
     return at;
 }
 
@@ -318,10 +319,12 @@ void PlatePasses::takeGradientSteps(Recorder& pass, std::size_t l, int count, in
 {
     const LevelBuffers& b = levels[l];
     for (int n = 1; n <= count; ++n) {
-        const auto                nodes = std::uint32_t(nodesOf(level(l)));
-        const shared::VectorPush  vector{nodes, partials_, std::uint32_t(n)};
+        const auto               nodes = std::uint32_t(nodesOf(level(l)));
+        const shared::VectorPush vector{nodes, partials_, std::uint32_t(n)};
+        // A first step has no step before it to be judged by, which is not enough where the rigidity jumps.
+        const bool                judged = n > 1 || begins != 2 || jumps_ == Jumps::none;
         const shared::ScalarsPush scalars{loads_, partials_, n == 1 ? begins : 0, std::uint32_t(argumentBytes() / 4),
-                                          float(tolerance)};
+                                          judged ? float(tolerance) : 0.0F};
         const int                 before = pass.list.dispatches();
         const Buffer&             z      = b.w[runCycle(pass, l, sweeps)];
         if (l == 0) dispatchesPerCycle_ = pass.list.dispatches() - before;
