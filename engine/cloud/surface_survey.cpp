@@ -42,7 +42,7 @@ bool alike(double a, double b)
 constexpr double kOwnLayer = 0.4;
 
 /// Deviations up to this share of the spacing need no second look [1]: contact and charts bear them.
-constexpr double kClean = 0.2;
+constexpr double kClean = 0.1;
 
 /// Noise is found where the deviation grows by less than this while the ball doubles, twice in a row [1]. That of an
 /// edge doubles, but for one ball that just reaches over it.

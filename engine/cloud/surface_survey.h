@@ -17,7 +17,7 @@ namespace palp {
 /// Normal: of the principal axes of the points within three spacings, (1 - d^2/r^2)^2 weighted. Its sign counts where
 /// the point is `sided`: by a given normal, or because another layer of the object is closer behind it than some
 /// spacings. Elsewhere whoever needs the sign carries it along the surface, as SurfaceFlood does.
-/// Noise: the standard deviation of the points about a local quadric. Where it exceeds a fifth of a spacing the ball
+/// Noise: the standard deviation of the points about a local quadric. Where it exceeds a tenth of a spacing the ball
 /// grows until the deviation grows no more: noise has one size, shape grows with the ball. What grows for ever is shape,
 /// and counts as clean. The median over the neighbours settles it.
 /// \thread immutable, so free to share

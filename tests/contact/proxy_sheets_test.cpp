@@ -63,9 +63,9 @@ TEST(ProxySheets, NoiseIsSmoothedAndLeftBehindLittle)
     const Runs runs = slides({Layout::random, 0.2, 0, 0, 5});
     SCOPED_TRACE(record(runs));
     EXPECT_EQ(runs.popped, 0);
-    EXPECT_LT(runs.all.angle(), 3) << "prototype: 2.0";
-    EXPECT_LT(runs.worstRipple, 0.06) << "prototype: 0.039";
-    EXPECT_LT(runs.worstLag, 0.6) << "prototype: 0.50";
+    EXPECT_LT(runs.all.angle(), 0.6) << "recorded: 0.28; without the touch scale 2.0";
+    EXPECT_LT(runs.worstRipple, 0.03) << "recorded: 0.019; without the touch scale 0.049";
+    EXPECT_LT(runs.worstLag, 0.12) << "recorded: 0.060; without the touch scale 0.52";
 }
 
 TEST(ProxySheets, NoiseDoesNotLetADeepHandThrough)
@@ -73,13 +73,14 @@ TEST(ProxySheets, NoiseDoesNotLetADeepHandThrough)
     const Runs runs = slides({Layout::random, 0.2, 0, 0, 40});
     SCOPED_TRACE(record(runs));
     EXPECT_EQ(runs.popped, 0);
-    EXPECT_LT(runs.worstLag, 5) << "depth times the error of the slope; prototype: 3.6";
+    EXPECT_LT(runs.worstLag, 1) << "depth times the error of the slope; recorded: 0.47, without the touch scale 4.1";
 }
 
-/// How far the proxy moves under a hand that has stopped on noise; infinite if it is lost.
+/// How far the proxy moves under a hand that has stopped on noise; infinite if it is lost. The noise is too little to be
+/// averaged over a touch scale.
 double chatter(int seed, double depth, ProxyForm form)
 {
-    Touch touch(pointsOf({Layout::random, 0.2}, kFirstSeed + std::uint64_t(seed)), {form});
+    Touch touch(pointsOf({Layout::random, 0.1}, kFirstSeed + std::uint64_t(seed)), {form});
     slideFlat(touch, {-5, 0.3, 0}, {5, 0, 0}, depth, 0.1);
     glm::dvec3 low(1e9), high(-1e9);
     for (int tick = 0; tick < 60; ++tick) {
@@ -103,7 +104,7 @@ TEST(ProxySheets, ThePapersFormIsRestlessUnderADeepHand)
     int restless = 0;
     for (int seed = 0; seed < 2 * kSeeds; ++seed) restless += chatter(seed, 40, ProxyForm::sphere) > 0.1;
     record("restless: " + std::to_string(restless));
-    EXPECT_GE(restless, 1) << "of 16 move by more than 0.1, a thousand times what is allowed; recorded: 2";
+    EXPECT_GE(restless, 1) << "of 16 move by more than 0.1, a thousand times what is allowed; recorded: 5";
 }
 
 TEST(ProxySheets, TheNearOneOfTwoIsFelt)
@@ -140,7 +141,7 @@ TEST(ProxySheets, ThePapersFormLosesTheSurface)
         int         least; ///< runs lost of 16; half of those recorded, as what is random may fall otherwise
     } cases[] = {
         {"random, depth 40", {Layout::random, 0, 0, 0, 40}, 1},
-        {"noise, depth 40", {Layout::random, 0.2, 0, 0, 40}, 2},
+        {"noise, depth 40", {Layout::random, 0.1, 0, 0, 40}, 2},
         {"two sheets 2 apart, 20 beyond", {Layout::random, 0, 2, 0, 22}, 1},
         {"two sheets 3 apart, 20 beyond", {Layout::random, 0, 3, 0, 23}, 2},
         {"two noisy sheets 2 apart, 20 beyond", {Layout::random, 0.1, 2, 0, 22}, 1},

@@ -16,9 +16,6 @@
 namespace palp {
 namespace {
 
-/// Largest touch scale over the spacing [1]: beyond it is no surface that a survey could see.
-constexpr double kLargestScale = 16;
-
 /// Least distance of the chosen points [scales]: one then stands for one square scale.
 constexpr double kApart = 0.95;
 
@@ -78,11 +75,7 @@ struct ContactPoints::Source {
     const SurfaceSurvey*        survey;
 
     [[nodiscard]] bool   noisy(std::size_t i) const { return survey->noise(i) > kNoisySpacings * survey->spacing(i); }
-    [[nodiscard]] double scale(std::size_t i) const
-    {
-        return std::clamp(kTouchScaleOfNoise * survey->noise(i), survey->spacing(i),
-                          kLargestScale * survey->spacing(i));
-    }
+    [[nodiscard]] double scale(std::size_t i) const { return touchScale(survey->noise(i), survey->spacing(i)); }
 };
 
 ContactPoints::ContactPoints(const SoftObject& object)

@@ -12,7 +12,7 @@ namespace {
 // Lengths are in scales. A wider reach leaves less noise and takes more time.
 constexpr double kReach         = 3;
 constexpr double kPlaneReach    = 2;   // of the principal axes: a body behind counts less there
-constexpr double kFullHeight    = 0.8; // seven times the noise is one scale: this is 5.6 standard deviations
+constexpr double kFullHeight    = 0.8; // seven or more times the noise is one scale: this is at least 5.6 of noise
 constexpr double kNoHeight      = 1.4;
 constexpr double kSettled       = 0.02; // change of the height that needs no further round
 constexpr int    kRounds        = 4;

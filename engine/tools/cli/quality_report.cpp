@@ -75,10 +75,11 @@ std::string onNoise(const CloudQuality& q)
 {
     const bool   everywhere = q.noisy > kNoisySpacings;
     const double sigma      = everywhere ? q.noise : q.noise95;
-    return std::string("the points scatter by more than a quarter of a spacing") +
-           (everywhere ? "" : " in places, where you should expect a blurred touch") +
-           ": the touch averages over points " + metres(kTouchScaleOfNoise * sigma) + " apart, " +
-           std::to_string(std::lround(kTouchScaleOfNoise)) + " standard deviations" + ", and finer shapes are lost";
+    const double share      = everywhere ? q.noisy : q.noisy95;
+    return "the points scatter by " + spacings(share) +
+           (everywhere ? "" : " or more in places, where you should expect a blurred touch") +
+           ": the touch averages over points " + metres(touchScale(sigma, sigma / share)) +
+           " apart, and finer shapes are lost";
 }
 
 std::string onSides(const QualityReport& r)
