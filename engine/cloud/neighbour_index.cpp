@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "engine/cloud/detail/embree.h"
@@ -363,6 +364,25 @@ struct NeighbourIndex::Impl {
         process(std::span<const std::uint32_t>(batch.data(), count), search);
     }
 
+    /// Returns the sphere that floats can search; empty where they cannot tell places apart, and all points have to be
+    /// measured in doubles.
+    [[nodiscard]] std::optional<FloatSphere> sphereFor(const glm::dvec3& centre, double radius) const
+    {
+        PALP_EXPECT(finite(centre), "centre " + text(centre));
+        PALP_EXPECT(radius >= 0, "radius " + std::to_string(radius) + " m");
+        const glm::dvec3 place = frame.to(centre);
+        if (frame.searchable(place) && radius * frame.scale <= kFloatReach) return FloatSphere(place);
+        return {};
+    }
+
+    /// Calls visit(slot) for all points within a radius, one after the other.
+    template <class Visit>
+    void eachWithin(const glm::dvec3& centre, double radius, Visit&& visit) const
+    {
+        for (std::size_t slot = 0; slot < exact.size(); ++slot)
+            if (squaredDistance(exact[slot], centre) <= radius * radius) visit(slot);
+    }
+
     void gather(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
                 std::vector<std::uint32_t>& found) const;
 
@@ -483,19 +503,12 @@ NeighbourIndex& NeighbourIndex::operator=(NeighbourIndex&&) noexcept = default;
 
 void NeighbourIndex::gather(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const
 {
-    PALP_EXPECT(finite(centre), "centre " + text(centre));
-    PALP_EXPECT(radius >= 0, "radius " + std::to_string(radius) + " m");
-
     found.clear();
-    const Impl&      index       = *impl_;
-    const glm::dvec3 place       = index.frame.to(centre);
-    const double     indexRadius = radius * index.frame.scale;
-    if (!(index.frame.searchable(place) && indexRadius <= kFloatReach)) {
-        for (std::size_t slot = 0; slot < index.exact.size(); ++slot)
-            if (squaredDistance(index.exact[slot], centre) <= radius * radius) found.push_back(index.pointAt(slot));
-        return;
-    }
-    index.gather(FloatSphere(place), centre, radius, found);
+    const Impl& index = *impl_;
+    if (const auto sphere = index.sphereFor(centre, radius))
+        index.gather(*sphere, centre, radius, found);
+    else
+        index.eachWithin(centre, radius, [&](std::size_t slot) { found.push_back(index.pointAt(slot)); });
 }
 
 std::vector<std::uint32_t> NeighbourIndex::gather(const glm::dvec3& centre, double radius) const
@@ -573,19 +586,12 @@ std::span<const glm::dvec3> NeighbourIndex::positionsByRank() const noexcept
 
 void NeighbourIndex::gatherRanks(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const
 {
-    PALP_EXPECT(finite(centre), "centre " + text(centre));
-    PALP_EXPECT(radius >= 0, "radius " + std::to_string(radius) + " m");
-
     found.clear();
-    const Impl&      index       = *impl_;
-    const glm::dvec3 place       = index.frame.to(centre);
-    const double     indexRadius = radius * index.frame.scale;
-    if (index.frame.searchable(place) && indexRadius <= kFloatReach) {
-        index.gatherRanks(FloatSphere(place), centre, radius, found);
-        return;
-    }
-    for (std::size_t rank = 0; rank < index.exact.size(); ++rank)
-        if (squaredDistance(index.exact[rank], centre) <= radius * radius) found.push_back(std::uint32_t(rank));
+    const Impl& index = *impl_;
+    if (const auto sphere = index.sphereFor(centre, radius))
+        index.gatherRanks(*sphere, centre, radius, found);
+    else
+        index.eachWithin(centre, radius, [&](std::size_t rank) { found.push_back(std::uint32_t(rank)); });
 }
 
 double NeighbourIndex::spacing() const noexcept
