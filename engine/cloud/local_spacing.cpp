@@ -1,6 +1,7 @@
 #include "engine/cloud/local_spacing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -60,6 +61,23 @@ double medianOfArea(std::vector<double>& values, double radius)
     return values.back();
 }
 
+/// Returns the seventh smallest squared distance [m^2] of at least seven. Each passes along the seven least so far, which
+/// has no branch to foresee: of some fifteen it takes less than half the time of std::nth_element.
+double seventhSquare(std::span<const NearCandidate> near)
+{
+    std::array<double, kNeighbours + 1> least; // ascending
+    least.fill(std::numeric_limits<double>::infinity());
+    for (const NearCandidate& candidate : near) {
+        double passing = candidate.distance2;
+        for (double& kept : least) {
+            const double further = std::max(kept, passing);
+            kept                 = std::min(kept, passing);
+            passing              = further;
+        }
+    }
+    return least.back();
+}
+
 /// Finds the first guess of the spacing around the points of a run, from the distance to the sixth neighbour.
 class GuessingSpacings {
 public:
@@ -75,10 +93,7 @@ public:
         const auto   radius = [&](std::uint32_t) { return kLikelyReach * sixth; };
         neighbourhoods_.each(run, radius, [&](std::uint32_t rank, std::span<const NearCandidate> near) {
             if (near.size() > kNeighbours) {
-                squares_.clear();
-                for (const NearCandidate& candidate : near) squares_.push_back(candidate.distance2);
-                std::nth_element(squares_.begin(), squares_.begin() + kNeighbours, squares_.end());
-                sixth = std::sqrt(squares_[kNeighbours]);
+                sixth = std::sqrt(seventhSquare(near));
             } else {
                 sixth = index_.nearest(index_.positionsByRank()[rank], kNeighbours + 1).back().distance;
             }
@@ -90,7 +105,6 @@ private:
     const NeighbourIndex& index_;
     std::span<double>     guess_; ///< [m] by rank
     Neighbourhoods        neighbourhoods_;
-    std::vector<double>   squares_; ///< [m^2]
 };
 
 /// Settles the spacing around the points of a run by the median of the guesses near them.

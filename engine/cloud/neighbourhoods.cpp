@@ -24,10 +24,18 @@ void Neighbourhoods::keepNear(const glm::dvec3& place, double radius)
         const double dx = x[n] - place.x, dy = y[n] - place.y, dz = z[n] - place.z;
         d2[n] = dx * dx + dy * dy + dz * dz;
     }
-    near_.clear();
-    for (std::size_t n = 0; n < count; ++n)
-        if (d2[n] <= radius * radius)
-            near_.push_back({found_[n], {x[n] - place.x, y[n] - place.y, z[n] - place.z}, d2[n]});
+    // Every number is written, and counted if it is wanted: a branch that nobody can foresee would cost more.
+    kept_.resize(count);
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < count; ++n) {
+        kept_[kept] = std::uint32_t(n);
+        kept += d2[n] <= radius * radius;
+    }
+    near_.resize(kept);
+    for (std::size_t k = 0; k < kept; ++k) {
+        const std::size_t n = kept_[k];
+        near_[k]            = {found_[n], {x[n] - place.x, y[n] - place.y, z[n] - place.z}, d2[n]};
+    }
 }
 
 } // namespace palp

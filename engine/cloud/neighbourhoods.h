@@ -83,6 +83,7 @@ private:
     const NeighbourIndex&       index_;
     std::span<const glm::dvec3> positions_; ///< [m] by rank
     std::vector<std::uint32_t>  found_;
+    std::vector<std::uint32_t>  kept_;                  ///< numbers of those in found_ that are near
     std::vector<double>         x_, y_, z_, distance2_; ///< of the found ones: from the middle of the search [m]; [m^2]
     std::vector<NearCandidate>  near_;
 };
