@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <future>
+#include <numeric>
 #include <thread>
 
 #include <glm/common.hpp>
@@ -75,7 +76,39 @@ struct PointTree::Builder {
     std::span<const double>     spacings;
     std::span<const PointMark>  marks;
     std::vector<std::uint8_t>   shown; ///< level by point
-    std::vector<std::uint32_t>  order;
+    std::vector<std::uint32_t>  order; ///< of the points, by what number; in the tree's order at last
+
+    /// Puts the points where they lie along the curve, and numbers them so: what a part of the tree reads then lies
+    /// together, in whatever order they came.
+    void takePoints()
+    {
+        inParallel(order.size(), kWorthAThread, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) {
+                const std::uint32_t i = order[k];
+                tree.points_[k]       = {positions[i], spacings[i], marks.empty() ? PointMark() : marks[i]};
+                tree.shownUntil_[k]   = shown[i];
+            }
+        });
+        std::iota(order.begin(), order.end(), 0U);
+    }
+
+    /// Moves the points to where they lie in the tree, along the cycles of the permutation.
+    void sortPoints()
+    {
+        for (std::size_t first = 0; first < order.size(); ++first) {
+            const NearPoint    point = tree.points_[first];
+            const std::uint8_t level = tree.shownUntil_[first];
+            std::size_t        to    = first;
+            for (std::size_t from = order[to]; from != first; to = from, from = order[to]) {
+                tree.points_[to]     = tree.points_[from];
+                tree.shownUntil_[to] = tree.shownUntil_[from];
+                order[to]            = std::uint32_t(to);
+            }
+            tree.points_[to]     = point;
+            tree.shownUntil_[to] = level;
+            order[to]            = std::uint32_t(to);
+        }
+    }
 
     /// Sets the level up to which each point is shown, and an order in which neighbours follow each other.
     void setLevels()
@@ -112,16 +145,19 @@ struct PointTree::Builder {
     /// half is built by another thread; its nodes then follow: the tree does not depend on the number of threads.
     void add(std::vector<Node>& nodes, std::size_t from, std::size_t to, unsigned threads)
     {
-        Node   node{positions[order[from]], positions[order[from]], 0, 0, 0, 0, 0};
-        double least = spacings[order[from]];
+        const std::vector<NearPoint>& points = tree.points_;
+        const glm::dvec3              first  = points[order[from]].position;
+        Node                          node{first, first, 0, 0, 0, 0, 0};
+        double                        least = points[order[from]].spacing, most = 0;
         for (std::size_t k = from; k < to; ++k) {
-            const std::uint32_t i = order[k];
-            node.low              = glm::min(node.low, positions[i]);
-            node.high             = glm::max(node.high, positions[i]);
-            node.ball             = std::max(node.ball, kBall * spacings[i]);
-            node.level            = std::max(node.level, shown[i]);
-            least                 = std::min(least, spacings[i]);
+            const NearPoint& point = points[order[k]];
+            node.low               = glm::min(node.low, point.position);
+            node.high              = glm::max(node.high, point.position);
+            node.level             = std::max(node.level, tree.shownUntil_[order[k]]);
+            least                  = std::min(least, point.spacing);
+            most                   = std::max(most, point.spacing);
         }
+        node.ball             = kBall * most;
         const glm::dvec3 size = node.high - node.low;
         if (to - from > kStacked && glm::length(size) < least) to = keepSome(from, to);
         const std::size_t here = nodes.size();
@@ -129,17 +165,12 @@ struct PointTree::Builder {
         if (to - from <= kLeaf) {
             nodes[here].first = std::uint32_t(from);
             nodes[here].count = std::uint16_t(to - from);
-            for (std::size_t k = from; k < to; ++k) {
-                const std::uint32_t i = order[k];
-                tree.points_[k]       = {positions[i], spacings[i], marks.empty() ? PointMark() : marks[i]};
-                tree.shownUntil_[k]   = shown[i];
-            }
         } else {
             const int  axis   = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
             const auto middle = from + (to - from) / 2;
             const auto at     = [&](std::size_t k) { return order.begin() + std::ptrdiff_t(k); };
             std::nth_element(at(from), at(middle), at(to), [&](std::uint32_t a, std::uint32_t b) {
-                const double x = positions[a][axis], y = positions[b][axis];
+                const double x = points[a].position[axis], y = points[b].position[axis];
                 return x != y ? x < y : a < b;
             });
             if (threads > 1 && to - from > kWorthAThread) {
@@ -160,11 +191,12 @@ struct PointTree::Builder {
     /// Keeps the points that are shown longest, and an even choice of the others; returns the new end.
     std::size_t keepSome(std::size_t from, std::size_t to)
     {
-        const auto at = [&](std::size_t k) { return order.begin() + std::ptrdiff_t(k); };
+        const auto  at    = [&](std::size_t k) { return order.begin() + std::ptrdiff_t(k); };
+        const auto& level = tree.shownUntil_;
         std::sort(at(from), at(to),
-                  [&](std::uint32_t a, std::uint32_t b) { return shown[a] != shown[b] ? shown[a] > shown[b] : a < b; });
+                  [&](std::uint32_t a, std::uint32_t b) { return level[a] != level[b] ? level[a] > level[b] : a < b; });
         const std::size_t count = to - from;
-        for (std::size_t k = 1; k < kStacked; ++k) order[from + k] = order[from + k * count / kStacked];
+        for (std::size_t k = 1; k < kStacked; ++k) std::swap(order[from + k], order[from + k * count / kStacked]);
         return from + kStacked;
     }
 };
@@ -181,9 +213,11 @@ PointTree::PointTree(std::span<const glm::dvec3> positions, std::span<const doub
     builder.setLevels();
     points_.resize(positions.size());
     shownUntil_.resize(positions.size());
+    builder.takePoints();
     // Halves go on until a leaf holds its eight: so many nodes, unless points are stacked.
     nodes_.reserve(2 * std::bit_ceil((positions.size() + kLeaf - 1) / kLeaf));
     builder.add(nodes_, 0, positions.size(), std::max(1U, std::thread::hardware_concurrency()));
+    builder.sortPoints();
 }
 
 bool PointTree::mixed() const noexcept
