@@ -95,6 +95,7 @@ nlohmann::ordered_json jsonOf(const PerceiveOptions& o, const Felt& felt, const 
     all["sliding"]      = jsonOf(p.sliding);
     all["most_floor"]   = kMostFloor;
     all["floor_is_low"] = p.floorIsLow();
+    all["held"]         = p.held();
     if (!map) return all;
     all["map"] = {{"places", map->places.size()}, {"left_out", map->leftOut}, {"typical_stiffness", map->typical}};
     for (const double weber : kWeberFractions) {
@@ -159,7 +160,11 @@ void perceive(const PerceiveOptions& o)
         std::cout << jsonText(jsonOf(o, felt, found, map));
     else
         print(o, felt, found, map);
-    if (!found.floorIsLow())
+    if (found.held() > 0)
+        std::cerr << "palpate: warning: in " << fixed(100 * found.held(), 1)
+                  << " % of the slide a wall or a fold of the surface holds the hand up; J leaves that out, and counts "
+                     "what is felt as the hand comes free; try another --along or a shorter --reach\n";
+    else if (!found.floorIsLow())
         std::cerr << "palpate: warning: on the same points with one stiffness J is "
                   << formatNumber(found.sliding.front().floor)
                   << " for a finger that notices 7 %, and should be below 0.5: part of the felt stiffness is an "

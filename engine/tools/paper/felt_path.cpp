@@ -1,13 +1,16 @@
 #include "engine/tools/paper/felt_path.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
+#include "engine/force/governor.h"
 #include "engine/session/deformation.h"
 #include "engine/session/scripted_hand.h"
 #include "engine/session/virtual_session.h"
@@ -34,6 +37,28 @@ std::vector<glm::dvec3> surfaceAlong(const FeltLine& line, const SoftObject& obj
 double alongOf(const FeltLine& line, const glm::dvec3& place)
 {
     return glm::dot(place - line.middle.point, line.direction);
+}
+
+/// Returns the outward direction at each place of a line: that of its middle, which turns with the surface from there
+/// to either end. Where the surface turns too sharply to tell its side, the last one stays.
+std::vector<glm::dvec3> outwardAlong(const FeltLine& line, const SoftObject& object, std::span<const glm::dvec3> places)
+{
+    constexpr double        kClear = 0.17; // cosine of 80 degrees [1]: beyond it deform() refuses a place
+    std::vector<glm::dvec3> outward(places.size(), line.middle.outward);
+    if (object.survey().spacings().empty()) return outward;
+    const auto turned = [&](const glm::dvec3& place, const glm::dvec3& last) {
+        const glm::dvec3 normal = object.survey().normal(object.index().nearest(place, 1).front().point);
+        const double     cosine = glm::dot(normal, last);
+        return std::abs(cosine) < kClear ? last : std::copysign(1.0, cosine) * normal;
+    };
+    const auto nearer = [&](const glm::dvec3& a, const glm::dvec3& b) {
+        return std::abs(alongOf(line, a)) < std::abs(alongOf(line, b));
+    };
+    const auto middle = std::size_t(std::min_element(places.begin(), places.end(), nearer) - places.begin());
+    outward[middle]   = turned(places[middle], line.middle.outward);
+    for (std::size_t n = middle + 1; n < places.size(); ++n) outward[n] = turned(places[n], outward[n - 1]);
+    for (std::size_t n = middle; n > 0; --n) outward[n - 1] = turned(places[n - 1], outward[n]);
+    return outward;
 }
 
 /// Returns a path to and fro along the line that follows the height of the surface.
@@ -80,13 +105,17 @@ std::vector<FeltPlace> windowsAlong(const SoftObject& object, const PatchSetting
                                     int places, PlateSolver& solver)
 {
     PALP_EXPECT(places >= 2, std::to_string(places) + " places of a line");
-    std::optional<Frame>   carried;
-    std::vector<FeltPlace> result;
-    for (const glm::dvec3& place : surfaceAlong(line, object, places)) {
-        const Patch patch = deform(object, {place, line.middle.outward}, settings, solver, carried);
+    std::optional<Frame>          carried;
+    std::vector<FeltPlace>        result;
+    const std::vector<glm::dvec3> path    = surfaceAlong(line, object, places);
+    const std::vector<glm::dvec3> outward = outwardAlong(line, object, path);
+    for (std::size_t n = 0; n < path.size(); ++n) {
+        // As in a session, the normal that is felt stands in for that of a window about a rim.
+        const Contact contact{.point = path[n], .outward = outward[n], .felt = true};
+        const Patch   patch = deform(object, contact, settings, solver, carried);
         demandDeformed(patch, "try a smaller reach");
         carried = patch.chart.frame;
-        result.push_back({alongOf(line, place), place, patch.contactStiffness, patch.compliance});
+        result.push_back({alongOf(line, path[n]), path[n], patch.contactStiffness, patch.compliance});
     }
     return result;
 }
@@ -96,6 +125,7 @@ std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, 
     constexpr double kSpeed   = 50e-3; // [m/s] a hand that explores
     constexpr double kHeight  = 5e-3;  // [m] where it starts
     constexpr double kDepth   = 0.4;   // of the thickness: a little more deflection is still within theory [1]
+    constexpr double kHeld    = 5;     // of that depth: a wall or a fold keeps the proxy from following the hand [1]
     constexpr double kEngaged = 1.7;   // [s] after the first contact the force is fully on; the governor takes 1.5
     const double     down     = std::numbers::pi * (kHeight + kDepth * scene.material.thickness) / (2 * kSpeed);
     const double     cycle    = 2 * std::numbers::pi * line.reach / kSpeed;
@@ -114,11 +144,18 @@ std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, 
     runVirtual({scene, object, deformation.solver(), device, {}}, script.duration, [&](const TickRecord& s) {
         if (s.compliance > 0) met = std::min(met, s.time);
         const double depth = glm::length(s.proxy - s.hip), force = glm::length(s.force);
+        const bool   limited = (s.actions & std::uint32_t(GovernorAction::clamped)) != 0;
         if (s.compliance > 0 && s.time >= met + kEngaged && depth > 0 && force > 0)
-            ticks.push_back({alongOf(line, s.proxy), force / depth});
+            ticks.push_back({alongOf(line, s.proxy), force / depth, limited || depth > kHeld * script.depth});
     });
     if (ticks.empty()) throw Error("the stroking hand met nothing along the path; try another place or reach");
     return ticks;
+}
+
+double heldShare(const std::vector<FeltTick>& ticks)
+{
+    const auto held = std::count_if(ticks.begin(), ticks.end(), [](const FeltTick& tick) { return tick.held; });
+    return ticks.empty() ? 0 : double(held) / double(ticks.size());
 }
 
 SoftObject homogeneous(const SoftObject& object)
@@ -140,6 +177,7 @@ FeltRange rangeOf(const std::vector<FeltTick>& ticks)
 {
     std::vector<double> along, logarithms;
     for (const FeltTick& tick : ticks) {
+        if (tick.held) continue;
         along.push_back(tick.along);
         logarithms.push_back(std::log(tick.stiffness));
     }

@@ -32,7 +32,8 @@ struct FeltPlace {
     [[nodiscard]] double felt(ForceLaw law) const noexcept { return feltStiffness(law, contactStiffness, compliance); }
 };
 
-/// Runs deform() about evenly spread places of the line, with axes carried from one to the next.
+/// Runs deform() about evenly spread places of the line, with axes carried from one to the next. The direction of the
+/// finger turns with the surface, as a hand's does.
 /// \param places  at least 2
 /// \throws as deform(), and Error where the points determine no surface
 [[nodiscard]] std::vector<FeltPlace> windowsAlong(const SoftObject& object, const PatchSettings& settings,
@@ -42,7 +43,13 @@ struct FeltPlace {
 struct FeltTick {
     double along     = 0; ///< of the proxy, from the middle [m]
     double stiffness = 0; ///< force on the hand over its depth [N/m]
+    /// The surface keeps the proxy from following the hand, as a wall across the path does: the hand is several times as
+    /// deep as it is meant to be, or the force is limited. What is felt then is no stiffness along the path.
+    bool held = false;
 };
+
+/// Returns the share of ticks in which the hand is held [1].
+[[nodiscard]] double heldShare(const std::vector<FeltTick>& ticks);
 
 /// Moves a hand once to and fro along the line at constant depth, through all parts of a session: proxy, tables at the
 /// scene's rate, hand-over, tank and governor, in virtual time. Ticks count from the moment when the force is fully on.
@@ -60,6 +67,6 @@ struct FeltRange {
 inline constexpr double kPassing = 5e-3; ///< about a fingertip's width [m]
 
 [[nodiscard]] FeltRange rangeOf(const std::vector<FeltPlace>& places, ForceLaw law);
-[[nodiscard]] FeltRange rangeOf(const std::vector<FeltTick>& ticks);
+[[nodiscard]] FeltRange rangeOf(const std::vector<FeltTick>& ticks); ///< of those in which the hand is not held
 
 } // namespace palp::report

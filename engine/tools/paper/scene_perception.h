@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <optional>
@@ -31,7 +32,9 @@ struct ScenePerception {
     std::array<NoticedSteps, 3> atRest; ///< by kWeberFractions; `floor` is that of places at rest
     std::array<NoticedSteps, 3> sliding;
 
-    [[nodiscard]] bool floorIsLow() const noexcept { return sliding.front().floor < kMostFloor; }
+    /// Returns the share of the strokes in which the surface holds the hand [1]; steps are then not all that is noticed.
+    [[nodiscard]] double held() const { return std::max(heldShare(stroke), heldShare(floor)); }
+    [[nodiscard]] bool   floorIsLow() const noexcept { return sliding.front().floor < kMostFloor; }
 };
 
 /// Computes the stiffness felt on the scene's object and on its homogeneous copy.

@@ -1,6 +1,7 @@
 #include "engine/tools/paper/felt_path.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -91,6 +92,43 @@ TEST(FeltPath, FollowsItsDirectionAndTheSurface)
     EXPECT_THROW((void)felt.line(12e-3, glm::dvec3(0, 0, 1)), Error) << "away from the surface";
     EXPECT_THROW((void)felt.line(12e-3, glm::dvec3(0)), Error);
     EXPECT_THROW((void)felt.line(12e-3, glm::dvec3(0, std::nan(""), 0)), Error);
+}
+
+/// A sheet that bends up by 60 degrees: seen from a direction in between, its steep half lies 82 degrees off.
+Felt bentSheet(const glm::dvec3& from)
+{
+    constexpr double kAngle = 60 * std::numbers::pi / 180, kApart = 0.7e-3;
+    Felt             felt(parseScene(R"({"cloud": "sample:ellipsoid", "points": 2000, "cells": 16, "window": "18 mm",
+        "place": [0, 0, 0], "foundation": "1 MPa/m"})",
+                                     "a test", "."));
+    std::vector<glm::dvec3> points;
+    for (double x = -20e-3; x < 20e-3; x += kApart)
+        for (double y = -20e-3; y < 20e-3; y += kApart)
+            points.emplace_back(x > 0 ? x * std::cos(kAngle) : x, y, x > 0 ? x * std::sin(kAngle) : 0);
+    const std::vector<double> stiffness(points.size(), 3e5);
+    felt.object     = SoftObject(PointCloud(std::move(points), stiffness, StiffnessKind::modulus), felt.scene.material);
+    felt.scene.from = from;
+    return felt;
+}
+
+/// The side of a place is told by the surface there, not by the direction of the path's middle.
+TEST(FeltPath, TheFingerTurnsWithTheSurface)
+{
+    Felt       felt = bentSheet({0.37, 0, 0.93}); // 22 degrees off the flat half and 82 off the other
+    const auto places =
+        windowsAlong(felt.object, felt.scene.patch, felt.line(9e-3, glm::dvec3(1, 0, 0)), 21, felt.solver);
+    EXPECT_EQ(places.size(), 21U);
+    for (const FeltPlace& p : places) EXPECT_TRUE(p.compliance > 0) << p.along;
+}
+
+TEST(FeltPath, AHandThatAWallHoldsIsSaidToBeHeld)
+{
+    Felt       felt   = bentSheet({0, 0, 1});
+    const auto stroke = strokeAlong(felt.object, felt.scene, felt.line(6e-3, glm::dvec3(1, 0, 0)));
+    EXPECT_EQ(heldShare(stroke), 0) << "the stroke follows the bend";
+    std::vector<FeltTick> ticks{{0, 100, false}, {1e-3, 200, false}, {2e-3, 1e4, true}, {2e-3, 1, true}};
+    EXPECT_EQ(heldShare(ticks), 0.5);
+    EXPECT_NEAR(rangeOf(ticks).whole, std::log(2.0), 1e-12) << "held ticks do not count";
 }
 
 TEST(FeltPath, TheHomogeneousTwinHasTheGeometricMeanEverywhere)
