@@ -199,6 +199,42 @@ void measureNoise(CloudQuality& quality, const SurfaceSurvey& survey, std::size_
     quality.sided   = double(sided) / double(points);
 }
 
+/// Returns the distance of the values that a coordinate takes, if these are few; else 0 [m].
+double stepOf(std::span<const glm::dvec3> positions, int axis)
+{
+    constexpr std::size_t kLooked = 100'000, kFewest = 20; // points; values: two flat faces are no steps
+    constexpr std::size_t kShare = 50;                     // points a value, or more
+    const std::size_t     stride = positions.size() / kLooked + 1;
+    std::vector<double>   along, steps;
+    for (std::size_t i = 0; i < positions.size(); i += stride) along.push_back(positions[i][axis]);
+    std::sort(along.begin(), along.end());
+    std::size_t values = 1;
+    for (std::size_t i = 1; i < along.size(); ++i) values += along[i] != along[i - 1];
+    if (values < kFewest || along.size() < kShare * values) return 0;
+    double last = 0; // each point has the step to the value before
+    for (std::size_t i = 1; i < along.size(); ++i) {
+        if (along[i] != along[i - 1]) last = along[i] - along[i - 1];
+        if (last > 0) steps.push_back(last);
+    }
+    return quantile(steps, 0.5);
+}
+
+void measureDepthSteps(CloudQuality& quality, const SoftObject& object)
+{
+    constexpr double     kLeast = 0.1;  // of the spacing [1]: finer steps are no layers
+    constexpr double     kAlong = 0.7;  // of the normal: it faces along the axis [1]
+    constexpr double     kMany  = 0.02; // share of the points that are taken for faces [1]
+    const SurfaceSurvey& survey = object.survey();
+    for (int axis = 0; axis < 3; ++axis) {
+        const double step = stepOf(object.positions(), axis);
+        if (step < kLeast * quality.spacing.typical) continue;
+        std::size_t facing = 0;
+        for (std::size_t i = 0; i < object.size(); ++i)
+            facing += survey.sided(i) && !survey.given(i) && std::abs(survey.normal(i)[axis]) > kAlong;
+        if (double(facing) > kMany * double(object.size())) quality.depthStep = std::max(quality.depthStep, step);
+    }
+}
+
 void summarise(CloudQuality& quality, const PointFacts& facts)
 {
     std::vector<double> along, across;
@@ -229,6 +265,7 @@ CloudQuality cloudQuality(const SoftObject& object)
     if (survey.spacings().empty()) return quality;
     measureSpacing(quality, survey.spacings());
     measureNoise(quality, survey, object.size());
+    measureDepthSteps(quality, object);
     PointFacts facts{std::vector<std::uint8_t>(object.size()), std::vector<std::uint8_t>(object.size()),
                      std::vector<float>(object.size()), std::vector<float>(object.size())};
     const std::vector<std::uint32_t> points = object.index().pointsByRank();

@@ -25,6 +25,7 @@ struct CloudQuality {
     double inLines      = 0;       ///< share of the points that lie in lines [1]
     double alongLine    = 0;       ///< median distance of neighbours in a line [m]
     double betweenLines = 0;       ///< median distance from a line to the next [m]; 0: none is near
+    double depthStep    = 0; ///< distance of the few depths that a camera tells apart, see cloudQuality() [m]; else 0
 
     /// Returns how much coarser the sparse parts are than the dense ones, 5 % of the area apart at either end [1].
     [[nodiscard]] double unevenness() const noexcept { return spacing.low > 0 ? spacing.high / spacing.low : 1; }
@@ -46,6 +47,8 @@ inline constexpr double kFreeAngle = 120;
 /// ones are bridged by the touch too.
 /// A point lies in a line if its two nearest points lie on a line through it and much closer than the spacing. The
 /// spacing of lines is about half of the distance between them: see SurfaceSurvey.
+/// Depth has steps where one coordinate takes few values, not much closer than the points are, and points that face along
+/// it are taken for the faces of thin bodies.
 /// \thread pure; on all cores: about 2 us of one core a point
 [[nodiscard]] CloudQuality cloudQuality(const SoftObject& object);
 

@@ -56,6 +56,31 @@ TEST(CloudQuality, TheBorderAndAHoleAreFoundAndNothingElse)
     EXPECT_NEAR(cloudQuality(objectOf(small)).border * double(small.size()), whole.border * count, 0.5);
 }
 
+/// A random sheet that rises by 0.3, 0.5 mm between points, with noise of a camera in its depth.
+/// \param step  of the depths that are told apart [m]; 0: all
+std::vector<glm::dvec3> depthImage(double step)
+{
+    std::mt19937_64                        random(3);
+    std::uniform_real_distribution<double> along(0, 60e-3);
+    std::normal_distribution<double>       noise(0, 0.4e-3);
+    std::vector<glm::dvec3>                points;
+    for (int n = 0; n < 14'400; ++n) {
+        const double x = along(random), y = along(random), z = 0.3 * x + noise(random);
+        points.emplace_back(x, y, step > 0 ? step * std::round(z / step) : z);
+    }
+    return points;
+}
+
+TEST(CloudQuality, StepsOfDepthAreNamedAndRegularPointsAreNone)
+{
+    EXPECT_EQ(cloudQuality(objectOf(depthImage(0))).depthStep, 0);
+    EXPECT_NEAR(cloudQuality(objectOf(depthImage(0.8e-3))).depthStep, 0.8e-3, 1e-9) << "24 values of 600 points";
+    EXPECT_EQ(cloudQuality(objectOf(lattice(80, 1e-3))).depthStep, 0) << "rows and columns, none of them across";
+    std::vector<glm::dvec3> two = lattice(80, 1e-3); // the faces of a thin body
+    for (const glm::dvec3& p : lattice(80, 1e-3)) two.push_back(p - glm::dvec3(0, 0, 1e-3));
+    EXPECT_EQ(cloudQuality(objectOf(std::move(two))).depthStep, 0) << "two values of depth";
+}
+
 TEST(CloudQuality, GaussianNoiseIsMeasured)
 {
     for (const double sigma : {0.1e-3, 0.5e-3}) {

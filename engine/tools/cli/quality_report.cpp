@@ -121,16 +121,24 @@ SideSources sideSources(const SoftObject& object, bool byNormals)
 
 QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded, const Scene& scene)
 {
-    return {cloudQuality(object), sideSources(object, !loaded.normals.empty()), loaded.report.coordinateRounding,
-            scene.patch.footprintRadius, scene.patch.window};
+    return {cloudQuality(object),
+            sideSources(object, !loaded.normals.empty()),
+            loaded.report.coordinateRounding,
+            scene.patch.footprintRadius,
+            scene.patch.window,
+            object.cloud().bounds().diagonal()};
 }
 
 std::vector<std::string> meaningForTouch(const QualityReport& r)
 {
+    constexpr double         kBeyondReach  = 5; // [m]
     constexpr double         kFewestAcross = 3; // points across a patch window: 9 in all are asked for
     const CloudQuality&      q             = r.quality;
     std::vector<std::string> said;
     if (!(q.spacing.typical > 0)) return {"there is no surface to touch: too few points in different places"};
+    if (r.size > kBeyondReach)
+        said.push_back("the object is " + metres(r.size) +
+                       " across, more than a hand reaches: if its numbers are millimetres, say --length-unit mm");
     said.push_back(q.areLines() && q.betweenLines > 0 ? linesOnFingertip(r) : onFingertip(r));
     if (r.window < kFewestAcross * q.spacing.high)
         said.push_back(
@@ -151,6 +159,10 @@ std::vector<std::string> meaningForTouch(const QualityReport& r)
     if (r.rounding > kStep * q.spacing.typical)
         said.push_back("the coordinates are rounded to steps of " + metres(r.rounding) + ", " +
                        spacings(r.rounding / q.spacing.typical) + ": the surface is felt as stairs");
+    if (q.depthStep > 0)
+        said.push_back("the depth takes few values, " + metres(q.depthStep) + " apart (" +
+                       spacings(q.depthStep / q.spacing.typical) +
+                       "): layers of equal depth count as faces without noise of their own, and are felt as stairs");
     return said;
 }
 
@@ -173,6 +185,7 @@ nlohmann::json jsonOf(const QualityReport& r)
             {"spacing_between_lines", q.areLines() ? nlohmann::json(q.betweenLines) : nlohmann::json(nullptr)},
             {"spacing_along_lines", q.areLines() ? nlohmann::json(q.alongLine) : nlohmann::json(nullptr)},
             {"coordinate_rounding", r.rounding},
+            {"depth_step", q.depthStep},
             {"footprint_radius", r.fingertip},
             {"points_under_footprint", q.pointsUnder(r.fingertip)},
             {"window", r.window},

@@ -27,6 +27,7 @@ struct QualityReport {
     double       rounding  = 0; ///< step of the file's coordinates [m]
     double       fingertip = 0; ///< radius [m]
     double       window    = 0; ///< edge of the patch window [m]
+    double       size      = 0; ///< diagonal of the object's bounds [m]
 };
 
 [[nodiscard]] QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded, const Scene& scene);

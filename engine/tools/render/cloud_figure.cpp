@@ -44,6 +44,17 @@ Camera cameraOf(std::span<const glm::dvec3> points, const CloudFigure& figure)
     return camera;
 }
 
+/// Moves back and aside, so that the title above and the colours at the right of a panel cover nothing of the object.
+Camera besideTexts(Camera camera)
+{
+    constexpr double kTitle = 0.09, kColours = 0.15; // of the picture's height and width [1]
+    const double     aspect = double(kSize.width) / kSize.height;
+    camera.distance /= 1 - kColours;
+    const double height = 2 * camera.halfHeight(); // [m]
+    camera.target += 0.5 * kTitle * height * camera.upwards() + 0.5 * kColours * height * aspect * camera.right();
+    return camera;
+}
+
 ValueRange rangeOf(std::span<const double> values, const CloudFigure& figure)
 {
     if (figure.range) return *figure.range;
@@ -158,7 +169,7 @@ Image cloudPanels(const SoftObject& object, std::span<const CloudPanel> panels, 
     object.survey().expectSurface();
     CloudFigure figure;
     figure.direction       = {-0.5, -0.4, -1}; // from above for objects that stand on x and z, from outside for sheets
-    const Camera    camera = cameraOf(object.positions(), figure);
+    const Camera    camera = besideTexts(cameraOf(object.positions(), figure));
     const CloudBody body   = bodyOf(object.positions(), object.positions(), object.index());
     Image           all(kSize.width * int(panels.size()), kSize.height);
     for (std::size_t n = 0; n < panels.size(); ++n) {
