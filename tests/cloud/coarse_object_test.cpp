@@ -73,6 +73,19 @@ TEST(CoarseObject, KeepsTheFacesOfAThinBodyApart)
     }
 }
 
+/// One sheet has no layers to tell its side by: only what its points know does.
+TEST(CoarseObject, KeepsTheSideThatNormalsGave)
+{
+    const SoftObject             plain = denseSheet(0);
+    const std::vector<glm::vec3> down(plain.size(), glm::vec3(0, 0, -1));
+    const SoftObject             dense(plain.cloud(), {}, {}, down);
+    const CoarseObject           coarse(dense, 1e-3);
+    for (std::size_t k = 0; k < coarse.object().size(); ++k) {
+        EXPECT_TRUE(coarse.object().survey().sided(k));
+        EXPECT_LT(coarse.object().survey().normal(k).z, -0.9);
+    }
+}
+
 TEST(CoarseObject, StraysFarAwayStayApart)
 {
     const SoftObject   dense = denseSheet(0, 50);

@@ -147,6 +147,12 @@ TEST(VolumeGrid, TheQformPlacesAFileWithoutSform)
     expectNear(grid.placeOf(0, 1, 0) - grid.placeOf(0, 0, 0), {7.01035714e-14, -2.61630079e-13, 4e-6});
 }
 
+TEST(VolumeGrid, AnInterceptThatIsNoNumberIsNone)
+{
+    const std::string bytes = changed(changed(kPlain, 112, 2.0F), 116, std::nanf(""));
+    EXPECT_EQ(nifti(bytes).node(1, 1, 1), 16) << "nibabel reads NaN as zero";
+}
+
 TEST(VolumeGrid, SizesOfVoxelsPlaceAFileWithoutEitherForm)
 {
     const VolumeGrid grid = nifti(bytesOf(kC));
