@@ -150,7 +150,7 @@ TEST(VolumeGrid, TheQformPlacesAFileWithoutSform)
 TEST(VolumeGrid, AnInterceptThatIsNoNumberIsNone)
 {
     const std::string bytes = changed(changed(kPlain, 112, 2.0F), 116, std::nanf(""));
-    EXPECT_EQ(nifti(bytes).node(1, 1, 1), 16) << "nibabel reads NaN as zero";
+    EXPECT_EQ(nifti(bytes).node(1, 1, 1), 16) << "as a slope that is none";
 }
 
 TEST(VolumeGrid, SizesOfVoxelsPlaceAFileWithoutEitherForm)
