@@ -7,11 +7,14 @@ cd "$(dirname "$0")/.." || exit 1
 usage() {
     cat <<'TEXT'
 usage: sh tests/run.sh [--asan | --tsan | --all] [--yes] [--no-install] [--dry-run] [-- CTEST-OPTIONS]
+       sh tests/run.sh --driver ICD.json
 
   (nothing)      every test, Release build in build/
   --asan         the same tests under AddressSanitizer and UndefinedBehaviorSanitizer, in build/asan
   --tsan         the same tests under ThreadSanitizer, in build/tsan
   --all          all three builds in turn, and GPU-assisted validation of the shaders
+  --driver FILE  builds, and runs the tests of shaders and pictures on the first processor of another Vulkan driver: FILE
+                 is its manifest, as /usr/share/vulkan/icd.d has them. Golden pictures are skipped there
   --yes          install missing packages without asking (password-less sudo)
   --no-install   install nothing; exit 3 naming what is missing
   --dry-run      print the steps without running them
@@ -21,12 +24,17 @@ usage: sh tests/run.sh [--asan | --tsan | --all] [--yes] [--no-install] [--dry-r
 TEXT
 }
 
-flavours= all=
+flavours= all= driver=
 while [ $# -gt 0 ]; do
     case $1 in
     --asan) flavours="$flavours asan" ;;
     --tsan) flavours="$flavours tsan" ;;
     --all) flavours='plain asan tsan' all=1 ;;
+    --driver)
+        [ $# -gt 1 ] || { say "--driver: expected the manifest of a Vulkan driver, a .json file"; exit 2; }
+        driver=$2
+        shift
+        ;;
     --help | -h) usage; exit 0 ;;
     --) shift; break ;;
     --yes | --no-install | --dry-run) prepare_options "$1" ;;
@@ -34,6 +42,23 @@ while [ $# -gt 0 ]; do
     esac
     shift
 done
+
+if [ -n "$driver" ]; then
+    [ -r "$driver" ] || { say "--driver: $driver cannot be read; drivers have their manifests in /usr/share/vulkan/icd.d"; exit 2; }
+    driver=$(cd "$(dirname "$driver")" && pwd)/$(basename "$driver") # as the loader wants it
+fi
+
+# run_on_driver FOLDER: the programs of shader tests on the driver's first processor.
+run_on_driver() (
+    export VK_DRIVER_FILES="$driver" VK_ICD_FILENAMES="$driver" PALPATE_SOLVER=0
+    "$1/bin/palpate" devices --processors || exit 1
+    failures=0
+    for program in "$1"/bin/palp_*_shader_test; do
+        say "== $(basename "$program")"
+        "$program" --gtest_brief=1 || failures=$((failures + 1))
+    done
+    exit $failures
+)
 
 # shellcheck disable=SC2086
 prepare_packages $packages_build $packages_tests
@@ -49,6 +74,7 @@ for flavour in ${flavours:-plain}; do
     # The demo's build has cached PALPATE_TESTS=OFF.
     prepare_build "$folder" -DPALPATE_TESTS=ON -DPALPATE_WERROR=ON -DPALPATE_SANITIZE=$sanitizers -DPALPATE_BENCHMARKS=$([ $flavour = plain ] && echo ON || echo OFF)
     if [ -n "$dry_run" ]; then say "would run the tests in $folder"; continue; fi
+    if [ -n "$driver" ]; then run_on_driver "$folder" || failed=1; continue; fi
     say "== $flavour: testing"
     # Instrumented shaders are 20 times slower: they run with --all, or if ctest options are given.
     excluded=

@@ -7,26 +7,22 @@
 int sameColourI(int m) { return m < 4 ? (m < 2 ? 2 - 4 * m : 0) : (m < 6 ? -1 : 1); }
 int sameColourJ(int m) { return m < 4 ? (m < 2 ? 0 : 10 - 4 * m) : ((m & 1) == 0 ? -1 : 1); }
 
-// |entry| of the row of node (i, j) for that neighbour, 0 if it is held or outside.
-float sameColourEntry(PlateLevel g, int i, int j, int m)
+// |entry| of the row of node (i, j) for the m-th of them, 0 if it is held or outside; m = 8: the diagonal.
+float entryOf(PlateLevel g, int i, int j, int m)
 {
-    unitI       = i + sameColourI(m);
-    unitJ       = j + sameColourJ(m);
+    unitI       = m < 8 ? i + sameColourI(m) : i;
+    unitJ       = m < 8 ? j + sameColourJ(m) : j;
     bool  moves = unitI >= 0 && unitI <= g.cellsX && unitJ >= 0 && unitJ <= g.cellsZ && !isHeld(g, unitI, unitJ);
     float entry = operatorAt(g, i, j);
-    return moves ? abs(entry) : 0.0f;
+    return m == 8 ? entry : moves ? abs(entry) : 0.0f;
 }
 
-float diagonalEntry(PlateLevel g, int i, int j)
-{
-    unitI = i;
-    unitJ = j;
-    return operatorAt(g, i, j);
-}
-
+#ifdef __cplusplus
+// The sum of plate_divisor.comp.
 float divisorAt(PlateLevel g, int i, int j)
 {
     float others = 0.0f;
-    for (int m = 0; m < 8; ++m) others += sameColourEntry(g, i, j, m);
-    return relaxationDivisor(diagonalEntry(g, i, j), others);
+    for (int m = 0; m < 8; ++m) others += entryOf(g, i, j, m);
+    return relaxationDivisor(entryOf(g, i, j, 8), others);
 }
+#endif

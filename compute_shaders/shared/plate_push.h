@@ -14,6 +14,8 @@ struct LevelPush {
     PlateLevel level;
 };
 
+const int kEntries = 9; // of a row of the operator, of which a divisor is made; see plate_divisor.h
+
 struct RelaxPush {
     PlateLevel level;
     uint       colour; // parity of i + j of the nodes to relax

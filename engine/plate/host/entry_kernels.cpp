@@ -74,13 +74,13 @@ float inverseDivisor(const PlateLevel& level, const float* at, std::ptrdiff_t st
     Row<float> row{at, stride, placeI, placeJ};
     if (row.isHeld(level, placeI, placeJ)) return 0;
     float others = 0;
-    // The loop of divisorAt(), each entry with its own constant.
+    // The sum of plate_divisor.comp, each entry with its own constant.
     const auto add = [&]<int... m>(std::integer_sequence<int, m...>)
     {
-        ((others += row.sameColourEntry(level, placeI, placeJ, m)), ...);
+        ((others += row.entryOf(level, placeI, placeJ, m)), ...);
     };
     add(std::make_integer_sequence<int, 8>{});
-    return 1.0F / row.relaxationDivisor(row.diagonalEntry(level, placeI, placeJ), others);
+    return 1.0F / row.relaxationDivisor(row.entryOf(level, placeI, placeJ, 8), others);
 }
 
 template <int placeI, int placeJ>

@@ -124,7 +124,7 @@ void printText(std::ostream& out, const BenchReport& report)
     for (const BenchRow& row : report.rows) {
         out << lineOf(row) << "\n";
         if (!row.note.empty()) out << "          " << row.note << "\n";
-        if (row.loads)
+        if (row.loads && row.dispatchesPerCycle)
             out << "          " << *row.loads << (*row.loads == 1 ? " load, " : " loads, ")
                 << cell(row.palpateMs->median / *row.loads, "%.3g") << " ms each; " << *row.dispatchesPerCycle
                 << " dispatches per cycle; " << cell(row.movedGigabytes, "%.1f") << " GB/s where a copy has "

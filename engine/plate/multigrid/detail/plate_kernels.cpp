@@ -16,11 +16,12 @@ namespace {
 /// more of them, or idle ones in small levels, cost time. Hardware needs wide rows for its memory, and hides the waits
 /// of serial kernels behind more invocations.
 struct Shapes {
-    compute::Workgroup tile;   ///< nodes of a grid
-    compute::Workgroup line;   ///< nodes one after the other; 65535 of them hold 2049 x 2049 nodes
-    compute::Workgroup alone;  ///< the one workgroup of a serial kernel; kMostHalfBand invocations find work
-    compute::Workgroup reduce; ///< at most kMostInvocations of cg_scalars.comp
-    compute::Workgroup tail;   ///< the one workgroup of plate_tail.comp
+    compute::Workgroup tile;    ///< nodes of a grid
+    compute::Workgroup line;    ///< nodes one after the other; 65535 of them hold 2049 x 2049 nodes
+    compute::Workgroup alone;   ///< the one workgroup of a serial kernel; kMostHalfBand invocations find work
+    compute::Workgroup reduce;  ///< at most kMostInvocations of cg_scalars.comp
+    compute::Workgroup tail;    ///< the one workgroup of plate_tail.comp
+    compute::Workgroup entries; ///< of plate_divisor.comp: nodes of a row, each with its 9 entries
     compute::Workgroup jumpTile{shared::kTile, shared::kTile, 1};
     compute::Workgroup region{256, 1, 1}; ///< of plate_region.glsl
 };
@@ -34,8 +35,8 @@ bool isHardware(const compute::Context& context)
 Shapes shapesFor(const compute::Context& context)
 {
     const compute::Workgroup tail{std::min(context.limits().invocations, 1024U), 1, 1};
-    if (isHardware(context)) return {{32, 4, 1}, {128, 1, 1}, {64, 1, 1}, {256, 1, 1}, tail};
-    return {{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}, tail};
+    if (isHardware(context)) return {{32, 4, 1}, {128, 1, 1}, {64, 1, 1}, {256, 1, 1}, tail, {28, 1, 9}};
+    return {{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}, tail, {8, 1, 9}};
 }
 
 /// Chooses the smoother. Where an operator row by row costs the same for all nodes as for half of them, half sweeps are

@@ -348,7 +348,8 @@ void PlatePasses::prepareRigidity(Recorder& pass)
              k.coarsen.groupsOver(std::uint32_t(level(l + 1).cellsZ + 1), std::uint32_t(level(l + 1).cellsX + 1)));
     for (std::size_t l = 0; l + 1 < levels.size(); ++l)
         pass(k.divisor, {levels[l].rigidity, levels[l].divisor}, shared::LevelPush{level(l)},
-             k.divisor.groupsOver(std::uint32_t(level(l).cellsZ + 1), std::uint32_t(level(l).cellsX + 1)));
+             k.divisor.groupsOver(std::uint32_t(level(l).cellsZ + 1), std::uint32_t(level(l).cellsX + 1),
+                                  std::uint32_t(shared::kEntries)));
     for (std::size_t l = 0; l + 1 < levels.size(); ++l) {
         const LevelBuffers&     b = levels[l];
         const shared::LevelPush push{level(l)};
