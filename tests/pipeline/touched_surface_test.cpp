@@ -249,6 +249,20 @@ TEST(TouchedSurface, TheStiffnessBesideARimIsThatOfThePlaceInEveryWindow)
     }
 }
 
+/// Beside an edge the mean points of large cubes would round it.
+TEST(DenseCloud, KeepsItsEdges)
+{
+    Cloud cloud;
+    for (const glm::dvec3& p : sheet(250'000, 0, 7)) cloud.add({p.x > 0 ? glm::dvec3(0, p.y, -p.x) : p}, uniform);
+    const SoftObject body = cloud.object();
+    const double     cell = kTouch.window / kTouch.cells;
+    const Patch      flat = deform(body, {{-15e-3, 0, 0}, {0, 0, 1}}, kTouch);
+    const Patch      edge = deform(body, {{-1e-3, 0, 0}, {0, 0, 1}}, kTouch);
+    ASSERT_TRUE(flat.coarse);
+    EXPECT_EQ(flat.coarse->side(), cell);
+    EXPECT_TRUE(!edge.coarse || edge.coarse->side() < 0.5 * cell);
+}
+
 /// A cloud that is far denser than the grid is touched by a point or so per cell, and all of it moves.
 TEST(DenseCloud, FeelsAsTheSparseOneAndMovesSmoothly)
 {
