@@ -13,7 +13,6 @@
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
-#include "engine/plate/multigrid/detail/plate_kernels.h"
 #include "engine/plate/multigrid/multigrid_plate_solver.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 
@@ -114,7 +113,7 @@ struct PlateSolver::Multigrid {
     [[nodiscard]] std::size_t batchOf(const PlateGrid& grid, std::size_t all) const
     {
         if (likeTheHost) return 1;
-        const std::size_t most    = std::min(mostNumbers, context.limits().buffer / kernels.all().realBytes());
+        const std::size_t most    = std::min(mostNumbers, context.limits().buffer / sizeof(double));
         const std::size_t each    = std::max<std::size_t>(1, most / grid.nodes());
         const std::size_t batches = (all + each - 1) / each;
         return (all + batches - 1) / batches;
