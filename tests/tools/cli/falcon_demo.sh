@@ -30,7 +30,12 @@ holds '^homing  home the emulated Falcon: pull the grip all the way out'
 holds '^homing  done'
 holds '^felt    [0-9.]+ s, in contact [1-9][0-9]* % of it; force at most [0-9.]+ m?N, depth at most [0-9.]+ [mu]m$'
 holds '^wire    [0-9]{4,} packets; the last one asked for no force$'
-[ "$(sed -n 's/^light   \([a-z]*\) .*/\1/p' out.txt | tr '\n' ' ')" = 'red blue green ' ] || complain "the light was not red, blue, green: $(cat out.txt)"
+lights=$(sed -n 's/^light   \([a-z]*\) .*/\1/p' out.txt | tr '\n' ' ')
+case $lights in
+'red blue green ') ;;
+'red blue green '*) grep -q '^plate   it did not answer' out.txt || complain "the light went out without a word: $(cat out.txt)" ;; # a busy machine
+*) complain "the light was not red, blue, green: $(cat out.txt)" ;;
+esac
 
 rm out.txt # or its "feel" is taken for the next one's
 # Ctrl-C: a background job of a script ignores it, SIGTERM goes the same way.

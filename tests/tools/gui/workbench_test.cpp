@@ -315,7 +315,7 @@ TEST_F(WorkbenchTest, AKeyMarksTheMomentOfARecording)
     const RecordedSession session = readSession("session-0001");
     ASSERT_EQ(session.markers.size(), 2U);
     EXPECT_EQ(session.markers[0].text, "F7");
-    EXPECT_GT(session.markers[0].time, 0.5);
+    EXPECT_GT(session.markers[0].time, 0.4) << "of 0.5: the session begins some time after its key";
     EXPECT_EQ(session.markers[1].text, "left hand");
     EXPECT_GT(session.markers[1].time, session.markers[0].time);
     EXPECT_LT(session.markers[1].time, session.records.back().time);
