@@ -194,5 +194,35 @@ TEST(Reversals, AreSmoothWithAndWithoutFriction)
         }
 }
 
+/// Returns by how much the force changes in a millisecond beyond what a spring to a proxy that stays does, at most [N].
+double largestStepBeyondTheSpring(const std::vector<TickRecord>& records, const Stroke& stroke)
+{
+    double most = 0;
+    for (std::size_t n = 1; n < records.size(); ++n) {
+        const TickRecord &before = records[n - 1], &now = records[n];
+        if (now.time < kEngage + stroke.period() / 4) continue;
+        const double stiffness = glm::length(now.force) / std::max(1e-4, glm::length(now.proxy - now.hip)); // [N/m]
+        most = std::max(most, glm::length(now.force - before.force) - stiffness * glm::length(now.hip - before.hip));
+    }
+    return most;
+}
+
+/// A proxy that friction holds loads its spring as fast as the hand moves: 43 N/s at 50 mm/s on the wart. That is what
+/// friction feels like, and no step; nothing may come on top of it.
+TEST(Reversals, OfQuickHandsChangeTheForceNoFasterThanAHeldProxyDoes)
+{
+    for (const double atRest : {0.0, 0.5})
+        for (const Stroke& stroke : {Stroke{3e-3, 6e-3, 1.5e-3, 0.05, true}, Stroke{3e-3, 6e-3, 1.5e-3, 0.1, true},
+                                     Stroke{0, 22e-3, 1.5e-3, 0.2, true}}) {
+            const auto   records = Session(palmWart(atRest, 0.6 * atRest)).run(handOf(stroke));
+            const double step    = largestStepAtTurns(records, stroke);
+            const double beyond  = largestStepBeyondTheSpring(records, stroke);
+            std::printf("  friction %.1f, by %2.0f mm at %3.0f mm/s: %.4f N/ms, beyond the spring %.4f\n", atRest,
+                        stroke.reach * 1e3, stroke.speed * 1e3, step, beyond);
+            EXPECT_LE(beyond, 0.002) << "the stiffness changes on the way, by a tenth of a step's; friction " << atRest
+                                     << ", " << stroke.reach << " m at " << stroke.speed;
+        }
+}
+
 } // namespace
 } // namespace palp
