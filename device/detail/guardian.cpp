@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::int64_t kStart  = 1'000'000'000; ///< [ns] for the guardian's first look; it takes 2 ms
 constexpr std::int64_t kEnd    = 500'000'000;   ///< [ns] for its last packets, which take 30 ms at most
-constexpr std::int64_t kAbsent = 250'000'000;   ///< [ns] without a look; it looks every 25 ms
+constexpr std::int64_t kAbsent = 250'000'000;   ///< [ns] without a look, if it is frozen; it looks every 25 ms
 constexpr int          kAside  = 16;            ///< descriptors from here on are not those of GuardianDescriptor
 
 /// A descriptor that closes itself, and is not passed on to other programs.
@@ -183,7 +183,8 @@ bool Guardian::hasSilenced() noexcept
 
 bool Guardian::isWatching() const noexcept
 {
-    return guardianClock() - page_->watching < kAbsent;
+    pollfd its{life_, 0, 0}; // an end that has no other: nobody is there
+    return poll(&its, 1, 0) == 0 && guardianClock() - page_->watching < kAbsent;
 }
 
 } // namespace palp

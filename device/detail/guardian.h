@@ -51,7 +51,8 @@ public:
     /// Returns whether the guardian has taken a force since the last call, and zero was sent since.
     [[nodiscard]] bool hasSilenced() noexcept;
 
-    /// Returns whether the guardian looked at the page within the last quarter of a second. If not, push no more.
+    /// Returns whether the guardian is there and looked at the page within the last quarter of a second. If not, push
+    /// no more. It is a system call that does not wait.
     [[nodiscard]] bool isWatching() const noexcept;
 
 private:

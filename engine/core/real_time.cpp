@@ -7,9 +7,34 @@
 #ifdef __linux__
 #include <pthread.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #endif
 
 namespace palp {
+#ifdef __linux__
+namespace {
+
+/// Returns whether more memory than the limit may be locked. Asked by a map that takes none.
+bool mayLockBeyondTheLimit()
+{
+    rlimit limit{};
+    if (getrlimit(RLIMIT_MEMLOCK, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return true;
+    const std::size_t size = limit.rlim_cur + 1; // [byte] at least a page beyond it
+    void* const       map  = mmap(nullptr, size, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_LOCKED, -1, 0);
+    if (map != MAP_FAILED) munmap(map, size);
+    return map != MAP_FAILED;
+}
+
+/// Returns 0 or an error of mlockall(). A small program fits into a limit, and if what it takes later were locked too,
+/// its next thread would not start: its stack would be beyond the limit. So there nothing is locked.
+int lockMemory()
+{
+    if (!mayLockBeyondTheLimit()) return ENOMEM;
+    return mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
+}
+
+} // namespace
+#endif
 
 std::string askForRealTime()
 {
@@ -19,7 +44,7 @@ std::string askForRealTime()
     wanted.sched_priority = kPriority;
     const int scheduling  = pthread_setschedparam(pthread_self(), SCHED_FIFO, &wanted);
     // It locks the memory of the whole program, so one call is enough; the call may take a quarter of a second.
-    static const int locking = mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
+    static const int locking = lockMemory();
     const bool       locked  = locking == 0;
     if (scheduling == 0 && locked) return {};
     std::string refused;

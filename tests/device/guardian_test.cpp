@@ -225,8 +225,11 @@ TEST_F(GuardianTest, AProgramWhoseGuardianHasEndedPushesNoMore)
     ASSERT_TRUE(waitForForce(falcon));
     const std::string ask = "pkill -KILL -P " + std::to_string(child) + " palpate-guardia"; // its only child
     ASSERT_EQ(std::system(ask.c_str()), 0);
-    falcon.serve(steadyTime() + 1, [&] { return !falcon.pushes(); });
+    const double from = steadyTime();
+    falcon.serve(from + 1, [&] { return !falcon.pushes(); });
+    std::printf("  zero %.1f ms after the guardian was killed\n", (steadyTime() - from) * 1e3);
     EXPECT_FALSE(falcon.pushes());
+    EXPECT_LT(steadyTime() - from, 0.2) << "at the next exchange; a frozen one is missed after 0.25 s";
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
 }
