@@ -24,13 +24,14 @@ const vec2 kSpiral[kTaps] = vec2[](
 float hollowness(vec2 at, vec3 place, vec3 normal, float radius)
 {
     const float kLeastPixels = 3.0;
+    const float kAcrossEdge  = 0.5; // cosine: beyond a sharp edge lies another face, and no hump
     float pixels = max(kLeastPixels, radius * pixelsPerMetre(-place.z));
     float sum = 0.0, weights = 0.0;
     for (int n = 0; n < kTaps; ++n) {
         ivec2 texel = clamp(ivec2(at + pixels * kSpiral[n]), ivec2(0), ivec2(frame.width, frame.height) - 1);
-        float depth = texelFetch(surfaces, texel, 0).w;
-        if (depth == 0.0) continue;
-        vec3  rise     = placeAt(vec2(texel) + 0.5, depth) - place;
+        vec4  there = texelFetch(surfaces, texel, 0);
+        if (there.w == 0.0 || dot(there.xyz, normal) < kAcrossEdge) continue;
+        vec3  rise     = placeAt(vec2(texel) + 0.5, there.w) - place;
         float distance = length(rise);
         float weight   = max(0.0, 1.0 - distance / (2.0 * radius)); // a point far in depth belongs to another surface
         sum += weight * dot(rise, normal) / (distance + 0.1 * radius);

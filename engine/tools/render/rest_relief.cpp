@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kTaps  = 40;  ///< mean number of surroundings of a point; fewer look like grain
 constexpr double kWider = 3.5; ///< a second look finds what is wide and shallow, as there [1]
+constexpr double kEdge  = 0.5; ///< cosine of the angle of normals: beyond a sharp edge lies another face, as there [1]
 
 /// Some of the points, strewn so thinly that a disc of the radius holds kTaps of them.
 struct Strewn {
@@ -43,8 +44,8 @@ void addRelief(std::span<double> relief, std::span<const glm::dvec3> positions, 
         for (const std::uint32_t k : near) {
             const glm::dvec3 rise     = strewn.positions[k] - positions[n];
             const double     distance = glm::length(rise), weight = 1 - distance / (2 * radius);
-            const bool       behind = glm::dot(strewn.normals[k], normals[n]) < 0; // the other side of something thin
-            if (behind || distance == 0) continue;
+            const bool across = glm::dot(strewn.normals[k], normals[n]) < kEdge; // or the other side of a thin one
+            if (across || distance == 0) continue;
             sum += weight * glm::dot(rise, normals[n]) / (distance + 0.1 * radius);
             weights += weight;
         }
