@@ -95,7 +95,9 @@ GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
 
     if (!in.homed) mark(out, GovernorAction::notHomed); // 2
     if (!in.inBox) mark(out, GovernorAction::outsideBox);
-    if (!in.homed || !in.inBox) release();
+    if (in.letGo) mark(out, GovernorAction::lettingGo);
+    const bool may = in.homed && in.inBox && !in.letGo;
+    if (!may) release();
 
     const double fresh = freshness(usableAge(in)); // 3
     if (fresh < 1) mark(out, GovernorAction::stale);
@@ -103,7 +105,7 @@ GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
     const double punctual = punctuality(in);
     if (punctual < 1) mark(out, GovernorAction::late);
     force *= fresh * punctual;
-    if (engagement_ == Engagement::releasing || !in.homed || !in.inBox) force = glm::dvec3(0);
+    if (engagement_ == Engagement::releasing || !may) force = glm::dvec3(0);
 
     observeEnergy(in, passed.fall); // 4
     force = passiveForce(force, in, passed.fall, out);
@@ -338,8 +340,9 @@ void ForceGovernor::watchSpeed(const GovernorInput& in) noexcept
 
 void ForceGovernor::engage(const GovernorInput& in, double rise, GovernorOutput& out) noexcept
 {
-    const bool calm = fault_ == GovernorFault::none && in.homed && in.inBox && usableAge(in) <= settings_.staleAfter &&
-                      glm::length(in.velocity) <= settings_.maximumSpeed && glm::length(slewed_) < settings_.calmForce;
+    const bool calm = fault_ == GovernorFault::none && in.homed && in.inBox && !in.letGo &&
+                      usableAge(in) <= settings_.staleAfter && glm::length(in.velocity) <= settings_.maximumSpeed &&
+                      glm::length(slewed_) < settings_.calmForce;
     switch (engagement_) {
     case Engagement::waiting:
         mark(out, GovernorAction::waiting);
@@ -368,8 +371,8 @@ void ForceGovernor::engage(const GovernorInput& in, double rise, GovernorOutput&
 /// Carries the arm's weight, eased in and out, and sets what the device is given.
 void ForceGovernor::carry(const GovernorInput& in, Elapsed passed, GovernorOutput& out) noexcept
 {
-    const bool may = fault_ == GovernorFault::none && in.homed && in.inBox && freshness(usableAge(in)) > 0 &&
-                     glm::length(in.velocity) <= settings_.maximumSpeed;
+    const bool may = fault_ == GovernorFault::none && in.homed && in.inBox && !in.letGo &&
+                     freshness(usableAge(in)) > 0 && glm::length(in.velocity) <= settings_.maximumSpeed;
     carryTicks_ = may ? std::min(carryTicks_ + 1, settings_.calmTicks) : 0;
     if (carryTicks_ == settings_.calmTicks) carryGain_ = std::min(1.0, carryGain_ + passed.rise / settings_.engageTime);
     constexpr double kNothing = 1e-9; // [1] what rounding leaves of a ramp

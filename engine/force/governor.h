@@ -99,7 +99,8 @@ enum class GovernorAction : std::uint32_t {
     engaging   = 256,  ///< coming on
     releasing  = 512,  ///< going down to zero, to wait again
     late       = 1024, ///< a tick was so late that its force is less than wanted
-    lifting    = 2048  ///< less than the arm's weight is carried: it comes on, or goes
+    lifting    = 2048, ///< less than the arm's weight is carried: it comes on, or goes
+    lettingGo  = 4096  ///< whoever drives the loop wants no force: GovernorInput::letGo
 };
 
 /// Input of one tick. Vectors share one frame.
@@ -111,6 +112,7 @@ struct GovernorInput {
     glm::dvec3 velocity{};          ///< [m/s] of the grip, filtered
     bool       homed = false;       ///< the position is known
     bool       inBox = false;       ///< the grip is where the device's kinematics are good, and they could be solved
+    bool       letGo = false;       ///< no force is wanted, of no kind: the program is about to stop
     double     dt    = 0;           ///< [s] since the last tick
     int        missedExchanges = 0; ///< with the device, in a row
 

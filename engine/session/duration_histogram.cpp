@@ -9,7 +9,8 @@ void DurationHistogram::add(double seconds) noexcept
 {
     const double octaves = seconds > kLeast ? std::log2(seconds / kLeast) : 0;
     const auto   bin     = seconds > kLeast ? 1 + std::int64_t(std::min(octaves, double(kOctaves)) * kPerOctave) : 0;
-    ++bins_[std::size_t(bin)];
+    ++bins_[std::size_t(bin)].count;
+    bins_[std::size_t(bin)].sum += seconds > 0 ? seconds : 0;
     ++count_;
     most_ = std::max(most_, seconds);
 }
@@ -19,9 +20,9 @@ double DurationHistogram::quantile(double share) const noexcept
     if (count_ == 0) return 0;
     const auto    wanted = std::uint64_t(std::ceil(std::clamp(share, 0.0, 1.0) * double(count_)));
     std::uint64_t sum    = 0;
-    for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
-        sum += bins_[bin];
-        if (sum >= wanted && sum > 0) return std::min(most_, kLeast * std::exp2(double(bin) / kPerOctave));
+    for (const Bin& bin : bins_) {
+        sum += bin.count;
+        if (sum >= wanted && bin.count > 0) return std::min(most_, bin.sum / double(bin.count));
     }
     return most_;
 }

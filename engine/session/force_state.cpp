@@ -12,6 +12,7 @@ ForceState forceState(const TickRecord& record) noexcept
     if (isFinal(device)) return ForceState::deviceLost;
     if (static_cast<GovernorFault>(record.faults & 0xFFU) != GovernorFault::none) return ForceState::stopped;
     if (device != DeviceFault::none) return ForceState::deviceFaulty;
+    if (did(GovernorAction::lettingGo)) return ForceState::programStops;
     if (did(GovernorAction::notHomed)) return ForceState::notHomed;
     if (did(GovernorAction::outsideBox)) return ForceState::outOfBox;
     if ((record.faults & static_cast<std::uint32_t>(SessionFlag::oldTable)) != 0) return ForceState::plateSilent;
@@ -35,6 +36,8 @@ std::string describeForces(const TickRecord& record)
         return "no force: the grip is out of its workspace";
     case ForceState::notHomed:
         return "no force: home the device";
+    case ForceState::programStops:
+        return "no force: the program stops";
     case ForceState::deviceFaulty:
         return std::string("no force: the device reports ") + device;
     case ForceState::stopped:

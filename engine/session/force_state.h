@@ -16,6 +16,7 @@ enum class ForceState : std::uint8_t {
     plateSilent,  ///< the plate's answer is too old
     outOfBox,     ///< the grip is out of the device's workspace
     notHomed,     ///< the device does not know where the grip is
+    programStops, ///< Ctrl-Z: the session lets go before
     deviceFaulty, ///< the device reports a fault that may pass
     stopped,      ///< by a fault of the governor, until the operator resets it
     deviceLost    ///< unplugged, or its link is lost: the session ends
@@ -29,6 +30,7 @@ constexpr auto namesOf(ForceState)
                                                   {plateSilent, "plate-silent"},
                                                   {outOfBox, "out-of-box"},
                                                   {notHomed, "not-homed"},
+                                                  {programStops, "program-stops"},
                                                   {deviceFaulty, "device-faulty"},
                                                   {stopped, "stopped"},
                                                   {deviceLost, "device-lost"}});

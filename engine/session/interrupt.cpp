@@ -2,6 +2,8 @@
 
 #include <csignal>
 
+#include "engine/session/detail/key_terminal.h"
+
 namespace palp {
 namespace {
 
@@ -23,7 +25,7 @@ void onStop(int /*signal*/)
     if (sessions > 0)
         asksForZero = true;
     else
-        raise(SIGSTOP);
+        KeyTerminal::stopProgram();
 }
 
 } // namespace
@@ -54,7 +56,7 @@ bool ZeroBeforeStop::isAsked() const noexcept
 void ZeroBeforeStop::stop() noexcept
 {
     asksForZero = false;
-    raise(SIGSTOP);
+    KeyTerminal::stopProgram();
 }
 
 } // namespace palp

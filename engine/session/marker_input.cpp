@@ -8,48 +8,13 @@
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include "engine/core/contract.h"
+#include "engine/session/detail/key_terminal.h"
 #include "engine/session/detail/quiet_thread.h"
 
 namespace palp {
-namespace {
-
-/// The program's terminal, set so that each key is read at once, and set back in the end.
-class KeyTerminal {
-public:
-    explicit KeyTerminal(bool wanted)
-    {
-        if (!wanted || !ours() || ::tcgetattr(STDIN_FILENO, &before_) != 0) return;
-        termios now = before_;
-        now.c_lflag &= ~tcflag_t(ICANON | ECHO);
-        now.c_cc[VMIN] = now.c_cc[VTIME] = 0;
-        open_                            = ::tcsetattr(STDIN_FILENO, TCSADRAIN, &now) == 0;
-    }
-    ~KeyTerminal()
-    {
-        if (open_ && ours()) ::tcsetattr(STDIN_FILENO, TCSADRAIN, &before_);
-    }
-    KeyTerminal(const KeyTerminal&)            = delete;
-    KeyTerminal& operator=(const KeyTerminal&) = delete;
-
-    [[nodiscard]] bool isOpen() const noexcept { return open_; }
-
-    /// Returns true if standard input is a terminal and the program is in its foreground: another one would be stopped.
-    [[nodiscard]] static bool ours() noexcept
-    {
-        return ::isatty(STDIN_FILENO) != 0 && ::tcgetpgrp(STDIN_FILENO) == ::getpgrp();
-    }
-
-private:
-    termios before_{};
-    bool    open_ = false;
-};
-
-} // namespace
-
 struct MarkerInput::Impl {
     explicit Impl(const MarkerSources& sources) : wantsKeys(sources.keys)
     {

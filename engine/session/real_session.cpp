@@ -79,7 +79,7 @@ public:
 
 private:
     void                            servoThread();
-    TickRecord                      tick(const ForceHalf::TickTime& now, const HapticState& state) noexcept;
+    TickRecord                      tick(const ForceHalf::TickTime& now, const HapticState& state, bool letGo) noexcept;
     const ProxyContact&             held(double time, const Hand& hand) noexcept;
     void                            proxyThread();
     void                            deformationThread();
@@ -98,6 +98,7 @@ private:
     std::string                warning_;      ///< of the servo's
     std::exception_ptr         failure_;      ///< of the servo's
     double                     lastTick_ = 0; ///< [s] of the servo's
+    std::atomic<Clock::rep>    stopped_  = 0; ///< time for which the servo had the program stopped
 };
 
 /// Ctrl-Z: the force goes to zero, the device hears it, and only then the program stops.
@@ -140,10 +141,9 @@ void RealSession::servoThread()
         last = lastTick_ = time;
         period += (dt - period) * kShare;
         summary_.period.add(dt);
-        const double began = threadSeconds();
-        HapticState  state = parts_.device.read(time);
-        if (stopping.isAsked()) state.homed = false; // the governor lets go, and engages anew
-        TickRecord record = tick({time, dt}, state);
+        const double      began  = threadSeconds();
+        const HapticState state  = parts_.device.read(time);
+        TickRecord        record = tick({time, dt}, state, stopping.isAsked());
         parts_.device.light(std::uint8_t(lightOf(forceState(record))));
         parts_.device.render(parts_.frame.toDevice(force_.governor().force())); // leaves in this tick
         record.tickTime       = threadSeconds() - began;
@@ -151,14 +151,17 @@ void RealSession::servoThread()
         shared_.shown.publish();
         summary_.add(record);
         if (settings_.onTick) settings_.onTick(record);
-        start += stopping.stopAtZero(force_.governor().force());
+        const Clock::duration stopped = stopping.stopAtZero(force_.governor().force());
+        start += stopped;
+        stopped_ += stopped.count();
         if (isFinal(state.fault)) break; // it does not come back without close() and open()
     }
 }
 
-TickRecord RealSession::tick(const ForceHalf::TickTime& now, const HapticState& state) noexcept
+TickRecord RealSession::tick(const ForceHalf::TickTime& now, const HapticState& state, bool letGo) noexcept
 {
-    const Hand          hand    = parts_.frame.handOf(state);
+    Hand hand                   = parts_.frame.handOf(state);
+    hand.letGo                  = letGo;
     const ProxyContact& contact = held(now.time, hand);
     shared_.update.take();
     return force_.tick(now, hand, contact, shared_.update.held());
@@ -217,8 +220,10 @@ void RealSession::deformationThread()
         if (!touch || touch->sequence == done) continue;
         done                     = touch->sequence;
         const auto        began  = Clock::now();
+        const auto        before = stopped_.load();
         DeformationAnswer answer = solved(*touch, pace.begins(Seconds(began.time_since_epoch()).count()));
-        const double      took   = Seconds(Clock::now() - began).count();
+        const auto        since  = Clock::now() - began - Clock::duration(stopped_ - before); // stopped is not solving
+        const double      took   = std::max(0.0, Seconds(since).count());
         pace.ended(took);
         if (!answer.update && !touch->touching) continue; // nothing is near
         slow_.solve.add(took);

@@ -159,6 +159,7 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     in.velocity              = hand.velocity;
     in.homed                 = hand.homed && hand.device == DeviceFault::none;
     in.inBox                 = hand.inBox;
+    in.letGo                 = hand.letGo;
     in.dt                    = now.dt;
     in.forceAge              = std::max(0.0, now.time - touch.time); // above 0 if the proxy has a thread of its own
     in.overdue               = tableOverdue(now, touch.touching, newest);

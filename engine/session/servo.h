@@ -63,22 +63,25 @@ struct Hand {
     double        answerAge  = 0;          ///< [s] of the position at that time
     std::uint64_t sequence   = 0;          ///< of the answer; 0: nothing is known of its time
     glm::dquat    orientation{1, 0, 0, 0}; ///< of the grip; recorded only
+    bool          letGo = false;           ///< see GovernorInput
 
     /// Packs faults, flags and buttons into TickRecord::device; setBits() reads it back.
     [[nodiscard]] std::uint32_t bits() const noexcept
     {
-        return static_cast<std::uint32_t>(device) | (homed ? kHomed : 0U) | (inBox ? kInBox : 0U) | buttons << 16U;
+        return static_cast<std::uint32_t>(device) | (homed ? kHomed : 0U) | (inBox ? kInBox : 0U) |
+               (letGo ? kLetGo : 0U) | buttons << 16U;
     }
     void setBits(std::uint32_t bits) noexcept
     {
         device  = static_cast<DeviceFault>(bits & 0xFFU);
         homed   = (bits & kHomed) != 0;
         inBox   = (bits & kInBox) != 0;
+        letGo   = (bits & kLetGo) != 0;
         buttons = bits >> 16U;
     }
 
 private:
-    static constexpr std::uint32_t kHomed = 1U << 8, kInBox = 1U << 9;
+    static constexpr std::uint32_t kHomed = 1U << 8, kInBox = 1U << 9, kLetGo = 1U << 10;
 };
 
 /// The division of work between threads in real time; see runReal().

@@ -1,5 +1,6 @@
 #include "engine/session/session_line.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include <glm/geometric.hpp>
@@ -16,7 +17,7 @@ void showLine(const SessionView& view)
     const std::string forces = describeForces(s);
     std::fprintf(stderr, "\r%6.1f s  %8s  %8s deep  a tick every %8s  a patch in %8s%s%s\033[K", s.time,
                  formatQuantity(glm::length(s.force), "N").c_str(),
-                 formatQuantity(glm::length(s.proxy - s.hip), "m").c_str(),
+                 formatQuantity(std::max(0.0, glm::dot(s.proxy - s.hip, s.normal)), "m").c_str(),
                  formatQuantity(view.loopPeriod, "s").c_str(), formatQuantity(view.solveTime, "s").c_str(),
                  !forces.empty() ? "  "
                  : stale         ? "  stale"

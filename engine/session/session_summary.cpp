@@ -54,6 +54,7 @@ std::string SessionSummary::whyForceless() const
     if (state == ForceState::deviceLost || state == ForceState::deviceFaulty)
         return std::string("the device reported ") + name(static_cast<DeviceFault>(lastForceless.device & 0xFFU));
     if (state == ForceState::notHomed) return "the device was not homed";
+    if (state == ForceState::programStops) return "the program was stopped";
     if (state == ForceState::outOfBox) return "the grip was out of the device's workspace";
     if (has(SessionFlag::noPatch)) return whyPatchless.empty() ? "the plate had no answer yet" : whyPatchless;
     if (has(SessionFlag::oldTable))

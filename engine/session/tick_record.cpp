@@ -56,10 +56,11 @@ constexpr std::array kColumns = {
         false},
     SessionColumn{"actions", Type::uint32, 1, offsetof(S, actions), "1",
                   "of the governor: 1 not homed, 2 outside of the box, 4 stale, 8 damped, 16 active, 32 clamped, 64 "
-                  "slewed, 128 waiting, 256 engaging, 512 releasing, 1024 late",
+                  "slewed, 128 waiting, 256 engaging, 512 releasing, 1024 late, 2048 weight not carried whole, 4096 "
+                  "let go before a stop",
                   false},
     SessionColumn{"device", Type::uint32, 1, offsetof(S, device), "1",
-                  "bits 0 to 7 its fault, 8 homed, 9 in its box, 16 to 31 buttons", false},
+                  "bits 0 to 7 its fault, 8 homed, 9 in its box, 10 the session lets go, 16 to 31 buttons", false},
     SessionColumn{"answers", Type::uint32, 1, offsetof(S, answers), "1", "of the device so far, modulo 2^32", false},
 };
 

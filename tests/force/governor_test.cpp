@@ -186,20 +186,22 @@ TEST(ForceGovernor, MoreThan20MissedExchangesAreALostDevice)
 
 // ---- 2: homed and in the box
 
-TEST(ForceGovernor, NotHomedOrOutsideTheBoxIsZeroWithoutAFaultAndEngagesAnew)
+TEST(ForceGovernor, NotHomedOutsideTheBoxOrAskedToLetGoIsZeroWithoutAFaultAndEngagesAnew)
 {
     for (auto [flag, action] : {std::pair{&GovernorInput::homed, GovernorAction::notHomed},
-                                {&GovernorInput::inBox, GovernorAction::outsideBox}}) {
-        Servo servo;
+                                {&GovernorInput::inBox, GovernorAction::outsideBox},
+                                {&GovernorInput::letGo, GovernorAction::lettingGo}}) {
+        Servo      servo;
+        const bool good = servo.in.*flag;
         servo.pushing({0, 0, 5});
-        servo.in.*flag = false;
+        servo.in.*flag = !good;
 
         const GovernorOutput first = servo.tick();
         EXPECT_TRUE(first.did(action));
         EXPECT_EQ(first.fault, GovernorFault::none);
         EXPECT_NEAR(first.force.z, 4, kRounding) << "it leaves at 1 N/ms";
 
-        servo.in.*flag = true; // one tick was enough
+        servo.in.*flag = good; // one tick was enough
         expectGoneIn20Ticks(servo, "outside");
         EXPECT_EQ(servo.ticks(1000).force, glm::dvec3(0)) << "pressed in";
         servo.in.force = {};

@@ -42,6 +42,7 @@ TEST(ForceState, TheGravestReasonIsTold)
         {plateSilent, did, old, DeviceFault::none, "the plate does not answer", blue},
         {outOfBox, did |= bit(GovernorAction::outsideBox), old, DeviceFault::none, "out of its workspace", blue},
         {notHomed, did |= bit(GovernorAction::notHomed), old, DeviceFault::none, "home the device", red},
+        {programStops, did |= bit(GovernorAction::lettingGo), old, DeviceFault::none, "the program stops", blue},
         {deviceFaulty, did, old, DeviceFault::silent, "reports silent", blue},
         {stopped, did, old | tooFast, DeviceFault::silent, "too-fast; hold down the device's first button", blue},
         {deviceLost, did, old | tooFast, DeviceFault::linkLost, "lost (link-lost), the session ends", blue}};

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <mutex>
 #include <string>
@@ -18,6 +19,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/session/interrupt.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palp {
@@ -93,6 +95,7 @@ TEST(MarkerInputChild, DISABLED_TellsItsKeys) // its standard input is a termina
 {
     termios before{}, during{}, after{};
     ASSERT_EQ(::tcgetattr(STDIN_FILENO, &before), 0);
+    static_cast<void>(catchInterrupts());
     {
         Heard       heard;
         MarkerInput input({.keys = true});
@@ -102,6 +105,11 @@ TEST(MarkerInputChild, DISABLED_TellsItsKeys) // its standard input is a termina
         EXPECT_EQ(during.c_lflag & tcflag_t(ICANON | ECHO), 0U);
         EXPECT_NE(during.c_lflag & tcflag_t(ISIG), 0U) << "Ctrl-C";
         ASSERT_EQ(::write(3, "r", 1), 1); // ready
+        heard.wait(1);
+        EXPECT_EQ(::kill(::getpid(), SIGTSTP), 0); // as Ctrl-Z does
+        ::tcgetattr(STDIN_FILENO, &during);
+        EXPECT_EQ(during.c_lflag & tcflag_t(ICANON | ECHO), 0U) << "it goes on as before";
+        ASSERT_EQ(::write(3, "c", 1), 1); // continued
         const auto               texts = heard.wait(4);
         std::vector<std::string> wanted{"m", "space", "\xC3\xA9", "enter"};
         EXPECT_EQ(texts, wanted);
@@ -137,6 +145,17 @@ TEST(MarkerInput, KeysOfTheTerminalAreMarkersAndTheTerminalIsGivenBack)
     ASSERT_EQ(::read(ready[0], &byte, 1), 1) << "the child has failed before";
 
     ASSERT_EQ(::write(master, "m ", 2), 2);
+    int stopped = 0;
+    ASSERT_EQ(::waitpid(child, &stopped, WUNTRACED), child);
+    ASSERT_TRUE(WIFSTOPPED(stopped)) << stopped;
+    termios now{};
+    EXPECT_EQ(::tcgetattr(master, &now), 0);
+    EXPECT_EQ(now.c_lflag & tcflag_t(ICANON | ECHO), tcflag_t(ICANON | ECHO))
+        << "the shell has its terminal while Ctrl-Z lasts";
+    ::kill(child, SIGCONT);
+    ASSERT_EQ(::poll(&from, 1, 30'000), 1);
+    ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+
     std::this_thread::sleep_for(100ms);
     ASSERT_EQ(::write(master, "\x1b[A", 3), 3); // an arrow: no marker
     std::this_thread::sleep_for(100ms);

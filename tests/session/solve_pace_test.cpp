@@ -42,5 +42,23 @@ TEST(SolvePace, TimeAwayFromTheSurfaceIsNoPeriod)
     EXPECT_NEAR(pace.begins(9), 1e-3 + kPeriod / 2, 1e-12);
 }
 
+TEST(SolvePace, AStopOfTheProgramDuringASolveIsNoSolve)
+{
+    SolvePace pace(kPeriod);
+    for (int n = 0; n < 10; ++n) {
+        pace.begins(n * kPeriod);
+        pace.ended(n == 5 ? 3600 : 2e-3);
+    }
+    EXPECT_NEAR(pace.begins(10 * kPeriod), 2e-3 + kPeriod / 2, 1e-12);
+
+    SolvePace slow(kPeriod);
+    for (int n = 0; n < 10; ++n) {
+        slow.begins(n);
+        slow.ended(1);
+    }
+    EXPECT_NEAR(slow.begins(10), 1 + kPeriod / 2, 0.2)
+        << "a solver that is always so slow is believed from the second on";
+}
+
 } // namespace
 } // namespace palp
