@@ -171,25 +171,22 @@ void projectPoints(Patch& patch, const SoftObject& object, std::span<const std::
 std::vector<std::optional<ChartPoint>> unroll(const Patch& patch, const SoftObject& object,
                                               const TouchedSurface& surface, const PatchSettings& settings)
 {
-    std::vector<glm::dvec3> places;
-    std::vector<double>     steps;
-    for (const std::uint32_t point : surface.points) {
-        places.push_back(object.positions()[point]);
+    std::vector<double> steps;
+    steps.reserve(surface.points.size());
+    for (const std::uint32_t point : surface.points)
         steps.push_back(SurfaceFlood::kStep * object.survey().spacing(point));
-    }
-    return exponentialMap(patch.chart.origin, patch.chart.frame, places, surface.normals, steps,
+    return exponentialMap(patch.chart.origin, patch.chart.frame, surface.places, surface.normals, steps,
                           gatherRadius(settings, patch.spacing));
 }
 
 /// Returns the share of the window's points whose normal is turned away from the sphere's, fully from 60 degrees on.
-double turnedShare(const Patch& patch, const SoftObject& object, const TouchedSurface& surface,
-                   const PatchSettings& settings)
+double turnedShare(const Patch& patch, const TouchedSurface& surface, const PatchSettings& settings)
 {
     constexpr double kAlong = 0.77, kTurned = 0.5; // cosines of 40 and 60 degrees [1]
     const double     side   = glm::dot(patch.sphere.fit.normal(surface.anchor), surface.normal) < 0 ? -1 : 1;
     double           turned = 0, all = 0;
     for (std::size_t k = 0; k < surface.points.size(); ++k) {
-        const glm::dvec3 p = object.positions()[surface.points[k]];
+        const glm::dvec3 p = surface.places[k];
         if (glm::length(p - surface.anchor) > settings.window / 2) continue;
         const double cosine = side * glm::dot(surface.normals[k], patch.sphere.fit.normal(p));
         turned += std::clamp((kAlong - cosine) / (kAlong - kTurned), 0.0, 1.0);
@@ -206,8 +203,7 @@ double turnedShare(const Patch& patch, const SoftObject& object, const TouchedSu
 ///
 /// Where a part of the window stands against the sphere by some 50 degrees, as behind a sharp rim, the misfit need not be
 /// large: then that part decides, before it comes to lie over the rest.
-double unrolledShare(const Patch& patch, const SoftObject& object, const TouchedSurface& surface,
-                     const PatchSettings& settings)
+double unrolledShare(const Patch& patch, const TouchedSurface& surface, const PatchSettings& settings)
 {
     if (settings.map != Map::lambertAzimuthal) return 0; // the user has chosen how a sphere is laid flat
     if (patch.normalFelt) return 1;
@@ -219,20 +215,20 @@ double unrolledShare(const Patch& patch, const SoftObject& object, const Touched
         const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
         return t * t * (3 - 2 * t);
     };
-    return std::max(risen(shape, kFollows, kAstray), risen(turnedShare(patch, object, surface, settings), kFew, kMany));
+    return std::max(risen(shape, kFollows, kAstray), risen(turnedShare(patch, surface, settings), kFew, kMany));
 }
 
 /// Lays the touched surface flat, by the sphere's map, by the exponential map, or by both in parts.
 void layTouched(Patch& patch, const SoftObject& object, const TouchedSurface& surface, const PatchSettings& settings)
 {
     if (settings.neighbourhood == Neighbourhood::ball) return projectPoints(patch, object, surface.points);
-    patch.unrolled = unrolledShare(patch, object, surface, settings);
+    patch.unrolled = unrolledShare(patch, surface, settings);
     std::vector<std::optional<ChartPoint>> unrolled(surface.points.size());
     if (patch.unrolled > 0) unrolled = unroll(patch, object, surface, settings);
     for (std::size_t k = 0; k < surface.points.size(); ++k) {
         std::optional<ChartPoint> position = unrolled[k];
         if (patch.unrolled < 1 && glm::dot(surface.normals[k], surface.normal) > 0) {
-            const auto onSphere = patch.chart.project(object.positions()[surface.points[k]]);
+            const auto onSphere = patch.chart.project(surface.places[k]);
             if (onSphere && position)
                 position = ChartPoint{std::lerp(onSphere->x, position->x, patch.unrolled),
                                       std::lerp(onSphere->z, position->z, patch.unrolled)};
@@ -308,12 +304,14 @@ std::pair<double, double> spacingsOf(const Patch& patch, const SoftObject& objec
 {
     constexpr double    kUneven = 2, kRest = 0.05; // [1] ratio to the patch's own; share of the area
     std::vector<double> spacings;
-    double              area = 0; // [m^2]
-    for (std::uint32_t point : std::span(patch.points).first(patch.touched)) {
+    spacings.reserve(patch.touched);
+    for (std::uint32_t point : std::span(patch.points).first(patch.touched))
         spacings.push_back(object.survey().spacing(point));
-        area += spacings.back() * spacings.back();
-    }
+    const auto [least, most] = std::ranges::minmax(spacings);
+    if (least * kUneven >= patch.spacing && most <= kUneven * patch.spacing) return {patch.spacing, patch.spacing};
     std::ranges::sort(spacings);
+    double area = 0; // [m^2]
+    for (const double s : spacings) area += s * s;
     double close = spacings.back(), sparse = spacings.back(), sum = 0;
     for (const double s : spacings) {
         if (sum <= kRest * area) close = s;
