@@ -1,6 +1,7 @@
 // Tests of asking a device how fast it answers, and whether its guardian could be started.
 #include "device/exchange_rate.h"
 
+#include "device/arm_device.h"
 #include "device/device_check.h"
 #include "tests/device/falcon_bench.h"
 
@@ -22,9 +23,22 @@ TEST(ExchangeRates, AreThoseOfTheLine)
         const ExchangeRate rate = measureExchanges(
             *bench.device, 0.5, [&] { return bench.now = std::max(bench.now + 1e-3, bench.emulator.now()); });
 
-        EXPECT_NEAR(rate.perSecond, line.perSecond, 0.1 * line.perSecond) << line.transfer;
+        EXPECT_NEAR(rate.perSecond, line.perSecond, 0.01 * line.perSecond) << "whole answers in half a second";
         EXPECT_LT(rate.longest, 2 / line.perSecond);
         EXPECT_FALSE(bench.pushes());
+    }
+}
+
+TEST(ExchangeRates, AnAnswersAgeIsThatOfItsPosition)
+{
+    for (const int ticks : {1, 3, 6}) {
+        ArmDevice arm({.delayTicks = ticks});
+        arm.open();
+        double             now  = 0;
+        const ExchangeRate rate = measureExchanges(arm, 0.5, [&] { return now += 1e-3; });
+        EXPECT_NEAR(rate.age, (ticks - 1) * 1e-3, 1e-9) << "a force acts with the next tick; what is more is age";
+        EXPECT_NEAR(rate.perSecond, 1000, 1e-6);
+        EXPECT_NEAR(rate.longest, 1e-3, 1e-9);
     }
 }
 

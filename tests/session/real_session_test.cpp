@@ -167,15 +167,21 @@ TEST_P(RealSessions, AStalledDeformationLosesItsForceAndGetsItBackOnceTheHandWas
     ScriptedHand        device(rests);
     Deformation         deformation(session.object, session.scene);
     RealSessionSettings settings;
-    bool                stalled = false;
+    std::atomic<double> stalled = HUGE_VAL; // [s] after the start
     const auto          start   = std::chrono::steady_clock::now();
-    const PatchSolver   stalls  = [&](const Touch& touch, double lead) {
-        const bool engaged = std::chrono::steady_clock::now() - start > std::chrono::seconds(2);
-        if (engaged && !std::exchange(stalled, true)) std::this_thread::sleep_for(std::chrono::seconds(2));
+    const auto          since   = [start] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    const PatchSolver stalls = [&](const Touch& touch, double lead) {
+        if (since() > 2 && stalled == HUGE_VAL) {
+            stalled = since();
+            std::this_thread::sleep_for(std::chrono::seconds(2));
+        }
         return deformation.solve(touch, lead);
     };
-    bool   finite = true, flagged = false;
-    double before = 0, without = 1e9, again = 0; // [N] most before, least while it is dead, most when it is back
+    constexpr double kBusy  = 0.15; // [s] by which the servo and its table may be late on a busy machine
+    bool             finite = true, flagged = false;
+    double           before = 0, without = 0, again = 0; // [N] most before, while it is dead, when it is back
     settings.threads = GetParam();
     settings.seconds = 7;
     settings.onTick  = [&](const TickRecord& s) {
@@ -183,7 +189,8 @@ TEST_P(RealSessions, AStalledDeformationLosesItsForceAndGetsItBackOnceTheHandWas
         finite             = finite && std::isfinite(force);
         flagged            = flagged || (s.faults & static_cast<std::uint32_t>(SessionFlag::oldTable)) != 0;
         if (s.time < 2) before = std::max(before, force);
-        if (s.time > 3 && s.time < 3.8) without = std::min(without, force);
+        const double dead = since() - stalled;
+        if (dead > 0.25 + 0.02 + kBusy && dead < 1.9) without = std::max(without, force);
         if (s.time > 6.7) again = std::max(again, force);
     };
     std::string          warning;
