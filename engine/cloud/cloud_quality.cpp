@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <numbers>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "engine/cloud/neighbourhoods.h"
@@ -179,8 +181,9 @@ void measureSpacing(CloudQuality& quality, std::span<const double> spacings)
         quality.area += s * s;
     }
     std::ranges::sort(sorted, {}, &Weighted::value);
-    const auto at   = [&](double share) { return quantile(sorted, share, quality.area); };
-    quality.spacing = {sorted.front().value, at(0.05), at(0.5), at(0.95), sorted.back().value};
+    const auto at    = [&](double share) { return quantile(sorted, share, quality.area); };
+    quality.spacing  = {sorted.front().value, at(0.05), at(0.5), at(0.95), sorted.back().value};
+    quality.byPoints = sorted[sorted.size() / 2].value;
 }
 
 void measureNoise(CloudQuality& quality, const SurfaceSurvey& survey, std::size_t points)
@@ -251,6 +254,40 @@ void summarise(CloudQuality& quality, const PointFacts& facts)
     if (!across.empty()) quality.betweenLines = quantile(across, 0.5);
 }
 
+/// Finds the borders that hang together, in steps of at most three spacings.
+void measureBorders(CloudQuality& quality, const SoftObject& object, const PointFacts& facts)
+{
+    constexpr std::size_t   kFewest = 12; // points; fewer are there by chance
+    std::vector<glm::dvec3> places;
+    std::vector<double>     reach; // [m]
+    for (std::size_t i = 0; i < facts.border.size(); ++i)
+        if (facts.border[i]) {
+            places.push_back(object.positions()[i]);
+            reach.push_back(kReach * object.survey().spacing(i));
+        }
+    if (places.empty()) return;
+    const NeighbourIndex       index(places);
+    std::vector<std::uint8_t>  seen(places.size());
+    std::vector<std::uint32_t> piece, near;
+    for (std::uint32_t first = 0; first < places.size(); ++first) {
+        if (std::exchange(seen[first], 1)) continue;
+        piece.assign(1, first);
+        glm::dvec3 low = places[first], high = low;
+        for (std::size_t next = 0; next < piece.size(); ++next) {
+            index.gather(places[piece[next]], reach[piece[next]], near);
+            for (const std::uint32_t other : near) {
+                if (std::exchange(seen[other], 1)) continue;
+                piece.push_back(other);
+                low  = glm::min(low, places[other]);
+                high = glm::max(high, places[other]);
+            }
+        }
+        const glm::dvec3 box = high - low;
+        if (piece.size() >= kFewest) quality.borderWidths.push_back(std::max({box.x, box.y, box.z}));
+    }
+    std::ranges::sort(quality.borderWidths, std::greater<>());
+}
+
 } // namespace
 
 double CloudQuality::pointsUnder(double radius) const noexcept
@@ -271,6 +308,7 @@ CloudQuality cloudQuality(const SoftObject& object)
     const std::vector<std::uint32_t> points = object.index().pointsByRank();
     inCurveRuns(points.size(), [&] { return Looking(object, points, facts); });
     summarise(quality, facts);
+    measureBorders(quality, object, facts);
     return quality;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <vector>
 
 #include "engine/cloud/soft_object.h"
 
@@ -17,15 +18,19 @@ struct Spread {
 /// How well the points of an object describe its surface. Everything is 0 for an object without one.
 struct CloudQuality {
     Spread spacing;                ///< see SurfaceSurvey
-    double area  = 0;              ///< of the surface, holes apart: the sum of the squared spacings [m^2]; not of lines
+    double byPoints = 0;           ///< median of the spacing where each point counts alike [m]
+    double area     = 0;           ///< of the surface, holes apart: the sum of the squared spacings [m^2]; not of lines
     double noise = 0, noise95 = 0; ///< median, and what 95 % of the points stay below [m]
     double noisy = 0, noisy95 = 0; ///< the same, of the noise over the spacing of the same point [1]
-    double sided        = 0;       ///< share of the points whose outward side is known [1]
-    double border       = 0;       ///< share of the points at a border or beside a hole, see cloudQuality() [1]
-    double inLines      = 0;       ///< share of the points that lie in lines [1]
-    double alongLine    = 0;       ///< median distance of neighbours in a line [m]
-    double betweenLines = 0;       ///< median distance from a line to the next [m]; 0: none is near
-    double depthStep    = 0; ///< distance of the few depths that a camera tells apart, see cloudQuality() [m]; else 0
+    double sided  = 0;             ///< share of the points whose outward side is known [1]
+    double border = 0;             ///< share of the points at a border or beside a hole, see cloudQuality() [1]
+    /// The longest edge of the box around each border that hangs together, the largest first [m]: the outer ones of an
+    /// open sheet, and its holes.
+    std::vector<double> borderWidths{};
+    double              inLines      = 0; ///< share of the points that lie in lines [1]
+    double              alongLine    = 0; ///< median distance of neighbours in a line [m]
+    double              betweenLines = 0; ///< median distance from a line to the next [m]; 0: none is near
+    double depthStep = 0; ///< distance of the few depths that a camera tells apart, see cloudQuality() [m]; else 0
 
     /// Returns how much coarser the sparse parts are than the dense ones, 5 % of the area apart at either end [1].
     [[nodiscard]] double unevenness() const noexcept { return spacing.low > 0 ? spacing.high / spacing.low : 1; }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include <glm/geometric.hpp>
+
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
 
@@ -66,6 +68,13 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     if (patch.sideUnsure)
         result.push_back("the cloud has no other side behind this place, so the finger's side is a guess (" +
                          directionText(patch.chart.frame.normal) + "); set --from");
+    constexpr double kElsewhere = 0.5,
+                     kFarOut    = 8; // [spacings]; [standard deviations of noise], of which few are beyond 5
+    const double away           = glm::length(patch.chart.origin - patch.contact.point);
+    if (settings.neighbourhood == Neighbourhood::surface &&
+        away > std::max(kElsewhere * patch.spacing, kFarOut * patch.noise))
+        result.push_back("the surface that faces the finger lies " + formatQuantity(away, "m") +
+                         " from that place: it is another layer, and it is what was touched");
     constexpr double kFarOffSphere =
         0.05; // of the window: surfaces then slope by a tenth and more against the sphere [1]
     if (settings.neighbourhood == Neighbourhood::ball && patch.sphere.fit.misfit > kFarOffSphere * settings.window)

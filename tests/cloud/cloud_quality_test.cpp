@@ -44,6 +44,7 @@ TEST(CloudQuality, TheBorderAndAHoleAreFoundAndNothingElse)
     const double       count = double(side) * side; // of the whole lattice
     const CloudQuality whole = cloudQuality(objectOf(lattice(50, 1e-3)));
     EXPECT_NEAR(whole.border * count, 4 * (side - 1), 8) << "the outermost row, to within its corners";
+    EXPECT_EQ(whole.borderWidths.size(), 1U);
 
     const auto         rest  = lattice(50, 1e-3, 12e-3);
     const CloudQuality holed = cloudQuality(objectOf(rest));
@@ -51,6 +52,9 @@ TEST(CloudQuality, TheBorderAndAHoleAreFoundAndNothingElse)
     const double       found = holed.border * double(rest.size()) - whole.border * count;
     EXPECT_GT(found, 0.6 * round) << "a lattice's circle has from 0.7 to 1 point per step";
     EXPECT_LT(found, 1.4 * round) << "and its second row is no border";
+    ASSERT_EQ(holed.borderWidths.size(), 2U) << "the sheet's own, and the hole's";
+    EXPECT_NEAR(holed.borderWidths[0], 100e-3, 1e-9);
+    EXPECT_NEAR(holed.borderWidths[1], 24e-3, 3e-3) << "the points around it lie up to a step and a half outside";
 
     const auto small = lattice(50, 1e-3, 1.1e-3); // five points are missing: the touch bridges that
     EXPECT_NEAR(cloudQuality(objectOf(small)).border * double(small.size()), whole.border * count, 0.5);

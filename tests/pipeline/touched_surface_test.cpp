@@ -10,6 +10,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/pipeline/deform.h"
+#include "engine/pipeline/patch_warnings.h"
 #include "engine/pipeline/presets.h"
 
 namespace palp {
@@ -108,6 +109,20 @@ TEST(TouchedSurface, BothFacesOfAThinBodyMoveTogether)
         return sum / count;
     };
     EXPECT_NEAR(under(20'000, 40'000) / under(0, 20'000), 1, 0.02) << "the mean over a disc of 150 random points";
+}
+
+TEST(TouchedSurface, ALayerBehindTheNamedPlaceIsTold)
+{
+    Cloud both;
+    both.add(sheet(20'000, 0, 1), wart);
+    both.add(sheet(20'000, -0.4e-3, 2), uniform);
+    const SoftObject body = both.object();
+    const auto       told = [&](const glm::dvec3& from) {
+        const auto said = warnings(touch(body, {0, 0, 0}, from), PatchSettings{}, 0.1);
+        return std::ranges::any_of(said, [](const std::string& s) { return s.find("another layer") != s.npos; });
+    };
+    EXPECT_TRUE(told({0, 0, -1})) << "the place is in front, the finger behind: the back is what it touches";
+    EXPECT_FALSE(told({0, 0, 1}));
 }
 
 /// A box with six faces of random points; the 40 by 40 mm faces lie at z = +-10 mm.

@@ -82,11 +82,21 @@ std::string onNoise(const CloudQuality& q)
            " apart, and finer shapes are lost";
 }
 
+/// Returns how many borders there are, and how wide the widest of them.
+std::string bordersText(const std::vector<double>& widths)
+{
+    constexpr std::size_t kTold = 4;
+    if (widths.empty()) return "";
+    std::string text = widths.size() == 1 ? ", as one border " : ", as " + std::to_string(widths.size()) + " borders ";
+    for (std::size_t n = 0; n < std::min(kTold, widths.size()); ++n) text += (n > 0 ? ", " : "") + metres(widths[n]);
+    return text + (widths.size() > kTold ? ", ... wide" : " wide");
+}
+
 std::string onSides(const QualityReport& r)
 {
-    return std::string(r.quality.sided == 0 ? "no point's outward side is known"
-                                            : "elsewhere the outward side is not known") +
-           ": open, or the sides are far apart, and the side is the one the hand comes from";
+    return std::string(r.quality.sided == 0 ? "" : "elsewhere ") +
+           "the outward side is the one from which the hand comes, and is carried along the surface from there: it is "
+           "open, or its sides are far apart";
 }
 
 std::vector<double> noiseInSpacings(const SurfaceSurvey& survey, std::size_t points)
@@ -154,6 +164,11 @@ std::vector<std::string> meaningForTouch(const QualityReport& r)
     if (q.unevenness() > kUneven)
         said.push_back("the spacing varies by a factor of " + roughly(q.unevenness()) +
                        ": the sparse parts are felt as coarsely as their own points lie");
+    else if (q.spacing.typical > kUneven * q.byPoints)
+        said.push_back(
+            "half of the points lie " + metres(q.byPoints) +
+            " apart or less, on a small part of the area: the touch is fine there, and elsewhere as coarse as "
+            "the points");
     if (q.border > 0) said.push_back("at borders and holes the sheet goes on with the stiffness of the nearest points");
     if (q.sided < 0.995) said.push_back(onSides(r));
     if (r.rounding > kStep * q.spacing.typical)
@@ -173,6 +188,7 @@ nlohmann::json jsonOf(const QualityReport& r)
              {{"min", q.spacing.least},
               {"p5", q.spacing.low},
               {"median", q.spacing.typical},
+              {"median_by_points", q.byPoints},
               {"p95", q.spacing.high},
               {"max", q.spacing.most}}},
             {"area", q.areLines() ? nlohmann::json(nullptr) : nlohmann::json(q.area)},
@@ -181,6 +197,7 @@ nlohmann::json jsonOf(const QualityReport& r)
             {"sides_known",
              {{"all", q.sided}, {"file", r.sides.file}, {"faces", r.sides.faces}, {"layers", r.sides.layers}}},
             {"border_points", q.border},
+            {"border_widths", q.borderWidths},
             {"points_in_lines", q.inLines},
             {"spacing_between_lines", q.areLines() ? nlohmann::json(q.betweenLines) : nlohmann::json(nullptr)},
             {"spacing_along_lines", q.areLines() ? nlohmann::json(q.alongLine) : nlohmann::json(nullptr)},
@@ -209,12 +226,13 @@ void printText(const QualityReport& r, std::size_t duplicates)
     const char* joint = ": ";
     for (const auto& [share, source] : {std::pair{r.sides.file, "normals in the file"},
                                         {r.sides.faces, "faces"},
-                                        {r.sides.layers, "the other side is near"}}) {
+                                        {r.sides.layers, "another side that is near"}}) {
         if (share == 0) continue;
         std::cout << joint << percentText(share) << " by " << source;
         joint = ", ";
     }
-    std::cout << "\n  borders     " << percentText(q.border) << " of the points are at a border or beside a hole\n";
+    std::cout << "\n  borders     " << percentText(q.border) << " of the points are at a border or beside a hole"
+              << bordersText(q.borderWidths) << "\n";
 }
 
 void demandPictureName(const std::string& option, const std::string& file)
