@@ -132,8 +132,11 @@ TEST(FalconCalibration, WithoutTheMassItFails)
 /// Such a number would be refused wherever it is used, so it is no result: the mass is another one than was named.
 TEST(FalconCalibration, CountsOutOfTheBoundsAreNoResult)
 {
-    for (const double named : {0.05, 0.5}) { // [kg]; 0.2 hang: 16 800 and 1680 counts
-        Weighing weighing(4200, 0.05, {.mass = named});
+    struct Case {
+        double truth, named; // [counts/(N m)], [kg]; 0.2 hang: 16 800 and 1680 counts
+    };
+    for (const auto& [truth, named] : {Case{4200, 0.05}, Case{2100, 0.25}}) {
+        Weighing weighing(truth, 0.05, {.mass = named});
 
         weighing.run(0.2);
 
@@ -161,6 +164,29 @@ TEST(FalconCalibration, AnArmOfAnotherWeightIsWeighed)
     EXPECT_NE(std::string(heavy.calibration.failure()).find("400 g"), std::string::npos) << heavy.calibration.failure();
 }
 
+/// The range that --mass promises: the heaviest mass beside the lightest and the heaviest arm, for motors from the
+/// strongest to the weakest; 4530 counts with 0.21 kg are taken for 4200.
+TEST(FalconCalibration, TheHeaviestMassIsHeldBesideEveryLikelyArm)
+{
+    struct Case {
+        double truth, arm; // [counts/(N m)], [kg]
+    };
+    for (const auto& [truth, weighs] : {Case{2000, 0.18}, Case{5280, 0.18}, Case{4530, 0.21}, Case{10000, 0.18},
+                                        Case{10000, 0.25}, Case{4200, 0.39}}) {
+        Weighing weighing(truth, 0.05, {.mass = FalconCalibration::kMostMass}, weighs);
+
+        weighing.run(FalconCalibration::kMostMass);
+
+        ASSERT_EQ(weighing.calibration.stage(), FalconCalibrationStage::done)
+            << truth << " counts, " << weighs << " kg: " << weighing.calibration.failure();
+        EXPECT_NEAR(weighing.calibration.countsPerTorque().value(), truth, 0.004 * truth)
+            << weighs << " kg; 0.5 % of 0.2 kg, as above";
+    }
+    Weighing light(4200, 0.05, {.mass = FalconCalibration::kMostMass}, 0.1);
+    light.run(FalconCalibration::kMostMass);
+    EXPECT_NE(std::string(light.calibration.failure()).find("lighter"), std::string::npos) << "2.5 times the arm";
+}
+
 TEST(FalconCalibration, TouchedItFails)
 {
     Weighing weighing(4200, 0.05);
@@ -185,7 +211,7 @@ TEST(FalconCalibration, AMassBeyondTheGovernorFails)
 TEST(FalconCalibration, AWeightAtTheGovernorsLimitFails)
 {
     // 6.02 N of weight with the right counts; the governor's 6 and friction hold it.
-    Weighing weighing(4200, 0.2, {.mass = 0.404});
+    Weighing weighing(4200, 0.2, {.mass = 0.25});
 
     weighing.run(0.404);
 
@@ -195,6 +221,7 @@ TEST(FalconCalibration, AWeightAtTheGovernorsLimitFails)
 TEST(FalconCalibration, RefusesSettingsOutOfRange)
 {
     EXPECT_THROW(FalconCalibration({.mass = 0}), Error);
+    EXPECT_THROW(FalconCalibration({.mass = 0.26}), Error);
     EXPECT_THROW(FalconCalibration({.mass = 0.2, .up = {0, 2, 0}}), Error);
 }
 
