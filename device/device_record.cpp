@@ -29,7 +29,10 @@ DeviceList listDevices(std::span<const DeviceRecord* const> records, HidSystem& 
     for (const DeviceRecord* record : records) {
         std::vector<DeviceListing> found{{.usable = true}};
         try {
-            if (record->list) found = record->list(hid);
+            if (record->list)
+                found = record->list(hid);
+            else if (record->calibration)
+                found[0].calibration = record->calibration();
         } catch (const Error& error) { // two kinds may fail for the same reason
             found.clear();
             if (std::ranges::find(list.troubles, error.what()) == list.troubles.end())

@@ -99,6 +99,8 @@ struct DeviceRecord {
     /// \throws Error naming what is missing, or an option out of its bounds
     std::unique_ptr<HapticDevice> (*make)(const DeviceRequest& request) = nullptr;
 
+    std::string (*calibration)() = nullptr; ///< DeviceListing::calibration of a device without `list`; may be null
+
     DeviceSupport (*support)()         = nullptr; ///< null: every build supports it
     std::vector<Finding> (*findings)() = nullptr; ///< checks its other needs on this machine; may be null
 };

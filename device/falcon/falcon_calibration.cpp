@@ -32,7 +32,7 @@ constexpr const char* kTooHeavy = "arm and mass could not be held: take a lighte
 FalconCalibration::FalconCalibration(const FalconCalibrationSettings& settings)
     : settings_(settings), counts_(settings.countsPerTorque)
 {
-    demandRange("calibration", "mass", settings.mass, 0.05, 0.5);
+    demandRange("calibration", "mass", settings.mass, kLeastMass, kMostMass);
     FalconMotors::demandCountsPerTorque(settings.countsPerTorque);
     demandRange("calibration", "gravity", settings.gravity, 9, 10);
     demandRange("calibration", "the length of up", glm::length(settings.up), 1 - 1e-6, 1 + 1e-6);

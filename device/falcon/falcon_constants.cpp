@@ -2,10 +2,14 @@
 
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <ostream>
+
+#include <unistd.h>
 
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
@@ -19,7 +23,22 @@ namespace fs = std::filesystem;
 constexpr const char* kFormat = "palpate falcon calibration 1";
 constexpr std::size_t kMost   = 4096; ///< [bytes] of a file; one has some 200
 
+/// A file as it is written. A hold that is not known has no line.
+constexpr const char* kText = R"({
+  "format": "%s",
+  "serial": "%s",
+  "counts_per_torque": %.6g,
+  "arm_kg": %.6g,
+%s  "date": "%s"
+}
+)";
+
 constexpr const char* kRemedy = "; run palpate calibrate anew, or remove the file";
+
+/// A file that may be there and may be good, but that this user may not read.
+struct Unreadable : Error {
+    using Error::Error;
+};
 
 fs::path folderOfUser()
 {
@@ -51,7 +70,7 @@ double bounded(const JsonObject& file, const char* key, double least, double mos
 FalconConstants parse(const std::string& text, const std::string& where, const std::string& serial)
 {
     const JsonObject file = JsonObject::parse(text, where);
-    file.allowOnly({"format", "serial", "counts_per_torque", "arm_kg", "date"});
+    file.allowOnly({"format", "serial", "counts_per_torque", "arm_kg", "hold_s", "date"});
     if (file.text("format") != kFormat) file.refuse("format", '"' + std::string(kFormat) + '"');
     if (file.text("serial") != serial) file.refuse("serial", "\"" + serial + "\", the number of the Falcon");
     FalconConstants found;
@@ -59,9 +78,20 @@ FalconConstants parse(const std::string& text, const std::string& where, const s
     found.countsPerTorque =
         bounded(file, "counts_per_torque", FalconMotors::kLeastCountsPerTorque, FalconMotors::kMostCountsPerTorque);
     found.armMass = bounded(file, "arm_kg", 0, kMostArm);
-    found.date    = file.text("date");
+    if (file.has("hold_s")) found.hold = bounded(file, "hold_s", 0, kMostHold); // older files have none
+    found.date = file.text("date");
     if (!isDate(found.date)) file.refuse("date", "a date such as 2026-11-22");
     return found;
+}
+
+/// Returns false if there is no such file.
+/// \throws Unreadable if it cannot be read, or if it cannot be known whether it is there
+bool isReadable(const fs::path& file)
+{
+    if (::access(file.c_str(), R_OK) == 0) return true;
+    if (errno == ENOENT || errno == ENOTDIR) return false;
+    throw Unreadable("the Falcon's calibration cannot be read: " + file.string() + ": " + std::strerror(errno) +
+                     "; make the file and its folder readable for you, or set XDG_CONFIG_HOME to another folder");
 }
 
 std::string counts(double value)
@@ -82,10 +112,10 @@ fs::path falconConstantsFile(const std::string& serial)
 
 std::optional<FalconConstants> readFalconConstants(const std::string& serial)
 {
-    const fs::path  file = falconConstantsFile(serial);
-    std::error_code failed;
-    if (file.empty() || !fs::exists(file, failed)) return {};
+    const fs::path file = falconConstantsFile(serial);
+    if (file.empty() || !isReadable(file)) return {};
     try {
+        std::error_code failed;
         if (!fs::is_regular_file(file, failed)) throw Error(file.string() + ": it is no file"); // a pipe would wait
         return parse(readWhole(file, kMost, "the calibration of a Falcon"), file.string(), serial);
     } catch (const Error& error) {
@@ -97,12 +127,11 @@ fs::path writeFalconConstants(const FalconConstants& found)
 {
     const fs::path file = falconConstantsFile(found.serial);
     if (file.empty()) throw Error("the calibration cannot be stored: set HOME or XDG_CONFIG_HOME");
+    std::array<char, 32> hold{};
+    if (found.hold) std::snprintf(hold.data(), hold.size(), "  \"hold_s\": %.6g,\n", *found.hold);
     std::array<char, 512> text{};
-    const int             size =
-        std::snprintf(text.data(), text.size(),
-                      "{\n  \"format\": \"%s\",\n  \"serial\": \"%s\",\n  \"counts_per_torque\": %.6g,\n"
-                      "  \"arm_kg\": %.6g,\n  \"date\": \"%s\"\n}\n",
-                      kFormat, found.serial.c_str(), found.countsPerTorque, found.armMass, found.date.c_str());
+    const int             size = std::snprintf(text.data(), text.size(), kText, kFormat, found.serial.c_str(),
+                                               found.countsPerTorque, found.armMass, hold.data(), found.date.c_str());
     if (size < 0 || std::size_t(size) >= text.size())
         throw Error("the calibration cannot be stored: its texts are too long");
     static_cast<void>(parse(text.data(), file.string(), found.serial)); // what cannot be read is not written
@@ -116,8 +145,12 @@ std::string describeConstants(const std::string& serial)
     try {
         const auto found = readFalconConstants(serial);
         if (!found) return "none; palpate calibrate makes its newtons true and lets it carry its arm";
-        return counts(found->countsPerTorque) + " counts per N m, an arm of " + counts(1000 * found->armMass) +
-               " g, found on " + found->date;
+        const std::string hold = found->hold ? "a hold of " + counts(1000 * *found->hold) + " ms without packets"
+                                             : "an unknown hold without packets";
+        return counts(found->countsPerTorque) + " counts per N m, an arm of " + counts(1000 * found->armMass) + " g, " +
+               hold + ", found on " + found->date;
+    } catch (const Unreadable& error) {
+        return error.what();
     } catch (const Error&) {
         return "its file is damaged; palpate calibrate writes it anew";
     }
@@ -140,6 +173,15 @@ FalconTuning tuningOf(const std::string& serial, std::optional<double> countsByH
     }
     if (countsByHand) tuning.countsPerTorque = *countsByHand;
     return tuning;
+}
+
+FalconTuning tuningToCalibrate(const std::string& serial, std::optional<double> countsByHand)
+{
+    try {
+        return {.countsPerTorque = tuningOf(serial, countsByHand).countsPerTorque};
+    } catch (const Error& error) {
+        return {.countsPerTorque = countsByHand.value_or(FalconMotors::kCountsPerTorque), .note = error.what()};
+    }
 }
 
 } // namespace palp

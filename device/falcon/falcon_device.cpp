@@ -56,7 +56,7 @@ void FalconDevice::open()
         info_.weight              = weightOf(tuning.armMass);
         info_.note                = tuning.note;
     }
-    counts_   = 0;
+    counts_   = loop.countsPerTorque;
     auto line = std::make_unique<Line>(std::make_unique<FalconLoop>(std::move(started.link), loop));
     if (settings_.pace == FalconPace::thread)
         line->thread = std::thread(converse, std::ref(*line), settings_.asksForRealTime);

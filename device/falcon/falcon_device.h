@@ -66,6 +66,9 @@ public:
     /// \param counts  [counts/(N m)] moved into the bounds of FalconMotors
     void useCounts(double counts) noexcept;
 
+    /// Returns the counts per torque in use [counts/(N m)]; 0 before open().
+    [[nodiscard]] double countsInUse() const noexcept { return counts_; }
+
     /// Shows green only where its own state lets forces flow, see falconLight().
     void light(std::uint8_t lights) noexcept override { lights_ = lights; }
 
@@ -103,7 +106,7 @@ private:
     FalconDeviceSettings  settings_;
     HapticDeviceInfo      info_;
     std::uint8_t          lights_   = 0;
-    double                counts_   = 0; ///< [counts/(N m)] 0: those of the settings
+    double                counts_   = 0; ///< [counts/(N m)] in use since open()
     double                stopsFor_ = 0; ///< [s] that is asked of the next read()
     std::optional<double> silentUntil_;  ///< [s] by the clock of read()
     std::unique_ptr<Line> line_;         ///< null: closed

@@ -9,10 +9,11 @@ namespace palp {
 namespace {
 
 constexpr double kStiffness = 300, kIntegral = 300; ///< [N/m], [N/(m s)] as the calibration's
-constexpr double kSettle = 2;                       ///< [s] from one silence to the next
-constexpr double kStep = 5e-3, kGrowth = 1.1;       ///< [s], [1] of a silence, whichever is more
+constexpr double kSettle  = 2;                      ///< [s] from one silence to the next
 constexpr double kLongest = 0.5;                    ///< [s] of a silence
 constexpr double kFell = 0.1e-3, kEnough = 1.5e-3;  ///< [m] two steps of the encoders; fourteen further ones
+constexpr double kFine  = 5e-3; ///< [s] a step of the silence, so that at least three falls lie between these
+constexpr double kShare = 0.1, kCoarse = 20e-3; ///< [1], [s] the grip falls by 2 mm in 20 ms, and by 5 until it stops
 
 } // namespace
 
@@ -47,12 +48,18 @@ glm::dvec3 FalconHold::step(FalconDevice& device, const HapticState& state, doub
 void FalconHold::end(const HapticState& state) noexcept
 {
     const double fell = glm::dot(before_.position - state.position, up_);
-    if (fell > kFell && falls_.size() < falls_.capacity())
-        falls_.push_back({state.time - before_.time, std::sqrt(fell)});
-    isDone_   = fell > kEnough || silence_ >= kLongest;
-    silence_  = std::min(kLongest, std::max(silence_ + kStep, silence_ * kGrowth));
-    isSilent_ = false;
-    settled_  = 0;
+    isSilent_         = false;
+    settled_          = 0;
+    if (fell > kFell && !isNear_ && step_ > kFine) {
+        silence_ -= step_; // the hold ended somewhere within
+    } else {
+        if (fell > kFell && falls_.size() < falls_.capacity())
+            falls_.push_back({state.time - before_.time, std::sqrt(fell)});
+        isDone_ = fell > kEnough || silence_ >= kLongest;
+    }
+    isNear_  = isNear_ || fell > kFell;
+    step_    = isNear_ ? kFine : std::clamp(kShare * silence_, kFine, kCoarse);
+    silence_ = std::min(kLongest, silence_ + step_);
 }
 
 std::optional<double> FalconHold::hold() const noexcept

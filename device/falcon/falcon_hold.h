@@ -13,8 +13,8 @@ namespace palp {
 ///
 /// The motors carry arm and mass (FalconCalibration has just ended, hands off). Then nothing is sent for a time T, and
 /// the next answer says how far the grip fell: s = a (T - hold)^2 / 2. T grows from 10 ms in steps of 5 ms, later of a
-/// tenth, until it fell by more than 1.5 mm, 0.5 s at most; the straight line through the square roots of s above 0.1
-/// mm meets zero at the hold. An exchange is a millisecond, so that is the resolution. The drop is some millimetres.
+/// tenth, 20 ms at most. At the first fall beyond 0.1 mm it goes back by its last step and on in steps of 5 ms, until the
+/// grip fell by more than 1.5 mm, or to 0.5 s; the straight line through the square roots of s meets zero at the hold. An exchange is a millisecond, so that is the resolution. The drop is some millimetres.
 /// \thread one
 class FalconHold {
 public:
@@ -47,6 +47,8 @@ private:
     bool              isAnchored_ = false, isSilent_ = false, isDone_ = false;
     double            settled_ = 0;     ///< [s] since the last fall
     double            silence_ = 10e-3; ///< [s] the next
+    double            step_    = 0;     ///< [s] by which it is longer than the one before
+    bool              isNear_  = false; ///< the grip has fallen
     double            waited_  = 0;     ///< [s] since the silence began
     HapticState       before_{};
     std::vector<Fall> falls_;

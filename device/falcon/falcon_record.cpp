@@ -43,10 +43,9 @@ std::unique_ptr<FalconDevice> falcon(const DeviceRequest&                       
 
 std::unique_ptr<HapticDevice> make(const DeviceRequest& request)
 {
-    std::optional<double> byHand;
-    if (const std::string counts = textOf(request.options, kFalconCounts); !counts.empty())
-        byHand = numberOf(kFalconCounts, counts);
-    return falcon(request, [byHand](const std::string& serial) { return tuningOf(serial, byHand); });
+    return falcon(request, [byHand = countsByHand(request.options)](const std::string& serial) {
+        return tuningOf(serial, byHand);
+    });
 }
 
 DeviceSupport support()
@@ -114,12 +113,18 @@ const DeviceRecord kFalconRecord{.name     = "falcon",
                                  .support  = support,
                                  .findings = findings};
 
+std::optional<double> countsByHand(const DeviceOptionValues& options)
+{
+    const std::string counts = textOf(options, kFalconCounts);
+    if (counts.empty()) return {};
+    return numberOf(kFalconCounts, counts);
+}
+
 FalconDeviceSettings falconSettings(const DeviceRequest& request)
 {
     FalconDeviceSettings settings;
     settings.path = request.path;
-    if (const std::string counts = textOf(request.options, kFalconCounts); !counts.empty())
-        settings.loop.countsPerTorque = numberOf(kFalconCounts, counts);
+    if (const auto byHand = countsByHand(request.options)) settings.loop.countsPerTorque = *byHand;
     settings.start.triesEventCharacter = textOf(request.options, kFalconTimerOnly).empty();
     settings.start.onUpload            = request.onUpload;
     settings.start.cancel              = request.cancel;
@@ -128,8 +133,9 @@ FalconDeviceSettings falconSettings(const DeviceRequest& request)
 
 std::unique_ptr<FalconDevice> makeFalconToCalibrate(const DeviceRequest& request)
 {
-    const double counts = falconSettings(request).loop.countsPerTorque;
-    return falcon(request, [counts](const std::string&) { return FalconTuning{.countsPerTorque = counts}; });
+    return falcon(request, [byHand = countsByHand(request.options)](const std::string& serial) {
+        return tuningToCalibrate(serial, byHand);
+    });
 }
 
 std::vector<std::uint8_t> falconFirmware(const DeviceRequest& request)

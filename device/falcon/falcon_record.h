@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "device/device_record.h"
@@ -24,7 +25,11 @@ inline constexpr DeviceOption kFalconFirmware{"--falcon-firmware",
 /// \throws Error naming an option out of its bounds
 [[nodiscard]] FalconDeviceSettings falconSettings(const DeviceRequest& request);
 
-/// Makes a Falcon for its calibration: it runs with the counts of the options, whatever was found of it before.
+/// Returns the counts per torque that the options give [counts/(N m)]; empty: none.
+/// \throws Error if they are out of their bounds
+[[nodiscard]] std::optional<double> countsByHand(const DeviceOptionValues& options);
+
+/// Makes a Falcon for its calibration, which it begins as tuningToCalibrate() says.
 /// \throws Error as DeviceRecord::make
 [[nodiscard]] std::unique_ptr<FalconDevice> makeFalconToCalibrate(const DeviceRequest& request);
 

@@ -50,6 +50,7 @@ public:
         guard([&] { count = emulator_.read(bytes, timeout); });
         return count;
     }
+    [[nodiscard]] std::string serial() const override { return emulator_.serial(); }
 
 private:
     template <class Action>

@@ -4,6 +4,7 @@
 #include <deque>
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "device/falcon/emulated_falcon.h"
@@ -35,6 +36,7 @@ struct Ft232EmulatorSettings {
     /// [s] of each transfer: a micro-frame of high-speed USB, as behind most hosts' and hubs' root ports [I].
     double                 transferTime = 125e-6;
     EmulatedFalconSettings falcon{};
+    std::string            serial{}; ///< as FalconLink::serial()
 };
 
 /// A Falcon with its FT232R bridge on a USB in virtual time: only write, read and control let time pass. The same calls
@@ -58,10 +60,11 @@ public:
     void cause(const LinkTrouble& trouble) { troubles_.push_back(trouble); }
     void waitUntil(double time); ///< [s] lets time pass until then; does nothing if that time is over
 
-    [[nodiscard]] double now() const noexcept override { return time_; }
-    void                 control(FtdiRequest request, std::uint16_t value) override;
-    void                 write(std::span<const std::uint8_t> bytes) override;
-    std::size_t          read(std::span<std::uint8_t> bytes, double timeout) override;
+    [[nodiscard]] double      now() const noexcept override { return time_; }
+    void                      control(FtdiRequest request, std::uint16_t value) override;
+    void                      write(std::span<const std::uint8_t> bytes) override;
+    std::size_t               read(std::span<std::uint8_t> bytes, double timeout) override;
+    [[nodiscard]] std::string serial() const override { return settings_.serial; }
 
     [[nodiscard]] EmulatedFalcon&       falcon() noexcept { return falcon_; }
     [[nodiscard]] const EmulatedFalcon& falcon() const noexcept { return falcon_; }

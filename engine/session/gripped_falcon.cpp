@@ -14,9 +14,34 @@ constexpr std::array kOptions{kFalconFirmware, kFalconCounts, kFalconTimerOnly, 
 
 constexpr std::size_t kStandInFirmware = 8000; ///< [byte] of zeros, which the emulator takes as well as any
 
+/// Returns the values for the emulated Falcon: those of its calibration, which need not be quite true, else its own.
+/// \throws Error as readFalconConstants()
+FalconTuning tuningOfEmulated(std::optional<double> byHand)
+{
+    if (readFalconConstants(kEmulatedFalconSerial)) {
+        FalconTuning tuning = tuningOf(kEmulatedFalconSerial, byHand);
+        if (tuning.note.empty())
+            tuning.note = "the emulated Falcon runs as its calibration found it: " +
+                          falconConstantsFile(kEmulatedFalconSerial).string() + "; without this file it runs exactly";
+        return tuning;
+    }
+    return {.countsPerTorque = byHand.value_or(FalconMotors::kCountsPerTorque), .armMass = emulatedFalconArm()};
+}
+
+/// Describes the calibration of the emulated Falcon, which needs none.
+std::string calibration()
+{
+    try {
+        if (!readFalconConstants(kEmulatedFalconSerial)) return {};
+    } catch (const Error&) { // which is described, too
+    }
+    return describeConstants(kEmulatedFalconSerial);
+}
+
 std::unique_ptr<HapticDevice> make(const DeviceRequest& request)
 {
     FalconDeviceSettings settings = falconSettings(request);
+    settings.tune = [byHand = countsByHand(request.options)](const std::string&) { return tuningOfEmulated(byHand); };
     if (textOf(request.options, kFalconCold).empty()) {
         if (!textOf(request.options, kFalconFirmware).empty())
             throw Error(std::string(kFalconFirmware.flag) + ": an emulated Falcon needs it with " +
@@ -25,7 +50,8 @@ std::unique_ptr<HapticDevice> make(const DeviceRequest& request)
     }
     settings.firmware = falconFirmware(request);
     if (settings.firmware.empty()) settings.firmware.assign(kStandInFirmware, 0);
-    return std::make_unique<GrippedFalcon>(*request.hand, Ft232EmulatorSettings{}, settings);
+    return std::make_unique<GrippedFalcon>(*request.hand, Ft232EmulatorSettings{.serial = kEmulatedFalconSerial},
+                                           settings);
 }
 
 /// Returns where the hand that homes the Falcon has the grip along the device's z [m], by the time [s] since then: out,
@@ -59,17 +85,25 @@ FalconDeviceSettings stepped(FalconDeviceSettings settings)
 
 } // namespace
 
-const DeviceRecord kFalconEmulatorRecord{.name      = "falcon-emulator",
-                                         .model     = "a Falcon emulated down to its wire, in a scripted hand",
-                                         .holder    = DeviceHolder::scriptedHand,
-                                         .simulated = true,
-                                         .options   = kOptions,
-                                         .make      = make};
+const DeviceRecord kFalconEmulatorRecord{.name        = "falcon-emulator",
+                                         .model       = "a Falcon emulated down to its wire, in a scripted hand",
+                                         .holder      = DeviceHolder::scriptedHand,
+                                         .simulated   = true,
+                                         .options     = kOptions,
+                                         .make        = make,
+                                         .calibration = calibration};
+
+double emulatedFalconArm()
+{
+    constexpr double kGravity = 9.81; // [m/s2]
+    return -kWeight.y / kGravity;
+}
 
 Ft232EmulatorSettings GrippedFalcon::ready()
 {
     Ft232EmulatorSettings settings;
     settings.falcon.running = settings.falcon.homed = true;
+    settings.serial                                 = kEmulatedFalconSerial;
     return settings;
 }
 
@@ -77,13 +111,23 @@ GrippedFalcon::GrippedFalcon(const GrippingHand& hand, const Ft232EmulatorSettin
                              const FalconDeviceSettings& device)
     : hand_(hand), arm_(bareArm(), hand.at(0).target),
       emulator_(falcon, [this](const glm::dvec3& force, double dt) { return moved(force, dt); }),
-      device_([this] { return emulator_.connect(); }, stepped(device)), info_(device_.info())
+      device_([this] { return emulator_.connect(); }, stepped(device)), isTuned_(device.tune != nullptr),
+      info_(device_.info())
 {
     hand.demandWithin(info_.workspaceRadius);
     info_.model        = "emulated Falcon";
     info_.isSimulation = true;
     info_.needsHoming  = !falcon.falcon.homed;
+    info_.serial       = falcon.serial;
     info_.weight       = kWeight; // as after a calibration
+}
+
+void GrippedFalcon::open()
+{
+    device_.open();
+    if (!isTuned_) return;
+    info_.weight = device_.info().weight;
+    info_.note   = device_.info().note;
 }
 
 HapticState GrippedFalcon::read(double now) noexcept

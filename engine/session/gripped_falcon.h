@@ -11,13 +11,21 @@ namespace palp {
 /// An emulated Falcon, gripped by a scripted hand.
 extern const DeviceRecord kFalconEmulatorRecord;
 
+/// The serial number of the emulated Falcon: palpate calibrate --emulator stores what it finds by this number, and
+/// kFalconEmulatorRecord uses it.
+inline constexpr const char* kEmulatedFalconSerial = "EMULATED";
+
+/// Returns how much of the emulated Falcon's arm weighs on the grip in truth [kg].
+[[nodiscard]] double emulatedFalconArm();
+
 inline constexpr DeviceOption kFalconCold{
     "--falcon-cold",
     "the emulated Falcon was plugged in a moment ago: it takes a firmware first, and the scripted hand homes it",
     DeviceOption::Kind::flag};
 
 /// A Falcon in a scripted hand, emulated from the packets on its wire to the arm. The driver is that of a real Falcon.
-/// It follows the clock of read(), virtual or real. When the clock starts again, so does the hand's path.
+/// It follows the clock of read(), virtual or real. When the clock starts again, so does the hand's path. Unless
+/// FalconDeviceSettings::tune says otherwise, the driver knows its true weight.
 /// \thread as HapticDevice
 class GrippedFalcon : public HapticDevice {
 public:
@@ -30,7 +38,7 @@ public:
 
     [[nodiscard]] const HapticDeviceInfo& info() const noexcept override { return info_; }
 
-    void        open() override { device_.open(); }
+    void        open() override;
     void        close() noexcept override { device_.close(); }
     HapticState read(double now) noexcept override;
     void        render(const GovernedForce& force) noexcept override { device_.render(force); }
@@ -59,6 +67,7 @@ private:
     std::uint32_t         pressed_ = 0;      ///< buttons of the path that are down
     Ft232Emulator         emulator_;
     FalconDevice          device_;
+    bool                  isTuned_; ///< by FalconDeviceSettings::tune
     HapticDeviceInfo      info_;
 };
 

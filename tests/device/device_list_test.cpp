@@ -60,6 +60,17 @@ TEST(DeviceList, HoldsWhatADriverKnows)
     EXPECT_EQ(mouse.openPorts(), 0) << "let go again";
 }
 
+TEST(DeviceList, SaysWhatIsKnownOfASimulatedForce)
+{
+    FakeHidSystem                 hid;
+    static constexpr DeviceRecord kSimulated{
+        .name = "emulator", .model = "no device", .calibration = [] { return std::string("4200 counts"); }};
+    const std::array records{&kSimulated, &kMouseRecord};
+    const auto       devices = listDevices(records, hid).devices;
+    EXPECT_EQ(devices.at(0).calibration, "4200 counts");
+    EXPECT_EQ(devices.at(1).calibration, "");
+}
+
 TEST(DeviceList, SaysWhyADeviceCannotBeUsed)
 {
     FakeHidSystem hid;

@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <numbers>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
+#include "device/hid/hidapi_system.h"
 #include "tests/session/sheet_session.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palp {
 namespace {
@@ -55,6 +58,46 @@ struct Session {
         return runVirtual({session.scene, session.object, deformation.solver(), falcon, hand.frame}, seconds, onTick);
     }
 };
+
+/// What is stored of the emulated Falcon is used by `--hand falcon-emulator` as that of a real one would be, so that a
+/// user can try a damaged file.
+TEST(FalconSession, TheEmulatedFalconRunsAsItsCalibrationFoundIt)
+{
+    const TemporaryFolder folder;
+    const char* const     config = std::getenv("XDG_CONFIG_HOME");
+    const std::string     before = config ? config : "";
+    ::setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1);
+
+    HidapiSystem       hid;
+    const HandPath     path({{0, {0, 0, 6e-3}}, {1, {10e-3, 0, 6e-3}}});
+    const GrippingHand hand{path, {.stiffness = 500, .damping = 20}, deviceFrame({0, 0, 6e-3}, {0, 0, 1})};
+    const auto         opened = [&](const DeviceOptionValues& options) {
+        auto device = kFalconEmulatorRecord.make({.hid = hid, .options = options, .hand = &hand});
+        device->open();
+        return device->info();
+    };
+    const double     truth   = -fallingArm().weight.y;
+    HapticDeviceInfo without = opened({});
+    EXPECT_EQ(without.serial, kEmulatedFalconSerial);
+    EXPECT_EQ(-without.weight.y, truth);
+    EXPECT_EQ(without.note, "") << "it needs no calibration";
+    EXPECT_EQ(kFalconEmulatorRecord.calibration(), "");
+
+    const auto file = writeFalconConstants(
+        {.serial = kEmulatedFalconSerial, .countsPerTorque = 4321, .armMass = 0.2, .date = "2026-11-22"});
+    HapticDeviceInfo with = opened({});
+    EXPECT_NEAR(-with.weight.y, 0.2 * 9.81, 1e-12);
+    EXPECT_TRUE(holds(with.note, {"as its calibration found it", file.string()})) << with.note;
+    EXPECT_TRUE(holds(opened({{"--falcon-counts", "5000"}}).note, {"5000", "given by hand", "4321"}));
+    EXPECT_TRUE(holds(opened({{"--falcon-cold", "true"}}).note, {"as its calibration found it"})) << "cold as well";
+    EXPECT_TRUE(holds(kFalconEmulatorRecord.calibration(), {"4321 counts per N m", "200 g"}));
+
+    static_cast<void>(folder.write("palpate/falcon-EMULATED.json", "{"));
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(opened({})); }), {"the Falcon's calibration is damaged"}));
+    EXPECT_TRUE(holds(kFalconEmulatorRecord.calibration(), {"damaged"}));
+
+    before.empty() ? ::unsetenv("XDG_CONFIG_HOME") : ::setenv("XDG_CONFIG_HOME", before.c_str(), 1);
+}
 
 /// Moved out and in the arm is homed; then the hand goes along its path, whatever time that took.
 TEST(FalconSession, AHandHomesTheFalconAndThenFollowsItsPath)

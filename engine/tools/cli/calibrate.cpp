@@ -24,6 +24,7 @@
 #include "engine/core/quantity.h"
 #include "engine/core/real_time.h"
 #include "engine/force/governor.h"
+#include "engine/session/gripped_falcon.h"
 #include "engine/session/interrupt.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/hand_source.h"
@@ -39,11 +40,11 @@ struct CalibrateOptions {
     bool               emulator = false, json = false;
 };
 
-/// Returns the counts per torque that the Falcon uses during the weighing [1/(N m)].
-double countsBefore(const CalibrateOptions& o)
+/// Returns "50 g to 250 g".
+std::string possibleMasses()
 {
-    const std::string counts = textOf(o.falcon, kFalconCounts);
-    return counts.empty() ? FalconMotors::kCountsPerTorque : numberOf(kFalconCounts, counts);
+    const auto grams = [](double mass) { return std::to_string(std::lround(1000 * mass)) + " g"; };
+    return grams(FalconCalibration::kLeastMass) + " to " + grams(FalconCalibration::kMostMass);
 }
 
 /// Reads "200 g" or "0.2" [kg].
@@ -57,13 +58,14 @@ double kilograms(std::string text)
         unit = kilo ? 1 : 1e-3;
     }
     const double mass = parseQuantity(text, Dimension::none, "--mass", unit);
-    if (mass >= 0.05 && mass <= 0.5) return mass;
-    throw Error("--mass: expected 50 g to 500 g, found \"" + given + "\"");
+    if (mass >= FalconCalibration::kLeastMass && mass <= FalconCalibration::kMostMass) return mass;
+    throw Error("--mass: expected " + possibleMasses() + ", found \"" + given + "\"" +
+                (mass > FalconCalibration::kMostMass ? ": the motors could not hold it beside the arm" : ""));
 }
 
 /// A Falcon, a clock, and a user with a mass.
 struct Bench {
-    HapticDevice&                           device;
+    FalconDevice&                           device;
     std::function<double()>                 wait; ///< waits for the next tick and returns when it is [s]
     std::function<void(double gain, Stage)> act;  ///< what the user does, each tick; may be empty
 };
@@ -120,13 +122,23 @@ void demandWell(const HapticState& state, double ill, GovernorFault fault)
 
 /// What the weighing found.
 struct Found {
-    std::string           serial; ///< of the Falcon
-    std::optional<double> hold;   ///< [s] empty: it holds for longer than half a second, or was not measured
+    std::string           serial;              ///< of the Falcon
+    double                begun    = 0;        ///< [counts/(N m)] in use until then
+    bool                  isBefore = false;    ///< every command ran with those
+    double                counts = 0, arm = 0; ///< [counts/(N m)], [kg]
+    std::optional<double> hold{}; ///< [s] empty: it holds for longer than half a second, or was not measured
 };
 
-/// Goes through all stages. However it ends, the device is closed, so its last force is zero.
-Found weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibration)
+/// Goes through all stages with an open Falcon. However it ends, the device is closed, so its last force is zero.
+Found weigh(const CalibrateOptions& o, double mass, Bench& bench)
 {
+    const HapticDeviceInfo& info = bench.device.info();
+    Found found{.serial = info.serial, .begun = bench.device.countsInUse(), .isBefore = info.note.empty()};
+    if (!found.isBefore)
+        std::cerr << "palpate: warning: " << info.note << "; the weighing begins with " << std::lround(found.begun)
+                  << " counts per N m\n";
+    FalconCalibration calibration({.mass = mass, .countsPerTorque = found.begun});
+
     constexpr double          kPatience = 300; // [s] for all stages
     const std::atomic<bool>&  stop      = catchInterrupts();
     ForceGovernor             governor;
@@ -135,7 +147,6 @@ Found weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrat
     Stage                     told = Stage::failed;
     std::optional<FalconHold> hold;
     double                    weighed = 0; // [s] when the hold is begun to be measured
-    auto* const               falcon  = dynamic_cast<FalconDevice*>(&bench.device);
     const double              begin   = bench.wait();
     for (double last = begin, gain = 0, ill = 0; calibration.stage() < Stage::done || (hold && !hold->isDone());) {
         if (stop) throw Error("the calibration was interrupted; the force is off");
@@ -143,11 +154,11 @@ Found weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrat
         const double now = bench.wait(), dt = now - last;
         last = now;
         if (bench.act) bench.act(gain, told);
-        if (falcon) falcon->useCounts(calibration.countsInUse());
+        bench.device.useCounts(calibration.countsInUse());
         const HapticState state = bench.device.exchange(force, now);
         GovernorInput     in;
-        in.force = hold ? hold->step(*falcon, state, gain, dt) : calibration.step(state, force, gain, dt);
-        if (!hold && falcon && calibration.stage() == Stage::done) {
+        in.force = hold ? hold->step(bench.device, state, gain, dt) : calibration.step(state, force, gain, dt);
+        if (!hold && calibration.stage() == Stage::done) {
             hold.emplace(force.newtons());
             weighed  = now;
             in.force = force.newtons();
@@ -160,7 +171,7 @@ Found weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrat
         in.missedExchanges             = state.missed;
         const auto out                 = governor.step(in);
         ill                            = state.fault == DeviceFault::none ? 0 : ill + dt;
-        constexpr double kHoldPatience = 120; // [s]
+        constexpr double kHoldPatience = 150; // [s] some 40 silences, each after 2 s
         const bool       isLost        = ill > 1 || out.fault != GovernorFault::none;
         if (hold && (isLost || now > weighed + kHoldPatience)) break; // the weighing counts all the same
         demandWell(state, ill, out.fault);
@@ -173,10 +184,13 @@ Found weigh(const CalibrateOptions& o, Bench& bench, FalconCalibration& calibrat
         if (now > begin + kPatience) giveUp("the calibration took more than 5 minutes; nothing was weighed");
     }
     if (calibration.stage() == Stage::failed) giveUp(calibration.failure());
-    return {{}, hold ? hold->hold() : std::nullopt};
+    found.counts = calibration.countsPerTorque().value();
+    found.arm    = calibration.armMass().value();
+    if (hold) found.hold = hold->hold();
+    return found;
 }
 
-Found weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
+Found weighReal(const CalibrateOptions& o, double mass)
 {
     HidapiSystem hid; // not used by a Falcon
     const auto   falcon = makeFalconToCalibrate({.hid = hid, .options = o.falcon});
@@ -187,16 +201,14 @@ Found weighReal(const CalibrateOptions& o, FalconCalibration& calibration)
     Metronome  metronome{std::chrono::milliseconds(1)};
     const auto start = metronome.wait();
     Bench      bench{*falcon, [&] { return std::chrono::duration<double>(metronome.wait() - start).count(); }, {}};
-    Found      found = weigh(o, bench, calibration);
-    found.serial     = falcon->info().serial;
-    return found;
+    return weigh(o, mass, bench);
 }
 
-/// The emulated Falcon's true values, which its driver does not know.
-constexpr double kEmulatedCounts = 5000; ///< [counts/(N m)]
-constexpr double kEmulatedArm    = 0.21; ///< [kg] part of the arm that weighs on the grip
+/// [counts/(N m)] the emulated Falcon's true value, which its driver does not know. It and the arm's weight are those
+/// of `--hand falcon-emulator`, so what is stored is right there.
+constexpr double kEmulatedCounts = EmulatedFalconSettings{}.countsPerTorque;
 
-/// A Falcon in virtual time whose friction takes 0.05 N of its force, and a user with a mass within reach.
+/// The emulated Falcon in virtual time, whose friction takes 0.05 N of its force, and a user with a mass within reach.
 struct EmulatedBench {
     SimulatedArm  arm;
     double        hanging = 0; ///< [kg]
@@ -207,10 +219,10 @@ struct EmulatedBench {
 
     static constexpr glm::dvec3 kHeld{0, 0.004, -0.006}; ///< [m] the place where the user first holds the grip
 
-    explicit EmulatedBench(double countsPerTorque)
+    explicit EmulatedBench(std::optional<double> countsByHand)
         : arm({.friction = 0.05, .encoderStep = 0, .delayTicks = 0}, kHeld),
           emulator(motors(), [this](const glm::dvec3& force, double dt) { return moved(force, dt); }),
-          falcon([this] { return emulator.connect(); }, stepped(countsPerTorque))
+          falcon([this] { return emulator.connect(); }, stepped(countsByHand))
     {
         falcon.open();
         now = emulator.now();
@@ -218,24 +230,23 @@ struct EmulatedBench {
 
     static Ft232EmulatorSettings motors()
     {
-        Ft232EmulatorSettings settings;
-        settings.falcon.running = settings.falcon.homed = true;
-        settings.falcon.countsPerTorque                 = kEmulatedCounts;
+        Ft232EmulatorSettings settings  = GrippedFalcon::ready();
+        settings.falcon.countsPerTorque = kEmulatedCounts;
         return settings;
     }
 
-    static FalconDeviceSettings stepped(double countsPerTorque)
+    static FalconDeviceSettings stepped(std::optional<double> countsByHand)
     {
         FalconDeviceSettings settings;
-        settings.pace                 = FalconPace::stepped;
-        settings.loop.countsPerTorque = countsPerTorque;
+        settings.pace = FalconPace::stepped;
+        settings.tune = [countsByHand](const std::string& serial) { return tuningToCalibrate(serial, countsByHand); };
         return settings;
     }
 
     /// The mass's inertia is omitted, because it does not change means.
     glm::dvec3 moved(const glm::dvec3& force, double dt)
     {
-        arm.step(force - glm::dvec3(0, (kEmulatedArm + hanging) * 9.81, 0), dt);
+        arm.step(force - glm::dvec3(0, (emulatedFalconArm() + hanging) * 9.81, 0), dt);
         return arm.position();
     }
 
@@ -248,13 +259,14 @@ struct EmulatedBench {
     }
 };
 
-Found weighEmulated(const CalibrateOptions& o, double mass, FalconCalibration& calibration)
+Found weighEmulated(const CalibrateOptions& o, double mass)
 {
+    const auto byHand = countsByHand(o.falcon); // first: it may be refused
     std::cerr << "palpate: this Falcon and the hand that acts on it are emulated, faster than real time\n";
-    EmulatedBench emulated(countsBefore(o));
+    EmulatedBench emulated(byHand);
     Bench bench{emulated.falcon, [&] { return emulated.now = std::max(emulated.now + 1e-3, emulated.emulator.now()); },
                 [&](double gain, Stage stage) { emulated.act(gain, stage, mass); }};
-    return weigh(o, bench, calibration);
+    return weigh(o, mass, bench);
 }
 
 std::string today()
@@ -269,13 +281,14 @@ std::string today()
 
 /// Stores what was found where every command finds it.
 /// \return the file; empty, with a warning, if it cannot be stored: the numbers are printed all the same
-std::string store(const FalconCalibration& calibration, const Found& found)
+std::string store(const Found& found)
 {
     try {
         return writeFalconConstants({.serial          = found.serial,
-                                     .countsPerTorque = calibration.countsPerTorque().value(),
-                                     .armMass         = calibration.armMass().value(),
-                                     .date            = today()})
+                                     .countsPerTorque = found.counts,
+                                     .armMass         = found.arm,
+                                     .date            = today(),
+                                     .hold            = found.hold})
             .string();
     } catch (const Error& error) {
         std::cerr << "palpate: warning: " << error.what() << "\n";
@@ -283,27 +296,48 @@ std::string store(const FalconCalibration& calibration, const Found& found)
     }
 }
 
-void print(const CalibrateOptions& o, double mass, const FalconCalibration& calibration, const Found& found,
-           const std::string& file)
+nlohmann::ordered_json jsonOf(const CalibrateOptions& o, double mass, const Found& found, const std::string& file)
 {
-    const double counts = calibration.countsPerTorque().value(), arm = calibration.armMass().value();
-    if (o.json) {
-        nlohmann::ordered_json report{
-            {"counts_per_torque", counts},
-            {"counts_per_torque_before", countsBefore(o)},
-            {"arm_kg", arm},
-            {"hold_s", nullptr},
-            {"mass_kg", mass},
-            {"file", file.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(file)},
-            {"emulated", nullptr}};
-        if (found.hold) report["hold_s"] = *found.hold;
-        if (o.emulator) report["emulated"] = {{"counts_per_torque", kEmulatedCounts}, {"arm_kg", kEmulatedArm}};
-        std::cout << jsonText(report);
-        return;
-    }
-    std::printf("counts per N m   %.0f   (%.0f before: the forces were %.2f times those asked for)\n", counts,
-                countsBefore(o), countsBefore(o) / counts);
-    std::printf("the arm          %.0f g weigh on the grip\n", 1000 * arm);
+    nlohmann::ordered_json report{
+        {"counts_per_torque", found.counts},
+        {"counts_per_torque_before", nullptr},
+        {"arm_kg", found.arm},
+        {"hold_s", nullptr},
+        {"mass_kg", mass},
+        {"file", file.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(file)},
+        {"emulated", nullptr}};
+    if (found.isBefore) report["counts_per_torque_before"] = found.begun;
+    if (found.hold) report["hold_s"] = *found.hold;
+    if (o.emulator) report["emulated"] = {{"counts_per_torque", kEmulatedCounts}, {"arm_kg", emulatedFalconArm()}};
+    return report;
+}
+
+/// Prints who uses what was found. Of the emulated Falcon it only says so: its numbers are no other's.
+void printUse(const CalibrateOptions& o, const Found& found, const std::string& file)
+{
+    const auto& record = o.emulator ? kFalconEmulatorRecord : kFalconRecord;
+    if (o.emulator)
+        std::printf("true values      %.0f and %.0f g: this Falcon is emulated, and no other has its numbers\n",
+                    kEmulatedCounts, 1000 * emulatedFalconArm());
+    if (file.empty())
+        std::printf("%s palpate run SCENE --hand %s %s %.0f\n", o.emulator ? "would be used by" : "use it          ",
+                    record.name.data(), kFalconCounts.flag.data(), found.counts);
+    else if (o.emulator)
+        std::printf("used by          --hand %s, as every command uses a real Falcon's: %s\n", record.name.data(),
+                    file.c_str());
+    else
+        std::printf("use it           every command does from now on: %s\n", file.c_str());
+}
+
+void print(const CalibrateOptions& o, const Found& found, const std::string& file)
+{
+    if (found.isBefore)
+        std::printf("counts per N m   %.0f   (%.0f before: the forces were %.2f times those asked for)\n", found.counts,
+                    found.begun, found.begun / found.counts);
+    else
+        std::printf("counts per N m   %.0f   (nothing ran before, because the stored ones could not be used)\n",
+                    found.counts);
+    std::printf("the arm          %.0f g weigh on the grip\n", 1000 * found.arm);
     if (found.hold)
         std::printf(
             "its own hold     after %.0f ms without a packet its motors let go: so long a force lasts where only "
@@ -312,22 +346,18 @@ void print(const CalibrateOptions& o, double mass, const FalconCalibration& cali
     else
         std::printf("its own hold     not found: the grip did not fall within half a second without a packet. Unplug "
                     "its power, not its cable, to be sure of no force\n");
-    if (o.emulator)
-        std::printf("true values      %.0f and %.0f g: this Falcon is emulated, do not use its numbers with another\n",
-                    kEmulatedCounts, 1000 * kEmulatedArm);
-    if (file.empty())
-        std::printf("use it           palpate run SCENE --hand %s %s %.0f\n", kFalconRecord.name.data(),
-                    kFalconCounts.flag.data(), counts);
-    else
-        std::printf("use it           every command does from now on: %s\n", file.c_str());
+    printUse(o, found, file);
 }
 
 void calibrate(const CalibrateOptions& o)
 {
-    const double      mass = kilograms(o.mass);
-    FalconCalibration calibration({.mass = mass, .countsPerTorque = countsBefore(o)});
-    const Found       found = o.emulator ? weighEmulated(o, mass, calibration) : weighReal(o, calibration);
-    print(o, mass, calibration, found, o.emulator ? "" : store(calibration, found));
+    const double      mass  = kilograms(o.mass);
+    const Found       found = o.emulator ? weighEmulated(o, mass) : weighReal(o, mass);
+    const std::string file  = store(found);
+    if (o.json)
+        std::cout << jsonText(jsonOf(o, mass, found, file));
+    else
+        print(o, found, file);
 }
 
 } // namespace
@@ -336,7 +366,7 @@ void addCalibrateCommand(CLI::App& app)
 {
     auto* command = app.add_subcommand("calibrate", "weighs a known mass with a Falcon to calibrate its force");
     auto  o       = std::make_shared<CalibrateOptions>();
-    command->add_option("--mass", o->mass, "the mass that you will hang on the grip, 50 g to 500 g")
+    command->add_option("--mass", o->mass, "the mass that you will hang on the grip, " + possibleMasses())
         ->capture_default_str();
     addDeviceOptions(*command, o->falcon, std::array{&kFalconRecord});
     command->add_flag("--emulator", o->emulator,
@@ -346,7 +376,8 @@ void addCalibrateCommand(CLI::App& app)
         "The motors first find the command that carries the arm. Then the grip moves up and down by 8 mm while the\n"
         "mean force is measured, first without and then with the mass. This takes a minute; nothing may touch the\n"
         "grip meanwhile. The result is stored in $XDG_CONFIG_HOME/palpate (~/.config/palpate) by the Falcon's serial\n"
-        "number; every command uses it, and carries the arm. Exit code 1: the weighing failed.\n"
+        "number; every command uses it, and carries the arm. That of the emulated Falcon is used by falcon-emulator\n"
+        "alone; remove falcon-EMULATED.json to be rid of it. Exit code 1: the weighing failed.\n"
         "Examples:\n"
         "  palpate calibrate --mass '200 g'\n"
         "  palpate calibrate --mass 0.1 --falcon-firmware falcon.bin\n"

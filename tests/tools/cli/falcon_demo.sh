@@ -6,6 +6,8 @@ place=$(mktemp -d "${TMPDIR:-/tmp}/palpate demo XXXXXX") || exit 1
 trap 'rm -rf "$place"' EXIT
 cd "$place" || exit 1
 unset FALCON_FIRMWARE
+XDG_CONFIG_HOME=$place/config # no calibration of the user's
+export XDG_CONFIG_HOME
 
 failed=0
 complain() { echo "FAILED: $*"; failed=1; }
