@@ -82,7 +82,7 @@ ForceHalf::WantedForce ForceHalf::wantedForce(double stiffness, double dt, const
     const bool        slid    = held.touch.touching && last_.touch.touching;
     const glm::dvec3  way     = slid ? held.touch.point - last_.touch.point : glm::dvec3(0);
 
-    const double depth = glm::length(held.pull), surface = depth > 0 ? std::max(depth, relaxing_.surface()) : 0;
+    const double depth = glm::length(held.pull), surface = depth > 0 ? std::max(depth, relaxing_.surface()) : depth;
     const EnergyTankOutput tank = tank_.step({.stiffness       = stiffness,
                                               .depth           = surface,
                                               .normalSpeed     = along,
@@ -109,7 +109,7 @@ void ForceHalf::relax(WantedForce& want, const EnergyTankOutput& tank, double dt
     forceShare_                       = elastic > 0 ? out.force / elastic : 1;
     want.stiffness *= forceShare_;
     want.admitted += out.refreshed;
-    want.stored = out.stored;
+    want.stored = depth > 0 ? out.stored : 0; // what a surface stores that was left, no hand gets back
     want.load   = tank.stiffness * relaxing_.surface();
 }
 
