@@ -27,6 +27,8 @@ constexpr std::array kPressures   = {Unit{"Pa", 1}, Unit{"kPa", 1e3}, Unit{"MPa"
 constexpr std::array kRigidities  = {Unit{"N_m", 1}, Unit{"Nm", 1}, Unit{"N*m", 1}, Unit{"mN_m", 1e-3},
                                      Unit{"mNm", 1e-3}};
 constexpr std::array kFoundations = {Unit{"Pa/m", 1}, Unit{"kPa/m", 1e3}, Unit{"MPa/m", 1e6}, Unit{"GPa/m", 1e9}};
+constexpr std::array kTimes       = {Unit{"s", 1}, Unit{"ms", 1e-3}};
+constexpr std::array kPerLengths  = {Unit{"1/m", 1}, Unit{"/m", 1}, Unit{"1/mm", 1e3}, Unit{"/mm", 1e3}};
 constexpr std::array kAngles      = {Unit{"rad", 1}, Unit{"deg", std::numbers::pi / 180}};
 
 std::span<const Unit> unitsOf(Dimension dimension)
@@ -44,6 +46,10 @@ std::span<const Unit> unitsOf(Dimension dimension)
         return kFoundations;
     case Dimension::angle:
         return kAngles;
+    case Dimension::time:
+        return kTimes;
+    case Dimension::perLength:
+        return kPerLengths;
     case Dimension::none:
         return {};
     }

@@ -19,12 +19,52 @@ EnergyTank::EnergyTank(const EnergyTankSettings& settings)
             throw Error("energy tank: " + std::string(what) + " must be zero or more, found " + std::to_string(value));
 }
 
+namespace {
+
+/// Returns what goes into a contact of this depth when its law changes [J].
+double riseOf(const DepthLaw& from, const DepthLaw& to, double depth) noexcept
+{
+    if (from.stiffening == 0 && to.stiffening == 0) return depth * depth * (to.stiffness - from.stiffness) / 2;
+    return to.energy(depth) - from.energy(depth);
+}
+
+/// Returns the law a share of the way from one to another. A lower cap, which is the loop's, holds at once.
+DepthLaw between(const DepthLaw& from, const DepthLaw& to, double share) noexcept
+{
+    DepthLaw law{from.stiffness + (to.stiffness - from.stiffness) * share, to.stiffening, to.steepest};
+    if (from.stiffening == 0 && to.stiffening == 0) return law;
+    law.stiffening = from.stiffening + (to.stiffening - from.stiffening) * share;
+    if (to.steepest > from.steepest) law.steepest = from.steepest + (to.steepest - from.steepest) * share;
+    law.stiffness = std::min(law.stiffness, law.steepest);
+    return law;
+}
+
+} // namespace
+
+/// Goes so far towards the wanted law that at most `share` of the rise of energy is taken.
+void EnergyTank::takePartOf(const DepthLaw& wanted, double depth, double share) noexcept
+{
+    const DepthLaw from = law_;
+    law_                = between(from, wanted, share); // exact where the energy is linear in what changes
+    const double most   = from.energy(depth) + share * riseOf(from, wanted, depth);
+    if (wanted.stiffening == 0 && from.stiffening == 0) return;
+    constexpr int kHalvings = 30; // of the share: 1e-9 of it
+    double        enough = 0, tooMuch = share;
+    if (law_.energy(depth) <= most) return;
+    for (int n = 0; n < kHalvings; ++n) {
+        const double middle                                                      = (enough + tooMuch) / 2;
+        (between(from, wanted, middle).energy(depth) <= most ? enough : tooMuch) = middle;
+    }
+    law_ = between(from, wanted, enough);
+}
+
 EnergyTankOutput EnergyTank::step(const EnergyTankInput& in) noexcept
 {
     const double speed = std::abs(in.tangentialSpeed);
-    if (!std::isfinite(in.stiffness + in.depth + in.normalSpeed + speed + in.dt + in.drag) || in.stiffness < 0) {
-        energy_    = 0;
-        stiffness_ = 0;
+    if (!std::isfinite(in.stiffness + in.depth + in.normalSpeed + speed + in.dt + in.drag + in.stiffening) ||
+        !std::isfinite(in.storedShare) || in.stiffness < 0 || in.stiffening < 0) {
+        energy_ = 0;
+        law_    = {};
         return {};
     }
 
@@ -37,21 +77,23 @@ EnergyTankOutput EnergyTank::step(const EnergyTankInput& in) noexcept
     // Cost of the step of stiffness at this depth, less what the hand paid. A fall that pushed nobody along the surface
     // gives its energy back; friction's loss is not credited. Outside all is free.
     EnergyTankOutput out;
-    const double     depth = std::max(in.depth, 0.0);
-    const double     rise  = depth * depth * (in.stiffness - stiffness_) / 2;
-    const double     paid  = stiffness_ * in.drag;
-    const double     need  = rise - paid;
+    const DepthLaw   wanted = DepthLaw::capped(in.stiffness, in.stiffening, in.steepest);
+    const double     depth  = std::max(in.depth, 0.0);
+    const double     rise   = in.storedShare * riseOf(law_, wanted, depth);
+    const double     paid   = law_.secant(depth) * in.drag;
+    const double     need   = rise - paid;
     if (need <= 0) {
-        energy_    = std::min(settings_.limit, energy_ + std::min(-need, std::max(-rise, 0.0)));
-        stiffness_ = in.stiffness;
+        energy_ = std::min(settings_.limit, energy_ + std::min(-need, std::max(-rise, 0.0)));
+        law_    = wanted;
     } else {
         out.used = std::min(energy_, need);
         energy_ -= out.used;
         const double share = rise > 0 ? std::clamp((paid + out.used) / rise, 0.0, 1.0) : 1;
-        stiffness_ += (in.stiffness - stiffness_) * share;
+        takePartOf(wanted, depth, share);
     }
-    out.stiffness = stiffness_;
-    out.stored    = stiffness_ * depth * depth / 2;
+    out.law       = law_;
+    out.stiffness = law_.stiffness;
+    out.stored    = in.storedShare * law_.energy(depth);
     return out;
 }
 

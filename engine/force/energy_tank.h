@@ -1,6 +1,8 @@
 #pragma once
 #include <limits>
 
+#include "engine/force/depth_law.h"
+
 namespace palp {
 
 /// Settings of the tank. All are from simulation of press, slide and release on an arm of 0.46 kg and 3.2 N s/m, with
@@ -15,7 +17,7 @@ struct EnergyTankSettings {
 };
 
 struct EnergyTankInput {
-    double stiffness       = 0; ///< [N/m] wanted: min(force law, ForceGovernor::stiffnessCap())
+    double stiffness       = 0; ///< [N/m] wanted at the surface: min(force law, ForceGovernor::stiffnessCap())
     double depth           = 0; ///< [m] of the hand in the surface; 0 or less is no contact
     double normalSpeed     = 0; ///< [m/s] along the surface's normal; the sign does not matter
     double tangentialSpeed = 0; ///< [m/s] along the surface; the sign does not matter
@@ -25,22 +27,27 @@ struct EnergyTankInput {
     double drag = 0;
     /// [N s/m] that the spring leaves of the arm's damping: ForceGovernor::spareDamping().
     double spareDamping = std::numeric_limits<double>::infinity();
+    double stiffening   = 0;                                       ///< [1/m] wanted, see DepthLaw
+    double steepest     = std::numeric_limits<double>::infinity(); ///< [N/m] cap of its tangent
+    /// [1] of the elastic energy that the contact stores: below 1 where its material has relaxed, see RelaxingContact.
+    double storedShare = 1;
 };
 
 struct EnergyTankOutput {
-    double stiffness = 0; ///< [N/m] to render; at most the wanted one
-    double used      = 0; ///< [J] that the tank let into the hand: GovernorInput::admittedEnergy
-    double stored    = 0; ///< [J] in the rendered spring, K depth^2 / 2: GovernorInput::storedEnergy
+    double   stiffness = 0; ///< [N/m] to render at the surface; at most the wanted one
+    double   used      = 0; ///< [J] that the tank let into the hand: GovernorInput::admittedEnergy
+    double   stored = 0; ///< [J] in the rendered spring, K depth^2 / 2 of a straight one: GovernorInput::storedEnergy
+    DepthLaw law{};      ///< to render, with that stiffness
 };
 
-/// Pays for stiffness that rises under a loaded finger. A contact of depth d stores d^2 K / 2. What the hand changes of
-/// it by sliding it pays, or gets, itself through the tangential part of its pull, see LateralLean. What is left comes
+/// Pays for stiffness that rises under a loaded finger. A contact of depth d stores d^2 K / 2, or what its DepthLaw
+/// says. What the hand changes of it by sliding it pays, or gets, itself through the tangential part of its pull, see LateralLean. What is left comes
 /// from outside: a new table, an offset that dies, a cap that rises. A small store that the arm's damping fills pays
 /// for a rise of that kind; what cannot be paid waits, and the stiffness lags.
 ///
 /// The servo calls it, once a tick, between the force law and the governor:
 ///
-///     K = min(law, governor.stiffnessCap()) -> tank.step() -> force = K pull -> governor.step()
+///     K = min(law, governor.stiffnessCap()) -> tank.step() -> force = secant pull -> governor.step()
 ///
 /// Invariants: 0 <= energy() <= limit; the stiffness rises in contact only by what was paid. This bounds growth, and is
 /// not strict passivity: damping and power let in a few mJ per second.
@@ -54,13 +61,15 @@ public:
     /// counts as 0.
     EnergyTankOutput step(const EnergyTankInput& in) noexcept;
 
-    [[nodiscard]] double energy() const noexcept { return energy_; }       ///< [J] in the tank
-    [[nodiscard]] double stiffness() const noexcept { return stiffness_; } ///< [N/m] in use
+    [[nodiscard]] double energy() const noexcept { return energy_; }           ///< [J] in the tank
+    [[nodiscard]] double stiffness() const noexcept { return law_.stiffness; } ///< [N/m] in use
 
 private:
+    void takePartOf(const DepthLaw& wanted, double depth, double share) noexcept;
+
     EnergyTankSettings settings_;
     double             energy_;
-    double             stiffness_ = 0;
+    DepthLaw           law_; // in use
 };
 
 } // namespace palp

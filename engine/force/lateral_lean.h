@@ -7,6 +7,9 @@ namespace palp {
 struct StiffnessSlope {
     glm::dvec3 ofLogarithm{}; ///< gradient of ln K along the surface [1/m]
     double     curvature = 0; ///< [1/m] of the surface, positive where it bulges towards the hand
+    /// [m^2] stored energy over the force per depth, by which the lean goes with the slope; below 0: that of a spring,
+    /// depth^2 / 2
+    double leverage = -1;
 };
 
 /// The lateral force of a surface whose stiffness changes from place to place, as a lean of the hand.
@@ -30,6 +33,7 @@ struct StiffnessSlope {
 class LateralLean {
 public:
     /// Runs one tick in contact.
+    /// \param slope   of the stiffness, or of what is stored where that is not in proportion
     /// \param pull    [m] from the hand to the proxy, the lean so far included
     /// \param travel  [m] of the hand in this tick
     void step(const StiffnessSlope& slope, const glm::dvec3& pull, double travel) noexcept;

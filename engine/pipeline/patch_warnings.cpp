@@ -41,7 +41,8 @@ double edgeDeflection(const NodeField& field)
 
 } // namespace
 
-std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force)
+std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force,
+                                  const Material& material)
 {
     std::vector<std::string> result;
     if (!patch.deformed()) return result;
@@ -49,13 +50,17 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
         result.push_back("the plate's solution is not as good as asked for: its error is about " +
                          formatNumber(patch.report.errorEstimate.value_or(1)) +
                          " or more, relative; try fewer cells or less contrast");
-    const double deepest = std::abs(force) * largest(patch.response);
+    const double load    = pressOf(patch, material, std::abs(force)).load;
+    const double deepest = load * largest(patch.response);
     const double half    = patch.thickness / 2;
     if (deepest > half)
-        result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
-                         formatQuantity(half, "m") +
-                         "): Kirchhoff plate theory does not hold here; press with less than " +
-                         formatQuantity(std::abs(force) * half / deepest, "N"));
+        result.push_back(
+            "the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
+            formatQuantity(half, "m") + "): Kirchhoff plate theory does not hold here; press with less than " +
+            formatQuantity(material.stiffening > 0
+                               ? depthLawOf(patch, material).force(load * half / deepest / patch.feltStiffness)
+                               : load * half / deepest,
+                           "N"));
     if (patch.nodesWithoutPoint > 0)
         result.push_back(
             std::to_string(patch.nodesWithoutPoint) + " of " + std::to_string(patch.plate.grid.nodes()) +

@@ -86,30 +86,36 @@ struct Statement {
     ValueOrigin origin;
 };
 
-/// The file, the environment and the flags, each with its preset.
+/// The file, the environment and the flags, each with its preset and its material.
 class Sources {
 public:
     Sources(const JsonObject& file, const SceneOverrides& overrides) : file_(file), overrides_(overrides)
     {
-        for (const Origin origin : kRanks) {
-            const auto preset = statedBy(origin, sceneKey("preset"));
-            if (!preset) continue;
-            const WrittenValue given{sceneKey("preset"), preset->text, preset->what};
-            presets_[origin] = presetValues(given.value<Preset>());
-        }
+        for (const Origin origin : kRanks)
+            for (const char* const name : {"material", "preset"}) {
+                const SceneKey& key  = sceneKey(name);
+                const auto      said = statedBy(origin, key);
+                if (!said) continue;
+                const WrittenValue given{key, said->text, said->what};
+                sets_[origin].push_back({&key, key.name == "preset" ? presetValues(given.value<Preset>())
+                                                                    : materialValues(*materialNamed(given.word()))});
+            }
     }
 
-    /// Returns the statement of the strongest source about the key, by itself or by its preset.
+    /// Returns the statement of the strongest source about the key, by itself, by its material or by its preset.
     [[nodiscard]] std::optional<Statement> about(const SceneKey& key) const
     {
         for (const Origin origin : kRanks) {
             if (auto stated = statedBy(origin, key)) return stated;
-            const auto preset = presets_.find(origin);
-            if (preset == presets_.end()) continue;
-            const auto value = preset->second.find(key.name);
-            if (value == preset->second.end()) continue;
-            const auto source = statedBy(origin, sceneKey("preset"));
-            return Statement{value->second, source->what, {origin, source->origin.where + ": preset " + source->text}};
+            const auto sets = sets_.find(origin);
+            if (sets == sets_.end()) continue;
+            for (const auto& [by, values] : sets->second) {
+                const auto value = values.find(key.name);
+                if (value == values.end()) continue;
+                const auto        source = statedBy(origin, *by);
+                const std::string where  = source->origin.where + ": " + std::string(by->name) + " " + source->text;
+                return Statement{value->second, source->what, {origin, where}};
+            }
         }
         return std::nullopt;
     }
@@ -135,9 +141,14 @@ private:
         return Statement{textOf(file_, key), file_.where() + ": key \"" + name + "\"", {Origin::scene, file_.where()}};
     }
 
-    const JsonObject&                                                 file_;
-    const SceneOverrides&                                             overrides_;
-    std::map<Origin, std::map<std::string, std::string, std::less<>>> presets_;
+    /// A key that stands for others, and what it says of them.
+    struct KeySet {
+        const SceneKey*                                 by;
+        std::map<std::string, std::string, std::less<>> values;
+    };
+    const JsonObject&                     file_;
+    const SceneOverrides&                 overrides_;
+    std::map<Origin, std::vector<KeySet>> sets_; ///< the stronger first
 };
 
 /// Reads the key of the cloud, before all other keys: the defaults of a sample depend on it.

@@ -85,6 +85,7 @@ struct Scene {
     std::optional<glm::dvec3> from{};  ///< the hand's side there, of any length; empty: away from the cloud's middle
 
     Preset        preset = Preset::palpate; ///< the last one that was asked for; its values stand in `patch`
+    std::string   materialName;             ///< of knownMaterials(), the last that was asked for; empty: none
     Material      material{};               ///< of the sheet
     PatchSettings patch;                    ///< foundation, window, map, force law, ...
     std::string   solver = "auto";          ///< of the plate, as PlateSolver takes it

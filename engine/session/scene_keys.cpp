@@ -295,6 +295,13 @@ std::vector<SceneKey> placeKeys()
     };
 }
 
+std::vector<std::string> materialNames()
+{
+    std::vector<std::string> names;
+    for (const KnownMaterial& material : knownMaterials()) names.emplace_back(material.name);
+    return names;
+}
+
 std::vector<SceneKey> materialKeys()
 {
     const Control         thickness{Panel::material, "thickness", "mm", 1e-3, 0.1, 20, true, 2};
@@ -305,9 +312,17 @@ std::vector<SceneKey> materialKeys()
             {.name  = "preset",
              .help  = "sets map, neighbourhood, resampling, edges, foundation and force_law: palpate, or paper as "
                       "Kumari and "
-                      "Chaudhuri published it; keys beside it win over it",
+                      "Chaudhuri published it, without stiffening and relaxation; keys beside it win over it",
              .group = kTouch},
             [](auto& s) -> auto& { return s.preset; }),
+        textKey(
+            {.name  = "material",
+             .help  = "a measured material, see palpate materials: sets stiffness, poisson, stiffening and relaxation "
+                      "as far as they are known; keys beside it win over it",
+             .group = kTouch,
+             .kind  = Kind::word,
+             .words = materialNames()},
+            [](auto& s) -> auto& { return s.materialName; }),
         numberKey(
             {.name      = "thickness",
              .help      = "thickness h of the soft sheet; skin 1.5 mm, palm 4 mm",
@@ -336,8 +351,24 @@ std::vector<SceneKey> materialKeys()
              .bounds    = KeyBounds{0, 1e15}, // a micrometre of steel has less
              .control   = foundation},
             [](auto& s) -> auto& { return s.patch.foundation; }),
+        numberKey(
+            {.name      = "stiffening",
+             .help      = "b by which the force stiffens with depth, K (e^(b d) - 1) / b; meat 800; 0 for a spring",
+             .group     = kTouch,
+             .unit      = "1/m",
+             .example   = "0.8 1/mm",
+             .dimension = D::perLength,
+             .bounds    = KeyBounds{0, 1e5}}, // e times stiffer after 10 um: no finger tells it from a wall
+            [](auto& s) -> auto& { return s.material.stiffening; }),
+        {.name  = "relaxation",
+         .help  = "shares of the force that die away under a finger that holds still, each with its time; none for a "
+                  "spring",
+         .group = kTouch,
+         .form  = kRelaxationForm,
+         .read  = [](S& s, const V& v) { s.material.relaxation = parseRelaxation(v.text, v.what); },
+         .write = [](const S& s) { return quotedJson(relaxationText(s.material.relaxation)); }},
     };
-    keys[2].read = readPoisson;
+    keys[3].read = readPoisson;
     return keys;
 }
 
@@ -574,7 +605,20 @@ std::map<std::string, std::string, std::less<>> presetValues(Preset preset)
                                                            {"resampling", name(set.resampling)},
                                                            {"force_law", name(set.forceLaw)},
                                                            {"edges", edgesText(set.edges)}};
-    if (preset == Preset::paper) values["foundation"] = plainNumber(set.foundation);
+    if (preset == Preset::paper) { // the paper's sheet has none of these
+        values["foundation"] = plainNumber(set.foundation);
+        values["stiffening"] = "0";
+        values["relaxation"] = "none";
+    }
+    return values;
+}
+
+std::map<std::string, std::string, std::less<>> materialValues(const KnownMaterial& material)
+{
+    std::map<std::string, std::string, std::less<>> values{{"stiffening", plainNumber(material.stiffening)},
+                                                           {"relaxation", relaxationText(material.relaxation)}};
+    if (material.modulus > 0) values["stiffness"] = "constant:value=" + plainNumber(material.modulus);
+    if (material.poissonRatio > -1) values["poisson"] = plainNumber(material.poissonRatio);
     return values;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/cloud/material_library.h"
 #include "engine/core/enum_names.h"
 #include "engine/core/quantity.h"
 #include "engine/session/scene.h"
@@ -119,6 +120,9 @@ struct WrittenValue {
 
 /// Returns the values that a preset sets, in the spelling of flags. `palpate` leaves the foundation as it is.
 [[nodiscard]] std::map<std::string, std::string, std::less<>> presetValues(Preset preset);
+
+/// Returns the values that a material sets, as far as they are known.
+[[nodiscard]] std::map<std::string, std::string, std::less<>> materialValues(const KnownMaterial& material);
 
 /// Returns the JSON Schema of scene files, and the keys as a table in Markdown.
 [[nodiscard]] std::string sceneSchema(const std::vector<SceneKey>* toolKeys = nullptr);

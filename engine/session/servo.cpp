@@ -66,8 +66,10 @@ double AnswerPeriod::add(std::uint64_t sequence, double time) noexcept
 }
 
 ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, const HomogeneousLaw* first)
-    : law_(scene.patch.forceLaw), thickness_(scene.material.thickness), patchPeriod_(1 / scene.deformationRate),
-      compliance_(scene.complianceLaw, first), governor_(governorOf(scene, limits))
+    : law_(scene.patch.forceLaw), thickness_(scene.material.thickness), linear_(scene.material.isLinear()),
+      stiffening_(scene.material.stiffening), patchPeriod_(1 / scene.deformationRate),
+      compliance_(scene.complianceLaw, first), relaxing_(scene.material.relaxation, scene.patch.footprintRadius),
+      governor_(governorOf(scene, limits))
 {
 }
 
@@ -80,16 +82,47 @@ ForceHalf::WantedForce ForceHalf::wantedForce(double stiffness, double dt, const
     const bool        slid    = held.touch.touching && last_.touch.touching;
     const glm::dvec3  way     = slid ? held.touch.point - last_.touch.point : glm::dvec3(0);
 
-    WantedForce result;
-    result.tank  = tank_.step({.stiffness       = stiffness,
-                               .depth           = glm::length(held.pull),
-                               .normalSpeed     = along,
-                               .tangentialSpeed = glm::length(tangent(hand.velocity)),
-                               .dt              = dt,
-                               .drag            = -glm::dot(tangent(held.pull), tangent(way)),
-                               .spareDamping    = governor_.spareDamping()});
-    result.force = result.tank.stiffness * held.pull;
+    const double depth = glm::length(held.pull), surface = depth > 0 ? std::max(depth, relaxing_.surface()) : depth;
+    const EnergyTankOutput tank = tank_.step({.stiffness       = stiffness,
+                                              .depth           = surface,
+                                              .normalSpeed     = along,
+                                              .tangentialSpeed = glm::length(tangent(hand.velocity)),
+                                              .dt              = dt,
+                                              .drag         = -glm::dot(tangent(held.pull), tangent(way)) * forceShare_,
+                                              .spareDamping = governor_.spareDamping(),
+                                              .stiffening   = stiffening_,
+                                              .steepest     = governor_.stiffnessCap(),
+                                              .storedShare  = relaxing_.storedShare()});
+
+    WantedForce result{{}, tank.law.secant(depth), tank.law.tangent(depth), tank.used, tank.stored};
+    result.load = tank.stiffness * depth;
+    if (relaxing_.relaxes()) relax(result, tank, dt, held);
+    result.force = result.stiffness * held.pull;
     return result;
+}
+
+/// Takes from the elastic force what the material under the finger has got used to.
+void ForceHalf::relax(WantedForce& want, const EnergyTankOutput& tank, double dt, const ProxyContact& held) noexcept
+{
+    const double                  depth = glm::length(held.pull), elastic = tank.law.force(depth);
+    const RelaxingContact::Output out = relaxing_.step({tank.law, depth, held.touch.point, dt});
+    forceShare_                       = elastic > 0 ? out.force / elastic : 1;
+    want.stiffness *= forceShare_;
+    want.admitted += out.refreshed;
+    want.stored = depth > 0 ? out.stored : 0; // what a surface stores that was left, no hand gets back
+    want.load   = tank.stiffness * relaxing_.surface();
+}
+
+/// Returns the force that dents the plate as it is drawn [N]. A plate is linear, and stiffens only together with the
+/// contact: a hand of this depth dents it as deep as that of a spring does, whatever force it feels.
+double ForceHalf::plateLoad(const WantedForce& want, const GovernorOutput& out, const ProxyContact& held) const noexcept
+{
+    const double pressed = std::max(0.0, glm::dot(out.force, held.touch.outward));
+    if (linear_) return pressed;
+    const double     wanted = glm::length(want.force), pull = glm::length(held.pull);
+    constexpr double kSome = 1e-3; // [1] of the load: below it a force says nothing about the share that is rendered
+    const double     share = wanted > kSome * want.load ? std::min(1.0, glm::length(out.force) / wanted) : out.gain;
+    return pull > 0 ? want.load * share * std::max(0.0, glm::dot(held.pull, held.touch.outward)) / pull : 0;
 }
 
 /// Returns the stiffness that is wanted [N/m].
@@ -99,9 +132,21 @@ double ForceHalf::stiffnessOf(const std::optional<LocalCompliance>& local) const
     return std::min(feltStiffness(law_, local->contactStiffness, local->compliance), governor_.stiffnessCap());
 }
 
-/// Takes the slope of the wanted stiffness from its differences over a way on which a table's cubics are straight.
-StiffnessSlope ForceHalf::slopeAt(const glm::dvec3& place, const glm::dvec3& outward) const noexcept
+/// Returns what a contact of one stiffness stores, as a multiple of what it does with the other [1].
+double ForceHalf::storedRatio(double stiffness, double other, double depth) const noexcept
 {
+    if (stiffening_ == 0) return stiffness / other;
+    const double cap = governor_.stiffnessCap();
+    const double one = DepthLaw{stiffness, stiffening_, cap}.energy(depth);
+    const double two = DepthLaw{other, stiffening_, cap}.energy(depth);
+    return one > 0 && two > 0 ? one / two : 1;
+}
+
+/// Takes the slope of what is stored from its differences over a way on which a table's cubics are straight.
+StiffnessSlope ForceHalf::slopeAt(const ProxyContact& held) const noexcept
+{
+    const glm::dvec3 place = held.touch.point - held.lean, outward = held.touch.outward;
+    const double     depth = glm::length(held.pull - held.lean);
     constexpr double kWay  = 20e-6; // [m] a cubic of 4 mm loses 1e-5 of its slope
     const glm::dvec3 other = std::abs(outward.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     const glm::dvec3 one = glm::normalize(glm::cross(outward, other)), two = glm::cross(outward, one);
@@ -109,20 +154,22 @@ StiffnessSlope ForceHalf::slopeAt(const glm::dvec3& place, const glm::dvec3& out
     for (const glm::dvec3& along : {one, two}) {
         const auto   ahead = compliance_.near(place + kWay * along), behind = compliance_.near(place - kWay * along);
         const double more = stiffnessOf(ahead), less = stiffnessOf(behind);
-        if (more > 0 && less > 0) slope.ofLogarithm += std::log(more / less) / (2 * kWay) * along;
+        if (more > 0 && less > 0) slope.ofLogarithm += std::log(storedRatio(more, less, depth)) / (2 * kWay) * along;
         if (ahead) slope.curvature = ahead->curvature;
     }
     return slope;
 }
 
 /// Updates the lean for the next tick.
-void ForceHalf::leanOn(const ProxyContact& held, const Hand& hand) noexcept
+void ForceHalf::leanOn(const ProxyContact& held, const Hand& hand, const WantedForce& want) noexcept
 {
-    if (held.touch.touching)
-        lean_.step(slopeAt(held.touch.point - held.lean, held.touch.outward), held.pull,
-                   glm::length(hand.position - lastHand_));
-    else
+    if (held.touch.touching) {
+        StiffnessSlope slope = slopeAt(held);
+        if (!linear_ && want.stiffness > 0) slope.leverage = want.stored / want.stiffness;
+        lean_.step(slope, held.pull, glm::length(hand.position - lastHand_));
+    } else {
         lean_.end();
+    }
     lastHand_ = hand.position;
     last_     = held;
 }
@@ -151,7 +198,7 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     const auto handed  = compliance_.tick({touch.point - held.lean, now.time, now.dt, newest ? &newest->table : nullptr,
                                            touch.touching}); // also in free space
     const WantedForce want = wantedForce(stiffnessOf(handed), now.dt, hand, held);
-    leanOn(held, hand);
+    leanOn(held, hand, want);
 
     GovernorInput in;
     in.force                 = want.force;
@@ -164,9 +211,9 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     in.forceAge              = std::max(0.0, now.time - touch.time); // above 0 if the proxy has a thread of its own
     in.overdue               = tableOverdue(now, touch.touching, newest);
     in.missedExchanges       = hand.missed;
-    in.admittedEnergy        = want.tank.used;
-    in.storedEnergy          = want.tank.stored;
-    in.stiffness             = want.tank.stiffness;
+    in.admittedEnergy        = want.admitted;
+    in.storedEnergy          = want.stored;
+    in.stiffness             = want.tangent;
     in.answerAge             = hand.answerAge;
     in.sinceAnswer           = hand.sequence > 0 ? std::max(0.0, now.time - hand.answerTime) : 0;
     in.exchangePeriod        = answers_.add(hand.sequence, hand.answerTime);
@@ -186,13 +233,13 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     record.wanted         = want.force;
     record.force          = out.force;
     record.actions        = out.actions;
-    record.stiffness      = want.tank.stiffness;
+    record.stiffness      = want.stiffness;
     record.tankEnergy     = tank_.energy();
     record.observerEnergy = out.energy;
     record.normal         = touch.touching ? touch.outward : glm::dvec3(0);
     if (newest && touch.touching) {
         record.rigidity      = newest->rigidity;
-        record.maxDeflection = newest->mostResponse * std::max(0.0, glm::dot(out.force, touch.outward));
+        record.maxDeflection = newest->mostResponse * plateLoad(want, out, held);
         record.errorEstimate = newest->errorEstimate;
         record.iterations    = newest->iterations;
     }

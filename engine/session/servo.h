@@ -14,6 +14,7 @@
 #include "engine/force/energy_tank.h"
 #include "engine/force/governor.h"
 #include "engine/force/lateral_lean.h"
+#include "engine/force/relaxing_contact.h"
 #include "engine/session/scene.h"
 #include "engine/session/tick_record.h"
 
@@ -166,32 +167,44 @@ public:
     [[nodiscard]] const glm::dvec3&    lean() const noexcept { return lean_.way(); } ///< [m] for the next proxy's tick
 
 private:
-    /// The wanted force and the tank's payment for it.
+    /// The wanted force and the payment for it.
     struct WantedForce {
-        glm::dvec3       force{};
-        EnergyTankOutput tank{};
+        glm::dvec3 force{};
+        double     stiffness = 0; ///< force per pull [N/m]
+        double     tangent   = 0; ///< elastic, at this depth [N/m]
+        double     admitted  = 0; ///< [J] by the tank, and by material that got fresh
+        double     stored    = 0; ///< [J]
+        double     load      = 0; ///< [N] that dents the plate as deep as the hand is in it
     };
-    [[nodiscard]] WantedForce    wantedForce(double stiffness, double dt, const Hand& hand,
-                                             const ProxyContact& held) noexcept;
+    [[nodiscard]] WantedForce wantedForce(double stiffness, double dt, const Hand& hand,
+                                          const ProxyContact& held) noexcept;
+    void relax(WantedForce& want, const EnergyTankOutput& tank, double dt, const ProxyContact& held) noexcept;
+    [[nodiscard]] double         plateLoad(const WantedForce& want, const GovernorOutput& out,
+                                           const ProxyContact& held) const noexcept;
     [[nodiscard]] double         stiffnessOf(const std::optional<LocalCompliance>& local) const noexcept;
-    [[nodiscard]] StiffnessSlope slopeAt(const glm::dvec3& place, const glm::dvec3& outward) const noexcept;
-    void                         leanOn(const ProxyContact& held, const Hand& hand) noexcept;
+    [[nodiscard]] double         storedRatio(double stiffness, double other, double depth) const noexcept;
+    [[nodiscard]] StiffnessSlope slopeAt(const ProxyContact& held) const noexcept;
+    void                         leanOn(const ProxyContact& held, const Hand& hand, const WantedForce& want) noexcept;
 
     [[nodiscard]] double tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest) noexcept;
 
     ForceLaw          law_;
     double            thickness_;   ///< [m]
+    bool              linear_;      ///< the material's force is stiffness times depth
+    double            stiffening_;  ///< [1/m]
     double            patchPeriod_; ///< of the deformation [s]
     AnswerPeriod      answers_;
     ComplianceTracker compliance_;
     LateralLean       lean_;
     EnergyTank        tank_;
+    RelaxingContact   relaxing_;
     ForceGovernor     governor_;
-    ProxyContact      last_;         ///< of the tick before
-    glm::dvec3        lastHand_{};   ///< [m]
-    std::uint64_t     answered_ = 0; ///< sequence of the last table
-    double            asked_    = 0; ///< [s] of contact since that of the last table, or since the first
-    int               pressed_  = 0; ///< ticks that the operator's button has been down
+    double            forceShare_ = 1; ///< [1] of the elastic force that the last tick had
+    ProxyContact      last_;           ///< of the tick before
+    glm::dvec3        lastHand_{};     ///< [m]
+    std::uint64_t     answered_ = 0;   ///< sequence of the last table
+    double            asked_    = 0;   ///< [s] of contact since that of the last table, or since the first
+    int               pressed_  = 0;   ///< ticks that the operator's button has been down
 };
 
 /// [1] of the arm's weight that is carried. A calibration errs by one percent; carried whole, an arm that is let go

@@ -223,6 +223,76 @@ Gain workGained(const Cycle& cycle, EnergyTank* tank, Sideways sideways)
     return gain;
 }
 
+/// The tank's arithmetic while every contact was a spring.
+struct TankOfSprings {
+    double energy = 0.2e-3, stiffness = 0; // [J], [N/m]
+
+    EnergyTankOutput step(const EnergyTankInput& in)
+    {
+        const double speed = std::abs(in.tangentialSpeed), depth = std::max(in.depth, 0.0);
+        energy = std::min(2e-3, energy + (1.0 * (in.normalSpeed * in.normalSpeed + speed * speed) + 1e-3) * in.dt);
+        EnergyTankOutput out;
+        const double     rise = depth * depth * (in.stiffness - stiffness) / 2, paid = stiffness * in.drag;
+        const double     need = rise - paid;
+        if (need <= 0) {
+            energy    = std::min(2e-3, energy + std::min(-need, std::max(-rise, 0.0)));
+            stiffness = in.stiffness;
+        } else {
+            out.used = std::min(energy, need);
+            energy -= out.used;
+            const double share = rise > 0 ? std::clamp((paid + out.used) / rise, 0.0, 1.0) : 1;
+            stiffness += (in.stiffness - stiffness) * share;
+        }
+        out.stiffness = stiffness;
+        out.stored    = stiffness * depth * depth / 2;
+        return out;
+    }
+};
+
+TEST(EnergyTank, OfSpringsItIsThatOfSpringsToTheBit)
+{
+    std::mt19937                           random(5);
+    std::uniform_real_distribution<double> share(-1, 1);
+    EnergyTank                             tank;
+    TankOfSprings                          before;
+    int                                    waited = 0;
+    for (int n = 0; n < 100'000; ++n) {
+        EnergyTankInput in         = at(550 + 450 * share(random), 4e-3 * share(random), 0.1 * share(random),
+                                        0.2 * share(random), 1e-7 * share(random));
+        in.steepest                = 1000;
+        const EnergyTankOutput now = tank.step(in), then = before.step(in);
+        ASSERT_EQ(now.stiffness, then.stiffness) << n;
+        ASSERT_EQ(now.used, then.used) << n;
+        ASSERT_EQ(now.stored, then.stored) << n;
+        ASSERT_EQ(tank.energy(), before.energy) << n;
+        ASSERT_EQ(now.law.secant(in.depth), now.stiffness) << n;
+        waited += now.stiffness < in.stiffness;
+    }
+    EXPECT_GT(waited, 1000) << "or no rise had to wait";
+}
+
+TEST(EnergyTank, ALawThatStiffensIsPaidByItsOwnEnergy)
+{
+    EnergyTank      tank;
+    EnergyTankInput in = at(100, 0);
+    in.stiffening      = 500;
+    in.steepest        = 1000;
+    static_cast<void>(tank.step(in));
+    in.stiffness        = 900; // beyond the cap at 5 mm either way
+    in.depth            = 5e-3;
+    const double before = DepthLaw{100, 500, 1000}.energy(5e-3);
+
+    const EnergyTankOutput out = tank.step(in);
+
+    EXPECT_NEAR(out.used, 0.202e-3, 1e-15) << "all it had";
+    EXPECT_LE(out.stored, before + 0.202e-3 + 1e-12);
+    EXPECT_GT(out.stored, before + 0.1e-3) << "a chord of the energy is within half of it";
+    EXPECT_LT(out.stiffness, 300);
+    in.storedShare    = 0.5;
+    const double half = tank.step(in).used;
+    EXPECT_NEAR(half, 1e-6, 1e-12) << "what came in since";
+}
+
 TEST(EnergyTank, WithoutItEachCycleGivesTheStoredStepToTheHand)
 {
     EXPECT_NEAR(workGained({100, 1000, 5e-3, 0.05}, nullptr, Sideways::nothing).work, 11.25e-3, 0.15e-3)

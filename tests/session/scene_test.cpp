@@ -112,6 +112,7 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
     const Scene scene = parsed(R"({
         "cloud": "sample:sheet", "points": 1000, "seed": 7, "stiffness": "linear:from=1e5,to=1e6,axis=y",
         "thickness": "0.5 cm", "poisson": -0.2, "foundation": "2 MPa/m", "window": 0.05, "cells": 32.0,
+        "stiffening": "0.81 1/mm", "relaxation": "0.26@410ms,0.31@4.3", "material": "meat",
         "footprint_radius": "3mm", "map": "gall-peters", "resampling": "nearest", "edges": {"x0": "free"},
         "force_law": "paper", "tolerance": 1e-6, "compliance_law": "blend", "table_size": 7, "deformation_rate": 30,
         "proxy": "sphere", "static_friction": 1, "dynamic_friction": 0, "max_force": "500 mN",
@@ -123,6 +124,9 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
     EXPECT_EQ(scene.material.thickness, 5e-3);
     EXPECT_EQ(scene.material.poissonRatio, -0.2);
     EXPECT_EQ(scene.patch.foundation, 2e6);
+    EXPECT_EQ(scene.material.stiffening, 810);
+    EXPECT_EQ(scene.material.relaxation, (Relaxation{{{{0.26, 0.41}, {0.31, 4.3}}}, 2}));
+    EXPECT_EQ(scene.materialName, "meat");
     EXPECT_EQ(scene.patch.cells, 32);
     EXPECT_EQ(scene.patch.map, Map::gallPeters);
     EXPECT_EQ(scene.patch.resampling, Resampling::nearest);
@@ -141,6 +145,25 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
     EXPECT_EQ(scene.place, glm::dvec3(1e-3, 0, 0));
     EXPECT_EQ(scene.from, glm::dvec3(0, 0, 2));
     EXPECT_EQ(scene.startHeight, 20e-3);
+}
+
+TEST(Scene, AMaterialSetsWhatIsKnownOfItAndOtherKeysWin)
+{
+    const Scene silicone = parsed(R"({"cloud": "sample:sheet", "material": "ecoflex-0030"})");
+    EXPECT_EQ(silicone.stiffness, "constant:value=97260");
+    EXPECT_EQ(silicone.material.poissonRatio, 0.49);
+    EXPECT_TRUE(silicone.material.isLinear());
+    EXPECT_EQ(silicone.origins.at("poisson").where, "s.json: material ecoflex-0030");
+    EXPECT_EQ(sceneJson(parsed(sceneJson(silicone))), sceneJson(silicone));
+
+    const Scene meat = parsed(R"({"cloud": "sample:sheet", "material": "meat", "stiffening": 300})");
+    EXPECT_TRUE(meat.stiffness.empty()) << "its modulus is not known";
+    EXPECT_EQ(meat.material.stiffening, 300);
+    EXPECT_EQ(meat.material.relaxation.count, 2u);
+    EXPECT_EQ(sceneJson(parsed(sceneJson(meat))), sceneJson(meat));
+
+    const Scene paper = parsed(R"({"cloud": "sample:sheet", "material": "meat"})", overrides({{"preset", "paper"}}));
+    EXPECT_TRUE(paper.material.isLinear()) << "a flag's preset wins over the file's material";
 }
 
 TEST(Scene, WhatIsPrintedReadsBackToTheSameValues)
@@ -199,6 +222,15 @@ TEST(Scene, EachBadValueIsRefusedWithKeyExpectationAndFinding)
         {R"("poisson": 45)", {"key \"poisson\"", "incompressible"}},
         {R"("poisson": -1)", {"key \"poisson\"", "above -1"}},
         {R"("poisson": "0.45 m")", {"key \"poisson\"", "unknown unit \"m\""}},
+        {R"("stiffening": -1)", {"key \"stiffening\"", "from 0"}},
+        {R"("stiffening": "1 mm")", {"key \"stiffening\"", "unknown unit \"mm\"", "1/mm"}},
+        {R"("relaxation": "half")", {"key \"relaxation\"", "SHARE@TIME", "found \"half\""}},
+        {R"("relaxation": "0.6@1s,0.4@2s")", {"key \"relaxation\"", "0.99"}},
+        {R"("relaxation": "0.1@1,0.1@2,0.1@3,0.1@4")", {"key \"relaxation\"", "more terms"}},
+        {R"("relaxation": "0@1s")", {"key \"relaxation\"", "not above 0"}},
+        {R"("relaxation": "0.5@1us")", {"key \"relaxation\"", "unknown unit \"us\""}},
+        {R"("relaxation": "0.5@0")", {"key \"relaxation\"", "1e-3"}},
+        {R"("material": "ecoflex-0030-thiner-25")", {"key \"material\"", "did you mean \"ecoflex-0030-thinner-25\"?"}},
         {R"("foundation": -1)", {"key \"foundation\"", "from 0"}},
         {R"("foundation": "1 MPa")", {"key \"foundation\"", "unknown unit \"MPa\"", "MPa/m"}},
         {R"("cells": 63)", {"key \"cells\"", "even", "63"}},

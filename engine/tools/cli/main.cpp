@@ -87,6 +87,7 @@ int main(int argumentCount, char** arguments)
     app.footer("Examples:\n"
                "  palpate touch sample:skin --out touch          a poke into a wart, with pictures\n"
                "  palpate info scan.ply --length-unit mm         what a file holds and how it is read\n"
+               "  palpate materials                              measured materials, for the key material\n"
                "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
                "  palpate paint scan.ply --stroke 'at=0,0,30mm radius=5mm value=2MPa' --out wart.ply\n"
                "                                                 a stiff spot on it; the rest of the file is kept\n"
@@ -107,6 +108,7 @@ int main(int argumentCount, char** arguments)
     palp::addTouchCommand(app);
     palp::addSolveCommand(app);
     palp::addInfoCommand(app);
+    palp::addMaterialsCommand(app);
     palp::addConvertCommand(app);
     palp::addPaintCommand(app);
     palp::addDevicesCommand(app);

@@ -7,6 +7,7 @@
 #include "engine/pipeline/deform.h"
 #include "engine/pipeline/patch_warnings.h"
 #include "engine/pipeline/presets.h"
+#include "engine/pipeline/press.h"
 #include "engine/plate/load.h"
 
 namespace palp {
@@ -73,6 +74,8 @@ Json settingsJson(const Material& material, const PatchSettings& s)
 {
     return {{"thickness", material.thickness},
             {"poisson", material.poissonRatio},
+            {"stiffening", material.stiffening},
+            {"relaxation", relaxationText(material.relaxation)},
             {"foundation", s.foundation},
             {"window", s.window},
             {"cells", s.cells},
@@ -95,7 +98,8 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
         {"differences_from_paper", differencesFromPaper(settings)},
         {"sphere", sphereJson(patch.sphere)}};
     if (!patch.deformed()) return report;
-    const int middle                = settings.cells / 2;
+    const int   middle              = settings.cells / 2;
+    const Press press               = pressOf(patch, material, force);
     report["chart"]                 = chartJson(patch.chart);
     report["chart"]["unrolled"]     = patch.unrolled;
     report["noise"]                 = patch.noise;
@@ -104,9 +108,11 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
     report["compliance"]            = patch.compliance;
     report["contact_stiffness"]     = patch.contactStiffness;
     report["felt_stiffness"]        = patch.feltStiffness;
-    report["deflection_at_contact"] = force * patch.response(middle, middle);
+    report["depth"]                 = press.depth;
+    report["depth_relaxed"]         = press.later;
+    report["deflection_at_contact"] = press.load * patch.response(middle, middle);
     report["max_deflection"] =
-        force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
+        press.load * *std::max_element(patch.response.values().begin(), patch.response.values().end());
     report["error"]        = {{"discretisation", orNull(discretisationError(patch, settings, solver))},
                               {"solver", orNull(patch.report.errorEstimate)}};
     report["solver"]       = {{"name", patch.report.solver},
@@ -116,7 +122,7 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
                               {"work_units", orNull(patch.report.workUnits)},
                               {"tolerance", settings.tolerance}};
     report["milliseconds"] = timesJson(patch.times);
-    report["warnings"]     = warnings(patch, settings, force);
+    report["warnings"]     = warnings(patch, settings, force, material);
     return report;
 }
 

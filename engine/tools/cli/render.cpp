@@ -15,6 +15,8 @@
 #include "engine/core/quantity.h"
 #include "engine/pipeline/deform.h"
 #include "engine/pipeline/patch_warnings.h"
+#include "engine/pipeline/press.h"
+#include "engine/session/drawn_load.h"
 #include "engine/session/virtual_session.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
@@ -104,14 +106,14 @@ Camera cameraFor(const RenderOptions& o, const Stage& stage, const Patch& patch)
     return framed(camera, bounds.centre(), 0.5 * bounds.diagonal(), aspect);
 }
 
-double deepestOf(const Patch& patch, double force)
+double deepestOf(const Patch& patch, double load)
 {
-    return force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
+    return load * *std::max_element(patch.response.values().begin(), patch.response.values().end());
 }
 
-std::string noteOf(const Stage& stage, const Patch& patch, double force)
+std::string noteOf(const Stage& stage, const Patch& patch, double force, double load)
 {
-    std::string note = formatQuantity(force, "N") + ", " + formatQuantity(deepestOf(patch, force), "m") + " deep in " +
+    std::string note = formatQuantity(force, "N") + ", " + formatQuantity(deepestOf(patch, load), "m") + " deep in " +
                        formatQuantity(stage.scene.material.thickness, "m");
     if (stage.look.exaggeration != 1) {
         char factor[32];
@@ -143,13 +145,14 @@ Written still(const RenderOptions& o, Stage& stage)
 {
     const Patch  patch = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
     const double force = o.force.empty() ? forceThatShows(patch, stage.scene.material.thickness) : forceOf(o.force);
-    stage.view.show(&patch, force, stage.look);
+    const double load  = pressOf(patch, stage.scene.material, force).load;
+    stage.view.show(&patch, force, stage.look, {}, load);
     stage.view.scene().title = o.scene.title();
-    stage.view.scene().note  = noteOf(stage, patch, force);
+    stage.view.scene().note  = noteOf(stage, patch, force, load);
     Written written          = write(stage, cameraFor(o, stage, patch), o.out);
     written.force            = force;
-    written.deepest          = deepestOf(patch, force);
-    for (const std::string& sentence : warnings(patch, stage.scene.patch, force))
+    written.deepest          = deepestOf(patch, load);
+    for (const std::string& sentence : warnings(patch, stage.scene.patch, force, stage.scene.material))
         std::cerr << "palpate: warning: " << sentence << "\n";
     return written;
 }
@@ -189,12 +192,15 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage)
     const Camera       camera  = cameraFor(o, stage, middle);
     const auto         records = recordsOf(o, stage, *o.frames);
     std::vector<Patch> patches;
-    TouchLook          look = stage.look;
+    const auto         loadOf = [&](const TickRecord& s, const Patch* patch) {
+        return drawnLoad(s, patch, stage.scene.material);
+    };
+    TouchLook look = stage.look;
     for (const TickRecord& s : records) {
         const double force = glm::length(s.force);
         if (force > 0) patches.push_back(patchAt(stage, {s.proxy, s.normal}));
         look.strongest = std::max(look.strongest, force);
-        if (force > 0) look.deepest = std::max(look.deepest, deepestOf(patches.back(), force));
+        if (force > 0) look.deepest = std::max(look.deepest, deepestOf(patches.back(), loadOf(s, &patches.back())));
     }
     Progress             progress("drawing");
     std::vector<Written> written;
@@ -203,12 +209,13 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage)
         const TickRecord& s     = records[n];
         const double      force = glm::length(s.force);
         const Patch*      bent  = force > 0 ? &*patch++ : nullptr;
-        stage.view.show(bent, force, look, TouchHand{s.hip, s.force});
+        const double      load  = loadOf(s, bent);
+        stage.view.show(bent, force, look, TouchHand{s.hip, s.force}, load);
         stage.view.scene().title = o.scene.title();
         stage.view.scene().note  = formatQuantity(s.time, "s") + ", " + formatQuantity(force, "N");
         written.push_back(write(stage, camera, frameFile(o.out, int(n) + 1)));
         written.back().force   = force;
-        written.back().deepest = bent ? deepestOf(*bent, force) : 0;
+        written.back().deepest = bent ? deepestOf(*bent, load) : 0;
         progress.at(n + 1, records.size());
     }
     return written;

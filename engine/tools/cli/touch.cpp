@@ -12,6 +12,7 @@
 #include "engine/core/quantity.h"
 #include "engine/pipeline/deform.h"
 #include "engine/pipeline/presets.h"
+#include "engine/pipeline/press.h"
 #include "engine/session/hand_path.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
@@ -74,6 +75,10 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
     std::printf("  contact stiffness  %s\n", quantity("contact_stiffness", "N/m").c_str());
     std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(),
                 name(settings.forceLaw));
+    if (!scene.material.isLinear())
+        std::printf("  depth              %s of the hand at once, %s in the end (stiffening %.4g 1/m, relaxation %s)\n",
+                    quantity("depth", "m").c_str(), quantity("depth_relaxed", "m").c_str(), scene.material.stiffening,
+                    relaxationText(scene.material.relaxation).c_str());
     std::printf("  error              discretisation %s, solver %s (%s)\n",
                 error["discretisation"].is_null() ? "unknown" : percent(error["discretisation"].get<double>()).c_str(),
                 percent(error["solver"].get<double>()).c_str(), r["solver"]["name"].get<std::string>().c_str());
@@ -91,12 +96,12 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
 
 /// Writes the touch's pictures and returns the names of their files, in reading order.
 std::vector<std::string> writePictures(const std::filesystem::path& folder, const PointCloud& cloud, const Patch& patch,
-                                       const PatchSettings& settings, double force)
+                                       const PatchSettings& settings, double force, double load)
 {
     FigureRenderer    renderer;
     const std::string newtons = formatQuantity(force, "N");
-    const double deepest = force * *std::max_element(patch.response.values().begin(), patch.response.values().end());
-    const PressedPatch pressed[] = {{&patch, force, newtons}};
+    const double deepest = load * *std::max_element(patch.response.values().begin(), patch.response.values().end());
+    const PressedPatch pressed[] = {{&patch, load, newtons}};
     const double       far       = roundExaggeration(deepest, cloud.bounds().diagonal());
     const double       near      = roundExaggeration(deepest, 2 * settings.window);
     const auto         times     = [](double factor) {
@@ -108,8 +113,8 @@ std::vector<std::string> writePictures(const std::filesystem::path& folder, cons
          surfaceSvg(cloud, pressed, {"Around the contact under " + newtons + times(near), near, {}, true}, renderer)},
         {"rigidity.svg",
          rigidityChartSvg(patch, settings, std::string("Rigidity in the ") + name(patch.chart.map) + " chart")},
-        {"deflection.svg", deflectionChartSvg(patch, settings, force, "Deflection under " + newtons)},
-        {"profile.svg", profileSvg(patch, force, "Deflection through the contact under " + newtons)}};
+        {"deflection.svg", deflectionChartSvg(patch, settings, load, "Deflection under " + newtons)},
+        {"profile.svg", profileSvg(patch, load, "Deflection through the contact under " + newtons)}};
     std::vector<std::string> files;
     for (const auto& picture : pictures) {
         writeFileWhole(folder / picture.first, [&](std::ostream& stream) { stream << picture.second; });
@@ -120,7 +125,7 @@ std::vector<std::string> writePictures(const std::filesystem::path& folder, cons
 
 /// Writes the deformed cloud, the grids and the pictures.
 std::vector<std::string> writeFiles(const TouchOptions& options, const PointCloud& cloud, const Patch& patch,
-                                    const PatchSettings& settings, double force)
+                                    const PatchSettings& settings, double force, double load)
 {
     const std::filesystem::path folder = options.out;
     makeFolder(folder);
@@ -128,19 +133,19 @@ std::vector<std::string> writeFiles(const TouchOptions& options, const PointClou
     std::error_code failure;
     std::filesystem::remove(folder / kSummary, failure);
     if (failure) throw Error((folder / kSummary).string() + ": cannot be replaced: " + failure.message());
-    const std::vector<double>     deflection = deflections(cloud, patch, force);
+    const std::vector<double>     deflection = deflections(cloud, patch, load);
     const std::span<const double> stiffness  = cloud.stiffness();
-    const PointCloud bent(displaced(cloud, patch, force), {stiffness.begin(), stiffness.end()}, cloud.kind());
+    const PointCloud bent(displaced(cloud, patch, load), {stiffness.begin(), stiffness.end()}, cloud.kind());
     const NamedField field{"deflection", "m", deflection};
     writeCloud(folder / "deformed.ply", bent, {&field, 1});
 
     NodeField w = patch.response;
-    for (double& value : w.values()) value *= force;
+    for (double& value : w.values()) value *= load;
     writeNpy(folder / "deflection.npy", w);
     writeNpy(folder / "rigidity.npy", patch.plate.rigidity);
 
     std::vector<std::string> files = {"deformed.ply", "deflection.npy", "rigidity.npy"};
-    for (std::string& picture : writePictures(folder, cloud, patch, settings, force))
+    for (std::string& picture : writePictures(folder, cloud, patch, settings, force, load))
         files.push_back(std::move(picture));
     return files;
 }
@@ -175,7 +180,8 @@ void touch(const TouchOptions& options)
         report["warnings"].push_back(std::move(line));
     report["preset"] = name(scene.preset);
     if (!options.out.empty()) {
-        std::vector<std::string> files = writeFiles(options, object.cloud(), patch, settings, force);
+        std::vector<std::string> files =
+            writeFiles(options, object.cloud(), patch, settings, force, pressOf(patch, scene.material, force).load);
         files.emplace_back(kSummary);
         report["files"] = files;
         writeFileWhole(std::filesystem::path(options.out) / kSummary,

@@ -8,6 +8,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
+#include "engine/session/drawn_load.h"
 #include "engine/tools/gui/background_work.h"
 #include "engine/tools/gui/key_bindings.h"
 #include "engine/tools/gui/panel_layout.h"
@@ -278,7 +279,8 @@ void Workbench::showTouch(const SessionView* view)
     if (view) {
         const double force = glm::length(view->record.force);
         stage.view().show(inContact(view) || force > 0 ? view->patch : nullptr, force, state_.look,
-                          TouchHand{view->record.hip, view->record.force, view->record.proxy});
+                          TouchHand{view->record.hip, view->record.force, view->record.proxy},
+                          drawnLoad(view->record, view->patch, stage.scene().material));
     } else {
         stage.view().show(nullptr, 0, state_.look);
     }
@@ -316,7 +318,7 @@ PanelContent Workbench::content(const SessionView* view) const
     now.faults = notices_.faults();
     if (view) {
         now.patch      = view->patch;
-        now.force      = glm::length(view->record.force);
+        now.force      = drawnLoad(view->record, view->patch, stage.scene().material);
         now.loopPeriod = view->loopPeriod;
         now.solveTime  = view->solveTime;
         now.touching   = inContact(view);

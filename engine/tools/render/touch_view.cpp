@@ -83,9 +83,9 @@ void TouchView::take(const Patch* patch)
     if (mesh_) mesh_->take(surface_);
 }
 
-void TouchView::bend(double force, double exaggeration)
+void TouchView::bend(double load, double exaggeration)
 {
-    if (mesh_) return mesh_->bend(force, exaggeration);
+    if (mesh_) return mesh_->bend(load, exaggeration);
     for (const std::uint32_t n : moved_) {
         positions_[n]   = object_.positions()[n];
         normals_[n]     = restNormals_[n];
@@ -95,15 +95,15 @@ void TouchView::bend(double force, double exaggeration)
     moved_ = surface_.moving;
     for (std::size_t i = 0; i < moved_.size(); ++i) {
         const std::uint32_t n = moved_[i];
-        deflections_[n]       = force * surface_.responses[i];
+        deflections_[n]       = load * surface_.responses[i];
         positions_[n] += exaggeration * deflections_[n] * surface_.inward;
         const double side = glm::dot(restNormals_[n], surface_.inward) < 0 ? 1 : -1; // normals have either side
-        hollows_[n]       = relief_[n] + side * exaggeration * force * surface_.hollows[i];
+        hollows_[n]       = relief_[n] + side * exaggeration * load * surface_.hollows[i];
     }
     skin_.refit(positions_, std::span(moved_).first(surface_.sloping), normals_);
 }
 
-void TouchView::paint(double force, const TouchLook& look)
+void TouchView::paint(double load, const TouchLook& look)
 {
     scene_.positions = positions_;
     scene_.normals   = normals_;
@@ -113,7 +113,7 @@ void TouchView::paint(double force, const TouchLook& look)
     scene_.oneSided  = oneSided_;
     scene_.ground    = look.ground;
     if (look.paint == ViewPaint::deflection) {
-        const double most = look.deepest > 0 ? look.deepest : std::abs(force) * surface_.mostResponse;
+        const double most = look.deepest > 0 ? look.deepest : std::abs(load) * surface_.mostResponse;
         scene_.values     = deflections_;
         scene_.colours    = {look.map, Scale::linear, {0, most > 0 ? most : 1e-3}, "deflection", "m"};
     } else if (look.paint == ViewPaint::stiffness) {
@@ -145,12 +145,12 @@ void TouchView::drawMesh(const TouchLook& look)
     }
 }
 
-void TouchView::addHand(const Patch& patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand)
+void TouchView::addHand(const Patch& patch, Pressed by, const TouchLook& look, const std::optional<TouchHand>& hand)
 {
     constexpr double kLongest = 0.22, kNormal = 1.35; // of the window; of the force's arrow [1]
     const glm::dvec3 inward = patch.forceDirection();
     const PlateGrid& grid   = patch.window.grid;
-    const double     dent   = force * patch.response(grid.cellsX / 2, grid.cellsZ / 2);
+    const double     dent   = by.load * patch.response(grid.cellsX / 2, grid.cellsZ / 2);
     const glm::dvec3 point  = hand && hand->proxy ? *hand->proxy : patch.contact.point;
     const double     felt   = patch.feltStiffness;
     const glm::dvec3 proxy  = point + look.exaggeration * dent * inward;
@@ -158,21 +158,22 @@ void TouchView::addHand(const Patch& patch, double force, const TouchLook& look,
         scene_.proxy = proxy;
         // An exaggerated dent moves the hand with it.
         const glm::dvec3 deeper = (look.exaggeration - 1) * dent * inward;
-        scene_.hip = hand ? hand->hip + deeper : point + look.exaggeration * (felt > 0 ? force / felt : dent) * inward;
+        scene_.hip =
+            hand ? hand->hip + deeper : point + look.exaggeration * (felt > 0 ? by.load / felt : dent) * inward;
     }
     if (!look.overlays.arrows) return;
-    const double     strongest = look.strongest > 0 ? look.strongest : std::abs(force);
+    const double     strongest = look.strongest > 0 ? look.strongest : std::abs(by.force);
     const double     longest   = kLongest * settings_.window;
-    const double     length    = strongest > 0 ? longest * std::min(1.0, std::abs(force) / strongest) : 0;
+    const double     length    = strongest > 0 ? longest * std::min(1.0, std::abs(by.force) / strongest) : 0;
     const glm::dvec3 against   = hand && glm::length(hand->force) > 0 ? glm::normalize(hand->force) : -inward;
     scene_.force               = ViewSegment{proxy, proxy + length * against};
     scene_.normal              = ViewSegment{proxy, proxy - kNormal * longest * inward};
 }
 
-void TouchView::addOutline(double force, double exaggeration)
+void TouchView::addOutline(double load, double exaggeration)
 {
     const auto placeOf = [&](const PatchSurface::EdgePlace& e) {
-        return e.rest + exaggeration * force * e.response * surface_.inward;
+        return e.rest + exaggeration * load * e.response * surface_.inward;
     };
     for (std::size_t n = 1; n < surface_.edge.size(); ++n)
         if (!surface_.edge[n].starts)
@@ -200,22 +201,24 @@ void TouchView::addGhost(Ground ground)
     }
 }
 
-void TouchView::show(const Patch* patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand)
+void TouchView::show(const Patch* patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand,
+                     std::optional<double> load)
 {
+    const Pressed    by{force, load.value_or(force)};
     constexpr double kMarker = 0.45; // of the fingertip [1]
     take(patch);
-    bend(force, look.exaggeration);
+    bend(by.load, look.exaggeration);
     scene_               = {};
     scene_.markerRadius  = std::min(kMarker * settings_.footprintRadius, 0.025 * settings_.window);
     scene_.arrowRadius   = kArrow * settings_.window;
     scene_.outlineRadius = kOutline * settings_.window;
     scene_.cueRadius     = kCue * settings_.window;
     scene_.faces         = object_.faces();
-    paint(force, look);
+    paint(by.load, look);
     if (mesh_) drawMesh(look);
     if (patch) {
-        addHand(*patch, force, look, hand);
-        if (look.overlays.outline) addOutline(force, look.exaggeration);
+        addHand(*patch, by, look, hand);
+        if (look.overlays.outline) addOutline(by.load, look.exaggeration);
         addFit(*patch, look.overlays);
         if (look.overlays.ghost) addGhost(look.ground);
     } else if (hand && look.overlays.markers) {

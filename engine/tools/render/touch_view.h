@@ -67,8 +67,10 @@ public:
     /// Makes the scene of the cloud under a force, or at rest without a patch.
     /// \param patch  of the cloud, deformed; may be null
     /// \param force  that presses [N]
-    /// \param hand   empty: at rest, where the force is that of the hand's depth
-    void show(const Patch* patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand = {});
+    /// \param hand   empty: at rest, where the load is that of the hand's depth
+    /// \param load   [N] that makes the dent, see Press; empty: the force
+    void show(const Patch* patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand = {},
+              std::optional<double> load = {});
 
     /// Takes other settings of the same cloud from now on.
     void use(const PatchSettings& settings);
@@ -89,11 +91,15 @@ private:
     };
     void findRelief();
     void take(const Patch* patch);
-    void bend(double force, double exaggeration);
-    void paint(double force, const TouchLook& look);
+    void bend(double load, double exaggeration);
+    void paint(double load, const TouchLook& look);
     void drawMesh(const TouchLook& look);
-    void addHand(const Patch& patch, double force, const TouchLook& look, const std::optional<TouchHand>& hand);
-    void addOutline(double force, double exaggeration);
+    /// A force and the load that dents as deep.
+    struct Pressed {
+        double force = 0, load = 0; ///< [N]
+    };
+    void addHand(const Patch& patch, Pressed by, const TouchLook& look, const std::optional<TouchHand>& hand);
+    void addOutline(double load, double exaggeration);
     void addFit(const Patch& patch, const Overlays& overlays);
     void addGhost(Ground ground);
 

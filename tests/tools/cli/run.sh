@@ -34,7 +34,7 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info convert paint render view export hunt study perceive paper devices doctor calibrate bench; do
+for command in touch solve info materials convert paint render view export hunt study perceive paper devices doctor calibrate bench; do
     # shellcheck disable=SC2086  # a command, or one within another
     good "help of $command" $command --help; holds 'Examples:'
     mv out.txt help.txt
@@ -45,6 +45,10 @@ done
 good 'help of bench' bench --help
 holds 'palpate bench --out bench'
 grep -qF 'palpate touch' out.txt && complain 'the help of bench has the examples of touch' || passed=$((passed + 1))
+good 'materials' materials
+holds 'ecoflex-0030 ' && holds 'CC BY 4.0' && holds '810 1/m'
+good 'materials for scripts' materials --json
+holds '"modulus": 97260.0'
 good 'list of samples' info --samples
 for sample in ellipsoid sheet pad hemisphere saddle skin palm ear-lobe; do holds "sample:$sample"; done
 good 'a sample as a file' convert sample:skin skin.ply --points 5000

@@ -21,9 +21,11 @@ Scene sceneWith(const std::string& key, const std::string& text)
 TEST(SceneControls, EveryKeyOfASceneIsThereOrCannotChangeWhileOneTouches)
 {
     // What is touched, where, and with which solver: a new session, not another value. The law and the edges have
-    // fields of their own, a preset is the values that it sets, and the size of the table follows from the rate.
-    std::set<std::string_view> found{"cloud", "points",       "seed",       "stiffness", "solver", "place",
-                                     "from",  "start_height", "table_size", "edges",     "preset"};
+    // fields of their own, a preset and a material are the values that they set, and the size of the table follows from
+    // the rate. How a material stiffens and relaxes is the scene's.
+    std::set<std::string_view> found{"cloud",  "points",   "seed",         "stiffness",  "solver",
+                                     "place",  "from",     "start_height", "table_size", "edges",
+                                     "preset", "material", "stiffening",   "relaxation"};
     for (const SceneKey& key : sceneKeys())
         if (key.cloud == SceneKey::For::file) found.insert(key.name);
     std::size_t controls = 0;

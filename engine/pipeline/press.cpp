@@ -1,0 +1,18 @@
+#include "engine/pipeline/press.h"
+
+namespace palp {
+
+DepthLaw depthLawOf(const Patch& patch, const Material& material) noexcept
+{
+    return {patch.feltStiffness, material.stiffening};
+}
+
+Press pressOf(const Patch& patch, const Material& material, double force) noexcept
+{
+    const DepthLaw law = depthLawOf(patch, material);
+    Press          press{law.depthOf(force), force, law.depthOf(force / (1 - material.relaxation.shares()))};
+    if (material.stiffening > 0) press.load = law.stiffness * press.depth;
+    return press;
+}
+
+} // namespace palp

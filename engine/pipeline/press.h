@@ -1,0 +1,23 @@
+#pragma once
+#include "engine/cloud/material.h"
+#include "engine/force/depth_law.h"
+#include "engine/pipeline/patch.h"
+
+namespace palp {
+
+/// The elastic law of a patch, without a cap: that of the place, not of a device.
+[[nodiscard]] DepthLaw depthLawOf(const Patch& patch, const Material& material) noexcept;
+
+/// What a force does to a patch. Where the force stiffens with depth, the dent does not grow with the force, but with
+/// the depth: it is the one that `load` makes of a linear plate. A linear material has load = force, to the bit.
+struct Press {
+    double depth = 0; ///< of the hand at once [m]
+    double load  = 0; ///< times the patch's response is the dent [N]
+    double later = 0; ///< depth after so long that nothing relaxes any more [m]
+};
+
+/// \param force  of 0 or more [N]
+/// \pre patch.deformed()
+[[nodiscard]] Press pressOf(const Patch& patch, const Material& material, double force) noexcept;
+
+} // namespace palp

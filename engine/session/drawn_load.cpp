@@ -1,0 +1,17 @@
+#include "engine/session/drawn_load.h"
+
+#include <algorithm>
+
+#include <glm/geometric.hpp>
+
+namespace palp {
+
+double drawnLoad(const TickRecord& record, const Patch* patch, const Material& material) noexcept
+{
+    const double force = glm::length(record.force);
+    if (material.isLinear() || !patch || !patch->deformed()) return force;
+    const double most = *std::ranges::max_element(patch->response.values());
+    return most > 0 ? record.maxDeflection / most : force;
+}
+
+} // namespace palp

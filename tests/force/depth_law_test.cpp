@@ -1,0 +1,67 @@
+#include "engine/force/depth_law.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace palp {
+namespace {
+
+constexpr double kMeat = 810; ///< [1/m] median of probes of liver and meat
+
+TEST(DepthLaw, WithoutStiffeningItIsTheSpringToTheBit)
+{
+    for (const double depth : {0.0, 1.7e-3, 3.1e-2}) {
+        const DepthLaw law = DepthLaw::capped(437.3, 0, 1000);
+        EXPECT_EQ(law.force(depth), 437.3 * depth);
+        EXPECT_EQ(law.secant(depth), 437.3);
+        EXPECT_EQ(law.tangent(depth), 437.3);
+        EXPECT_EQ(law.energy(depth), 437.3 * depth * depth / 2);
+    }
+    EXPECT_EQ(DepthLaw::capped(2000, 0, 1000).stiffness, 1000);
+}
+
+TEST(DepthLaw, IsTheExponentialUpToTheCapAndStraightBeyond)
+{
+    const DepthLaw law  = DepthLaw::capped(200, kMeat, 1000);
+    const double   bend = std::log(5) / kMeat; // 2 mm: e^{b d} is 5 there
+
+    EXPECT_NEAR(law.force(1e-3), 200 * (std::exp(0.81) - 1) / kMeat, 1e-12);
+    EXPECT_NEAR(law.tangent(1e-3), 200 * std::exp(0.81), 1e-9);
+    EXPECT_NEAR(law.force(bend), 800 / kMeat, 1e-12);
+    EXPECT_NEAR(law.force(bend + 3e-3), 800 / kMeat + 3, 1e-12) << "1000 N/m over 3 mm";
+    EXPECT_EQ(law.tangent(bend + 3e-3), 1000);
+    EXPECT_TRUE(std::isfinite(law.energy(100))) << "no exponential of what lies beyond the cap";
+}
+
+TEST(DepthLaw, ItsEnergyIsTheWorkOfItsForceAndItsTangentTheSlope)
+{
+    for (const double stiffening : {1e-6, 0.1, 10.0, kMeat, 5e3})
+        for (const double cap : {1000.0, std::numeric_limits<double>::infinity()}) {
+            const DepthLaw   law    = DepthLaw::capped(200, stiffening, cap);
+            constexpr double kEnd   = 4e-3;
+            constexpr int    kSteps = 4000;
+            double           work   = 0;
+            for (int n = 0; n < kSteps; ++n) {
+                const double from = kEnd * n / kSteps, to = kEnd * (n + 1) / kSteps, middle = (from + to) / 2;
+                work += (law.force(from) + 4 * law.force(middle) + law.force(to)) / 6 * (to - from);
+                const double slope = (law.force(to) - law.force(from)) / (to - from);
+                EXPECT_NEAR(law.tangent(middle) / slope, 1, 3e-3) << "a step of 1 um may hold the bend";
+            }
+            EXPECT_NEAR(law.energy(kEnd) / work, 1, 1e-6) << stiffening << " " << cap << ": Simpson's rule at the bend";
+        }
+}
+
+TEST(DepthLaw, TheDepthOfAForceIsTheInverse)
+{
+    for (const double stiffening : {0.0, kMeat})
+        for (const double depth : {0.0, 0.5e-3, 1.9e-3, 6e-3}) {
+            const DepthLaw law = DepthLaw::capped(200, stiffening, 1000);
+            EXPECT_NEAR(law.depthOf(law.force(depth)), depth, 1e-15);
+        }
+    EXPECT_EQ(DepthLaw{}.depthOf(1), 0) << "nothing holds nothing up";
+}
+
+} // namespace
+} // namespace palp

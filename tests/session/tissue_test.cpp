@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "engine/force/depth_law.h"
+#include "tests/session/sheet_session.h"
+
+// Sessions whose material stiffens with depth, and relaxes.
+
+namespace palp {
+namespace {
+
+constexpr double kHover = 1.7, kDown = 0.3, kHeight = 2e-3; // [s] until the force is on, [s], [m]
+
+Scene scene(const std::string& stiffness, double stiffening, const Relaxation& relaxation)
+{
+    Scene made               = sheetScene(stiffness);
+    made.staticFriction      = 0;
+    made.dynamicFriction     = 0;
+    made.material.stiffening = stiffening;
+    made.material.relaxation = relaxation;
+    return made;
+}
+
+/// Down at one place, and then to and fro about it, `reach` to either side.
+HandPath handTo(double depth, double seconds, double reach = 0, double frequency = 1)
+{
+    std::vector<HandPose> path;
+    for (int n = 0; n * 1e-3 <= seconds; ++n) {
+        const double time = n * 1e-3, u = std::clamp((time - kHover) / kDown, 0.0, 1.0);
+        const double stroke = std::max(0.0, time - kHover - kDown) * 2 * std::numbers::pi * frequency;
+        path.push_back({time, {-reach * std::cos(stroke), 0.7e-3, kHeight - (kHeight + depth) * u * u * (3 - 2 * u)}});
+    }
+    return HandPath(path);
+}
+
+std::vector<TickRecord> run(const Scene& of, const HandPath& hand)
+{
+    SheetSession session(of);
+    session.hand = hand;
+    return session.run(hand.waypoints().back().time);
+}
+
+const char* const kEven = R"({"law": "constant", "value": 2e5})";
+
+double pullOf(const TickRecord& record)
+{
+    return glm::length(record.proxy - record.hip);
+}
+
+TEST(Tissue, TheForceFollowsTheExponentialToTheCapAndTheDentGoesWithTheDepth)
+{
+    constexpr double              kStiffening = 500;
+    const std::vector<TickRecord> spring      = run(scene(kEven, 0, {}), handTo(3e-3, 2.1));
+    const std::vector<TickRecord> tissue      = run(scene(kEven, kStiffening, {}), handTo(3e-3, 2.1));
+
+    const DepthLaw law  = DepthLaw::capped(spring.back().stiffness, kStiffening, 1000);
+    int            bent = 0;
+    double         most = 0; // [N/m]
+    for (std::size_t n = 0; n < tissue.size(); ++n) {
+        const double depth = pullOf(tissue[n]);
+        if (tissue[n].normal == glm::dvec3(0) || depth < 0.2e-3) continue;
+        EXPECT_NEAR(glm::length(tissue[n].wanted) / law.force(depth), 1, 1e-3)
+            << tissue[n].time << ": the table's error";
+        EXPECT_NEAR(tissue[n].stiffness * depth, glm::length(tissue[n].wanted), 1e-12);
+        most = std::max(most, law.tangent(depth));
+        ++bent;
+    }
+    EXPECT_GT(bent, 100);
+    EXPECT_GT(law.force(3e-3), 1.5 * law.stiffness * 3e-3) << "or nothing was tested";
+    EXPECT_NEAR(tissue.back().maxDeflection / spring.back().maxDeflection, 1, 0.02)
+        << "the same depth, the same dent; a table may round";
+}
+
+TEST(Tissue, AHeldFingerLosesForceAndNotItsDent)
+{
+    const Relaxation              meat{{{{0.26, 0.41}, {0.31, 4.3}}}, 2};
+    const std::vector<TickRecord> spring = run(scene(kEven, 0, {}), handTo(2e-3, 4));
+    const std::vector<TickRecord> tissue = run(scene(kEven, 0, meat), handTo(2e-3, 4));
+    const auto                    at     = [](const std::vector<TickRecord>& records, double time) {
+        return records[std::size_t(std::llround(time * 1e3)) - 1];
+    };
+
+    // The integral of G(t - s) dF_e(s), from the spring's session.
+    for (const double end : {1.9, 2.1, 3.0, 3.9}) {
+        double force = 0, last = 0;
+        for (const TickRecord& record : spring) {
+            if (record.time > end) break;
+            const double now  = glm::length(record.wanted);
+            double       left = 1;
+            for (std::size_t n = 0; n < meat.count; ++n)
+                left -= meat.terms[n].share * (1 - std::exp(-(end - record.time) / meat.terms[n].time));
+            force += left * (now - last);
+            last = now;
+        }
+        EXPECT_NEAR(glm::length(at(tissue, end).wanted) / force, 1, 3e-3) << end << ": half a tick of the press";
+    }
+    EXPECT_LT(glm::length(at(tissue, 3.9).force), 0.65 * glm::length(at(spring, 3.9).force));
+    EXPECT_NEAR(at(tissue, 3.9).maxDeflection / at(spring, 3.9).maxDeflection, 1, 0.01);
+    EXPECT_EQ(std::uint32_t(at(tissue, 3.9).faults & 0xFFU), 0u);
+}
+
+TEST(Tissue, AStrokeOverALumpGivesTheHandNothing)
+{
+    const Relaxation quick{{{{0.4, 0.1}}}, 1};
+    for (const auto& [stiffening, relaxation] :
+         {std::pair{300.0, Relaxation{}}, std::pair{0.0, quick}, std::pair{300.0, quick}}) {
+        constexpr double              kCycle = 0.8; // [s]
+        const std::vector<TickRecord> records =
+            run(scene(kWart, stiffening, relaxation), handTo(1.5e-3, 2 + 2 * kCycle, 10e-3, 1 / kCycle));
+        double work = 0, most = 0; // [J]
+        for (std::size_t n = 1; n < records.size(); ++n) {
+            if (records[n].time < 2 + kCycle) continue;
+            work += glm::dot(records[n].force + records[n - 1].force, records[n].hip - records[n - 1].hip) / 2;
+            most = std::max(most, glm::length(records[n].force) * 1.5e-3 / 2);
+        }
+        // Without the lean it is E(K2) - E(K1), some 0.4 mJ, on each of two ways down.
+        EXPECT_LT(work, 0.02e-3) << stiffening << " " << relaxation.count << ": a force is a tick late";
+        EXPECT_GT(work, relaxation.count == 0 ? -0.05e-3 : -most) << stiffening << " " << relaxation.count;
+    }
+}
+
+} // namespace
+} // namespace palp
