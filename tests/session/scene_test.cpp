@@ -112,7 +112,7 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
     const Scene scene = parsed(R"({
         "cloud": "sample:sheet", "points": 1000, "seed": 7, "stiffness": "linear:from=1e5,to=1e6,axis=y",
         "thickness": "0.5 cm", "poisson": -0.2, "foundation": "2 MPa/m", "window": 0.05, "cells": 32.0,
-        "stiffening": "0.81 1/mm", "relaxation": "0.26@410ms,0.31@4.3", "material": "meat",
+        "stiffening": "0.81 1/mm", "relaxation": "0.26@0.41s,0.31@4.3", "material": "meat",
         "footprint_radius": "3mm", "map": "gall-peters", "resampling": "nearest", "edges": {"x0": "free"},
         "force_law": "paper", "tolerance": 1e-6, "compliance_law": "blend", "table_size": 7, "deformation_rate": 30,
         "proxy": "sphere", "static_friction": 1, "dynamic_friction": 0, "max_force": "500 mN",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include <glm/geometric.hpp>
@@ -26,14 +27,19 @@ Scene scene(const std::string& stiffness, double stiffening, const Relaxation& r
     return made;
 }
 
-/// Down at one place, and then to and fro about it, `reach` to either side.
-HandPath handTo(double depth, double seconds, double reach = 0, double frequency = 1)
+/// Down at one place, to and fro about it, `reach` to either side, and up again in the last 0.3 s if `lifts`.
+HandPath handTo(double depth, double seconds, double reach = 0, double frequency = 1, bool lifts = false)
 {
     std::vector<HandPose> path;
+    const auto            smooth = [](double u) { return u * u * (3 - 2 * u); };
     for (int n = 0; n * 1e-3 <= seconds; ++n) {
-        const double time = n * 1e-3, u = std::clamp((time - kHover) / kDown, 0.0, 1.0);
-        const double stroke = std::max(0.0, time - kHover - kDown) * 2 * std::numbers::pi * frequency;
-        path.push_back({time, {-reach * std::cos(stroke), 0.7e-3, kHeight - (kHeight + depth) * u * u * (3 - 2 * u)}});
+        const double time = n * 1e-3, down = smooth(std::clamp((time - kHover) / kDown, 0.0, 1.0));
+        const double up     = lifts ? smooth(std::clamp((time - seconds + kDown) / kDown, 0.0, 1.0)) : 0;
+        const double last   = lifts ? seconds - kDown : seconds;
+        const double stroke = std::clamp(time, kHover + kDown, last) - kHover - kDown;
+        path.push_back({time,
+                        {-reach * std::cos(stroke * 2 * std::numbers::pi * frequency), 0.7e-3,
+                         kHeight - (kHeight + depth) * (down - up)}});
     }
     return HandPath(path);
 }
@@ -104,23 +110,24 @@ TEST(Tissue, AHeldFingerLosesForceAndNotItsDent)
     EXPECT_EQ(std::uint32_t(at(tissue, 3.9).faults & 0xFFU), 0u);
 }
 
-TEST(Tissue, AStrokeOverALumpGivesTheHandNothing)
+TEST(Tissue, AClosedStrokeOverALumpGivesTheHandNothing)
 {
     const Relaxation quick{{{{0.4, 0.1}}}, 1};
     for (const auto& [stiffening, relaxation] :
          {std::pair{300.0, Relaxation{}}, std::pair{0.0, quick}, std::pair{300.0, quick}}) {
         constexpr double              kCycle = 0.8; // [s]
         const std::vector<TickRecord> records =
-            run(scene(kWart, stiffening, relaxation), handTo(1.5e-3, 2 + 2 * kCycle, 10e-3, 1 / kCycle));
+            run(scene(kWart, stiffening, relaxation), handTo(1.5e-3, 2.3 + 2.5 * kCycle, 10e-3, 1 / kCycle, true));
         double work = 0, most = 0; // [J]
         for (std::size_t n = 1; n < records.size(); ++n) {
-            if (records[n].time < 2 + kCycle) continue;
             work += glm::dot(records[n].force + records[n - 1].force, records[n].hip - records[n - 1].hip) / 2;
             most = std::max(most, glm::length(records[n].force) * 1.5e-3 / 2);
         }
-        // Without the lean it is E(K2) - E(K1), some 0.4 mJ, on each of two ways down.
-        EXPECT_LT(work, 0.02e-3) << stiffening << " " << relaxation.count << ": a force is a tick late";
-        EXPECT_GT(work, relaxation.count == 0 ? -0.05e-3 : -most) << stiffening << " " << relaxation.count;
+        std::printf("  b %.0f, %zu terms: %.3f mJ to the hand, of %.2f mJ stored\n", stiffening, relaxation.count,
+                    work * 1e3, most * 1e3);
+        // Without the lean each way down a lump gives E(K2) - E(K1), some 0.4 mJ.
+        EXPECT_LT(work, 0.01e-3) << stiffening << " " << relaxation.count << ": a force is a tick late";
+        EXPECT_GT(work, relaxation.count == 0 ? -0.1e-3 : -most) << "a spring of any law takes as little";
     }
 }
 
