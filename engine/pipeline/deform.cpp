@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "engine/chart/exponential_map.h"
 #include "engine/cloud/surface_flood.h"
 #include "engine/core/contract.h"
+#include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/detail/touched_surface.h"
 #include "engine/plate/load.h"
@@ -63,7 +63,7 @@ void gatherPoints(Patch& patch, const SoftObject& object, const Contact& contact
 /// Keeps, of the ball, the surface that the finger touches; everything, in the paper's way.
 TouchedSurface touchedSurface(Patch& patch, const SoftObject& object, const PatchSettings& settings)
 {
-    if (settings.neighbourhood == Neighbourhood::ball) return {.points = patch.gathered};
+    if (settings.neighbourhood == Neighbourhood::ball) return {};
     const StageClock clock(patch.times.gather);
     TouchedSurface   surface =
         touchedSurface(object, patch.contact, patch.gathered, gatherRadius(settings, patch.spacing));
@@ -97,8 +97,8 @@ void fitSphereTo(Patch& patch, const SoftObject& object, const TouchedSurface& s
         return;
     }
     std::vector<glm::dvec3> points;
-    points.reserve(surface.points.size());
-    for (std::uint32_t point : surface.points) points.push_back(object.positions()[point]);
+    points.reserve(patch.gathered.size());
+    for (std::uint32_t point : patch.gathered) points.push_back(object.positions()[point]);
     patch.sphere = fitSphere(points);
 }
 
@@ -171,25 +171,22 @@ void projectPoints(Patch& patch, const SoftObject& object, std::span<const std::
 std::vector<std::optional<ChartPoint>> unroll(const Patch& patch, const SoftObject& object,
                                               const TouchedSurface& surface, const PatchSettings& settings)
 {
-    std::vector<glm::dvec3> places;
-    std::vector<double>     steps;
-    for (const std::uint32_t point : surface.points) {
-        places.push_back(object.positions()[point]);
-        steps.push_back(SurfaceFlood::kStep * object.survey().spacing(point));
-    }
-    return exponentialMap(patch.chart.origin, patch.chart.frame, places, surface.normals, steps,
+    std::vector<double> steps;
+    steps.reserve(surface.inBall.size());
+    for (const std::uint32_t number : surface.inBall)
+        steps.push_back(SurfaceFlood::kStep * object.survey().spacing(patch.gathered[number]));
+    return exponentialMap(patch.chart.origin, patch.chart.frame, surface.places, surface.normals, steps,
                           gatherRadius(settings, patch.spacing));
 }
 
 /// Returns the share of the window's points whose normal is turned away from the sphere's, fully from 60 degrees on.
-double turnedShare(const Patch& patch, const SoftObject& object, const TouchedSurface& surface,
-                   const PatchSettings& settings)
+double turnedShare(const Patch& patch, const TouchedSurface& surface, const PatchSettings& settings)
 {
     constexpr double kAlong = 0.77, kTurned = 0.5; // cosines of 40 and 60 degrees [1]
     const double     side   = glm::dot(patch.sphere.fit.normal(surface.anchor), surface.normal) < 0 ? -1 : 1;
     double           turned = 0, all = 0;
-    for (std::size_t k = 0; k < surface.points.size(); ++k) {
-        const glm::dvec3 p = object.positions()[surface.points[k]];
+    for (std::size_t k = 0; k < surface.places.size(); ++k) {
+        const glm::dvec3 p = surface.places[k];
         if (glm::length(p - surface.anchor) > settings.window / 2) continue;
         const double cosine = side * glm::dot(surface.normals[k], patch.sphere.fit.normal(p));
         turned += std::clamp((kAlong - cosine) / (kAlong - kTurned), 0.0, 1.0);
@@ -206,8 +203,7 @@ double turnedShare(const Patch& patch, const SoftObject& object, const TouchedSu
 ///
 /// Where a part of the window stands against the sphere by some 50 degrees, as behind a sharp rim, the misfit need not be
 /// large: then that part decides, before it comes to lie over the rest.
-double unrolledShare(const Patch& patch, const SoftObject& object, const TouchedSurface& surface,
-                     const PatchSettings& settings)
+double unrolledShare(const Patch& patch, const TouchedSurface& surface, const PatchSettings& settings)
 {
     if (settings.map != Map::lambertAzimuthal) return 0; // the user has chosen how a sphere is laid flat
     if (patch.normalFelt) return 1;
@@ -219,20 +215,25 @@ double unrolledShare(const Patch& patch, const SoftObject& object, const Touched
         const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
         return t * t * (3 - 2 * t);
     };
-    return std::max(risen(shape, kFollows, kAstray), risen(turnedShare(patch, object, surface, settings), kFew, kMany));
+    return std::max(risen(shape, kFollows, kAstray), risen(turnedShare(patch, surface, settings), kFew, kMany));
 }
 
 /// Lays the touched surface flat, by the sphere's map, by the exponential map, or by both in parts.
-void layTouched(Patch& patch, const SoftObject& object, const TouchedSurface& surface, const PatchSettings& settings)
+/// \return for each point of the ball whether it has its place
+std::vector<bool> layTouched(Patch& patch, const SoftObject& object, const TouchedSurface& surface,
+                             const PatchSettings& settings)
 {
-    if (settings.neighbourhood == Neighbourhood::ball) return projectPoints(patch, object, surface.points);
-    patch.unrolled = unrolledShare(patch, object, surface, settings);
-    std::vector<std::optional<ChartPoint>> unrolled(surface.points.size());
+    patch.unrolled = unrolledShare(patch, surface, settings);
+    std::vector<std::optional<ChartPoint>> unrolled;
     if (patch.unrolled > 0) unrolled = unroll(patch, object, surface, settings);
-    for (std::size_t k = 0; k < surface.points.size(); ++k) {
-        std::optional<ChartPoint> position = unrolled[k];
+    std::vector<bool> laid(patch.gathered.size());
+    patch.points.reserve(patch.gathered.size());
+    patch.positions.reserve(patch.gathered.size());
+    for (std::size_t k = 0; k < surface.places.size(); ++k) {
+        std::optional<ChartPoint> position;
+        if (patch.unrolled > 0) position = unrolled[k];
         if (patch.unrolled < 1 && glm::dot(surface.normals[k], surface.normal) > 0) {
-            const auto onSphere = patch.chart.project(object.positions()[surface.points[k]]);
+            const auto onSphere = patch.chart.project(surface.places[k]);
             if (onSphere && position)
                 position = ChartPoint{std::lerp(onSphere->x, position->x, patch.unrolled),
                                       std::lerp(onSphere->z, position->z, patch.unrolled)};
@@ -240,9 +241,11 @@ void layTouched(Patch& patch, const SoftObject& object, const TouchedSurface& su
                 position = onSphere;
         }
         if (!position) continue;
-        patch.points.push_back(surface.points[k]);
+        laid[surface.inBall[k]] = true;
+        patch.points.push_back(patch.gathered[surface.inBall[k]]);
         patch.positions.push_back(*position);
     }
+    return laid;
 }
 
 void turnOver(TouchedSurface& surface)
@@ -258,15 +261,18 @@ void layFlat(Patch& patch, const SoftObject& object, TouchedSurface surface, con
     const StageClock clock(patch.times.project);
     patch.chart = chartAt(patch, object, settings, carried);
     if (glm::dot(surface.normal, patch.chart.frame.normal) < 0) turnOver(surface); // the finger's side was a guess
-    layTouched(patch, object, surface, settings);
-    patch.touched = patch.points.size();
-    if (settings.neighbourhood == Neighbourhood::ball || patch.touched == patch.gathered.size()) return;
+    if (settings.neighbourhood == Neighbourhood::ball) {
+        projectPoints(patch, object, patch.gathered);
+        patch.touched = patch.points.size();
+        return;
+    }
+    const std::vector<bool> laid = layTouched(patch, object, surface, settings);
+    patch.touched                = patch.points.size();
+    if (patch.touched == patch.gathered.size()) return;
     // The rest of the ball, the other side of a thin body above all, moves with the touched side but does not count.
-    std::vector<std::uint32_t> rest = patch.gathered, laid = patch.points;
-    std::ranges::sort(rest);
-    std::ranges::sort(laid);
     std::vector<std::uint32_t> others;
-    std::ranges::set_difference(rest, laid, std::back_inserter(others));
+    for (std::size_t k = 0; k < laid.size(); ++k)
+        if (!laid[k]) others.push_back(patch.gathered[k]);
     projectPoints(patch, object, others);
 }
 
@@ -280,7 +286,8 @@ void refuseIfFew(const Patch& patch, const PatchSettings& settings)
 {
     constexpr std::ptrdiff_t kFewestPoints = 9; // 3 by 3: less is no field of rigidity
     const auto               touched       = std::span(patch.positions).first(patch.touched);
-    const auto held = std::ranges::count_if(touched, [&](const ChartPoint& p) { return patch.window.holds(p); });
+    std::ptrdiff_t           held          = 0;
+    for (std::size_t k = 0; k < touched.size() && held < kFewestPoints; ++k) held += patch.window.holds(touched[k]);
     if (held < kFewestPoints)
         throw Error(placeText(patch.contact) + ": the patch window of " + formatQuantity(settings.window, "m") +
                     " holds " + std::to_string(held) + " points of the touched surface, which are " +
@@ -308,11 +315,14 @@ std::pair<double, double> spacingsOf(const Patch& patch, const SoftObject& objec
 {
     constexpr double    kUneven = 2, kRest = 0.05; // [1] ratio to the patch's own; share of the area
     std::vector<double> spacings;
-    double              area = 0; // [m^2]
-    for (std::uint32_t point : std::span(patch.points).first(patch.touched)) {
+    spacings.reserve(patch.touched);
+    for (std::uint32_t point : std::span(patch.points).first(patch.touched))
         spacings.push_back(object.survey().spacing(point));
-        area += spacings.back() * spacings.back();
-    }
+    const Extremes found = extremesOf(spacings);
+    if (found.least * kUneven >= patch.spacing && found.most <= kUneven * patch.spacing)
+        return {patch.spacing, patch.spacing}; // what a twentieth of the area has does not matter then
+    double area = 0;                           // [m^2]
+    for (const double s : spacings) area += s * s;
     std::ranges::sort(spacings);
     double close = spacings.back(), sparse = spacings.back(), sum = 0;
     for (const double s : spacings) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -28,11 +29,11 @@ constexpr double kFacing = 0.25;
 constexpr double kTurned = 0.26, kFaces = 0.76; ///< cosines of 75 and 40 degrees [1]
 
 /// Returns the mean of the normals near the contact.
-glm::dvec3 meanNormal(const TouchedSurface& surface, const SoftObject& object, const glm::dvec3& centre, double radius)
+glm::dvec3 meanNormal(const TouchedSurface& surface, const glm::dvec3& centre, double radius)
 {
     glm::dvec3 sum{};
-    for (std::size_t k = 0; k < surface.points.size(); ++k) {
-        const glm::dvec3 d     = object.positions()[surface.points[k]] - centre;
+    for (std::size_t k = 0; k < surface.places.size(); ++k) {
+        const glm::dvec3 d     = surface.places[k] - centre;
         const double     share = std::max(0.0, 1 - glm::dot(d, d) / (radius * radius));
         sum += share * share * surface.normals[k];
     }
@@ -41,26 +42,26 @@ glm::dvec3 meanNormal(const TouchedSurface& surface, const SoftObject& object, c
 }
 
 /// Moves the contact onto the surface of the points around it.
-glm::dvec3 anchorOf(const TouchedSurface& surface, const SoftObject& object, const glm::dvec3& contact)
+glm::dvec3 anchorOf(const TouchedSurface& surface, const glm::dvec3& contact)
 {
     const double            radius = std::max(kNear * surface.spacing, kNoisyNear * surface.noise);
     std::vector<glm::dvec3> near;
-    for (const std::uint32_t point : surface.points)
-        if (glm::length(object.positions()[point] - contact) <= radius) near.push_back(object.positions()[point]);
+    for (const glm::dvec3& place : surface.places)
+        if (glm::length(place - contact) <= radius) near.push_back(place);
     const SphereFitResult fit = fitSphere(near);
     if (!fit.usable()) return contact;
     const glm::dvec3 foot = fit.fit.foot(contact);
     return glm::length(foot - contact) <= radius ? foot : contact;
 }
 
-SphereFitResult fitSphereTo(const TouchedSurface& surface, const SoftObject& object, double radius)
+SphereFitResult fitSphereTo(const TouchedSurface& surface, double radius)
 {
     std::vector<glm::dvec3> points;
     std::vector<double>     weights;
-    points.reserve(surface.points.size());
-    weights.reserve(surface.points.size());
-    for (std::size_t k = 0; k < surface.points.size(); ++k) {
-        const glm::dvec3 p     = object.positions()[surface.points[k]];
+    points.reserve(surface.places.size());
+    weights.reserve(surface.places.size());
+    for (std::size_t k = 0; k < surface.places.size(); ++k) {
+        const glm::dvec3 p     = surface.places[k];
         const glm::dvec3 d     = p - surface.anchor;
         const double     share = std::max(0.0, 1 - glm::dot(d, d) / (radius * radius));
         const double     faces =
@@ -72,59 +73,69 @@ SphereFitResult fitSphereTo(const TouchedSurface& surface, const SoftObject& obj
     return fitSphereThrough(surface.anchor, points, weights);
 }
 
-/// Fills in what follows from points and normals.
-void describe(TouchedSurface& surface, const SoftObject& object, const glm::dvec3& contact, double radius)
+/// Fills in what follows from places and normals.
+void describe(TouchedSurface& surface, const glm::dvec3& contact, double radius)
 {
-    surface.anchor = anchorOf(surface, object, contact);
-    surface.normal = meanNormal(surface, object, surface.anchor, kFacing * radius);
-    surface.sphere = fitSphereTo(surface, object, radius);
+    surface.anchor = anchorOf(surface, contact);
+    surface.normal = meanNormal(surface, surface.anchor, kFacing * radius);
+    surface.sphere = fitSphereTo(surface, radius);
 }
+
+/// All points of a ball, as one surface.
+struct WholeBall {
+    TouchedSurface surface;
+    double         widest    = 0; ///< spacing [m]
+    double         mostNoise = 0; ///< [m]
+};
 
 /// Takes all points of the ball, their normals turned to the finger's side; empty if they turn too far from the nearest
 /// one's, or if some are known to face the other way.
-std::optional<TouchedSurface> wholeBall(const SoftObject& object, const Contact& contact,
-                                        std::span<const std::uint32_t> ball, std::uint32_t nearest)
+std::optional<WholeBall> wholeBall(const SoftObject& object, const Contact& contact,
+                                   std::span<const std::uint32_t> ball, std::uint32_t nearest)
 {
     constexpr double     kAlike = 0.3; // cosine of 73 degrees [1]
     const SurfaceSurvey& survey = object.survey();
     const double         side   = glm::dot(survey.normal(nearest), contact.outward) < 0 ? -1 : 1;
     const glm::dvec3     first  = side * survey.normal(nearest);
-    TouchedSurface       surface;
+    WholeBall            whole;
+    TouchedSurface&      surface = whole.surface;
     bool                 outward = false, inward = false;
     surface.normals.reserve(ball.size());
+    surface.places.reserve(ball.size());
     for (const std::uint32_t point : ball) {
-        const double cosine = glm::dot(survey.normal(point), first);
+        const glm::dvec3 normal = survey.normal(point);
+        const double     cosine = glm::dot(normal, first);
         if (std::abs(cosine) < kAlike) return {};
         (cosine > 0 ? outward : inward) |= survey.sided(point);
         if (outward && inward) return {};
-        surface.normals.push_back(cosine < 0 ? -survey.normal(point) : survey.normal(point));
+        surface.normals.push_back(cosine < 0 ? -normal : normal);
+        surface.places.push_back(object.positions()[point]);
+        whole.widest    = std::max(whole.widest, survey.spacing(point));
+        whole.mostNoise = std::max(whole.mostNoise, survey.noise(point));
     }
-    surface.points.assign(ball.begin(), ball.end());
-    return surface;
+    surface.inBall.resize(ball.size());
+    std::iota(surface.inBall.begin(), surface.inBall.end(), 0);
+    return whole;
 }
 
 /// Returns true if the points, seen along a normal, nowhere lie one over the other: the heights within a square of two
 /// spacings differ by no more than those of a slope of 45 degrees and noise. Sheets so near to each other that they pass
 /// are told apart by the sides that the survey knows.
-bool isOneSheet(const TouchedSurface& surface, const SoftObject& object, const glm::dvec3& centre, double radius)
+bool isOneSheet(const WholeBall& whole, const glm::dvec3& centre, double radius)
 {
     constexpr double kSquare = 2, kSteep = 2.9, kNoisy = 8; // [spacings], [spacings], [standard deviations of noise]
     constexpr int    kMostSquares = 1024;                   // along a side
-    const SurfaceSurvey& survey   = object.survey();
-    double               widest = 0, noise = 0; // [m]
-    for (const std::uint32_t point : surface.points) {
-        widest = std::max(widest, survey.spacing(point));
-        noise  = std::max(noise, survey.noise(point));
-    }
-    const int          side = std::clamp(int(2 * radius / (kSquare * widest)), 1, kMostSquares);
-    const Frame        axes = Frame::about(surface.normals.front());
+    const TouchedSurface& surface = whole.surface;
+    const double          widest = whole.widest, noise = whole.mostNoise;
+    const int             side = std::clamp(int(2 * radius / (kSquare * widest)), 1, kMostSquares);
+    const Frame           axes = Frame::about(surface.normals.front());
     std::vector<float> low(std::size_t(side * side), std::numeric_limits<float>::max()); // [m] heights in each square
     std::vector<float> high(low.size(), std::numeric_limits<float>::lowest());
     const auto         place = [&](double along) {
         return std::size_t(std::clamp(int((along + radius) / (2 * radius) * side), 0, side - 1));
     };
-    for (const std::uint32_t point : surface.points) {
-        const glm::dvec3  d      = object.positions()[point] - centre;
+    for (const glm::dvec3& p : surface.places) {
+        const glm::dvec3  d      = p - centre;
         const std::size_t square = place(glm::dot(d, axes.east)) * std::size_t(side) + place(glm::dot(d, axes.north));
         const auto        height = float(glm::dot(d, axes.normal));
         low[square]              = std::min(low[square], height);
@@ -152,24 +163,23 @@ TouchedSurface touchedSurface(const SoftObject& object, const Contact& contact, 
     object.survey().expectSurface();
     const std::uint32_t nearest = object.index().nearest(contact.point, 1).front().point;
     const double        spacing = spacingAt(object, contact.point), noise = object.survey().noise(nearest);
-    if (auto whole = wholeBall(object, contact, ball, nearest)) {
-        whole->spacing = spacing;
-        whole->noise   = noise;
-        if (isOneSheet(*whole, object, contact.point, radius)) {
-            describe(*whole, object, contact.point, radius);
-            return std::move(*whole);
-        }
-    }
+    const auto          finished = [&](TouchedSurface& surface) {
+        surface.spacing = spacing;
+        surface.noise   = noise;
+        describe(surface, contact.point, radius);
+        return std::move(surface);
+    };
+    if (auto whole = wholeBall(object, contact, ball, nearest); whole && isOneSheet(*whole, contact.point, radius))
+        return finished(whole->surface);
     SurfaceFlood   flood(object);
     TouchedSurface surface;
-    const auto     points  = flood.reach(contact.point, radius, contact.outward);
+    const auto     numbers = flood.reachIn(ball, contact.point, contact.outward);
     const auto     normals = flood.normals();
-    surface.points.assign(points.begin(), points.end());
+    surface.inBall.assign(numbers.begin(), numbers.end());
     surface.normals.assign(normals.begin(), normals.end());
-    surface.spacing = spacing;
-    surface.noise   = noise;
-    describe(surface, object, contact.point, radius);
-    return surface;
+    surface.places.reserve(numbers.size());
+    for (const std::uint32_t number : numbers) surface.places.push_back(object.positions()[ball[number]]);
+    return finished(surface);
 }
 
 } // namespace palp
