@@ -12,7 +12,6 @@
 #include "engine/chart/exponential_map.h"
 #include "engine/cloud/surface_flood.h"
 #include "engine/core/contract.h"
-#include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/detail/touched_surface.h"
 #include "engine/plate/load.h"
@@ -39,6 +38,12 @@ private:
 
 // --- 2.1: the neighbourhood
 
+/// Returns the edge of a cell of the grid [m].
+double cellOf(const PatchSettings& settings)
+{
+    return settings.window / settings.cells;
+}
+
 /// Returns the radius of the ball that holds every point which can matter to the window [m].
 ///
 /// Chord and chart distance agree in the azimuthal map. In the cylindrical ones
@@ -48,7 +53,7 @@ double gatherRadius(const PatchSettings& settings, double spacing)
 {
     const double half  = settings.window / 2;
     const double chord = settings.map == Map::lambertAzimuthal ? std::sqrt(2.0) * half : std::sqrt(3.0) * half;
-    return chord + kernelReach(spacing, settings.window / settings.cells);
+    return chord + kernelReach(spacing, cellOf(settings));
 }
 
 void gatherPoints(Patch& patch, const SoftObject& object, const Contact& contact, const PatchSettings& settings)
@@ -175,8 +180,9 @@ std::vector<std::optional<ChartPoint>> unroll(const Patch& patch, const SoftObje
     steps.reserve(surface.inBall.size());
     for (const std::uint32_t number : surface.inBall)
         steps.push_back(SurfaceFlood::kStep * object.survey().spacing(patch.gathered[number]));
+    const double careful = settings.window / 2 + kernelReach(patch.spacing, cellOf(settings)); // beyond, nothing counts
     return exponentialMap(patch.chart.origin, patch.chart.frame, surface.places, surface.normals, steps,
-                          gatherRadius(settings, patch.spacing));
+                          gatherRadius(settings, patch.spacing), careful);
 }
 
 /// Returns the share of the window's points whose normal is turned away from the sphere's, fully from 60 degrees on.
@@ -308,42 +314,53 @@ void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
                     kWindowHint);
 }
 
+/// Returns the largest value below which no more than a share of all squares lies; reorders.
+/// \param share  [1] from 0 to 1
+double quantileOfSquares(std::span<double> values, double share)
+{
+    const auto squares = [](std::span<const double> some) {
+        double sum = 0;
+        for (const double value : some) sum += value * value;
+        return sum;
+    };
+    double left = share * squares(values); // what may yet lie below the value
+    while (values.size() > 1) {
+        const std::size_t half = values.size() / 2;
+        std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(half));
+        const double below = squares(values.first(half));
+        values             = below <= left ? values.subspan(half) : values.first(half);
+        if (below <= left) left -= below;
+    }
+    return values.front();
+}
+
 /// Returns the spacings of the closest and of the sparsest points of the touched surface [m]: the patch's own for both,
 /// unless the density varies. Each point counts by the area that it stands for, and a twentieth of it may be closer or
 /// sparser still.
 std::pair<double, double> spacingsOf(const Patch& patch, const SoftObject& object)
 {
     constexpr double    kUneven = 2, kRest = 0.05; // [1] ratio to the patch's own; share of the area
-    std::vector<double> spacings;
-    spacings.reserve(patch.touched);
-    for (std::uint32_t point : std::span(patch.points).first(patch.touched))
-        spacings.push_back(object.survey().spacing(point));
-    const Extremes found = extremesOf(spacings);
-    if (found.least * kUneven >= patch.spacing && found.most <= kUneven * patch.spacing)
-        return {patch.spacing, patch.spacing}; // what a twentieth of the area has does not matter then
-    double area = 0;                           // [m^2]
-    for (const double s : spacings) area += s * s;
-    std::ranges::sort(spacings);
-    double close = spacings.back(), sparse = spacings.back(), sum = 0;
+    std::vector<double> spacings(patch.touched);
+    for (std::size_t k = 0; k < patch.touched; ++k) spacings[k] = object.survey().spacing(patch.points[k]);
+    double area = 0, closer = 0, sparser = 0; // [m^2] of all points, and of those that are uneven
     for (const double s : spacings) {
-        if (sum <= kRest * area) close = s;
-        if (sum <= (1 - kRest) * area) sparse = s;
-        sum += s * s;
+        area += s * s;
+        closer += s * kUneven < patch.spacing ? s * s : 0;
+        sparser += s > kUneven * patch.spacing ? s * s : 0;
     }
-    return {close * kUneven < patch.spacing ? close : patch.spacing,
-            sparse > kUneven * patch.spacing ? sparse : patch.spacing};
+    return {closer > kRest * area ? quantileOfSquares(spacings, kRest) : patch.spacing,
+            sparser > kRest * area ? quantileOfSquares(spacings, 1 - kRest) : patch.spacing};
 }
 
 void fillRigidity(Patch& patch, const SoftObject& object, const PatchSettings& settings)
 {
     const StageClock    clock(patch.times.resample);
-    std::vector<double> rigidities;
+    std::vector<double> rigidities(patch.touched);
     const auto          touched = std::span(patch.points).first(patch.touched);
     const auto          places  = std::span(patch.positions).first(patch.touched);
     patch.window                = PatchWindow::square(settings.window, settings.cells);
     refuseIfFew(patch, settings);
-    rigidities.reserve(touched.size());
-    for (std::uint32_t point : touched) rigidities.push_back(object.rigidity(point));
+    for (std::size_t k = 0; k < touched.size(); ++k) rigidities[k] = object.rigidity(touched[k]);
     const auto [finest, sparsest] = spacingsOf(patch, object);
     Resampled resampled     = resampleRigidity(patch.window, places, rigidities, settings.resampling, finest, sparsest);
     patch.nodesWithoutPoint = resampled.nodesWithoutPoint;
@@ -404,12 +421,6 @@ void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& 
     const double modulus   = object.material().modulus(patch.plate.rigidity(middle, middle));
     patch.contactStiffness = contactStiffness(modulus, settings.footprintRadius, object.material().thickness);
     patch.feltStiffness    = feltStiffness(settings.forceLaw, patch.contactStiffness, patch.compliance);
-}
-
-/// Returns the edge of a cell of the grid [m].
-double cellOf(const PatchSettings& settings)
-{
-    return settings.window / settings.cells;
 }
 
 constexpr double kDense = 0.3; ///< spacing over the side of the cubes below which one point per cube will do [1]
