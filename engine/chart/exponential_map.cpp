@@ -46,50 +46,69 @@ void expectPiece(const glm::dvec3& origin, std::span<const glm::dvec3> positions
     }
 }
 
-/// The pairs of points that the longer of their steps spans, as one list of neighbours after the other.
+/// The neighbours of each point: those that the longer of the two steps spans.
 class Neighbours {
 public:
-    Neighbours(std::span<const glm::dvec3> positions, std::span<const double> steps) : begin_(positions.size() + 1)
+    Neighbours(std::span<const glm::dvec3> positions, std::span<const double> steps)
     {
         double mean = 0; // [m]
         for (const double step : steps) mean += step / double(steps.size());
+        // Where a surface lies across all axes, one cube in sixteen or more has a point.
+        const int along = std::clamp(int(std::cbrt(16.0 * double(positions.size()))), 32, 1000);
         PointGrid grid;
-        grid.build(positions, mean);
+        grid.build(positions, mean, along);
 
-        // Points with long steps search first and are taken out of the grid then: each pair is found once, by the longer
-        // of its steps.
-        std::vector<std::uint32_t> order(positions.size());
-        std::iota(order.begin(), order.end(), 0);
-        std::stable_sort(order.begin(), order.end(), [&](auto i, auto j) { return steps[i] > steps[j]; });
-        std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-        pairs.reserve(8 * positions.size()); // a disc of two spacings holds 13 points, each pair is stored once
-        for (const std::uint32_t i : order)
-            grid.takeNear(positions[i], steps[i], [&](std::size_t j, double distance2) {
-                if (j == i) return true;
-                if (distance2 <= steps[i] * steps[i]) {
-                    pairs.emplace_back(i, std::uint32_t(j));
-                    ++begin_[i];
-                    ++begin_[j];
-                }
-                return false;
-            });
-
-        std::inclusive_scan(begin_.begin(), begin_.end(), begin_.begin()); // the ends, which become the begins below
-        to_.resize(2 * pairs.size());
-        for (const auto& [i, j] : pairs) {
-            to_[--begin_[i]] = j;
-            to_[--begin_[j]] = i;
+        // Each point finds those within its own step. Where that of the other is shorter, the other does not find it.
+        constexpr std::size_t kUsual = 13; // points of a disc of two spacings
+        Pairs                 oneSided;
+        begin_.reserve(positions.size() + 1);
+        found_.reserve((kUsual + 3) * positions.size());
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            const std::size_t begin = found_.size();
+            begin_.push_back(std::uint32_t(begin));
+            grid.findNear(positions[i], steps[i], found_);
+            for (std::size_t k = begin; k < found_.size(); ++k) {
+                const std::uint32_t j = found_[k];
+                if (steps[j] < steps[i] && !within(positions[i], positions[j], steps[j])) oneSided.emplace_back(j, i);
+            }
         }
+        begin_.push_back(std::uint32_t(found_.size()));
+        if (!oneSided.empty()) insert(oneSided);
     }
 
     [[nodiscard]] std::span<const std::uint32_t> of(std::size_t i) const
     {
-        return {to_.data() + begin_[i], to_.data() + begin_[i + 1]};
+        return {found_.data() + begin_[i], found_.data() + begin_[i + 1]};
     }
 
 private:
-    std::vector<std::uint32_t> begin_; ///< of each point's list in to_, and the end of the last
-    std::vector<std::uint32_t> to_;
+    using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+    [[nodiscard]] static bool within(const glm::dvec3& a, const glm::dvec3& b, double radius)
+    {
+        const glm::dvec3 d = a - b;
+        return d.x * d.x + d.y * d.y + d.z * d.z <= radius * radius;
+    }
+
+    /// Adds the second of each pair to the list of the first.
+    void insert(Pairs& pairs)
+    {
+        std::ranges::sort(pairs);
+        std::vector<std::uint32_t> all;
+        all.reserve(found_.size() + pairs.size());
+        auto next = pairs.begin();
+        for (std::size_t i = 0; i + 1 < begin_.size(); ++i) {
+            const auto own = of(i);
+            begin_[i]      = std::uint32_t(all.size());
+            all.insert(all.end(), own.begin(), own.end());
+            for (; next != pairs.end() && next->first == i; ++next) all.push_back(next->second);
+        }
+        begin_.back() = std::uint32_t(all.size());
+        found_        = std::move(all);
+    }
+
+    std::vector<std::uint32_t> begin_; ///< of each point's list in found_, and the end of the last
+    std::vector<std::uint32_t> found_;
 };
 
 /// A point that has its place in the chart.
@@ -206,6 +225,9 @@ public:
         return i;
     }
 
+    /// Returns whether a point has a prediction.
+    [[nodiscard]] bool hasHeard(std::size_t i) const { return nodes_[i].estimate.weight > 0; }
+
     /// Keeps the place of a point as it is.
     void keep(std::size_t i) { nodes_[i].placed = true; }
 
@@ -264,8 +286,9 @@ void begin(Front& front, const Site& origin, std::span<const glm::dvec3> positio
 std::vector<std::optional<ChartPoint>> exponentialMap(const glm::dvec3& origin, const Frame& frame,
                                                       std::span<const glm::dvec3> positions,
                                                       std::span<const glm::dvec3> normals,
-                                                      std::span<const double> steps, double reach)
+                                                      std::span<const double> steps, double reach, double careful)
 {
+    PALP_EXPECT(careful >= 0, "the careful square's half side is " + std::to_string(careful) + " m");
     expectPiece(origin, positions, normals, steps, reach);
     std::vector<std::optional<ChartPoint>> chart(positions.size());
     if (positions.empty()) return chart;
@@ -278,7 +301,9 @@ std::vector<std::optional<ChartPoint>> exponentialMap(const glm::dvec3& origin, 
         if (std::hypot(site.chart.x, site.chart.z) > reach) continue;
         chart[*i] = site.chart;
         front.keep(*i);
-        for (const std::uint32_t j : neighbours.of(*i)) front.tell(site, steps[*i], j);
+        const bool outside = std::max(std::abs(site.chart.x), std::abs(site.chart.z)) > careful;
+        for (const std::uint32_t j : neighbours.of(*i))
+            if (!outside || !front.hasHeard(j)) front.tell(site, steps[*i], j);
     }
     return chart;
 }

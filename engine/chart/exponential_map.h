@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -28,6 +29,8 @@ namespace palp {
 /// \param normals    [1] unit, with signs that agree along the surface; one for each point
 /// \param steps      [m] longest edge at each point, finite, >= 0; two local spacings suit
 /// \param reach      [m] largest distance from the origin
+/// \param careful    [m] half side of the square about the origin outside of which a point takes the first prediction that
+///                   it gets from there, without the mean of all: enough for what only moves along
 /// \return one position [m] for each point, empty where the search did not come within the reach. The same bits for the
 ///         same points in any order, unless two are equally far
 /// \throws ContractViolation naming the first argument that is not as above
@@ -38,9 +41,9 @@ namespace palp {
 ///          that a cylinder is exact, whereas a tangent plane at one end is off by the square of the edge's angle.
 ///          Weights count edges along the way from the origin more than those across it: an edge across is too long on
 ///          a sphere.
-[[nodiscard]] std::vector<std::optional<ChartPoint>> exponentialMap(const glm::dvec3& origin, const Frame& frame,
-                                                                    std::span<const glm::dvec3> positions,
-                                                                    std::span<const glm::dvec3> normals,
-                                                                    std::span<const double> steps, double reach);
+[[nodiscard]] std::vector<std::optional<ChartPoint>>
+exponentialMap(const glm::dvec3& origin, const Frame& frame, std::span<const glm::dvec3> positions,
+               std::span<const glm::dvec3> normals, std::span<const double> steps, double reach,
+               double careful = std::numeric_limits<double>::infinity());
 
 } // namespace palp

@@ -3,15 +3,8 @@
 #include <glm/common.hpp>
 
 namespace palp {
-namespace {
 
-/// Most cubes along the longest side: as many as a disc of a thousand points needs; more would cost more to clear
-/// than they save.
-constexpr double kMostCells = 32;
-
-} // namespace
-
-void PointGrid::build(std::span<const glm::dvec3> places, double edge)
+void PointGrid::build(std::span<const glm::dvec3> places, double edge, int mostAlong)
 {
     glm::dvec3 high = places[0];
     low_            = places[0];
@@ -20,9 +13,9 @@ void PointGrid::build(std::span<const glm::dvec3> places, double edge)
         high = glm::max(high, p);
     }
     const glm::dvec3 size   = high - low_;
-    const double     larger = std::max(edge, std::max({size.x, size.y, size.z}) / kMostCells); // [m]
+    const double     larger = std::max(edge, std::max({size.x, size.y, size.z}) / mostAlong); // [m]
     perMetre_               = larger > 0 ? 1 / larger : 0;
-    for (int k = 0; k < 3; ++k) cells_[std::size_t(k)] = int(std::min(size[k] * perMetre_, kMostCells)) + 1;
+    for (int k = 0; k < 3; ++k) cells_[std::size_t(k)] = int(std::min(size[k] * perMetre_, double(mostAlong))) + 1;
 
     cubes_.assign(std::size_t(cells_[0]) * std::size_t(cells_[1]) * std::size_t(cells_[2]), {});
     cubeAt_.resize(places.size());

@@ -17,7 +17,9 @@ public:
     /// Sorts the places into cubes.
     /// \param places  finite [m], at least one
     /// \param edge    of the cubes [m], >= 0; they are larger if they were too many. The radius of the searches suits.
-    void build(std::span<const glm::dvec3> places, double edge);
+    /// \param mostAlong  most cubes along the longest side, some: as many as a disc of a thousand points needs; more cost
+    ///                   more to clear than they save
+    void build(std::span<const glm::dvec3> places, double edge, int mostAlong = 32);
 
     /// Calls visit(index of the place, squared distance [m^2]) for the places within `radius` [m] of `place`, in an
     /// order that depends on nothing but the places and theirs. A place for which `visit` returns true is taken out: no
@@ -46,6 +48,33 @@ public:
             for (std::uint32_t k = cube.begin; k < cube.end; ++k)
                 visit(std::size_t(entries_[k].index), squaredDistance(entries_[k].place, place));
         });
+    }
+
+    /// Appends the indices of the places within `radius` [m] of `place`. Only before any is taken out.
+    void findNear(const glm::dvec3& place, double radius, std::vector<std::uint32_t>& found) const
+    {
+        const Cells  low = cellsOf(place, -radius), high = cellsOf(place, radius);
+        std::size_t  count   = found.size();
+        const double radius2 = radius * radius;
+        const double x = place.x, y = place.y, z = place.z;
+        for (int k = low[2]; k <= high[2]; ++k)
+            for (int j = low[1]; j <= high[1]; ++j) {
+                // The cubes of a row follow each other, and so do their places.
+                const auto          row   = std::size_t((k * cells_[1] + j) * cells_[0]);
+                const std::uint32_t begin = cubes_[row + std::size_t(low[0])].begin;
+                const std::uint32_t end   = cubes_[row + std::size_t(high[0])].end;
+                if (begin == end) continue;
+                found.resize(count + (end - begin));
+                // Every index is written, and counted if it is wanted: a branch that nobody can foresee costs more.
+                std::uint32_t* to = found.data() + count;
+                for (const Entry *e = entries_.data() + begin, *last = entries_.data() + end; e != last; ++e) {
+                    const double dx = e->place.x - x, dy = e->place.y - y, dz = e->place.z - z;
+                    *to = e->index;
+                    to += dx * dx + dy * dy + dz * dz <= radius2;
+                }
+                count = std::size_t(to - found.data());
+            }
+        found.resize(count);
     }
 
 private:

@@ -64,11 +64,20 @@ void SurfaceFlood::noteSide(std::size_t reached)
 std::span<const std::uint32_t> SurfaceFlood::reach(const glm::dvec3& centre, double radius,
                                                    const std::optional<glm::dvec3>& outward)
 {
-    const SurfaceSurvey& survey = object_.survey();
+    object_.index().gather(centre, radius, gathered_);
     points_.clear();
+    for (const std::uint32_t number : reachIn(gathered_, centre, outward)) points_.push_back(gathered_[number]);
+    return points_;
+}
+
+std::span<const std::uint32_t> SurfaceFlood::reachIn(std::span<const std::uint32_t> ball, const glm::dvec3& centre,
+                                                     const std::optional<glm::dvec3>& outward)
+{
+    const SurfaceSurvey& survey = object_.survey();
+    inBall_                     = ball;
+    reached_.clear();
     normals_.clear();
-    object_.index().gather(centre, radius, inBall_);
-    if (inBall_.empty()) return points_;
+    if (inBall_.empty()) return reached_;
 
     places_.clear();
     steps_.clear();
@@ -101,11 +110,8 @@ std::span<const std::uint32_t> SurfaceFlood::reach(const glm::dvec3& centre, dou
             return true;
         });
     }
-    for (const std::uint32_t i : reached_) {
-        points_.push_back(inBall_[i]);
-        normals_.push_back(carried_[i]);
-    }
-    return points_;
+    for (const std::uint32_t i : reached_) normals_.push_back(carried_[i]);
+    return reached_;
 }
 
 } // namespace palp

@@ -47,7 +47,12 @@ public:
     [[nodiscard]] std::span<const std::uint32_t> reach(const glm::dvec3& centre, double radius,
                                                        const std::optional<glm::dvec3>& outward = {});
 
-    /// Returns the normals of the points that reach() found, in the same order, their signs carried from the first one,
+    /// Does the same for a ball whose points are known, and returns their numbers among them. Valid until the next call.
+    /// \param ball  points of the object, in any order
+    [[nodiscard]] std::span<const std::uint32_t> reachIn(std::span<const std::uint32_t> ball, const glm::dvec3& centre,
+                                                         const std::optional<glm::dvec3>& outward = {});
+
+    /// Returns the normals of the points that the last call found, in the same order, their signs carried from the first one,
     /// whose normal points along `outward` [1]. A point without a normal has that of the point before it.
     [[nodiscard]] std::span<const glm::dvec3> normals() const noexcept { return normals_; }
 
@@ -59,15 +64,16 @@ private:
     const SoftObject& object_;
 
     // Scratch: the points of the ball, and what the flood has reached and not yet left, as indices among them.
-    std::vector<std::uint32_t> inBall_;
-    std::vector<glm::dvec3>    places_;  ///< [m]
-    std::vector<double>        steps_;   ///< longest of each [m]
-    std::vector<glm::dvec3>    carried_; ///< normals as carried, of those that are reached [1]
-    std::vector<std::uint32_t> reached_;
-    std::vector<std::uint32_t> points_;
-    std::vector<glm::dvec3>    normals_; ///< [1]
-    PointGrid                  grid_;
-    std::optional<bool>        inverted_; ///< the carried normals point inwards; empty: no side is known yet
+    std::span<const std::uint32_t> inBall_;
+    std::vector<std::uint32_t>     gathered_;
+    std::vector<glm::dvec3>        places_;  ///< [m]
+    std::vector<double>            steps_;   ///< longest of each [m]
+    std::vector<glm::dvec3>        carried_; ///< normals as carried, of those that are reached [1]
+    std::vector<std::uint32_t>     reached_;
+    std::vector<std::uint32_t>     points_;
+    std::vector<glm::dvec3>        normals_; ///< [1]
+    PointGrid                      grid_;
+    std::optional<bool>            inverted_; ///< the carried normals point inwards; empty: no side is known yet
 };
 
 } // namespace palp

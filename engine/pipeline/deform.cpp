@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -39,6 +38,12 @@ private:
 
 // --- 2.1: the neighbourhood
 
+/// Returns the edge of a cell of the grid [m].
+double cellOf(const PatchSettings& settings)
+{
+    return settings.window / settings.cells;
+}
+
 /// Returns the radius of the ball that holds every point which can matter to the window [m].
 ///
 /// Chord and chart distance agree in the azimuthal map. In the cylindrical ones
@@ -48,7 +53,7 @@ double gatherRadius(const PatchSettings& settings, double spacing)
 {
     const double half  = settings.window / 2;
     const double chord = settings.map == Map::lambertAzimuthal ? std::sqrt(2.0) * half : std::sqrt(3.0) * half;
-    return chord + kernelReach(spacing, settings.window / settings.cells);
+    return chord + kernelReach(spacing, cellOf(settings));
 }
 
 void gatherPoints(Patch& patch, const SoftObject& object, const Contact& contact, const PatchSettings& settings)
@@ -63,7 +68,7 @@ void gatherPoints(Patch& patch, const SoftObject& object, const Contact& contact
 /// Keeps, of the ball, the surface that the finger touches; everything, in the paper's way.
 TouchedSurface touchedSurface(Patch& patch, const SoftObject& object, const PatchSettings& settings)
 {
-    if (settings.neighbourhood == Neighbourhood::ball) return {.points = patch.gathered};
+    if (settings.neighbourhood == Neighbourhood::ball) return {};
     const StageClock clock(patch.times.gather);
     TouchedSurface   surface =
         touchedSurface(object, patch.contact, patch.gathered, gatherRadius(settings, patch.spacing));
@@ -97,8 +102,8 @@ void fitSphereTo(Patch& patch, const SoftObject& object, const TouchedSurface& s
         return;
     }
     std::vector<glm::dvec3> points;
-    points.reserve(surface.points.size());
-    for (std::uint32_t point : surface.points) points.push_back(object.positions()[point]);
+    points.reserve(patch.gathered.size());
+    for (std::uint32_t point : patch.gathered) points.push_back(object.positions()[point]);
     patch.sphere = fitSphere(points);
 }
 
@@ -172,11 +177,12 @@ std::vector<std::optional<ChartPoint>> unroll(const Patch& patch, const SoftObje
                                               const TouchedSurface& surface, const PatchSettings& settings)
 {
     std::vector<double> steps;
-    steps.reserve(surface.points.size());
-    for (const std::uint32_t point : surface.points)
-        steps.push_back(SurfaceFlood::kStep * object.survey().spacing(point));
+    steps.reserve(surface.inBall.size());
+    for (const std::uint32_t number : surface.inBall)
+        steps.push_back(SurfaceFlood::kStep * object.survey().spacing(patch.gathered[number]));
+    const double careful = settings.window / 2 + kernelReach(patch.spacing, cellOf(settings)); // beyond, nothing counts
     return exponentialMap(patch.chart.origin, patch.chart.frame, surface.places, surface.normals, steps,
-                          gatherRadius(settings, patch.spacing));
+                          gatherRadius(settings, patch.spacing), careful);
 }
 
 /// Returns the share of the window's points whose normal is turned away from the sphere's, fully from 60 degrees on.
@@ -185,7 +191,7 @@ double turnedShare(const Patch& patch, const TouchedSurface& surface, const Patc
     constexpr double kAlong = 0.77, kTurned = 0.5; // cosines of 40 and 60 degrees [1]
     const double     side   = glm::dot(patch.sphere.fit.normal(surface.anchor), surface.normal) < 0 ? -1 : 1;
     double           turned = 0, all = 0;
-    for (std::size_t k = 0; k < surface.points.size(); ++k) {
+    for (std::size_t k = 0; k < surface.places.size(); ++k) {
         const glm::dvec3 p = surface.places[k];
         if (glm::length(p - surface.anchor) > settings.window / 2) continue;
         const double cosine = side * glm::dot(surface.normals[k], patch.sphere.fit.normal(p));
@@ -219,14 +225,19 @@ double unrolledShare(const Patch& patch, const TouchedSurface& surface, const Pa
 }
 
 /// Lays the touched surface flat, by the sphere's map, by the exponential map, or by both in parts.
-void layTouched(Patch& patch, const SoftObject& object, const TouchedSurface& surface, const PatchSettings& settings)
+/// \return for each point of the ball whether it has its place
+std::vector<bool> layTouched(Patch& patch, const SoftObject& object, const TouchedSurface& surface,
+                             const PatchSettings& settings)
 {
-    if (settings.neighbourhood == Neighbourhood::ball) return projectPoints(patch, object, surface.points);
     patch.unrolled = unrolledShare(patch, surface, settings);
-    std::vector<std::optional<ChartPoint>> unrolled(surface.points.size());
+    std::vector<std::optional<ChartPoint>> unrolled;
     if (patch.unrolled > 0) unrolled = unroll(patch, object, surface, settings);
-    for (std::size_t k = 0; k < surface.points.size(); ++k) {
-        std::optional<ChartPoint> position = unrolled[k];
+    std::vector<bool> laid(patch.gathered.size());
+    patch.points.reserve(patch.gathered.size());
+    patch.positions.reserve(patch.gathered.size());
+    for (std::size_t k = 0; k < surface.places.size(); ++k) {
+        std::optional<ChartPoint> position;
+        if (patch.unrolled > 0) position = unrolled[k];
         if (patch.unrolled < 1 && glm::dot(surface.normals[k], surface.normal) > 0) {
             const auto onSphere = patch.chart.project(surface.places[k]);
             if (onSphere && position)
@@ -236,9 +247,11 @@ void layTouched(Patch& patch, const SoftObject& object, const TouchedSurface& su
                 position = onSphere;
         }
         if (!position) continue;
-        patch.points.push_back(surface.points[k]);
+        laid[surface.inBall[k]] = true;
+        patch.points.push_back(patch.gathered[surface.inBall[k]]);
         patch.positions.push_back(*position);
     }
+    return laid;
 }
 
 void turnOver(TouchedSurface& surface)
@@ -254,15 +267,18 @@ void layFlat(Patch& patch, const SoftObject& object, TouchedSurface surface, con
     const StageClock clock(patch.times.project);
     patch.chart = chartAt(patch, object, settings, carried);
     if (glm::dot(surface.normal, patch.chart.frame.normal) < 0) turnOver(surface); // the finger's side was a guess
-    layTouched(patch, object, surface, settings);
-    patch.touched = patch.points.size();
-    if (settings.neighbourhood == Neighbourhood::ball || patch.touched == patch.gathered.size()) return;
+    if (settings.neighbourhood == Neighbourhood::ball) {
+        projectPoints(patch, object, patch.gathered);
+        patch.touched = patch.points.size();
+        return;
+    }
+    const std::vector<bool> laid = layTouched(patch, object, surface, settings);
+    patch.touched                = patch.points.size();
+    if (patch.touched == patch.gathered.size()) return;
     // The rest of the ball, the other side of a thin body above all, moves with the touched side but does not count.
-    std::vector<std::uint32_t> rest = patch.gathered, laid = patch.points;
-    std::ranges::sort(rest);
-    std::ranges::sort(laid);
     std::vector<std::uint32_t> others;
-    std::ranges::set_difference(rest, laid, std::back_inserter(others));
+    for (std::size_t k = 0; k < laid.size(); ++k)
+        if (!laid[k]) others.push_back(patch.gathered[k]);
     projectPoints(patch, object, others);
 }
 
@@ -276,7 +292,8 @@ void refuseIfFew(const Patch& patch, const PatchSettings& settings)
 {
     constexpr std::ptrdiff_t kFewestPoints = 9; // 3 by 3: less is no field of rigidity
     const auto               touched       = std::span(patch.positions).first(patch.touched);
-    const auto held = std::ranges::count_if(touched, [&](const ChartPoint& p) { return patch.window.holds(p); });
+    std::ptrdiff_t           held          = 0;
+    for (std::size_t k = 0; k < touched.size() && held < kFewestPoints; ++k) held += patch.window.holds(touched[k]);
     if (held < kFewestPoints)
         throw Error(placeText(patch.contact) + ": the patch window of " + formatQuantity(settings.window, "m") +
                     " holds " + std::to_string(held) + " points of the touched surface, which are " +
@@ -297,41 +314,53 @@ void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
                     kWindowHint);
 }
 
+/// Returns the largest value below which no more than a share of all squares lies; reorders.
+/// \param share  [1] from 0 to 1
+double quantileOfSquares(std::span<double> values, double share)
+{
+    const auto squares = [](std::span<const double> some) {
+        double sum = 0;
+        for (const double value : some) sum += value * value;
+        return sum;
+    };
+    double left = share * squares(values); // what may yet lie below the value
+    while (values.size() > 1) {
+        const std::size_t half = values.size() / 2;
+        std::ranges::nth_element(values, values.begin() + std::ptrdiff_t(half));
+        const double below = squares(values.first(half));
+        values             = below <= left ? values.subspan(half) : values.first(half);
+        if (below <= left) left -= below;
+    }
+    return values.front();
+}
+
 /// Returns the spacings of the closest and of the sparsest points of the touched surface [m]: the patch's own for both,
 /// unless the density varies. Each point counts by the area that it stands for, and a twentieth of it may be closer or
 /// sparser still.
 std::pair<double, double> spacingsOf(const Patch& patch, const SoftObject& object)
 {
     constexpr double    kUneven = 2, kRest = 0.05; // [1] ratio to the patch's own; share of the area
-    std::vector<double> spacings;
-    spacings.reserve(patch.touched);
-    for (std::uint32_t point : std::span(patch.points).first(patch.touched))
-        spacings.push_back(object.survey().spacing(point));
-    const auto [least, most] = std::ranges::minmax(spacings);
-    if (least * kUneven >= patch.spacing && most <= kUneven * patch.spacing) return {patch.spacing, patch.spacing};
-    std::ranges::sort(spacings);
-    double area = 0; // [m^2]
-    for (const double s : spacings) area += s * s;
-    double close = spacings.back(), sparse = spacings.back(), sum = 0;
+    std::vector<double> spacings(patch.touched);
+    for (std::size_t k = 0; k < patch.touched; ++k) spacings[k] = object.survey().spacing(patch.points[k]);
+    double area = 0, closer = 0, sparser = 0; // [m^2] of all points, and of those that are uneven
     for (const double s : spacings) {
-        if (sum <= kRest * area) close = s;
-        if (sum <= (1 - kRest) * area) sparse = s;
-        sum += s * s;
+        area += s * s;
+        closer += s * kUneven < patch.spacing ? s * s : 0;
+        sparser += s > kUneven * patch.spacing ? s * s : 0;
     }
-    return {close * kUneven < patch.spacing ? close : patch.spacing,
-            sparse > kUneven * patch.spacing ? sparse : patch.spacing};
+    return {closer > kRest * area ? quantileOfSquares(spacings, kRest) : patch.spacing,
+            sparser > kRest * area ? quantileOfSquares(spacings, 1 - kRest) : patch.spacing};
 }
 
 void fillRigidity(Patch& patch, const SoftObject& object, const PatchSettings& settings)
 {
     const StageClock    clock(patch.times.resample);
-    std::vector<double> rigidities;
+    std::vector<double> rigidities(patch.touched);
     const auto          touched = std::span(patch.points).first(patch.touched);
     const auto          places  = std::span(patch.positions).first(patch.touched);
     patch.window                = PatchWindow::square(settings.window, settings.cells);
     refuseIfFew(patch, settings);
-    rigidities.reserve(touched.size());
-    for (std::uint32_t point : touched) rigidities.push_back(object.rigidity(point));
+    for (std::size_t k = 0; k < touched.size(); ++k) rigidities[k] = object.rigidity(touched[k]);
     const auto [finest, sparsest] = spacingsOf(patch, object);
     Resampled resampled     = resampleRigidity(patch.window, places, rigidities, settings.resampling, finest, sparsest);
     patch.nodesWithoutPoint = resampled.nodesWithoutPoint;
@@ -392,12 +421,6 @@ void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& 
     const double modulus   = object.material().modulus(patch.plate.rigidity(middle, middle));
     patch.contactStiffness = contactStiffness(modulus, settings.footprintRadius, object.material().thickness);
     patch.feltStiffness    = feltStiffness(settings.forceLaw, patch.contactStiffness, patch.compliance);
-}
-
-/// Returns the edge of a cell of the grid [m].
-double cellOf(const PatchSettings& settings)
-{
-    return settings.window / settings.cells;
 }
 
 constexpr double kDense = 0.3; ///< spacing over the side of the cubes below which one point per cube will do [1]

@@ -361,6 +361,29 @@ TEST(ExponentialMap, NothingBeyondTheReachHasAPlace)
     EXPECT_NEAR(double(placed), pi * reach * reach / (kSpacing * kSpacing), 75) << "three deviations of a count";
 }
 
+/// What lies outside of the window only moves along: it keeps its place roughly, and the inside does not notice.
+TEST(ExponentialMap, OutsideOfTheCarefulSquareOnePredictionDoes)
+{
+    const double reach = 0.014, careful = 0.007; // [m]
+    const Piece  piece = sphere(0.03, 1.1 * reach, kSpacing, 31);
+    const Mapped all   = mapped(piece, reach);
+    const Mapped some  = exponentialMap({}, {}, piece.positions, piece.normals, piece.steps, reach, careful);
+
+    double inside = 0, outside = 0; // [m] largest differences
+    int    placed = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        placed += int(some[i].has_value()) - int(all[i].has_value());
+        if (!all[i] || !some[i]) continue;
+        const bool in  = std::max(std::abs(all[i]->x), std::abs(all[i]->z)) < careful - 2 * kSpacing;
+        double&    off = in ? inside : outside;
+        off            = std::max(off, distance(*all[i], *some[i]));
+    }
+    EXPECT_LT(inside, 1e-15) << "nothing outside comes before what is two spacings further in";
+    EXPECT_GT(outside, 1e-7) << "else all predictions were made";
+    EXPECT_LT(outside, 0.05 * reach);
+    EXPECT_LT(std::abs(placed), 20) << "of some 2500, at the reach";
+}
+
 /// Area of the smallest polygon that holds points.
 double hullArea(std::vector<ChartPoint> points)
 {

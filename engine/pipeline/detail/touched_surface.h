@@ -13,9 +13,9 @@ namespace palp {
 
 /// The piece of the object's surface that a finger touches, without the other side of a thin body.
 struct TouchedSurface {
-    std::vector<std::uint32_t> points{};    ///< in no order
-    std::vector<glm::dvec3>    places{};    ///< of `points` [m]
-    std::vector<glm::dvec3>    normals{};   ///< of `points`, their signs as at the contact: towards the finger [1]
+    std::vector<std::uint32_t> inBall{};    ///< numbers of its points among those of the ball, in no order
+    std::vector<glm::dvec3>    places{};    ///< of these points [m]
+    std::vector<glm::dvec3>    normals{};   ///< the same, their signs as at the contact: towards the finger [1]
     glm::dvec3                 anchor{};    ///< [m] the contact, on the surface that the points around it have
     glm::dvec3                 normal{};    ///< [1] unit, of the surface there, towards the finger
     double                     spacing = 0; ///< [m] of the points there; the cloud's, where the density hardly varies

@@ -8,6 +8,10 @@
 #include <new>
 #include <vector>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 #include "engine/compute/processor_error.h"
 #include "engine/core/contract.h"
 #include "engine/tools/cli/commands.h"
@@ -71,6 +75,17 @@ std::vector<const char*> wordsOf(int argumentCount, char** arguments)
     std::_Exit(complain("out of memory; try fewer cells or points", kBadInput)); // std::cerr has no buffer
 }
 
+/// Keeps freed memory at hand: every touch needs some megabytes, which the C library would give back and the system
+/// would have to clear again, for a fifth of the touch's time.
+void keepFreedMemory()
+{
+#ifdef __GLIBC__
+    constexpr int kMegabyte = 1 << 20;         // bytes
+    mallopt(M_MMAP_THRESHOLD, 32 * kMegabyte); // the most that it takes
+    mallopt(M_TRIM_THRESHOLD, 64 * kMegabyte);
+#endif
+}
+
 int printHelp(const CLI::App& app, const CLI::ParseError& request)
 {
     app.exit(request);
@@ -81,6 +96,7 @@ int printHelp(const CLI::App& app, const CLI::ParseError& request)
 
 int main(int argumentCount, char** arguments)
 {
+    keepFreedMemory();
     CLI::App app("Palpate: feel a thin, soft object whose stiffness varies from place to place.");
     app.require_subcommand(1);
     app.set_version_flag("--version", "palpate " PALPATE_VERSION);
