@@ -278,6 +278,8 @@ for hand in arm falcon-emulator; do
     good "it replays: $hand" replay "held-$hand" --compare
     holds 'equal to the bit'
 done
+good "a hand that forces move: haply-emulator" run scene.json --hand haply-emulator --clock virtual --seconds 0.5
+bad 'a device that is not there' 'is haply-inverse-service running?' run scene.json --hand haply:127.0.0.1:1
 good 'threads of the paper' run scene.json --threads paper --seconds 0.3
 good 'a fast hand' run scene.json --speed 2 --clock virtual --seconds 1 --json
 holds 'no force came on'
