@@ -7,6 +7,8 @@
 #include "device/haply/haply_record.h"
 #include "device/hid/hid_records.h"
 #include "device/mouse_device.h"
+#include "device/vendor/force_dimension.h"
+#include "device/vendor/open_haptics.h"
 #include "engine/core/contract.h"
 #include "engine/session/gripped_arm.h"
 #include "engine/session/gripped_falcon.h"
@@ -15,7 +17,8 @@
 namespace palp {
 namespace {
 
-constexpr std::array kRecords{&kFalconRecord,         &kHaplyRecord,        &kBridgeRecord,         &kSpaceMouseRecord,   &kMouseRecord,          &kArmRecord,
+constexpr std::array kRecords{&kFalconRecord,         &kHaplyRecord,        &kForceDimensionRecord, &kOpenHapticsRecord,
+                              &kBridgeRecord,         &kSpaceMouseRecord,   &kMouseRecord,          &kArmRecord,
                               &kFalconEmulatorRecord, &kHaplyEmulatorRecord};
 
 const DeviceOption* optionOf(const DeviceRecord& record, std::string_view flag) noexcept

@@ -42,7 +42,7 @@ TEST(DeviceRegistry, EachRecordSaysWhatItsReadersNeed)
 
 TEST(DeviceRegistry, KnowsEveryDeviceThatIsBuiltIn)
 {
-    for (const char* name : {"falcon", "haply", "bridge", "spacemouse", "mouse", "arm", "falcon-emulator", "haply-emulator"})
+    for (const char* name : {"falcon", "haply", "forcedimension", "openhaptics", "bridge", "spacemouse", "mouse", "arm", "falcon-emulator", "haply-emulator"})
         EXPECT_NE(deviceNamed(name), nullptr) << name;
 }
 
