@@ -67,7 +67,7 @@ private:
 } // namespace
 
 EmulatedHaply::EmulatedHaply(EmulatedHaplySettings settings, Arm arm)
-    : settings_(std::move(settings)), arm_(std::move(arm))
+    : settings_(std::move(settings)), arm_(std::move(arm)), time_(settings_.start)
 {
     if (arm_) position_ = arm_(glm::dvec3(0), 0);
 }

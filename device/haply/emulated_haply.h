@@ -41,6 +41,7 @@ struct EmulatedHaplySettings {
     double                   forceGate  = 0;
     double                   forceScale = 1;
     double                   hold       = 5e-3; ///< [s] assumed: without a message it renders nothing after that
+    double                   start      = 0;    ///< [s] of its clock
 };
 
 /// Haply's Inverse Service with one Inverse3, down to the bytes of its sockets: HTTP, WebSocket, JSON. The real driver

@@ -20,7 +20,7 @@ namespace palp {
 /// \thread one
 class HaplyServer {
 public:
-    explicit HaplyServer(const EmulatedHaplySettings& settings = {}) : service(settings)
+    explicit HaplyServer(EmulatedHaplySettings settings = {}) : service(startedNow(std::move(settings)))
     {
         for (Listener& listener : listeners_) {
             listener.fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -66,6 +66,12 @@ public:
     EmulatedHaply service;
 
 private:
+    static EmulatedHaplySettings startedNow(EmulatedHaplySettings settings)
+    {
+        settings.start = steadyTime();
+        return settings;
+    }
+
     struct Listener {
         int           fd   = -1;
         std::uint16_t port = 0;
