@@ -32,7 +32,8 @@ struct HapticDeviceInfo {
     bool     hasGripper   = false; ///< senses how far the grip is closed
     bool     isSimulation = false; ///< it has no hardware
 
-    std::string note; ///< a sentence that the user should read before a session; may be empty
+    std::string note;   ///< a sentence that the user should read before a session; may be empty
+    std::string homing; ///< what the user does to home it: "put the stylus into its holder"; empty: as a Falcon
 };
 
 /// Why a device gives no valid state. Numbers are recorded: never reuse one.
@@ -136,6 +137,10 @@ public:
 
     /// Asks the user, by lights or words, to home a device that needs it. No force flows until HapticState::homed.
     virtual void home() noexcept {}
+
+    /// Returns what the driver knows about the last fault beyond its name, for a person: a sentence of static storage,
+    /// empty if it knows nothing. \thread that of read(), or any while none runs
+    [[nodiscard]] virtual const char* faultWords() const noexcept { return ""; }
 
     /// Sets the lights from the next render() on, a sum of DeviceLight.
     virtual void light(std::uint8_t /*lights*/) noexcept {}

@@ -28,8 +28,10 @@ bool waitForHoming(HapticDevice& device, const std::atomic<bool>& stop,
             throw Error(device.info().model + ": lost while it was to be homed (" + name(state.fault) +
                         "); palpate doctor may tell why");
         if (now > kPatience && !told) {
-            tell("home the " + device.info().model +
-                 ": pull the grip all the way out, then push it all the way in; its red light goes out");
+            const std::string& own = device.info().homing;
+            tell("home the " + device.info().model + ": " +
+                 (own.empty() ? "pull the grip all the way out, then push it all the way in; its red light goes out"
+                              : own));
             told = true;
         }
     }

@@ -10,7 +10,7 @@ namespace palp {
 
 /// The page of memory that both see. Times are of CLOCK_MONOTONIC [ns].
 struct GuardianPage {
-    static constexpr std::size_t kPacket = 64; ///< [byte] most of a packet
+    static constexpr std::size_t kPacket = 256; ///< [byte] most of a packet
 
     std::atomic<std::int64_t>  alive{0};    ///< last sign of life of the program
     std::atomic<std::int64_t>  watching{0}; ///< last look of the guardian; 0: not yet

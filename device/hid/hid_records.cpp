@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "device/hid/bridge_lines.h"
 #include "device/hid/hid_bridge.h"
 #include "device/hid/hidapi_system.h"
 #include "device/hid/space_mouse.h"
@@ -60,6 +61,12 @@ DeviceSupport support()
     return {hasHidSupport(), hidSupport(), "install libhidapi-dev and build Palpate anew"};
 }
 
+/// Without hidapi it still speaks over UDP and serial ports.
+DeviceSupport bridgeSupport()
+{
+    return {true, hidSupport() + (hasHidSupport() ? "" : ", so over UDP and serial ports only"), ""};
+}
+
 } // namespace
 
 const DeviceRecord kBridgeRecord{.name  = "bridge",
@@ -71,10 +78,11 @@ const DeviceRecord kBridgeRecord{.name  = "bridge",
                                          return devices;
                                      },
                                  .make = [](const DeviceRequest& request) -> std::unique_ptr<HapticDevice> {
+                                     if (const auto line = parseBridgeLine(request.path)) return makeLineBridge(*line);
                                      return std::make_unique<HidBridgeDevice>(
                                          request.hid, listingFor(request, modelOfBridge, "bridge"));
                                  },
-                                 .support = support};
+                                 .support = bridgeSupport};
 
 const DeviceRecord kSpaceMouseRecord{.name  = "spacemouse",
                                      .model = "a cap with six axes, without force",

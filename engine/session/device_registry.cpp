@@ -4,17 +4,22 @@
 #include <array>
 
 #include "device/falcon/falcon_record.h"
+#include "device/haply/haply_record.h"
 #include "device/hid/hid_records.h"
 #include "device/mouse_device.h"
+#include "device/vendor/force_dimension.h"
+#include "device/vendor/open_haptics.h"
 #include "engine/core/contract.h"
 #include "engine/session/gripped_arm.h"
 #include "engine/session/gripped_falcon.h"
+#include "engine/session/gripped_haply.h"
 
 namespace palp {
 namespace {
 
-constexpr std::array kRecords{&kFalconRecord, &kBridgeRecord, &kSpaceMouseRecord,
-                              &kMouseRecord,  &kArmRecord,    &kFalconEmulatorRecord};
+constexpr std::array kRecords{&kFalconRecord,         &kHaplyRecord,        &kForceDimensionRecord, &kOpenHapticsRecord,
+                              &kBridgeRecord,         &kSpaceMouseRecord,   &kMouseRecord,          &kArmRecord,
+                              &kFalconEmulatorRecord, &kHaplyEmulatorRecord};
 
 const DeviceOption* optionOf(const DeviceRecord& record, std::string_view flag) noexcept
 {
@@ -40,14 +45,14 @@ std::span<const DeviceRecord* const> deviceRecords() noexcept
 
 const DeviceRecord* deviceNamed(std::string_view hand) noexcept
 {
-    const auto found = std::ranges::find(kRecords, hand.substr(0, hand.find('@')), &DeviceRecord::name);
+    const auto found = std::ranges::find(kRecords, hand.substr(0, hand.find_first_of("@:")), &DeviceRecord::name);
     if (found == kRecords.end()) return nullptr;
     return (*found)->list || hand == (*found)->name ? *found : nullptr; // others have no path
 }
 
 std::string devicePath(std::string_view hand)
 {
-    const std::size_t at = hand.find('@');
+    const std::size_t at = hand.find_first_of("@:");
     return at == std::string_view::npos ? std::string() : std::string(hand.substr(at + 1));
 }
 

@@ -314,6 +314,7 @@ SessionSummary RealSession::run(std::string& warning)
     summary_.solve         = slow_.solve;
     summary_.fault         = force_.governor().fault();
     summary_.why           = slow_.why;
+    if (summary_.deviceFault != DeviceFault::none) summary_.deviceWords = parts_.device.faultWords();
     summary_.whyPatchless  = slow_.whyPatchless;
     return summary_;
 }

@@ -22,6 +22,7 @@ struct SessionSummary {
     GovernorFault fault = GovernorFault::none;             ///< the last
     /// The first, except while starting up; but one that ended the session.
     DeviceFault       deviceFault = DeviceFault::none;
+    std::string       deviceWords;     ///< what the driver knows about the last one beyond its name; may be empty
     std::string       why;             ///< the last patch that failed; may be empty
     std::uint64_t     forceless = 0;   ///< ticks that pressed on the surface without a force
     TickRecord        lastForceless{}; ///< the last of them

@@ -79,6 +79,7 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
         if (onTick) onTick(record);
     }
     summary.fault = servo.governor().fault();
+    if (summary.deviceFault != DeviceFault::none) summary.deviceWords = parts.device.faultWords();
     return summary;
 }
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Writes small files that the readers accept, or nearly, for the fuzzers to start from. Argument: the folder.
 set -eu
-mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/obj" "$1/stl" "$1/glb" "$1/volume" "$1/npy" "$1/npy_cloud" "$1/vtk" "$1/vtk_xml" "$1/problem" "$1/scene" "$1/hand"
+mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/obj" "$1/stl" "$1/glb" "$1/volume" "$1/npy" "$1/npy_cloud" "$1/vtk" "$1/vtk_xml" "$1/problem" "$1/scene" "$1/hand" "$1/haply" "$1/bridge"
 cd "$1"
 
 # The floats 1 and 2, little and big endian, and the doubles 1 and 2, little endian; printf takes octal.
@@ -98,3 +98,15 @@ printf '{"cloud": "sample:sheet", "thickness": "4 kPa", "poisson": 0.5, "force_l
 printf 'time,x,y,z\n0,0,0,0.01\n0.1,0,0,0\n1e0,1e-3,0,-2e-3,ignored\n' >hand/csv
 printf '# down and up\n0 0 0 0.01\n0.5; 0; 0; -1e-3\n1\t0\t0\t0.01\n' >hand/mixed
 printf '0 0 0 nan\n0 0 0 1\n-1 0 0 5000\n' >hand/refused
+
+state='{"inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":0.01,"y":-2e-2,"z":0},"cursor_velocity":{"x":0,"y":0,"z":0}},"status":{"calibrated":true,"ready":true}}],"wireless_verse_grip":[{"state":{"orientation":{"w":1,"x":0,"y":0,"z":0},"buttons":{"a":true}}}]}'
+printf '%s' "$state" >haply/state
+printf '\201\176\001\000%s' "$state" >haply/frame
+printf '{"inverse3":[{"device_id":"049D","config":{"type":"minverse","preset":"defaults","filters":{"force_gate":{"gain":0.3}}},"status":{}}]}' >haply/full
+printf '{"name":"device-safety-triggered","data":{"safety_type":"stall_detected","device_id":"049D"}}' >haply/event
+printf '{"ok":true,"data":{"git_tag":"3.5.0"}}' >haply/version
+printf 'HTTP/1.1 101 Switching Protocols\r\nSec-WebSocket-Accept: s3pPLMBiTxaQ9kYGzzhZRbK+xOo=\r\n\r\n\201\002{}' >haply/head
+
+# An answer of the bridge: header, sequence, flags; the fuzzer's harness adds the checksum.
+{ printf '\001PB\021\001\000\006\000'; zeros 56; } >bridge/answer
+{ printf '\001PB\021\001\000\026\000'; zeros 24; printf '\377\177'; zeros 30; } >bridge/turned

@@ -42,7 +42,7 @@ TEST(DeviceRegistry, EachRecordSaysWhatItsReadersNeed)
 
 TEST(DeviceRegistry, KnowsEveryDeviceThatIsBuiltIn)
 {
-    for (const char* name : {"falcon", "bridge", "spacemouse", "mouse", "arm", "falcon-emulator"})
+    for (const char* name : {"falcon", "haply", "forcedimension", "openhaptics", "bridge", "spacemouse", "mouse", "arm", "falcon-emulator", "haply-emulator"})
         EXPECT_NE(deviceNamed(name), nullptr) << name;
 }
 
@@ -51,6 +51,9 @@ TEST(DeviceRegistry, ANameMayHaveThePathOfADeviceThatIsPluggedIn)
     EXPECT_EQ(deviceNamed("falcon@1-2.3"), &kFalconRecord);
     EXPECT_EQ(devicePath("falcon@1-2.3"), "1-2.3");
     EXPECT_EQ(devicePath("falcon"), "");
+    EXPECT_EQ(deviceNamed("haply:127.0.0.1:10001"), deviceNamed("haply"));
+    EXPECT_EQ(devicePath("haply:127.0.0.1:10001"), "127.0.0.1:10001");
+    EXPECT_EQ(devicePath("haply@127.0.0.1:10001/049D"), "127.0.0.1:10001/049D");
     EXPECT_EQ(deviceNamed("falcon-emulator@1-2"), nullptr) << "it is plugged in nowhere";
     EXPECT_EQ(deviceNamed("falco"), nullptr);
     EXPECT_EQ(deviceNamed(""), nullptr);

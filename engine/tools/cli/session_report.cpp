@@ -80,10 +80,11 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
              : s.forceless > 0 ? s.whyForceless()
                                : "it stayed on the surface and never pressed"));
     if (s.fault != GovernorFault::none) say(std::string("the governor stopped the force: ") + name(s.fault));
+    const std::string words = s.deviceWords.empty() ? "" : ": " + s.deviceWords;
     if (isFinal(s.deviceFault))
-        say(std::string("the device was lost, which ended the session: ") + name(s.deviceFault));
+        say(std::string("the device was lost, which ended the session: ") + name(s.deviceFault) + words);
     else if (s.deviceFault != DeviceFault::none)
-        say(std::string("the device reported a fault: ") + name(s.deviceFault));
+        say(std::string("the device reported a fault: ") + name(s.deviceFault) + words);
     if (s.beyondTheory > 0)
         say("the deflection exceeded half the thickness in " + std::to_string(s.beyondTheory) +
             " ticks: Kirchhoff plate theory does not hold there");

@@ -86,6 +86,7 @@ void TouchSession::conclude(const SessionSummary& summary)
         notices_.say("the replay is over");
     } else if (summary.deviceFault != DeviceFault::none) {
         notices_.complain(std::string("the device is ") + name(summary.deviceFault) +
+                          (summary.deviceWords.empty() ? "" : " (" + summary.deviceWords + ")") +
                           ": plug it in again and press R to continue");
         state_ = State::halted;
     } else if (settings_.hand) {

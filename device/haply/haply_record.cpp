@@ -1,0 +1,121 @@
+#include "device/haply/haply_record.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <utility>
+
+#include "device/detail/tcp_line.h"
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+constexpr std::array kOptions{kHaplyEvents};
+
+constexpr double kConnect = 1;   ///< [s] for a service elsewhere; on this machine it answers at once
+constexpr double kLook    = 0.3; ///< [s] for each of its answers while devices are listed
+
+HaplyOpener openerOf(const HaplyPath& path, std::uint16_t events = kHaplyEventsPort)
+{
+    return [path, events](HaplyPort port) {
+        return connectTcp({path.host, port == HaplyPort::service ? path.port : events}, kConnect);
+    };
+}
+
+std::vector<DeviceListing> list(HidSystem& /*hid*/)
+{
+    const HaplyPath            path;
+    std::vector<DeviceListing> devices;
+    try {
+        for (const HaplyDescription& device : inspectHaply(openerOf(path), kLook).devices) {
+            DeviceListing listing{
+                .model = haplyInfo(device.type).model, .path = path.address() + "/" + device.id, .usable = true};
+            listing.answers = true;
+            if (!device.calibrated || !device.ready) {
+                listing.why  = device.calibrated ? "it is not ready" : "it is not calibrated";
+                listing.help = "switch it on, and move it as its service tells";
+            }
+            devices.push_back(std::move(listing));
+        }
+    } catch (const LineEnded&) { // there is no service, and so no device
+    } catch (const WebSocketError& error) {
+        throw Error("the program at " + path.address() + ", Haply's port, is no Inverse Service: " + error.what());
+    }
+    return devices;
+}
+
+std::unique_ptr<HapticDevice> make(const DeviceRequest& request)
+{
+    const HaplyPath   path   = parseHaplyPath(request.path);
+    const std::string events = textOf(request.options, kHaplyEvents);
+    const auto        port   = events.empty() ? kHaplyEventsPort : std::uint16_t(numberOf(kHaplyEvents, events));
+    return makeHaply(openerOf(path, port), {.id = path.id, .host = path.address()});
+}
+
+DeviceSupport support()
+{
+    return {true, "a socket to Haply's Inverse Service", ""};
+}
+
+/// Returns what the service is, and what it does to a force.
+std::vector<Finding> findings()
+{
+    const char* part = "haply service";
+    try {
+        const HaplyService   service = inspectHaply(openerOf({}), kLook);
+        std::vector<Finding> found{
+            {part, Verdict::ok, service.version.empty() ? "it does not say its version" : service.version}};
+        for (const HaplyDescription& device : service.devices)
+            if (const std::string changed = describeFilters(device, service.forceScale); !changed.empty())
+                found.push_back({part, Verdict::warning, changed, "set them back in the service's settings"});
+        return found;
+    } catch (const LineEnded&) {
+        return {{part, Verdict::ok, "not running; an Inverse3 or Minverse needs it, nothing else does"}};
+    } catch (const WebSocketError& error) {
+        return {{part, Verdict::warning, std::string("another program has its port: ") + error.what(),
+                 "name the service's own with --hand haply:HOST:PORT"}};
+    }
+}
+
+} // namespace
+
+const DeviceRecord kHaplyRecord{.name     = "haply",
+                                .model    = "Haply Inverse3 or Minverse",
+                                .options  = kOptions,
+                                .list     = list,
+                                .make     = make,
+                                .support  = support,
+                                .findings = findings};
+
+HaplyPath parseHaplyPath(const std::string& text)
+{
+    HaplyPath         path;
+    const std::size_t slash   = text.find('/');
+    std::string       address = text.substr(0, slash);
+    if (slash != std::string::npos) path.id = text.substr(slash + 1);
+    const std::size_t colon = address.rfind(':');
+    if (colon == std::string::npos && slash == std::string::npos) {
+        path.id = std::exchange(address, {});
+    } else if (colon != std::string::npos) {
+        const char* const begin  = address.data() + colon + 1;
+        const char* const end    = address.data() + address.size();
+        const auto        number = std::from_chars(begin, end, path.port);
+        if (number.ec != std::errc() || number.ptr != end || path.port == 0 || colon == 0)
+            throw Error("haply: expected HOST:PORT, a device's number, or HOST:PORT/NUMBER, found \"" + text + "\"");
+        path.host = address.substr(0, colon);
+    } else if (!address.empty()) {
+        path.host = address;
+    }
+    if (!path.id.empty() && !isHaplyId(path.id))
+        throw Error("haply: expected a device's number such as 049D, found \"" + path.id + "\"");
+    return path;
+}
+
+std::unique_ptr<LineDevice> makeHaply(HaplyOpener open, const HaplyLineSettings& settings, const LineSettings& line)
+{
+    return std::make_unique<LineDevice>(std::make_unique<HaplyLine>(std::move(open), settings), haplyInfo("inverse3"),
+                                        line);
+}
+
+} // namespace palp

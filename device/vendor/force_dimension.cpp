@@ -1,0 +1,337 @@
+#include "device/vendor/force_dimension.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+
+#include "device/vendor/detail/drd_library.h"
+#include "engine/core/contract.h"
+
+// source: the names, types and results of the functions as Force Dimension's header dhdc.h declares them, the order of
+// the calls at start and end as its clients have it; limits of the types as CHAI3D's table has them.
+namespace palp {
+namespace {
+
+constexpr std::array kOptions{kForceDimensionInit};
+
+constexpr double kMostForce = 12;  ///< [N] that the library lets through, beyond what the governor does
+constexpr int    kSame      = 1;   ///< of a read: the sample is that of the last read (TIMEGUARD)
+constexpr int    kSaturated = 2;   ///< of a write: the motors give less
+constexpr double kSettle    = 0.1; ///< [s] at zero force before the first sample
+
+enum Status : std::size_t { kPower = 0, kConnected = 1, kStarted = 2, kReset = 3, kBrake = 6, kForceOff = 14 };
+
+/// Why the device itself has switched the force off, by its status.
+const char* reasonOf(int cause) noexcept
+{
+    switch (cause) {
+    case 1:
+        return "the force was switched off by the button on the device";
+    case 2:
+        return "the device stopped because it was moved too fast";
+    case 3:
+        return "the device's watchdog acted: it was sent nothing for too long";
+    case 4:
+        return "another program switched the force off";
+    case 5:
+        return "the device stopped because its USB line was interrupted";
+    case 6:
+        return "the dead man's switch is not held";
+    default:
+        return "the device switched its force off";
+    }
+}
+
+/// Their x points to the user, y right, z up.
+glm::dvec3 toOurs(const glm::dvec3& v) noexcept
+{
+    return {v.y, v.z, v.x};
+}
+glm::dvec3 toTheirs(const glm::dvec3& v) noexcept
+{
+    return {v.z, v.x, v.y};
+}
+
+/// Turns a rotation of their frame, by rows, into one of ours.
+glm::dquat turnOf(const double (&rows)[3][3]) noexcept
+{
+    glm::dmat3 ours(1);
+    for (int column = 0; column < 3; ++column) {
+        glm::dvec3 axis{};
+        axis[column]           = 1;
+        const glm::dvec3 their = toTheirs(axis);
+        glm::dvec3       turned{};
+        for (int row = 0; row < 3; ++row)
+            turned[row] = rows[row][0] * their.x + rows[row][1] * their.y + rows[row][2] * their.z;
+        ours[column] = toOurs(turned);
+    }
+    const glm::dquat turn = glm::quat_cast(ours);
+    const double     size = glm::length(turn);
+    return size > 0.9 && size < 1.1 ? turn / size : glm::dquat(1, 0, 0, 0);
+}
+
+class ForceDimensionLine : public DeviceLine {
+public:
+    explicit ForceDimensionLine(const ForceDimensionSettings& settings) : settings_(settings) {}
+    ~ForceDimensionLine() override { close(); }
+
+    void open(HapticDeviceInfo& info) override;
+    void exchange(const LineOrder& order, LineSample& sample) noexcept override;
+    void close() noexcept override;
+
+private:
+    [[nodiscard]] bool render(const glm::dvec3& force) noexcept;
+    [[nodiscard]] int  readHand(LineSample& sample) noexcept;
+    void               readStatus(const LineOrder& order, LineSample& sample) noexcept;
+    [[noreturn]] void  refuse(const std::string& what);
+
+    ForceDimensionSettings            settings_;
+    std::unique_ptr<const DrdLibrary> drd_;
+    int                               id_        = -1; ///< -1: closed
+    int                               errors_    = 0;  ///< calls in a row
+    int                               off_       = 0;  ///< exchanges at zero force since the device switched it off
+    std::uint64_t                     saturated_ = 0;  ///< exchanges in which the motors gave less
+};
+
+void ForceDimensionLine::refuse(const std::string& what)
+{
+    const char*       why  = drd_->dhdErrorGetLastStr();
+    const std::string text = why ? why : "unknown error";
+    close();
+    throw Error("Force Dimension: " + what + ": " + text);
+}
+
+void ForceDimensionLine::open(HapticDeviceInfo& info)
+{
+    try {
+        drd_ = loadDrd();
+    } catch (const Error& error) {
+        throw Error(std::string("Force Dimension's SDK cannot be used: ") + error.what() +
+                    "; install their SDK 3 and set FORCEDIM_SDK to its folder");
+    }
+    errors_ = off_ = 0;
+    saturated_     = 0;
+    if (const int count = drd_->dhdGetDeviceCount(); count <= settings_.index)
+        throw Error("Force Dimension: device number " + std::to_string(settings_.index) + " was asked for, and " +
+                    std::to_string(std::max(0, count)) +
+                    " are plugged in; switch it on, and see that a udev rule for vendor 1451 lets you open it");
+    id_ = drd_->dhdOpenID(char(settings_.index));
+    if (id_ < 0) refuse("device number " + std::to_string(settings_.index) + " cannot be opened");
+    const auto        id    = char(id_);
+    const char* const name  = drd_->dhdGetSystemName(id);
+    const bool        isSim = info.isSimulation;
+    info                    = forceDimensionInfo(drd_->dhdGetSystemType(id));
+    info.isSimulation       = isSim;
+    if (name) info.model = std::string("Force Dimension ") + name;
+    info.path             = std::to_string(settings_.index);
+    unsigned short serial = 0;
+    if (drd_->dhdGetSerialNumber(&serial, id) >= 0) info.serial = std::to_string(serial);
+    info.hasGripper = info.hasGripper && drd_->dhdGetGripperAngleRad;
+
+    if (!drd_->drdIsInitialized(id) && settings_.mayInitialise) {
+        if (drd_->drdAutoInit(id) < 0) refuse("the arm did not find its stops");
+        drd_->drdStop(true, id); // ends the movement, keeps the motors
+    }
+    drd_->dhdSetMaxForce(std::min(kMostForce, info.maximumForce), id);
+    drd_->dhdSetBrakes(0, id);
+    if (drd_->dhdEnableForce(1, id) < 0) refuse("its motors cannot be switched on");
+    drd_->dhdSetGravityCompensation(1, id); // a Falcon has none, and says so
+    if (!render({})) refuse("it takes no forces");
+    std::this_thread::sleep_for(std::chrono::duration<double>(kSettle));
+}
+
+bool ForceDimensionLine::render(const glm::dvec3& force) noexcept
+{
+    const glm::dvec3 f      = toTheirs(force);
+    const int        result = drd_->dhdSetForceAndTorqueAndGripperForce(f.x, f.y, f.z, 0, 0, 0, 0, char(id_));
+    if (result == kSaturated) ++saturated_;
+    return result >= 0;
+}
+
+/// \return 0: a new sample; 1: the same again; below 0: an error
+int ForceDimensionLine::readHand(LineSample& sample) noexcept
+{
+    const auto id = char(id_);
+    glm::dvec3 place{}, speed{};
+    double     turn[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    double     angle      = 0;
+    const int  isPlaced   = drd_->dhdGetPosition(&place.x, &place.y, &place.z, id);
+    if (isPlaced < 0 || isPlaced == kSame) return isPlaced;
+    if (drd_->dhdGetLinearVelocity(&speed.x, &speed.y, &speed.z, id) < 0) return -1;
+    if (drd_->dhdGetOrientationFrame(turn, id) < 0) return -1;
+    if (drd_->dhdGetGripperAngleRad && drd_->dhdGetGripperAngleRad(&angle, id) >= 0) sample.gripperAngle = angle;
+    sample.position    = toOurs(place);
+    sample.velocity    = toOurs(speed);
+    sample.orientation = turnOf(turn);
+    sample.buttons     = drd_->dhdGetButtonMask(id);
+    return 0;
+}
+
+/// Reads what the device says of itself. A force that it has switched off is switched on again once it was asked for
+/// none for a while.
+void ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) noexcept
+{
+    const auto                  id = char(id_);
+    std::array<int, kDrdStatus> status{};
+    status[kConnected] = 1;
+    if (drd_->dhdGetStatus(status.data(), id) < 0) return;
+    if (status[kConnected] == 0) {
+        sample.fault = DeviceFault::unplugged;
+        sample.words = "the device was unplugged or switched off";
+        return;
+    }
+    sample.homed        = status[kReset] == 0 && drd_->drdIsInitialized(id);
+    const bool isBraked = status[kBrake] != 0, isOff = status[kForceOff] != 0;
+    sample.fault = isBraked || isOff ? DeviceFault::ownWatchdog : DeviceFault::none;
+    sample.words = isOff ? reasonOf(status[kForceOff]) : isBraked ? "the device's brakes are on" : "";
+    off_         = sample.fault != DeviceFault::none && !order.enable ? off_ + 1 : 0;
+    if (off_ < settings_.exchangesToTry) return;
+    off_ = 0;
+    drd_->dhdSetBrakes(0, id);
+    drd_->dhdEnableForce(1, id);
+}
+
+void ForceDimensionLine::exchange(const LineOrder& order, LineSample& sample) noexcept
+{
+    if (id_ < 0) return;
+    const bool isTaken = render(order.force);
+    const int  isRead  = readHand(sample);
+    errors_            = isTaken && isRead >= 0 ? 0 : errors_ + 1;
+    sample.news        = isRead == 0 ? LineNews::sample : LineNews::none;
+    readStatus(order, sample);
+    if (errors_ <= settings_.mostErrors || isFinal(sample.fault)) return;
+    static_cast<void>(render({})); // the device may still hear
+    drd_->dhdStop(char(id_));
+    sample.fault = DeviceFault::linkLost;
+    sample.words = "each call of Force Dimension's library fails; see its cable, and plug it in again";
+}
+
+void ForceDimensionLine::close() noexcept
+{
+    if (id_ < 0) return;
+    static_cast<void>(render({}));
+    drd_->dhdStop(char(id_));
+    drd_->dhdClose(char(id_));
+    id_ = -1;
+}
+
+// --- the record
+
+std::vector<DeviceListing> list(HidSystem& /*hid*/)
+{
+    std::unique_ptr<const DrdLibrary> drd;
+    try {
+        drd = loadDrd();
+    } catch (const Error&) { // without the library there are no devices
+        return {};
+    }
+    std::vector<DeviceListing> devices;
+    for (int n = 0; n < drd->dhdGetDeviceCount(); ++n) {
+        DeviceListing listing{.path = std::to_string(n)};
+        if (const int id = drd->dhdOpenID(char(n)); id >= 0) {
+            const char* name = drd->dhdGetSystemName(char(id));
+            listing.model    = std::string("Force Dimension ") + (name ? name : "device");
+            listing.usable   = true;
+            listing.answers  = true;
+            if (!drd->drdIsInitialized(char(id))) {
+                listing.why  = "it has not been reset";
+                listing.help = "press its RESET button, or use " + std::string(kForceDimensionInit.flag);
+            }
+            drd->dhdClose(char(id));
+        } else {
+            const char* why = drd->dhdErrorGetLastStr();
+            listing.model   = "Force Dimension device";
+            listing.why     = why ? why : "it cannot be opened";
+            listing.help    = "add a udev rule for vendor 1451, and end other programs that use it";
+        }
+        devices.push_back(std::move(listing));
+    }
+    return devices;
+}
+
+std::unique_ptr<HapticDevice> make(const DeviceRequest& request)
+{
+    ForceDimensionSettings settings;
+    settings.mayInitialise = !textOf(request.options, kForceDimensionInit).empty();
+    if (!request.path.empty()) {
+        if (request.path.size() > 2 || request.path.find_first_not_of("0123456789") != std::string::npos)
+            throw Error("forcedimension: expected a device's number from 0 to 99, found \"" + request.path + "\"");
+        settings.index = std::stoi(request.path);
+    }
+    return std::make_unique<LineDevice>(makeForceDimensionLine(settings), forceDimensionInfo(0));
+}
+
+DeviceSupport support()
+{
+    return {true, "libdrd.so of Force Dimension's SDK", ""};
+}
+
+std::vector<Finding> findings()
+{
+    const char* part = "forcedimension sdk";
+    try {
+        const std::unique_ptr<const DrdLibrary> drd = loadDrd();
+        int                                     v[4]{};
+        drd->dhdGetSDKVersion(&v[0], &v[1], &v[2], &v[3]);
+        return {{part, Verdict::ok,
+                 "version " + std::to_string(v[0]) + "." + std::to_string(v[1]) + "." + std::to_string(v[2])}};
+    } catch (const Error& error) {
+        const std::string why = error.what();
+        if (why.find(" lacks ") != std::string::npos) return {{part, Verdict::missing, why, "install their SDK 3"}};
+        return {{part, Verdict::ok, "not found; an omega, delta, sigma or lambda needs it, nothing else does"}};
+    }
+}
+
+} // namespace
+
+const DeviceRecord kForceDimensionRecord{.name     = "forcedimension",
+                                         .model    = "Force Dimension omega, delta, sigma or lambda",
+                                         .options  = kOptions,
+                                         .list     = list,
+                                         .make     = make,
+                                         .support  = support,
+                                         .findings = findings};
+
+HapticDeviceInfo forceDimensionInfo(int type)
+{
+    struct Row {
+        int    type;
+        double force, stiffness, damping, radius; ///< [N], [N/m], [N s/m], [m]
+        bool   rotates, grips;
+    };
+    static constexpr Row kRows[] = {{33, 12, 5000, 30, 0.075, false, false},  {34, 12, 5000, 30, 0.075, true, false},
+                                    {36, 12, 5000, 30, 0.075, true, false},   {35, 12, 5000, 30, 0.075, true, true},
+                                    {37, 12, 5000, 30, 0.075, true, true},    {63, 20, 5000, 30, 0.15, false, false},
+                                    {104, 12, 4000, 30, 0.075, true, true},   {105, 12, 4000, 30, 0.075, true, true},
+                                    {206, 12, 4000, 30, 0.075, false, false}, {108, 12, 8000, 30, 0.1125, true, true},
+                                    {109, 12, 8000, 30, 0.1125, true, true},  {131, 12, 8000, 30, 0.1125, true, false},
+                                    {132, 12, 8000, 30, 0.1125, true, false}, {203, 12, 8000, 30, 0.1125, false, false},
+                                    {60, 8, 3000, 20, 0.04, false, false}};
+    const auto           found   = std::ranges::find(kRows, type, &Row::type);
+    const Row&           row     = found == std::end(kRows) ? kRows[0] : *found;
+    HapticDeviceInfo     info;
+    info.model            = "Force Dimension device";
+    info.workspaceRadius  = row.radius;
+    info.maximumForce     = row.force;
+    info.maximumStiffness = row.stiffness;
+    info.maximumDamping   = row.damping;
+    info.buttons          = 8;
+    info.needsHoming      = true;
+    info.homing           = "press its RESET button, or start again with --forcedimension-init, hands off";
+    info.rotates          = row.rotates;
+    info.hasGripper       = row.grips;
+    return info;
+}
+
+std::unique_ptr<DeviceLine> makeForceDimensionLine(const ForceDimensionSettings& settings)
+{
+    return std::make_unique<ForceDimensionLine>(settings);
+}
+
+} // namespace palp

@@ -1,0 +1,31 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "device/device_record.h"
+#include "device/line_device.h"
+
+namespace palp {
+
+/// Force Dimension's omega, delta, sigma and lambda, and a Falcon through their SDK, which the user brings.
+extern const DeviceRecord kForceDimensionRecord;
+
+inline constexpr DeviceOption kForceDimensionInit{
+    "--forcedimension-init",
+    "the arm may move by itself to find its stops, if it has not been reset: hands off until it rests",
+    DeviceOption::Kind::flag};
+
+struct ForceDimensionSettings {
+    int  index          = 0;     ///< of the device, as the library counts them
+    bool mayInitialise  = false; ///< the arm may move by itself when it is opened
+    int  mostErrors     = 20;    ///< calls in a row that fail, after which the link is lost
+    int  exchangesToTry = 500;   ///< exchanges at zero force after which forces are switched on again
+};
+
+/// Makes the conversation with one device. The library is loaded by open().
+[[nodiscard]] std::unique_ptr<DeviceLine> makeForceDimensionLine(const ForceDimensionSettings& settings = {});
+
+/// Returns the limits of a type of device, by the library's number for it; those of an omega if it is unknown.
+[[nodiscard]] HapticDeviceInfo forceDimensionInfo(int type);
+
+} // namespace palp

@@ -1,0 +1,25 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "device/device_record.h"
+#include "device/line_device.h"
+
+namespace palp {
+
+/// 3D Systems' Touch, Touch X and Omni through OpenHaptics, which the user brings.
+extern const DeviceRecord kOpenHapticsRecord;
+
+struct OpenHapticsSettings {
+    std::string name{};                ///< of the device in their setup program; empty: the default one
+    int         exchangesToTry  = 500; ///< exchanges at zero force after which forces are switched on again
+    int         exchangesToLook = 200; ///< between looks whether the device is calibrated, while it is not
+};
+
+/// Makes the conversation with one device. The library is loaded by open(); its scheduler's thread makes the exchanges.
+[[nodiscard]] std::unique_ptr<DeviceLine> makeOpenHapticsLine(const OpenHapticsSettings& settings = {});
+
+/// Returns the limits of a model, as the library names it; those of a Touch if it is unknown.
+[[nodiscard]] HapticDeviceInfo openHapticsInfo(const std::string& model);
+
+} // namespace palp

@@ -1,0 +1,254 @@
+// The bridge over UDP and over a serial port: the driver of USB at real sockets and pseudo terminals.
+#include "device/hid/bridge_lines.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <thread>
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <glm/geometric.hpp>
+#include <poll.h>
+#include <sys/socket.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "device/hid/bridge_stream.h"
+#include "engine/core/contract.h"
+#include "tests/device/governed.h"
+
+namespace palp {
+namespace {
+
+BridgeAnswer answerOf(std::uint16_t sequence)
+{
+    BridgeAnswer answer;
+    answer.sequence        = sequence;
+    answer.flags           = BridgeFlag::homed | BridgeFlag::inBox;
+    answer.position        = {0.01, 0.02, 0.03};
+    answer.workspaceRadius = 0.05;
+    answer.maximumForce    = 4;
+    return answer;
+}
+
+double seconds()
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// --- the stream
+
+TEST(BridgeStream, FindsReportsInAnyPiecesAndAfterAnyRubbish)
+{
+    const BridgeBytes         one = encode(answerOf(1)), two = encode(answerOf(2));
+    std::vector<std::uint8_t> bytes{0x01, 0x50, 7, 0x01};
+    bytes.insert(bytes.end(), one.begin(), one.end());
+    bytes.insert(bytes.end(), {0x01, 0x50, 0x42, 9, 9}); // a start, and then bytes were lost
+    bytes.insert(bytes.end(), two.begin(), two.end());
+    bytes.insert(bytes.end(), one.begin(), one.end() - 1); // not whole yet
+    for (const std::size_t piece : {1U, 3U, 64U, 1000U}) {
+        BridgeStream               stream;
+        std::vector<std::uint16_t> good;
+        for (std::size_t at = 0; at < bytes.size(); at += piece) {
+            stream.feed(std::span(bytes).subspan(at, std::min(piece, bytes.size() - at)));
+            BridgeAnswer answer;
+            while (const auto report = stream.next())
+                if (decode(*report, answer) == BridgeVerdict::good) good.push_back(answer.sequence);
+        }
+        EXPECT_EQ(good, (std::vector<std::uint16_t>{1, 2})) << piece;
+    }
+}
+
+TEST(BridgeStream, ItDoesNotGrow)
+{
+    BridgeStream                    stream;
+    const std::vector<std::uint8_t> rubbish(1 << 20U, 0x01);
+    stream.feed(rubbish);
+    EXPECT_FALSE(stream.next());
+    const BridgeBytes report = encode(answerOf(7));
+    stream.feed(report);
+    EXPECT_TRUE(stream.next());
+}
+
+TEST(BridgeLines, AreNamedByTheirKind)
+{
+    EXPECT_EQ(parseBridgeLine("/dev/hidraw3"), std::nullopt);
+    EXPECT_EQ(parseBridgeLine("udp:5005")->port, 5005);
+    EXPECT_EQ(parseBridgeLine("udp:5005")->place, "127.0.0.1");
+    EXPECT_EQ(parseBridgeLine("udp:0.0.0.0:5005")->place, "0.0.0.0");
+    EXPECT_EQ(parseBridgeLine("serial:/dev/ttyACM0")->place, "/dev/ttyACM0");
+    for (const char* text : {"udp:", "udp:x", "udp:70000", "udp::1", "udp:5005x", "serial:"})
+        EXPECT_THROW((void)parseBridgeLine(text), Error) << text;
+}
+
+// --- whole lines
+
+/// A device at the other end of a line, on a thread of its own: position out, force in, with the mandatory watchdog.
+class Firmware {
+public:
+    using Write = std::function<void(std::span<const std::uint8_t>)>;
+    using Read  = std::function<std::size_t(std::span<std::uint8_t>)>;
+
+    Firmware(Write write, Read read)
+        : thread_([this, write = std::move(write), read = std::move(read)](const std::stop_token& stop) {
+              double        heard = 0, patience = 0;
+              std::uint16_t sequence = 0;
+              while (!stop.stop_requested()) {
+                  std::array<std::uint8_t, kBridgeSize> report{};
+                  BridgeCommand                         command;
+                  while (read(report) == kBridgeSize)
+                      if (decode(report, command) == BridgeVerdict::good) {
+                          heard    = seconds();
+                          patience = command.watchdog;
+                          force    = command.enable ? command.force.x : 0;
+                      }
+                  if (seconds() - heard > patience) force = 0;
+                  if (!isSilent) write(encode(answerOf(++sequence)));
+                  std::this_thread::sleep_for(std::chrono::milliseconds(1));
+              }
+          })
+    {
+    }
+
+    std::atomic<double> force{0}; ///< [N] x
+    std::atomic<bool>   isSilent{false};
+
+private:
+    std::jthread thread_;
+};
+
+/// Ticks until it is so; false after 10 s, for a busy machine.
+bool until(HapticDevice& device, const GovernedForce& push, const std::function<bool(const HapticState&)>& so)
+{
+    for (const double end = seconds() + 10; seconds() < end;) {
+        if (so(device.exchange(push, seconds()))) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+}
+
+/// What must hold of either line.
+void conversesAndFallsSilent(HapticDevice& device, Firmware& firmware)
+{
+    device.open();
+    EXPECT_EQ(device.info().maximumForce, 4);
+    const GovernedForce push = governed({1, 0, 0});
+    ASSERT_TRUE(until(device, push, [&](const HapticState& s) {
+        return s.fault == DeviceFault::none && firmware.force > 0.99 && s.sequence > 5;
+    }));
+    EXPECT_TRUE(until(device, push, [&](const HapticState& s) {
+        return glm::length(s.position - glm::dvec3(0.01, 0.02, 0.03)) < 1e-9;
+    }));
+    firmware.isSilent = true;
+    EXPECT_TRUE(until(device, push, [&](const HapticState& s) { return s.fault == DeviceFault::silent; }));
+    EXPECT_TRUE(until(device, push, [&](const HapticState&) { return firmware.force == 0; }));
+    firmware.isSilent = false;
+    EXPECT_TRUE(until(device, push,
+                      [&](const HapticState& s) { return s.fault == DeviceFault::none && firmware.force > 0.99; }));
+    device.close();
+    for (const double end = seconds() + 5; firmware.force != 0 && seconds() < end;)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_EQ(firmware.force, 0);
+}
+
+struct Socket {
+    Socket() : fd(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0))
+    {
+        address.sin_family      = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    }
+    ~Socket() { close(fd); }
+
+    int         fd;
+    sockaddr_in address{};
+};
+
+/// Returns a port at which nobody listens.
+std::uint16_t freePort()
+{
+    Socket    probe;
+    socklen_t size = sizeof probe.address;
+    auto*     any  = reinterpret_cast<sockaddr*>(&probe.address);
+    if (bind(probe.fd, any, size) != 0 || getsockname(probe.fd, any, &size) != 0) throw Error(std::strerror(errno));
+    return ntohs(probe.address.sin_port);
+}
+
+TEST(BridgeLines, UdpIsALineLikeUsb)
+{
+    const std::uint16_t port = freePort();
+    Socket              peer;
+    peer.address.sin_port = htons(port);
+    Firmware firmware(
+        [&](std::span<const std::uint8_t> bytes) {
+            static_cast<void>(!sendto(peer.fd, bytes.data(), bytes.size(), 0,
+                                      reinterpret_cast<const sockaddr*>(&peer.address), sizeof peer.address));
+        },
+        [&](std::span<std::uint8_t> bytes) {
+            const ssize_t got = recv(peer.fd, bytes.data(), bytes.size(), MSG_TRUNC);
+            return got < 0 ? 0 : std::size_t(got);
+        });
+    const auto device = makeLineBridge({BridgeLine::Kind::udp, "127.0.0.1", port}, {.asksForRealTime = false});
+    conversesAndFallsSilent(*device, firmware);
+}
+
+/// Whoever was not first is not heard: its reports would move the hand.
+TEST(BridgeLines, ByUdpTheFirstIsTheDeviceAndOthersAreNotHeard)
+{
+    const std::uint16_t port = freePort();
+    const auto          line = openBridgeLine({BridgeLine::Kind::udp, "127.0.0.1", port});
+    Socket              first, second;
+    first.address.sin_port = second.address.sin_port = htons(port);
+    const auto send                                  = [](const Socket& from, std::span<const std::uint8_t> bytes) {
+        ASSERT_EQ(sendto(from.fd, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&from.address),
+                                                          sizeof from.address),
+                                                   ssize_t(bytes.size()));
+    };
+    std::array<std::uint8_t, kBridgeSize + 1> report{};
+    line->write(encode(BridgeCommand{})); // to nobody
+    const std::array<std::uint8_t, 3> rubbish{1, 2, 3};
+    send(second, rubbish);
+    EXPECT_EQ(line->read(report, 1), 3U) << "what is no report makes nobody the device";
+    send(first, encode(answerOf(1)));
+    EXPECT_EQ(line->read(report, 1), kBridgeSize);
+    send(second, encode(answerOf(2)));
+    EXPECT_EQ(line->read(report, 0.05), 0U);
+    line->write(encode(BridgeCommand{}));
+    pollfd ready{first.fd, POLLIN, 0};
+    EXPECT_EQ(poll(&ready, 1, 1000), 1) << "commands go to the first";
+    EXPECT_LT(recv(second.fd, report.data(), report.size(), MSG_DONTWAIT), 0);
+    EXPECT_THROW((void)openBridgeLine({BridgeLine::Kind::udp, "127.0.0.1", port}), HidRefused) << "the port is taken";
+}
+
+TEST(BridgeLines, ASerialPortIsALineLikeUsbAndUnplugged)
+{
+    const int master = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK);
+    ASSERT_GE(master, 0);
+    ASSERT_EQ(grantpt(master) | unlockpt(master), 0);
+    std::array<char, 64> node{};
+    ASSERT_EQ(ptsname_r(master, node.data(), node.size()), 0);
+    const auto device = makeLineBridge({BridgeLine::Kind::serial, node.data(), 0}, {.asksForRealTime = false});
+    {
+        Firmware firmware(
+            [&](std::span<const std::uint8_t> bytes) { static_cast<void>(!write(master, bytes.data(), bytes.size())); },
+            [&](std::span<std::uint8_t> bytes) {
+                const ssize_t got = read(master, bytes.data(), bytes.size());
+                return got < 0 ? 0 : std::size_t(got);
+            });
+        conversesAndFallsSilent(*device, firmware);
+        device->open();
+        ASSERT_TRUE(until(*device, {}, [](const HapticState& s) { return s.fault == DeviceFault::none; }));
+    }
+    close(master);
+    EXPECT_TRUE(until(*device, {}, [](const HapticState& s) { return s.fault == DeviceFault::unplugged; }));
+    EXPECT_THROW((void)openBridgeLine({BridgeLine::Kind::serial, "/dev/null", 0}), HidRefused) << "no serial port";
+    EXPECT_THROW((void)openBridgeLine({BridgeLine::Kind::serial, "/dev/nowhere", 0}), HidRefused);
+}
+
+} // namespace
+} // namespace palp

@@ -1,0 +1,135 @@
+// Sessions in virtual time on emulated devices behind the drivers of real ones, each with the mass, the damping, the
+// rate and the delay that its emulator has.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <memory>
+
+#include <glm/geometric.hpp>
+
+#include "device/hid/hidapi_system.h"
+#include "engine/session/device_registry.h"
+#include "engine/session/gripped_haply.h"
+#include "tests/session/sheet_session.h"
+
+namespace palp {
+namespace {
+
+struct Kind {
+    const char* name; ///< as --hand has it
+    double      cap;  ///< [N/m] that the device states
+};
+
+class LineSessions : public ::testing::TestWithParam<Kind> {};
+
+INSTANTIATE_TEST_SUITE_P(On, LineSessions, ::testing::Values(Kind{"haply-emulator", 800}), [](const auto& which) {
+    std::string name = which.param.name;
+    std::erase(name, '-');
+    return name;
+});
+
+/// Held above a stiff sheet, then pressed 3 mm below its surface by a hand of some stiffness.
+HandPath pressing()
+{
+    return HandPath({{0, {5e-3, 0, 6e-3}}, {2.5, {5e-3, 0, 6e-3}}, {2.8, {5e-3, 0, -3e-3}}, {20, {5e-3, 0, -3e-3}}});
+}
+
+struct Session {
+    SheetSession                  session;
+    HandPath                      path;
+    GrippingHand                  hand;
+    std::unique_ptr<HapticDevice> device;
+
+    Session(const char* name, const char* stiffness, HandPath way, const SimulatedHand& grip)
+        : session(sheetScene(stiffness)), path(std::move(way)), hand{path, grip, deviceFrame({0, 0, 6e-3}, {0, 0, 1})}
+    {
+        HidapiSystem hid;
+        device = deviceNamed(name)->make({.hid = hid, .hand = &hand});
+        device->open();
+    }
+    SessionSummary run(double seconds, const OnTick& onTick)
+    {
+        Deformation deformation(session.object, session.scene);
+        return runVirtual({session.scene, session.object, deformation.solver(), *device, hand.frame}, seconds, onTick);
+    }
+};
+
+/// A relaxed hand without damping, and a firm one, lean on a wall that is stiffer than the device renders: the cap binds
+/// and the arm comes to rest.
+TEST_P(LineSessions, AnArmThatIsPressedIntoAStiffWallComesToRestAtTheCap)
+{
+    for (const double grip : {50.0, 150.0, 500.0}) {
+        Session    s(GetParam().name, R"({"law": "constant", "value": 30e6})", pressing(),
+                     {.stiffness = grip, .damping = 0});
+        double     low = 1, high = -1, stiffest = 0, force = 0; // [m], [N/m], [N]
+        const auto summary = s.run(6, [&](const TickRecord& record) {
+            if (record.time < 5) return;
+            low      = std::min(low, record.hip.z);
+            high     = std::max(high, record.hip.z);
+            stiffest = std::max(stiffest, record.stiffness);
+            force    = glm::length(record.force);
+        });
+        std::printf("  grip %3.0f N/m: swing %.1f um, %.0f N/m rendered, %.2f N\n", grip, (high - low) * 1e6, stiffest,
+                    force);
+        EXPECT_EQ(summary.fault, GovernorFault::none);
+        EXPECT_EQ(summary.deviceFault, DeviceFault::none);
+        EXPECT_LE(high - low, 2 * 48e-6) << "as on the Falcon's arm: two of its encoder's steps";
+        EXPECT_GT(force, 0.1);
+        EXPECT_LE(stiffest, GetParam().cap * (1 + 1e-9));
+        EXPECT_GT(stiffest, 0.5 * GetParam().cap) << "the cap must be near, or this shows little";
+    }
+}
+
+/// Ten seconds of touch over a wart: no fault, nothing that is not finite, the force in steps that the governor allows.
+TEST_P(LineSessions, AHandThatExploresAWartMeetsNoFault)
+{
+    std::vector<HandPose> way;
+    for (double t = 0; t <= 10; t += 5e-3)
+        way.push_back({t,
+                       {15e-3 * std::sin(1.1 * t), 9e-3 * std::sin(0.7 * t),
+                        t < 2 ? 6e-3 : -2e-3 + 5e-3 * std::cos(2 * 3.14159 * 0.37 * (t - 2))}});
+    Session    s(GetParam().name, kWart, HandPath(std::move(way)), {.stiffness = 2000, .damping = 5});
+    bool       finite = true;
+    double     most = 0, step = 0; // [N]
+    glm::dvec3 last{};
+    const auto summary = s.run(10, [&](const TickRecord& record) {
+        finite = finite && std::isfinite(glm::length(record.force) + glm::length(record.hip));
+        most   = std::max(most, glm::length(record.force));
+        step   = std::max(step, glm::length(record.force - last));
+        last   = record.force;
+    });
+    EXPECT_TRUE(finite);
+    EXPECT_EQ(summary.fault, GovernorFault::none);
+    EXPECT_EQ(summary.deviceFault, DeviceFault::none);
+    EXPECT_GT(2 * summary.contactTicks, summary.ticks);
+    EXPECT_GT(most, 1.0);
+    EXPECT_LE(step, 1 + 1e-9) << "the governor's slew [N]";
+}
+
+/// The wire of a Haply carries the governor's force, turned into the service's frame and back.
+TEST(HaplySession, TheForceAtTheCursorIsTheGovernors)
+{
+    const HandPath path = pressing();
+    GrippingHand   hand{path, {.stiffness = 500, .damping = 2}, deviceFrame({0, 0, 6e-3}, {0, 0, 1})};
+    GrippedHaply   haply(hand);
+    haply.open();
+    SheetSession session(sheetScene(kWart));
+    Deformation  deformation(session.object, session.scene);
+    glm::dvec3   sent{};
+    double       worst = 0, most = 0; // [N]
+    (void)runVirtual({session.scene, session.object, deformation.solver(), haply, hand.frame}, 4,
+                     [&](const TickRecord& record) {
+                         const glm::dvec3 felt = hand.frame.sceneFromDevice * haply.emulator().force();
+                         worst                 = std::max(worst, glm::length(felt - sent));
+                         most                  = std::max(most, glm::length(sent));
+                         sent                  = record.force;
+                     });
+    EXPECT_GT(most, 0.5);
+    EXPECT_LT(worst, 1e-4) << "four decimal places, in three directions";
+}
+
+} // namespace
+} // namespace palp
