@@ -47,7 +47,7 @@ DeformationAnswer Deformation::solve(const Touch& touch, double lead)
     DeformationAnswer  answer = solveSomewhere(touch, lead);
     const std::string& by     = answer.patch ? answer.patch->report.solver : solver_.name();
     answer.takeover           = solver_.takeoverSince(told_, by);
-    if (!answer.takeover.empty()) told_ = solver_.note();
+    told_                     = solver_.counts().takeovers;
     return answer;
 }
 
