@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -49,6 +50,26 @@ const SolveReport& reportOf(const std::vector<PlateSolution>& solutions)
 const SolveReport& reportOf(const FootprintSolution& solution)
 {
     return solution.whole.report;
+}
+
+double wallMilliseconds()
+{
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Returns the least time of three calls, after one that is not timed [ms].
+template <class Call>
+double leastTime(const PlateSolver::Clock& clock, const Call& call)
+{
+    const auto now = [&] { return clock ? clock() : wallMilliseconds(); };
+    call();
+    double least = std::numeric_limits<double>::infinity();
+    for (int n = 0; n < 3; ++n) {
+        const double began = now();
+        call();
+        least = std::min(least, now() - began);
+    }
+    return least;
 }
 
 } // namespace
@@ -150,6 +171,12 @@ struct PlateSolver::Multigrid {
             for (PlateSolution& solution : solutions) solution.report.setUpMilliseconds = setUp;
             return solutions;
         });
+    }
+
+    [[nodiscard]] double timeOf(const PlateTrial& trial, const Clock& clock)
+    {
+        return leastTime(clock,
+                         [&] { (void)solve(trial.plate, trial.loads, trial.loads.size() / 2, trial.tolerance); });
     }
 
     /// \return the solution; not converged if that of any load is not
@@ -396,14 +423,40 @@ std::optional<Answer> PlateSolver::byMultigrid(const Plate& plate, double tolera
     return answer;
 }
 
-void PlateSolver::loseProcessor(const std::exception& why)
+void PlateSolver::takeHost()
 {
-    note_ = why.what();
-    ++takeovers_;
     if (!host_) host_ = makeHost();
     memoriesOfLost_ += processor_->memories();
     processor_ = std::move(host_);
     name_      = processor_->context.processor().name;
+}
+
+void PlateSolver::loseProcessor(const std::exception& why)
+{
+    note_ = why.what();
+    ++takeovers_;
+    takeHost();
+}
+
+double PlateSolver::timeOf(const PlateTrial& trial, const Clock& clock)
+{
+    if (processor_) return processor_->timeOf(trial, clock);
+    return leastTime(clock, [&] { (void)byReference(trial.plate, trial.loads, 0, trial.tolerance); });
+}
+
+std::vector<PlateSolver::ProcessorTime> PlateSolver::keepFaster(const PlateTrial& trial, const Clock& clock)
+{
+    if (!processor_ || processor_->isHost()) return {};
+    std::vector<ProcessorTime> times{{name_, std::numeric_limits<double>::infinity()}};
+    try {
+        times[0].milliseconds = processor_->timeOf(trial, clock);
+    } catch (const std::exception& error) { // lost, too small, without the doubles that the tolerance needs
+        note_ = error.what();
+        ++takeovers_;
+    }
+    times.push_back({std::string(compute::kHostProcessor), host().timeOf(trial, clock)});
+    if (times[1].milliseconds < times[0].milliseconds) takeHost();
+    return times;
 }
 
 std::vector<PlateSolution> PlateSolver::solveAll(const Plate& plate, std::span<const NodeField> nodalForces,

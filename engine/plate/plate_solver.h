@@ -1,5 +1,6 @@
 #pragma once
 #include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,6 +10,7 @@
 
 #include "engine/plate/footprint.h"
 #include "engine/plate/plate.h"
+#include "engine/plate/plate_trial.h"
 
 namespace palp {
 
@@ -92,6 +94,26 @@ public:
     [[nodiscard]] FootprintSolution solveFootprints(const Plate& plate, std::span<const Footprint> loads,
                                                     std::size_t whole, double tolerance = 1e-4);
 
+    /// Returns the time that it is [ms]; only differences count.
+    using Clock = std::function<double()>;
+
+    /// Measures the least time of three solves of a trial, each with a new rigidity, after one that compiles kernels and
+    /// makes memory [ms].
+    /// \param clock  empty: the wall clock
+    /// \throws Error if the processor cannot solve it
+    [[nodiscard]] double timeOf(const PlateTrial& trial, const Clock& clock = {});
+
+    /// What the processors took that were compared.
+    struct ProcessorTime {
+        std::string name;
+        double      milliseconds; ///< infinite: it could not solve the trial, see note()
+    };
+
+    /// Compares the processor with the host by timeOf(), and goes on with the faster one: a GPU waits 3 to 5 us for each
+    /// of its dispatches, so that the host may win on small plates. It takes some ten solves.
+    /// \return the processor's time, then the host's; nothing where there is no choice, on the host and the reference
+    std::vector<ProcessorTime> keepFaster(const PlateTrial& trial, const Clock& clock = {});
+
     /// Counts what was done so far.
     struct Counts {
         int takeovers = 0; ///< changes from the processor to another solver, or from one reason for that to another
@@ -118,6 +140,7 @@ private:
     template <class Answer, class Solve>
     [[nodiscard]] std::optional<Answer> byMultigrid(const Plate& plate, double tolerance, const Solve& solve);
 
+    void takeHost();                               ///< for good
     void loseProcessor(const std::exception& why); ///< for good: the host is the processor then
     void countTakeover(const std::string& solvedBy);
     [[nodiscard]] static std::vector<PlateSolution>

@@ -336,6 +336,61 @@ TEST(PlateSolver, SeveralLoadsOfOnePlateAreThoseOfEachAlone)
     }
 }
 
+/// Every reading of the clock is later than the last one: by `slow` while the processor is tried, which comes first, and
+/// by 1 while the host is.
+PlateSolver::Clock clockThatSays(double slow)
+{
+    return [slow, time = 0.0, readings = 0]() mutable { return time += ++readings <= 6 ? slow : 1; };
+}
+
+TEST(PlateSolver, OfProcessorAndHostTheFasterOneIsKept)
+{
+    if (processorOfTests() == compute::kHostProcessor) GTEST_SKIP() << "there is no choice";
+    const PlateTrial trial = plateTrial(20, 9);
+    PlateSolver      solver(processorOfTests());
+    const auto       name = solver.name();
+    auto             took = solver.keepFaster(trial, clockThatSays(0.5));
+    ASSERT_EQ(took.size(), 2U);
+    EXPECT_EQ(took[0].name, name);
+    EXPECT_EQ(took[0].milliseconds, 0.5);
+    EXPECT_EQ(took[1].name, compute::kHostProcessor);
+    EXPECT_EQ(took[1].milliseconds, 1);
+    EXPECT_EQ(solver.name(), name);
+    EXPECT_EQ(solver.solve(trial.plate, trial.loads[0].load(trial.plate.grid)).report.solver, name);
+    took = solver.keepFaster(trial, clockThatSays(2));
+    EXPECT_EQ(took[0].milliseconds, 2);
+    EXPECT_EQ(solver.name(), compute::kHostProcessor);
+    EXPECT_EQ(solver.solve(trial.plate, trial.loads[0].load(trial.plate.grid)).report.solver, compute::kHostProcessor);
+    EXPECT_EQ(solver.note(), "") << "nothing went wrong";
+    EXPECT_TRUE(solver.keepFaster(trial).empty()) << "there is no choice any more";
+}
+
+TEST(PlateSolver, AProcessorThatFailsTheTrialLosesToTheHost)
+{
+    if (processorOfTests() == compute::kHostProcessor) GTEST_SKIP() << "there is no choice";
+    PlateSolver solver(processorOfTests(), 1e-9); // [s] of patience: every submission counts as a hang
+    const auto  took = solver.keepFaster(plateTrial(20, 1));
+    ASSERT_EQ(took.size(), 2U);
+    EXPECT_TRUE(std::isinf(took[0].milliseconds));
+    EXPECT_GT(took[1].milliseconds, 0);
+    EXPECT_EQ(solver.name(), compute::kHostProcessor);
+    EXPECT_NE(solver.note().find("did not finish within"), std::string::npos) << solver.note();
+    EXPECT_NE(solver.takeoverSince(0, solver.name()), "");
+}
+
+TEST(PlateSolver, ATrialHasTheLoadsThatAreAskedForWhollyOnThePlate)
+{
+    const PlateTrial trial = plateTrial(64, 49);
+    ASSERT_EQ(trial.loads.size(), 49U);
+    for (const Footprint& load : trial.loads) {
+        double sum = 0;
+        for (const Footprint::Part& part : load.parts) sum += part.force;
+        EXPECT_NEAR(sum, 1, 1e-12);
+    }
+    EXPECT_GT(PlateSolver(compute::kHostProcessor).timeOf(trial), 0);
+    EXPECT_GT(PlateSolver(PlateSolver::kReference).timeOf(plateTrial(16, 1)), 0);
+}
+
 TEST(PlateSolver, OneThatIsNotThereIsRefusedByName)
 {
     EXPECT_THROW(PlateSolver("no such processor"), Error);
