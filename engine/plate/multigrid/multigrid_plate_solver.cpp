@@ -105,6 +105,7 @@ struct MultigridPlateSolver::Impl {
     struct Lists {
         std::optional<CommandList> begin, resume;
         int                        dispatchesPerCycle = 0;
+        int                        nestedDispatches = 0, stepDispatches = 0;
         PlateWork                  nestedWork, stepsWork; ///< before the steps on the finest level; kStepsPerList steps
     };
     /// Memory for loads on few nodes: what the host writes and reads.
@@ -164,7 +165,9 @@ struct MultigridPlateSolver::Impl {
     void recordFinestSteps(CommandList& list, std::uint32_t begins)
     {
         PlatePasses::Recorder pass{passes, list, true};
+        const int             before = list.dispatches();
         passes.takeGradientSteps(pass, 0, kStepsPerList, k.smoothing.finest, begins, settings.tolerance);
+        lists[std::size_t(jumps)].stepDispatches = (list.dispatches() - before) / kStepsPerList;
         list.dispatch(k.result, {passes.levels[0].answer, units, result},
                       shared::VectorPush{std::uint32_t(passes.nodes()), passes.partials(), 0},
                       passes.inOrder(k.result, 0));
@@ -206,7 +209,8 @@ struct MultigridPlateSolver::Impl {
         } else {
             passes.iterateNested(pass);
         }
-        now.nestedWork = std::exchange(passes.work, {});
+        now.nestedWork       = std::exchange(passes.work, {});
+        now.nestedDispatches = list.dispatches();
         recordFinestSteps(list, 2);
         now.stepsWork          = passes.work;
         now.dispatchesPerCycle = passes.dispatchesPerCycle();
@@ -505,6 +509,14 @@ NodeField MultigridPlateSolver::deflectionOf(std::size_t load) const
 double MultigridPlateSolver::rounding() const noexcept
 {
     return impl_->rounding;
+}
+
+MultigridPlateSolver::CommandCounts MultigridPlateSolver::commands()
+{
+    Impl::Lists& now = impl_->lists[std::size_t(impl_->jumps)];
+    if (!now.begin) now.begin.emplace(impl_->recordBegin());
+    return {impl_->prepareList->dispatches(), impl_->prepareList->copies(), now.nestedDispatches, now.stepDispatches,
+            now.dispatchesPerCycle};
 }
 
 int MultigridPlateSolver::dispatchesPerCycle() const noexcept

@@ -146,6 +146,16 @@ public:
     /// rigidity jumps and conjugate gradients are in floats, it grows with the contrast.
     [[nodiscard]] double rounding() const noexcept;
 
+    /// The commands of the lists; each waits for the one before it.
+    struct CommandCounts {
+        int prepare = 0, prepareCopies = 0; ///< dispatches and copies for a new rigidity
+        int nested = 0;                     ///< dispatches before the steps on the finest level
+        int step   = 0;                     ///< dispatches of a step of conjugate gradients there, its cycle included
+        int cycle  = 0;
+    };
+    /// Counts the commands for rigidities that jump as the present one does.
+    [[nodiscard]] CommandCounts commands();
+
     [[nodiscard]] int dispatchesPerCycle() const noexcept; ///< of the finest level, in the last solve
     [[nodiscard]] int levels() const noexcept;
 

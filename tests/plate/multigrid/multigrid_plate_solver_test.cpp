@@ -332,6 +332,32 @@ TEST_F(MultigridPlate, AnotherDriverDiffersFromTheHostByNoMoreThanWhatFloatsRoun
     }
 }
 
+/// On hardware each waits 3 to 5 us for the one before it. engine/performance.md has these numbers.
+TEST_F(MultigridPlate, TheCommandsOfEachScheduleAreCounted)
+{
+    if (onHost()) GTEST_SKIP() << "it smooths in another way, and its dispatches cost nothing";
+    if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
+    if (compilesSlowly(context())) GTEST_SKIP() << kCompilesSlowly;
+    struct Row {
+        int                                 cells;
+        MultigridPlateSolver::CommandCounts fused;
+        int                                 step; ///< pass by pass
+    };
+    const PlateKernels fused(context(), Schedule::fused), onePassEach(context(), Schedule::passByPass);
+    for (const Row& row :
+         {Row{64, {11, 8, 15, 4, 1}, 30}, Row{128, {15, 9, 22, 7, 4}, 41}, Row{256, {19, 10, 35, 10, 7}, 52},
+          Row{512, {23, 11, 51, 13, 10}, 63}, Row{1024, {27, 12, 70, 16, 13}, 74}}) {
+        const Plate plate  = plateOf(row.cells, row.cells, {}, kLaws[0]);
+        const auto  counts = MultigridPlateSolver(context(), fused, plate, {}).commands();
+        EXPECT_EQ(counts.prepare, row.fused.prepare) << row.cells;
+        EXPECT_EQ(counts.prepareCopies, row.fused.prepareCopies) << row.cells;
+        EXPECT_EQ(counts.nested, row.fused.nested) << row.cells;
+        EXPECT_EQ(counts.step, row.fused.step) << row.cells;
+        EXPECT_EQ(counts.cycle, row.fused.cycle) << row.cells;
+        EXPECT_EQ(MultigridPlateSolver(context(), onePassEach, plate, {}).commands().step, row.step) << row.cells;
+    }
+}
+
 /// What a processor may be asked for: the host does not fuse passes, and not every driver compiles them in seconds.
 std::vector<Schedule> schedulesOf(const compute::Context& context)
 {
