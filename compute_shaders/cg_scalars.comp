@@ -7,8 +7,6 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "compute_shaders/plate_prelude.glsl"
-#include "compute_shaders/shared/cg_state.h"
-#include "compute_shaders/shared/cg_step.h"
 
 layout(push_constant) uniform Constants { ScalarsPush push; };
 layout(std430, binding = 0) readonly buffer Partials { real partials[]; };
@@ -16,6 +14,8 @@ layout(std430, binding = 1) buffer State { real state[]; };
 #ifdef PALPATE_STEP
 layout(std430, binding = 2) writeonly buffer Arguments { uint arguments[]; };
 #endif
+
+#include "compute_shaders/cg_load.glsl"
 
 const int kMostInvocations = 256; // of this workgroup
 shared real sums[kMostInvocations];
@@ -45,35 +45,13 @@ void main()
         int at = int(load) * kStateWords;
 #ifdef PALPATE_STEP
         real pq = total(load * push.partials);
-        CgSlowest slowest = CgSlowest(state[at + kStateSlowest], state[at + kStateLast], state[at + kStateAlong]);
-        CgStep now = stepOf(pq, state[at + kStateRz], state[at + kStateBeta], state[at + kStateEnergy],
-                            state[at + kStateAlpha], state[at + kStateGain], state[at + kStateRatio],
-                            state[at + kStateSteps], slowest);
+        CgStep now = nextStep(at, pq);
         barrier(); // every invocation has read the state
-        if (leads) {
-            state[at + kStateAlpha]    = now.alpha;
-            state[at + kStateGain]     = now.gain;
-            state[at + kStateRatio]    = now.ratio;
-            state[at + kStateEstimate] = now.estimate;
-            state[at + kStateSteps]    = now.steps;
-            state[at + kStateSlowest]  = now.slowest.most;
-            state[at + kStateLast]     = now.slowest.last;
-            state[at + kStateAlong]    = now.slowest.along;
-        }
+        if (leads) keepStep(at, now);
         unfinished = unfinished || push.tolerance == 0.0f || now.estimate > real(push.tolerance);
 #else
         real rz = total(2u * load * push.partials), fx = total((2u * load + 1u) * push.partials);
-        if (leads) {
-            bool anew = push.begins == 2u;
-            state[at + kStateBeta]   = anew || state[at + kStateRz] == real(0.0f) ? real(0.0f) : rz / state[at + kStateRz];
-            state[at + kStateRz]     = rz;
-            state[at + kStateEnergy] = fx;
-            if (push.begins != 0u) state[at + kStateSteps] = real(0.0f);
-            if (anew) {
-                state[at + kStateGain]  = real(0.0f);
-                state[at + kStateRatio] = real(0.0f);
-            }
-        }
+        if (leads) beginStep(at, rz, fx, push.begins);
 #endif
     }
 #ifdef PALPATE_STEP

@@ -77,8 +77,10 @@ ivec2 nthOfColour(int n, uint colour)
 
 bool isNode(ivec2 at) { return at.x <= here.plate.cellsX && at.y <= here.plate.cellsZ; }
 
-// All new values are computed before any is written: a node's neighbours of its own colour are those from before.
-void relaxLevel(uint colour)
+// Relaxes the nodes of a colour, or puts what is left of their forces aside. All new values are computed before any is
+// written: a node's neighbours of its own colour are those from before. The only call of the operator: a driver takes
+// seconds to compile each one that stands within loops.
+void treatColour(uint colour, bool relaxes)
 {
     const int kMost = (kTailHalf + kLanes - 1) / kLanes;
     float fresh[kMost];
@@ -87,76 +89,93 @@ void relaxLevel(uint colour)
         ivec2 at = nthOfColour(lane + k * kLanes, colour);
         if (isNode(at)) {
             int node = nodeAt(at.x, at.y);
-            fresh[k] = relaxed(deflection(at.x, at.y), forceAt(node), operatorAt(here.plate, at.x, at.y),
-                               inverseDivisor[here.field + node]);
+            float load = forceAt(node), w = operatorAt(here.plate, at.x, at.y);
+            if (relaxes)
+                fresh[k] = relaxed(deflection(at.x, at.y), load, w, inverseDivisor[here.field + node]);
+            else
+                aside[asideAt(node)] = isHeld(here.plate, at.x, at.y) ? 0.0f : load - w;
         }
     }
     barrier();
     for (int k = 0; k < kMost; ++k) {
         ivec2 at = nthOfColour(lane + k * kLanes, colour);
-        if (isNode(at)) pool[here.w + nodeAt(at.x, at.y)] = fresh[k];
+        if (relaxes && isNode(at)) pool[here.w + nodeAt(at.x, at.y)] = fresh[k];
     }
     barrier();
 }
 
-// Sweeps from zero deflection; then the residual takes the deflection's place, and goes on to the level below as force.
-void goDown()
+int nodesOfColour() { return nodesX(here.plate) * (here.plate.cellsZ / 2 + 1); } // at most, see nthOfColour()
+
+void swapWithAside(uint colour)
 {
-    const int kMost = (kTailNodes + kLanes - 1) / kLanes;
-    int lane = int(gl_LocalInvocationID.x), nodes = nodesOf(here.plate), stride = nodesZ(here.plate);
-    for (int n = lane; n < nodes; n += kLanes)
-        pool[here.w + n] = ((n / stride + n % stride) & 1) == 0 ? forceAt(n) * inverseDivisor[here.field + n] : 0.0f;
-    barrier();
-    [[dont_unroll]] for (int turn = 1; turn < 2 * kSweeps; ++turn) relaxLevel(uint(turn & 1));
-    float left[kMost];
-    for (int k = 0; k < kMost; ++k) {
-        int n = lane + k * kLanes, i = n / stride, j = n % stride;
-        if (n < nodes) left[k] = isHeld(here.plate, i, j) ? 0.0f : forceAt(n) - operatorAt(here.plate, i, j);
-    }
-    barrier();
-    for (int k = 0; k < kMost; ++k) {
-        int n = lane + k * kLanes;
-        if (n < nodes) {
-            aside[asideAt(n)] = pool[here.w + n];
-            pool[here.w + n] = left[k];
+    for (int n = int(gl_LocalInvocationID.x); n < nodesOfColour(); n += kLanes) {
+        ivec2 at = nthOfColour(n, colour);
+        if (isNode(at)) {
+            int node = nodeAt(at.x, at.y);
+            float left = aside[asideAt(node)];
+            aside[asideAt(node)] = pool[here.w + node];
+            pool[here.w + node] = left;
         }
     }
-    barrier();
-    for (int n = lane; n < nodesOf(below.plate); n += kLanes)
-        pool[below.force + n] = restrictedAt(n / nodesZ(below.plate), n % nodesZ(below.plate), nodesX(here.plate), stride);
-    barrier();
 }
 
-void goUp()
+// On the way down a level begins with the half sweep from zero deflection that needs no operator, on the way up with
+// the correction.
+void begin(uint colour, bool down)
 {
-    int lane = int(gl_LocalInvocationID.x), stride = nodesZ(here.plate);
-    for (int n = lane; n < nodesOf(here.plate); n += kLanes)
-        pool[here.w + n] = aside[asideAt(n)] + prolongedAt(n / stride, n % stride);
-    barrier();
-    [[dont_unroll]] for (int turn = 1; turn <= 2 * kSweeps; ++turn) relaxLevel(uint(turn & 1));
-}
-
-void main()
-{
-    int lane = int(gl_LocalInvocationID.x), first = int(push.first), last = int(push.levels) - 1;
-    load = int(gl_WorkGroupID.z);
-    for (int l = first; l < last; ++l) {
-        enter(l);
-        goDown();
+    for (int n = int(gl_LocalInvocationID.x); n < nodesOfColour(); n += kLanes) {
+        ivec2 at = nthOfColour(n, colour);
+        if (isNode(at)) {
+            int node = nodeAt(at.x, at.y);
+            if (down)
+                pool[here.w + node] = colour == 0u ? forceAt(node) * inverseDivisor[here.field + node] : 0.0f;
+            else
+                pool[here.w + node] = aside[asideAt(node)] + prolongedAt(at.x, at.y);
+        }
     }
-    enter(last);
+}
+
+// The residual takes the deflection's place, and goes on to the level below as force.
+void passOn()
+{
+    [[dont_unroll]] for (uint colour = 0u; colour < 2u; ++colour) swapWithAside(colour);
+    barrier();
+    for (int n = int(gl_LocalInvocationID.x); n < nodesOf(below.plate); n += kLanes)
+        pool[below.force + n] = restrictedAt(n / nodesZ(below.plate), n % nodesZ(below.plate), nodesX(here.plate),
+                                             nodesZ(here.plate));
+    barrier();
+}
+
+void solveCoarsest()
+{
     int nodes = nodesOf(here.plate);
-    for (int n = lane; n < nodes; n += kLanes) {
+    for (int n = int(gl_LocalInvocationID.x); n < nodes; n += kLanes) {
         FloatPair sum = FloatPair(0.0f, 0.0f);
         for (int m = 0; m < nodes; ++m) sum = plusProduct(sum, inverse[m * nodes + n], forceAt(m));
         pool[here.w + n] = sum.high;
     }
     barrier();
-    for (int l = last - 1; l >= first; --l) {
-        enter(l);
-        goUp();
+}
+
+void main()
+{
+    int first = int(push.first), last = int(push.levels) - 1;
+    load = int(gl_WorkGroupID.z);
+    [[dont_unroll]] for (int visit = first; visit <= 2 * last - first; ++visit) {
+        bool down = visit < last;
+        enter(down ? visit : 2 * last - visit);
+        if (visit == last) {
+            solveCoarsest();
+            continue;
+        }
+        [[dont_unroll]] for (uint colour = 0u; colour < 2u; ++colour) begin(colour, down);
+        barrier();
+        // Half sweeps of colours 1, 0, 1 ...; down, two more of both colours for the residual.
+        int sweeps = down ? 2 * kSweeps - 1 : 2 * kSweeps;
+        [[dont_unroll]] for (int turn = 1; turn <= sweeps + (down ? 2 : 0); ++turn)
+            treatColour(uint(turn & 1), turn <= sweeps);
+        if (down) passOn();
     }
-    enter(first);
-    nodes = nodesOf(here.plate);
-    for (int n = lane; n < nodes; n += kLanes) w[load * nodes + n] = pool[here.w + n];
+    int nodes = nodesOf(here.plate);
+    for (int n = int(gl_LocalInvocationID.x); n < nodes; n += kLanes) w[load * nodes + n] = pool[here.w + n];
 }

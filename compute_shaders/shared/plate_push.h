@@ -46,6 +46,18 @@ struct ScalarsPush {
     float tolerance;     // of the error estimate, relative [1]; 0 never stops
 };
 
+struct AimPush {
+    uint nodes;  // of one load
+    uint begins; // as in ScalarsPush
+};
+
+struct ProbePush {
+    PlateLevel level;
+    uint       loads;
+    uint       argumentWords; // as in ScalarsPush
+    float      tolerance;     // as in ScalarsPush
+};
+
 #ifdef __cplusplus
 } // namespace palp::shared
 #endif

@@ -79,7 +79,7 @@ struct CommandList::Handles {
     [[nodiscard]] virtual std::vector<double> timestampsMilliseconds() const = 0;
 
     Context::Handles& context;
-    int               dispatches = 0;
+    int               dispatches = 0, copies = 0;
     bool              ended      = false;
     bool              ran        = false;
 };

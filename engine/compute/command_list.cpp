@@ -58,12 +58,14 @@ void CommandList::copy(const Buffer& from, std::size_t fromOffset, const Buffer&
                 "copying " + std::to_string(bytes) + " bytes from '" + from.name() + "' at " +
                     std::to_string(fromOffset) + " to '" + to.name() + "' at " + std::to_string(toOffset));
     handles_->copy(from, fromOffset, to, toOffset, bytes);
+    ++handles_->copies;
 }
 
 void CommandList::fill(const Buffer& buffer, std::uint32_t word)
 {
     PALP_EXPECT(!ended(), "a command list cannot be recorded after end()");
     handles_->fill(buffer, word);
+    ++handles_->copies;
 }
 
 void CommandList::timestamp()
@@ -88,6 +90,11 @@ std::vector<double> CommandList::timestampsMilliseconds() const
 int CommandList::dispatches() const noexcept
 {
     return handles_->dispatches;
+}
+
+int CommandList::copies() const noexcept
+{
+    return handles_->copies;
 }
 
 bool CommandList::ended() const noexcept

@@ -82,6 +82,7 @@ public:
     [[nodiscard]] std::vector<double> timestampsMilliseconds() const;
 
     [[nodiscard]] int  dispatches() const noexcept; ///< number recorded, indirect ones included
+    [[nodiscard]] int  copies() const noexcept;     ///< number recorded, fills included
     [[nodiscard]] bool ended() const noexcept;
 
     /// Returns the implementation, for the files of engine/compute.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -13,6 +14,8 @@
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
+#include "engine/plate/detail/hard_plates.h"
+#include "engine/plate/detail/memory_shortage.h"
 #include "engine/plate/multigrid/multigrid_plate_solver.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 
@@ -31,16 +34,10 @@ std::string stoppedAt(const SolveReport& report)
     return "the multigrid solver stopped at an error of about " + formatNumber(*report.errorEstimate);
 }
 
+/// Exactly: what a plate's answer is must not depend on the plates that were solved before.
 bool sameButRigidity(const Plate& a, const Plate& b)
 {
     return a.grid == b.grid && a.edges == b.edges && a.poissonRatio == b.poissonRatio && a.foundation == b.foundation;
-}
-
-/// Returns the largest over the least rigidity [1].
-double contrastOf(const Plate& plate)
-{
-    const Extremes of = extremesOf(plate.rigidity.values());
-    return of.most / of.least;
 }
 
 /// Returns the report of all loads, or one of a load that did not converge.
@@ -55,6 +52,26 @@ const SolveReport& reportOf(const FootprintSolution& solution)
     return solution.whole.report;
 }
 
+double wallMilliseconds()
+{
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Returns the least time of three calls, after one that is not timed [ms].
+template <class Call>
+double leastTime(const PlateSolver::Clock& clock, const Call& call)
+{
+    const auto now = [&] { return clock ? clock() : wallMilliseconds(); };
+    call();
+    double least = std::numeric_limits<double>::infinity();
+    for (int n = 0; n < 3; ++n) {
+        const double began = now();
+        call();
+        least = std::min(least, now() - began);
+    }
+    return least;
+}
+
 } // namespace
 
 struct PlateSolver::Multigrid {
@@ -64,6 +81,7 @@ struct PlateSolver::Multigrid {
         Plate                               plate;
         double                              tolerance = 0;
         std::size_t                         loads     = 0; ///< that it takes together
+        int                                 made      = 0; ///< solvers, up to now
 
         /// Makes the solver ready for a rigidity.
         /// \return milliseconds that it took
@@ -80,6 +98,7 @@ struct PlateSolver::Multigrid {
                 plate     = wanted;
                 tolerance = wantedTolerance;
                 loads     = wantedLoads;
+                ++made;
             }
             return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
         }
@@ -90,7 +109,7 @@ struct PlateSolver::Multigrid {
     PlateKernels                kernels;
     std::optional<PlateKernels> kernelsOfEights; ///< once they are needed
     Prepared                    loads, eights;
-    std::size_t                 mostNumbers = std::size_t(-1); ///< of a field of all loads, for which there is memory
+    MemoryShortage              shortage; ///< of memory for fields of all loads together, in numbers of one
 
     Multigrid(const compute::ContextSettings& settings, SoftwareBits bits)
         : context(settings), likeTheHost(isHost() || (bits == SoftwareBits::ofTheHost &&
@@ -99,6 +118,8 @@ struct PlateSolver::Multigrid {
                   likeTheHost ? Smoother::chebyshev : Smoother::automatic)
     {
     }
+
+    [[nodiscard]] int memories() const { return loads.made + eights.made; }
 
     [[nodiscard]] bool isHost() const { return context.processor().kind == compute::ProcessorKind::host; }
     [[nodiscard]] bool hasDoubles() const { return context.processor().float64; }
@@ -110,10 +131,10 @@ struct PlateSolver::Multigrid {
     /// Returns how many loads are solved together. A GPU has lanes to fill. On the host the fields of one load fit its
     /// cache and those of 49 do not: one after the other they take two thirds of the time (65 nodes: 15 in place of 24
     /// ms). Several batches are as equal as can be.
-    [[nodiscard]] std::size_t batchOf(const PlateGrid& grid, std::size_t all) const
+    [[nodiscard]] std::size_t batchOf(const PlateGrid& grid, std::size_t all)
     {
         if (likeTheHost) return 1;
-        const std::size_t most    = std::min(mostNumbers, context.limits().buffer / sizeof(double));
+        const std::size_t most    = std::min(shortage.most(), context.limits().buffer / sizeof(double));
         const std::size_t each    = std::max<std::size_t>(1, most / grid.nodes());
         const std::size_t batches = (all + each - 1) / each;
         return (all + batches - 1) / batches;
@@ -126,10 +147,12 @@ struct PlateSolver::Multigrid {
         for (;;) {
             const std::size_t batch = batchOf(plate.grid, all);
             try {
-                return solve(batch);
+                auto answer = solve(batch);
+                shortage.fitted(batch * plate.grid.nodes());
+                return answer;
             } catch (const compute::ProcessorOutOfMemory&) {
                 if (batch == 1) throw;
-                mostNumbers = batch / 2 * plate.grid.nodes();
+                shortage.foundAt((batch / 2 + 1) * plate.grid.nodes());
             }
         }
     }
@@ -139,17 +162,21 @@ struct PlateSolver::Multigrid {
     {
         return inBatches(wanted, nodalForces.size(), [&](std::size_t batch) {
             std::vector<PlateSolution> solutions;
-            double                     setUp = 0;
+            const double               setUp = loads.prepare(context, kernels, wanted, batch, tolerance);
             for (auto left = nodalForces; !left.empty();) {
                 const auto now = left.first(std::min(batch, left.size()));
                 left           = left.subspan(now.size());
-                if (solutions.empty() || now.size() != loads.loads)
-                    setUp += loads.prepare(context, kernels, wanted, now.size(), tolerance);
-                for (PlateSolution& solution : loads.solver->solve(now)) solutions.push_back(std::move(solution));
+                for (PlateSolution& solution : solveFilledUp(now)) solutions.push_back(std::move(solution));
             }
             for (PlateSolution& solution : solutions) solution.report.setUpMilliseconds = setUp;
             return solutions;
         });
+    }
+
+    [[nodiscard]] double timeOf(const PlateTrial& trial, const Clock& clock)
+    {
+        return leastTime(clock,
+                         [&] { (void)solve(trial.plate, trial.loads, trial.loads.size() / 2, trial.tolerance); });
     }
 
     /// \return the solution; not converged if that of any load is not
@@ -172,19 +199,29 @@ private:
         return all;
     }
 
+    /// Solves for at most as many loads as were prepared for. A last batch that is not full is filled up with loads of
+    /// nothing, which are finished at once: a solver for fewer loads would need memory of its own.
+    [[nodiscard]] std::vector<PlateSolution> solveFilledUp(std::span<const NodeField> now)
+    {
+        if (now.size() == loads.loads) return loads.solver->solve(now);
+        std::vector<NodeField> full(now.begin(), now.end());
+        full.resize(loads.loads, NodeField(loads.plate.grid));
+        std::vector<PlateSolution> solutions = loads.solver->solve(full);
+        solutions.erase(solutions.begin() + std::ptrdiff_t(now.size()), solutions.end());
+        return solutions;
+    }
+
     [[nodiscard]] FootprintSolution solveByBatches(const Plate& wanted, std::span<const Footprint> given,
                                                    std::size_t whole, double tolerance, std::size_t batch)
     {
         FootprintSolution solution;
         solution.responses.resize(given.size());
         const std::vector<std::size_t> all   = indices(given.size());
-        double                         setUp = 0;
+        const double                   setUp = loads.prepare(context, kernels, wanted, batch, tolerance);
         std::optional<SolveReport>     worst;
         for (std::span<const std::size_t> left = all; !left.empty();) {
-            const auto now = left.first(std::min(batch, left.size()));
-            left           = left.subspan(now.size());
-            if (!worst || now.size() != loads.loads)
-                setUp += loads.prepare(context, kernels, wanted, now.size(), tolerance);
+            const auto now           = left.first(std::min(batch, left.size()));
+            left                     = left.subspan(now.size());
             const SolveReport report = solveTogether(loads, given, now, solution);
             if (!worst || (worst->converged && !report.converged)) worst = report;
             if (whole >= now.front() && whole <= now.back())
@@ -207,11 +244,11 @@ private:
 
         std::vector<std::size_t> others = indices(given.size());
         others.erase(others.begin() + std::ptrdiff_t(whole));
-        if (others.size() >= kEight) prepareEights(wanted, tolerance);
+        const bool inFloats = others.size() >= kEight && prepareEights(wanted, tolerance);
         for (std::span<const std::size_t> left = others; !left.empty();) {
             const auto eight = left.first(std::min(kEight, left.size()));
             left             = left.subspan(eight.size());
-            if (eight.size() == kEight && solveTogether(eights, given, eight, solution).converged) continue;
+            if (inFloats && eight.size() == kEight && solveTogether(eights, given, eight, solution).converged) continue;
             for (const std::size_t n : eight) { // too few, or too much contrast for floats
                 const SolveReport own = solveTogether(loads, given, {&n, 1}, solution);
                 if (!own.converged) solution.whole.report = own;
@@ -220,25 +257,34 @@ private:
         return solution;
     }
 
-    void prepareEights(const Plate& wanted, double tolerance)
+    /// \return whether floats are enough for works to this tolerance: what they round is not squared
+    [[nodiscard]] bool prepareEights(const Plate& wanted, double tolerance)
     {
         constexpr double kLoosest = 1e-2; // beyond it the estimate of the first steps is a guess
         if (!kernelsOfEights)
             kernelsOfEights.emplace(context, Schedule::automatic, Precision::floatGradients, Smoother::chebyshev,
                                     isHost() ? FieldLayout::sideBySide : FieldLayout::apart);
         eights.prepare(context, *kernelsOfEights, wanted, kEight, std::min(kLoosest, std::sqrt(tolerance)));
+        return eights.solver->rounding() <= std::max(tolerance, MultigridPlateSolver::kLeastFloatTolerance);
     }
 
-    /// Solves for these loads in one batch.
+    /// Solves for these loads in one batch, filled up as by solveFilledUp().
     static SolveReport solveTogether(Prepared& by, std::span<const Footprint> given, std::span<const std::size_t> which,
                                      FootprintSolution& to)
     {
         std::vector<Footprint> batch;
         for (const std::size_t n : which) batch.push_back(given[n]);
+        batch.resize(by.loads);
         const MultigridPlateSolver::Responses found = by.solver->solveFootprints(batch);
         for (std::size_t n = 0; n < which.size(); ++n) to.responses[which[n]] = found.of[n];
         return found.report;
     }
+};
+
+struct PlateSolver::Learned {
+    MemoryShortage shortage; ///< of the processor's memory for one load, in nodes
+    std::string    shortageNote;
+    HardPlates     hard;
 };
 
 PlateSolver::PlateSolver(std::string_view wanted, double patience, SoftwareBits bits)
@@ -246,7 +292,8 @@ PlateSolver::PlateSolver(std::string_view wanted, double patience, SoftwareBits 
 {
 }
 
-PlateSolver::PlateSolver(compute::ContextSettings settings, SoftwareBits bits) : bits_(bits)
+PlateSolver::PlateSolver(compute::ContextSettings settings, SoftwareBits bits)
+    : bits_(bits), learned_(std::make_unique<Learned>())
 {
     const std::string wanted = settings.processor;
     if (compute::isProcessorWord(wanted, kReference)) return;
@@ -258,7 +305,8 @@ PlateSolver::PlateSolver(compute::ContextSettings settings, SoftwareBits bits) :
         note_      = error.what();
         processor_ = makeHost();
     }
-    name_ = processor_->context.processor().name;
+    name_      = processor_->context.processor().name;
+    takeovers_ = note_.empty() ? 0 : 1;
 }
 
 PlateSolver::~PlateSolver()                                 = default;
@@ -275,13 +323,31 @@ const std::string& PlateSolver::note() const noexcept
     return note_;
 }
 
-std::string PlateSolver::takeoverSince(const std::string& noteBefore, const std::string& solvedBy) const
+PlateSolver::Counts PlateSolver::counts() const noexcept
 {
-    if (note_ == noteBefore) return {};
+    Counts now{takeovers_, memoriesOfLost_, attempts_};
+    for (const Multigrid* by : {processor_.get(), host_.get()})
+        if (by) now.memories += by->memories();
+    return now;
+}
+
+std::string PlateSolver::takeoverSince(int before, const std::string& solvedBy) const
+{
+    if (takeovers_ <= before) return {};
     const std::string who = solvedBy == kReference                ? "the reference solver"
                             : solvedBy == compute::kHostProcessor ? "the host"
                                                                   : solvedBy;
     return who + " took over: " + note_;
+}
+
+void PlateSolver::countTakeover(const std::string& solvedBy)
+{
+    const bool others = solvedBy != name_;
+    if (others && (!othersSolve_ || note_ != counted_)) {
+        ++takeovers_;
+        counted_ = note_;
+    }
+    othersSolve_ = others;
 }
 
 PlateSolution PlateSolver::solve(const Plate& plate, const NodeField& nodalForce, double tolerance)
@@ -304,7 +370,10 @@ PlateSolver::Multigrid& PlateSolver::host()
 
 PlateSolver::Multigrid& PlateSolver::bestFor(const Plate& plate, double tolerance)
 {
-    if (plate.grid.nodes() >= tooManyNodes_) return host();
+    if (plate.grid.nodes() > learned_->shortage.most()) {
+        note_ = learned_->shortageNote;
+        return host();
+    }
     if (processor_->reaches(tolerance)) return *processor_;
     note_ = processor_->context.processor().name + " has no doubles, which a tolerance of " + formatNumber(tolerance) +
             " needs";
@@ -316,8 +385,8 @@ std::optional<Answer> PlateSolver::byMultigrid(const Plate& plate, double tolera
 {
     if (!processor_) return std::nullopt;
     const bool orByReference = fitsReference(plate.grid);
-    if (const HardPlate* known = orByReference ? knownAsHard(plate, tolerance) : nullptr) {
-        note_ = known->why;
+    if (const std::string* why = orByReference ? learned_->hard.knownBecause(plate, tolerance) : nullptr) {
+        note_ = *why;
         return std::nullopt;
     }
     std::optional<Answer> answer;
@@ -326,15 +395,17 @@ std::optional<Answer> PlateSolver::byMultigrid(const Plate& plate, double tolera
         const bool last = by->isHost();
         bool       sure = last; // that the host does no better
         try {
-            answer                    = solve(*by);
+            ++attempts_;
+            answer = solve(*by);
+            if (!last) learned_->shortage.fitted(plate.grid.nodes());
             const SolveReport& report = reportOf(*answer);
             if (report.converged) return answer;
             note_ = stoppedAt(report);
             sure  = last || by->hasDoubles();
         } catch (const compute::ProcessorOutOfMemory& error) {
             if (last) throw;
-            note_         = error.what();
-            tooManyNodes_ = std::min(tooManyNodes_, plate.grid.nodes());
+            note_ = learned_->shortageNote = error.what();
+            learned_->shortage.foundAt(plate.grid.nodes());
         } catch (const compute::ProcessorLost& error) {
             if (last) throw;
             loseProcessor(error);
@@ -345,37 +416,47 @@ std::optional<Answer> PlateSolver::byMultigrid(const Plate& plate, double tolera
         by = sure ? nullptr : &host();
     }
     if (orByReference) {
-        if (answer) rememberHard(plate, tolerance);
+        if (answer) learned_->hard.remember(plate, tolerance, note_);
         return std::nullopt;
     }
     if (!answer) std::rethrow_exception(broken);
     return answer;
 }
 
-void PlateSolver::loseProcessor(const std::exception& why)
+void PlateSolver::takeHost()
 {
-    note_ = why.what();
     if (!host_) host_ = makeHost();
+    memoriesOfLost_ += processor_->memories();
     processor_ = std::move(host_);
     name_      = processor_->context.processor().name;
 }
 
-const PlateSolver::HardPlate* PlateSolver::knownAsHard(const Plate& plate, double tolerance) const
+void PlateSolver::loseProcessor(const std::exception& why)
 {
-    constexpr double kSimilar = 0.5; // share of a contrast: patches of one map show more of it, or less [1]
-    const auto       known    = std::ranges::find_if(hard_, [&](const HardPlate& one) {
-        return sameButRigidity(one.plate, plate) && tolerance <= one.tolerance &&
-               contrastOf(plate) >= kSimilar * one.contrast;
-    });
-    return known == hard_.end() ? nullptr : &*known;
+    note_ = why.what();
+    ++takeovers_;
+    takeHost();
 }
 
-void PlateSolver::rememberHard(const Plate& plate, double tolerance)
+double PlateSolver::timeOf(const PlateTrial& trial, const Clock& clock)
 {
-    constexpr std::size_t kMost = 8; // those of several grids, or of one that becomes softer
-    if (hard_.size() == kMost) hard_.erase(hard_.begin());
-    hard_.push_back(
-        {{plate.grid, plate.edges, plate.poissonRatio, plate.foundation, {}}, contrastOf(plate), tolerance, note_});
+    if (processor_) return processor_->timeOf(trial, clock);
+    return leastTime(clock, [&] { (void)byReference(trial.plate, trial.loads, 0, trial.tolerance); });
+}
+
+std::vector<PlateSolver::ProcessorTime> PlateSolver::keepFaster(const PlateTrial& trial, const Clock& clock)
+{
+    if (!processor_ || processor_->isHost()) return {};
+    std::vector<ProcessorTime> times{{name_, std::numeric_limits<double>::infinity()}};
+    try {
+        times[0].milliseconds = processor_->timeOf(trial, clock);
+    } catch (const std::exception& error) { // lost, too small, without the doubles that the tolerance needs
+        note_ = error.what();
+        ++takeovers_;
+    }
+    times.push_back({std::string(compute::kHostProcessor), host().timeOf(trial, clock)});
+    if (times[1].milliseconds < times[0].milliseconds) takeHost();
+    return times;
 }
 
 std::vector<PlateSolution> PlateSolver::solveAll(const Plate& plate, std::span<const NodeField> nodalForces,
@@ -383,18 +464,27 @@ std::vector<PlateSolution> PlateSolver::solveAll(const Plate& plate, std::span<c
 {
     PALP_EXPECT(!nodalForces.empty(), "there is no load to solve for");
     using Answer = std::vector<PlateSolution>;
-    const auto answer =
+    auto answer =
         byMultigrid<Answer>(plate, tolerance, [&](Multigrid& by) { return by.solve(plate, nodalForces, tolerance); });
-    return answer ? *answer : byReference(plate, nodalForces, tolerance);
+    if (!answer) answer = byReference(plate, nodalForces, tolerance);
+    countTakeover(answer->front().report.solver);
+    return std::move(*answer);
 }
 
 FootprintSolution PlateSolver::solveFootprints(const Plate& plate, std::span<const Footprint> loads, std::size_t whole,
                                                double tolerance)
 {
     PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
-    const auto answer = byMultigrid<FootprintSolution>(
+    auto answer = byMultigrid<FootprintSolution>(
         plate, tolerance, [&](Multigrid& by) { return by.solve(plate, loads, whole, tolerance); });
-    if (answer) return *answer;
+    if (!answer) answer = byReference(plate, loads, whole, tolerance);
+    countTakeover(answer->whole.report.solver);
+    return std::move(*answer);
+}
+
+FootprintSolution PlateSolver::byReference(const Plate& plate, std::span<const Footprint> loads, std::size_t whole,
+                                           double tolerance)
+{
     std::vector<NodeField> fields;
     for (const Footprint& load : loads) fields.push_back(load.load(plate.grid));
     std::vector<PlateSolution> solutions = byReference(plate, fields, tolerance);

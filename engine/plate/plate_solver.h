@@ -1,5 +1,6 @@
 #pragma once
 #include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,6 +10,7 @@
 
 #include "engine/plate/footprint.h"
 #include "engine/plate/plate.h"
+#include "engine/plate/plate_trial.h"
 
 namespace palp {
 
@@ -32,14 +34,14 @@ struct FootprintSolution {
 ///
 /// The host's multigrid takes over from another processor
 ///  - for good, if that one is lost or hangs;
-///  - for plates of as many nodes or more, if one does not fit its memory; loads that do not fit it together are split
-///    into batches before;
+///  - for plates of as many nodes or more, if one does not fit its memory, until a later one does: now and then one is
+///    tried; loads that do not fit it together are split into batches before;
 ///  - for one plate, if the processor has no doubles and the tolerance needs them, if it stops short of the tolerance
 ///    for want of them, or if something is no longer a number.
 /// The reference takes over for a plate that multigrid in doubles does not solve within its 200 steps, up to 513 x 513
 /// nodes: beyond, factorising takes minutes and gigabytes, and an answer that is reported as not converged is better.
-/// Such a plate is remembered, and the reference solves those like it at once: of the same grid, edges and foundation,
-/// at least half the contrast, and no looser tolerance. Each time note() says why.
+/// Such a plate is remembered, and the reference solves those like it at once: of as many cells and the same edges,
+/// about the same spacing and foundation, at least half the contrast, and as sharp. Each time note() says why.
 ///
 /// It keeps the solver of the last plate. Another rigidity on the same grid, edges and foundation costs no new memory,
 /// nor does the same number of loads.
@@ -92,20 +94,42 @@ public:
     [[nodiscard]] FootprintSolution solveFootprints(const Plate& plate, std::span<const Footprint> loads,
                                                     std::size_t whole, double tolerance = 1e-4);
 
-    /// Returns in a sentence without a full stop who took over, and why, if note() is not `noteBefore`; else empty.
+    /// Returns the time that it is [ms]; only differences count.
+    using Clock = std::function<double()>;
+
+    /// Measures the least time of three solves of a trial, each with a new rigidity, after one that compiles kernels and
+    /// makes memory [ms].
+    /// \param clock  empty: the wall clock
+    /// \throws Error if the processor cannot solve it
+    [[nodiscard]] double timeOf(const PlateTrial& trial, const Clock& clock = {});
+
+    /// What the processors took that were compared.
+    struct ProcessorTime {
+        std::string name;
+        double      milliseconds; ///< infinite: it could not solve the trial, see note()
+    };
+
+    /// Compares the processor with the host by timeOf(), and goes on with the faster one: a GPU waits 3 to 5 us for each
+    /// of its dispatches, so that the host may win on small plates. It takes some ten solves.
+    /// \return the processor's time, then the host's; nothing where there is no choice, on the host and the reference
+    std::vector<ProcessorTime> keepFaster(const PlateTrial& trial, const Clock& clock = {});
+
+    /// Counts what was done so far.
+    struct Counts {
+        int takeovers = 0; ///< changes from the processor to another solver, or from one reason for that to another
+        int memories  = 0; ///< allocations of a solver's memory: for another grid, number of loads or tolerance
+        int attempts  = 0; ///< solves by multigrid, those that failed included
+    };
+    [[nodiscard]] Counts counts() const noexcept;
+
+    /// Returns in a sentence without a full stop who took over, and why, if there were more takeovers than `before`;
+    /// else empty.
     /// \param solvedBy  report.solver of the newest answer
-    [[nodiscard]] std::string takeoverSince(const std::string& noteBefore, const std::string& solvedBy) const;
+    [[nodiscard]] std::string takeoverSince(int before, const std::string& solvedBy) const;
 
 private:
     struct Multigrid;
-
-    /// A plate that multigrid did not solve, and others like it will hardly be.
-    struct HardPlate {
-        Plate       plate;     ///< without its rigidity
-        double      contrast;  ///< [1]
-        double      tolerance; ///< [1]
-        std::string why;       ///< see note()
-    };
+    struct Learned;
 
     [[nodiscard]] std::unique_ptr<Multigrid> makeHost() const;
     [[nodiscard]] Multigrid&                 host(); ///< the host's multigrid, which takes over; made when first needed
@@ -116,19 +140,23 @@ private:
     template <class Answer, class Solve>
     [[nodiscard]] std::optional<Answer> byMultigrid(const Plate& plate, double tolerance, const Solve& solve);
 
+    void takeHost();                               ///< for good
     void loseProcessor(const std::exception& why); ///< for good: the host is the processor then
-    [[nodiscard]] const HardPlate* knownAsHard(const Plate& plate, double tolerance) const;
-    void                           rememberHard(const Plate& plate, double tolerance);
+    void countTakeover(const std::string& solvedBy);
     [[nodiscard]] static std::vector<PlateSolution>
     byReference(const Plate& plate, std::span<const NodeField> nodalForces, double tolerance);
+    [[nodiscard]] static FootprintSolution byReference(const Plate& plate, std::span<const Footprint> loads,
+                                                       std::size_t whole, double tolerance);
 
     SoftwareBits               bits_;
     std::unique_ptr<Multigrid> processor_; ///< null: the reference solver is used
     std::unique_ptr<Multigrid> host_;      ///< what takes over where the processor cannot; null: not needed yet
-    std::size_t                tooManyNodes_ = std::size_t(-1); ///< for the processor's memory, by what was tried
-    std::vector<HardPlate>     hard_;
+    std::unique_ptr<Learned>   learned_;   ///< from plates that could not be solved, or not where they should be
     std::string                name_{kReference};
     std::string                note_;
+    int                        takeovers_ = 0, attempts_ = 0, memoriesOfLost_ = 0;
+    std::string                counted_;             ///< reason of the takeover that was counted last
+    bool                       othersSolve_ = false; ///< the last plate was solved by another than the processor
 };
 
 } // namespace palp

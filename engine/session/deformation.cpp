@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/compute/processor_list.h"
 #include "engine/core/contract.h"
 #include "engine/force/ahead.h"
 #include "engine/session/approach.h"
@@ -33,6 +34,8 @@ Deformation::Deformation(const SoftObject& object, const Scene& scene)
       solver_(scene.solver, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, object, solver_)),
       firstLaw_(homogeneousLaw(object, lattice_))
 {
+    if (compute::isProcessorWord(scene.solver, compute::kAutoProcessor))
+        (void)solver_.keepFaster(plateTrial(scene.patch.cells, int(lattice_.loads.size()), scene.patch.tolerance));
     prepareTouch(object, settings_);
 }
 
@@ -47,7 +50,7 @@ DeformationAnswer Deformation::solve(const Touch& touch, double lead)
     DeformationAnswer  answer = solveSomewhere(touch, lead);
     const std::string& by     = answer.patch ? answer.patch->report.solver : solver_.name();
     answer.takeover           = solver_.takeoverSince(told_, by);
-    if (!answer.takeover.empty()) told_ = solver_.note();
+    told_                     = solver_.counts().takeovers;
     return answer;
 }
 

@@ -73,7 +73,7 @@ private:
     ComplianceLaw        law_;
     PatchSettings        settings_;
     PlateSolver          solver_;
-    std::string          told_; ///< the solver's note that an answer has told
+    int                  told_ = 0; ///< the solver's takeovers that answers have told
     FootprintLattice     lattice_;
     HomogeneousLaw       firstLaw_;
     std::optional<Frame> frame_; ///< of the last patch, carried to the next

@@ -147,6 +147,11 @@ template <class T>
 
 } // namespace
 
+bool compilesSlowly(const compute::Context& context)
+{
+    return context.processor().kind == compute::ProcessorKind::software && !context.bitExact();
+}
+
 std::string processorOfTests()
 {
     const std::string wanted = environment("PALPATE_SOLVER");

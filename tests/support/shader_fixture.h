@@ -62,6 +62,14 @@ struct UlpTolerance {
 /// may be the host, which runs no shader.
 [[nodiscard]] std::string processorOfTests();
 
+/// Returns whether a driver in software other than lavapipe compiles a kernel with loops around the plate's operator for
+/// 10 to 90 s, as SwiftShader does, instead of a fraction of a second.
+[[nodiscard]] bool compilesSlowly(const compute::Context& context);
+
+/// Why a test of such kernels is skipped there.
+inline constexpr const char* kCompilesSlowly =
+    "fused passes are never chosen in software, and this driver compiles their kernels for minutes";
+
 /// A test of one shader. The processor is opened once per process; any message of the validation layer fails the test.
 ///
 /// Environment: PALPATE_SOLVER, see processorOfTests() and compute::chooseProcessor(); PALPATE_VALIDATION off, core,

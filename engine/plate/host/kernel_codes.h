@@ -33,6 +33,15 @@ namespace palp::kernels {
     {                                                                                                                  \
         return PALPATE_CODE(spirv, nullptr, Push, buffers);                                                            \
     }
+#define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)                                         \
+    template <class Real>                                                                                              \
+    compute::KernelCode name()                                                                                         \
+    {                                                                                                                  \
+        if constexpr (sizeof(Real) == sizeof(double))                                                                  \
+            return PALPATE_CODE(spirv##_f64, nullptr, Push, buffers);                                                  \
+        else                                                                                                           \
+            return PALPATE_CODE(spirv##_f32, nullptr, Push, buffers);                                                  \
+    }
 #include "compute_shaders/shared/plate_kernels.def"
 #undef PALPATE_CODE
 

@@ -116,8 +116,8 @@ public:
     /// Solves for the deflections under forces at the nodes [N], one field per load.
     ///
     /// report.errorEstimate estimates the error relative to the answer in the energy norm, from the gains of the last
-    /// steps, and includes rounding; converged is false after maxIterations, or if rounding hides how a part of the
-    /// plate is held; iterations counts steps of conjugate gradients on the finest grid; workUnits include the nested
+    /// steps, and includes rounding; converged is false after maxIterations, if rounding() exceeds the tolerance, or if
+    /// rounding hides how a part of the plate is held; iterations counts steps of conjugate gradients on the finest grid; workUnits include the nested
     /// iteration. Every solution has the same report, of the whole batch and its worst load.
     /// \throws Error if a load is not finite
     /// \throws SolverBrokeDown if an estimate or a deflection is not
@@ -141,6 +141,20 @@ public:
     [[nodiscard]] Responses solveFootprints(std::span<const Footprint> loads);
     /// Returns the deflection [m] under a load of the last solveFootprints().
     [[nodiscard]] NodeField deflectionOf(std::size_t load) const;
+
+    /// Returns the error that rounding leaves with the present rigidity, relative in the energy norm [1]. Where a
+    /// rigidity jumps and conjugate gradients are in floats, it grows with the contrast.
+    [[nodiscard]] double rounding() const noexcept;
+
+    /// The commands of the lists; each waits for the one before it.
+    struct CommandCounts {
+        int prepare = 0, prepareCopies = 0; ///< dispatches and copies for a new rigidity
+        int nested = 0;                     ///< dispatches before the steps on the finest level
+        int step   = 0;                     ///< dispatches of a step of conjugate gradients there, its cycle included
+        int cycle  = 0;
+    };
+    /// Counts the commands for rigidities that jump as the present one does.
+    [[nodiscard]] CommandCounts commands();
 
     [[nodiscard]] int dispatchesPerCycle() const noexcept; ///< of the finest level, in the last solve
     [[nodiscard]] int levels() const noexcept;

@@ -25,6 +25,16 @@ Json textOrNull(const std::string& text)
     return text.empty() ? Json(nullptr) : Json(text);
 }
 
+Json jsonOf(const std::optional<MultigridPlateSolver::CommandCounts>& c)
+{
+    if (!c) return nullptr;
+    return {{"prepare", c->prepare},
+            {"prepare_copies", c->prepareCopies},
+            {"nested_iteration", c->nested},
+            {"step", c->step},
+            {"cycle", c->cycle}};
+}
+
 Json jsonOf(const BenchRow& r)
 {
     const auto time = [](const std::optional<Quartiles>& q, double Quartiles::*which) {
@@ -70,6 +80,8 @@ Json jsonOf(const BenchRow& r)
             {"neighbours", orNull(r.neighbours)},
             {"loads", orNull(r.loads)},
             {"dispatches_per_cycle", orNull(r.dispatchesPerCycle)},
+            {"schedule", textOrNull(r.schedule)},
+            {"dispatches", jsonOf(r.commands)},
             {"moved_gb_per_s", orNull(r.movedGigabytes)},
             {"copy_gb_per_s", orNull(r.copyGigabytes)},
             {"note", textOrNull(r.note)}};

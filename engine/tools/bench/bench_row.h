@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/plate/multigrid/multigrid_plate_solver.h"
 #include "engine/tools/bench/cpu_time.h"
 
 namespace palp::bench {
@@ -10,7 +11,7 @@ namespace palp::bench {
 /// One comparison: Palpate and a peer do the same work. A number that is not known is empty, and null in JSON.
 struct BenchRow {
     std::string kind;               ///< new_map, new_load, contrast, jacobi, update, gather, grid_map, memory, batch,
-                                    ///< table
+                                    ///< table, dispatches
     std::string           map;      ///< of the rigidity; empty where there is none
     std::optional<int>    nodes;    ///< a side
     std::string           accuracy; ///< discretisation, 1e-6, exact
@@ -33,7 +34,9 @@ struct BenchRow {
     std::optional<double>    points, neighbours;
     std::optional<int>       loads, dispatchesPerCycle;     ///< of a batch: loads solved together, serial dispatches
     std::optional<double>    movedGigabytes, copyGigabytes; ///< least rate of a batch, rate of a plain copy [GB/s]
-    std::string              note;
+    std::string              schedule;                      ///< of dispatches
+    std::optional<MultigridPlateSolver::CommandCounts> commands;
+    std::string                                        note;
 
     /// Returns the peer's time or bytes over Palpate's; empty if Palpate's error is not known or exceeds the target.
     [[nodiscard]] std::optional<double> ratio() const

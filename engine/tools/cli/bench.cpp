@@ -11,6 +11,7 @@
 #include "engine/plate/multigrid/multigrid_plate_solver.h"
 #include "engine/tools/bench/bench_plates.h"
 #include "engine/tools/bench/bench_report.h"
+#include "engine/tools/bench/dispatch_bench.h"
 #include "engine/tools/bench/one_thread.h"
 #include "engine/tools/bench/outside_peers.h"
 #include "engine/tools/bench/plate_bench.h"
@@ -41,6 +42,7 @@ std::vector<std::string> allCases()
     std::vector<std::string> names = plateCases();
     names.insert(names.end(), pointCases().begin(), pointCases().end());
     names.insert(names.end(), tableCases().begin(), tableCases().end());
+    names.insert(names.end(), dispatchCases().begin(), dispatchCases().end());
     return names;
 }
 
@@ -139,6 +141,9 @@ BenchReport measure(const BenchOptions& o)
             const PlateKernels kernels(context, scheduleOf(o));
             report.rows = measurePlates(context, kernels, plates, onStep);
         }
+        if (wants(dispatchCases()))
+            for (BenchRow& row : countDispatches(context, scheduleOf(o), plates.nodes))
+                report.rows.push_back(std::move(row));
     }
     if (wants(pointCases())) {
         const std::vector<int> nodes = o.nodes.empty() ? std::vector<int>{65, 129, 257} : o.nodes;
@@ -193,7 +198,7 @@ void addBenchCommand(CLI::App& app)
         ->add_option(
             "--cases", o->cases,
             "what to measure, separated by commas: new_map, new_load, contrast, jacobi, memory, batch, update, gather, "
-            "grid_map, table [all]")
+            "grid_map, table, dispatches [all]")
         ->delimiter(',');
     bench
         ->add_option("--nodes", o->nodes, "nodes a side of the square grids, 33 to 1025, one more than a multiple of 4")

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -10,6 +11,7 @@
 #include "engine/core/processor.h"
 #include "engine/core/quantity.h"
 #include "engine/plate/host/host_kernels.h"
+#include "engine/plate/plate_solver.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/haptic_list.h"
 
@@ -23,12 +25,15 @@ struct DevicesOptions {
     bool json       = false;
 };
 
+constexpr int kTrialCells = 64, kTrialLoads = 25; ///< as sessions have them
+
 /// The processors of this machine that can solve plates.
 struct Machine {
     std::vector<compute::Processor>   gpus;
     std::optional<compute::Processor> host{compute::describeHost()}; ///< empty: only GPUs were asked for
     std::string                       processor{processorName()}, instructionSet{hostVariant().isa}; ///< of the host
     int                               taken = host->index; ///< index of the one that "auto" takes
+    std::map<int, double>             trialMs; ///< by index, of those that "auto" may take and that solved it
 };
 
 std::string joined(const std::vector<std::string>& reasons)
@@ -36,6 +41,12 @@ std::string joined(const std::vector<std::string>& reasons)
     std::string text;
     for (const std::string& reason : reasons) text += (text.empty() ? "" : ", ") + reason;
     return text;
+}
+
+std::optional<double> trialOf(const Machine& machine, int index)
+{
+    const auto found = machine.trialMs.find(index);
+    return found == machine.trialMs.end() ? std::nullopt : std::optional(found->second);
 }
 
 nlohmann::ordered_json orNull(const std::string& text)
@@ -46,6 +57,7 @@ nlohmann::ordered_json orNull(const std::string& text)
 nlohmann::ordered_json jsonOf(const compute::Processor& unit, const Machine& machine)
 {
     const bool isHost = unit.kind == compute::ProcessorKind::host;
+    const auto trial  = trialOf(machine, unit.index);
     return {{"index", isHost ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(unit.index)},
             {"name", unit.name},
             {"kind", name(unit.kind)},
@@ -57,6 +69,7 @@ nlohmann::ordered_json jsonOf(const compute::Processor& unit, const Machine& mac
             {"float64", unit.float64},
             {"usable", unit.refusals.empty()},
             {"refusals", unit.refusals},
+            {"trial_ms", trial ? nlohmann::ordered_json(*trial) : nlohmann::ordered_json(nullptr)},
             {"auto", unit.index == machine.taken}};
 }
 
@@ -75,6 +88,9 @@ void printText(const compute::Processor& unit, const Machine& machine)
               << "\n   kind     " << name(unit.kind) << "\n   "
               << (isHost ? "code     native, for " + machine.instructionSet
                          : "driver   " + unit.driver + ", Vulkan " + unit.api);
+    if (const auto trial = trialOf(machine, unit.index))
+        std::cout << "\n   time     " << formatQuantity(*trial / 1e3, "s") << " for a new map and " << kTrialLoads
+                  << " loads on " << kTrialCells << " x " << kTrialCells << " cells";
     std::cout << "\n   memory   " << (unit.memory >> 20) << " MiB\n   float64  " << (unit.float64 ? "yes" : "no")
               << "\n   usable   " << (unit.refusals.empty() ? "yes" : "no: " + joined(unit.refusals))
               << (unit.index == machine.taken ? "; auto takes it" : "") << "\n";
@@ -100,6 +116,26 @@ void printText(const DeviceList& haptics)
     std::cout << "looked for with " << hapticSupport() << "\n";
 }
 
+/// Measures what "auto" compares, on the processors that it may take.
+void timeCandidates(Machine& machine)
+{
+    using enum compute::ProcessorKind;
+    const PlateTrial trial = plateTrial(kTrialCells, kTrialLoads);
+    const auto       time  = [&](int index, const std::string& word) {
+        try {
+            machine.trialMs[index] = PlateSolver(word).timeOf(trial);
+        } catch (const std::exception& error) {
+            std::cerr << "palpate: no time of " << word << ": " << error.what() << "\n";
+        }
+    };
+    for (const compute::Processor& unit : machine.gpus)
+        if (unit.refusals.empty() && unit.kind != software && unit.kind != other)
+            time(unit.index, std::to_string(unit.index));
+    time(machine.host->index, std::string(compute::kHostProcessor));
+    const auto best = trialOf(machine, machine.taken), native = trialOf(machine, machine.host->index);
+    if (!best || (native && *native < *best)) machine.taken = machine.host->index;
+}
+
 /// Lists the processors; where Vulkan is broken the host remains.
 /// \throws compute::ProcessorError if Vulkan does not start and only GPUs are asked for
 Machine lookAtMachine(const DevicesOptions& options)
@@ -113,6 +149,7 @@ Machine lookAtMachine(const DevicesOptions& options)
     }
     if (const auto best = compute::chooseProcessor(machine.gpus, compute::kAutoProcessor))
         machine.taken = machine.gpus[*best].index;
+    timeCandidates(machine);
     if (options.gpus) machine.host.reset();
     return machine;
 }
@@ -188,7 +225,9 @@ void addDevicesCommand(CLI::App& app)
         "A GPU is named by its index or by a part of its name; \"host\" is this processor, with native code for the\n"
         "best instruction set that it has; the environment variable PALPATE_HOST_ISA sets a limit (portable,\n"
         "avx2 or avx512). auto takes a GPU, discrete before integrated before virtual, else the host. It never takes\n"
-        "a GPU in software; choose one by its name, or by \"lavapipe\".\n"
+        "a GPU in software; choose one by its name, or by \"lavapipe\". A session with auto first solves a plate of\n"
+        "its own size and number of loads on that GPU and on the host, and keeps the faster one; the times listed are\n"
+        "those of such a trial.\n"
         "Examples:\n"
         "  palpate devices\n"
         "  palpate devices --processors --json\n"

@@ -59,7 +59,7 @@ Solved solved(const SolveOptions& options)
     Solved s{readProblem(options.problem, options.cells), {}, {}};
 
     PlateSolver solver = options.solver.open();
-    const auto  told   = solver.note();
+    const auto  told   = solver.counts().takeovers;
     s.solution         = solvedWithProgress(solver, s.problem, options.solver.tolerance);
     s.note             = solver.note();
     sayTakeover(solver.takeoverSince(told, s.solution.report.solver));

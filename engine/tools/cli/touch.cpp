@@ -168,7 +168,7 @@ void touch(const TouchOptions& options)
     const SoftObject&    object   = loaded.object;
     const Contact        contact  = contactOf(scene, object);
     PlateSolver          solver   = openSolver(scene.solver);
-    const auto           told     = solver.note();
+    const auto           told     = solver.counts().takeovers;
     const Patch          patch    = deform(object, contact, settings, solver);
     sayTakeover(solver.takeoverSince(told, patch.report.solver));
     demandDeformed(patch);

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "compute_shaders/shared/tail_level.h"
+#include "tests/plate/kernels/push_echo_aim.spv.h"
 #include "tests/plate/kernels/push_echo_level.spv.h"
+#include "tests/plate/kernels/push_echo_probe.spv.h"
 #include "tests/plate/kernels/push_echo_relax.spv.h"
 #include "tests/plate/kernels/push_echo_scalars.spv.h"
 #include "tests/plate/kernels/push_echo_smooth.spv.h"
@@ -26,6 +28,8 @@ static_assert(sizeof(RelaxPush) == 48 && sizeof(RelaxPush) <= kMostPushBytes);
 static_assert(sizeof(SmoothPush) == 52 && sizeof(SmoothPush) <= kMostPushBytes);
 static_assert(sizeof(TransferPush) == 88 && sizeof(TransferPush) <= kMostPushBytes);
 static_assert(sizeof(VectorPush) == 12 && sizeof(VectorPush) <= kMostPushBytes);
+static_assert(sizeof(AimPush) == 8 && sizeof(AimPush) <= kMostPushBytes);
+static_assert(sizeof(ProbePush) == 56 && sizeof(ProbePush) <= kMostPushBytes);
 static_assert(sizeof(ScalarsPush) == 20 && sizeof(ScalarsPush) <= kMostPushBytes);
 
 /// Bits of the fields, in the order in which the shader echoes them.
@@ -74,6 +78,11 @@ TEST_F(PlatePushTest, EveryFieldArrivesInItsPlace)
     const VectorPush   vector{1000U, 64U, 7U};
     const ScalarsPush  scalars{3U, 64U, 2U, 768U, 1e-6F};
 
+    const AimPush   aim{1000U, 2U};
+    const ProbePush probe{kFine, 3U, 768U, 1e-6F};
+    EXPECT_EQ(echoed(push_echo_aim_spv, aim), Words(aim.nodes, aim.begins));
+    EXPECT_EQ(echoed(push_echo_probe_spv, probe),
+              Words(probe.level, probe.loads, probe.argumentWords, probe.tolerance));
     EXPECT_EQ(echoed(push_echo_level_spv, level), Words(level.level));
     EXPECT_EQ(echoed(push_echo_relax_spv, relax), Words(relax.level, relax.colour));
     EXPECT_EQ(echoed(push_echo_smooth_spv, smooth), Words(smooth.level, smooth.ahead, smooth.step));

@@ -2,7 +2,7 @@
 // Domain     one invocation
 // Reads      push
 // Writes     bits of the fields
-// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_SMOOTH, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS; ECHO_TAIL with an array of structs
+// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_SMOOTH, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS, ECHO_AIM, ECHO_PROBE; ECHO_TAIL with an array of structs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -22,6 +22,10 @@ layout(push_constant) uniform Constants { SmoothPush push; };
 layout(push_constant) uniform Constants { TransferPush push; };
 #elif defined(ECHO_VECTOR)
 layout(push_constant) uniform Constants { VectorPush push; };
+#elif defined(ECHO_AIM)
+layout(push_constant) uniform Constants { AimPush push; };
+#elif defined(ECHO_PROBE)
+layout(push_constant) uniform Constants { ProbePush push; };
 #elif defined(ECHO_TAIL)
 layout(push_constant) uniform Constants { TailPush push; };
 layout(std430, binding = 1) readonly buffer Levels { TailLevel levels[]; };
@@ -68,6 +72,14 @@ void main()
     echo(push.nodes);
     echo(push.partials);
     echo(push.iteration);
+#elif defined(ECHO_AIM)
+    echo(push.nodes);
+    echo(push.begins);
+#elif defined(ECHO_PROBE)
+    echo(push.level);
+    echo(push.loads);
+    echo(push.argumentWords);
+    echo(push.tolerance);
 #elif defined(ECHO_TAIL)
     echo(push.first);
     echo(push.levels);

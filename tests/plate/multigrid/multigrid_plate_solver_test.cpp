@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iostream>
 #include <limits>
 #include <optional>
 #include <random>
@@ -113,6 +114,12 @@ protected:
                                              : MultigridPlateSolver::kLeastFloatTolerance;
     }
 
+    /// Returns the error that is allowed: without doubles no more is asked than kLeastFloatTolerance.
+    static double allowed(double inDoubles)
+    {
+        return context().processor().float64 ? inDoubles : MultigridPlateSolver::kLeastFloatTolerance;
+    }
+
     /// GPU-assisted validation is 20 times slower: small grids tell as much.
     static std::vector<int> sizes()
     {
@@ -133,7 +140,7 @@ TEST_F(MultigridPlate, AgreesWithTheReferenceSolverForEveryLaw)
             const NodeField     load  = loadOn(plate.grid);
             const PlateSolution truth = ReferencePlateSolver(plate).solve(load);
             const PlateSolution found = solverFor(plate, {.tolerance = tightest()}).solve(load);
-            EXPECT_LT(errorOf(found.deflection, truth.deflection), law.smooth ? 1e-6 : 2e-6)
+            EXPECT_LT(errorOf(found.deflection, truth.deflection), allowed(law.smooth ? 1e-6 : 2e-6))
                 << law.name << ", " << cells << " cells, " << *found.report.iterations << " iterations";
         }
 }
@@ -142,6 +149,7 @@ TEST_F(MultigridPlate, AgreesWithTheReferenceSolverForEveryLaw)
 TEST_F(MultigridPlate, FusedPassesTakeTheSameStepsToTheSameAnswer)
 {
     if (onHost()) GTEST_SKIP() << "the host does not fuse passes";
+    if (compilesSlowly(context())) GTEST_SKIP() << kCompilesSlowly;
     if (validation() == compute::Validation::gpuAssisted)
         GTEST_SKIP() << "the fused kernels take minutes to compile then";
     using enum Edge;
@@ -229,6 +237,36 @@ TEST_F(MultigridPlate, FloatsAloneReachWhatIsAskedOfThem)
     EXPECT_THROW(MultigridPlateSolver(context(), floats, plateOf(20, 20, {}, kLaws[0]), {.tolerance = 1e-6}), Error);
 }
 
+/// Where the rigidity jumps, floats lose as many digits as its contrast has. They called an answer converged that was
+/// wrong by 2.6e-2.
+TEST_F(MultigridPlate, WhatFloatsRoundAtJumpsIsInTheEstimateAndCalledConvergedOnlyWithinTheTolerance)
+{
+    using enum Edge;
+    const int cells = sizes().front();
+    for (const Precision precision : {Precision::floats, Precision::floatGradients}) {
+        const PlateKernels kernels(context(), Schedule::passByPass, precision);
+        for (const double contrast : {1e2, 1e3, 1e4, 1e5, 1e6})
+            for (const PlateEdges edges : {PlateEdges{clamped, free, free, free}, PlateEdges{}}) {
+                const Law   law{"disc", [=](double x, double z) { return disc(x, z, contrast); }, false};
+                const Plate plate = plateOf(cells, cells, edges, law);
+                const auto  load  = footprintLoad(plate.grid, 1, 0.6, 0.4, 0.1);
+                const auto  truth = ReferencePlateSolver(plate).solve(load).deflection;
+                for (const double tolerance : {1e-2, 1e-4}) {
+                    MultigridPlateSolver solver(context(), kernels, plate, {.tolerance = tolerance});
+                    const PlateSolution  found = solver.solve(load);
+                    const double         error = errorOf(found.deflection, truth);
+                    EXPECT_TRUE(!found.report.converged || error < 3 * *found.report.errorEstimate)
+                        << "disc of " << contrast << ": " << error << " where the estimate is "
+                        << *found.report.errorEstimate;
+                    EXPECT_TRUE(!found.report.converged || solver.rounding() <= tolerance);
+                    if (contrast <= 1e3) {
+                        EXPECT_TRUE(found.report.converged) << "up to here floats are enough";
+                    }
+                }
+            }
+    }
+}
+
 /// Whole solves, not only kernels: stops, steps and sweeps where the rigidity jumps included.
 TEST_F(MultigridPlate, HostAndLavapipeGiveTheSameBits)
 {
@@ -258,10 +296,73 @@ TEST_F(MultigridPlate, HostAndLavapipeGiveTheSameBits)
     }
 }
 
-/// What a processor may be asked for: the host does not fuse passes.
+/// Returns the largest difference in units in the last place of the largest value.
+double ulpsApart(const NodeField& a, const NodeField& b)
+{
+    double most = 0;
+    for (std::size_t n = 0; n < a.values().size(); ++n) most = std::max(most, std::abs(a.values()[n] - b.values()[n]));
+    return most / (largest(b) * double(std::numeric_limits<float>::epsilon()));
+}
+
+/// A driver may fuse products and sums, and round quotients and roots by a few units otherwise. What that does to whole
+/// answers is printed, and stands in engine/plate/README.md.
+TEST_F(MultigridPlate, AnotherDriverDiffersFromTheHostByNoMoreThanWhatFloatsRound)
+{
+    if (onHost() || context().bitExact()) GTEST_SKIP() << "the host and lavapipe have the same bits";
+    if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
+    using enum Edge;
+    compute::Context   host({.processor = std::string(compute::kHostProcessor)});
+    const PlateKernels here(context(), Schedule::passByPass, Precision::floats, Smoother::redBlack),
+        there(host, Schedule::passByPass, Precision::floats, Smoother::redBlack);
+    for (const Law& law : kLaws) {
+        double most = 0, steps = 0;
+        for (const PlateEdges edges : {PlateEdges{}, PlateEdges{supported, free, clamped, free}}) {
+            const Plate         plate = plateOf(70, 45, edges, law);
+            const NodeField     load  = loadOn(plate.grid);
+            const Settings      settings{};
+            const PlateSolution a = MultigridPlateSolver(context(), here, plate, settings).solve(load),
+                                b = MultigridPlateSolver(host, there, plate, settings).solve(load);
+            most                  = std::max(most, ulpsApart(a.deflection, b.deflection));
+            steps                 = std::max(steps, double(std::abs(*a.report.iterations - *b.report.iterations)));
+        }
+        std::cout << law.name << ": " << most << " ulp of the largest deflection, " << steps << " steps apart\n";
+        EXPECT_LT(most * double(std::numeric_limits<float>::epsilon()), MultigridPlateSolver::kLeastFloatTolerance)
+            << law.name;
+        EXPECT_LE(steps, 1) << law.name;
+    }
+}
+
+/// On hardware each waits 3 to 5 us for the one before it. engine/performance.md has these numbers.
+TEST_F(MultigridPlate, TheCommandsOfEachScheduleAreCounted)
+{
+    if (onHost()) GTEST_SKIP() << "it smooths in another way, and its dispatches cost nothing";
+    if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
+    if (compilesSlowly(context())) GTEST_SKIP() << kCompilesSlowly;
+    struct Row {
+        int                                 cells;
+        MultigridPlateSolver::CommandCounts fused;
+        int                                 step; ///< pass by pass
+    };
+    const PlateKernels fused(context(), Schedule::fused), onePassEach(context(), Schedule::passByPass);
+    for (const Row& row :
+         {Row{64, {11, 8, 15, 4, 1}, 30}, Row{128, {15, 9, 22, 7, 4}, 41}, Row{256, {19, 10, 35, 10, 7}, 52},
+          Row{512, {23, 11, 51, 13, 10}, 63}, Row{1024, {27, 12, 70, 16, 13}, 74}}) {
+        const Plate plate  = plateOf(row.cells, row.cells, {}, kLaws[0]);
+        const auto  counts = MultigridPlateSolver(context(), fused, plate, {}).commands();
+        EXPECT_EQ(counts.prepare, row.fused.prepare) << row.cells;
+        EXPECT_EQ(counts.prepareCopies, row.fused.prepareCopies) << row.cells;
+        EXPECT_EQ(counts.nested, row.fused.nested) << row.cells;
+        EXPECT_EQ(counts.step, row.fused.step) << row.cells;
+        EXPECT_EQ(counts.cycle, row.fused.cycle) << row.cells;
+        EXPECT_EQ(MultigridPlateSolver(context(), onePassEach, plate, {}).commands().step, row.step) << row.cells;
+    }
+}
+
+/// What a processor may be asked for: the host does not fuse passes, and not every driver compiles them in seconds.
 std::vector<Schedule> schedulesOf(const compute::Context& context)
 {
-    if (context.processor().kind == compute::ProcessorKind::host) return {Schedule::passByPass};
+    if (context.processor().kind == compute::ProcessorKind::host || compilesSlowly(context))
+        return {Schedule::passByPass};
     return {Schedule::passByPass, Schedule::fused};
 }
 
@@ -303,6 +404,45 @@ TEST_F(MultigridPlate, SoftlyHeldPlatesAreRightUnderEverySchedule)
     }
 }
 
+/// Smooth, so that passes are fused, and as sharp as smooth maps get; at the tolerance that sessions have.
+TEST_F(MultigridPlate, ASmoothContrastOfAHundredThousandIsSolvedUnderEverySchedule)
+{
+    if (validation() == compute::Validation::gpuAssisted)
+        GTEST_SKIP() << "the fused kernels take minutes to compile then";
+    if (!context().processor().float64) GTEST_SKIP() << "in floats such a plate may be said not to be solved";
+    using enum Edge;
+    constexpr double kContrast = 1e5;
+    const Law        wart{"wart 1e5",
+                   [](double x, double z) {
+                       return 1 + (kContrast - 1) * std::exp(-50 * (std::pow(x - 0.5, 2) + std::pow(z - 0.5, 2)));
+                   },
+                   true};
+    const Law        slope{"slope 1e5", [](double x, double) { return std::pow(kContrast, x); }, true};
+    for (const Schedule schedule : schedulesOf(context())) {
+        const PlateKernels kernels(context(), schedule);
+        for (const Law* const which : {&wart, &slope})
+            for (const PlateEdges edges :
+                 {PlateEdges{}, PlateEdges{clamped, free, free, free}, PlateEdges{supported, supported, free, clamped}})
+                for (const int cells : {64, 128}) {
+                    if (validation() != compute::Validation::off && cells > 64) continue; // time
+                    const Plate          plate = plateOf(cells, cells, edges, *which);
+                    const NodeField      load  = footprintLoad(plate.grid, 1, 0.6, 0.4, 0.1);
+                    MultigridPlateSolver solver(context(), kernels, plate, {.tolerance = 1e-4});
+                    const PlateSolution  found = solver.solve(load);
+                    const double error = errorOf(found.deflection, ReferencePlateSolver(plate).solve(load).deflection);
+                    const std::string what = std::string(name(schedule)) + ", " + which->name + ", " +
+                                             std::to_string(cells) + " cells, held " + name(edges.x0) + " " +
+                                             name(edges.x1);
+                    EXPECT_TRUE(found.report.converged) << what;
+                    EXPECT_LE(*found.report.iterations, 16) << what;
+                    EXPECT_LT(error, 3e-4) << what << ": the tolerance is one of energy";
+                    if (schedule == Schedule::fused && which == &slope) {
+                        EXPECT_LE(solver.dispatchesPerCycle(), 4) << what << ": fused, because nothing jumps";
+                    }
+                }
+    }
+}
+
 TEST_F(MultigridPlate, EveryEdgeOnEveryGroundAgreesWithTheReferenceUnderEverySchedule)
 {
     if (validation() == compute::Validation::gpuAssisted)
@@ -338,7 +478,7 @@ TEST_F(MultigridPlate, EveryCombinationOfEdgesAgreesWithTheReferenceSolver)
         const NodeField     load  = loadOn(plate.grid);
         const PlateSolution truth = ReferencePlateSolver(plate).solve(load);
         const PlateSolution found = solverFor(plate, {.tolerance = tightest()}).solve(load);
-        EXPECT_LT(errorOf(found.deflection, truth.deflection), 1e-6)
+        EXPECT_LT(errorOf(found.deflection, truth.deflection), allowed(1e-6))
             << name(edges.x0) << " " << name(edges.x1) << " " << name(edges.z0) << " " << name(edges.z1);
         EXPECT_LE(*found.report.iterations, 20);
     }
@@ -366,7 +506,7 @@ TEST_F(MultigridPlate, GridsOfAnyShapeAgreeWithTheReferenceSolver)
         const NodeField     load  = loadOn(plate.grid);
         const PlateSolution truth = ReferencePlateSolver(plate).solve(load);
         const PlateSolution found = solverFor(plate, {.tolerance = tightest()}).solve(load);
-        EXPECT_LT(errorOf(found.deflection, truth.deflection), 1e-6) << shape.x << " x " << shape.z;
+        EXPECT_LT(errorOf(found.deflection, truth.deflection), allowed(1e-6)) << shape.x << " x " << shape.z;
         EXPECT_LE(*found.report.iterations, 40) << shape.x << " x " << shape.z;
     }
 }
@@ -379,11 +519,13 @@ TEST_F(MultigridPlate, TheEstimateIsNeverBelowTheErrorByMoreThanAFactorOfThree)
             const NodeField     load  = loadOn(plate.grid);
             const PlateSolution truth = ReferencePlateSolver(plate).solve(load);
             for (double tolerance : {0.3, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5}) {
-                const PlateSolution found = solverFor(plate, {.tolerance = tolerance}).solve(load);
-                const double        error = errorOf(found.deflection, truth.deflection);
+                if (tolerance < tightest()) continue;
+                MultigridPlateSolver solver = solverFor(plate, {.tolerance = tolerance});
+                const PlateSolution  found  = solver.solve(load);
+                const double         error  = errorOf(found.deflection, truth.deflection);
                 EXPECT_LT(error, 3 * *found.report.errorEstimate)
                     << law.name << ", " << cells << " cells, " << tolerance;
-                EXPECT_LE(*found.report.errorEstimate, tolerance);
+                EXPECT_LE(*found.report.errorEstimate, std::hypot(tolerance, solver.rounding()));
             }
         }
 }
@@ -393,7 +535,7 @@ TEST_F(MultigridPlate, TheEstimateIsNeverBelowTheErrorByMoreThanAFactorOfThree)
 /// host's steps smooth less, so that very sharp discs take it more of them: 15 and 22.
 TEST_F(MultigridPlate, StepsToATrueErrorAreFewWhateverTheSize)
 {
-    const auto allowed = [](const Law& law) -> std::pair<int, int> { // to 1e-4 and to 1e-6
+    const auto most = [](const Law& law) -> std::pair<int, int> { // to 1e-4 and to 1e-6
         if (law.smooth) return {5, 8};
         if (std::string_view(law.name) == "disc 1000") return onHost() ? std::pair(17, 25) : std::pair(12, 18);
         return {8, 12};
@@ -405,7 +547,7 @@ TEST_F(MultigridPlate, StepsToATrueErrorAreFewWhateverTheSize)
             const NodeField     load   = loadOn(plate.grid);
             const PlateSolution truth  = ReferencePlateSolver(plate).solve(load);
             int                 coarse = 0, fine = 0, last = 0;
-            for (double tolerance = 0.5; tolerance > 1e-8 && fine == 0; tolerance /= 2.5) {
+            for (double tolerance = 0.5; tolerance > tightest() && fine == 0; tolerance /= 2.5) {
                 const PlateSolution found = solverFor(plate, {.tolerance = tolerance}).solve(load);
                 if (*found.report.iterations == last) continue;
                 last               = *found.report.iterations;
@@ -413,9 +555,9 @@ TEST_F(MultigridPlate, StepsToATrueErrorAreFewWhateverTheSize)
                 if (error < 1e-4 && coarse == 0) coarse = last;
                 if (error < 1e-6) fine = last;
             }
-            EXPECT_TRUE(coarse >= 1 && coarse <= allowed(law).first)
-                << law.name << ", " << cells << " cells: " << coarse;
-            EXPECT_TRUE(fine >= 1 && fine <= allowed(law).second) << law.name << ", " << cells << " cells: " << fine;
+            EXPECT_TRUE(coarse >= 1 && coarse <= most(law).first) << law.name << ", " << cells << " cells: " << coarse;
+            if (!context().processor().float64) continue; // floats do not reach 1e-6
+            EXPECT_TRUE(fine >= 1 && fine <= most(law).second) << law.name << ", " << cells << " cells: " << fine;
         }
 }
 
@@ -424,6 +566,7 @@ TEST_F(MultigridPlate, StepsToATrueErrorAreFewWhateverTheSize)
 TEST_F(MultigridPlate, ADiscOfAMillionConverges)
 {
     if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
+    if (!context().processor().float64) GTEST_SKIP() << "in floats such a plate is said not to be solved";
     const Law           million{"disc 1e6", [](double x, double z) { return disc(x, z, 1e6); }, false};
     const Plate         plate = plateOf(64, 64, {}, million);
     const NodeField     load  = loadOn(plate.grid);
@@ -465,7 +608,7 @@ TEST_F(MultigridPlate, LoadsOfABatchDoNotTouchEachOther)
             EXPECT_EQ(largest(found[n].deflection), 0) << "no force, no deflection";
             continue;
         }
-        EXPECT_LT(errorOf(found[n].deflection, reference.solve(loads[n]).deflection), 2e-6) << "load " << n;
+        EXPECT_LT(errorOf(found[n].deflection, reference.solve(loads[n]).deflection), allowed(2e-6)) << "load " << n;
     }
 }
 
@@ -580,8 +723,8 @@ TEST_F(MultigridPlate, AComplianceIsWrongByTheSquareOfTheAnswersError)
             EXPECT_EQ(felt.changeZ, 0);
             for (std::size_t n = 0; n < error.values().size(); ++n) error.values()[n] -= w.values()[n];
             const double left = energyOf(plate, error);
-            EXPECT_NEAR(truth - felt.work, left, 0.01 * left + 1e-7 * truth) << "1e-7: rigidities in floats";
-            EXPECT_LT(std::abs(truth - felt.work) / truth, 1.1 * tolerance * tolerance + 1e-6);
+            EXPECT_NEAR(truth - felt.work, left, 0.01 * left + solver.rounding() * truth) << "what floats round";
+            EXPECT_LT(std::abs(truth - felt.work) / truth, 1.1 * tolerance * tolerance + 10 * solver.rounding());
         }
     }
 }
@@ -603,7 +746,8 @@ TEST_F(MultigridPlate, AnotherRigidityIsAsIfTheSolverWereNew)
     MultigridPlateSolver solver = solverFor(soft, {.tolerance = tightest()});
     (void)solver.solve(load);
     solver.setRigidity(stiff.rigidity);
-    EXPECT_LT(errorOf(solver.solve(load).deflection, ReferencePlateSolver(stiff).solve(load).deflection), 1e-6);
+    EXPECT_LT(errorOf(solver.solve(load).deflection, ReferencePlateSolver(stiff).solve(load).deflection),
+              allowed(1e-6));
 }
 
 /// Each rigidity has other tiles with a jump, so that everything is recorded anew; first a small disc, at last one that
@@ -613,7 +757,7 @@ TEST_F(MultigridPlate, ManyRigiditiesWithJumpsElsewhereAreSolvedOneAfterTheOther
     const int            count  = validation() == compute::Validation::off ? 30 : 5;
     Plate                plate  = plateOf(40, 40, {}, kLaws[6]);
     const NodeField      load   = loadOn(plate.grid);
-    MultigridPlateSolver solver = solverFor(plate, {.tolerance = 1e-6});
+    MultigridPlateSolver solver = solverFor(plate, {.tolerance = allowed(1e-6)});
     for (int n = 0; n < count; ++n) {
         const double radius = 0.02 + 0.4 * n / count;
         for (int i = 0; i <= 40; ++i)
@@ -622,7 +766,8 @@ TEST_F(MultigridPlate, ManyRigiditiesWithJumpsElsewhereAreSolvedOneAfterTheOther
         solver.setRigidity(plate.rigidity);
         const PlateSolution found = solver.solve(load);
         if (n % 10 == 9 || n == 0) {
-            EXPECT_LT(errorOf(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 3e-6) << n;
+            EXPECT_LT(errorOf(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), allowed(3e-6))
+                << n;
         }
     }
 }

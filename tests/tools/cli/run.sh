@@ -143,6 +143,9 @@ mkdir alone && cp "$palpate" alone/palpate
 alone/palpate bench --solver lavapipe --nodes 33 --cases memory >out.txt 2>err.txt || complain "bench without peers: exit $? $(cat err.txt)"
 holds 'install libsuitesparse-dev'
 
+good 'counts of dispatches' bench --solver lavapipe --nodes 65 --cases dispatches --json
+for key in '"case": "dispatches"' '"schedule": "fused"' '"nested_iteration": 15' '"step": 4' '"step": 30'; do holds "$key"; done
+
 good 'list of devices' devices
 holds 'host  '
 holds 'usable   yes; auto takes it'
@@ -161,6 +164,7 @@ for key in '"name": "mouse"' '"name": "arm"' '"model"' '"path": null' '"usable":
 bad 'two sorts alone at once' 'excludes' devices --gpus --haptic
 bad 'two other sorts alone at once' 'excludes' devices --processors --haptic
 good 'list of processors' devices --processors
+holds 'for a new map and 25 loads on 64 x 64 cells'
 holds 'host  '
 holds 'usable   yes; auto takes it'
 grep -q 'a simulated arm' out.txt && complain "an arm solves nothing: $(cat out.txt)" || passed=$((passed + 1))
@@ -201,7 +205,7 @@ holds 'usable   yes'
 grep -q host out.txt && complain "the host is no GPU: $(cat out.txt)" || passed=$((passed + 1))
 good 'list of devices, for scripts' devices --json
 for key in '"index": 0' '"index": null' '"name": "host"' '"kind": "software"' '"kind": "host"' '"driver"' '"api"' '"memory"' '"float64"' '"usable": true' '"refusals": []' '"processor": "' \
-    '"instruction_set": "' '"auto": false'; do holds "$key"; done
+    '"instruction_set": "' '"trial_ms": null' '"auto": false'; do holds "$key"; done
 tr -d ' \n' <out.txt | grep -q '^{"haptic":\[.*\],"processors":\[.*"auto":true}\]}$' && passed=$((passed + 1)) || complain "auto is not the host, the last of: $(cat out.txt)"
 without "$palpate" devices --gpus --json
 code=$?

@@ -64,7 +64,7 @@ bool isFused(const compute::Context& context, Schedule schedule, Smoother smooth
            (schedule == Schedule::automatic && fits && isHardware(context) && smoother == Smoother::redBlack);
 }
 
-PlateKernels::All::Fused fusedKernels(compute::Context& context, const Shapes& shapes)
+PlateKernels::All::Fused fusedKernels(compute::Context& context, const Shapes& shapes, bool doubles)
 {
     const auto bySweeps = [&](const compute::KernelCode& code, compute::Workgroup shape) {
         const std::uint32_t one = 1, two = 2;
@@ -76,6 +76,8 @@ PlateKernels::All::Fused fusedKernels(compute::Context& context, const Shapes& s
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)                                               \
     .name = bySweeps(kernels::name(), shapes.shape),
+#define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)                                         \
+    .name = compute::Kernel(context, doubles ? kernels::name<double>() : kernels::name<float>(), shapes.shape),
 #include "compute_shaders/shared/plate_kernels.def"
     };
 }
@@ -102,6 +104,7 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)                                               \
     .name = compute::Kernel(context, f64 ? kernels::name<double>(host) : kernels::name<float>(host), shapes.shape),
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
+#define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"
     });
     if (coarse && !f64) {
@@ -110,7 +113,7 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
         all_->coarseSolve  = compute::Kernel(context, kernels::coarseSolve<double>(host), shapes.alone);
         all_->coarseInvert = compute::Kernel(context, kernels::coarseInvert<double>(host), shapes.alone);
     }
-    if (isFused(context, schedule, all_->smoothing.by)) all_->fused.emplace(fusedKernels(context, shapes));
+    if (isFused(context, schedule, all_->smoothing.by)) all_->fused.emplace(fusedKernels(context, shapes, f64));
 }
 
 PlateKernels::~PlateKernels()                                  = default;

@@ -19,11 +19,13 @@ struct Smoothing {
 /// The kernels of compute_shaders/shared/plate_kernels.def by name, for one processor; those in two precisions compute
 /// in doubles where the processor has them.
 struct PlateKernels::All {
-    /// The cycle in fewer and larger passes; [n] has n + 1 sweeps before and after the correction.
+    /// The cycle in fewer and larger passes, of which [n] has n + 1 sweeps before and after the correction; and conjugate
+    /// gradients.
     struct Fused {
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape) std::array<compute::Kernel, 2> name;
+#define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #include "compute_shaders/shared/plate_kernels.def"
     };
 
@@ -34,6 +36,7 @@ struct PlateKernels::All {
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
+#define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"
     std::optional<Fused> fused{}; ///< if the schedule is Schedule::fused
 

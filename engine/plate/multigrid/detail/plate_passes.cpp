@@ -60,7 +60,13 @@ PlatePasses::PlatePasses(compute::Context& context, const PlateKernels::All& ker
     std::memset(hostArguments_.mapped(), 0, argumentBytes());
     for (std::size_t l = 0; l < grids_.levels.size(); ++l)
         setGroups(tileArgument(l), {0, 1, loads_}); // enableSteps() copies the number of tiles here
-    if (k.fused) tail_.emplace(context, kernels, grids_, loads);
+    if (k.fused) {
+        tail_.emplace(context, kernels, grids_, loads);
+        const Groups      nodes = everyNode(k.fused->probe, 0);
+        const std::size_t most  = std::max<std::size_t>(2 * sharedByGroups(0).x, std::size_t(nodes.x) * nodes.y);
+        groupSums_.emplace(reals("sums of workgroups", most * loads_));
+        tickets_.emplace(context, "tickets", 4 * (std::size_t(loads_) + 2), Intent::processor);
+    }
     uploadTables();
 }
 
@@ -109,7 +115,8 @@ std::vector<LevelBuffers> PlatePasses::makeLevels() const
                         reals("answer" + of, field),
                         reals("left" + of, field),
                         reals("direction" + of, field),
-                        reals("forces" + of, field)});
+                        reals("forces" + of, field),
+                        reals("other direction" + of, k.fused ? field : 1)});
     }
     return made;
 }
@@ -129,6 +136,7 @@ void PlatePasses::uploadTables()
         upload(grids_.levels[l].tableZ, levels[l].tableZ);
     }
     if (zeroes_) list.fill(*zeroes_, 0);
+    if (tickets_) list.fill(*tickets_, 0);
     for (const LevelBuffers& b : levels)
         for (const Buffer* w : {&b.w[0], &b.w[1]}) list.fill(*w, 0); // held nodes stay at 0
     list.end();
@@ -153,6 +161,14 @@ void PlatePasses::setGroups(std::size_t offset, Groups groups)
 Groups PlatePasses::everyNode(const Kernel& kernel, std::size_t l) const
 {
     return kernel.groupsOver(std::uint32_t(level(l).cellsZ + 1), std::uint32_t(level(l).cellsX + 1), loads_);
+}
+
+// Returns the workgroups that share the nodes of a load for a sum, each invocation several of them.
+Groups PlatePasses::sharedByGroups(std::size_t l) const
+{
+    constexpr std::uint32_t kTerms =
+        8; // of an invocation: fewer leave more workgroups to wait for, more leave lanes idle
+    return {k.fused->aim.groupsOver((std::uint32_t(nodesOf(level(l))) + kTerms - 1) / kTerms).x, 1, loads_};
 }
 
 Groups PlatePasses::everySecondNode(const Kernel& kernel, std::size_t l) const
@@ -328,6 +344,10 @@ void PlatePasses::takeGradientSteps(Recorder& pass, std::size_t l, int count, in
         const int                 before = pass.list.dispatches();
         const Buffer&             z      = b.w[runCycle(pass, l, sweeps)];
         if (l == 0) dispatchesPerCycle_ = pass.list.dispatches() - before;
+        if (isFused()) {
+            takeFusedStep(pass, l, z, n, scalars.begins, scalars.tolerance);
+            continue;
+        }
         pass(k.dots, {b.left, z, b.answer, b.load, sums_}, vector, k.dots.groupsOver(partials_, 1, loads_));
         pass(k.beta, {sums_, state}, scalars, {1, 1, 1});
         pass(k.direction, {state, z, b.direction}, vector, inOrder(k.direction, l));
@@ -339,6 +359,27 @@ void PlatePasses::takeGradientSteps(Recorder& pass, std::size_t l, int count, in
         pass.list.dispatch(k.update, {state, b.direction, b.forces, b.answer, b.left, b.force}, vector,
                            inOrder(k.update, l));
     }
+}
+
+// Takes a step after its cycle in three dispatches. Every second direction lies in a memory of its own, and a list has
+// an even number of steps, or begins anew.
+void PlatePasses::takeFusedStep(Recorder& pass, std::size_t l, const Buffer& z, int step, std::uint32_t begins,
+                                float tolerance)
+{
+    const LevelBuffers& b     = levels[l];
+    const bool          odd   = step % 2 == 1;
+    const Buffer&       last  = odd ? b.direction : b.otherDirection;
+    const Buffer&       next  = odd ? b.otherDirection : b.direction;
+    const auto          nodes = std::uint32_t(nodesOf(level(l)));
+    pass(k.fused->aim, {b.left, z, b.answer, b.load, *groupSums_, *tickets_, state}, shared::AimPush{nodes, begins},
+         sharedByGroups(l));
+    pass(k.fused->probe, {b.rigidity, z, last, next, b.forces, *groupSums_, *tickets_, state, arguments_},
+         shared::ProbePush{level(l), loads_, std::uint32_t(argumentBytes() / 4), tolerance},
+         everyNode(k.fused->probe, l));
+    countWork(l, 1);
+    // Not stoppable, as in takeGradientSteps().
+    pass.list.dispatch(k.update, {state, next, b.forces, b.answer, b.left, b.force},
+                       shared::VectorPush{nodes, partials_, std::uint32_t(step)}, inOrder(k.update, l));
 }
 
 void PlatePasses::prepareRigidity(Recorder& pass)

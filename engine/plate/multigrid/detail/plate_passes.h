@@ -22,6 +22,7 @@ struct LevelBuffers {
     compute::Buffer marks, tiles; ///< where the rigidity jumps: a flag per tile; number of tiles, then their indices
     compute::Buffer load;         ///< force of the nested iteration, floats
     compute::Buffer answer, left, direction, forces; ///< x, r, p, A p of conjugate gradients, real
+    compute::Buffer otherDirection;                  ///< real: where the schedule is fused, every second p; else a word
 
     /// In a cycle A p is not computed yet: its memory holds the residual, in floats, or deflections that are set aside.
     [[nodiscard]] const compute::Buffer& residual() const noexcept { return forces; }
@@ -105,6 +106,7 @@ private:
     [[nodiscard]] std::size_t     argumentsFor(compute::Groups groups);
     void                          setGroups(std::size_t offset, compute::Groups groups);
     [[nodiscard]] compute::Groups everyNode(const compute::Kernel& kernel, std::size_t l) const;
+    [[nodiscard]] compute::Groups sharedByGroups(std::size_t l) const;
     [[nodiscard]] compute::Groups everySecondNode(const compute::Kernel& kernel, std::size_t l) const;
     void                          countWork(std::size_t l, double applications);
     [[nodiscard]] std::size_t     argumentBytes() const { return kSizeBytes * (kSizes + grids_.levels.size()); }
@@ -118,8 +120,10 @@ private:
     void              sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first);
     [[nodiscard]] int runCycle(Recorder& pass, std::size_t l, int sweeps);
     [[nodiscard]] int runFusedCycle(Recorder& pass, std::size_t l, int sweeps);
-    void              solveTail(Recorder& pass, std::size_t l, int sweeps, const compute::Buffer& force);
-    void              solveCoarsest(Recorder& pass, const compute::Buffer& force);
+    void takeFusedStep(Recorder& pass, std::size_t l, const compute::Buffer& z, int step, std::uint32_t begins,
+                       float tolerance);
+    void solveTail(Recorder& pass, std::size_t l, int sweeps, const compute::Buffer& force);
+    void solveCoarsest(Recorder& pass, const compute::Buffer& force);
 
     compute::Context&        context_;
     const PlateKernels::All& k;
@@ -128,7 +132,8 @@ private:
 
     std::optional<compute::Buffer> zeroes_; ///< a deflection of zero, for the first sweep in red and black
     compute::Buffer                band_, factor_, lost_, sums_, arguments_, hostArguments_, hostTiles_;
-    std::optional<PlateTail>       tail_; ///< if the schedule is fused
+    std::optional<PlateTail>       tail_;                ///< if the schedule is fused
+    std::optional<compute::Buffer> groupSums_, tickets_; ///< likewise: see cg_last_group.glsl
     Jumps                          jumps_              = Jumps::none;
     int                            dispatchesPerCycle_ = 0;
     std::map<std::array<std::uint32_t, 3>, std::size_t> argumentAt_; ///< groups -> byte offset in `arguments_`
