@@ -22,7 +22,8 @@ struct TouchedSurface {
     double                     noise   = 0; ///< [m] standard deviation of the points there about the surface
 
     /// The sphere through the anchor. Points count (1 - d^2/r^2)^2, r the radius of the ball, and not where the surface
-    /// has turned by 75 degrees: what lies around an edge is not what the finger lies on.
+    /// has turned by 75 degrees: what lies around an edge is not what the finger lies on. Very many points that lie close to
+    /// it take part by an even share.
     SphereFitResult sphere{};
 };
 
