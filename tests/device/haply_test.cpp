@@ -279,7 +279,9 @@ INSTANTIATE_TEST_SUITE_P(Of, HaplyTroubles,
 /// Zero force within 30 ms and a reason, or no fault at all; after a fault that may pass the force comes back.
 TEST_P(HaplyTroubles, EndAtZeroForceWithAReasonOrAreBorne)
 {
-    Bench bench;
+    // While the connection lasts the driver ends the force, of a service that would hold it for ever; with the
+    // connection the service does.
+    Bench bench({.hold = isFinal(GetParam().fault) ? 5e-3 : 1e6});
     bench.device->open();
     const GovernedForce push = governed({1, 0, 0});
     bench.run(0.1, push);
@@ -294,7 +296,8 @@ TEST_P(HaplyTroubles, EndAtZeroForceWithAReasonOrAreBorne)
         EXPECT_EQ(bench.state.missed, 0);
     } else {
         EXPECT_EQ(bench.service.force(), glm::dvec3(0));
-        EXPECT_LE(bench.service.lastForce() - since, kZero);
+        const double soon = isFinal(GetParam().fault) ? kZero : 15e-3; // 10 ms old, an answer's time, two ticks
+        EXPECT_LE(bench.service.lastForce() - since, soon);
     }
     bench.service.cause(HaplyTrouble::none);
     bench.run(0.2, push);

@@ -55,6 +55,11 @@ unsigned hdInitDevice(const char* name)
 }
 void hdDisableDevice(unsigned)
 {
+    if (sdk().callsLate && scheduler().callback) {
+        scheduler().callback(scheduler().data);
+        ++sdk().lateCallbacks;
+    }
+    scheduler().callback = nullptr;
     ++sdk().closed;
 }
 void hdMakeCurrentDevice(unsigned) {}
@@ -145,11 +150,7 @@ void hdStopScheduler()
 void hdUnschedule(unsigned long)
 {
     const std::lock_guard lock(scheduler().mutex);
-    if (sdk().callsLate && scheduler().callback) {
-        scheduler().callback(scheduler().data);
-        ++sdk().lateCallbacks;
-    }
-    scheduler().callback = nullptr;
+    if (!sdk().callsLate) scheduler().callback = nullptr;
 }
 #endif
 }
