@@ -11,6 +11,9 @@
 
 namespace palp {
 
+/// Half side of a square without an end [m].
+inline constexpr double kEverywhere = std::numeric_limits<double>::infinity();
+
 /// Unrolls a piece of surface onto the tangent plane at an origin: each point goes to the chart position whose distance
 /// and direction are those of the straightest way to it along the surface.
 ///
@@ -41,9 +44,10 @@ namespace palp {
 ///          that a cylinder is exact, whereas a tangent plane at one end is off by the square of the edge's angle.
 ///          Weights count edges along the way from the origin more than those across it: an edge across is too long on
 ///          a sphere.
-[[nodiscard]] std::vector<std::optional<ChartPoint>>
-exponentialMap(const glm::dvec3& origin, const Frame& frame, std::span<const glm::dvec3> positions,
-               std::span<const glm::dvec3> normals, std::span<const double> steps, double reach,
-               double careful = std::numeric_limits<double>::infinity());
+[[nodiscard]] std::vector<std::optional<ChartPoint>> exponentialMap(const glm::dvec3& origin, const Frame& frame,
+                                                                    std::span<const glm::dvec3> positions,
+                                                                    std::span<const glm::dvec3> normals,
+                                                                    std::span<const double> steps, double reach,
+                                                                    double careful = kEverywhere);
 
 } // namespace palp
