@@ -11,7 +11,7 @@ constexpr std::string_view kCcBy     = "CC BY 4.0";
 constexpr std::string_view kProbes =
     "our fit to some 900 published robotic probes of liver and meat, ball tip, 2 to 3 mm";
 constexpr std::string_view kHolds = "our fit to such probes, and to 128 holds of 10 s on cuts of meat";
-constexpr std::string_view kOwn   = "as this program, without the measurements";
+constexpr std::string_view kOwn   = "figures of this program, under its licence; the measurements are not included";
 
 /// Ecoflex of a number, with a share of thinner; silicone keeps its volume.
 constexpr KnownMaterial ecoflex(std::string_view name, double kiloPascal, double error)
