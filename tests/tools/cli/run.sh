@@ -296,7 +296,7 @@ bad 'a bridge that says nothing' 'sends no report of a bridge' run scene.json --
 python3 "$root/samples/bridge_peer.py" 47322 8 >peer.txt &
 good 'a device of a script, over UDP' run scene.json --hand bridge:udp:47322 --seconds 5 --json
 wait $!
-grep -q 'rendered at most [0-9]*[1-9]' peer.txt && passed=$((passed + 1)) || complain "the script felt nothing: $(cat peer.txt)"
+grep -q 'rendered at most [0-9.]*[1-9]' peer.txt && passed=$((passed + 1)) || complain "the script felt nothing: $(cat peer.txt)"
 good 'threads of the paper' run scene.json --threads paper --seconds 0.3
 good 'a fast hand' run scene.json --speed 2 --clock virtual --seconds 1 --json
 holds 'no force came on'
@@ -771,7 +771,7 @@ JSON
     good 'info of its scene' info scan.json
     holds '20.0 kPa to 2.00 MPa'
     holds 'of the points are at a border or beside a hole'
-    holds "no point's outward side is known"
+    holds 'the outward side is the one from which the hand comes'
     good 'a picture of its quality' info $words --picture quality.png --json
     holds '"picture": "quality.png"'
     png quality.png 1800 700
