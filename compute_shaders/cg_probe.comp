@@ -1,6 +1,6 @@
 // cg_probe.comp - the next direction of conjugate gradients, its forces, and how far to go along it, in one dispatch.
 // Domain     one invocation per node, workgroups of a power of two of them; z: loads
-// Reads      rigidity [1], preconditioned residual z (float), last direction (real), state with beta (real)
+// Reads      rigidity and foundation [1], preconditioned residual z (float), last direction (real), state with beta (real)
 // Writes     direction p = z + beta p (real), forces q = A p (real), 0 on held nodes; sums of the workgroups of (p, q)
 //            (real); state of the load; when every load is finished, zeroes to the arguments of the indirect dispatches,
 //            so that everything recorded after this does nothing
@@ -30,6 +30,7 @@ layout(std430, binding = 8) writeonly buffer Arguments { uint arguments[]; };
 int  base;
 real beta;
 real rigidity(int i, int j) { return real(D[i * nodesZ(push.level) + j]); }
+real foundationShape(int i, int j) { return real(D[push.level.shapeAt + i * nodesZ(push.level) + j]); }
 real deflection(int i, int j)
 {
     int n = base + i * nodesZ(push.level) + j;

@@ -16,6 +16,7 @@ layout(std430, binding = 1) writeonly buffer Band { real band[]; };
 
 int unitI, unitJ;
 real rigidity(int i, int j) { return real(D[i * nodesZ(push.level) + j]); }
+real foundationShape(int i, int j) { return real(D[push.level.shapeAt + i * nodesZ(push.level) + j]); }
 real deflection(int i, int j) { return i == unitI && j == unitJ ? real(1.0f) : real(0.0f); }
 real otherColour(int i, int j) { return deflection(i, j); }
 

@@ -1,6 +1,6 @@
 // plate_apply.comp - nodal forces of a deflection, A p.
 // Domain     one invocation per node
-// Reads      rigidity [1], deflection (real)
+// Reads      rigidity and foundation [1], deflection (real)
 // Writes     forces (real), 0 on held nodes
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -14,6 +14,7 @@ layout(std430, binding = 2) writeonly buffer Forces { real forces[]; };
 
 int base;
 real rigidity(int i, int j) { return real(D[i * nodesZ(push.level) + j]); }
+real foundationShape(int i, int j) { return real(D[push.level.shapeAt + i * nodesZ(push.level) + j]); }
 real deflection(int i, int j) { return w[base + i * nodesZ(push.level) + j]; }
 real otherColour(int i, int j) { return deflection(i, j); }
 

@@ -16,6 +16,7 @@ layout(std430, binding = 1) writeonly buffer Divisor { float inverseDivisor[]; }
 
 int unitI, unitJ;
 float rigidity(int i, int j) { return D[i * nodesZ(push.level) + j]; }
+float foundationShape(int i, int j) { return D[push.level.shapeAt + i * nodesZ(push.level) + j]; }
 float deflection(int i, int j) { return i == unitI && j == unitJ ? 1.0f : 0.0f; }
 float otherColour(int i, int j) { return deflection(i, j); }
 

@@ -1,6 +1,6 @@
 // plate_down.comp - the way down of a cycle on one level: sweeps from zero deflection, and the residual.
 // Domain     one workgroup along x per kOwned x kOwned nodes, see plate_region.glsl; z: loads
-// Reads      rigidity [1], inverse divisor [1], force of this level
+// Reads      rigidity and foundation [1], inverse divisor [1], force of this level
 // Writes     deflection and residual, 0 on held nodes
 #version 460
 #extension GL_GOOGLE_include_directive : require

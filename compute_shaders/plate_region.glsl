@@ -23,6 +23,7 @@ int   placeOf(int i, int j) { return (i - cornerI) * kRegion + (j - cornerJ); }
 bool  isNode(int i, int j) { return i >= 0 && j >= 0 && i <= region().cellsX && j <= region().cellsZ; }
 int   nodeAt(int i, int j) { return i * nodesZ(region()) + j; }
 float rigidity(int i, int j) { return D[nodeAt(i, j)]; }
+float foundationShape(int i, int j) { return D[region().shapeAt + nodeAt(i, j)]; }
 float deflection(int i, int j) { return tile[placeOf(i, j)]; }
 float otherColour(int i, int j) { return deflection(i, j); }
 

@@ -1,6 +1,6 @@
 // plate_relax.comp - half a sweep of red-black relaxation of the plate.
 // Domain     one invocation per node of one colour: column i, every second row; excess invocations return
-// Reads      rigidity [1], inverse divisor [1], force of this level, deflection: nodes of the colour from before this
+// Reads      rigidity and foundation [1], inverse divisor [1], force of this level, deflection: nodes of the colour from before this
 //            half sweep, the others from after the last one
 // Writes     deflection of nodes of push.colour, and nothing else
 #version 460
@@ -18,6 +18,7 @@ layout(std430, binding = 5) writeonly buffer After { float after[]; };
 
 int base;
 float rigidity(int i, int j) { return D[i * nodesZ(push.level) + j]; }
+float foundationShape(int i, int j) { return D[push.level.shapeAt + i * nodesZ(push.level) + j]; }
 float deflection(int i, int j) { return same[base + i * nodesZ(push.level) + j]; }
 float otherColour(int i, int j) { return other[base + i * nodesZ(push.level) + j]; }
 

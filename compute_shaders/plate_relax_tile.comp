@@ -1,6 +1,6 @@
 // plate_relax_tile.comp - half a sweep of relaxation in the tiles where the rigidity jumps; plate_copy_tile.comp follows.
 // Domain     a workgroup of kTile x kTile per listed tile; invocations of the other colour return
-// Reads      rigidity [1], inverse divisor [1], force, deflection of this level; list of tiles
+// Reads      rigidity and foundation [1], inverse divisor [1], force, deflection of this level; list of tiles
 // Writes     new deflections of nodes of push.colour of these tiles, aside: others still need the old ones
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -18,6 +18,7 @@ layout(std430, binding = 5) writeonly buffer Aside { float aside[]; };
 
 int base;
 float rigidity(int i, int j) { return D[i * nodesZ(push.level) + j]; }
+float foundationShape(int i, int j) { return D[push.level.shapeAt + i * nodesZ(push.level) + j]; }
 float deflection(int i, int j) { return w[base + i * nodesZ(push.level) + j]; }
 float otherColour(int i, int j) { return deflection(i, j); }
 

@@ -1,6 +1,6 @@
 // plate_residual.comp - forces that a deflection leaves unbalanced, f - A w.
 // Domain     one invocation per node
-// Reads      rigidity [1], force, deflection (real)
+// Reads      rigidity and foundation [1], force, deflection (real)
 // Writes     residual (real), 0 on held nodes; with PALPATE_ROUNDS also rounded to float, for the cycle
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -18,6 +18,7 @@ layout(std430, binding = 4) writeonly buffer Rounded { float rounded[]; };
 
 int base;
 real rigidity(int i, int j) { return real(D[i * nodesZ(push.level) + j]); }
+real foundationShape(int i, int j) { return real(D[push.level.shapeAt + i * nodesZ(push.level) + j]); }
 real deflection(int i, int j) { return w[base + i * nodesZ(push.level) + j]; }
 real otherColour(int i, int j) { return deflection(i, j); }
 

@@ -1,6 +1,6 @@
 // plate_smooth.comp - one step of Chebyshev's iteration.
 // Domain     one invocation per node; excess invocations return
-// Reads      rigidity [1], inverse divisor [1], force of this level, deflection before this step; the deflection before
+// Reads      rigidity and foundation [1], inverse divisor [1], force of this level, deflection before this step; the deflection before
 //            that, in the memory that is written, unless push.ahead is 0
 // Writes     deflection
 #version 460
@@ -17,6 +17,7 @@ layout(std430, binding = 4) buffer After { float after[]; };
 
 int base;
 float rigidity(int i, int j) { return D[i * nodesZ(push.level) + j]; }
+float foundationShape(int i, int j) { return D[push.level.shapeAt + i * nodesZ(push.level) + j]; }
 float deflection(int i, int j) { return before[base + i * nodesZ(push.level) + j]; }
 float otherColour(int i, int j) { return deflection(i, j); }
 

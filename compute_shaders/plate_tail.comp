@@ -40,6 +40,7 @@ TailLevel below; // the next coarser one, if there is one
 int   nodesOf(PlateLevel g) { return nodesX(g) * nodesZ(g); }
 int   nodeAt(int i, int j) { return i * nodesZ(here.plate) + j; }
 float rigidity(int i, int j) { return D[here.field + nodeAt(i, j)]; }
+float foundationShape(int i, int j) { return D[here.plate.shapeAt + here.field + nodeAt(i, j)]; }
 float deflection(int i, int j) { return pool[here.w + nodeAt(i, j)]; }
 float otherColour(int i, int j) { return deflection(i, j); }
 float tableX(int n) { return tablesX[here.tableX + n]; }

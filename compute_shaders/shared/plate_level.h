@@ -30,7 +30,9 @@ struct PlateLevel {
     float exx;    // (1 - nu^2)/2 kxx       on a side along which the other moment is condensed out
     float ezz;    // (1 - nu^2)/2 kzz
     float twist;  // (1 - nu)/2 / a         per sum of the four rigidities around a cell
-    float bed;    // foundation k hx^2 hz^2 / D0 of the finest grid, times a [1]
+    float bed;     // foundation k hx^2 hz^2 / D0 of the finest grid, times a [1]
+    int   shapeAt; // 0: the foundation is k at every node; else it is k times a number, which lies this far behind the
+                   // node's rigidity in the buffer of rigidities
 };
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
 // plate_operator.h - nodal forces A w of a plate of varying rigidity on a foundation, in moment form (GLSL and C++).
 //
-//   A w = dxx Mx + dzz Mz + dxz Mxz + k w        gradient of the discrete energy, never assembled
+//   A w = dxx Mx + dzz Mz + dxz Mxz + k s w      gradient of the discrete energy, never assembled
 //   Mx  = D (kxx p + kxz q)                      at nodes; p, q undivided second differences of w along x, z
 //   Mz  = D (kzz q + kxz p)
 //   Mxz = twist (D00 + D10 + D01 + D11) t        in cells; t = w00 - w10 - w01 + w11
@@ -18,7 +18,8 @@
 //
 // The includer provides, for nodes of the grid,  real rigidity(int i, int j),  real deflection(int i, int j)  for nodes
 // of the same colour as the node of the call (i + j even apart) and  real otherColour(int i, int j)  for the others;
-// they are the same field except within a half sweep.
+// they are the same field except within a half sweep.  real foundationShape(int i, int j)  is s, the foundation of a
+// node over k; it is asked for only where the level has one.
 // Include plate_grid.h first.
 //
 // Domain   any node that is not held; nodes outside the grid are never requested
@@ -83,6 +84,13 @@ real nodeShare(PlateLevel g, int i, int j)
     return j == 0 || j == g.cellsZ ? real(0.5f) * x : x;
 }
 
+// The foundation's force on a node per deflection.
+real bedAt(PlateLevel g, int i, int j)
+{
+    real bed = real(g.bed) * nodeShare(g, i, j);
+    return g.shapeAt == 0 ? bed : bed * foundationShape(i, j);
+}
+
 // The force of a node from second differences of the moments; `weight` is the foundation's, with the node's share.
 real forceFrom(real bendingX2, real bendingZ2, real twisting2, real weight, real c)
 {
@@ -126,5 +134,5 @@ real operatorAt(PlateLevel g, int i, int j)
 
     real twisting = change(change(tsw, tse), change(tnw, tne));
     return forceFrom(secondDifference(mw, mx, me), secondDifference(ms, mz, mn), twisting,
-                     real(g.bed) * nodeShare(g, i, j), c);
+                     bedAt(g, i, j), c);
 }

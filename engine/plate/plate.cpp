@@ -5,6 +5,8 @@
 #include <cmath>
 #include <sstream>
 
+#include <Eigen/Eigenvalues>
+
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
 
@@ -56,17 +58,49 @@ bool isHeldBySides(const Plate& plate)
            std::ranges::any_of(sides, [](Edge edge) { return holdsNodes(edge) && holdsSlope(edge); });
 }
 
+std::optional<std::string> whyShapeIsBad(const PlateGrid& grid, const NodeField& shape)
+{
+    if (shape.values().empty()) return std::nullopt;
+    if (!shape.on(grid))
+        return sentence("the foundation must have one value per node, expected ", grid.nodesX(), " x ", grid.nodesZ(),
+                        ", found ", shape.nodesX(), " x ", shape.nodesZ());
+    const auto isGood = [](double s) { return s >= 0 && s <= kMostFoundationShape; };
+    const auto bad    = std::ranges::find_if_not(shape.values(), isGood);
+    if (bad == shape.values().end()) return std::nullopt;
+    const auto index = bad - shape.values().begin();
+    return sentence("the foundation must be finite and not negative, at most ", kMostFoundationShape,
+                    " times its unit, found ", *bad, " times at node [", index / shape.nodesZ(), ", ",
+                    index % shape.nodesZ(), "]");
+}
+
+/// Returns how firmly a foundation of this shape holds a rigid plate beside one that is 1 everywhere [1]: the least of
+/// the shares with which it resists a shift and turns about two axes, all of them together.
+double shareOfRigidMotions(const NodeField& shape)
+{
+    if (shape.values().empty()) return 1;
+    Eigen::Matrix3d held = Eigen::Matrix3d::Zero(), whole = held;
+    for (int i = 0; i < shape.nodesX(); ++i)
+        for (int j = 0; j < shape.nodesZ(); ++j) {
+            const Eigen::Vector3d motion(1, 2.0 * i / (shape.nodesX() - 1) - 1, 2.0 * j / (shape.nodesZ() - 1) - 1);
+            const Eigen::Matrix3d square = motion * motion.transpose();
+            whole += square;
+            held += shape(i, j) * square;
+        }
+    const auto shares = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d>(held, whole).eigenvalues();
+    return std::max(0.0, shares.minCoeff());
+}
+
 /// Returns why the foundation does not hold the plate; empty if it does. A foundation stops every motion, unless its
 /// force vanishes beside the forces of bending between neighbouring nodes: with less than kLeast of them (the rounding
 /// of doubles is 2e-16) answers were found to be off by a tenth and more.
-std::optional<std::string> whyFoundationIsTooSoft(const Plate& plate, const NodeField& rigidity)
+std::optional<std::string> whyFoundationIsTooSoft(const Plate& plate, const NodeField& rigidity, const NodeField& shape)
 {
     constexpr double kLeast = 1e-14; // [1]
     const double     most   = extremesOf(rigidity.values()).most;
     const double     area   = plate.grid.spacingX * plate.grid.spacingZ;
-    if (plate.foundation * area * area >= kLeast * most) return std::nullopt;
-    return sentence("only its foundation holds the plate, and ", plate.foundation,
-                    " Pa/m are lost beside a rigidity of ", most,
+    const double     holds  = plate.foundation * shareOfRigidMotions(shape);
+    if (holds * area * area >= kLeast * most) return std::nullopt;
+    return sentence("only its foundation holds the plate, and ", holds, " Pa/m are lost beside a rigidity of ", most,
                     " N m on this grid: take fewer cells, a stiffer foundation, or clamp or support a side");
 }
 
@@ -104,10 +138,11 @@ std::string edgesText(const PlateEdges& edges)
 
 std::optional<std::string> whyUnsolvable(const Plate& plate)
 {
-    return whyUnsolvable(plate, plate.rigidity);
+    return whyUnsolvable(plate, plate.rigidity, plate.foundationShape);
 }
 
-std::optional<std::string> whyUnsolvable(const Plate& plate, const NodeField& rigidity)
+std::optional<std::string> whyUnsolvable(const Plate& plate, const NodeField& rigidity,
+                                         const NodeField& foundationShape)
 {
     if (auto why = whyGridIsBad(plate.grid)) return why;
     if (!isPoissonRatio(plate.poissonRatio))
@@ -115,10 +150,11 @@ std::optional<std::string> whyUnsolvable(const Plate& plate, const NodeField& ri
     if (!(std::isfinite(plate.foundation) && plate.foundation >= 0))
         return sentence("the foundation must be finite and not negative, found ", plate.foundation, " Pa/m");
     if (auto why = whyRigidityIsBad(plate.grid, rigidity)) return why;
+    if (auto why = whyShapeIsBad(plate.grid, foundationShape)) return why;
     if (isHeldBySides(plate)) return std::nullopt;
     if (plate.foundation == 0)
         return "the plate is free to move as a rigid body: clamp one side, support two, or give it a foundation";
-    return whyFoundationIsTooSoft(plate, rigidity);
+    return whyFoundationIsTooSoft(plate, rigidity, foundationShape);
 }
 
 } // namespace palp

@@ -47,7 +47,7 @@ struct PlateEdges {
 
 /// A Kirchhoff plate of varying flexural rigidity on an elastic foundation: everything but the load.
 ///
-///     E(w) = 1/2 int D [ (w_xx + w_zz)^2 - 2 (1-nu)(w_xx w_zz - w_xz^2) ] + 1/2 int k w^2 - int q w
+///     E(w) = 1/2 int D [ (w_xx + w_zz)^2 - 2 (1-nu)(w_xx w_zz - w_xz^2) ] + 1/2 int k s w^2 - int q w
 ///
 /// Deflection w [m] is positive along the load.
 /// \source  Kumari & Chaudhuri 2016, eqs 6 to 8: the equation that minimises E where D is smooth, k = 0 and nu constant
@@ -61,7 +61,17 @@ struct Plate {
     double     poissonRatio = 0.3; ///< nu [1], see isPoissonRatio
     double     foundation   = 0;   ///< k [Pa/m], >= 0; 0 in the paper
     NodeField  rigidity;           ///< D [N m] at the nodes, > 0
+    NodeField  foundationShape{};  ///< s [1], the foundation at the nodes over k, >= 0; empty: 1 everywhere
 };
+
+/// The largest number of a foundation's shape: the solver computes with it in 32 bits [1].
+inline constexpr double kMostFoundationShape = 1e9;
+
+/// Returns the foundation at a node [Pa/m].
+[[nodiscard]] inline double foundationAt(const Plate& plate, int i, int j) noexcept
+{
+    return plate.foundationShape.values().empty() ? plate.foundation : plate.foundation * plate.foundationShape(i, j);
+}
 
 /// Returns whether a side holds the node of column i, row j.
 [[nodiscard]] inline bool isHeld(const Plate& plate, int i, int j) noexcept
@@ -85,8 +95,9 @@ inline constexpr int kFewestPlateCells = 4;
 /// positive or Poisson's ratio out of range, or the edges leave the plate free to move as a rigid body on a foundation
 /// that doubles cannot distinguish from none.
 [[nodiscard]] std::optional<std::string> whyUnsolvable(const Plate& plate);
-/// Returns the same for the plate with this rigidity [N m] in place of its own.
-[[nodiscard]] std::optional<std::string> whyUnsolvable(const Plate& plate, const NodeField& rigidity);
+/// Returns the same for the plate with this rigidity [N m] and shape of the foundation [1] in place of its own.
+[[nodiscard]] std::optional<std::string> whyUnsolvable(const Plate& plate, const NodeField& rigidity,
+                                                       const NodeField& foundationShape);
 
 /// A solver's report about one answer. A number that a solver does not have is empty.
 struct SolveReport {

@@ -34,10 +34,11 @@ std::string stoppedAt(const SolveReport& report)
     return "the multigrid solver stopped at an error of about " + formatNumber(*report.errorEstimate);
 }
 
-/// Exactly: what a plate's answer is must not depend on the plates that were solved before.
+/// Whether they differ in the values of their maps alone. Exactly: what a plate's answer is must not depend on the plates that were solved before.
 bool sameButRigidity(const Plate& a, const Plate& b)
 {
-    return a.grid == b.grid && a.edges == b.edges && a.poissonRatio == b.poissonRatio && a.foundation == b.foundation;
+    return a.grid == b.grid && a.edges == b.edges && a.poissonRatio == b.poissonRatio && a.foundation == b.foundation &&
+           a.foundationShape.values().empty() == b.foundationShape.values().empty();
 }
 
 /// Returns the report of all loads, or one of a load that did not converge.
@@ -90,7 +91,7 @@ struct PlateSolver::Multigrid {
         {
             const auto began = std::chrono::steady_clock::now();
             if (solver && sameButRigidity(plate, wanted) && tolerance == wantedTolerance && loads == wantedLoads) {
-                solver->setRigidity(wanted.rigidity);
+                solver->setRigidity(wanted.rigidity, wanted.foundationShape);
             } else {
                 solver.reset(); // its memory goes before the next one's comes
                 solver.emplace(context, kernels, wanted,

@@ -409,6 +409,61 @@ TEST(Foundation, OfAnInfinitePlateGivesThePointCompliance)
     EXPECT_NEAR(richardson * 8 * std::sqrt(1e5), 1, 3e-3) << "extrapolated at the force, where h^2 ln h remains";
 }
 
+/// w = sin(pi x) sin(2 pi z) on a supported unit square with D = 1 N m is the answer to the pressure that balances it,
+/// whatever the foundation.
+TEST(Foundation, ThatVariesConvergesToAChosenDeflectionWithSecondOrder)
+{
+    constexpr double k      = 2e3; // [Pa/m] beside 25 pi^4 = 2435 Pa/m of the plate itself
+    const auto       chosen = [](double x, double z) { return std::sin(kPi * x) * std::sin(2 * kPi * z); };
+    const auto       shape  = [](double x, double z) { return 1 + 0.9 * std::sin(3 * x + 1) * std::cos(5 * z) + x; };
+    std::array<double, 3> error{};
+    for (const std::size_t level : {0u, 1u, 2u}) {
+        Plate plate           = unitSquare(kCoarse << level);
+        plate.edges           = {supported, supported, supported, supported};
+        plate.foundation      = k;
+        plate.foundationShape = NodeField(plate.grid);
+        NodeField pressure(plate.grid), truth(plate.grid);
+        for (int i = 0; i <= plate.grid.cellsX; ++i)
+            for (int j = 0; j <= plate.grid.cellsZ; ++j) {
+                const double x = i * plate.grid.spacingX, z = j * plate.grid.spacingZ;
+                truth(i, j)                 = chosen(x, z);
+                plate.foundationShape(i, j) = shape(x, z);
+                pressure(i, j)              = (25 * std::pow(kPi, 4) + k * shape(x, z)) * truth(i, j);
+            }
+        const NodeField w = deflection(plate, gridLoad(plate.grid, pressure));
+        for (std::size_t n = 0; n < w.values().size(); ++n)
+            error[level] = std::max(error[level], std::abs(w.values()[n] - truth.values()[n]));
+    }
+    for (const std::size_t coarser : {0u, 1u})
+        EXPECT_NEAR(std::log2(error[coarser] / error[coarser + 1]), 2, 0.05)
+            << "errors " << error[coarser] << " m, " << error[coarser + 1] << " m";
+    EXPECT_LT(error[2], 1e-3) << "of 1 m, at 128 cells";
+}
+
+TEST(Foundation, CarriesEachPartOfAFreePlateThatHardlyBendsByItsOwnSprings)
+{
+    // A stiff plate on springs under one half of it only turns and sinks as a rigid body does, whatever its bending.
+    Plate plate           = unitSquare(16);
+    plate.edges           = {free, free, free, free};
+    plate.foundation      = 1e-3;
+    plate.foundationShape = NodeField(plate.grid, 0);
+    for (int i = 0; i <= 8; ++i)
+        for (int j = 0; j <= 16; ++j) plate.foundationShape(i, j) = 1;
+    const NodeField w = deflection(plate, uniformLoad(plate.grid, 1));
+
+    // The sums of k, k x and k x^2 over the nodes' areas hold a uniform pressure of 1 N at x = 1/2 m.
+    double k0 = 0, k1 = 0, k2 = 0;
+    for (int i = 0; i <= 8; ++i) {
+        const double x = i / 16.0, area = (i == 0 ? 0.5 : 1) / 16;
+        k0 += 1e-3 * area;
+        k1 += 1e-3 * area * x;
+        k2 += 1e-3 * area * x * x;
+    }
+    const double det = k0 * k2 - k1 * k1, sink = (k2 - 0.5 * k1) / det, turn = (0.5 * k0 - k1) / det;
+    for (const int i : {0, 8, 16})
+        EXPECT_NEAR(w(i, 5) / (sink + turn * i / 16.0), 1, 1e-3) << "the plate bends by some 1 m of 1e4 m";
+}
+
 TEST(Edges, TheLooserTheyAreTheMoreThePlateGives)
 {
     const auto centre = [](const PlateEdges& edges) {
@@ -528,6 +583,25 @@ TEST(WhyUnsolvable, NamesWhatIsWrong)
     for (const double bad : {-1.0, nan, infinity})
         EXPECT_TRUE(holds(why([&](Plate& p) { p.foundation = bad; }), {"foundation"})) << bad;
     EXPECT_TRUE(holds(why([](Plate& p) { p.edges = {free, free, supported, free}; }), {"rigid body", "foundation"}));
+    for (const double bad : {-1.0, nan, infinity, 1e12})
+        EXPECT_TRUE(holds(why([&](Plate& p) {
+                              p.foundationShape       = NodeField(p.grid, 1);
+                              p.foundationShape(3, 5) = bad;
+                          }),
+                          {"foundation", "[3, 5]"}))
+            << bad;
+    EXPECT_TRUE(holds(why([](Plate& p) { p.foundationShape = NodeField(9, 8); }), {"foundation", "9 x 9", "9 x 8"}));
+    const auto heldByARow = [](int rows) { // of nodes: one lets the plate turn about it
+        return [rows](Plate& p) {
+            p.edges           = {free, free, free, free};
+            p.foundation      = 1;
+            p.foundationShape = NodeField(p.grid);
+            for (int j = 0; j <= 8; ++j)
+                for (int i = 0; i < rows; ++i) p.foundationShape(i, j) = 1;
+        };
+    };
+    EXPECT_TRUE(holds(why(heldByARow(1)), {"only its foundation"}));
+    EXPECT_EQ(why(heldByARow(2)), "");
 }
 
 } // namespace

@@ -26,9 +26,10 @@ struct Operator {
     const float* D;
     const Real*  w;
     const Real*  other; ///< nodes of the other colour; w except within a half sweep
-    int          stride;
+    int          stride, shapeAt;
 
     real rigidity(int i, int j) const { return real(D[i * stride + j]); }
+    real foundationShape(int i, int j) const { return real(D[shapeAt + i * stride + j]); }
     real deflection(int i, int j) const { return w[i * stride + j]; }
     real otherColour(int i, int j) const { return other[i * stride + j]; }
 
@@ -42,10 +43,11 @@ template <class Real>
 struct RowOf {
     using real = Real;
     const float* D;
-    int          stride;
+    int          stride, shapeAt;
     int          unitI = 0, unitJ = 0;
 
     real rigidity(int i, int j) const { return D[i * stride + j]; }
+    real foundationShape(int i, int j) const { return D[shapeAt + i * stride + j]; }
     real deflection(int i, int j) const { return i == unitI && j == unitJ ? real(1) : real(0); }
     real otherColour(int i, int j) const { return deflection(i, j); }
 
@@ -58,9 +60,10 @@ using Row = RowOf<float>;
 
 struct Coarsen {
     const float* fine;
-    int          stride;
+    int          stride, shapeAt;
 
     float fineRigidity(int i, int j) const { return fine[i * stride + j]; }
+    float fineShape(int i, int j) const { return fine[shapeAt + i * stride + j]; }
 
 #include "compute_shaders/shared/plate_grid.h"
 #include "compute_shaders/shared/rigidity_coarsen.h"

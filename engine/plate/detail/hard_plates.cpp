@@ -23,7 +23,8 @@ bool similarButRigidity(const Plate& a, const Plate& b)
     constexpr double kSpacing = 1.1, kFoundation = 2;
     return a.grid.cellsX == b.grid.cellsX && a.grid.cellsZ == b.grid.cellsZ && a.edges == b.edges &&
            within(kSpacing, a.grid.spacingX, b.grid.spacingX) && within(kSpacing, a.grid.spacingZ, b.grid.spacingZ) &&
-           within(kFoundation, a.foundation, b.foundation);
+           within(kFoundation, a.foundation, b.foundation) &&
+           a.foundationShape.values().empty() == b.foundationShape.values().empty();
 }
 
 double ratio(double a, double b)
@@ -55,7 +56,7 @@ void HardPlates::remember(const Plate& plate, double tolerance, std::string why)
 {
     constexpr std::size_t kMost = 8; // those of several grids, or of one that becomes softer
     if (all_.size() == kMost) all_.erase(all_.begin());
-    all_.push_back({{plate.grid, plate.edges, plate.poissonRatio, plate.foundation, {}},
+    all_.push_back({{plate.grid, plate.edges, plate.poissonRatio, plate.foundation, {}, plate.foundationShape},
                     contrastOf(plate),
                     largestJump(plate),
                     tolerance,

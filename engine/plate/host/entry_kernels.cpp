@@ -22,10 +22,12 @@ struct Row {
 
     const float*   at;
     std::ptrdiff_t stride;
+    std::ptrdiff_t shapeAt;        ///< see PlateLevel
     int            placeI, placeJ; ///< the node's name
     int            unitI = 0, unitJ = 0;
 
     real rigidity(int i, int j) const { return real(at[(i - placeI) * stride + (j - placeJ)]); }
+    real foundationShape(int i, int j) const { return real(at[shapeAt + (i - placeI) * stride + (j - placeJ)]); }
     real deflection(int i, int j) const { return i == unitI && j == unitJ ? real(1) : real(0); }
     real otherColour(int i, int j) const { return deflection(i, j); }
 
@@ -71,7 +73,7 @@ struct Nodes {
 template <int placeI, int placeJ>
 float inverseDivisor(const PlateLevel& level, const float* at, std::ptrdiff_t stride)
 {
-    Row<float> row{at, stride, placeI, placeJ};
+    Row<float> row{at, stride, level.shapeAt, placeI, placeJ};
     if (row.isHeld(level, placeI, placeJ)) return 0;
     float others = 0;
     // The sum of plate_divisor.comp, each entry with its own constant.
@@ -110,7 +112,7 @@ void divisorsOfNarrow(const PlateLevel& g, const float* D, float* to)
 {
     for (int i = 0; i <= g.cellsX; ++i)
         for (int j = 0; j <= g.cellsZ; ++j, ++D) {
-            Row<float> row{D, g.cellsZ + 1, i, j};
+            Row<float> row{D, g.cellsZ + 1, g.shapeAt, i, j};
             *to++ = row.isHeld(g, i, j) ? 0.0F : 1.0F / row.divisorAt(g, i, j);
         }
 }
@@ -139,7 +141,7 @@ template <int placeI, int placeJ, class Real>
     const Nodes          rows(placeI, g.cellsX), columns(placeJ, g.cellsZ);
     for (int i = rows.first; i < rows.end; ++i)
         for (int j = columns.first; j < columns.end; ++j) {
-            Row<Real> row{D + i * stride + j, stride, placeI, placeJ};
+            Row<Real> row{D + i * stride + j, stride, g.shapeAt, placeI, placeJ};
             if (row.isHeld(level, placeI, placeJ)) continue;
             const auto entry = [&]<int di, int dj>(std::integer_sequence<int, di, dj>) {
                 constexpr int unitI = placeI + di, unitJ = placeJ + dj;
@@ -178,7 +180,7 @@ void assembleAll(const PlateLevel& g, const float* D, const Band<Real>& band,
 template <class Real>
 void assembleNarrow(const PlateLevel& g, const float* D, const Band<Real>& band)
 {
-    Row<Real>  row{D, g.cellsZ + 1, 0, 0};
+    Row<Real>  row{D, g.cellsZ + 1, g.shapeAt, 0, 0};
     const auto isNear = [&](int i, int j) { return abs(i - row.unitI) + abs(j - row.unitJ) <= 2; };
     for (int i = 0; i <= g.cellsX; ++i)
         for (int j = 0; j <= g.cellsZ; ++j)

@@ -29,6 +29,7 @@ struct Rules {
     using real = Real;
 
     [[noreturn]] static real rigidity(int, int) { __builtin_unreachable(); }
+    [[noreturn]] static real foundationShape(int, int) { __builtin_unreachable(); }
     [[noreturn]] static real deflection(int, int) { __builtin_unreachable(); }
     [[noreturn]] static real otherColour(int, int) { __builtin_unreachable(); }
 
@@ -88,12 +89,24 @@ public:
             moments<true>(i + 1);
         else
             afterTheLast();
+        if (g.shapeAt == 0) return writeRow(i, to, [](Real bed, int) { return bed; });
+        const float* shape = D_ + g.shapeAt + std::ptrdiff_t(i) * nodes_;
+        writeRow(i, to, [shape](Real bed, int n) { return bed * Real(shape[n]); });
+    }
+
+private:
+    static constexpr int kRows = 9;
+
+    /// \param weight  (foundation of a node in a row, its index) -> what the foundation's shape makes of it
+    template <class To, class Weight>
+    void writeRow(int i, To&& to, const Weight& weight)
+    {
         const Real *mz = mz_[i & 1], *second = bending_.second, *twist = twisting_.change, *w = row(i);
         const Real  bed        = Real(g.bed) * rules.nodeShare(middle, i, kMiddle);
         const Real  bedAtSides = Real(g.bed) * rules.nodeShare(g, i, 0);
-        const auto  force      = [&](int n, Real weight) {
+        const auto  force      = [&](int n, Real held) {
             return rules.forceFrom(second[n], rules.secondDifference(mz[n - 1], mz[n], mz[n + 1]),
-                                         rules.change(twist[n - 1], twist[n]), weight, w[n]);
+                                         rules.change(twist[n - 1], twist[n]), weight(held, n), w[n]);
         };
         const int  first = first_, begin = wanted_.first - first, end = min(wanted_.last, nodes_ - 2) - first;
         const bool atFirst = wanted_.first == 0, atLast = wanted_.last == nodes_ - 1;
@@ -103,10 +116,6 @@ public:
         if (atFirst) to.put(0, atSide0);
         if (atLast) to.put(nodes_ - 1, to.value(nodes_ - 1, force(count_ - 1, bedAtSides)));
     }
-
-private:
-    static constexpr int kRows = 9;
-
     const Real* row(int i) const
     {
         return field_.row(i) + first_;

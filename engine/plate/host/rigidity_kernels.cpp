@@ -7,9 +7,10 @@ namespace {
 
 struct Coarsen {
     const float* fine;
-    int          stride;
+    int          stride, shapeAt;
 
     float fineRigidity(int i, int j) const { return fine[i * stride + j]; }
+    float fineShape(int i, int j) const { return fine[shapeAt + i * stride + j]; }
 
 #include "compute_shaders/shared/plate_grid.h"
 #include "compute_shaders/shared/rigidity_coarsen.h"
@@ -91,7 +92,7 @@ void coarsen(const HostDispatch& d)
     static thread_local Scratch<float> rowScratch;
     const auto&                        push = pushed<TransferPush>(d);
     const auto &                       from = push.fine, &to = push.coarse;
-    Coarsen                            rules{bound<const float>(d, 0), from.cellsZ + 1};
+    Coarsen                            rules{bound<const float>(d, 0), from.cellsZ + 1, from.shapeAt};
     auto*                              coarse = bound<float>(d, 1);
     const bool                         alongX = to.cellsX != from.cellsX, alongZ = to.cellsZ != from.cellsZ;
     const int                          nodes  = to.cellsZ + 1;
@@ -124,6 +125,10 @@ void coarsen(const HostDispatch& d)
 #pragma GCC ivdep
         for (int j = 0; j < nodes; ++j) out[j] = rules.meanOfThree(west[j], here[j], east[j]);
     }
+    if (to.shapeAt == 0) return;
+    for (int i = 0; i <= to.cellsX; ++i)
+        for (int j = 0; j < nodes; ++j)
+            coarse[to.shapeAt + std::ptrdiff_t(i) * nodes + j] = rules.coarseShapeAt(from, to, i, j);
 }
 
 void jumpMark(const HostDispatch& d)

@@ -350,10 +350,14 @@ struct MultigridPlateSolver::Impl {
         footprints.emplace(context, words, k.realBytes() * shared::kResponseWords * loads);
     }
 
-    void uploadRigidity(const NodeField& rigidity)
+    void uploadRigidity(const NodeField& rigidity, const NodeField& foundationShape)
     {
-        if (const auto why = whyUnsolvable(plate, rigidity)) throw Error("plate: " + *why);
-        const Extremes of = inRigidityUnits(rigidity.values(), unitRigidity, hostRigidity.floats());
+        const std::vector<double>& shape = foundationShape.values();
+        PALP_EXPECT(shape.empty() == (passes.level(0).shapeAt == 0), "a foundation has a shape, or none, for good");
+        if (const auto why = whyUnsolvable(plate, rigidity, foundationShape)) throw Error("plate: " + *why);
+        const std::span<float> to = hostRigidity.floats();
+        const Extremes         of = inRigidityUnits(rigidity.values(), unitRigidity, to.first(plate.grid.nodes()));
+        std::ranges::transform(shape, to.last(shape.size()).begin(), [](double s) { return float(s); });
         if (!prepareList) recordPrepare();
         context.run(*prepareList);
         const double contrast = of.most / of.least;
@@ -473,16 +477,16 @@ MultigridPlateSolver::MultigridPlateSolver(compute::Context& context, const Plat
     PALP_EXPECT(settings.loads >= 1 && settings.maxIterations >= 1, "loads and iterations are at least 1");
     PALP_EXPECT(settings.loads % kernels.all().together == 0, "loads lie side by side by eights");
     impl_ = std::make_unique<Impl>(context, kernels.all(), plate, settings);
-    impl_->uploadRigidity(plate.rigidity);
+    impl_->uploadRigidity(plate.rigidity, plate.foundationShape);
 }
 
 MultigridPlateSolver::~MultigridPlateSolver()                                          = default;
 MultigridPlateSolver::MultigridPlateSolver(MultigridPlateSolver&&) noexcept            = default;
 MultigridPlateSolver& MultigridPlateSolver::operator=(MultigridPlateSolver&&) noexcept = default;
 
-void MultigridPlateSolver::setRigidity(const NodeField& rigidity)
+void MultigridPlateSolver::setRigidity(const NodeField& rigidity, const NodeField& foundationShape)
 {
-    impl_->uploadRigidity(rigidity);
+    impl_->uploadRigidity(rigidity, foundationShape);
 }
 
 std::vector<PlateSolution> MultigridPlateSolver::solve(std::span<const NodeField> nodalForces)

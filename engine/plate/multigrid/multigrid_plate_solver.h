@@ -109,9 +109,9 @@ public:
     static constexpr double kLeastTolerance      = 1e-7; ///< rigidities and answers are rounded to floats [1]
     static constexpr double kLeastFloatTolerance = 1e-4; ///< what floats alone reach at contrast 1000 [1]
 
-    /// Takes another rigidity [N m] on the same grid.
-    /// \throws Error if whyUnsolvable() refuses it
-    void setRigidity(const NodeField& rigidity);
+    /// Takes another rigidity [N m] on the same grid, and another shape of the foundation [1] if the plate has one.
+    /// \throws Error if whyUnsolvable() refuses them
+    void setRigidity(const NodeField& rigidity, const NodeField& foundationShape = {});
 
     /// Solves for the deflections under forces at the nodes [N], one field per load.
     ///

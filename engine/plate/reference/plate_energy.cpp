@@ -76,7 +76,7 @@ EnergyTerm foundationTerm(const Plate& plate, int i, int j)
 {
     EnergyTerm term;
     term.p.add(i * plate.grid.nodesZ() + j, 1);
-    term.kpp = plate.foundation * nodeArea(plate.grid, i, j);
+    term.kpp = foundationAt(plate, i, j) * nodeArea(plate.grid, i, j);
     return term;
 }
 

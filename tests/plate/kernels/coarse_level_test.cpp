@@ -19,10 +19,10 @@ protected:
     {
         using enum Edge;
         std::vector<Plate> all{roughPlate(9, 12, {clamped, clamped, clamped, clamped}),
-                               roughPlate(13, 7, {supported, free, clamped, supported}, 1, 1.3)};
+                               onRoughBed(roughPlate(13, 7, {supported, free, clamped, supported}, 1, 1.3))};
         if (isSlow()) return all;
         all.push_back(roughPlate(16, 16, {clamped, clamped, supported, clamped}));
-        all.push_back(roughPlate(4, 5, {free, clamped, free, free}));
+        all.push_back(onRoughBed(roughPlate(4, 5, {free, clamped, free, free})));
         return all;
     }
 

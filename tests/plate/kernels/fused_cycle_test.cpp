@@ -91,7 +91,7 @@ protected:
     {
         using enum Edge;
         std::vector<Plate> all = plates();
-        all.push_back(roughPlate(66, 35, {supported, free, clamped, supported}, 1, 1.3));
+        all.push_back(onRoughBed(roughPlate(66, 35, {supported, free, clamped, supported}, 1, 1.3)));
         if (!isSlow()) all.push_back(roughPlate(35, 100, {clamped, clamped, clamped, clamped}));
         return all;
     }
@@ -189,8 +189,8 @@ TEST_F(FusedCycleTest, TheTailIsAWholeCycle)
     if (onHost()) GTEST_SKIP() << "the host has no such kernel";
     if (isSlow()) GTEST_SKIP() << "with every access checked this kernel takes two minutes to compile";
     using enum Edge;
-    const std::vector<Plate> all{roughPlate(40, 26, {clamped, free, supported, clamped}),  // two levels
-                                 roughPlate(64, 64, {clamped, clamped, clamped, clamped}), // three
+    const std::vector<Plate> all{onRoughBed(roughPlate(40, 26, {clamped, free, supported, clamped})), // two levels
+                                 roughPlate(64, 64, {clamped, clamped, clamped, clamped}),            // three
                                  roughPlate(64, 33, {supported, supported, free, clamped}, 1, 1.9),
                                  roughPlate(9, 12, {free, clamped, free, free})}; // one
     if (compilesSlowly(context())) GTEST_SKIP() << kCompilesSlowly;
@@ -201,12 +201,15 @@ TEST_F(FusedCycleTest, TheTailIsAWholeCycle)
                 const Levels     levels(plate);
                 const TailLayout tail = tailLayout(levels.grids);
                 ASSERT_EQ(tail.first, 0u);
-                std::vector<float> rigidity, divisor;
+                std::vector<float> rigidity, beds, divisor;
                 for (const RoughLevel& level : levels.levels) {
                     const auto inverse = host::inverseDivisor(level.g, level.rigidity);
-                    rigidity.insert(rigidity.end(), level.rigidity.begin(), level.rigidity.end());
+                    const auto first = level.rigidity.begin(), second = first + std::ptrdiff_t(nodesOf(level.g));
+                    rigidity.insert(rigidity.end(), first, second);
+                    beds.insert(beds.end(), second, level.rigidity.end());
                     divisor.insert(divisor.end(), inverse.begin(), inverse.end());
                 }
+                rigidity.insert(rigidity.end(), beds.begin(), beds.end());
                 const std::size_t coarsest = nodesOf(levels.levels.back().g);
                 const auto        inverse  = roughPairs(coarsest * coarsest, 35);
                 for (std::size_t first = 0; first < levels.levels.size(); ++first) {

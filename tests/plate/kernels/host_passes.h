@@ -13,7 +13,7 @@ namespace palp::host {
 template <class Real>
 Operator<Real> operatorOf(const PlateLevel& g, const std::vector<float>& rigidity, const Real* same, const Real* other)
 {
-    return {rigidity.data(), same, other, g.cellsZ + 1};
+    return {rigidity.data(), same, other, g.cellsZ + 1, g.shapeAt};
 }
 
 /// Calls visit(i, j, index in the field, index of the node) for every node of every load.
@@ -52,7 +52,7 @@ std::vector<Real> residual(const PlateLevel& g, const std::vector<float>& rigidi
 inline std::vector<float> inverseDivisor(const PlateLevel& g, const std::vector<float>& rigidity)
 {
     std::vector<float> inverse(nodesOf(g));
-    Row                row{rigidity.data(), g.cellsZ + 1};
+    Row                row{rigidity.data(), g.cellsZ + 1, g.shapeAt};
     forEachNode(g, 1, [&](int i, int j, std::size_t n, std::size_t) {
         inverse[n] = row.isHeld(g, i, j) ? 0.0F : 1.0F / row.divisorAt(g, i, j);
     });
@@ -124,9 +124,12 @@ inline std::vector<float> restricted(const LevelPair& pair, const std::vector<fl
 
 inline std::vector<float> coarsened(const LevelPair& pair, const std::vector<float>& rigidity)
 {
-    std::vector<float> coarse(nodesOf(pair.coarse));
+    const std::size_t  nodes = nodesOf(pair.coarse);
+    std::vector<float> coarse((pair.coarse.shapeAt == 0 ? 1 : 2) * nodes);
+    Coarsen            mean{rigidity.data(), pair.fine.cellsZ + 1, pair.fine.shapeAt};
     forEachNode(pair.coarse, 1, [&](int i, int j, std::size_t n, std::size_t) {
-        coarse[n] = Coarsen{rigidity.data(), pair.fine.cellsZ + 1}.coarseRigidityAt(pair.fine, pair.coarse, i, j);
+        coarse[n] = mean.coarseRigidityAt(pair.fine, pair.coarse, i, j);
+        if (pair.coarse.shapeAt != 0) coarse[nodes + n] = mean.coarseShapeAt(pair.fine, pair.coarse, i, j);
     });
     return coarse;
 }
@@ -138,7 +141,7 @@ std::vector<Real> assembled(const PlateLevel& g, const std::vector<float>& rigid
 {
     const int         unknowns = int(nodesOf(g)), slots = halfBand(g) + 1;
     std::vector<Real> band(std::size_t(unknowns) * std::size_t(slots));
-    RowOf<Real>       row{rigidity.data(), g.cellsZ + 1};
+    RowOf<Real>       row{rigidity.data(), g.cellsZ + 1, g.shapeAt};
     for (int column = 0; column < unknowns; ++column)
         for (int offset = 0; offset < slots; ++offset) {
             Real&     entry = band[std::size_t(column * slots + offset)];

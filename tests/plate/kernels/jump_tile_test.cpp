@@ -51,7 +51,7 @@ protected:
     static std::vector<RoughLevel> levels()
     {
         using enum Edge;
-        std::vector<RoughLevel> all{RoughLevel(roughPlate(33, 26, {clamped, free, supported, clamped}))};
+        std::vector<RoughLevel> all{RoughLevel(onRoughBed(roughPlate(33, 26, {clamped, free, supported, clamped})))};
         if (!isSlow()) {
             all.emplace_back(roughPlate(61, 40, {clamped, clamped, clamped, clamped}));
             all.emplace_back(roughPlate(4, 5, {supported, supported, supported, supported}));

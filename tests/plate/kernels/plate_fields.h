@@ -45,14 +45,28 @@ inline Plate roughPlate(int cellsX, int cellsZ, const PlateEdges& edges, double 
     return plate;
 }
 
+/// The plate on a foundation that varies from 0 to 200 times its unit, and has a hole.
+inline Plate onRoughBed(Plate plate)
+{
+    plate.foundationShape = NodeField(plate.grid);
+    const auto values     = roughValues<double>(plate.grid.nodes(), std::uint32_t(plate.grid.nodes()));
+    for (int i = 0; i <= plate.grid.cellsX; ++i)
+        for (int j = 0; j <= plate.grid.cellsZ; ++j) {
+            const bool hole             = 2 * i < plate.grid.cellsX && 2 * j < plate.grid.cellsZ;
+            plate.foundationShape(i, j) = hole ? 0 : 100 * (1 + values[std::size_t(i * plate.grid.nodesZ() + j)]);
+        }
+    return plate;
+}
+
 inline std::string describe(const Plate& plate)
 {
     return std::to_string(plate.grid.cellsX) + "x" + std::to_string(plate.grid.cellsZ) + " cells, x " +
            name(plate.edges.x0) + " to " + name(plate.edges.x1) + ", z " + name(plate.edges.z0) + " to " +
-           name(plate.edges.z1);
+           name(plate.edges.z1) + (plate.foundationShape.values().empty() ? "" : ", on a rough bed");
 }
 
-/// The finest level of a plate and its rigidity as the shaders are given it, the largest being 1.
+/// The finest level of a plate and its rigidity as the shaders are given it, the largest being 1; behind it, if there is
+/// one, the foundation's shape.
 struct RoughLevel {
     shared::PlateLevel g;
     std::vector<float> rigidity;
@@ -62,6 +76,7 @@ struct RoughLevel {
         const double most = *std::max_element(plate.rigidity.values().begin(), plate.rigidity.values().end());
         g                 = gridHierarchy(plate, most).levels.front().plate;
         for (const double D : plate.rigidity.values()) rigidity.push_back(float(D / most));
+        for (const double s : plate.foundationShape.values()) rigidity.push_back(float(s));
     }
 };
 
@@ -100,8 +115,9 @@ struct LevelPair {
         coarse        = fine; // transfers look at the sizes and the sides only
         coarse.cellsX = coarseX;
         coarse.cellsZ = coarseZ;
-        tableX        = transferTable(fine.cellsX, coarseX, plate.edges.x0, plate.edges.x1);
-        tableZ        = transferTable(fine.cellsZ, coarseZ, plate.edges.z0, plate.edges.z1);
+        if (fine.shapeAt != 0) coarse.shapeAt = int(nodesOf(coarse));
+        tableX = transferTable(fine.cellsX, coarseX, plate.edges.x0, plate.edges.x1);
+        tableZ = transferTable(fine.cellsZ, coarseZ, plate.edges.z0, plate.edges.z1);
     }
 };
 

@@ -22,14 +22,14 @@ namespace {
 using namespace shared;
 
 constexpr std::size_t kMostPushBytes = 128; ///< that every processor allows
-static_assert(sizeof(PlateLevel) == 44);
-static_assert(sizeof(LevelPush) == 44 && sizeof(LevelPush) <= kMostPushBytes);
-static_assert(sizeof(RelaxPush) == 48 && sizeof(RelaxPush) <= kMostPushBytes);
-static_assert(sizeof(SmoothPush) == 52 && sizeof(SmoothPush) <= kMostPushBytes);
-static_assert(sizeof(TransferPush) == 88 && sizeof(TransferPush) <= kMostPushBytes);
+static_assert(sizeof(PlateLevel) == 48);
+static_assert(sizeof(LevelPush) == 48 && sizeof(LevelPush) <= kMostPushBytes);
+static_assert(sizeof(RelaxPush) == 52 && sizeof(RelaxPush) <= kMostPushBytes);
+static_assert(sizeof(SmoothPush) == 56 && sizeof(SmoothPush) <= kMostPushBytes);
+static_assert(sizeof(TransferPush) == 96 && sizeof(TransferPush) <= kMostPushBytes);
 static_assert(sizeof(VectorPush) == 12 && sizeof(VectorPush) <= kMostPushBytes);
 static_assert(sizeof(AimPush) == 8 && sizeof(AimPush) <= kMostPushBytes);
-static_assert(sizeof(ProbePush) == 56 && sizeof(ProbePush) <= kMostPushBytes);
+static_assert(sizeof(ProbePush) == 60 && sizeof(ProbePush) <= kMostPushBytes);
 static_assert(sizeof(ScalarsPush) == 20 && sizeof(ScalarsPush) <= kMostPushBytes);
 
 /// Bits of the fields, in the order in which the shader echoes them.
@@ -48,7 +48,7 @@ private:
     void add(const PlateLevel& g)
     {
         for (const std::uint32_t word :
-             Words(g.cellsX, g.cellsZ, g.hinged, g.free, g.kxx, g.kzz, g.kxz, g.exx, g.ezz, g.twist, g.bed))
+             Words(g.cellsX, g.cellsZ, g.hinged, g.free, g.kxx, g.kzz, g.kxz, g.exx, g.ezz, g.twist, g.bed, g.shapeAt))
             push_back(word);
     }
 };
@@ -64,8 +64,8 @@ protected:
         return words;
     }
 
-    static constexpr PlateLevel kFine{33, -17, 5U, 10U, 1.5F, -2.5F, 3.25F, 4.125F, 5.5F, -6.5F, 7e-9F};
-    static constexpr PlateLevel kCoarse{16, 9, 11U, 6U, -0.5F, 8.5F, 0.25F, 1e30F, 2.25F, 3.5F, -4.5F};
+    static constexpr PlateLevel kFine{33, -17, 5U, 10U, 1.5F, -2.5F, 3.25F, 4.125F, 5.5F, -6.5F, 7e-9F, 612};
+    static constexpr PlateLevel kCoarse{16, 9, 11U, 6U, -0.5F, 8.5F, 0.25F, 1e30F, 2.25F, 3.5F, -4.5F, -3};
 };
 
 TEST_F(PlatePushTest, EveryFieldArrivesInItsPlace)

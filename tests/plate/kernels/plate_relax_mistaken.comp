@@ -18,6 +18,7 @@ layout(std430, binding = 5) writeonly buffer After { float after[]; };
 
 int base;
 float rigidity(int i, int j) { return D[i * nodesZ(push.level) + j]; }
+float foundationShape(int i, int j) { return D[push.level.shapeAt + i * nodesZ(push.level) + j]; }
 #ifdef NEW_SAME_COLOUR
 float deflection(int i, int j) { return other[base + i * nodesZ(push.level) + j]; }
 #else

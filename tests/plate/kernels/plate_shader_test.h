@@ -60,16 +60,16 @@ protected:
         return {{8, 1, 1}, {64, 1, 1}, {128, 1, 1}};
     }
 
-    /// Odd sizes, every kind of edge beside every other, spacings that differ.
+    /// Odd sizes, every kind of edge beside every other, spacings that differ, foundations that vary and that do not.
     static std::vector<Plate> plates()
     {
         using enum Edge;
         std::vector<Plate> all{roughPlate(9, 12, {clamped, clamped, clamped, clamped}),
-                               roughPlate(17, 13, {supported, free, clamped, supported}, 1, 1.3)};
+                               onRoughBed(roughPlate(17, 13, {supported, free, clamped, supported}, 1, 1.3))};
         if (isSlow()) return all;
-        all.push_back(roughPlate(33, 10, {free, clamped, free, free}));
+        all.push_back(onRoughBed(roughPlate(33, 10, {free, clamped, free, free})));
         all.push_back(roughPlate(10, 18, {free, free, supported, clamped}, 0.7, 1));
-        all.push_back(roughPlate(4, 5, {supported, supported, supported, supported}));
+        all.push_back(onRoughBed(roughPlate(4, 5, {supported, supported, supported, supported})));
         return all;
     }
 
@@ -169,7 +169,7 @@ protected:
     static std::vector<double> operatorSizes(const RoughLevel& level, const std::vector<Real>& w)
     {
         const shared::PlateLevel& g = level.g;
-        host::Row                 row{level.rigidity.data(), g.cellsZ + 1};
+        host::Row                 row{level.rigidity.data(), g.cellsZ + 1, g.shapeAt};
         std::vector<double>       sizes(w.size());
         host::forEachNode(g, w.size() / nodesOf(g), [&](int i, int j, std::size_t n, std::size_t node) {
             for (int a = std::max(0, i - 2); a <= std::min(g.cellsX, i + 2); ++a)

@@ -120,7 +120,7 @@ TEST_F(PlateTransferTest, RigidityIsCoarsenedAsInCxx)
                 if (plate.grid.cellsX != pair.fine.cellsX || plate.grid.cellsZ != pair.fine.cellsZ) continue;
                 SCOPED_TRACE(describe(pair) + " by " + describe(shape));
                 const RoughLevel   level(plate);
-                std::vector<float> coarse(nodesOf(pair.coarse));
+                std::vector<float> coarse((pair.coarse.shapeAt == 0 ? 1 : 2) * nodesOf(pair.coarse));
 
                 dispatchTwice(coarsen, {in(level.rigidity), out(coarse)}, pushOf(pair),
                               groupsOver(coarsen, pair.coarse, 1));

@@ -51,6 +51,7 @@ void echo(PlateLevel g)
     echo(g.ezz);
     echo(g.twist);
     echo(g.bed);
+    echo(g.shapeAt);
 }
 
 void main()

@@ -24,17 +24,18 @@ shared::PlateLevel levelOf(const PlateGrid& grid, const Plate& plate, double bed
     const double along = (1 - nu * nu) / 2;
 
     shared::PlateLevel level{};
-    level.cellsX = grid.cellsX;
-    level.cellsZ = grid.cellsZ;
-    level.hinged = sides(plate.edges, [](Edge edge) { return !holdsSlope(edge); });
-    level.free   = sides(plate.edges, [](Edge edge) { return !holdsNodes(edge); });
-    level.kxx    = float(ratio / area);
-    level.kzz    = float(1 / ratio / area);
-    level.kxz    = float(nu / area);
-    level.exx    = float(along * ratio / area);
-    level.ezz    = float(along / ratio / area);
-    level.twist  = float((1 - nu) / 2 / area);
-    level.bed    = float(bed * area);
+    level.cellsX  = grid.cellsX;
+    level.cellsZ  = grid.cellsZ;
+    level.hinged  = sides(plate.edges, [](Edge edge) { return !holdsSlope(edge); });
+    level.free    = sides(plate.edges, [](Edge edge) { return !holdsNodes(edge); });
+    level.kxx     = float(ratio / area);
+    level.kzz     = float(1 / ratio / area);
+    level.kxz     = float(nu / area);
+    level.exx     = float(along * ratio / area);
+    level.ezz     = float(along / ratio / area);
+    level.twist   = float((1 - nu) / 2 / area);
+    level.bed     = float(bed * area);
+    level.shapeAt = plate.foundationShape.values().empty() ? 0 : int(grid.nodes());
     return level;
 }
 

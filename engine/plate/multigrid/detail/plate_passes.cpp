@@ -103,7 +103,7 @@ std::vector<LevelBuffers> PlatePasses::makeLevels() const
         const std::string of    = " of level " + std::to_string(l);
         const std::size_t nodes = nodesOf(level(l)), field = fieldSize(l);
         const auto&       tables = grids_.levels[l];
-        made.push_back({floats("rigidity" + of, nodes),
+        made.push_back({floats("rigidity" + of, level(l).shapeAt == 0 ? nodes : 2 * nodes),
                         floats("divisor" + of, nodes),
                         floats("table x" + of, std::max<std::size_t>(1, tables.tableX.size())),
                         floats("table z" + of, std::max<std::size_t>(1, tables.tableZ.size())),

@@ -17,7 +17,8 @@ namespace palp {
 
 /// The memory of a level on the processor. `real` arrays are doubles where the processor has them.
 struct LevelBuffers {
-    compute::Buffer rigidity, divisor, tableX, tableZ;
+    compute::Buffer rigidity; ///< and behind it, if the plate has one, the shape of the foundation
+    compute::Buffer divisor, tableX, tableZ;
     compute::Buffer force, w[2];  ///< of the cycle, floats
     compute::Buffer marks, tiles; ///< where the rigidity jumps: a flag per tile; number of tiles, then their indices
     compute::Buffer load;         ///< force of the nested iteration, floats

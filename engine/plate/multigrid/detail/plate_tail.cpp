@@ -56,6 +56,8 @@ TailLayout tailLayout(const GridHierarchy& grids)
         pool += l == layout.first ? nodes : 2 * nodes;
     }
     layout.nodes = std::uint32_t(field);
+    for (shared::TailLevel& level : layout.levels)
+        if (level.plate.shapeAt != 0) level.plate.shapeAt = field;
     for (auto* tables : {&layout.tablesX, &layout.tablesZ})
         if (tables->empty()) tables->push_back(0); // a buffer holds something
     return layout;
@@ -66,7 +68,9 @@ PlateTail::PlateTail(compute::Context& context, const PlateKernels::All& kernels
     : k(kernels), layout_(tailLayout(grids)), loads_(loads),
       coarsestNodes_(std::uint32_t(nodesOf(grids.levels.back().plate))),
       levels_(context, "levels of the tail", sizeof(shared::TailLevel) * layout_.levels.size(), Intent::processor),
-      rigidity_(context, "rigidity of the tail", 4 * std::size_t(layout_.nodes), Intent::processor),
+      rigidity_(context, "rigidity of the tail",
+                4 * std::size_t(layout_.nodes) * (layout_.levels.front().plate.shapeAt == 0 ? 1 : 2),
+                Intent::processor),
       divisor_(context, "divisor of the tail", 4 * std::size_t(layout_.nodes), Intent::processor),
       tableX_(context, "tables x of the tail", bytesOf(layout_.tablesX), Intent::processor),
       tableZ_(context, "tables z of the tail", bytesOf(layout_.tablesZ), Intent::processor),
@@ -90,9 +94,11 @@ PlateTail::PlateTail(compute::Context& context, const PlateKernels::All& kernels
 
 void PlateTail::copyLevel(CommandList& list, std::size_t level, const Buffer& rigidity, const Buffer& divisor) const
 {
-    const std::size_t offset = 4 * std::size_t(at(level).field);
-    list.copy(rigidity, 0, rigidity_, offset, rigidity.bytes());
-    list.copy(divisor, 0, divisor_, offset, divisor.bytes());
+    const std::size_t offset = 4 * std::size_t(at(level).field), bytes = divisor.bytes();
+    list.copy(rigidity, 0, rigidity_, offset, bytes);
+    list.copy(divisor, 0, divisor_, offset, bytes);
+    if (const int shapeAt = at(level).plate.shapeAt; shapeAt != 0)
+        list.copy(rigidity, bytes, rigidity_, offset + 4 * std::size_t(shapeAt), bytes);
 }
 
 void PlateTail::invertFactor(CommandList& list, const Buffer& factor) const
