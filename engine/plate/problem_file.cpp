@@ -106,17 +106,26 @@ NodeField resampled(const NodeField& given, const Setting& setting)
     return field;
 }
 
+/// What a map of values at the nodes stands for.
+struct Quantity {
+    const char* unit;
+    bool        mayBeZero;
+};
+constexpr Quantity kRigidity{"N m", false}, kFoundation{"Pa/m", true};
+
 /// Checks values before interpolation, which could hide a bad node.
-void expectPositive(const NodeField& rigidity, const std::string& where)
+void expectGood(const NodeField& map, const Quantity& of, const std::string& where)
 {
-    for (int i = 0; i < rigidity.nodesX(); ++i)
-        for (int j = 0; j < rigidity.nodesZ(); ++j)
-            if (!(rigidity(i, j) > 0 && std::isfinite(rigidity(i, j)))) {
-                std::ostringstream text;
-                text << where << ": expected positive, finite values, found " << rigidity(i, j) << " N m at node [" << i
-                     << ", " << j << "]";
-                throw Error(text.str());
-            }
+    for (int i = 0; i < map.nodesX(); ++i)
+        for (int j = 0; j < map.nodesZ(); ++j) {
+            const double value = map(i, j);
+            if (std::isfinite(value) && (value > 0 || (of.mayBeZero && value == 0))) continue;
+            std::ostringstream text;
+            text << where << ": expected "
+                 << (of.mayBeZero ? "finite values that are not negative" : "positive, finite values") << ", found "
+                 << value << " " << of.unit << " at node [" << i << ", " << j << "]";
+            throw Error(text.str());
+        }
 }
 
 /// Returns the larger distance between nodes: a smaller law or load between them is not seen.
@@ -133,7 +142,7 @@ std::string metres(double length)
 }
 
 /// Returns a warning of a law that the nodes do not show.
-std::optional<std::string> lostLaw(const JsonObject& law, const SpatialLaw& rule, const NodeField& rigidity,
+std::optional<std::string> lostLaw(const JsonObject& law, const SpatialLaw& rule, const NodeField& map,
                                    const PlateGrid& grid)
 {
     if (rule.from == rule.to) return std::nullopt;
@@ -141,28 +150,45 @@ std::optional<std::string> lostLaw(const JsonObject& law, const SpatialLaw& rule
         return law.where() + ": the checker's edge of " + metres(rule.width) + " is below the spacing of " +
                metres(spacingOf(grid)) + ", so nodes meet its fields by chance; take more cells or a longer edge";
     constexpr double kSame   = 1e-6; // [1] relative: no answer shows a smaller difference
-    const auto [least, most] = std::ranges::minmax(rigidity.values());
+    const auto [least, most] = std::ranges::minmax(map.values());
     if (most - least > kSame * most) return std::nullopt;
     return law.where() + ": the law \"" + law.text("law") +
            "\" gives every node the same value; is its place on the plate, which is " + metres(grid.sizeX()) + " x " +
            metres(grid.sizeZ()) + " with nodes every " + metres(spacingOf(grid)) + "?";
 }
 
-NodeField readRigidity(const JsonObject& law, const Setting& setting, std::vector<std::string>& warnings)
+NodeField readMap(const JsonObject& law, const Quantity& of, const Setting& setting, std::vector<std::string>& warnings)
 {
     if (law.text("law") == "grid") {
         const NodeField given = readField(law, setting);
-        expectPositive(given, law.where());
+        expectGood(given, of, law.where());
         return resampled(given, setting);
     }
     const PlateGrid& grid = setting.solveGrid;
     const SpatialLaw rule = parseSpatialLaw(law, {}, {grid.sizeX(), 0, grid.sizeZ()}, SpatialLaw::Space::plane);
-    NodeField        rigidity(grid);
+    NodeField        map(grid);
     for (int i = 0; i < grid.nodesX(); ++i)
-        for (int j = 0; j < grid.nodesZ(); ++j) rigidity(i, j) = rule({i * grid.spacingX, 0, j * grid.spacingZ});
-    expectPositive(rigidity, law.where());
-    if (auto warning = lostLaw(law, rule, rigidity, grid)) warnings.push_back(std::move(*warning));
-    return rigidity;
+        for (int j = 0; j < grid.nodesZ(); ++j) map(i, j) = rule({i * grid.spacingX, 0, j * grid.spacingZ});
+    expectGood(map, of, law.where());
+    if (auto warning = lostLaw(law, rule, map, grid)) warnings.push_back(std::move(*warning));
+    return map;
+}
+
+/// Reads the foundation, one number or a map, of which the largest value is the plate's unit.
+void readFoundation(const JsonObject& file, const Setting& setting, PlateProblem& problem)
+{
+    Plate& plate = problem.plate;
+    if (!file.has("foundation")) return;
+    if (file.kind("foundation") != JsonObject::Kind::object) {
+        plate.foundation = file.number("foundation");
+        if (!(plate.foundation >= 0)) file.refuse("foundation", "a number [Pa/m] that is not negative, or a law");
+        return;
+    }
+    NodeField map    = readMap(file.object("foundation"), kFoundation, setting, problem.warnings);
+    plate.foundation = std::ranges::max(map.values());
+    if (plate.foundation == 0) return;
+    for (double& k : map.values()) k /= plate.foundation;
+    plate.foundationShape = std::move(map);
 }
 
 std::string sizeText(const PlateGrid& grid)
@@ -259,10 +285,9 @@ PlateProblem readProblem(const std::filesystem::path& path, std::optional<int> c
     problem.plate.grid         = setting.solveGrid;
     problem.plate.edges        = readEdges(file);
     problem.plate.poissonRatio = file.number("poisson");
-    problem.plate.foundation   = file.has("foundation") ? file.number("foundation") : 0;
-    problem.plate.rigidity     = readRigidity(file.object("rigidity"), setting, problem.warnings);
+    problem.plate.rigidity     = readMap(file.object("rigidity"), kRigidity, setting, problem.warnings);
     if (!isPoissonRatio(problem.plate.poissonRatio)) file.refuse("poisson", "a number above -1 and at most 0.5");
-    if (!(problem.plate.foundation >= 0)) file.refuse("foundation", "a number [Pa/m] that is not negative");
+    readFoundation(file, setting, problem);
     if (const auto why = whyUnsolvable(problem.plate)) throw Error(path.string() + ": " + *why);
     problem.nodalForce = readLoad(file.object("load"), setting);
     problem.probes     = readProbes(file, setting.solveGrid);

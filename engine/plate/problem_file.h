@@ -28,7 +28,7 @@ struct PlateProblem {
 ///      "cells": [128, 192],                       // 4 to 4096 per side
 ///      "poisson": 0.3,
 ///      "edges": {"x0": "clamped", "x1": "free", "z0": "supported", "z1": "clamped"},   // absent: clamped
-///      "foundation": 0,                           // [Pa/m], absent: 0
+///      "foundation": 0,                           // [Pa/m], or a law as of "rigidity"; absent: 0
 ///      "rigidity": {"law": "linear", "from": 1, "to": 10, "axis": "z"},                // [N m]
 ///      "load": {"law": "point", "force": 1, "at": [0.5, 0.75]},                        // [N], [m]
 ///      "probes": [[0.25, 0.25]]}                  // [m], absent: none
@@ -36,6 +36,7 @@ struct PlateProblem {
 /// | key | laws |
 /// |-----|------|
 /// | rigidity | those of parseSpatialLaw across the plate, or {"law": "grid", "file": "D.npy"}: node values [N m] |
+/// | foundation | the same [Pa/m]; values of a grid may be 0 |
 /// | load | point (force, at), uniform (pressure [Pa]), gaussian (force, centre, sigma), grid (file: pressures [Pa]) |
 ///
 /// A grid is a .npy array of shape (cells_x + 1, cells_z + 1) for the file's own "cells"; its path starts at the

@@ -182,6 +182,31 @@ TEST_F(ProblemFile, UnknownKeysAreRefusedWithTheKnownOnes)
     EXPECT_TRUE(holds(refusal(with("\"free\"", "\"loose\"")), {"edges", "x1", "loose", "supported"}));
 }
 
+TEST_F(ProblemFile, TheFoundationMayBeALawOrAGridWithHoles)
+{
+    const auto foundationOf = [](const std::string& law) {
+        return with("\"foundation\": 5", "\"foundation\": " + law);
+    };
+    const Plate linear = read(foundationOf(R"({"law": "linear", "from": 2, "to": 8, "axis": "x"})")).plate;
+    EXPECT_EQ(foundationAt(linear, 0, 7), 2);
+    EXPECT_EQ(foundationAt(linear, 4, 7), 5);
+    EXPECT_EQ(foundationAt(linear, 8, 7), 8);
+
+    NodeField k(9, 13, 3);
+    k(2, 5) = 0;
+    writeNpy(folder_ / "k.npy", k);
+    const std::string grid = foundationOf(R"({"law": "grid", "file": "k.npy"})");
+    EXPECT_EQ(foundationAt(read(grid).plate, 2, 5), 0);
+    EXPECT_EQ(foundationAt(read(grid).plate, 3, 5), 3);
+    EXPECT_EQ(foundationAt(read(grid, 16).plate, 5, 10), 1.5) << "half way to the hole on the finer grid";
+    k(2, 5) = -1;
+    writeNpy(folder_ / "k.npy", k);
+    EXPECT_TRUE(holds(refusal(grid), {"foundation", "not negative", "-1 Pa/m", "[2, 5]"}));
+
+    writeNpy(folder_ / "k.npy", NodeField(9, 13, 0));
+    EXPECT_EQ(read(grid).plate.foundation, 0);
+}
+
 TEST_F(ProblemFile, ValuesOutOfRangeAreRefusedWithWhatWasFound)
 {
     EXPECT_TRUE(holds(refusal(with("[1, 1.5]", "[1, 0]")), {"size", "positive", "[1,0]"}));
@@ -193,6 +218,8 @@ TEST_F(ProblemFile, ValuesOutOfRangeAreRefusedWithWhatWasFound)
     EXPECT_TRUE(holds(refusal(with("0.3", "0.6")), {"poisson", "0.5", "0.6"}));
     EXPECT_TRUE(holds(refusal(with("0.3", "\"soft\"")), {"poisson", "number", "soft"}));
     EXPECT_TRUE(holds(refusal(with("\"foundation\": 5", "\"foundation\": -5")), {"foundation", "-5"}));
+    EXPECT_TRUE(holds(refusal(with("\"foundation\": 5", R"("foundation": {"law": "constant", "value": -5})")),
+                      {"foundation", "-5"}));
     EXPECT_TRUE(holds(refusal(loadOf(R"({"law": "gaussian", "force": 1, "centre": [0, 0], "sigma": 0})")),
                       {"sigma", "positive"}));
     EXPECT_TRUE(holds(refusal(rigidityOf(R"({"law": "constant", "value": 0})")), {"rigidity", "value", "positive"}));

@@ -97,18 +97,28 @@ double totalForce(const PlateProblem& problem)
     return std::accumulate(problem.nodalForce.values().begin(), problem.nodalForce.values().end(), 0.0);
 }
 
+/// Returns the least and the largest foundation [Pa/m].
+std::pair<double, double> foundationRange(const Plate& plate)
+{
+    if (plate.foundationShape.values().empty()) return {plate.foundation, plate.foundation};
+    const auto [least, most] = std::ranges::minmax(plate.foundationShape.values());
+    return {plate.foundation * least, plate.foundation * most};
+}
+
 nlohmann::ordered_json plateJson(const Plate& plate)
 {
     const PlateGrid& grid          = plate.grid;
     const auto& [x0, x1, z0, z1]   = plate.edges;
     const auto [softest, stiffest] = std::ranges::minmax(plate.rigidity.values());
+    const auto [loosest, firmest]  = foundationRange(plate);
     return {{"size", {grid.sizeX(), grid.sizeZ()}},
             {"cells", {grid.cellsX, grid.cellsZ}},
             {"spacing", {grid.spacingX, grid.spacingZ}},
             {"square_cells", hasSquareCells(grid)},
             {"poisson", plate.poissonRatio},
             {"edges", {{"x0", name(x0)}, {"x1", name(x1)}, {"z0", name(z0)}, {"z1", name(z1)}}},
-            {"foundation", plate.foundation},
+            {"foundation", firmest}, // the largest
+            {"foundation_min", loosest},
             {"rigidity_min", softest},
             {"rigidity_max", stiffest}};
 }
@@ -157,7 +167,9 @@ void printText(const Solved& s, const std::string& name)
                 palp::name(z1));
     std::printf("  rigidity    %s to %s\n", formatQuantity(softest, "N m").c_str(),
                 formatQuantity(stiffest, "N m").c_str());
-    if (plate.foundation > 0) std::printf("  foundation  %s\n", formatQuantity(plate.foundation, "Pa/m").c_str());
+    if (const auto [least, most] = foundationRange(plate); most > 0)
+        std::printf("  foundation  %s%s\n", least < most ? (formatQuantity(least, "Pa/m") + " to ").c_str() : "",
+                    formatQuantity(most, "Pa/m").c_str());
     std::printf("  load        %s in all\n", formatQuantity(totalForce(s.problem), "N").c_str());
     std::printf("  deflection  largest %s, at x %s, z %s\n", formatQuantity(s.largest(), "m").c_str(),
                 formatQuantity(place.x, "m").c_str(), formatQuantity(place.z, "m").c_str());
@@ -217,7 +229,7 @@ void addSolveCommand(CLI::App& app)
         "   \"rigidity\": {\"law\": \"linear\", \"from\": 1, \"to\": 10, \"axis\": \"z\"},\n"
         "   \"load\": {\"law\": \"point\", \"force\": 1, \"at\": [0.5, 0.75]},\n"
         "   \"probes\": [[0.25, 0.25]]}\n"
-        "Edges that are not named are clamped; foundation [Pa/m] and probes may be omitted.\n"
+        "Edges that are not named are clamped; foundation [Pa/m], a number or a law, and probes may be omitted.\n"
         "Rigidity laws and their keys (points are [x, z]):\n"
         "  constant                         value\n"
         "  linear, hyperbolic, exponential  from, to, and axis (x or z; x if absent) or start, end\n"
