@@ -63,25 +63,29 @@ CoarseObject::CoarseObject(const SoftObject& dense, double side) : CoarseObject(
 CoarseObject::CoarseObject(const SoftObject& dense, double side, Cubes cubes)
     : side_(side), members_(std::make_shared<const std::vector<std::uint32_t>>(std::move(cubes.members))),
       begins_(std::make_shared<const std::vector<std::uint32_t>>(std::move(cubes.begins))),
-      object_(PointCloud(std::move(cubes.positions), meanStiffness(dense), dense.cloud().kind()), dense.material(), {},
-              cubes.normals)
+      object_(
+          SoftObject(PointCloud(std::move(cubes.positions), meansOf(dense.cloud().stiffness()), dense.cloud().kind()),
+                     dense.material(), {}, cubes.normals)
+              .withFoundation(meansOf(dense.foundationShape())))
 {
 }
 
 CoarseObject::CoarseObject(const CoarseObject& shape, const SoftObject& dense)
     : side_(shape.side_), members_(shape.members_), begins_(shape.begins_),
-      object_(shape.object_.repainted(meanStiffness(dense)).withMaterial(dense.material()))
+      object_(shape.object_.repainted(meansOf(dense.cloud().stiffness()))
+                  .withMaterial(dense.material())
+                  .withFoundation(meansOf(dense.foundationShape())))
 {
 }
 
-std::vector<double> CoarseObject::meanStiffness(const SoftObject& dense) const
+std::vector<double> CoarseObject::meansOf(std::span<const double> values) const
 {
-    const std::span<const double> stiffness = dense.cloud().stiffness();
-    std::vector<double>           means(begins_->size() - 1);
+    if (values.empty()) return {};
+    std::vector<double> means(begins_->size() - 1);
     inParallel(means.size(), kPiece, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             double sum = 0;
-            for (const std::uint32_t point : membersOf(k)) sum += std::log(stiffness[point]);
+            for (const std::uint32_t point : membersOf(k)) sum += std::log(values[point]);
             means[k] = std::exp(sum / double(membersOf(k).size()));
         }
     });

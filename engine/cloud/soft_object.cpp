@@ -1,11 +1,13 @@
 #include "engine/cloud/soft_object.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "engine/cloud/coarse_object.h"
+#include "engine/core/contract.h"
 
 namespace palp {
 
@@ -41,7 +43,7 @@ SoftObject::SoftObject(PointCloud cloud, const Material& material, std::vector<T
       mesh_(std::make_shared<const SurfaceMesh>()),
       survey_(std::make_shared<const SurfaceSurvey>(
           *index_, normals.empty() ? std::span<const glm::vec3>(normalsOf(*faces_, cloud_.positions())) : normals)),
-      material_(material)
+      foundationShape_(std::make_shared<const std::vector<double>>()), material_(material)
 {
 }
 
@@ -65,6 +67,17 @@ SoftObject SoftObject::withMaterial(const Material& material) const
     SoftObject other = *this;
     other.material_  = material;
     other.coarse_    = coarseShapes();
+    return other;
+}
+
+SoftObject SoftObject::withFoundation(std::vector<double> shape) const
+{
+    const auto isGood = [](double s) { return std::isfinite(s) && s > 0; };
+    PALP_EXPECT((shape.empty() || shape.size() == size()) && std::ranges::all_of(shape, isGood),
+                "one positive number for each point");
+    SoftObject other       = *this;
+    other.foundationShape_ = std::make_shared<const std::vector<double>>(std::move(shape));
+    other.coarse_          = coarseShapes();
     return other;
 }
 

@@ -17,7 +17,7 @@ class CoarseObject;
 /// A touched object: points with a stiffness, the index over them, perhaps a mesh, and the material of the sheet.
 ///
 /// Nothing of it changes while it is touched; a touch returns its deformation as a field beside the object. Copies,
-/// repainted() and withMaterial() share positions, index, survey, faces and mesh: of a million points only the stiffness is
+/// repainted(), withMaterial() and withFoundation() share positions, index, survey, faces and mesh: of a million points only the stiffness is
 /// copied.
 /// It may be moved and copied freely, because the index holds its own copy of the positions.
 /// \thread immutable, so free to share
@@ -39,6 +39,10 @@ public:
     /// Returns the same points, of another thickness or Poisson's ratio.
     [[nodiscard]] SoftObject withMaterial(const Material& material) const;
 
+    /// Returns the same points on a foundation that varies.
+    /// \param shape  for each point the foundation below it over that of the scene [1], > 0; empty: 1 everywhere
+    [[nodiscard]] SoftObject withFoundation(std::vector<double> shape) const;
+
     [[nodiscard]] const PointCloud&         cloud() const noexcept { return cloud_; }
     [[nodiscard]] const NeighbourIndex&     index() const noexcept { return *index_; }
     [[nodiscard]] const SurfaceSurvey&      survey() const noexcept { return *survey_; }
@@ -53,6 +57,9 @@ public:
     /// Returns the object by one point per cube of about this side [m], which is made at the first call; see CoarseObject.
     /// \thread any; the first call for a side takes up to a second for millions of points
     [[nodiscard]] std::shared_ptr<const CoarseObject> coarse(double side) const;
+
+    /// Returns what withFoundation() took [1]; empty: the foundation is the same everywhere.
+    [[nodiscard]] std::span<const double> foundationShape() const noexcept { return *foundationShape_; }
 
     /// Returns the flexural rigidity D at a point [N m].
     [[nodiscard]] double rigidity(std::size_t point) const noexcept { return cloud_.rigidity(point, material_); }
@@ -71,10 +78,11 @@ private:
     [[nodiscard]] std::shared_ptr<CoarseObjects> coarseShapes() const;
 
     PointCloud                                   cloud_;
-    std::shared_ptr<const NeighbourIndex>        index_;  ///< never null
-    std::shared_ptr<const std::vector<Triangle>> faces_;  ///< never null
-    std::shared_ptr<const SurfaceMesh>           mesh_;   ///< never null
-    std::shared_ptr<const SurfaceSurvey>         survey_; ///< never null
+    std::shared_ptr<const NeighbourIndex>        index_;           ///< never null
+    std::shared_ptr<const std::vector<Triangle>> faces_;           ///< never null
+    std::shared_ptr<const SurfaceMesh>           mesh_;            ///< never null
+    std::shared_ptr<const SurfaceSurvey>         survey_;          ///< never null
+    std::shared_ptr<const std::vector<double>>   foundationShape_; ///< never null
     Material                                     material_;
     std::shared_ptr<CoarseObjects>               coarse_ = std::make_shared<CoarseObjects>(); ///< never null
 };

@@ -190,6 +190,37 @@ std::vector<double> JsonObject::numbers(std::string_view key, std::size_t count)
     return value.get<std::vector<double>>();
 }
 
+double JsonObject::quantity(std::string_view key, const QuantityLimits& limits) const
+{
+    const bool   isText = kind(key) == Kind::text;
+    const double value =
+        isText ? parseQuantity(text(key), limits.dimension, where_ + ": key " + inQuotes(key)) : number(key);
+    if (!(value >= limits.least && value <= limits.most)) refuse(key, limits.expected);
+    return value;
+}
+
+glm::dvec3 JsonObject::point(std::string_view key) const
+{
+    if (kind(key) == Kind::text) return parsePoint(text(key), where_ + ": key " + inQuotes(key));
+    const std::vector<double> at = numbers(key, 3);
+    return {at[0], at[1], at[2]};
+}
+
+std::vector<JsonObject> JsonObject::objects(std::string_view key, std::size_t most, const std::string& what,
+                                            const std::string& expected) const
+{
+    const Json& list = node_->at(key, where_);
+    if (!list.is_array() || list.empty() || list.size() > most) refuse(key, expected);
+    std::vector<JsonObject> all;
+    for (const Json& one : list) {
+        const std::string name = where_ + ": " + what + " " + std::to_string(all.size() + 1);
+        if (!one.is_object())
+            throw Error(name + ": expected a JSON object {...}, found " + std::string(one.type_name()));
+        all.push_back(JsonObject(std::make_shared<Node>(Node{one}), name));
+    }
+    return all;
+}
+
 std::vector<std::vector<double>> JsonObject::rows(std::string_view key, std::size_t count) const
 {
     const Json& value = node_->at(key, where_);

@@ -7,6 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
+#include "engine/core/quantity.h"
+
 namespace palp {
 
 /// One JSON object given by a user, read key by key. Every error names the place, the key, what was expected and what
@@ -39,6 +43,21 @@ public:
     /// Returns a list of lists of `count` numbers each.
     [[nodiscard]] std::vector<std::vector<double>> rows(std::string_view key, std::size_t count) const;
     [[nodiscard]] std::vector<int> wholeNumbers(std::string_view key, std::size_t count, int least, int most) const;
+
+    /// The numbers with a unit that a key may have, in SI units.
+    struct QuantityLimits {
+        Dimension   dimension;
+        double      least, most;
+        const char* expected; ///< "a length from 1e-5 to 1 m, such as 4 mm"
+    };
+    /// Returns a plain number in SI units, or a text with a unit.
+    [[nodiscard]] double quantity(std::string_view key, const QuantityLimits& limits) const;
+    /// Returns a place: a text such as "10mm,0,2cm", or three numbers [m].
+    [[nodiscard]] glm::dvec3 point(std::string_view key) const;
+    /// Returns a list of objects, each called `what` and its number in errors.
+    /// \param expected  the list in words, "a list of 1 to 64 nodules"
+    [[nodiscard]] std::vector<JsonObject> objects(std::string_view key, std::size_t most, const std::string& what,
+                                                  const std::string& expected) const;
 
     /// Refuses the value of a key that is there.
     /// \throws Error "WHERE: key "KEY": expected EXPECTED, found FOUND", always

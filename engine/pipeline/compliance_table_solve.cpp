@@ -164,7 +164,10 @@ TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, Pl
     double       sum = 0;
     for (std::size_t n = 0; n < over.values().size(); ++n)
         sum += over.values()[n] = std::log(plate.rigidity.values()[n] / node);
-    const auto homogeneous = lattice.homogeneous(node * std::exp(sum / double(over.values().size())));
+    // The window's correction depends on how far a dent spreads, (D/k)^(1/4): a foundation that is firmer throughout is
+    // as good as a softer sheet.
+    const double firmer = plate.foundationShape.values().empty() ? 1 : geometricMean(plate.foundationShape.values());
+    const auto   homogeneous = lattice.homogeneous(node * std::exp(sum / double(over.values().size())) / firmer);
     for (std::size_t n = 0; n < solved.responses.size(); ++n) {
         const ComplianceTable::Entry felt = complianceOf(solved.responses[n]);
         const ComplianceTable::Entry own  = homogeneous[n];

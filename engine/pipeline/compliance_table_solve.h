@@ -38,6 +38,7 @@ struct FootprintLattice {
     /// Returns ln c in the middle of a homogeneous window of this rigidity [N m]: linear between rungs and beyond them;
     /// without a foundation c is 1/D exactly.
     [[nodiscard]] double lnCompliance(double ofRigidity) const;
+    [[nodiscard]] bool   onFoundation() const noexcept { return middles.size() > 1; }
 };
 
 /// Solves the lattice of the settings' window on a homogeneous object of the geometric mean of this one's rigidity.

@@ -367,6 +367,10 @@ void fillRigidity(Patch& patch, const SoftObject& object, const PatchSettings& s
     patch.plate             = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
                                std::move(resampled.rigidity)};
     refuseIfEmpty(patch, settings);
+    if (object.foundationShape().empty() || settings.foundation == 0) return;
+    for (std::size_t k = 0; k < touched.size(); ++k) rigidities[k] = object.foundationShape()[touched[k]];
+    patch.plate.foundationShape =
+        resampleRigidity(patch.window, places, rigidities, settings.resampling, finest, sparsest).rigidity;
 }
 
 // --- 2.5, equations 6 to 8: the plate bends under a unit force
@@ -471,6 +475,16 @@ bool makePlate(Patch& patch, const SoftObject& object, const Contact& contact, c
     return true;
 }
 
+/// Returns the values at the nodes of a grid of twice the spacing; none of none.
+NodeField everySecondOf(const NodeField& fine, const PlateGrid& coarse)
+{
+    if (fine.values().empty()) return {};
+    NodeField values(coarse);
+    for (int i = 0; i < coarse.nodesX(); ++i)
+        for (int j = 0; j < coarse.nodesZ(); ++j) values(i, j) = fine(2 * i, 2 * j);
+    return values;
+}
+
 } // namespace
 
 void prepareTouch(const SoftObject& object, const PatchSettings& settings)
@@ -517,11 +531,10 @@ std::optional<double> discretisationError(const Patch& patch, const PatchSetting
 {
     const PlateGrid& fine = patch.plate.grid;
     if (!patch.deformed() || settings.cells % 4 != 0 || settings.footprintRadius < 2 * fine.spacingX) return {};
-    Plate coarse    = patch.plate;
-    coarse.grid     = {fine.cellsX / 2, fine.cellsZ / 2, 2 * fine.spacingX, 2 * fine.spacingZ};
-    coarse.rigidity = NodeField(coarse.grid);
-    for (int i = 0; i < coarse.grid.nodesX(); ++i)
-        for (int j = 0; j < coarse.grid.nodesZ(); ++j) coarse.rigidity(i, j) = patch.plate.rigidity(2 * i, 2 * j);
+    Plate coarse           = patch.plate;
+    coarse.grid            = {fine.cellsX / 2, fine.cellsZ / 2, 2 * fine.spacingX, 2 * fine.spacingZ};
+    coarse.rigidity        = everySecondOf(patch.plate.rigidity, coarse.grid);
+    coarse.foundationShape = everySecondOf(patch.plate.foundationShape, coarse.grid);
     if (whyUnsolvable(coarse)) return {};
     const Footprint finger(unitLoad(coarse.grid, settings));
     const double    compliance =

@@ -17,6 +17,7 @@ struct Piece {
     glm::dvec3 point{};        ///< [m] mean of its points, by area
     double     area       = 0; ///< [m^2]
     double     lnRigidity = 0; ///< mean of ln D, by area
+    double     lnFirmer   = 0; ///< mean of ln of the foundation's shape, by area
 };
 
 std::vector<Piece> piecesOf(const SoftObject& object, double cell)
@@ -31,25 +32,27 @@ std::vector<Piece> piecesOf(const SoftObject& object, double cell)
         cube.point += area * p;
         cube.area += area;
         cube.lnRigidity += area * std::log(object.rigidity(n));
+        if (!object.foundationShape().empty()) cube.lnFirmer += area * std::log(object.foundationShape()[n]);
     }
     std::vector<Piece> pieces;
     for (auto& [key, cube] : cubes) {
         cube.point /= cube.area;
         cube.lnRigidity /= cube.area;
+        cube.lnFirmer /= cube.area;
         pieces.push_back(cube);
     }
     return pieces;
 }
 
-/// Returns the mean of ln D about a place, weighted by a Gaussian.
-double lnRigidityAbout(const glm::dvec3& place, double deviation, const std::vector<Piece>& pieces,
-                       const std::vector<std::uint32_t>& near)
+/// Returns the mean of a piece's logarithm about a place, weighted by a Gaussian.
+double meanAbout(const glm::dvec3& place, double deviation, const std::vector<Piece>& pieces,
+                 const std::vector<std::uint32_t>& near, double Piece::*logarithm)
 {
     double sum = 0, weights = 0;
     for (const std::uint32_t n : near) {
         const glm::dvec3 away   = pieces[n].point - place;
         const double     weight = pieces[n].area * std::exp(-glm::dot(away, away) / (2 * deviation * deviation));
-        sum += weight * pieces[n].lnRigidity;
+        sum += weight * pieces[n].*logarithm;
         weights += weight;
     }
     return sum / weights;
@@ -74,10 +77,14 @@ HomogeneousLaw homogeneousLaw(const SoftObject& object, const FootprintLattice& 
         std::vector<std::uint32_t> near;
         for (std::size_t n = begin; n < end; ++n) {
             index.gather(points[n], kReach * felt, near);
-            const double bends = lnRigidityAbout(points[n], felt, pieces, near),
-                         lies  = lnRigidityAbout(points[n], under, pieces, near);
-            sites[n]           = {points[n], lattice.lnCompliance(std::exp(bends)),
-                                  std::log(lattice.shape.contactPerRigidity) + lies};
+            const auto mean = [&](double deviation, double Piece::*logarithm) {
+                return meanAbout(points[n], deviation, pieces, near, logarithm);
+            };
+            const double bends = mean(felt, &Piece::lnRigidity), lies = mean(under, &Piece::lnRigidity);
+            const double firmer = lattice.onFoundation() ? mean(felt, &Piece::lnFirmer) : 0;
+            // s times the foundation and D are 1/s times as compliant as the foundation and D/s.
+            sites[n] = {points[n], lattice.lnCompliance(std::exp(bends - firmer)) - firmer,
+                        std::log(lattice.shape.contactPerRigidity) + lies};
         }
     });
     return {std::move(sites), cell};

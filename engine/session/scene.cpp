@@ -269,6 +269,7 @@ Scene sceneOf(const JsonObject& file, const std::filesystem::path& folder, const
         if (!one) continue;
         if (key->name == "stiffness" && one->origin.origin == Origin::scene)
             one->text = lawWithFileIn(one->text, folder); // as the path of the cloud
+        if (key->name == "below" && one->origin.origin == Origin::scene) one->text = belowWithFileIn(one->text, folder);
         const double metres = metresPerPlainNumber(overrides, sources, one->origin.origin);
         // On the command line a length_unit applies to its plain numbers too, also where no file is read.
         if (key->name == "length_unit" && isSample(scene) && overrides.flagsInLengthUnit &&
@@ -308,7 +309,8 @@ std::string sceneJson(const Scene& scene)
 {
     Scene whole = scene;
     if (!isSample(whole)) whole.cloud = std::filesystem::absolute(whole.cloud).string();
-    whole.stiffness = lawWithFileIn(whole.stiffness, std::filesystem::current_path());
+    whole.stiffness    = lawWithFileIn(whole.stiffness, std::filesystem::current_path());
+    whole.below.volume = lawWithFileIn(whole.below.volume, std::filesystem::current_path());
     std::string text;
     for (const SceneKey* key : sceneKeysWith(scene.toolKeys))
         if (const std::string value = key->write(whole); !value.empty())

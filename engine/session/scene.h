@@ -19,6 +19,7 @@
 #include "engine/force/compliance_tracker.h"
 #include "engine/pipeline/patch.h"
 #include "engine/pipeline/presets.h"
+#include "engine/session/scene_below.h"
 
 namespace palp {
 
@@ -66,6 +67,10 @@ public:
     /// Returns the cloud with the overlay.
     /// \throws Error if it does not fit the cloud
     [[nodiscard]] virtual PointCloud over(const PointCloud& cloud, const Scene& scene) const = 0;
+
+    /// Returns the nodules that it lays below the sheet.
+    /// \throws Error likewise
+    [[nodiscard]] virtual std::vector<BuriedNodule> below(const PointCloud& cloud, const Scene& scene) const = 0;
 };
 
 /// Everything that decides a session but the hand: what is touched, how it bends, how that becomes a force.
@@ -87,6 +92,7 @@ struct Scene {
     Preset        preset = Preset::palpate; ///< the last one that was asked for; its values stand in `patch`
     std::string   materialName;             ///< of knownMaterials(), the last that was asked for; empty: none
     Material      material{};               ///< of the sheet
+    SceneBelow    below{};                  ///< what varies below the sheet
     PatchSettings patch;                    ///< foundation, window, map, force law, ...
     std::string   solver = "auto";          ///< of the plate, as PlateSolver takes it
 

@@ -142,8 +142,8 @@ LoadedCloud loadCloud(const Scene& scene)
 
 LoadedObject objectOf(LoadedCloud loaded, const Scene& scene)
 {
-    SoftObject object(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals);
-    return {object.standingFor(std::move(loaded.mesh)), std::move(loaded.report)};
+    const SoftObject object(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals);
+    return {onTissue(object.standingFor(std::move(loaded.mesh)), scene), std::move(loaded.report)};
 }
 
 LoadedObject loadObject(const Scene& scene)
@@ -155,6 +155,9 @@ bool haveSameCloud(const Scene& a, const Scene& b)
 {
     if (fingertipDecidesCloud(a) && a.patch.footprintRadius != b.patch.footprintRadius) return false;
     if (thicknessDecidesCloud(a) && a.material.thickness != b.material.thickness) return false;
+    if (a.below.isThere() &&
+        (a.patch.footprintRadius != b.patch.footprintRadius || a.material.thickness != b.material.thickness))
+        return false; // how deep a finger feels depends on both
     if (a.toolKeys != b.toolKeys) return false;
     return std::ranges::all_of(sceneKeysWith(a.toolKeys), [&](const SceneKey* key) {
         return !key->decidesCloud || key->write(a) == key->write(b);

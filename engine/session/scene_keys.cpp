@@ -351,6 +351,16 @@ std::vector<SceneKey> materialKeys()
              .bounds    = KeyBounds{0, 1e15}, // a micrometre of steel has less
              .control   = foundation},
             [](auto& s) -> auto& { return s.patch.foundation; }),
+        {.name         = "below",
+         .help         = "the tissue below the sheet where it varies: how deep it is, its modulus, and nodules in it; "
+                         "none for a foundation that is the same everywhere",
+         .group        = kTouch,
+         .kind         = Kind::object,
+         .form         = kBelowForm,
+         .schema       = std::string(belowSchema()),
+         .decidesCloud = true,
+         .read         = [](S& s, const V& v) { s.below = parseBelow(v.text, v.what); },
+         .write        = [](const S& s) { return belowJson(s.below); }},
         numberKey(
             {.name      = "stiffening",
              .help      = "b by which the force stiffens with depth, K (e^(b d) - 1) / b; meat 800; 0 for a spring",

@@ -160,7 +160,8 @@ double heldShare(const std::vector<FeltTick>& ticks)
 
 SoftObject homogeneous(const SoftObject& object)
 {
-    return object.repainted(std::vector<double>(object.size(), geometricMean(object.cloud().stiffness())));
+    return object.repainted(std::vector<double>(object.size(), geometricMean(object.cloud().stiffness())))
+        .withFoundation({});
 }
 
 FeltRange rangeOf(const std::vector<FeltPlace>& places, ForceLaw law)

@@ -24,26 +24,12 @@ constexpr double      kLeastRadius = 1e-5, kMost = 1; ///< of a nodule and of th
 constexpr double      kSoftest = 1, kStiffest = 1e12; ///< moduli [Pa]: softer than any gel, stiffer than diamond
 constexpr double      kLeastForce = 1e-3;             ///< [N]
 
-struct Limits {
-    Dimension   dimension;
-    double      least, most;
-    const char* expected;
-};
+using Limits = JsonObject::QuantityLimits;
 constexpr Limits kRadius{Dimension::length, kLeastRadius, kMost, "a length from 1e-5 to 1 m, such as 4 mm"};
 constexpr Limits kModulus{Dimension::pressure, kSoftest, kStiffest, "a modulus from 1 to 1e12 Pa, such as 3 MPa"};
 static_assert(GovernorSettings::kMostForce == 8, "the next sentence and the schema of a hunt say so");
 constexpr Limits kForce{Dimension::force, kLeastForce, GovernorSettings::kMostForce,
                         "a force from 1e-3 to 8 N, such as 2 N"};
-
-double within(const JsonObject& object, const char* key, const Limits& limits)
-{
-    const std::string what  = object.where() + ": key \"" + key + "\"";
-    const double      value = object.kind(key) == JsonObject::Kind::text
-                                  ? parseQuantity(object.text(key), limits.dimension, what)
-                                  : object.number(key);
-    if (!(value >= limits.least && value <= limits.most)) object.refuse(key, limits.expected);
-    return value;
-}
 
 /// Reads both ends of a range, each a number or a text.
 std::array<double, 2> range(const JsonObject& object, const char* key, const Limits& limits)
@@ -52,35 +38,29 @@ std::array<double, 2> range(const JsonObject& object, const char* key, const Lim
     if (!list.is_array() || list.size() != 2) object.refuse(key, "a list of two, the least and the most");
     std::array<double, 2> ends{};
     for (std::size_t k = 0; k < 2; ++k)
-        ends[k] = within(JsonObject::parse(Json{{key, list[k]}}.dump(), object.where()), key, limits);
+        ends[k] = JsonObject::parse(Json{{key, list[k]}}.dump(), object.where()).quantity(key, limits);
     if (ends[0] > ends[1]) object.refuse(key, "the least first, then the most");
     return ends;
 }
 
 Nodule noduleOf(const JsonObject& object)
 {
-    object.allowOnly({"at", "radius", "modulus"});
+    object.allowOnly({"at", "depth", "radius", "modulus"});
     Nodule nodule;
-    if (object.kind("at") == JsonObject::Kind::text) {
-        nodule.centre = parsePoint(object.text("at"), object.where() + ": key \"at\"");
-    } else {
-        const std::vector<double> at = object.numbers("at", 3);
-        nodule.centre                = {at[0], at[1], at[2]};
-    }
-    nodule.radius  = within(object, "radius", kRadius);
-    nodule.modulus = within(object, "modulus", kModulus);
+    nodule.centre  = object.point("at");
+    nodule.radius  = object.quantity("radius", kRadius);
+    nodule.modulus = object.quantity("modulus", kModulus);
+    if (object.has("depth")) nodule.depth = object.quantity("depth", kRadius);
     return nodule;
 }
 
 std::vector<Nodule> nodulesIn(const JsonObject& hunt)
 {
-    const Json list = Json::parse(hunt.json("nodules"));
-    if (!list.is_array() || list.empty() || list.size() > kMostNodules)
-        hunt.refuse("nodules", "a list of 1 to 64 nodules, each with \"at\", \"radius\" and \"modulus\"");
     std::vector<Nodule> nodules;
-    for (const Json& one : list)
-        nodules.push_back(
-            noduleOf(JsonObject::parse(one.dump(), hunt.where() + ": nodule " + std::to_string(nodules.size() + 1))));
+    for (const JsonObject& one :
+         hunt.objects("nodules", kMostNodules, "nodule",
+                      "a list of 1 to 64 nodules, each with \"at\", \"radius\" and \"modulus\""))
+        nodules.push_back(noduleOf(one));
     return nodules;
 }
 
@@ -232,15 +212,19 @@ Hunt parseHunt(std::string_view text, const std::string& what)
         demandApart(hunt.nodules);
     } else {
         const JsonObject random = object.object("random");
-        random.allowOnly({"count", "radius", "modulus"});
+        random.allowOnly({"count", "depth", "radius", "modulus"});
         hunt.count       = std::size_t(random.wholeNumber("count", 1, int(kMostNodules)));
         const auto radii = range(random, "radius", kRadius), moduli = range(random, "modulus", kModulus);
         hunt.leastRadius = radii[0], hunt.mostRadius = radii[1];
         hunt.leastModulus = moduli[0], hunt.mostModulus = moduli[1];
+        if (random.has("depth")) {
+            const auto depths = range(random, "depth", kRadius);
+            hunt.leastDepth = depths[0], hunt.mostDepth = depths[1];
+        }
     }
-    if (object.has("ground")) hunt.ground = within(object, "ground", kRadius);
-    if (object.has("press_force")) hunt.pressForce = within(object, "press_force", kForce);
-    if (object.has("too_hard")) hunt.tooHard = within(object, "too_hard", kForce);
+    if (object.has("ground")) hunt.ground = object.quantity("ground", kRadius);
+    if (object.has("press_force")) hunt.pressForce = object.quantity("press_force", kForce);
+    if (object.has("too_hard")) hunt.tooHard = object.quantity("too_hard", kForce);
     if (hunt.pressForce > hunt.tooHard)
         throw Error(what + ": key \"press_force\": expected at most \"too_hard\", " +
                     formatQuantity(hunt.tooHard, "N") + ", found " + formatQuantity(hunt.pressForce, "N"));
@@ -250,13 +234,16 @@ Hunt parseHunt(std::string_view text, const std::string& what)
 std::string huntJson(const Hunt& hunt)
 {
     nlohmann::ordered_json json;
-    for (const Nodule& n : hunt.nodules)
+    for (const Nodule& n : hunt.nodules) {
         json["nodules"].push_back(
             {{"at", {n.centre.x, n.centre.y, n.centre.z}}, {"radius", n.radius}, {"modulus", n.modulus}});
+        if (n.depth > 0) json["nodules"].back()["depth"] = n.depth;
+    }
     if (hunt.nodules.empty())
         json["random"] = {{"count", hunt.count},
                           {"radius", {hunt.leastRadius, hunt.mostRadius}},
                           {"modulus", {hunt.leastModulus, hunt.mostModulus}}};
+    if (hunt.nodules.empty() && hunt.mostDepth > 0) json["random"]["depth"] = {hunt.leastDepth, hunt.mostDepth};
     if (hunt.ground > 0) json["ground"] = hunt.ground;
     json["press_force"] = hunt.pressForce;
     json["too_hard"]    = hunt.tooHard;
@@ -273,6 +260,7 @@ std::vector<Nodule> hiddenNodules(const Hunt& hunt, const std::optional<std::uin
         for (std::size_t i = nodules.size(); i < hunt.count; ++i) {
             const double radius = between(hunt.leastRadius, hunt.mostRadius, random);
             nodules.push_back({{}, radius, between(hunt.leastModulus, hunt.mostModulus, random)});
+            if (hunt.mostDepth > 0) nodules.back().depth = between(hunt.leastDepth, hunt.mostDepth, random);
         }
         places.scatter(nodules, random);
     }
@@ -286,8 +274,9 @@ PointCloud withNodules(const PointCloud& cloud, const std::vector<Nodule>& nodul
     std::vector<double> stiffness(cloud.stiffness().begin(), cloud.stiffness().end());
     for (std::size_t n = 0; n < nodules.size(); ++n) {
         const Nodule& nodule = nodules[n];
-        double        change = 0;
-        const double  there =
+        if (nodule.depth > 0) continue; // it lies below the sheet
+        double       change = 0;
+        const double there =
             cloud.kind() == StiffnessKind::modulus ? nodule.modulus : material.rigidity(nodule.modulus);
         for (std::size_t i = 0; i < stiffness.size(); ++i) {
             const double share = nodule.share(glm::distance(cloud.positions()[i], nodule.centre));

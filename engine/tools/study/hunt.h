@@ -12,12 +12,14 @@
 
 namespace palp::study {
 
-/// A ball of another stiffness under the surface. At its radius the modulus is the geometric mean of those inside and
-/// outside; it fades over a quarter of the radius to either side, so that no edge is sharper than points can show.
+/// A ball of another stiffness under the surface. In the sheet, at its radius the modulus is the geometric mean of those
+/// inside and outside; it fades over a quarter of the radius to either side, so that no edge is sharper than points can
+/// show. Below the sheet it is a BuriedNodule, which no picture of the stiffness shows.
 struct Nodule {
     glm::dvec3 centre{};    ///< [m] on the object
     double     radius  = 0; ///< [m]
     double     modulus = 0; ///< Young's, in its middle [Pa]
+    double     depth   = 0; ///< of its middle below the surface [m]; 0: in the sheet
 
     static constexpr double kFade = 0.25; ///< share of the radius [1]
 
@@ -31,6 +33,7 @@ struct Hunt {
     std::size_t         count       = 0;                   ///< of random ones
     double              leastRadius = 0, mostRadius = 0;   ///< of random ones [m]
     double              leastModulus = 0, mostModulus = 0; ///< of random ones, even in the logarithm [Pa]
+    double              leastDepth = 0, mostDepth = 0; ///< of random ones, even in the logarithm [m]; 0: in the sheet
     double ground     = 0;   ///< [m] radius about the scene's place: random nodules lie in it; 0: all of the object
     double pressForce = 0.2; ///< least force with which a finger that moves along an edge traces it [N]
     double tooHard    = 2;   ///< a trainer's limit [N]
@@ -55,7 +58,8 @@ struct Hunt {
                                                 const PointCloud& cloud, const glm::dvec3& place,
                                                 double footprintRadius);
 
-/// Returns the cloud with the nodules laid over its stiffness: E = E0^(1-s) E_nodule^s with s = Nodule::share().
+/// Returns the cloud with the nodules in the sheet laid over its stiffness: E = E0^(1-s) E_nodule^s with s =
+/// Nodule::share().
 /// \throws Error naming a nodule whose change of stiffness is too small to be felt
 [[nodiscard]] PointCloud withNodules(const PointCloud& cloud, const std::vector<Nodule>& nodules,
                                      const Material& material);

@@ -15,12 +15,17 @@ inline constexpr std::string_view kHuntSchema = R"({"anyOf": [{"type": "object",
 "type": "array", "minItems": 1, "maxItems": 64, "items": {"type": "object", "additionalProperties":
 false, "required": ["at", "radius", "modulus"], "properties": {"at": {"description": "its middle, on
 the object [m]", "anyOf": [{"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems":
-3}, {"type": "string"}]}, "radius": {"description": "[m]", "anyOf": [{"type": "number", "minimum":
+3}, {"type": "string"}]}, "depth": {"description": "of its middle below the surface [m], with the key
+below; absent: in the sheet", "anyOf": [{"type": "number", "minimum": 1e-05, "maximum": 1}, {"type":
+"string"}]}, "radius": {"description": "[m]", "anyOf": [{"type": "number", "minimum":
 1e-05, "maximum": 1}, {"type": "string"}]}, "modulus": {"description": "Young's, in its middle
 [Pa]", "anyOf": [{"type": "number", "minimum": 1, "maximum": 1000000000000.0}, {"type":
 "string"}]}}}}, "random": {"description": "nodules at random places, in place of a list", "type":
 "object", "additionalProperties": false, "required": ["count", "radius", "modulus"], "properties":
-{"count": {"type": "integer", "minimum": 1, "maximum": 64}, "radius": {"description": "the least and
+{"count": {"type": "integer", "minimum": 1, "maximum": 64}, "depth": {"description": "the least and
+the most of a middle below the surface [m]; absent: in the sheet", "type": "array", "items":
+{"anyOf": [{"type": "number", "minimum": 1e-05, "maximum": 1}, {"type": "string"}]}, "minItems": 2,
+"maxItems": 2}, "radius": {"description": "the least and
 the most [m]", "type": "array", "items": {"anyOf": [{"type": "number", "minimum": 1e-05, "maximum":
 1}, {"type": "string"}]}, "minItems": 2, "maxItems": 2}, "modulus": {"description": "the least and
 the most [Pa]", "type": "array", "items": {"anyOf": [{"type": "number", "minimum": 1, "maximum":
@@ -61,6 +66,14 @@ std::vector<Nodule> HiddenNodules::nodules(const PointCloud& cloud, const Scene&
 PointCloud HiddenNodules::over(const PointCloud& cloud, const Scene& scene) const
 {
     return withNodules(cloud, nodules(cloud, scene), scene.material);
+}
+
+std::vector<BuriedNodule> HiddenNodules::below(const PointCloud& cloud, const Scene& scene) const
+{
+    std::vector<BuriedNodule> buried;
+    for (const Nodule& n : nodules(cloud, scene))
+        if (n.depth > 0) buried.push_back({n.centre, n.depth, n.radius, n.modulus});
+    return buried;
 }
 
 const HiddenNodules* hiddenIn(const Scene& scene)

@@ -13,7 +13,8 @@ public:
     Hunt                         hunt;
     std::optional<std::uint64_t> seed; ///< places the nodules at random; empty: at the hunt's own places
 
-    [[nodiscard]] PointCloud over(const PointCloud& cloud, const Scene& scene) const override;
+    [[nodiscard]] PointCloud                over(const PointCloud& cloud, const Scene& scene) const override;
+    [[nodiscard]] std::vector<BuriedNodule> below(const PointCloud& cloud, const Scene& scene) const override;
 
     /// Returns the nodules at their places in this cloud.
     /// \throws Error as hiddenNodules() does

@@ -92,6 +92,46 @@ TEST(Hunt, IsNoKeyOfTheLibraryAndChangesTheCloudOnlyOfScenesThatHaveIt)
     EXPECT_TRUE(haveSameCloud(with, sceneWith(kTwo, R"(, "thickness": 0.002)")));
 }
 
+const std::string kTissue =
+    R"(, "foundation": "3 MPa/m", "thickness": "2 mm", "below": {"depth": "15 mm", "modulus": "20 kPa"})";
+
+TEST(Hunt, ANoduleBelowTheSheetChangesNoStiffnessThatIsSeenAndIsUnderTheFinger)
+{
+    const Scene scene =
+        sceneWith(R"({"nodules": [{"at": [0.01, 0, 0], "depth": "8 mm", "radius": "5 mm", "modulus": "1 MPa"},
+                                                  {"at": [-0.02, 0, 0], "radius": "4 mm", "modulus": "6 MPa"}]})",
+                  kTissue);
+    const SoftObject object = loadObject(scene).object;
+    const auto       at     = [&](double x) { return object.index().nearest({x, 0, 0}, 1).front().point; };
+    EXPECT_EQ(object.cloud().stiffness()[at(0.01)], 3e5);
+    EXPECT_EQ(object.cloud().stiffness()[at(-0.02)], 6e6);
+    EXPECT_GT(object.foundationShape()[at(0.01)], 2);
+    EXPECT_EQ(object.foundationShape()[at(-0.02)], 1);
+    EXPECT_EQ(hiddenIn(parsed(sceneJson(scene)))->hunt.nodules[0].depth, 8e-3);
+    EXPECT_EQ(hiddenIn(parsed(sceneJson(scene)))->hunt.nodules[1].depth, 0);
+}
+
+TEST(Hunt, RandomNodulesLieAsDeepAsTheirRangeSays)
+{
+    const Scene scene = sceneWith(R"({"random": {"count": 3, "depth": ["8 mm", "9 mm"], "radius": ["4 mm", "5 mm"],
+                                      "modulus": [1e6, 2e6]}, "ground": "50 mm"})",
+                                  kTissue);
+    const PointCloud cloud = loadCloud(scene).cloud;
+    for (const Nodule& n : nodulesOf(scene, cloud)) {
+        EXPECT_GE(n.depth, 8e-3);
+        EXPECT_LE(n.depth, 9e-3);
+    }
+    for (const double E : cloud.stiffness()) ASSERT_EQ(E, 3e5);
+    EXPECT_EQ(huntJson(hiddenIn(parsed(sceneJson(scene)))->hunt), huntJson(hiddenIn(scene)->hunt));
+}
+
+TEST(Hunt, ANoduleBelowTheSheetNeedsTissueThere)
+{
+    const Scene scene =
+        sceneWith(R"({"nodules": [{"at": [0, 0, 0], "depth": "8 mm", "radius": "5 mm", "modulus": "1 MPa"}]})");
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(loadObject(scene)); }), {"hunt", "tissue", "\"below\""}));
+}
+
 TEST(Hunt, ASeedPlacesTheSameNodulesElsewhereAndTheSameAgain)
 {
     std::set<double> places;

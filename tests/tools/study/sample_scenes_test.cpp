@@ -75,7 +75,7 @@ TEST(SampleScenes, EveryFileHasARowInTheReadmeAndNoRowIsWithoutAFile)
     for (const Row& row : readme()) rows.insert(row.name);
 
     EXPECT_EQ(files, rows);
-    EXPECT_EQ(files.size(), 10u);
+    EXPECT_EQ(files.size(), 11u);
 }
 
 TEST(SampleScenes, TheFingerFeelsWhatTheReadmeSays)

@@ -1,0 +1,137 @@
+#include "engine/session/scene_below.h"
+
+#include <nlohmann/json.hpp>
+
+#include "engine/cloud/soft_object.h"
+#include "engine/core/contract.h"
+#include "engine/core/json_object.h"
+#include "engine/session/scene.h"
+
+namespace palp {
+namespace {
+
+using Json   = nlohmann::ordered_json;
+using Limits = JsonObject::QuantityLimits;
+
+constexpr std::size_t kMostNodules = 64; ///< more would be a texture
+constexpr Limits      kLength{Dimension::length, 1e-5, 1, "a length from 1e-5 to 1 m, such as 15 mm"};
+constexpr Limits      kModulus{Dimension::pressure, 1, 1e12, "a modulus from 1 to 1e12 Pa, such as 20 kPa"};
+
+BuriedNodule noduleOf(const JsonObject& object)
+{
+    object.allowOnly({"at", "depth", "radius", "modulus"});
+    return {object.point("at"), object.quantity("depth", kLength), object.quantity("radius", kLength),
+            object.quantity("modulus", kModulus)};
+}
+
+/// Returns the law of a volume, checked but for its file.
+std::string volumeOf(const JsonObject& below)
+{
+    const std::string law =
+        below.kind("volume") == JsonObject::Kind::text ? below.text("volume") : below.json("volume");
+    const SpatialLaw read = [&] {
+        try {
+            return parseSpatialLaw(law, {-1, -1, -1}, {1, 1, 1}, SpatialLaw::Space::volume, LawFiles::left);
+        } catch (const Error& error) {
+            throw Error(below.where() + ": key \"volume\": " + error.what());
+        }
+    }();
+    if (read.kind != SpatialLaw::Kind::grid || read.along != SpatialLaw::Along::points)
+        below.refuse("volume", "a law grid without \"along\", such as {\"law\":\"grid\",\"file\":\"fat.nii.gz\"}");
+    return law;
+}
+
+// clang-format off
+constexpr std::string_view kSchema = R"({"anyOf": [{"type": "object", "additionalProperties": false, "required": ["depth", "modulus"], "properties":
+{"depth": {"description": "of the tissue between the sheet and what does not give [m]", "anyOf": [{"type": "number",
+"minimum": 1e-05, "maximum": 1}, {"type": "string"}]}, "modulus": {"description": "Young's, of the tissue whose
+foundation the scene states [Pa]", "anyOf": [{"type": "number", "minimum": 1, "maximum": 1000000000000.0}, {"type":
+"string"}]}, "volume": {"description": "moduli of the tissue where they vary: a law grid [Pa]", "anyOf": [{"type":
+"object"}, {"type": "string"}]}, "nodules": {"description": "balls of another modulus in it", "type": "array",
+"minItems": 1, "maxItems": 64, "items": {"type": "object", "additionalProperties": false, "required": ["at", "depth",
+"radius", "modulus"], "properties": {"at": {"description": "a place on the object above its middle [m]", "anyOf":
+[{"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}, {"type": "string"}]}, "depth":
+{"description": "of its middle below the surface [m]", "anyOf": [{"type": "number", "minimum": 1e-05, "maximum": 1},
+{"type": "string"}]}, "radius": {"description": "[m]", "anyOf": [{"type": "number", "minimum": 1e-05, "maximum": 1},
+{"type": "string"}]}, "modulus": {"description": "Young's [Pa]", "anyOf": [{"type": "number", "minimum": 1, "maximum":
+1000000000000.0}, {"type": "string"}]}}}}}}, {"type": "string"}]})";
+// clang-format on
+
+} // namespace
+
+SceneBelow parseBelow(std::string_view text, const std::string& what)
+{
+    if (text == "none") return {};
+    const JsonObject object = JsonObject::parse(text, what);
+    object.allowOnly({"depth", "modulus", "volume", "nodules"});
+    SceneBelow below;
+    below.tissue.depth   = object.quantity("depth", kLength);
+    below.tissue.modulus = object.quantity("modulus", kModulus);
+    if (object.has("volume")) below.volume = volumeOf(object);
+    if (!object.has("nodules")) return below;
+    for (const JsonObject& one :
+         object.objects("nodules", kMostNodules, "nodule",
+                        "a list of 1 to 64 nodules, each with \"at\", \"depth\", \"radius\" and \"modulus\""))
+        below.tissue.nodules.push_back(noduleOf(one));
+    return below;
+}
+
+std::string belowJson(const SceneBelow& below)
+{
+    if (!below.isThere()) return {};
+    Json json{{"depth", below.tissue.depth}, {"modulus", below.tissue.modulus}};
+    if (!below.volume.empty())
+        json["volume"] =
+            below.volume.starts_with('{') ? Json::parse(below.volume, nullptr, true, true) : Json(below.volume);
+    for (const BuriedNodule& n : below.tissue.nodules)
+        json["nodules"].push_back(
+            {{"at", {n.at.x, n.at.y, n.at.z}}, {"depth", n.depth}, {"radius", n.radius}, {"modulus", n.modulus}});
+    return json.dump();
+}
+
+std::string_view belowSchema()
+{
+    return kSchema;
+}
+
+std::string belowWithFileIn(const std::string& text, const std::filesystem::path& folder)
+{
+    try {
+        Json below = Json::parse(text, nullptr, true, true);
+        if (!below.contains("volume")) return text;
+        Json&             volume = below["volume"];
+        const std::string law    = volume.is_string() ? volume.get<std::string>() : volume.dump();
+        volume                   = lawWithFileIn(law, folder);
+        return below.dump();
+    } catch (const Json::exception&) {
+        return text; // the reader refuses it, and says why
+    }
+}
+
+SoftObject onTissue(const SoftObject& object, const Scene& scene)
+{
+    TissueBelow tissue = scene.below.tissue;
+    const auto  hidden = scene.overlay ? scene.overlay->below(object.cloud(), scene) : std::vector<BuriedNodule>();
+    if (!scene.below.isThere()) {
+        if (hidden.empty()) return object;
+        throw Error(
+            "hunt: a nodule with a depth lies in the tissue below the sheet, and the scene has none; expected a key "
+            "\"below\" with the depth and the modulus of that tissue");
+    }
+    if (scene.patch.foundation == 0)
+        throw Error(openingOf(scene, "below") +
+                    ": expected a foundation above 0, which the tissue makes firmer or softer, found 0; give the key "
+                    "\"foundation\"");
+    tissue.nodules.insert(tissue.nodules.end(), hidden.begin(), hidden.end());
+    if (!scene.below.volume.empty()) {
+        const Bounds& bounds = object.cloud().bounds();
+        tissue.volume        = parseSpatialLaw(scene.below.volume, bounds.low, bounds.high, SpatialLaw::Space::volume);
+    }
+    try {
+        return object.withFoundation(foundationShape(object, tissue, scene.patch.footprintRadius));
+    } catch (const Error& error) {
+        throw Error(openingOf(scene, "below") + ": " + error.what());
+    }
+}
+
+} // namespace palp

@@ -1,0 +1,42 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "engine/cloud/tissue_below.h"
+
+namespace palp {
+
+struct Scene;
+
+/// What a scene says of the tissue below the sheet.
+struct SceneBelow {
+    TissueBelow tissue; ///< without its volume
+    std::string volume; ///< law of a grid, see parseSpatialLaw; empty: the tissue is even
+
+    [[nodiscard]] bool isThere() const noexcept { return tissue.depth > 0; }
+};
+
+inline constexpr std::string_view kBelowForm =
+    R"(an object such as {"depth":0.015,"modulus":2e4,"nodules":[{"at":[0,0,0],"depth":0.01,"radius":5e-3,"modulus":1e6}]})";
+
+/// Reads the value of the key "below": "depth" of the tissue and its "modulus", perhaps "nodules" and a "volume".
+/// \param what  opens complaints
+/// \throws Error naming the key, what was expected and found
+[[nodiscard]] SceneBelow parseBelow(std::string_view text, const std::string& what);
+
+/// Writes what parseBelow() reads; empty if there is nothing.
+[[nodiscard]] std::string belowJson(const SceneBelow& below);
+
+/// Returns the JSON Schema of the value.
+[[nodiscard]] std::string_view belowSchema();
+
+/// Returns the text with the volume's file in a folder, unless its path is absolute; any other text as it is.
+[[nodiscard]] std::string belowWithFileIn(const std::string& text, const std::filesystem::path& folder);
+
+/// Returns the object on the foundation that the scene's tissue and overlay make; without either, the object as it is.
+/// \throws Error as foundationShape() does, if the volume cannot be read, if the scene has no foundation to vary, and if
+///         the overlay lays nodules below a sheet under which there is no tissue
+[[nodiscard]] SoftObject onTissue(const SoftObject& object, const Scene& scene);
+
+} // namespace palp
