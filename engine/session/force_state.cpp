@@ -14,6 +14,7 @@ ForceState forceState(const TickRecord& record) noexcept
     if (device != DeviceFault::none) return ForceState::deviceFaulty;
     if (did(GovernorAction::lettingGo)) return ForceState::programStops;
     if (did(GovernorAction::notHomed)) return ForceState::notHomed;
+    if (did(GovernorAction::clutched)) return ForceState::clutched;
     if (did(GovernorAction::outsideBox)) return ForceState::outOfBox;
     if ((record.faults & static_cast<std::uint32_t>(SessionFlag::oldTable)) != 0) return ForceState::plateSilent;
     if (did(GovernorAction::waiting) || did(GovernorAction::releasing)) return ForceState::waits;
@@ -36,6 +37,8 @@ std::string describeForces(const TickRecord& record)
         return "no force: the grip is out of its workspace";
     case ForceState::notHomed:
         return "no force: home the device";
+    case ForceState::clutched:
+        return "no force: the clutch is held, and the tool stays";
     case ForceState::programStops:
         return "no force: the program stops";
     case ForceState::deviceFaulty:

@@ -15,6 +15,7 @@ enum class ForceState : std::uint8_t {
     waits,        ///< for a hand that is slow and presses on nothing
     plateSilent,  ///< the plate's answer is too old
     outOfBox,     ///< the grip is out of the device's workspace
+    clutched,     ///< the clutch holds the tool while the device moves
     notHomed,     ///< the device does not know where the grip is
     programStops, ///< Ctrl-Z: the session lets go before
     deviceFaulty, ///< the device reports a fault that may pass
@@ -30,6 +31,7 @@ constexpr auto namesOf(ForceState)
                                                   {plateSilent, "plate-silent"},
                                                   {outOfBox, "out-of-box"},
                                                   {notHomed, "not-homed"},
+                                                  {clutched, "clutched"},
                                                   {programStops, "program-stops"},
                                                   {deviceFaulty, "device-faulty"},
                                                   {stopped, "stopped"},

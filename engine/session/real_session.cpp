@@ -12,6 +12,7 @@
 #include "engine/core/latest.h"
 #include "engine/core/real_time.h"
 #include "engine/core/thread_time.h"
+#include "engine/session/clutch.h"
 #include "engine/session/detail/solve_pace.h"
 #include "engine/session/force_state.h"
 #include "engine/session/interrupt.h"
@@ -71,7 +72,7 @@ class RealSession {
 public:
     RealSession(const SessionParts& parts, const RealSessionSettings& settings)
         : parts_(parts), settings_(settings), contact_(parts.object, parts.scene),
-          force_(parts.scene, parts.frame.inScene(parts.device.info()), parts.first)
+          force_(parts.scene, parts.frame.inScene(parts.device.info()), parts.first), clutch_(parts.frame.clutch)
     {
     }
 
@@ -93,6 +94,7 @@ private:
     ContactHalf                contact_;      ///< of the servo's thread, or of the proxy's
     ProxyContact               nothing_;      ///< of the servo's thread, before the proxy's first answer
     ForceHalf                  force_;        ///< of the servo's thread
+    Clutch                     clutch_;       ///< of the servo's thread
     SessionSummary             summary_;      ///< of the servo's thread
     SessionSummary             slow_;         ///< of the deformation's
     std::string                warning_;      ///< of the servo's
@@ -160,7 +162,9 @@ void RealSession::servoThread()
 
 TickRecord RealSession::tick(const ForceHalf::TickTime& now, const HapticState& state, bool letGo) noexcept
 {
-    Hand hand                   = parts_.frame.handOf(state);
+    const bool isAsked          = settings_.clutch && settings_.clutch->load(std::memory_order_relaxed);
+    Hand       hand             = parts_.frame.handOf(clutch_.step(state, isAsked));
+    hand.clutched               = clutch_.isHeld();
     hand.letGo                  = letGo;
     const ProxyContact& contact = held(now.time, hand);
     shared_.update.take();
@@ -315,7 +319,7 @@ SessionSummary RealSession::run(std::string& warning)
     summary_.fault         = force_.governor().fault();
     summary_.why           = slow_.why;
     if (summary_.deviceFault != DeviceFault::none) summary_.deviceWords = parts_.device.faultWords();
-    summary_.whyPatchless  = slow_.whyPatchless;
+    summary_.whyPatchless = slow_.whyPatchless;
     return summary_;
 }
 

@@ -31,6 +31,7 @@ struct RealSessionSettings {
     std::function<void(const SessionView&)> onView{};         ///< on the calling thread, every viewPeriod; may be empty
     double                                  viewPeriod = 0.1; ///< [s]
     const std::atomic<bool>*                stop       = nullptr; ///< ends the session once it is true; may be null
+    const std::atomic<bool>*                clutch     = nullptr; ///< holds the Clutch while it is true; may be null
 };
 
 /// Runs a whole session in real time: servo and deformation have threads of their own, and the caller watches.

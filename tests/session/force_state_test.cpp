@@ -41,6 +41,7 @@ TEST(ForceState, TheGravestReasonIsTold)
         {waits, did |= bit(GovernorAction::waiting), 0, DeviceFault::none, "hold it still", blue},
         {plateSilent, did, old, DeviceFault::none, "the plate does not answer", blue},
         {outOfBox, did |= bit(GovernorAction::outsideBox), old, DeviceFault::none, "out of its workspace", blue},
+        {clutched, did |= bit(GovernorAction::clutched), old, DeviceFault::none, "the clutch is held", blue},
         {notHomed, did |= bit(GovernorAction::notHomed), old, DeviceFault::none, "home the device", red},
         {programStops, did |= bit(GovernorAction::lettingGo), old, DeviceFault::none, "the program stops", blue},
         {deviceFaulty, did, old, DeviceFault::silent, "reports silent", blue},

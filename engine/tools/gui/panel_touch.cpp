@@ -53,7 +53,7 @@ void drawNumbers(const PanelDesk& desk)
     const double       kc     = patch ? patch->contactStiffness : 0;
     const bool         known  = held && now.compliance > 0 && kc > 0;
     const double       felt   = known ? feltStiffness(desk.content.scene.patch.forceLaw, kc, now.compliance) : 0;
-    const double       cap    = desk.content.scene.stiffnessCap; // [N/m]
+    const double       cap    = desk.content.scene.stiffnessCap / desk.content.scene.workspaceScale; // [N/m]
     reading(desk, Half::left, "force", desk.content.touching ? formatted("%.2f N", glm::length(now.force)) : "\u2013");
     reading(desk, Half::right, "depth", orDash(formatted("%.2f mm", penetration(now) * 1e3)));
     reading(desk, Half::left, "felt",

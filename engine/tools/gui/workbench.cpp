@@ -279,7 +279,8 @@ void Workbench::showTouch(const SessionView* view)
     if (view) {
         const double force = glm::length(view->record.force);
         stage.view().show(inContact(view) || force > 0 ? view->patch : nullptr, force, state_.look,
-                          TouchHand{view->record.hip, view->record.force, view->record.proxy},
+                          TouchHand{view->record.hip, view->record.force, view->record.proxy,
+                                    session_.handTurns() ? std::optional(view->record.orientation) : std::nullopt},
                           drawnLoad(view->record, view->patch, stage.scene().material));
     } else {
         stage.view().show(nullptr, 0, state_.look);
