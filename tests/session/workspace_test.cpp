@@ -94,6 +94,48 @@ TEST_P(ScaledSessions, APressedWallComesToRestAtTheCapOfTheDevice)
     }
 }
 
+/// Let go of on a spring at the cap that pulls from both sides, which no surface does, the arm settles: the servo's whole
+/// second half, at a scale, on an arm like a Falcon's. A spring three times as stiff at the device would swing for ever.
+TEST(ScaledServo, AReleasedArmOnATwoSidedSpringAtTheCapSettles)
+{
+    ArmDevice   arm;
+    DeviceFrame frame;
+    frame.scale = kScale;
+    arm.open();
+    ForceHalf   half(scaled(kStiff), arm.info());
+    PatchUpdate stiff; // one entry that is stiffer than any cap
+    stiff.table.compliance[0].value       = std::log(1e-6);
+    stiff.table.contactStiffness[0].value = std::log(1e6);
+    double     before = 0, released = 0, left = 0, stiffest = 0; // [m] of the device, [N/m]
+    TickRecord record;
+    for (int n = 0; n < 7000; ++n) {
+        const double time = n * 1e-3;
+        if (n % 16 == 0) {
+            stiff.table.sequence = std::uint64_t(n + 1);
+            stiff.table.time     = time;
+        }
+        if (n < 2000) arm.holdBy({.stiffness = 2000, .damping = 20});
+        if (n == 2000) arm.holdBy({.stiffness = 2000, .damping = 20, .target = {0, 1e-3, 0}});
+        if (n == 2300) arm.holdBy({});
+        const Hand   hand = frame.handOf(arm.read(time));
+        ProxyContact held;
+        held.touch = {std::uint64_t(n + 1), time, true, {}, {0, 1, 0}, {}};
+        held.pull  = {0, -hand.position.y, 0};
+        record     = half.tick({time, 1e-3}, hand, held, &stiff);
+        arm.render(frame.toDevice(half.governor().force()));
+        const double away = std::abs(arm.arm().position().y);
+        stiffest          = std::max(stiffest, record.stiffness * kScale);
+        if (n >= 2000 && n < 2300) before = away;
+        if (n >= 2300 && n < 2500) released = std::max(released, away);
+        if (n >= 6000) left = std::max(left, away);
+    }
+    std::printf("  %.0f N/m at the device, released at %.2f mm, left %.4f mm\n", stiffest, before * 1e3, left * 1e3);
+    EXPECT_EQ(record.faults & 0xFFU, 0U);
+    EXPECT_GT(stiffest, 0.9 * half.governor().stiffnessCap()) << "the cap binds";
+    EXPECT_GT(released, 0.3e-3) << "or the test says nothing";
+    EXPECT_LT(left, 2 * 48e-6) << "two of its encoder's steps";
+}
+
 /// Let go of while it is pressed into that wall, the arm springs out and settles: the hand leaves the grip at its
 /// deepest.
 TEST(ScaledHaply, AReleasedArmSettles)
