@@ -37,6 +37,7 @@ struct Shown {
     TickRecord    record;
     double        loopPeriod = 0; ///< [s]
     std::uint32_t buttons    = 0;
+    const char*   words      = ""; ///< of static storage
 };
 
 /// The deformation's output for the caller.
@@ -149,7 +150,7 @@ void RealSession::servoThread()
         parts_.device.light(std::uint8_t(lightOf(forceState(record))));
         parts_.device.render(parts_.frame.toDevice(force_.governor().force())); // leaves in this tick
         record.tickTime       = threadSeconds() - began;
-        shared_.shown.draft() = {record, period, state.buttons};
+        shared_.shown.draft() = {record, period, state.buttons, parts_.device.faultWords()};
         shared_.shown.publish();
         summary_.add(record);
         if (settings_.onTick) settings_.onTick(record);
@@ -262,7 +263,7 @@ void RealSession::watch()
         const ShownPatch* const patch = shared_.patch.held();
         if (shared_.shown.take()) {
             const Shown& shown = *shared_.shown.held();
-            settings_.onView({shown.record, shown.loopPeriod, patch ? patch->solveTime : 0, shown.buttons,
+            settings_.onView({shown.record, shown.loopPeriod, patch ? patch->solveTime : 0, shown.buttons, shown.words,
                               patch && patch->patch ? &*patch->patch : nullptr,
                               warning_}); // written before the first `shown`
         }

@@ -318,12 +318,13 @@ PanelContent Workbench::content(const SessionView* view) const
     PanelContent now{stage.scene(), stage.painted().cloud(), session_.history()};
     now.faults = notices_.faults();
     if (view) {
-        now.patch      = view->patch;
-        now.force      = drawnLoad(view->record, view->patch, stage.scene().material);
-        now.loopPeriod = view->loopPeriod;
-        now.solveTime  = view->solveTime;
-        now.touching   = inContact(view);
-        now.hand       = session_.handModel();
+        now.patch       = view->patch;
+        now.force       = drawnLoad(view->record, view->patch, stage.scene().material);
+        now.loopPeriod  = view->loopPeriod;
+        now.solveTime   = view->solveTime;
+        now.touching    = inContact(view);
+        now.hand        = session_.handModel();
+        now.deviceWords = view->words;
         if (const std::string why = session_.unsolved(); !why.empty())
             now.faults.push_back("the plate cannot be solved here: " + why);
     }
