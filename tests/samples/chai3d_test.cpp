@@ -154,14 +154,26 @@ protected:
     double tickTime(double until) override { return clock = std::max(clock, until); }
 };
 
+/// An arm with a button, which can go away.
+struct Arm : ArmDevice {
+    HapticState read(double now) noexcept override
+    {
+        HapticState state = ArmDevice::read(now);
+        state.buttons     = isPressed ? 1 : 0;
+        if (isGone) state.fault = DeviceFault::unplugged;
+        return state;
+    }
+    bool isPressed = false, isGone = false;
+};
+
 struct AsTheirs : ::testing::Test {
     AsTheirs()
     {
-        auto made = std::make_unique<ArmDevice>();
+        auto made = std::make_unique<Arm>();
         arm       = made.get();
         device    = std::make_unique<Ours>(std::move(made));
     }
-    ArmDevice*            arm = nullptr; ///< of the device
+    Arm*                  arm = nullptr; ///< of the device
     std::unique_ptr<Ours> device;
 
     /// Runs a haptic loop of CHAI3D's kind.
@@ -201,7 +213,7 @@ TEST_F(AsTheirs, AForceEngagesAndIsHeldToTheGovernorsLimits)
 TEST_F(AsTheirs, AWallAtTheStatedStiffnessIsStableAndOneThatIsStifferIsDamped)
 {
     for (const double factor : {1.0, 3.0}) {
-        auto made = std::make_unique<ArmDevice>();
+        auto made = std::make_unique<Arm>();
         arm       = made.get();
         device    = std::make_unique<Ours>(std::move(made));
         ASSERT_TRUE(device->open());
@@ -236,6 +248,15 @@ TEST_F(AsTheirs, WhatIsNotFiniteIsZeroUntilTheButtonIsHeld)
     device->getForce(felt);
     EXPECT_EQ(felt.z(), 0);
     EXPECT_EQ(device->governor().fault(), GovernorFault::forceNotFinite);
+    arm->isPressed = true;
+    loop(0.015, nothing);
+    EXPECT_EQ(device->governor().fault(), GovernorFault::forceNotFinite) << "a short press may be a corrupt packet";
+    loop(0.01, nothing);
+    EXPECT_EQ(device->governor().fault(), GovernorFault::none);
+    bool isDown = false;
+    EXPECT_TRUE(device->getUserSwitch(0, isDown) && isDown);
+    EXPECT_TRUE(device->getUserSwitch(1, isDown) && !isDown);
+    EXPECT_TRUE(device->getUserSwitch(99, isDown) && !isDown);
     EXPECT_TRUE(device->close());
     EXPECT_FALSE(device->close());
     ASSERT_TRUE(device->open());
@@ -251,6 +272,19 @@ TEST_F(AsTheirs, ItsTurnComesInTheirFrame)
     EXPECT_NEAR(std::abs(glm::dot(fromChai3d(turn), glm::angleAxis(std::acos(0.0), glm::dvec3(0, 1, 0)))), 1, 1e-12);
     turn(0, 0) = std::nan("");
     EXPECT_EQ(fromChai3d(turn), glm::dquat(1, 0, 0, 0)) << "no turn";
+}
+
+TEST_F(AsTheirs, ADeviceThatIsUnpluggedIsNoSuccess)
+{
+    ASSERT_TRUE(device->open());
+    loop(2, nothing);
+    loop(0.1, [](const auto&) { return chai3d::cVector3d(0, 0, 3); });
+    arm->isGone = true;
+    chai3d::cVector3d place;
+    EXPECT_TRUE(device->setForceAndTorqueAndGripperForce({0, 0, 3}, {}, 0)) << "of the state before";
+    for (int n = 0; n < 20; ++n) device->setForceAndTorqueAndGripperForce({0, 0, 3}, {}, 0);
+    EXPECT_FALSE(device->getPosition(place));
+    EXPECT_EQ(device->governor().force().newtons(), glm::dvec3(0));
 }
 
 TEST_F(AsTheirs, ForcesCanBeSwitchedOff)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -22,6 +23,14 @@ using Seconds = std::chrono::duration<double>;
 bool inContact(const SessionView* view)
 {
     return view && glm::length(view->record.normal) > 0;
+}
+
+/// Returns " × 3" for a device whose millimetre is three of the scene; the pointer is in the scene.
+std::string scaleOf(const Scene& scene, bool byPointer)
+{
+    if (byPointer || scene.workspaceScale == 1) return {};
+    char text[32];
+    return {text, std::size_t(std::snprintf(text, sizeof text, " \u00d7 %g", scene.workspaceScale))};
 }
 
 } // namespace
@@ -323,7 +332,7 @@ PanelContent Workbench::content(const SessionView* view) const
         now.loopPeriod  = view->loopPeriod;
         now.solveTime   = view->solveTime;
         now.touching    = inContact(view);
-        now.hand        = session_.handModel();
+        now.hand        = session_.handModel() + scaleOf(stage.scene(), session_.byPointer());
         now.deviceWords = view->words;
         if (const std::string why = session_.unsolved(); !why.empty())
             now.faults.push_back("the plate cannot be solved here: " + why);
