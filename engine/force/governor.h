@@ -161,8 +161,8 @@ struct GovernorOutput {
 /// failure that a tick can see ends at exactly zero within 20 ms of ticks. The device scales forces to its motors.
 ///
 /// What carries the arm (9) is a constant vector, so that it does no work in a closed cycle and has no lag; neither the
-/// energy (4) nor the limits (5, 6) count it. A clutch (2) leaves it as it is. It does not wait for a calm hand (8): uncarried, the arm presses 2 N into
-/// the object, and the hand would never be calm.
+/// energy (4) nor the limits (5, 6) count it. It does not wait for a calm hand (8): uncarried, the arm presses 2 N into
+/// the object, and the hand would never be calm. A clutch (2) leaves it as it is.
 ///
 /// The lag of the loop, from the place of the hand to the middle of the time in which its force acts, is the age of the
 /// answer, one period of exchanges (what an answer waits for a tick, and its force for the next packet, adds up to one)

@@ -178,7 +178,7 @@ doctor() {
     env -u DISPLAY -u WAYLAND_DISPLAY -u FALCON_FIRMWARE $variables "$palpate" doctor --quick >out.txt 2>err.txt && [ ! -s err.txt ] || complain "doctor: exit $? $(cat err.txt)"
     tr -s ' ' <out.txt | grep -qF -- "$*" && passed=$((passed + 1)) || complain "doctor$variables lacks '$*': $(cat out.txt)"
 }
-for part in vulkan host display 'real time' usb guardian 'udev rule' falcon 'falcon firmware' bridge spacemouse; do doctor -- " $part "; done
+for part in vulkan host display 'real time' usb guardian 'udev rule' falcon 'falcon firmware' haply 'haply service' forcedimension 'forcedimension sdk' openhaptics 'openhaptics sdk' bridge spacemouse; do doctor -- " $part "; done
 doctor -- 'Embree '
 doctor -- 'missing display neither DISPLAY nor WAYLAND_DISPLAY'
 doctor DISPLAY=:0 -- 'ok display X11'
