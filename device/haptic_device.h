@@ -88,6 +88,7 @@ struct HapticState {
     std::uint32_t buttons      = 0;     ///< bit i: button i is down
     bool          homed        = false; ///< the position is known
     bool          inBox        = false; ///< within the workspace, and the kinematics could be solved
+    bool          clutched     = false; ///< a clutch of its own is held, or was in a session that is replayed
     int           missed       = 0;     ///< exchanges without an answer, in a row
     DeviceFault   fault        = DeviceFault::closed;
 };

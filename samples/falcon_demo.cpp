@@ -107,7 +107,8 @@ void run(Options& o)
         o.hand.options[std::string(kFalconCold.flag)] = "true";
     }
     SessionHand hand = openHand(o.hand, scene, loaded.object);
-    for (const std::string& warning : hand.warnings) std::printf("note    %s\n", warning.c_str());
+    for (const auto& said : {hand.warnings, hand.notes})
+        for (const std::string& sentence : said) std::printf("note    %s\n", sentence.c_str());
     auto* emulated = dynamic_cast<GrippedFalcon*>(hand.device.get());
     home(*hand.device, emulated);
     std::puts("feel    now; Ctrl-C ends it, at zero force");

@@ -306,7 +306,7 @@ DeviceSupport support()
 
 std::vector<Finding> findings()
 {
-    const char* part = "openhaptics";
+    const char* part = "openhaptics sdk";
     try {
         static_cast<void>(loadHd());
         return {{part, Verdict::ok, "its library can be loaded"}};

@@ -96,7 +96,8 @@ GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
     if (!in.homed) mark(out, GovernorAction::notHomed); // 2
     if (!in.inBox) mark(out, GovernorAction::outsideBox);
     if (in.letGo) mark(out, GovernorAction::lettingGo);
-    const bool may = in.homed && in.inBox && !in.letGo;
+    if (in.clutched) mark(out, GovernorAction::clutched);
+    const bool may = in.homed && in.inBox && !in.letGo && !in.clutched;
     if (!may) release();
 
     const double fresh = freshness(usableAge(in)); // 3
@@ -340,7 +341,7 @@ void ForceGovernor::watchSpeed(const GovernorInput& in) noexcept
 
 void ForceGovernor::engage(const GovernorInput& in, double rise, GovernorOutput& out) noexcept
 {
-    const bool calm = fault_ == GovernorFault::none && in.homed && in.inBox && !in.letGo &&
+    const bool calm = fault_ == GovernorFault::none && in.homed && in.inBox && !in.letGo && !in.clutched &&
                       usableAge(in) <= settings_.staleAfter && glm::length(in.velocity) <= settings_.maximumSpeed &&
                       glm::length(slewed_) < settings_.calmForce;
     switch (engagement_) {

@@ -100,7 +100,8 @@ enum class GovernorAction : std::uint32_t {
     releasing  = 512,  ///< going down to zero, to wait again
     late       = 1024, ///< a tick was so late that its force is less than wanted
     lifting    = 2048, ///< less than the arm's weight is carried: it comes on, or goes
-    lettingGo  = 4096  ///< whoever drives the loop wants no force: GovernorInput::letGo
+    lettingGo  = 4096, ///< whoever drives the loop wants no force: GovernorInput::letGo
+    clutched   = 8192  ///< GovernorInput::clutched
 };
 
 /// Input of one tick. Vectors share one frame.
@@ -110,10 +111,11 @@ struct GovernorInput {
     double     overdue  = 0;        ///< [s] by which what it was computed from is too old; at most 0: it is not
     glm::dvec3 position{};          ///< [m] of the grip
     glm::dvec3 velocity{};          ///< [m/s] of the grip, filtered
-    bool       homed = false;       ///< the position is known
-    bool       inBox = false;       ///< the grip is where the device's kinematics are good, and they could be solved
-    bool       letGo = false;       ///< no force is wanted, of no kind: the program is about to stop
-    double     dt    = 0;           ///< [s] since the last tick
+    bool       homed    = false;    ///< the position is known
+    bool       inBox    = false;    ///< the grip is where the device's kinematics are good, and they could be solved
+    bool       letGo    = false;    ///< no force is wanted, of no kind: the program is about to stop
+    bool       clutched = false;    ///< the place is not the grip's for now: no force but what carries the arm
+    double     dt       = 0;        ///< [s] since the last tick
     int        missedExchanges = 0; ///< with the device, in a row
 
     double answerAge      = 0; ///< [s] of the position when its answer came: HapticState::age
@@ -144,7 +146,7 @@ struct GovernorOutput {
 /// Checks every force before a device: no force leaves without it. Each tick takes these steps, in this order:
 ///
 ///   1  the input is credible: finite, the clock runs, the device answers           else fault, 0
-///   2  homed and in the box                                                        else 0, then engage anew
+///   2  homed, in the box and not clutched                                          else 0, then engage anew
 ///   3  fresh: held for 5 ms, to zero in 20 ms                                      then engage anew;
 ///      after a late tick as much of the force as a loop that is always so late bears
 ///   4  passivity: E -= f (x - x'); if E < 0, f -= alpha v
@@ -160,7 +162,7 @@ struct GovernorOutput {
 ///
 /// What carries the arm (9) is a constant vector, so that it does no work in a closed cycle and has no lag; neither the
 /// energy (4) nor the limits (5, 6) count it. It does not wait for a calm hand (8): uncarried, the arm presses 2 N into
-/// the object, and the hand would never be calm.
+/// the object, and the hand would never be calm. A clutch (2) leaves it as it is.
 ///
 /// The lag of the loop, from the place of the hand to the middle of the time in which its force acts, is the age of the
 /// answer, one period of exchanges (what an answer waits for a tick, and its force for the next packet, adds up to one)

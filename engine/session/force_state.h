@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "device/haptic_device.h"
 #include "engine/core/enum_names.h"
@@ -15,6 +16,7 @@ enum class ForceState : std::uint8_t {
     waits,        ///< for a hand that is slow and presses on nothing
     plateSilent,  ///< the plate's answer is too old
     outOfBox,     ///< the grip is out of the device's workspace
+    clutched,     ///< the clutch holds the tool while the device moves
     notHomed,     ///< the device does not know where the grip is
     programStops, ///< Ctrl-Z: the session lets go before
     deviceFaulty, ///< the device reports a fault that may pass
@@ -30,6 +32,7 @@ constexpr auto namesOf(ForceState)
                                                   {plateSilent, "plate-silent"},
                                                   {outOfBox, "out-of-box"},
                                                   {notHomed, "not-homed"},
+                                                  {clutched, "clutched"},
                                                   {programStops, "program-stops"},
                                                   {deviceFaulty, "device-faulty"},
                                                   {stopped, "stopped"},
@@ -40,7 +43,11 @@ constexpr auto namesOf(ForceState)
 [[nodiscard]] ForceState forceState(const TickRecord& record) noexcept;
 
 /// Returns it for a person, with what to do: "no force: the grip is out of its workspace". Empty while forces flow.
-[[nodiscard]] std::string describeForces(const TickRecord& record);
+/// \param words  of the device about its fault, as HapticDevice::faultWords(); empty: what is known of every device
+[[nodiscard]] std::string describeForces(const TickRecord& record, std::string_view words = {});
+
+/// Returns what a fault of a device means, as the end of a sentence: "it does not answer; see its cable and its power".
+[[nodiscard]] std::string_view meaningOf(DeviceFault fault) noexcept;
 
 /// Returns the light that shows it: red, home the device; blue, no force; green, forces flow or come on.
 [[nodiscard]] DeviceLight lightOf(ForceState state) noexcept;

@@ -29,13 +29,18 @@ SimulatedHand GrippingHand::at(double time, const glm::dvec3& weight) const noex
     return hand;
 }
 
+glm::dquat GrippingHand::orientation(double time) const noexcept
+{
+    return glm::conjugate(frame.sceneFromDevice) * path.orientation(path.begin() + time);
+}
+
 void GrippingHand::demandWithin(double radius) const
 {
     for (const HandPose& s : path.waypoints())
-        if (const double away = glm::length(s.position - frame.origin); away > radius)
+        if (const double away = glm::length(frame.toDevice(s.position)); away > radius)
             throw Error("the hand: at " + formatQuantity(s.time, "s") + " it is " + formatQuantity(away, "m") +
                         " from the middle of the arm's workspace, whose radius is " + formatQuantity(radius, "m") +
-                        "; try a smaller --reach, or a scene whose start_height is lower");
+                        "; try a smaller --reach, a larger --workspace-scale, or a scene whose start_height is lower");
 }
 
 GrippedArm::GrippedArm(const GrippingHand& hand, const SimulatedArmSettings& arm)

@@ -21,6 +21,9 @@ struct GrippingHand {
     ///                else it would lie in the object when the session begins
     [[nodiscard]] SimulatedHand at(double time, const glm::dvec3& weight = {}) const noexcept;
 
+    /// Returns how the grip is turned at a time [s] of the session, in the device's frame.
+    [[nodiscard]] glm::dquat orientation(double time) const noexcept;
+
     /// Checks that the path stays within the device's reach.
     /// \throws Error naming the first time at which the path is farther than `radius` [m] from the frame's origin
     void demandWithin(double radius) const;

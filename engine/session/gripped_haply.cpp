@@ -54,6 +54,7 @@ HapticState GrippedHaply::read(double now) noexcept
     if (last_ < 0 || now < last_) begun_ = service_.now() - now; // the servo's clock starts, or starts again
     last_ = now;
     service_.press(hand_.path.buttons(hand_.path.begin() + now));
+    if (hand_.path.turns()) service_.turn(hand_.orientation(now));
     service_.moveTo(now + begun_);
     return device_->read(now);
 }

@@ -121,12 +121,32 @@ std::string_view wordAt(std::string_view line, std::size_t column)
     }
 }
 
-/// Returns the column in which a header has buttons; 0 (where time is) if it has none.
-std::size_t buttonsIn(std::string_view header, std::size_t columns)
+/// Returns the column in which a header has a name; 0 (where time is) if it has none.
+std::size_t columnIn(std::string_view header, std::size_t columns, std::string_view name)
 {
     for (std::size_t k = 4; k < columns; ++k)
-        if (wordAt(header, k) == "buttons") return k;
+        if (wordAt(header, k) == name) return k;
     return 0;
+}
+
+/// Where a header has what a file may add to time and place; 0 where it has it not.
+struct FurtherColumns {
+    std::size_t                buttons = 0;
+    std::array<std::size_t, 4> turn{}; ///< x, y, z, w
+
+    [[nodiscard]] bool turns() const { return turn[0] > 0; }
+};
+
+FurtherColumns furtherIn(std::string_view header, std::size_t columns, const std::string& where)
+{
+    FurtherColumns found;
+    found.buttons = columnIn(header, columns, "buttons");
+    for (std::size_t k = 0; k < 4; ++k)
+        found.turn[k] = columnIn(header, columns, std::string("orientation_") + "xyzw"[k]);
+    const auto there = 4 - std::ranges::count(found.turn, 0U);
+    if (there != 0 && there != 4)
+        throw Error(where + ": expected orientation_x, _y, _z and _w or none of them, found " + std::to_string(there));
+    return found;
 }
 
 std::uint32_t buttonsOf(std::string_view word, const std::string& where)
@@ -137,6 +157,24 @@ std::uint32_t buttonsOf(std::string_view word, const std::string& where)
         throw Error(where + ": expected buttons as a whole number from 0 to 65535, one bit each, found \"" +
                     plain(word) + "\"");
     return std::uint32_t(*bits);
+}
+
+glm::dquat turnOf(std::string_view line, const std::array<std::size_t, 4>& columns, const std::string& where)
+{
+    glm::dquat turn{};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::string_view word   = wordAt(line, columns[k]);
+        const auto             number = parseNumber(word);
+        if (!number)
+            throw Error(where + ": expected a number in column " + std::to_string(columns[k] + 1) + ", found \"" +
+                        plain(word) + "\"");
+        (k == 0 ? turn.x : k == 1 ? turn.y : k == 2 ? turn.z : turn.w) = *number;
+    }
+    constexpr double kRounded = 0.05; // [1] a quaternion in two decimal places is off by less
+    const double     size     = glm::length(turn);
+    if (!(std::abs(size - 1) < kRounded))
+        throw Error(where + ": expected an orientation of length 1, found one of length " + text(size));
+    return turn / size;
 }
 
 HandPose waypointOf(const std::array<std::string_view, 4>& words, const std::string& where)
@@ -234,6 +272,8 @@ HandPath::HandPath(std::vector<HandPose> waypoints, const std::string& name)
     checked.finish(name);
     waypoints_ = std::move(checked.waypoints);
     fastest_   = checked.fastest;
+    turns_     = std::ranges::any_of(
+            waypoints_, [](const HandPose& waypoint) { return waypoint.orientation != glm::dquat(1, 0, 0, 0); });
 }
 
 glm::dvec3 HandPath::position(double time) const noexcept
@@ -252,11 +292,23 @@ std::uint32_t HandPath::buttons(double time) const noexcept
     return (std::ranges::upper_bound(waypoints_, time, {}, &HandPose::time) - 1)->buttons;
 }
 
+glm::dquat HandPath::orientation(double time) const noexcept
+{
+    if (!turns_) return {1, 0, 0, 0};
+    if (!(time > waypoints_.front().time)) return waypoints_.front().orientation; // NaN too
+    if (time >= waypoints_.back().time) return waypoints_.back().orientation;
+    const auto      next = std::ranges::upper_bound(waypoints_, time, {}, &HandPose::time);
+    const HandPose &b = *next, &a = *(next - 1);
+    if (time == a.time) return a.orientation;
+    return glm::normalize(glm::slerp(a.orientation, b.orientation, (time - a.time) / (b.time - a.time)));
+}
+
 HandPath parseHand(std::istream& in, const std::string& name)
 {
     constexpr std::size_t kLongestLine = 1 << 16; // [bytes] a file without line ends is no text, and may be endless
     Checked               checked;
-    std::size_t           columns = 4, buttons = 0;
+    std::size_t           columns = 4;
+    FurtherColumns        further;
     std::vector<char>     line(kLongestLine);
     for (std::size_t number = 1; in.getline(line.data(), std::streamsize(line.size())); ++number) {
         const std::string          where = name + ": line " + std::to_string(number);
@@ -267,12 +319,13 @@ HandPath parseHand(std::istream& in, const std::string& name)
         if (words.count == 0 || words.first[0].starts_with('#')) continue;
         if (checked.waypoints.empty() && isHeader(words.first, where)) {
             columns = std::max(words.count, columns);
-            buttons = buttonsIn(rest, columns);
+            further = furtherIn(rest, columns, where);
             continue;
         }
         demandColumns(words, columns, where);
         HandPose waypoint = waypointOf(words.first, where);
-        if (buttons > 0) waypoint.buttons = buttonsOf(wordAt(rest, buttons), where);
+        if (further.buttons > 0) waypoint.buttons = buttonsOf(wordAt(rest, further.buttons), where);
+        if (further.turns()) waypoint.orientation = turnOf(rest, further.turn, where);
         checked.add(waypoint, where);
     }
     if (!in.eof())

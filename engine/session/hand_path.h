@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
 
 #include "engine/cloud/neighbour_index.h"
@@ -18,9 +19,10 @@ namespace palp {
 
 /// The place of a scripted hand at one time.
 struct HandPose {
-    double        time = 0;    ///< [s]
-    glm::dvec3    position{};  ///< of the HIP [m]
-    std::uint32_t buttons = 0; ///< that are down from here on, as HapticState::buttons
+    double        time = 0;                ///< [s]
+    glm::dvec3    position{};              ///< of the HIP [m]
+    std::uint32_t buttons = 0;             ///< that are down from here on, as HapticState::buttons
+    glm::dquat    orientation{1, 0, 0, 0}; ///< of the grip in the scene, a unit quaternion
 };
 
 /// A scripted hand: straight lines between waypoints.
@@ -45,6 +47,12 @@ public:
     /// Returns the buttons that are down at a time [s]: those of the last waypoint up to then.
     [[nodiscard]] std::uint32_t buttons(double time) const noexcept;
 
+    /// Returns how the grip is turned at a time [s]: on the shortest way from one waypoint to the next.
+    [[nodiscard]] glm::dquat orientation(double time) const noexcept;
+
+    /// Returns whether the hand turns its grip anywhere.
+    [[nodiscard]] bool turns() const noexcept { return turns_; }
+
     [[nodiscard]] double begin() const noexcept { return waypoints_.front().time; }             ///< [s]
     [[nodiscard]] double duration() const noexcept { return waypoints_.back().time - begin(); } ///< [s]
     [[nodiscard]] double fastest() const noexcept { return fastest_; }                          ///< [m/s]
@@ -53,11 +61,12 @@ public:
 private:
     std::vector<HandPose> waypoints_;
     double                fastest_ = 0; ///< [m/s]
+    bool                  turns_   = false;
 };
 
 /// Reads a hand from a file of rows time [s], x, y, z [m]. Further columns are skipped where a header line has them
 /// too, so that the table of a recorded session is a hand; in text, one that is called "buttons" is read: a whole
-/// number, whose bit i is set if button i is down.
+/// number, whose bit i is set if button i is down; and so are orientation_x, _y, _z and _w, a quaternion of the grip.
 ///
 /// .npy: an array of shape (n, 4) or wider. Any other extension: text, one waypoint a line, numbers between commas,
 /// semicolons, blanks or tabs; lines that start with '#' are comments; a header line is skipped if its first name

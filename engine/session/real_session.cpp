@@ -12,6 +12,7 @@
 #include "engine/core/latest.h"
 #include "engine/core/real_time.h"
 #include "engine/core/thread_time.h"
+#include "engine/session/clutch.h"
 #include "engine/session/detail/solve_pace.h"
 #include "engine/session/force_state.h"
 #include "engine/session/interrupt.h"
@@ -36,6 +37,7 @@ struct Shown {
     TickRecord    record;
     double        loopPeriod = 0; ///< [s]
     std::uint32_t buttons    = 0;
+    const char*   words      = ""; ///< of static storage
 };
 
 /// The deformation's output for the caller.
@@ -71,7 +73,7 @@ class RealSession {
 public:
     RealSession(const SessionParts& parts, const RealSessionSettings& settings)
         : parts_(parts), settings_(settings), contact_(parts.object, parts.scene),
-          force_(parts.scene, parts.frame.inScene(parts.device.info()), parts.first)
+          force_(parts.scene, parts.frame.inScene(parts.device.info()), parts.first), clutch_(parts.frame.clutch)
     {
     }
 
@@ -93,6 +95,7 @@ private:
     ContactHalf                contact_;      ///< of the servo's thread, or of the proxy's
     ProxyContact               nothing_;      ///< of the servo's thread, before the proxy's first answer
     ForceHalf                  force_;        ///< of the servo's thread
+    Clutch                     clutch_;       ///< of the servo's thread
     SessionSummary             summary_;      ///< of the servo's thread
     SessionSummary             slow_;         ///< of the deformation's
     std::string                warning_;      ///< of the servo's
@@ -147,7 +150,7 @@ void RealSession::servoThread()
         parts_.device.light(std::uint8_t(lightOf(forceState(record))));
         parts_.device.render(parts_.frame.toDevice(force_.governor().force())); // leaves in this tick
         record.tickTime       = threadSeconds() - began;
-        shared_.shown.draft() = {record, period, state.buttons};
+        shared_.shown.draft() = {record, period, state.buttons, parts_.device.faultWords()};
         shared_.shown.publish();
         summary_.add(record);
         if (settings_.onTick) settings_.onTick(record);
@@ -160,7 +163,9 @@ void RealSession::servoThread()
 
 TickRecord RealSession::tick(const ForceHalf::TickTime& now, const HapticState& state, bool letGo) noexcept
 {
-    Hand hand                   = parts_.frame.handOf(state);
+    const bool isAsked          = settings_.clutch && settings_.clutch->load(std::memory_order_relaxed);
+    Hand       hand             = parts_.frame.handOf(clutch_.step(state, isAsked));
+    hand.clutched               = clutch_.isHeld();
     hand.letGo                  = letGo;
     const ProxyContact& contact = held(now.time, hand);
     shared_.update.take();
@@ -258,7 +263,7 @@ void RealSession::watch()
         const ShownPatch* const patch = shared_.patch.held();
         if (shared_.shown.take()) {
             const Shown& shown = *shared_.shown.held();
-            settings_.onView({shown.record, shown.loopPeriod, patch ? patch->solveTime : 0, shown.buttons,
+            settings_.onView({shown.record, shown.loopPeriod, patch ? patch->solveTime : 0, shown.buttons, shown.words,
                               patch && patch->patch ? &*patch->patch : nullptr,
                               warning_}); // written before the first `shown`
         }
@@ -315,7 +320,7 @@ SessionSummary RealSession::run(std::string& warning)
     summary_.fault         = force_.governor().fault();
     summary_.why           = slow_.why;
     if (summary_.deviceFault != DeviceFault::none) summary_.deviceWords = parts_.device.faultWords();
-    summary_.whyPatchless  = slow_.whyPatchless;
+    summary_.whyPatchless = slow_.whyPatchless;
     return summary_;
 }
 

@@ -17,6 +17,7 @@ struct SessionView {
     double           loopPeriod = 0;  ///< of the servo, a mean over 0.1 s [s]
     double           solveTime  = 0;  ///< of the last patch [s]; 0: none yet
     std::uint32_t    buttons    = 0;  ///< of the device
+    const char*      words      = ""; ///< of the device about its present fault, see HapticDevice::faultWords()
     const Patch*     patch = nullptr; ///< the last one: displaced(cloud, *patch, |force|) is the surface; may be null
     std::string_view warning{};       ///< the real-time rights that the system refused; empty if none
 };
@@ -31,6 +32,7 @@ struct RealSessionSettings {
     std::function<void(const SessionView&)> onView{};         ///< on the calling thread, every viewPeriod; may be empty
     double                                  viewPeriod = 0.1; ///< [s]
     const std::atomic<bool>*                stop       = nullptr; ///< ends the session once it is true; may be null
+    const std::atomic<bool>*                clutch     = nullptr; ///< holds the Clutch while it is true; may be null
 };
 
 /// Runs a whole session in real time: servo and deformation have threads of their own, and the caller watches.

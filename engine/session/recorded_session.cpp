@@ -182,6 +182,9 @@ RecordedSession readDescription(const std::filesystem::path& folder)
             const std::vector<double> weight = hand.numbers("weight_N", 3);
             session.hand.weight              = {weight[0], weight[1], weight[2]};
         }
+        const auto senses       = [&](const char* what) { return hand.has(what) && hand.json(what) == "true"; };
+        session.hand.rotates    = senses("senses_orientation"); // older recordings do not say it
+        session.hand.hasGripper = senses("senses_grip");
     }
     session.markers = readMarkers(folder / "markers.jsonl");
     return session;

@@ -27,17 +27,19 @@ HapticState ReplayDevice::read(double now) noexcept
     hand.setBits(record.device);
     ++next_;
     // As old as it was then, and on the clock of then to the bit.
-    state.time        = now == record.time ? record.answerTime : now - (record.time - record.answerTime);
-    state.age         = record.answerAge;
-    state.sequence    = record.answers;
-    state.orientation = record.orientation;
-    state.position    = record.hip;
-    state.velocity    = record.hipVelocity;
-    state.buttons     = hand.buttons;
-    state.homed       = hand.homed;
-    state.inBox       = hand.inBox;
-    state.missed      = record.missed;
-    state.fault       = hand.device;
+    state.time         = now == record.time ? record.answerTime : now - (record.time - record.answerTime);
+    state.age          = record.answerAge;
+    state.sequence     = record.answers;
+    state.orientation  = record.orientation;
+    state.gripperAngle = record.grip;
+    state.position     = record.hip;
+    state.velocity     = record.hipVelocity;
+    state.buttons      = hand.buttons;
+    state.clutched     = hand.clutched;
+    state.homed        = hand.homed;
+    state.inBox        = hand.inBox;
+    state.missed       = record.missed;
+    state.fault        = hand.device;
     return state;
 }
 

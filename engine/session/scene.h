@@ -50,6 +50,9 @@ constexpr auto namesOf(Scatter)
     return std::to_array<NamedValue<Scatter>>({{automatic, "auto"}, {on, "on"}, {off, "off"}});
 }
 
+/// Bounds of Scene::workspaceScale [1]. Above, a millimetre of a trembling hand is a centimetre of the object.
+inline constexpr double kLeastWorkspaceScale = 0.1, kMostWorkspaceScale = 10;
+
 struct ValueOrigin {
     Origin      origin = Origin::standard;
     std::string where; ///< "sample:skin", a file, "PALPATE_THICKNESS", "--preset paper"; empty for a default
@@ -106,6 +109,8 @@ struct Scene {
     double    maxForce        = 6;     ///< the governor clamps the force to it [N]
     double    stiffnessCap    = 1000;  ///< of what the device renders at a period of 1 ms [N/m]
     double    startHeight     = 10e-3; ///< of the hand above the place when the session starts [m]
+    double    workspaceScale  = 1;     ///< metres of the scene per metre of the device [1]; forces are not scaled
+    int       clutchButton    = 0;     ///< of the device, counted from 1; 0: none
 
     std::shared_ptr<const CloudOverlay> overlay{};          ///< of a tool; empty: the cloud as it is loaded
     const std::vector<SceneKey>*        toolKeys = nullptr; ///< of the tool that read the scene; null: none

@@ -552,6 +552,22 @@ std::vector<SceneKey> servoKeys()
              .dimension = D::length,
              .bounds    = KeyBounds{0, 1}},
             [](auto& s) -> auto& { return s.startHeight; }),
+        numberKey(
+            {.name   = "workspace_scale",
+             .help   = "millimetres of the scene per millimetre of the device: 3 explores a 120 mm object with a "
+                       "workspace of 40 mm; forces are not scaled, and what is rendered is at most stiffness_cap at "
+                       "the device",
+             .group  = kSession,
+             .unit   = "1",
+             .bounds = KeyBounds{kLeastWorkspaceScale, kMostWorkspaceScale}},
+            [](auto& s) -> auto& { return s.workspaceScale; }),
+        countKey(
+            {.name  = "clutch_button",
+             .help  = "button of the device that is its clutch: while it is held no force flows and the tool stays, so "
+                      "that the device can go back to its middle; counted from 1, 0 for none",
+             .group = kSession,
+             .bounds = KeyBounds{0, 16}},
+            [](auto& s) -> auto& { return s.clutchButton; }),
     };
 }
 

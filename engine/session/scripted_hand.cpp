@@ -9,6 +9,7 @@ ScriptedHand::ScriptedHand(const HandPath& hand) : hand_(hand)
     info_.model           = "scripted hand";
     info_.workspaceRadius = std::numeric_limits<double>::infinity();
     info_.isSimulation    = true;
+    info_.rotates         = hand.turns();
 }
 
 HapticState ScriptedHand::read(double now) noexcept
@@ -18,8 +19,9 @@ HapticState ScriptedHand::read(double now) noexcept
     state.sequence = ++sequence_;
     state.position = hand_.position(hand_.begin() + now);
     motion_.add(now, state.position);
-    state.velocity = motion_.velocity();
-    state.buttons  = hand_.buttons(hand_.begin() + now);
+    state.velocity    = motion_.velocity();
+    state.buttons     = hand_.buttons(hand_.begin() + now);
+    state.orientation = hand_.orientation(hand_.begin() + now);
     state.homed = state.inBox = true;
     state.fault               = DeviceFault::none;
     return state;

@@ -67,7 +67,7 @@ double AnswerPeriod::add(std::uint64_t sequence, double time) noexcept
 
 ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, const HomogeneousLaw* first)
     : law_(scene.patch.forceLaw), thickness_(scene.material.thickness), linear_(scene.material.isLinear()),
-      stiffening_(scene.material.stiffening), patchPeriod_(1 / scene.deformationRate),
+      stiffening_(scene.material.stiffening), patchPeriod_(1 / scene.deformationRate), scale_(scene.workspaceScale),
       compliance_(scene.complianceLaw, first), relaxing_(scene.material.relaxation, scene.patch.footprintRadius),
       governor_(governorOf(scene, limits))
 {
@@ -83,34 +83,42 @@ ForceHalf::WantedForce ForceHalf::wantedForce(double stiffness, double dt, const
     const glm::dvec3  way     = slid ? held.touch.point - last_.touch.point : glm::dvec3(0);
 
     const double depth = glm::length(held.pull), surface = depth > 0 ? std::max(depth, relaxing_.surface()) : depth;
-    const EnergyTankOutput tank = tank_.step({.stiffness       = stiffness,
-                                              .depth           = surface,
-                                              .normalSpeed     = along,
-                                              .tangentialSpeed = glm::length(tangent(hand.velocity)),
-                                              .dt              = dt,
-                                              .drag         = -glm::dot(tangent(held.pull), tangent(way)) * forceShare_,
-                                              .spareDamping = governor_.spareDamping(),
-                                              .stiffening   = stiffening_,
-                                              .steepest     = governor_.stiffnessCap(),
-                                              .storedShare  = relaxing_.storedShare()});
+    const EnergyTankOutput tank =
+        tank_.step({.stiffness       = stiffness * scale_,
+                    .depth           = surface / scale_,
+                    .normalSpeed     = along / scale_,
+                    .tangentialSpeed = glm::length(tangent(hand.velocity)) / scale_,
+                    .dt              = dt,
+                    .drag            = -glm::dot(tangent(held.pull), tangent(way)) * forceShare_ / (scale_ * scale_),
+                    .spareDamping    = governor_.spareDamping(),
+                    .stiffening      = stiffening_ * scale_,
+                    .steepest        = governor_.stiffnessCap(),
+                    .storedShare     = relaxing_.storedShare()});
 
-    WantedForce result{{}, tank.law.secant(depth), tank.law.tangent(depth), tank.used, tank.stored};
-    result.load = tank.stiffness * depth;
-    if (relaxing_.relaxes()) relax(result, tank, dt, held);
+    const DepthLaw law = inScene(tank.law);
+    WantedForce    result{{}, law.secant(depth), law.tangent(depth), tank.used * scale_, tank.stored * scale_};
+    result.load = law.stiffness * depth;
+    if (relaxing_.relaxes()) relax(result, law, dt, held);
     result.force = result.stiffness * held.pull;
     return result;
 }
 
-/// Takes from the elastic force what the material under the finger has got used to.
-void ForceHalf::relax(WantedForce& want, const EnergyTankOutput& tank, double dt, const ProxyContact& held) noexcept
+/// Returns a law of the device's metres in those of the scene.
+DepthLaw ForceHalf::inScene(const DepthLaw& atDevice) const noexcept
 {
-    const double                  depth = glm::length(held.pull), elastic = tank.law.force(depth);
-    const RelaxingContact::Output out = relaxing_.step({tank.law, depth, held.touch.point, dt});
+    return {atDevice.stiffness / scale_, atDevice.stiffening / scale_, atDevice.steepest / scale_};
+}
+
+/// Takes from the elastic force what the material under the finger has got used to.
+void ForceHalf::relax(WantedForce& want, const DepthLaw& law, double dt, const ProxyContact& held) noexcept
+{
+    const double                  depth = glm::length(held.pull), elastic = law.force(depth);
+    const RelaxingContact::Output out = relaxing_.step({law, depth, held.touch.point, dt});
     forceShare_                       = elastic > 0 ? out.force / elastic : 1;
     want.stiffness *= forceShare_;
     want.admitted += out.refreshed;
     want.stored = depth > 0 ? out.stored : 0; // what a surface stores that was left, no hand gets back
-    want.load   = tank.stiffness * relaxing_.surface();
+    want.load   = law.stiffness * relaxing_.surface();
 }
 
 /// Returns the force that dents the plate as it is drawn [N]. A plate is linear, and stiffens only together with the
@@ -129,14 +137,14 @@ double ForceHalf::plateLoad(const WantedForce& want, const GovernorOutput& out, 
 double ForceHalf::stiffnessOf(const std::optional<LocalCompliance>& local) const noexcept
 {
     if (!local) return 0;
-    return std::min(feltStiffness(law_, local->contactStiffness, local->compliance), governor_.stiffnessCap());
+    return std::min(feltStiffness(law_, local->contactStiffness, local->compliance), steepest());
 }
 
 /// Returns what a contact of one stiffness stores, as a multiple of what it does with the other [1].
 double ForceHalf::storedRatio(double stiffness, double other, double depth) const noexcept
 {
     if (stiffening_ == 0) return stiffness / other;
-    const double cap = governor_.stiffnessCap();
+    const double cap = steepest();
     const double one = DepthLaw{stiffness, stiffening_, cap}.energy(depth);
     const double two = DepthLaw{other, stiffening_, cap}.energy(depth);
     return one > 0 && two > 0 ? one / two : 1;
@@ -202,18 +210,19 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
 
     GovernorInput in;
     in.force                 = want.force;
-    in.position              = hand.position;
-    in.velocity              = hand.velocity;
+    in.position              = hand.position / scale_;
+    in.velocity              = hand.velocity / scale_;
     in.homed                 = hand.homed && hand.device == DeviceFault::none;
     in.inBox                 = hand.inBox;
     in.letGo                 = hand.letGo;
+    in.clutched              = hand.clutched;
     in.dt                    = now.dt;
     in.forceAge              = std::max(0.0, now.time - touch.time); // above 0 if the proxy has a thread of its own
     in.overdue               = tableOverdue(now, touch.touching, newest);
     in.missedExchanges       = hand.missed;
-    in.admittedEnergy        = want.admitted;
-    in.storedEnergy          = want.stored;
-    in.stiffness             = want.tangent;
+    in.admittedEnergy        = want.admitted / scale_;
+    in.storedEnergy          = want.stored / scale_;
+    in.stiffness             = want.tangent * scale_;
     in.answerAge             = hand.answerAge;
     in.sinceAnswer           = hand.sequence > 0 ? std::max(0.0, now.time - hand.answerTime) : 0;
     in.exchangePeriod        = answers_.add(hand.sequence, hand.answerTime);
@@ -224,6 +233,7 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     record.hip            = hand.position;
     record.hipVelocity    = hand.velocity;
     record.orientation    = hand.orientation;
+    record.grip           = hand.grip;
     record.device         = hand.bits();
     record.missed         = hand.missed;
     record.answers        = static_cast<std::uint32_t>(hand.sequence);

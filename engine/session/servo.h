@@ -63,26 +63,29 @@ struct Hand {
     double        answerTime = 0;          ///< [s] when the device's answer came
     double        answerAge  = 0;          ///< [s] of the position at that time
     std::uint64_t sequence   = 0;          ///< of the answer; 0: nothing is known of its time
-    glm::dquat    orientation{1, 0, 0, 0}; ///< of the grip; recorded only
-    bool          letGo = false;           ///< see GovernorInput
+    glm::dquat    orientation{1, 0, 0, 0}; ///< of the grip; recorded and drawn only
+    double        grip     = 0;            ///< [rad] by which the grip is open; recorded only
+    bool          letGo    = false;        ///< see GovernorInput
+    bool          clutched = false;        ///< likewise
 
     /// Packs faults, flags and buttons into TickRecord::device; setBits() reads it back.
     [[nodiscard]] std::uint32_t bits() const noexcept
     {
         return static_cast<std::uint32_t>(device) | (homed ? kHomed : 0U) | (inBox ? kInBox : 0U) |
-               (letGo ? kLetGo : 0U) | buttons << 16U;
+               (letGo ? kLetGo : 0U) | (clutched ? kClutched : 0U) | buttons << 16U;
     }
     void setBits(std::uint32_t bits) noexcept
     {
-        device  = static_cast<DeviceFault>(bits & 0xFFU);
-        homed   = (bits & kHomed) != 0;
-        inBox   = (bits & kInBox) != 0;
-        letGo   = (bits & kLetGo) != 0;
-        buttons = bits >> 16U;
+        device   = static_cast<DeviceFault>(bits & 0xFFU);
+        homed    = (bits & kHomed) != 0;
+        inBox    = (bits & kInBox) != 0;
+        letGo    = (bits & kLetGo) != 0;
+        clutched = (bits & kClutched) != 0;
+        buttons  = bits >> 16U;
     }
 
 private:
-    static constexpr std::uint32_t kHomed = 1U << 8, kInBox = 1U << 9, kLetGo = 1U << 10;
+    static constexpr std::uint32_t kHomed = 1U << 8, kInBox = 1U << 9, kLetGo = 1U << 10, kClutched = 1U << 11;
 };
 
 /// The division of work between threads in real time; see runReal().
@@ -139,6 +142,11 @@ private:
 };
 
 /// The second half of a tick: pull -> compliance -> stiffness -> tank -> governor -> force.
+///
+/// Where a metre of the device is s metres of the scene, a spring of K in the scene is one of s K at the device, because
+/// the force stays the same. Law, compliance, lean and relaxation live in the scene. Tank and governor protect the
+/// device's loop, so they are given its metres: places, depths and speeds / s, stiffness and stiffening s times, energies
+/// / s. At s = 1 the bits are those without.
 /// \thread as ContactHalf
 class ForceHalf {
 public:
@@ -167,7 +175,7 @@ public:
     [[nodiscard]] const glm::dvec3&    lean() const noexcept { return lean_.way(); } ///< [m] for the next proxy's tick
 
 private:
-    /// The wanted force and the payment for it.
+    /// The wanted force and the payment for it, in the metres of the scene.
     struct WantedForce {
         glm::dvec3 force{};
         double     stiffness = 0; ///< force per pull [N/m]
@@ -178,13 +186,16 @@ private:
     };
     [[nodiscard]] WantedForce wantedForce(double stiffness, double dt, const Hand& hand,
                                           const ProxyContact& held) noexcept;
-    void relax(WantedForce& want, const EnergyTankOutput& tank, double dt, const ProxyContact& held) noexcept;
-    [[nodiscard]] double         plateLoad(const WantedForce& want, const GovernorOutput& out,
-                                           const ProxyContact& held) const noexcept;
-    [[nodiscard]] double         stiffnessOf(const std::optional<LocalCompliance>& local) const noexcept;
-    [[nodiscard]] double         storedRatio(double stiffness, double other, double depth) const noexcept;
+    void                 relax(WantedForce& want, const DepthLaw& law, double dt, const ProxyContact& held) noexcept;
+    [[nodiscard]] double plateLoad(const WantedForce& want, const GovernorOutput& out,
+                                   const ProxyContact& held) const noexcept;
+    [[nodiscard]] double stiffnessOf(const std::optional<LocalCompliance>& local) const noexcept;
+    [[nodiscard]] double storedRatio(double stiffness, double other, double depth) const noexcept;
     [[nodiscard]] StiffnessSlope slopeAt(const ProxyContact& held) const noexcept;
     void                         leanOn(const ProxyContact& held, const Hand& hand, const WantedForce& want) noexcept;
+
+    [[nodiscard]] double   steepest() const noexcept { return governor_.stiffnessCap() / scale_; } ///< [N/m]
+    [[nodiscard]] DepthLaw inScene(const DepthLaw& atDevice) const noexcept;
 
     [[nodiscard]] double tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest) noexcept;
 
@@ -193,6 +204,7 @@ private:
     bool              linear_;      ///< the material's force is stiffness times depth
     double            stiffening_;  ///< [1/m]
     double            patchPeriod_; ///< of the deformation [s]
+    double            scale_;       ///< metres of the scene per metre of the device [1]
     AnswerPeriod      answers_;
     ComplianceTracker compliance_;
     LateralLean       lean_;

@@ -1,5 +1,6 @@
 #include "engine/session/session_hand.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <glm/common.hpp>
@@ -74,8 +75,10 @@ void makeDevice(SessionHand& hand, const HandChoice& choice, const Scene& scene,
     if (record.support && !record.support().isBuilt)
         throw Error("--hand " + choice.hand + ": this build of Palpate is " + record.support().library + "; " +
                     record.support().help);
-    hand.hid   = std::make_unique<HidapiSystem>();
-    hand.frame = frameOf(hand, scene, object);
+    hand.hid          = std::make_unique<HidapiSystem>();
+    hand.frame        = frameOf(hand, scene, object);
+    hand.frame.scale  = scene.workspaceScale;
+    hand.frame.clutch = scene.clutchButton > 0 ? 1U << unsigned(scene.clutchButton - 1) : 0U;
     DeviceRequest request{.hid      = *hand.hid,
                           .options  = choice.options,
                           .path     = devicePath(choice.hand),
@@ -99,6 +102,28 @@ void refuseSlips(const std::string& word)
     for (const DeviceRecord* record : deviceRecords()) known.push_back(record->name);
     if (const auto meant = nearestName(word, known))
         throw Error("--hand " + word + ": there is no such hand or file; did you mean " + std::string(*meant) + "?");
+}
+
+/// Returns what a user should know of the hand before it touches: its scale, its clutch, and what it does not render.
+std::vector<std::string> notesOn(const HapticDeviceInfo& info, const Scene& scene, bool isDevice)
+{
+    std::vector<std::string> notes;
+    if (scene.workspaceScale != 1) {
+        const double possible = info.maximumStiffness > 0 ? info.maximumStiffness : scene.stiffnessCap;
+        notes.push_back("1 mm of the device is " + formatQuantity(scene.workspaceScale * 1e-3, "m") +
+                        " of the scene; forces are not scaled, so the device can render at most " +
+                        formatQuantity(std::min(scene.stiffnessCap, possible) / scene.workspaceScale, "N/m") +
+                        " of the scene");
+        if (!isDevice) notes.push_back("this hand is no device, and moves in the metres of the scene");
+    }
+    if (scene.clutchButton > 0 && isDevice)
+        notes.push_back("button " + std::to_string(scene.clutchButton) +
+                        " is the clutch: while it is held no force flows and the tool stays where it is");
+    if (isDevice && (info.rotates || info.hasGripper))
+        notes.push_back(std::string("the device senses ") + (info.rotates ? "how it is turned" : "") +
+                        (info.rotates && info.hasGripper ? " and " : "") + (info.hasGripper ? "its grip" : "") +
+                        ", which is recorded; torques and the force of a grip stay zero");
+    return notes;
 }
 
 } // namespace
@@ -135,6 +160,7 @@ SessionHand openHand(const HandChoice& choice, const Scene& scene, const SoftObj
         hand.device = std::make_unique<ScriptedHand>(*hand.path);
     hand.device->open();
     if (const std::string& note = hand.device->info().note; !note.empty()) hand.warnings.push_back(note);
+    hand.notes = notesOn(hand.device->info(), scene, hand.record != nullptr);
     return hand;
 }
 

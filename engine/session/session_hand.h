@@ -37,6 +37,7 @@ struct SessionHand {
     DeviceFrame                     frame;
     double                          seconds = 5; ///< [s] how long
     std::vector<std::string>        warnings;    ///< what is unusual about it, in sentences
+    std::vector<std::string>        notes;       ///< what its user should know, in sentences
 
     /// Returns true if a person holds it, so that it runs in real time only.
     [[nodiscard]] bool isHeldByPerson() const noexcept { return record && record->holder == DeviceHolder::person; }

@@ -14,7 +14,7 @@ void showLine(const SessionView& view)
 {
     const TickRecord& s      = view.record;
     const bool        stale  = (s.faults & static_cast<std::uint32_t>(SessionFlag::stalePatch)) != 0;
-    const std::string forces = describeForces(s);
+    const std::string forces = describeForces(s, view.words);
     std::fprintf(stderr, "\r%6.1f s  %8s  %8s deep  a tick every %8s  a patch in %8s%s%s\033[K", s.time,
                  formatQuantity(glm::length(s.force), "N").c_str(),
                  formatQuantity(std::max(0.0, glm::dot(s.proxy - s.hip, s.normal)), "m").c_str(),
@@ -28,7 +28,7 @@ void showLine(const SessionView& view)
 void showTime(const SessionView& view, double seconds)
 {
     std::fprintf(stderr, "\r%6.1f s of %.0f s  %s\033[K", view.record.time, seconds,
-                 describeForces(view.record).c_str());
+                 describeForces(view.record, view.words).c_str());
 }
 
 void clearLine()

@@ -6,17 +6,19 @@
 
 namespace palp {
 
-/// The place of a device's frame in the scene.
+/// The place of a device's frame in the scene. Lengths are scaled, forces are not.
 struct DeviceFrame {
-    glm::dvec3 origin{};                    ///< [m] of the scene: place of the middle of the workspace
-    glm::dquat sceneFromDevice{1, 0, 0, 0}; ///< rotation, a unit quaternion
+    glm::dvec3    origin{};                    ///< [m] of the scene: place of the middle of the workspace
+    glm::dquat    sceneFromDevice{1, 0, 0, 0}; ///< rotation, a unit quaternion
+    double        scale  = 1;                  ///< [1] metres of the scene per metre of the device
+    std::uint32_t clutch = 0;                  ///< bit of the device's button that is its clutch, see Clutch; 0: none
 
     /// Converts the hand of this state into the scene. No part of the orientation is a negative zero, so that a replay,
     /// whose frame is the scene's, gives the same bits.
     [[nodiscard]] Hand handOf(const HapticState& state) const noexcept
     {
-        return {origin + sceneFromDevice * state.position,
-                sceneFromDevice * state.velocity,
+        return {origin + sceneFromDevice * (scale * state.position),
+                sceneFromDevice * (scale * state.velocity),
                 state.homed,
                 state.inBox,
                 state.missed,
@@ -25,13 +27,14 @@ struct DeviceFrame {
                 state.time,
                 state.age,
                 state.sequence,
-                sceneFromDevice * state.orientation + glm::dquat(0, 0, 0, 0)};
+                sceneFromDevice * state.orientation + glm::dquat(0, 0, 0, 0),
+                state.gripperAngle};
     }
 
     /// Converts a place of the scene into the device's frame [m].
     [[nodiscard]] glm::dvec3 toDevice(const glm::dvec3& place) const noexcept
     {
-        return glm::conjugate(sceneFromDevice) * (place - origin);
+        return glm::conjugate(sceneFromDevice) * (place - origin) / scale;
     }
 
     /// Returns what a device states, its weight turned into the scene's frame.

@@ -15,7 +15,8 @@ static_assert(std::endian::native == std::endian::little, "numbers are stored as
 static_assert(offsetof(glm::dquat, x) == 0 && offsetof(glm::dquat, w) == 24, "a quaternion is stored as x, y, z, w");
 
 // What a replay computes with is stored to the bit. The rest is stored as float32: 7 digits, more than any
-// of these numbers means. The order is that of the stored row: 15 doubles, 19 floats, 2 and 4 whole numbers.
+// of these numbers means. The order is that of the stored row: 15 doubles, 19 floats, 2 and 4 whole numbers; what
+// later versions have added follows at the end, so that readers of datagrams find the rest where it was.
 constexpr std::array kColumns = {
     SessionColumn{"time", Type::float64, 1, offsetof(S, time), "s", "since the session's start", false},
     SessionColumn{"hip", Type::float64, 3, offsetof(S, hip), "m", "where the hand is", false},
@@ -57,11 +58,15 @@ constexpr std::array kColumns = {
     SessionColumn{"actions", Type::uint32, 1, offsetof(S, actions), "1",
                   "of the governor: 1 not homed, 2 outside of the box, 4 stale, 8 damped, 16 active, 32 clamped, 64 "
                   "slewed, 128 waiting, 256 engaging, 512 releasing, 1024 late, 2048 weight not carried whole, 4096 "
-                  "let go before a stop",
+                  "let go before a stop, 8192 clutched",
                   false},
-    SessionColumn{"device", Type::uint32, 1, offsetof(S, device), "1",
-                  "bits 0 to 7 its fault, 8 homed, 9 in its box, 10 the session lets go, 16 to 31 buttons", false},
+    SessionColumn{
+        "device", Type::uint32, 1, offsetof(S, device), "1",
+        "bits 0 to 7 its fault, 8 homed, 9 in its box, 10 the session lets go, 11 its clutch is held, 16 to 31 buttons",
+        false},
     SessionColumn{"answers", Type::uint32, 1, offsetof(S, answers), "1", "of the device so far, modulo 2^32", false},
+    SessionColumn{"grip", Type::float32, 1, offsetof(S, grip), "rad",
+                  "angle by which the grip is open; 0 if the device senses none", false},
 };
 
 constexpr std::size_t kRowBytes = [] {

@@ -36,11 +36,12 @@ struct TickRecord {
     std::int32_t  missed         = 0;      ///< exchanges with the device without an answer, in a row
     std::uint32_t faults         = 0;      ///< one bit each, see SessionFlag; the low eight are the GovernorFault
     std::uint32_t actions        = 0;      ///< one bit each, see GovernorAction
-    std::uint32_t device         = 0;      ///< bits 0 to 7 the DeviceFault, 8 homed, 9 in its box, 16 to 31 buttons
-    std::uint32_t answers        = 0;      ///< of the device so far, modulo 2^32
+    std::uint32_t device  = 0; ///< bits 0 to 7 the DeviceFault, 8 homed, 9 in its box, 11 clutched, 16 to 31 buttons
+    std::uint32_t answers = 0; ///< of the device so far, modulo 2^32
+    double        grip    = 0; ///< [rad] by which the grip is open; 0 if the device senses none
 };
 static_assert(std::is_trivially_copyable_v<TickRecord>);
-static_assert(sizeof(TickRecord) == 34 * 8 + 24, "no padding: records are compared byte for byte");
+static_assert(sizeof(TickRecord) == 34 * 8 + 24 + 8, "no padding: records are compared byte for byte");
 
 /// One field of a record: of a row of ticks.npy and of a streamed datagram, and columns of an exported table.
 struct SessionColumn {

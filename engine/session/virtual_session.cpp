@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/core/thread_time.h"
+#include "engine/session/clutch.h"
 #include "engine/session/force_state.h"
 
 namespace palp {
@@ -49,6 +50,7 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
     SessionSummary             summary;
     std::optional<PatchUpdate> inUse, underWay;
     ZeroAtLast                 zero(parts.device);
+    Clutch                     clutch(parts.frame.clutch);
 
     const auto every = std::max<std::int64_t>(1, std::llround(1 / (parts.scene.deformationRate * kTick))); // ticks
     const auto ticks = std::llround(seconds / kTick);
@@ -69,9 +71,10 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
                 underWay = std::move(answer.update);
             }
         }
-        const double began  = threadSeconds();
-        const Hand   hand   = parts.frame.handOf(parts.device.read(time));
-        TickRecord   record = servo.tick({time, kTick}, hand, inUse ? &*inUse : nullptr);
+        const double began = threadSeconds();
+        Hand         hand  = parts.frame.handOf(clutch.step(parts.device.read(time), false));
+        hand.clutched      = clutch.isHeld();
+        TickRecord record  = servo.tick({time, kTick}, hand, inUse ? &*inUse : nullptr);
         parts.device.light(std::uint8_t(lightOf(forceState(record))));
         parts.device.render(parts.frame.toDevice(servo.governor().force()));
         record.tickTime = threadSeconds() - began;

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <optional>
 #include <thread>
 
 #include <arpa/inet.h>
@@ -89,6 +90,16 @@ TEST(BridgeLines, AreNamedByTheirKind)
 
 // --- whole lines
 
+/// Ticks until it is so; false after 10 s, for a busy machine.
+bool until(HapticDevice& device, const GovernedForce& push, const std::function<bool(const HapticState&)>& so)
+{
+    for (const double end = seconds() + 10; seconds() < end;) {
+        if (so(device.exchange(push, seconds()))) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+}
+
 /// A device at the other end of a line, on a thread of its own: position out, force in, with the mandatory watchdog.
 class Firmware {
 public:
@@ -109,28 +120,84 @@ public:
                           force    = command.enable ? command.force.x : 0;
                       }
                   if (seconds() - heard > patience) force = 0;
-                  if (!isSilent) write(encode(answerOf(++sequence)));
+                  if (!isSilent) send(write, encode(answerOf(++sequence)));
                   std::this_thread::sleep_for(std::chrono::milliseconds(1));
               }
           })
     {
     }
 
-    std::atomic<double> force{0}; ///< [N] x
-    std::atomic<bool>   isSilent{false};
+    enum class Trouble { none, garbage, damaged, split, merged };
+
+    std::atomic<double>  force{0}; ///< [N] x
+    std::atomic<bool>    isSilent{false};
+    std::atomic<Trouble> trouble{Trouble::none};
 
 private:
-    std::jthread thread_;
+    void send(const Write& write, const BridgeBytes& report)
+    {
+        BridgeBytes bytes = report;
+        switch (trouble) {
+        case Trouble::none:
+            return write(bytes);
+        case Trouble::garbage:
+            for (std::size_t n = 0; n < bytes.size(); ++n) bytes[n] = std::uint8_t(31 * n + ++noise_);
+            return write(bytes);
+        case Trouble::damaged:
+            bytes[14] ^= 0x40U; // a place that the checksum does not have
+            return write(bytes);
+        case Trouble::split:
+            for (const std::uint8_t& byte : bytes) write(std::span(&byte, 1));
+            return;
+        case Trouble::merged:
+            if (!kept_) {
+                kept_ = bytes;
+                return;
+            }
+            std::array<std::uint8_t, 2 * kBridgeSize> both{};
+            std::copy(bytes.begin(), bytes.end(), std::copy(kept_->begin(), kept_->end(), both.begin()));
+            kept_.reset();
+            return write(both);
+        }
+    }
+
+    std::uint8_t               noise_ = 0;
+    std::optional<BridgeBytes> kept_;
+    std::jthread               thread_; ///< last member: it ends before what it uses
 };
 
-/// Ticks until it is so; false after 10 s, for a busy machine.
-bool until(HapticDevice& device, const GovernedForce& push, const std::function<bool(const HapticState&)>& so)
+/// What cannot be understood is a fault, zero force, and borne; a stream in any pieces is none.
+void bearsTroubles(HapticDevice& device, Firmware& firmware, bool isStream)
 {
-    for (const double end = seconds() + 10; seconds() < end;) {
-        if (so(device.exchange(push, seconds()))) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    using enum Firmware::Trouble;
+    const GovernedForce push = governed({1, 0, 0});
+    device.open();
+    const auto pushes = [&] {
+        return until(device, push,
+                     [&](const HapticState& s) { return s.fault == DeviceFault::none && firmware.force > 0.3; });
+    };
+    for (const auto trouble : {garbage, damaged}) {
+        ASSERT_TRUE(pushes());
+        firmware.trouble = trouble;
+        EXPECT_TRUE(until(device, push, [&](const HapticState& s) {
+            return s.fault == DeviceFault::garbled || s.fault == DeviceFault::silent;
+        }));
+        EXPECT_TRUE(until(device, push, [&](const HapticState& s) {
+            EXPECT_LT(glm::length(s.position - glm::dvec3(0.01, 0.02, 0.03)), 1e-9) << "no place came from it";
+            return firmware.force == 0;
+        }));
+        firmware.trouble = none;
     }
-    return false;
+    for (const auto trouble : {split, merged}) {
+        if (!isStream) break; // a datagram is whole or lost
+        ASSERT_TRUE(pushes());
+        firmware.trouble          = trouble;
+        const std::uint64_t since = device.exchange(push, seconds()).sequence;
+        EXPECT_TRUE(until(device, push, [&](const HapticState& s) { return s.sequence > since + 20; }));
+        EXPECT_TRUE(pushes());
+        firmware.trouble = none;
+    }
+    device.close();
 }
 
 /// What must hold of either line.
@@ -195,6 +262,7 @@ TEST(BridgeLines, UdpIsALineLikeUsb)
         });
     const auto device = makeLineBridge({BridgeLine::Kind::udp, "127.0.0.1", port}, {.asksForRealTime = false});
     conversesAndFallsSilent(*device, firmware);
+    bearsTroubles(*device, firmware, false);
 }
 
 /// Whoever was not first is not heard: its reports would move the hand.
@@ -241,9 +309,12 @@ TEST(BridgeLines, ASerialPortIsALineLikeUsbAndUnplugged)
                 return got < 0 ? 0 : std::size_t(got);
             });
         conversesAndFallsSilent(*device, firmware);
+        bearsTroubles(*device, firmware, true);
         device->open();
         ASSERT_TRUE(until(*device, {}, [](const HapticState& s) { return s.fault == DeviceFault::none; }));
     }
+    const BridgeBytes half = encode(answerOf(7)); // it ends in the middle of a report
+    ASSERT_EQ(write(master, half.data(), half.size() / 2), ssize_t(half.size() / 2));
     close(master);
     EXPECT_TRUE(until(*device, {}, [](const HapticState& s) { return s.fault == DeviceFault::unplugged; }));
     EXPECT_THROW((void)openBridgeLine({BridgeLine::Kind::serial, "/dev/null", 0}), HidRefused) << "no serial port";

@@ -14,11 +14,13 @@
 
 #include "device/haply/emulated_haply.h"
 #include "device/haply/haply_record.h"
+#include "device/hid/hid_bridge.h"
 #include "device/simulated_arm.h"
 #include "device/vendor/force_dimension.h"
 #include "device/vendor/open_haptics.h"
 #include "engine/force/energy_tank.h"
 #include "engine/force/governor.h"
+#include "tests/device/fake_bridge.h"
 #include "tests/device/fake_sdk/fake_sdk.h"
 
 namespace palp {
@@ -45,8 +47,8 @@ struct Rig {
     /// Moves the arm on to a time [s] with the force that acts.
     virtual void moveTo(double time) = 0;
 
-    SimulatedArm                arm;
-    std::unique_ptr<LineDevice> device;
+    SimulatedArm                  arm;
+    std::unique_ptr<HapticDevice> device;
 };
 
 struct HaplyRig : Rig {
@@ -67,8 +69,9 @@ struct HaplyRig : Rig {
 /// A stand-in of a maker's library: the test moves the arm between exchanges.
 struct SdkRig : Rig {
     SdkRig(const char* variable, const char* library, const SimulatedArmSettings& settings,
-           std::unique_ptr<DeviceLine> line, const HapticDeviceInfo& info, double metre, const glm::ivec3& axes)
-        : Rig(settings), metre_(metre), axes_(axes)
+           std::unique_ptr<DeviceLine> line, const HapticDeviceInfo& info, double metre, const glm::ivec3& axes,
+           int every = 1)
+        : Rig(settings), metre_(metre), axes_(axes), every_(every)
     {
         setenv(variable, PALPATE_FAKE_SDK, 1);
         sdk_ = reinterpret_cast<FakeSdk* (*)()>(dlsym(dlopen(library, RTLD_NOW | RTLD_LOCAL), "fakeSdk"))();
@@ -83,7 +86,9 @@ struct SdkRig : Rig {
         glm::dvec3 force{};
         for (int axis = 0; axis < 3; ++axis) force[axes_[axis]] = sdk_->force[axis];
         arm.step(force, time - time_);
-        time_ = time;
+        time_        = time;
+        sdk_->isSame = ticks_++ % every_ != 0;
+        if (sdk_->isSame) return;
         for (int axis = 0; axis < 3; ++axis) {
             sdk_->position[axis] = arm.position()[axes_[axis]] / metre_;
             sdk_->velocity[axis] = arm.velocity()[axes_[axis]] / metre_;
@@ -95,6 +100,37 @@ private:
     double     metre_;
     double     time_ = 0; // [s]
     glm::ivec3 axes_;     // which of ours each of theirs is
+    int        every_;    // ticks from one new sample to the next; the same comes again between them
+    int        ticks_ = 0;
+};
+
+/// An arm behind the bridge's report, as samples/bridge_peer.py: its numbers, whole micrometres and millinewtons.
+struct BridgeRig : Rig {
+    BridgeRig() : Rig(armOf(0.3, 2)), hid(system.plug(ours())), firmware(hid)
+    {
+        firmware.answer.maximumForce     = 6;
+        firmware.answer.maximumStiffness = 800;
+        firmware.answer.maximumDamping   = 3;
+        firmware.tick(kTick); // the report that open() waits for
+        device = std::make_unique<HidBridgeDevice>(system, ours(),
+                                                   HidBridgeSettings{.openWait = 0.05, .pace = HidPace::caller});
+    }
+    ~BridgeRig() override { device.reset(); } // before what it uses
+    void moveTo(double time) override
+    {
+        arm.step(firmware.force(), time - time_);
+        time_                    = time;
+        firmware.answer.position = arm.position();
+        firmware.answer.velocity = arm.state().velocity;
+        firmware.tick(kTick);
+    }
+
+    FakeHidSystem  system;
+    FakeHidDevice& hid;
+    FakeBridge     firmware;
+
+private:
+    double time_ = 0; // [s]
 };
 
 struct Kind {
@@ -109,6 +145,12 @@ const Kind kKinds[] = {
          return std::make_unique<SdkRig>("FORCEDIM_SDK", PALPATE_FAKE_SDK "/libdrd.so.3", armOf(0.3, 2),
                                          makeForceDimensionLine(), forceDimensionInfo(33), 1, glm::ivec3(2, 0, 1));
      }},
+    {"OmegaAt250Hz",
+     []() -> std::unique_ptr<Rig> {
+         return std::make_unique<SdkRig>("FORCEDIM_SDK", PALPATE_FAKE_SDK "/libdrd.so.3", armOf(0.3, 2),
+                                         makeForceDimensionLine(), forceDimensionInfo(33), 1, glm::ivec3(2, 0, 1), 4);
+     }},
+    {"Bridge", []() -> std::unique_ptr<Rig> { return std::make_unique<BridgeRig>(); }},
     {"Touch", []() -> std::unique_ptr<Rig> {
          return std::make_unique<SdkRig>("OPENHAPTICS", PALPATE_FAKE_SDK "/libHD.so", armOf(0.045, 1),
                                          makeOpenHapticsLine(), openHapticsInfo("Touch"), 1e-3, glm::ivec3(0, 1, 2));
@@ -122,7 +164,9 @@ struct Loop {
     GovernorOutput       out{};
     HapticState          state{};
     bool                 twoSided = false;
-    double               now      = 0; // [s]
+    std::uint64_t        sequence = 0;
+    double               answered = 0, period = kTick; // [s] as the servo measures it
+    double               now = 0;                      // [s]
 
     explicit Loop(const Kind& kind) : rig(kind.make())
     {
@@ -131,8 +175,8 @@ struct Loop {
         GovernorSettings        settings;
         settings.mass             = info.mass;
         settings.ownDamping       = info.ownDamping;
-        settings.statedStiffness  = info.maximumStiffness;
-        settings.maximumStiffness = std::min(1000.0, info.maximumStiffness); // of a scene
+        settings.statedStiffness  = std::min(settings.statedStiffness, info.maximumStiffness); // as the servo
+        settings.maximumStiffness = std::min(1000.0, info.maximumStiffness);                   // of a scene
         settings.maximumForce     = std::min(settings.maximumForce, info.maximumForce);
         governor                  = ForceGovernor(settings);
     }
@@ -150,14 +194,19 @@ struct Loop {
     void tick()
     {
         GovernorInput in;
-        in.position        = state.position;
-        in.velocity        = state.velocity;
-        in.homed           = state.homed && state.fault == DeviceFault::none;
-        in.inBox           = state.inBox;
-        in.dt              = kTick;
-        in.answerAge       = state.age;
-        in.sinceAnswer     = now - state.time;
-        in.exchangePeriod  = kTick;
+        in.position    = state.position;
+        in.velocity    = state.velocity;
+        in.homed       = state.homed && state.fault == DeviceFault::none;
+        in.inBox       = state.inBox;
+        in.dt          = kTick;
+        in.answerAge   = state.age;
+        in.sinceAnswer = now - state.time;
+        if (state.sequence > sequence) {
+            period   = (state.time - answered) / double(state.sequence - sequence);
+            sequence = state.sequence;
+            answered = state.time;
+        }
+        in.exchangePeriod  = period;
         const double depth = twoSided ? -in.position.y : std::max(0.0, -in.position.y);
         const auto   paid  = tank.step({.stiffness    = governor.stiffnessCap(),
                                         .depth        = std::abs(depth),

@@ -207,6 +207,31 @@ TEST_P(MakersLibraries, CallsThatFailEndAtZeroForceWithAReason)
     EXPECT_GT(force_(), 1);
 }
 
+/// Places and speeds that no hand has, in any field: no sample, zero force, and the hand stays where it was.
+TEST_P(MakersLibraries, NumbersThatNoHandHasAreZeroForceAndNoPlace)
+{
+    for (const double number : {std::nan(""), 1e308, -1e308, double(INFINITY)})
+        for (int field = 0; field < 6; ++field) {
+            device.open();
+            run(0.1, push);
+            ASSERT_GT(force_(), 1);
+            const double since = now;
+            auto&        wrong = field < 3 ? sdk.position[field] : sdk.velocity[field - 3];
+            wrong              = number;
+            run(0.2, push);
+            EXPECT_NE(state.fault, DeviceFault::none) << number << " in " << field;
+            EXPECT_LE(pushed - since, kZero) << number << " in " << field;
+            EXPECT_EQ(force_(), 0);
+            EXPECT_LT(glm::length(state.position), 1e-12) << number << " in " << field;
+            EXPECT_LT(glm::length(state.velocity), 1e-12) << number << " in " << field;
+            wrong = 0;
+            run(0.2, push);
+            EXPECT_EQ(state.fault, DeviceFault::none) << "it is borne";
+            EXPECT_GT(force_(), 1);
+            device.close();
+        }
+}
+
 TEST_P(MakersLibraries, NumbersThatAreNoneAreGarbledAndZeroForce)
 {
     device.open();
@@ -248,9 +273,11 @@ TEST_P(ForceDimension, TheSameSampleAgainIsNoNewOne)
     EXPECT_EQ(state.missed, 5);
     EXPECT_EQ(state.fault, DeviceFault::none) << "it is no error";
     EXPECT_GT(force_(), 1) << "a force lasts over a few";
+    const double since = now;
     run(0.1, push);
     EXPECT_EQ(state.fault, DeviceFault::silent) << "but not over twenty";
     EXPECT_EQ(force_(), 0);
+    EXPECT_LE(pushed - since, kZero);
 }
 
 TEST_P(ForceDimension, WhatStopsTheForceIsSaidAndItComesBackByItself)

@@ -186,11 +186,12 @@ TEST(ForceGovernor, MoreThan20MissedExchangesAreALostDevice)
 
 // ---- 2: homed and in the box
 
-TEST(ForceGovernor, NotHomedOutsideTheBoxOrAskedToLetGoIsZeroWithoutAFaultAndEngagesAnew)
+TEST(ForceGovernor, NotHomedOutsideTheBoxClutchedOrAskedToLetGoIsZeroWithoutAFaultAndEngagesAnew)
 {
     for (auto [flag, action] : {std::pair{&GovernorInput::homed, GovernorAction::notHomed},
                                 {&GovernorInput::inBox, GovernorAction::outsideBox},
-                                {&GovernorInput::letGo, GovernorAction::lettingGo}}) {
+                                {&GovernorInput::letGo, GovernorAction::lettingGo},
+                                {&GovernorInput::clutched, GovernorAction::clutched}}) {
         Servo      servo;
         const bool good = servo.in.*flag;
         servo.pushing({0, 0, 5});

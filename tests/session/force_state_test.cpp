@@ -41,11 +41,13 @@ TEST(ForceState, TheGravestReasonIsTold)
         {waits, did |= bit(GovernorAction::waiting), 0, DeviceFault::none, "hold it still", blue},
         {plateSilent, did, old, DeviceFault::none, "the plate does not answer", blue},
         {outOfBox, did |= bit(GovernorAction::outsideBox), old, DeviceFault::none, "out of its workspace", blue},
+        {clutched, did |= bit(GovernorAction::clutched), old, DeviceFault::none, "the clutch is held", blue},
         {notHomed, did |= bit(GovernorAction::notHomed), old, DeviceFault::none, "home the device", red},
         {programStops, did |= bit(GovernorAction::lettingGo), old, DeviceFault::none, "the program stops", blue},
         {deviceFaulty, did, old, DeviceFault::silent, "reports silent", blue},
         {stopped, did, old | tooFast, DeviceFault::silent, "too-fast; hold down the device's first button", blue},
-        {deviceLost, did, old | tooFast, DeviceFault::linkLost, "lost (link-lost), the session ends", blue}};
+        {deviceLost, did, old | tooFast, DeviceFault::linkLost,
+         "lost: link-lost (the link to it broke), the session ends", blue}};
     for (const Told& told : all) {
         TickRecord record;
         record.actions = told.actions;
@@ -58,6 +60,22 @@ TEST(ForceState, TheGravestReasonIsTold)
         EXPECT_EQ(words.empty(), told.state == flows) << words;
     }
     EXPECT_EQ(all.size(), namesOf(ForceState{}).size()) << "every state is here";
+}
+
+/// The live line says what the summary does: the fault, and what the driver knows about it; else what it means.
+TEST(ForceState, AFaultIsSaidInTheDriversWordsAndElseByWhatItMeans)
+{
+    TickRecord record;
+    for (const auto& fault : namesOf(DeviceFault{})) {
+        record.device = static_cast<std::uint32_t>(fault.value);
+        EXPECT_EQ(meaningOf(fault.value).empty(), fault.value == DeviceFault::none) << fault.name;
+        if (fault.value == DeviceFault::none) continue;
+        EXPECT_NE(describeForces(record).find(meaningOf(fault.value)), std::string::npos) << fault.name;
+    }
+    record.device = static_cast<std::uint32_t>(DeviceFault::ownWatchdog);
+    EXPECT_EQ(describeForces(record, "a motor of the Haply stalls"),
+              "no force: the device reports own-watchdog (a motor of the Haply stalls)");
+    EXPECT_EQ(describeForces(record), "no force: the device reports own-watchdog (it stopped by itself)");
 }
 
 TEST(ForceState, ASummaryNamesTheFaultThatEndedTheSession)

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "engine/cloud/samples.h"
 #include "engine/core/npy.h"
@@ -112,6 +113,21 @@ TEST(HandPath, WhatNoHandCanDoIsRefusedWithItsLine)
     EXPECT_TRUE(holds(refusal(""), {"found 0"}));
     EXPECT_TRUE(holds(refusal(good + std::string(100'000, '1')), {"hand.csv", "longer than 65536 bytes"}));
     EXPECT_TRUE(holds(refusal(good + "1,1e308,0,0\n"), {"line 3", "m/s"})) << "beyond what doubles can square";
+}
+
+TEST(HandPath, ReadsHowTheGripIsTurnedAndTurnsItTheShortestWay)
+{
+    const std::string header = "time,x,y,z,orientation_x,orientation_y,orientation_z,orientation_w\n";
+    const HandPath    hand   = parsed(header + "0,0,0,0,0,0,0,1\n1,0,0,0,0,0,0.70711,0.70711\n");
+
+    EXPECT_TRUE(hand.turns());
+    EXPECT_NEAR(glm::angle(hand.orientation(0.5)), std::numbers::pi / 4, 1e-5) << "half of a right angle";
+    EXPECT_NEAR(glm::length(hand.orientation(2)), 1, 1e-12) << "five decimal places are made a unit quaternion";
+    EXPECT_FALSE(parsed("time,x,y,z\n0,0,0,0\n1,0,0,0\n").turns());
+    EXPECT_TRUE(holds(refusal(header + "0,0,0,0,0,0,0,0.5\n1,0,0,0,0,0,0,1\n"), {"line 2", "length 1", "0.5"}));
+    EXPECT_TRUE(holds(refusal(header + "0,0,0,0,0,0,0,nan\n1,0,0,0,0,0,0,1\n"), {"line 2", "length 1"}));
+    EXPECT_TRUE(holds(refusal(header + "0,0,0,0,0,0,up,1\n"), {"line 2", "column 7", "up"}));
+    EXPECT_TRUE(holds(refusal("time,x,y,z,orientation_x\n"), {"line 1", "orientation_x", "found 1"}));
 }
 
 TEST(HandPath, ReadsAnArrayOfNumpyAndRefusesWhatIsWrongInIt)

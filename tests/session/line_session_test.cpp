@@ -13,6 +13,7 @@
 #include "device/hid/hidapi_system.h"
 #include "engine/session/device_registry.h"
 #include "engine/session/gripped_haply.h"
+#include "engine/session/replay_device.h"
 #include "tests/session/sheet_session.h"
 
 namespace palp {
@@ -129,6 +130,31 @@ TEST(HaplySession, TheForceAtTheCursorIsTheGovernors)
                      });
     EXPECT_GT(most, 0.5);
     EXPECT_LT(worst, 1e-4) << "four decimal places, in three directions";
+}
+
+/// How the grip is turned and what it presses goes over the wire into a recording, and back out of it.
+TEST(HaplySession, TheGripsTurnAndButtonsAreRecordedAndReplayed)
+{
+    const glm::dquat tilt = glm::angleAxis(0.6, glm::normalize(glm::dvec3(1, 2, -1)));
+    const HandPath path({{0, {5e-3, 0, 6e-3}, 0, tilt}, {1, {5e-3, 0, 6e-3}, 8, tilt}, {9, {5e-3, 0, 6e-3}, 8, tilt}});
+    GrippingHand   hand{path, {.stiffness = 500, .damping = 2}, deviceFrame({0, 0, 6e-3}, {0, 0, 1})};
+    GrippedHaply   haply(hand);
+    haply.open();
+    SheetSession            session(sheetScene(kWart));
+    Deformation             deformation(session.object, session.scene);
+    std::vector<TickRecord> records;
+    const auto              note = [&](const TickRecord& record) { records.push_back(record); };
+    (void)runVirtual({session.scene, session.object, deformation.solver(), haply, hand.frame}, 1.5, note);
+    EXPECT_NEAR(std::abs(glm::dot(records.back().orientation, tilt)), 1, 1e-12) << "rounding of decimal text";
+    EXPECT_EQ(records.back().device >> 16U, 8U);
+    EXPECT_EQ(records[500].device >> 16U, 0U);
+
+    ReplayDevice replay(records, haply.info());
+    EXPECT_TRUE(replay.info().rotates);
+    HapticState state;
+    for (std::size_t n = 0; n < records.size(); ++n) state = replay.read(records[n].time);
+    EXPECT_EQ(state.orientation, records.back().orientation);
+    EXPECT_EQ(state.buttons, 8U);
 }
 
 } // namespace

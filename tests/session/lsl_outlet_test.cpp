@@ -34,7 +34,7 @@ TEST(LslOutlet, TicksAndMarkersAreOfferedWithLabelsAndTimesOnTheLayersClock)
     const auto lines = linesOf(contentsOf(folder / "log"));
 
     ASSERT_EQ(lines.size(), 6u) << contentsOf(folder / "log");
-    EXPECT_TRUE(holds(lines[0], {"outlet Rig 2; Haptics; 40 channels of format 2; 1000 Hz", "label=hip_x unit=m",
+    EXPECT_TRUE(holds(lines[0], {"outlet Rig 2; Haptics; 41 channels of format 2; 1000 Hz", "label=hip_x unit=m",
                                  "label=stiffness unit=N/m"}))
         << lines[0];
     EXPECT_TRUE(holds(lines[1], {"outlet Rig 2 Markers; Markers; 1 channels of format 3; 0 Hz"})) << lines[1];
@@ -45,9 +45,10 @@ TEST(LslOutlet, TicksAndMarkersAreOfferedWithLabelsAndTimesOnTheLayersClock)
     sample >> word >> time >> word;
     for (double value; sample >> value;) values.push_back(value);
     EXPECT_NEAR(time, 5002, 0.5) << "the thread of a busy machine reads the layer's clock a little later";
-    ASSERT_EQ(values.size(), 40u);
+    ASSERT_EQ(values.size(), 41u);
     EXPECT_NEAR(values[12], recordNumber(2000).force.z, 1e-5) << "as far as the log's digits go";
     EXPECT_EQ(values[39], 2000) << "answers";
+    EXPECT_NEAR(values[40], 2000 / 900.0, 1e-5) << "grip, as far as the log's digits go";
     EXPECT_TRUE(holds(lines[3], {"text Rig 2 Markers 500", "left hand"})) << lines[3];
     EXPECT_TRUE(lines[4].starts_with("end of Rig 2") && lines[5].starts_with("end of Rig 2"));
 }

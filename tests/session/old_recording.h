@@ -14,9 +14,9 @@ namespace palp {
 /// not have are omitted.
 inline void writeOldColumns(const std::filesystem::path& folder, const std::vector<TickRecord>& records)
 {
-    static constexpr std::string_view kLater[] = {"answer_time",     "answer_age", "wanted",
-                                                  "orientation",     "stiffness",  "tank_energy",
-                                                  "observer_energy", "actions",    "answers"};
+    static constexpr std::string_view kLater[] = {"answer_time", "answer_age",  "wanted",          "orientation",
+                                                  "stiffness",   "tank_energy", "observer_energy", "actions",
+                                                  "answers",     "grip"};
     for (const SessionColumn& column : sessionColumns()) {
         if (std::ranges::find(kLater, column.name) != std::end(kLater)) continue;
         const bool  wide   = column.recordBytes() == sizeof(double);

@@ -96,6 +96,7 @@ TEST(RecordedSession, OneOfFormat1IsReadWithTheNamesThatItsKeysHaveToday)
         EXPECT_EQ(session.records[std::size_t(i)].hip, recordNumber(i).hip);
         EXPECT_EQ(session.records[std::size_t(i)].compliance, recordNumber(i).compliance) << "a double then";
         EXPECT_EQ(session.records[std::size_t(i)].wanted, glm::dvec3(0)) << "not recorded then";
+        EXPECT_EQ(session.records[std::size_t(i)].grip, 0) << "likewise";
         EXPECT_EQ(session.records[std::size_t(i)].answers, std::uint32_t(i + 1)) << "one a tick";
     }
     EXPECT_FALSE(compareSessions(session, made("again", 5))) << "what both have is equal";
@@ -106,6 +107,7 @@ TEST(RecordedSession, OneOfFormat1IsReadWithTheNamesThatItsKeysHaveToday)
     EXPECT_EQ(scene.complianceLaw, ComplianceLaw::blend);
     EXPECT_EQ(scene.patch.resampling, Resampling::nearest);
     EXPECT_EQ(scene.material.thickness, 0.004);
+    EXPECT_EQ(scene.workspaceScale, 1) << "there was no other";
 
     description("2");
     EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(readSession(folder / "old")); }), {"\"solver\""}))
@@ -243,6 +245,20 @@ TEST_F(SessionFolder, ColumnsOfALaterPalpateArePassedOver)
     EXPECT_EQ(compareSessions(session, made("b", 100)), std::nullopt) << "it is not compared";
 }
 
+/// Sessions that were recorded before the grip had a column are read, and replay.
+TEST_F(SessionFolder, OneWithoutTheGripIsReadAsAHandThatHasNone)
+{
+    std::string ticks = contentsOf(run / "ticks.npy");
+    ticks.replace(ticks.find("'grip'"), 6, "'grop'");
+    put("ticks.npy", ticks);
+
+    const RecordedSession session = readSession(run);
+
+    EXPECT_EQ(session.records[7].grip, 0);
+    EXPECT_EQ(session.records[7].answers, recordNumber(7).answers);
+    EXPECT_EQ(compareSessions(session, made("b", 100)), std::nullopt) << "it is not compared";
+}
+
 TEST_F(SessionFolder, AHeaderWithAnyOneByteWrongIsRefusedOrReadAndNothingElse)
 {
     const std::string ticks = contentsOf(run / "ticks.npy");
@@ -285,14 +301,14 @@ TEST_F(SessionFolder, BrokenFilesAreNamed)
     };
 
     put("ticks.npy", ticks.substr(0, ticks.size() - 1));
-    EXPECT_TRUE(holds(refusal(), {"ticks.npy", "counts 100", "220 bytes", "21999 bytes"})) << refusal();
+    EXPECT_TRUE(holds(refusal(), {"ticks.npy", "counts 100", "224 bytes", "22399 bytes"})) << refusal();
     put("ticks.npy", ticks.substr(0, 40));
     EXPECT_TRUE(holds(refusal(), {"ticks.npy", "ends within its header"})) << refusal();
     put("ticks.npy", "not numpy");
     EXPECT_TRUE(holds(refusal(), {"ticks.npy", "expected a .npy file"})) << refusal();
     EXPECT_TRUE(holds(with("(100,), }            ", "(9999999999999999999,)"), {"ticks.npy", "9999999999999999999"}));
     EXPECT_TRUE(holds(with("(100,), }            ", "(99999999999999999999)"), {"ticks.npy", "expected rows"}));
-    EXPECT_TRUE(holds(with("(100,)", "(101,)"), {"counts 101", "22000 bytes"}));
+    EXPECT_TRUE(holds(with("(100,)", "(101,)"), {"counts 101", "22400 bytes"}));
     EXPECT_TRUE(holds(with("('hip', '<f8', (3,))", "('hip', '<f8', (9,))"), {"column hip", "expected once, 3"}));
     EXPECT_TRUE(holds(with("('hip', '<f8'", "('hip', '<f4'"), {"column hip", "<f4"}));
     EXPECT_TRUE(holds(with("('hip', '<f8'", "('hup', '<f8'"), {"expected a column hip"}));

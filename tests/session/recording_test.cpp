@@ -114,9 +114,9 @@ TEST(Recording, ATickTakesTheBytesOfItsRow)
     std::uintmax_t bytes = 0;
     for (const auto& file : std::filesystem::directory_iterator(folder / "run")) bytes += file.file_size();
 
-    EXPECT_EQ(tickRowBytes(), 15 * 8 + 19 * 4 + 6 * 4) << "recordings.md says so, and Python that reads datagrams";
+    EXPECT_EQ(tickRowBytes(), 15 * 8 + 19 * 4 + 6 * 4 + 4) << "recordings.md says so, and Python that reads datagrams";
     // The description and the header take some 8 kB however long the session is.
-    EXPECT_LT(double(bytes), 10'000 * 220.0 + 20'000);
+    EXPECT_LT(double(bytes), 10'000 * 224.0 + 20'000);
 }
 
 TEST(Recording, TheTableHoldsTheSameNumbers)
@@ -132,19 +132,20 @@ TEST(Recording, TheTableHoldsTheSameNumbers)
     EXPECT_TRUE(line.starts_with("time,hip_x,hip_y,hip_z,hip_velocity_x,hip_velocity_y,hip_velocity_z,proxy_x,proxy_y,"
                                  "proxy_z,force_x,force_y,force_z,answer_time,answer_age,wanted_x,"))
         << line;
-    EXPECT_TRUE(line.ends_with(",iterations,missed,faults,actions,device,answers")) << line;
+    EXPECT_TRUE(line.ends_with(",iterations,missed,faults,actions,device,answers,grip")) << line;
     for (int i = 0; i < 5'000; ++i) {
         std::getline(csv, line);
         std::ranges::replace(line, ',', ' ');
         std::istringstream  words(line);
         std::vector<double> numbers;
         for (std::string word; words >> word;) numbers.push_back(std::strtod(word.c_str(), nullptr));
-        ASSERT_EQ(numbers.size(), 40u);
+        ASSERT_EQ(numbers.size(), 41u);
         ASSERT_EQ(numbers[1], recordNumber(i).hip.x);
         ASSERT_EQ(numbers[12], recordNumber(i).force.z);
         ASSERT_EQ(float(numbers[17]), float(recordNumber(i).wanted.z)) << "the shortest text brings the float back";
         ASSERT_EQ(numbers[34], recordNumber(i).iterations);
         ASSERT_EQ(numbers[36], recordNumber(i).faults);
+        ASSERT_EQ(float(numbers[40]), float(recordNumber(i).grip));
     }
     EXPECT_FALSE(std::getline(csv, line));
     EXPECT_EQ(readHand(folder.write("table.csv", written.str())).position(0.05), recordNumber(50).hip)

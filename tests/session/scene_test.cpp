@@ -116,8 +116,11 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
         "footprint_radius": "3mm", "map": "gall-peters", "resampling": "nearest", "edges": {"x0": "free"},
         "force_law": "paper", "tolerance": 1e-6, "compliance_law": "blend", "table_size": 7, "deformation_rate": 30,
         "proxy": "sphere", "static_friction": 1, "dynamic_friction": 0, "max_force": "500 mN",
-        "stiffness_cap": 800, "solver": "host", "place": [1e-3, 0, 0], "from": [0, 0, 2], "start_height": "2 cm"})");
+        "stiffness_cap": 800, "solver": "host", "place": [1e-3, 0, 0], "from": [0, 0, 2], "start_height": "2 cm",
+        "workspace_scale": 3, "clutch_button": 2})");
 
+    EXPECT_EQ(scene.workspaceScale, 3);
+    EXPECT_EQ(scene.clutchButton, 2);
     EXPECT_EQ(scene.points, 1000u);
     EXPECT_EQ(scene.seed, 7u);
     EXPECT_EQ(scene.stiffness, "linear:from=1e5,to=1e6,axis=y");

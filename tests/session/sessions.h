@@ -34,6 +34,7 @@ inline TickRecord recordNumber(int i)
     s.tickTime       = 5e-6;
     s.iterations     = i % 7 - 1;
     s.faults         = i % 5 == 0 ? 0x80000001u : 0;
+    s.grip           = i / 900.0;
     return s;
 }
 

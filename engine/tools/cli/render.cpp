@@ -157,8 +157,14 @@ Written still(const RenderOptions& o, Stage& stage)
     return written;
 }
 
-/// Returns the session's records at evenly spread times, from the first to the last tick.
-std::vector<TickRecord> recordsOf(const RenderOptions& o, Stage& stage, int frames)
+/// A session of a hand, at some of its times.
+struct Filmed {
+    std::vector<TickRecord> records;
+    bool                    turns = false; ///< the hand's orientation is known
+};
+
+/// Returns the session at evenly spread times, from the first to the last tick.
+Filmed recordsOf(const RenderOptions& o, Stage& stage, int frames)
 {
     HandOptions hand          = o.hand;
     hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, stage.scene);
@@ -171,10 +177,10 @@ std::vector<TickRecord> recordsOf(const RenderOptions& o, Stage& stage, int fram
     std::vector<TickRecord> all;
     static_cast<void>(runVirtual(parts, source.seconds, [&](const TickRecord& s) { all.push_back(s); }));
     if (all.empty()) throw Error("--seconds: expected a hand of at least a millisecond");
-    std::vector<TickRecord> records;
+    Filmed film{{}, source.device->info().rotates};
     for (int n = 0; n < frames; ++n)
-        records.push_back(all[std::size_t(std::llround(double(all.size() - 1) * (n + 1) / frames))]);
-    return records;
+        film.records.push_back(all[std::size_t(std::llround(double(all.size() - 1) * (n + 1) / frames))]);
+    return film;
 }
 
 /// Returns "film_0003.png" for "film.png", 3.
@@ -190,7 +196,8 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage)
 {
     const Patch        middle  = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
     const Camera       camera  = cameraFor(o, stage, middle);
-    const auto         records = recordsOf(o, stage, *o.frames);
+    const Filmed       film    = recordsOf(o, stage, *o.frames);
+    const auto&        records = film.records;
     std::vector<Patch> patches;
     const auto         loadOf = [&](const TickRecord& s, const Patch* patch) {
         return drawnLoad(s, patch, stage.scene.material);
@@ -210,7 +217,8 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage)
         const double      force = glm::length(s.force);
         const Patch*      bent  = force > 0 ? &*patch++ : nullptr;
         const double      load  = loadOf(s, bent);
-        stage.view.show(bent, force, look, TouchHand{s.hip, s.force}, load);
+        stage.view.show(bent, force, look,
+                        {{s.hip, s.force, {}, film.turns ? std::optional(s.orientation) : std::nullopt}}, load);
         stage.view.scene().title = o.scene.title();
         stage.view.scene().note  = formatQuantity(s.time, "s") + ", " + formatQuantity(force, "N");
         written.push_back(write(stage, camera, frameFile(o.out, int(n) + 1)));

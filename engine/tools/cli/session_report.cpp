@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "engine/core/quantity.h"
+#include "engine/session/force_state.h"
 
 namespace palp {
 namespace {
@@ -80,7 +81,7 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
              : s.forceless > 0 ? s.whyForceless()
                                : "it stayed on the surface and never pressed"));
     if (s.fault != GovernorFault::none) say(std::string("the governor stopped the force: ") + name(s.fault));
-    const std::string words = s.deviceWords.empty() ? "" : ": " + s.deviceWords;
+    const std::string words = ": " + (s.deviceWords.empty() ? std::string(meaningOf(s.deviceFault)) : s.deviceWords);
     if (isFinal(s.deviceFault))
         say(std::string("the device was lost, which ended the session: ") + name(s.deviceFault) + words);
     else if (s.deviceFault != DeviceFault::none)

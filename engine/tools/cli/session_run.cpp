@@ -139,6 +139,11 @@ void warn(const std::vector<std::string>& sentences)
     for (const std::string& sentence : sentences) std::cerr << "palpate: warning: " << sentence << "\n";
 }
 
+void say(const std::vector<std::string>& sentences)
+{
+    for (const std::string& sentence : sentences) std::cerr << "palpate: " << sentence << "\n";
+}
+
 SessionSummary playVirtual(const SessionParts& parts, double seconds, const OnTick& also, const std::atomic<bool>* stop)
 {
     Progress    progress("touching");
@@ -160,6 +165,7 @@ nlohmann::json jsonOf(const SessionRun& run)
     all["solver"]      = run.solver;
     all["takeover"]    = run.takeover.empty() ? nlohmann::json(nullptr) : nlohmann::json(run.takeover);
     all["warnings"]    = run.warnings;
+    all["notes"]       = run.notes;
     if (run.recorded) // "samples" is the word of session.json
         all["recorded"] = {{"folder", run.folder},
                            {"samples", run.recorded->ticks},
@@ -209,6 +215,7 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     SessionRun run;
     run.solver   = deformation.plateSolver().name();
     run.folder   = o.record;
+    run.notes    = hand.notes;
     run.warnings = assumptions(scene, loaded.report);
     for (const auto& more : {warningsOf(scene, loaded.object), hand.warnings})
         run.warnings.insert(run.warnings.end(), more.begin(), more.end());
@@ -223,6 +230,7 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
                              deformation.firstLaw()};
     const auto         recording = recordingOf(o, parts, clock, run.solver);
     if (!o.blind) warn(run.warnings);
+    if (!o.blind) say(hand.notes);
     std::vector<TickStream*> outlets;
     for (const auto& stream : streams) outlets.push_back(stream.get());
     SessionTap   tap(recording.get(), std::move(outlets));

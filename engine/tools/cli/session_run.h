@@ -54,6 +54,7 @@ struct SessionRun {
     std::string                    takeover{}; ///< who took over from another solver last, and why; may be empty
     std::string                    hand;
     std::vector<std::string>       warnings;
+    std::vector<std::string>       notes; ///< what the hand's user should know
     std::optional<RecordingReport> recorded;
     std::string                    folder; ///< of the recording
     std::vector<StreamReport>      streams{};
@@ -73,6 +74,9 @@ SessionSummary playVirtual(const SessionParts& parts, double seconds, const OnTi
 
 /// Prints sentences on standard error.
 void warn(const std::vector<std::string>& sentences);
+
+/// Writes sentences to standard error that warn of nothing.
+void say(const std::vector<std::string>& sentences);
 
 [[nodiscard]] nlohmann::json jsonOf(const SessionRun& run);
 void                         printText(const SessionRun& run);

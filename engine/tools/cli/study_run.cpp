@@ -50,7 +50,7 @@ struct Felt {
             const HandPlace place = handPlace(scene, loaded.object);
             PlateSolver     host("host");
             const Patch     patch = deform(loaded.object, {place.point, place.outward}, scene.patch, host);
-            return std::min(patch.feltStiffness, scene.stiffnessCap);
+            return std::min(patch.feltStiffness, scene.stiffnessCap / scene.workspaceScale);
         } catch (const Error&) { // a hand from a file may work elsewhere
             return nullptr;
         }

@@ -150,6 +150,8 @@ void view(const ViewOptions& o)
             hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, stage.scene());
             hand.cancel               = &wait.givenUp;
             source                    = handFor(hand, stage.scene(), stage.object());
+            warn(source.warnings);
+            say(source.notes);
             waitForHoming(*source.device, wait.givenUp, wait.tell);
             return {source.device.get(), source.frame, source.isHeldByPerson() ? 1e9 : source.seconds};
         };

@@ -42,6 +42,7 @@ public:
 
     void letGo();
     void declare() { parts_.session.declare(); }
+    void toggleClutch() { parts_.session.toggleClutch(); }
     void toggleRecording() { parts_.session.toggleRecording(); }
     void replayLast();
     void mark() { parts_.session.mark(); }

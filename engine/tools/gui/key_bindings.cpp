@@ -47,6 +47,7 @@ constexpr KeyBinding kBindings[] = {
 
     {0, none, always, touch, "hold Space or H", "touch; wheel is depth", nullptr, "Space touch, wheel depth"},
     {kEscapeKey, none, always, touch, "Esc", "let go of the object", [](Controls& c) { c.letGo(); }},
+    {'K', none, always, touch, "K", "clutch of a device", [](Controls& c) { c.toggleClutch(); }},
     {'M', none, somethingHidden, touch, "M", "declare a nodule here", [](Controls& c) { c.declare(); }, "M declare"},
     {'B', none, nothingHidden, touch, "B", "paint instead of touch", [](Controls& c) { c.switchTool(); }, "B brush"},
     {'[', none, nothingHidden, touch, "[", "size of the brush", [](Controls& c) { c.resizeBrush(0.8); }},

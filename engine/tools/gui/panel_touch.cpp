@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include "engine/core/quantity.h"
+#include "engine/session/force_state.h"
 #include "engine/session/servo.h"
 #include "engine/tools/gui/panel_plot.h"
 #include "engine/tools/gui/touch_faults.h"
@@ -33,8 +34,9 @@ void drawFaults(PanelDesk& desk)
         if (ImGui::SmallButton("start anew")) desk.wishes.resetFault = true;
         tip("Clears these messages and begins a new session (R)");
     }
-    if (!desk.content.touching) return;
-    for (const std::string& sentence : notesOn(desk.content.history.newest()))
+    const TickRecord& newest = desk.content.history.newest();
+    if (!desk.content.touching && forceState(newest) != ForceState::deviceFaulty) return;
+    for (const std::string& sentence : notesOn(newest, desk.content.deviceWords))
         tonedWrapped(desk, Tone::warning, sentence);
 }
 
@@ -53,7 +55,7 @@ void drawNumbers(const PanelDesk& desk)
     const double       kc     = patch ? patch->contactStiffness : 0;
     const bool         known  = held && now.compliance > 0 && kc > 0;
     const double       felt   = known ? feltStiffness(desk.content.scene.patch.forceLaw, kc, now.compliance) : 0;
-    const double       cap    = desk.content.scene.stiffnessCap; // [N/m]
+    const double       cap    = desk.content.scene.stiffnessCap / desk.content.scene.workspaceScale; // [N/m]
     reading(desk, Half::left, "force", desk.content.touching ? formatted("%.2f N", glm::length(now.force)) : "\u2013");
     reading(desk, Half::right, "depth", orDash(formatted("%.2f mm", penetration(now) * 1e3)));
     reading(desk, Half::left, "felt",

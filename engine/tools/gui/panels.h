@@ -20,6 +20,7 @@ struct PanelContent {
     double                   force      = 0;                               ///< bends the patch [N]
     double                   loopPeriod = 0, solveTime = 0, frameTime = 0; ///< [s]
     std::string              hand{};                                       ///< "mouse", "Novint Falcon"
+    std::string              deviceWords{};                                ///< about its present fault; may be empty
     std::string              solvedOn{};                                   ///< solver of the plate
     std::string              takeover{}; ///< who took over from it, and why; may be empty
     std::string              drawnOn{};  ///< processor of the pictures

@@ -13,6 +13,7 @@ TextContent contentOf(const ViewScene& scene, const Overlays& overlays, const Ca
     now.size       = size;
     now.scale      = scale;
     now.proxy      = scene.proxy.has_value();
+    now.stylus     = scene.stylus.has_value();
     now.force      = scene.force.has_value();
     now.outline    = !scene.outline.empty();
     now.sphere     = !scene.sphere.empty();

@@ -16,8 +16,8 @@ struct TextContent {
     double      halfHeight = 0;    ///< of what the camera shows [m]
     glm::ivec2  size{};            ///< of the picture [px]
     double      scale = 1;         ///< of the display [1]
-    bool        proxy = false, force = false, outline = false, sphere = false; ///< are in the picture
-    bool        ghost = false, projected = false;                              ///< the same
+    bool        proxy = false, stylus = false, force = false, outline = false, sphere = false; ///< are in the picture
+    bool        ghost = false, projected = false;                                              ///< the same
 
     bool operator==(const TextContent&) const = default;
 };

@@ -38,7 +38,7 @@ GovernorFault governorFault(const TickRecord& record) noexcept
     return static_cast<GovernorFault>(record.faults & 0xFFU);
 }
 
-std::vector<std::string> notesOn(const TickRecord& record)
+std::vector<std::string> notesOn(const TickRecord& record, std::string_view words)
 {
     struct Note {
         SessionFlag flag;
@@ -61,7 +61,7 @@ std::vector<std::string> notesOn(const TickRecord& record)
     case ForceState::plateSilent: // a note below says more
         break;
     default:
-        notes.push_back(describeForces(record));
+        notes.push_back(describeForces(record, words));
     }
     for (const Note& note : kNotes)
         if (record.faults & static_cast<std::uint32_t>(note.flag)) notes.emplace_back(note.text);

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/force/governor.h"
@@ -21,7 +22,8 @@ struct FaultAdvice {
 [[nodiscard]] GovernorFault governorFault(const TickRecord& record) noexcept;
 
 /// Returns the meanings of the other bits that are set in a record's faults, each a sentence with its remedy.
-[[nodiscard]] std::vector<std::string> notesOn(const TickRecord& record);
+/// \param words  of the device about its fault; may be empty
+[[nodiscard]] std::vector<std::string> notesOn(const TickRecord& record, std::string_view words = {});
 
 /// Returns whether anything needs the user's attention: a fault of the session, or one that the window has found.
 [[nodiscard]] bool needsAttention(const PanelContent& content) noexcept;

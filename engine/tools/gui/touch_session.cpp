@@ -43,8 +43,9 @@ void TouchSession::run(const ReadyHand& readyHand, const OnView& onView)
 
 void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
 {
-    hand_  = hand;
-    state_ = State::ready;
+    hand_     = hand;
+    state_    = State::ready;
+    clutched_ = false;
     recorder_.begin([this] {
         SessionInfo info = settings_.recorded(*stage_, *hand_.device);
         info.hand        = hand_.frame.inScene(info.hand);
@@ -55,6 +56,7 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
     real.seconds    = hand.seconds;
     real.viewPeriod = 1e-4; // the next picture begins as soon as one is done
     real.stop       = &ended_;
+    real.clutch     = &clutched_;
     real.onView     = onView;
     {
         const std::lock_guard lock(tapMutex_);
@@ -154,6 +156,13 @@ void TouchSession::letGo()
     if (!settings_.hand || halted()) return notices_.say("let go; close the window to quit");
     halt(); // the session ends, with zero as its last force
     notices_.say("let go: the force is off; R touches again, closing the window quits");
+}
+
+void TouchSession::toggleClutch()
+{
+    if (!settings_.hand || replay_) return notices_.say("the pointer needs no clutch: hold Space and move");
+    clutched_ = !clutched_;
+    notices_.say(clutched_ ? "clutch held: no force, and the tool stays; K lets go of it" : "clutch released");
 }
 
 void TouchSession::declare()

@@ -72,6 +72,8 @@ public:
     void followPointer(const WindowInput& input, const std::optional<Hit>& hit, double& depth);
     /// Releases the object, whichever hand is in use.
     void letGo();
+    /// Holds the device's clutch, or lets go of it.
+    void toggleClutch();
     /// Declares the place that the pointer's hand is on.
     void declare();
 
@@ -81,6 +83,7 @@ public:
     [[nodiscard]] std::string         unsolved() const; ///< why the last patch could not be solved; empty: it was
     [[nodiscard]] std::string takeover() const; ///< who took over from another solver last, and why; may be empty
     [[nodiscard]] std::string handModel() const { return hand_.device->info().model; }
+    [[nodiscard]] bool        handTurns() const { return hand_.device->info().rotates; } ///< its stylus is drawn
     [[nodiscard]] const std::string& realTime() const { return realTime_; } ///< as WorkbenchReport::realTime
     void                             noteRealTime(std::string_view warning);
 
@@ -102,8 +105,9 @@ private:
     std::unique_ptr<ReplayDevice> replay_;
     double                        replaySeconds_ = 0; ///< [s]
     WorkbenchHand                 hand_;              ///< of the session that runs, or ran last
-    State                         state_ = State::neverRan;
-    std::atomic<bool>             ended_ = false;
+    State                         state_    = State::neverRan;
+    std::atomic<bool>             ended_    = false;
+    std::atomic<bool>             clutched_ = false;
     std::string                   realTime_;
     TickRing<TickRecord>          ring_{4096}; ///< from the servo: four seconds
     TouchHistory                  history_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -22,6 +23,14 @@ using Seconds = std::chrono::duration<double>;
 bool inContact(const SessionView* view)
 {
     return view && glm::length(view->record.normal) > 0;
+}
+
+/// Returns " × 3" for a device whose millimetre is three of the scene; the pointer is in the scene.
+std::string scaleOf(const Scene& scene, bool byPointer)
+{
+    if (byPointer || scene.workspaceScale == 1) return {};
+    char text[32];
+    return {text, std::size_t(std::snprintf(text, sizeof text, " \u00d7 %g", scene.workspaceScale))};
 }
 
 } // namespace
@@ -279,7 +288,8 @@ void Workbench::showTouch(const SessionView* view)
     if (view) {
         const double force = glm::length(view->record.force);
         stage.view().show(inContact(view) || force > 0 ? view->patch : nullptr, force, state_.look,
-                          TouchHand{view->record.hip, view->record.force, view->record.proxy},
+                          TouchHand{view->record.hip, view->record.force, view->record.proxy,
+                                    session_.handTurns() ? std::optional(view->record.orientation) : std::nullopt},
                           drawnLoad(view->record, view->patch, stage.scene().material));
     } else {
         stage.view().show(nullptr, 0, state_.look);
@@ -317,12 +327,13 @@ PanelContent Workbench::content(const SessionView* view) const
     PanelContent now{stage.scene(), stage.painted().cloud(), session_.history()};
     now.faults = notices_.faults();
     if (view) {
-        now.patch      = view->patch;
-        now.force      = drawnLoad(view->record, view->patch, stage.scene().material);
-        now.loopPeriod = view->loopPeriod;
-        now.solveTime  = view->solveTime;
-        now.touching   = inContact(view);
-        now.hand       = session_.handModel();
+        now.patch       = view->patch;
+        now.force       = drawnLoad(view->record, view->patch, stage.scene().material);
+        now.loopPeriod  = view->loopPeriod;
+        now.solveTime   = view->solveTime;
+        now.touching    = inContact(view);
+        now.hand        = session_.handModel() + scaleOf(stage.scene(), session_.byPointer());
+        now.deviceWords = view->words;
         if (const std::string why = session_.unsolved(); !why.empty())
             now.faults.push_back("the plate cannot be solved here: " + why);
     }

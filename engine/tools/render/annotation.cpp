@@ -127,6 +127,9 @@ std::vector<KeyEntry> keyOf(const ViewScene& scene)
     std::vector<KeyEntry> key;
     if (scene.proxy) key.push_back({"proxy", kProxyColour, [](glm::dvec2 p) { return glm::dot(p, p) < 0.8; }});
     if (scene.hip) key.push_back({"HIP", kHipColour, [](glm::dvec2 p) { return std::abs(p.x) + std::abs(p.y) < 1; }});
+    if (scene.stylus)
+        key.push_back({"stylus", kStylusColour,
+                       [](glm::dvec2 p) { return std::abs(p.x - p.y) < 0.5 && std::abs(p.x + p.y) < 1.3; }});
     if (scene.force) key.push_back({"force on the hand", kForceColour, arrow(0.22)});
     if (scene.normal) key.push_back({"normal", kNormalColour, arrow(0.1)});
     if (!scene.outline.empty())

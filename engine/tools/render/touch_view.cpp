@@ -170,6 +170,15 @@ void TouchView::addHand(const Patch& patch, Pressed by, const TouchLook& look, c
     scene_.normal              = ViewSegment{proxy, proxy - kNormal * longest * inward};
 }
 
+/// Adds the stylus of a hand whose HIP is drawn.
+void TouchView::addStylus(const std::optional<TouchHand>& hand)
+{
+    constexpr double kLength = 0.5, kThick = 1.5; // of the window; of an arrow's shaft [1]
+    if (!hand || !hand->turn || !scene_.hip) return;
+    scene_.stylus = ViewStylus{*scene_.hip, *hand->turn * glm::dvec3(0, 0, 1), *hand->turn * glm::dvec3(0, 1, 0),
+                               kLength * settings_.window, kThick * scene_.arrowRadius};
+}
+
 void TouchView::addOutline(double load, double exaggeration)
 {
     const auto placeOf = [&](const PatchSurface::EdgePlace& e) {
@@ -225,6 +234,7 @@ void TouchView::show(const Patch* patch, double force, const TouchLook& look, co
         scene_.hip   = hand->hip;
         scene_.proxy = hand->proxy;
     }
+    addStylus(hand);
 }
 
 Camera cameraAt(const Patch& patch, double aspect)

@@ -2,6 +2,8 @@
 #include <optional>
 #include <vector>
 
+#include <glm/gtc/quaternion.hpp>
+
 #include "engine/core/enum_names.h"
 #include "engine/pipeline/patch.h"
 #include "engine/tools/render/camera.h"
@@ -28,7 +30,7 @@ constexpr auto namesOf(ViewPaint)
 struct Overlays {
     bool outline   = true;  ///< of the patch
     bool arrows    = true;  ///< force and normal
-    bool markers   = true;  ///< proxy and HIP
+    bool markers   = true;  ///< proxy, HIP and stylus
     bool ghost     = false; ///< dots where the dent's points are at rest
     bool sphere    = false; ///< the near half of the fitted sphere
     bool projected = false; ///< dots where the patch's points lie on that sphere
@@ -50,6 +52,8 @@ struct TouchHand {
     glm::dvec3                hip{};   ///< [m]
     glm::dvec3                force{}; ///< on the hand [N]
     std::optional<glm::dvec3> proxy{}; ///< on the surface at rest [m]; empty: where the patch's contact is
+    /// How the grip is turned, as TickRecord::orientation: at none the stylus points along z. Empty: it is not sensed.
+    std::optional<glm::dquat> turn{};
 };
 
 /// A cloud and a touch of it as a scene to draw; of a cloud that stands for a mesh, the mesh.
@@ -99,6 +103,7 @@ private:
         double force = 0, load = 0; ///< [N]
     };
     void addHand(const Patch& patch, Pressed by, const TouchLook& look, const std::optional<TouchHand>& hand);
+    void addStylus(const std::optional<TouchHand>& hand);
     void addOutline(double load, double exaggeration);
     void addFit(const Patch& patch, const Overlays& overlays);
     void addGhost(Ground ground);

@@ -28,6 +28,14 @@ struct ViewSegment {
     glm::dvec3 from{}, to{}; ///< [m]
 };
 
+/// A pen in the user's hand: its tip is the HIP.
+struct ViewStylus {
+    glm::dvec3 tip{};                  ///< [m]
+    glm::dvec3 axis{0, 0, 1};          ///< from the tip to the other end [1]
+    glm::dvec3 side{0, 1, 0};          ///< where its button is, perpendicular to the axis [1]
+    double     length = 0, radius = 0; ///< [m]
+};
+
 /// A small round mark that faces the eye.
 struct ViewDot {
     glm::dvec3 position{}; ///< [m]
@@ -55,6 +63,7 @@ struct ViewScene {
     std::optional<glm::dvec3>  proxy;            ///< a ball [m]
     std::optional<glm::dvec3>  hip;              ///< an octahedron, seen through the surface [m]
     double                     markerRadius = 0; ///< of both [m]
+    std::optional<ViewStylus>  stylus;           ///< of a hand whose device senses how it is turned
     std::optional<ViewSegment> force;            ///< on the hand
     std::optional<ViewSegment> normal;
     double                     arrowRadius = 0;   ///< of the force's shaft; the normal's is thinner [m]
@@ -72,7 +81,8 @@ struct ViewScene {
 /// Colours of the things in a picture, apart from each other for every kind of colour vision and in shape too.
 inline constexpr Rgb8 kProxyColour = kNamedColours[4], kHipColour = kNamedColours[3], kForceColour = kNamedColours[1],
                       kNormalColour = kNamedColours[5], kSphereColour = kNamedColours[2],
-                      kProjectedColour = kNamedColours[0], kPlainColour = {206, 198, 186};
+                      kProjectedColour = kNamedColours[0], kPlainColour = {206, 198, 186},
+                      kStylusColour = {120, 118, 130};
 
 /// Returns the colour of outlines and texts on this ground.
 [[nodiscard]] constexpr Rgb8 inkOn(Ground ground)

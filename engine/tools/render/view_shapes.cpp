@@ -93,6 +93,19 @@ void addLine(Corners& corners, const ViewSegment& line, double radius, Rgb8 colo
         addBelt(corners, line.from, Axes((line.to - line.from) / length), {0, radius}, {length, radius}, colour, kThin);
 }
 
+/// A pen, with a ball on its side that shows how it is rolled.
+void addStylus(Corners& corners, const ViewStylus& pen, Rgb8 colour)
+{
+    constexpr double kTip = 4, kButtonAt = 9, kButton = 0.7; // of the radius [1]
+    const double     r = pen.radius, tip = std::min(kTip * r, pen.length);
+    if (!(r > 0 && pen.length > 0)) return;
+    const Axes axes(pen.axis);
+    addBelt(corners, pen.tip, axes, {0, 0, -r, tip}, {tip, r, -r, tip}, colour);
+    addBelt(corners, pen.tip, axes, {tip, r}, {pen.length, r}, colour);
+    addBelt(corners, pen.tip, axes, {pen.length, r, 1, 0}, {pen.length, 0, 1, 0}, colour);
+    addBall(corners, pen.tip + std::min(kButtonAt * r, pen.length) * pen.axis + r * pen.side, kButton * r, colour);
+}
+
 } // namespace
 
 std::vector<ShapeCorner> shapesOf(const ViewScene& scene)
@@ -102,6 +115,7 @@ std::vector<ShapeCorner> shapesOf(const ViewScene& scene)
     Corners corners;
     if (scene.proxy) addBall(corners, *scene.proxy, scene.markerRadius, kProxyColour);
     if (scene.hip) addOctahedron(corners, *scene.hip, kHip * scene.markerRadius, kHipColour);
+    if (scene.stylus) addStylus(corners, *scene.stylus, kStylusColour);
     if (scene.force) addArrow(corners, *scene.force, scene.arrowRadius, kForceColour);
     if (scene.normal) addArrow(corners, *scene.normal, kThinner * scene.arrowRadius, kNormalColour);
     for (const ViewSegment& line : scene.outline) addLine(corners, line, scene.outlineRadius, inkOn(scene.ground));

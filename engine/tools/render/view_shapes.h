@@ -12,7 +12,7 @@ struct ShapeCorner {
     Rgb8       colour;
 };
 
-/// Returns the triangles of a scene's proxy, HIP, arrows and outline, three corners each.
+/// Returns the triangles of a scene's proxy, HIP, stylus, arrows and outline, three corners each.
 [[nodiscard]] std::vector<ShapeCorner> shapesOf(const ViewScene& scene);
 
 } // namespace palp

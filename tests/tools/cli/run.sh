@@ -178,7 +178,7 @@ doctor() {
     env -u DISPLAY -u WAYLAND_DISPLAY -u FALCON_FIRMWARE $variables "$palpate" doctor --quick >out.txt 2>err.txt && [ ! -s err.txt ] || complain "doctor: exit $? $(cat err.txt)"
     tr -s ' ' <out.txt | grep -qF -- "$*" && passed=$((passed + 1)) || complain "doctor$variables lacks '$*': $(cat out.txt)"
 }
-for part in vulkan host display 'real time' usb guardian 'udev rule' falcon 'falcon firmware' bridge spacemouse; do doctor -- " $part "; done
+for part in vulkan host display 'real time' usb guardian 'udev rule' falcon 'falcon firmware' haply 'haply service' forcedimension 'forcedimension sdk' openhaptics 'openhaptics sdk' bridge spacemouse; do doctor -- " $part "; done
 doctor -- 'Embree '
 doctor -- 'missing display neither DISPLAY nor WAYLAND_DISPLAY'
 doctor DISPLAY=:0 -- 'ok display X11'
@@ -284,12 +284,25 @@ bad 'a slip' 'did you mean falcon?' run scene.json --hand falcom
 bad 'a mouse without a window' 'needs a window' run scene.json --hand mouse
 bad 'a table that is too large' '0, 1, 3, 5 or 7' run scene.json --table-size 9
 good 'units of keys' run scene.json --print-config --stiffness-cap '800 N/m' --deformation-rate 30Hz --from 1e300,0,1e300
-for hand in arm falcon-emulator; do
+for hand in arm falcon-emulator haply-emulator; do
     good "a hand that forces move: $hand" run scene.json --hand $hand --clock virtual --seconds 0.5 --record "held-$hand" --json
     good "it replays: $hand" replay "held-$hand" --compare
     holds 'equal to the bit'
 done
-good "a hand that forces move: haply-emulator" run scene.json --hand haply-emulator --clock virtual --seconds 0.5
+good 'a small workspace and a large object' run scene.json --hand haply-emulator --workspace-scale 3 --clutch-button 2 --clock virtual --seconds 0.5 --record scaled --json
+holds '1 mm of the device is 3.00 mm of the scene; forces are not scaled'
+holds 'button 2 is the clutch'
+holds 'torques and the force of a grip stay zero'
+good 'it replays: scaled' replay scaled --compare
+holds 'equal to the bit'
+bad 'a scale of nothing' '0.1 to 10' run scene.json --hand haply-emulator --workspace-scale 0
+bad 'a button that no device has' '0 to 16' run scene.json --hand haply-emulator --clutch-button 17
+printf 'time,x,y,z,orientation_x,orientation_y,orientation_z,orientation_w\n0,0,0,0.01,0.26,0,0,0.966\n1,0,0,0.01,0.26,0,0,0.966\n' >tilted.csv
+good 'a hand that is tilted' run scene.json --hand tilted.csv --clock virtual --record tilted
+good 'its table' export tilted --csv tilted-out.csv
+tail -n 1 tilted-out.csv | grep -q ',0.259' && passed=$((passed + 1)) || complain "the tilt is not in the table: $(tail -n 1 tilted-out.csv)"
+sed 's/0.966/9/' tilted.csv >untilted.csv
+bad 'a tilt that is none' 'length 1' run scene.json --hand untilted.csv
 bad 'a device that is not there' 'is haply-inverse-service running?' run scene.json --hand haply:127.0.0.1:1
 bad 'a line that is none' 'expected udp:PORT or udp:HOST:PORT' run scene.json --hand bridge:udp:x
 bad 'a bridge that says nothing' 'sends no report of a bridge' run scene.json --hand bridge:udp:47321

@@ -41,6 +41,10 @@ TEST(TouchFaults, WhyNoForceFlowsIsANote)
     record.actions = static_cast<std::uint32_t>(GovernorAction::outsideBox);
     ASSERT_EQ(notesOn(record).size(), 1U);
     EXPECT_EQ(notesOn(record).front(), "no force: the grip is out of its workspace");
+    record.device = static_cast<std::uint32_t>(DeviceFault::ownWatchdog);
+    ASSERT_EQ(notesOn(record, "a motor stalls").size(), 1U);
+    EXPECT_EQ(notesOn(record, "a motor stalls").front(), "no force: the device reports own-watchdog (a motor stalls)");
+    record.device  = 0;
     record.actions = static_cast<std::uint32_t>(GovernorAction::waiting);
     EXPECT_EQ(notesOn(record).size(), 1U);
     record.faults = static_cast<std::uint32_t>(SessionFlag::oldTable);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/gtc/quaternion.hpp>
+
 #include "engine/cloud/mesh_points.h"
 #include "engine/cloud/samples.h"
 #include "engine/pipeline/deform.h"
@@ -122,6 +124,33 @@ TEST_F(GoldenMesh, TheFacesOfAFileAreDrawnAndBent)
     const GoldenCase look{"box", {ViewPaint::stiffness, ColourMap::cividis, Ground::light, 4}};
     expectGolden(PALPATE_GOLDEN, "mesh-box.png", pictureOf(meshBox(), look, "a box of 12 triangles", renderer),
                  renderer);
+}
+
+/// A hand whose device senses how it is turned: the stylus leans away from the normal by a third of a right angle, and
+/// its button shows how it is rolled. Untilted it looks otherwise.
+TEST_F(GoldenMesh, TheStylusIsDrawnWithItsTilt)
+{
+    SurfaceRenderer renderer({.processor = processorOfTests(), .validation = validation()});
+    const Touched   touched = meshBox();
+    PlateSolver     host("host");
+    const Contact   contact = touchAt(touched.object, touched.place, touched.from, touched.settings.window / 4);
+    const Patch     patch   = deform(touched.object, contact, touched.settings, host);
+    TouchView       view(touched.object, touched.settings);
+    const auto      drawn = [&](const std::optional<glm::dquat>& turn) {
+        const double force = forceThatShows(patch, touched.object.material().thickness);
+        view.show(&patch, force, {}, TouchHand{contact.point, {0, 0, force}, contact.point, turn});
+        view.scene().title = "a stylus";
+        const PictureSize size{320, 240, 2};
+        const Camera      camera = cameraAt(patch, double(size.width) / size.height);
+        Image             image  = renderer.draw(view.scene(), camera, size);
+        annotate(image, view.scene(), camera);
+        return image;
+    };
+    const Image upright = drawn(glm::dquat(1, 0, 0, 0));
+    const Image tilted  = drawn(glm::angleAxis(0.52, glm::dvec3(0, 1, 0)));
+    EXPECT_NE(tilted.pixels, upright.pixels);
+    EXPECT_NE(drawn({}).pixels, upright.pixels) << "without a turn there is no stylus";
+    expectGolden(PALPATE_GOLDEN, "stylus.png", tilted, renderer);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -69,5 +69,23 @@ TEST(ViewShapes, AnArrowShorterThanItsHeadIsAHead)
     }
 }
 
+TEST(ViewShapes, TheStylusReachesFromItsTipAlongItsAxisAndShowsHowItIsRolled)
+{
+    ViewScene scene;
+    scene.stylus = ViewStylus{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}, 0.1, 0.004};
+    double low = 10, high = -10, button = 0; // [m]
+    for (const ShapeCorner& corner : shapesOf(scene)) {
+        EXPECT_EQ(corner.colour, kStylusColour);
+        EXPECT_NEAR(glm::length(corner.normal), 1, 1e-12);
+        low    = std::min(low, corner.position.z);
+        high   = std::max(high, corner.position.z);
+        button = std::max(button, corner.position.y);
+        EXPECT_GT(corner.position.y, -0.0041) << "on one side only";
+    }
+    EXPECT_NEAR(low, 0, 1e-12) << "the tip is where the hand is";
+    EXPECT_NEAR(high, 0.1, 1e-12);
+    EXPECT_GT(button, 0.006) << "the button stands out on its side";
+}
+
 } // namespace
 } // namespace palp
