@@ -4,7 +4,7 @@ set -u
 cd "$1" || exit 1
 
 # The layers from the bottom up. A file may include its own folder and those before it; subfolders count as their folder.
-layers='core compute cloud contact chart plate force pipeline session tools/plot tools/render tools/gui tools/bench tools/paper tools/study tools/cli'
+layers='core compute cloud contact chart plate force pipeline session tools/plot tools/render tools/gui tools/bench tools/paper tools/study tools/fit tools/cli'
 # layer_of prints the layer of a path below engine/, level_of its place in the list.
 layer_of() {
     case $1 in
@@ -67,7 +67,7 @@ wall() {
     [ -z "$found" ] || complain "$1 is included outside its wall: $found"
 }
 wall Embree 'embree[34]/' 'cloud/(detail/embree\.h|neighbour_index\.cpp)'
-wall Eigen 'Eigen/' '(cloud/detail|contact/detail|chart|chart/detail|plate/reference|plate/multigrid|plate/multigrid/detail)/[a-z_]*\.cpp|tools/bench/eigen_solver\.cpp'
+wall Eigen 'Eigen/' '(cloud/detail|contact/detail|chart|chart/detail|plate/reference|plate/multigrid|plate/multigrid/detail)/[a-z_]*\.cpp|tools/(bench/eigen_solver|fit/least_squares)\.cpp'
 wall nlohmann-json 'nlohmann/' '[a-z/]*/[a-z_]*\.cpp|tools/cli/[a-z_]*\.h'
 wall CLI11 'CLI/' 'tools/cli/[a-z_]*\.(h|cpp)'
 wall Vulkan 'vulkan/' '(compute|compute/detail|tools/render)/vulkan_[a-z_]*\.(h|cpp)|tools/gui/glfw_window\.cpp'

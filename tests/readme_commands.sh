@@ -22,6 +22,25 @@ make_scan() { # prints a sheet in millimetres at z = 30, a point per millimetre,
 }
 make_scan >scan.ply
 
+make_probes() { # prints nine presses of liver on a grid of 10 mm, 10 rows each; every fifth newton is off by a hundredth
+    awk -v OFS=, 'BEGIN {
+        print "probe,x [mm],y [mm],z [mm],depth [mm],force"
+        for (p = 0; p < 9; ++p) for (n = 0; n < 10; ++n) {
+            d = n * 0.25
+            print p, 10 * (p % 3), 10 * int(p / 3), 0, d, (200 + 20 * p) * (exp(0.81 * d) - 1) / 810 * (n % 5 ? 1 : 1.01)
+        }
+    }'
+}
+make_probes >probes.csv
+
+make_map() { # prints a sheet of 80 mm, a point every 4 mm, felt from 300 to 600 N/m along x
+    awk -v OFS=, 'BEGIN {
+        print "x,y,z,felt_stiffness"
+        for (x = -40; x <= 40; x += 4) for (y = -40; y <= 40; y += 4) print x / 1000, y / 1000, 0, 300 * exp((x + 40) / 80 * log(2))
+    }'
+}
+make_map >map.csv
+
 make_part() { # prints a cube of 40 mm as STL: two triangles a side, given by axis and place
     awk 'BEGIN {
         print "solid part"

@@ -84,9 +84,8 @@ Changes changesOf(const std::string& name, const PlyHeader& header, const CloudR
     for (std::size_t k = 0; k < vertex.properties.size(); ++k)
         if (vertex.properties[k].slot == kSlotStiffness) changes.column = k;
 
-    const bool        modulus = painted.kind() == StiffnessKind::modulus;
-    const bool        hidden  = hasProperty(vertex, "stiffness") || hasProperty(vertex, "scalar_stiffness");
-    const char* const own     = modulus || hidden ? "stiffness" : "flexural_rigidity";
+    const bool        hidden = hasProperty(vertex, "stiffness") || hasProperty(vertex, "scalar_stiffness");
+    const char* const own    = hidden ? "stiffness" : propertyOf(painted.kind());
     // Without a unit the property stays what it is, beside the stiffness; unless both have the same name.
     if (readAs.range && changes.column != kNone && vertex.properties[changes.column].name != own)
         changes.column = kNone;

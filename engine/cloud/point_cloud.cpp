@@ -1,6 +1,7 @@
 #include "engine/cloud/point_cloud.h"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include <glm/common.hpp>
@@ -20,7 +21,21 @@ bool finite(const glm::dvec3& p)
 
 const char* unitOf(StiffnessKind kind) noexcept
 {
-    return kind == StiffnessKind::modulus ? "Pa" : "N_m";
+    return kind == StiffnessKind::modulus ? "Pa" : kind == StiffnessKind::rigidity ? "N_m" : "N/m";
+}
+
+const char* propertyOf(StiffnessKind kind) noexcept
+{
+    return kind == StiffnessKind::modulus    ? "stiffness"
+           : kind == StiffnessKind::rigidity ? "flexural_rigidity"
+                                             : "felt_stiffness";
+}
+
+Dimension dimensionOf(StiffnessKind kind) noexcept
+{
+    return kind == StiffnessKind::modulus    ? Dimension::pressure
+           : kind == StiffnessKind::rigidity ? Dimension::rigidity
+                                             : Dimension::stiffness;
 }
 
 double Bounds::diagonal() const noexcept
@@ -63,11 +78,13 @@ void PointCloud::checkStiffness() const
 
 double PointCloud::rigidity(std::size_t point, const Material& material) const noexcept
 {
+    if (kind_ == StiffnessKind::felt) return std::numeric_limits<double>::quiet_NaN();
     return kind_ == StiffnessKind::rigidity ? stiffness_[point] : material.rigidity(stiffness_[point]);
 }
 
 double PointCloud::modulus(std::size_t point, const Material& material) const noexcept
 {
+    if (kind_ == StiffnessKind::felt) return std::numeric_limits<double>::quiet_NaN();
     return kind_ == StiffnessKind::modulus ? stiffness_[point] : material.modulus(stiffness_[point]);
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -7,17 +8,24 @@
 #include <glm/vec3.hpp>
 
 #include "engine/cloud/material.h"
+#include "engine/core/quantity.h"
 
 namespace palp {
 
 /// The quantity that the stiffness of a cloud's points is.
 enum class StiffnessKind {
-    modulus, ///< Young's modulus E [Pa]
-    rigidity ///< flexural rigidity D [N m]
+    modulus,  ///< Young's modulus E [Pa]
+    rigidity, ///< flexural rigidity D [N m]
+    felt      ///< what a probe has measured, force per depth [N/m]: a map, and no object until it is fitted
 };
+inline constexpr std::array kStiffnessKinds{StiffnessKind::modulus, StiffnessKind::rigidity, StiffnessKind::felt};
 
-/// Returns the unit in which files and reports state a stiffness: "Pa" or "N_m".
+/// Returns the unit in which files and reports state a stiffness: "Pa", "N_m" or "N/m".
 [[nodiscard]] const char* unitOf(StiffnessKind kind) noexcept;
+/// Returns the property that files have for it: "stiffness", "flexural_rigidity" or "felt_stiffness".
+[[nodiscard]] const char* propertyOf(StiffnessKind kind) noexcept;
+/// Returns what a number with a unit is as such a stiffness.
+[[nodiscard]] Dimension dimensionOf(StiffnessKind kind) noexcept;
 
 struct Bounds {
     glm::dvec3 low{};  ///< [m]
@@ -36,7 +44,7 @@ struct Bounds {
 class PointCloud {
 public:
     /// \param positions  rest positions [m]
-    /// \param stiffness  [Pa] or [N m], as `kind` says
+    /// \param stiffness  [Pa], [N m] or [N/m], as `kind` says
     /// \throws Error naming the first point that breaks the invariant
     PointCloud(std::vector<glm::dvec3> positions, std::vector<double> stiffness, StiffnessKind kind);
 
@@ -47,10 +55,11 @@ public:
 
     [[nodiscard]] std::size_t                 size() const noexcept { return stiffness_.size(); }
     [[nodiscard]] std::span<const glm::dvec3> positions() const noexcept { return *positions_; } ///< [m]
-    [[nodiscard]] std::span<const double>     stiffness() const noexcept { return stiffness_; }  ///< [Pa] or [N m]
+    [[nodiscard]] std::span<const double>     stiffness() const noexcept { return stiffness_; }  ///< as kind() says
     [[nodiscard]] StiffnessKind               kind() const noexcept { return kind_; }
     [[nodiscard]] const Bounds&               bounds() const noexcept { return bounds_; }
 
+    // Of what was felt they are NaN: that depends on the neighbours, see palpate fit.
     [[nodiscard]] double rigidity(std::size_t point, const Material&) const noexcept; ///< [N m]
     [[nodiscard]] double modulus(std::size_t point, const Material&) const noexcept;  ///< [Pa]
 

@@ -27,6 +27,7 @@ constexpr std::array kPressures   = {Unit{"Pa", 1}, Unit{"kPa", 1e3}, Unit{"MPa"
 constexpr std::array kRigidities  = {Unit{"N_m", 1}, Unit{"Nm", 1}, Unit{"N*m", 1}, Unit{"mN_m", 1e-3},
                                      Unit{"mNm", 1e-3}};
 constexpr std::array kFoundations = {Unit{"Pa/m", 1}, Unit{"kPa/m", 1e3}, Unit{"MPa/m", 1e6}, Unit{"GPa/m", 1e9}};
+constexpr std::array kStiffnesses = {Unit{"N/m", 1}, Unit{"kN/m", 1e3}, Unit{"N/mm", 1e3}, Unit{"N/cm", 1e2}};
 constexpr std::array kTimes       = {Unit{"s", 1}, Unit{"ms", 1e-3}};
 constexpr std::array kPerLengths  = {Unit{"1/m", 1}, Unit{"/m", 1}, Unit{"1/mm", 1e3}, Unit{"/mm", 1e3}};
 constexpr std::array kAngles      = {Unit{"rad", 1}, Unit{"deg", std::numbers::pi / 180}};
@@ -44,6 +45,8 @@ std::span<const Unit> unitsOf(Dimension dimension)
         return kRigidities;
     case Dimension::foundation:
         return kFoundations;
+    case Dimension::stiffness:
+        return kStiffnesses;
     case Dimension::angle:
         return kAngles;
     case Dimension::time:

@@ -7,7 +7,7 @@
 namespace palp {
 
 /// The dimension of a number given by a user; it decides which unit suffixes are known.
-enum class Dimension { length, force, pressure, rigidity, foundation, angle, time, perLength, none };
+enum class Dimension { length, force, pressure, rigidity, foundation, stiffness, angle, time, perLength, none };
 
 /// Reads "4mm", "1.5 N", "0.3MPa", "2e-3": a finite number and a unit.
 /// \param siPerPlainNumber  SI units in one of a number without a unit

@@ -189,6 +189,7 @@ struct LoadedObject {
 [[nodiscard]] LoadedObject loadObject(const Scene& scene);
 
 /// Makes the object of a loaded cloud: with its index, faces or mesh, normals and the scene's material.
+/// \throws Error if the cloud is a map of felt stiffness
 [[nodiscard]] LoadedObject objectOf(LoadedCloud loaded, const Scene& scene);
 
 /// Does the same as loadCloud() without the overlay.

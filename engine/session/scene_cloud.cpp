@@ -45,10 +45,11 @@ PointCloud withLaw(const LoadedCloud& loaded, const Bounds& bounds, const Scene&
     std::vector<double> stiffness;
     if (law.along == SpatialLaw::Along::thickness) {
         if (kind != StiffnessKind::modulus)
-            throw Error(
-                openingOf(scene, "stiffness") +
-                ": \"along\": \"thickness\" takes Young's modulus from a volume, found stiffness_unit N_m; omit "
-                "one of the two");
+            throw Error(openingOf(scene, "stiffness") +
+                        ": \"along\": \"thickness\" takes Young's modulus from a volume, found stiffness_unit " +
+                        std::string(unitOf(kind)) +
+                        "; omit "
+                        "one of the two");
         stiffness = valuesBelow(law, loaded, scene);
     } else {
         for (const glm::dvec3& p : positions)
@@ -142,6 +143,9 @@ LoadedCloud loadCloud(const Scene& scene)
 
 LoadedObject objectOf(LoadedCloud loaded, const Scene& scene)
 {
+    if (loaded.cloud.kind() == StiffnessKind::felt)
+        throw Error(scene.cloud + ": expected a modulus [Pa] or a flexural rigidity [N_m], found a map of what a probe "
+                                  "felt [N/m]; palpate fit makes an object of it");
     const SoftObject object(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals);
     return {onTissue(object.standingFor(std::move(loaded.mesh)), scene), std::move(loaded.report)};
 }

@@ -81,7 +81,7 @@ std::string pointJson(const std::optional<glm::dvec3>& p)
 
 D dimensionOf(const CloudReadSettings& reading)
 {
-    return reading.stiffnessKind.value_or(StiffnessKind::modulus) == StiffnessKind::modulus ? D::pressure : D::rigidity;
+    return dimensionOf(reading.stiffnessKind.value_or(StiffnessKind::modulus));
 }
 
 /// Returns a stiffness above zero, a modulus or a rigidity by the scene's stiffness_unit.
@@ -113,8 +113,9 @@ void readLogRange(S& scene, const V& given)
 
 void readStiffnessUnit(S& scene, const V& given)
 {
-    scene.reading.stiffnessKind =
-        given.word() == unitOf(StiffnessKind::modulus) ? StiffnessKind::modulus : StiffnessKind::rigidity;
+    const std::string word = given.word();
+    for (const StiffnessKind kind : kStiffnessKinds)
+        if (word == unitOf(kind)) scene.reading.stiffnessKind = kind;
 }
 
 /// Reads auto, on, off or a distance.
@@ -175,9 +176,10 @@ std::vector<SceneKey> fileKeys()
              .form = "the name of a property of the file's points"},
             [](auto& s) -> auto& { return s.reading.stiffnessProperty; }),
         {.name  = "stiffness_unit",
-         .help  = "what the stiffness of a cloud file is: Pa for Young's modulus, N_m for the flexural rigidity",
+         .help  = "what the stiffness of a cloud file is: Pa for Young's modulus, N_m for the flexural "
+                  "rigidity, N/m for a map of what a probe felt, of which palpate fit makes an object",
          .kind  = Kind::word,
-         .words = {unitOf(StiffnessKind::modulus), unitOf(StiffnessKind::rigidity)},
+         .words = {unitOf(StiffnessKind::modulus), unitOf(StiffnessKind::rigidity), unitOf(StiffnessKind::felt)},
          .read  = readStiffnessUnit,
          .write = [](const S& s) -> std::string {
              return s.reading.stiffnessKind ? quotedJson(unitOf(*s.reading.stiffnessKind)) : "";

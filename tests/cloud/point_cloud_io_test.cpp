@@ -232,11 +232,14 @@ TEST(Stiffness, KindIsTheSettingThenTheCommentThenTheName)
     EXPECT_EQ(kindOf("", "stiffness", {}), modulus);
     EXPECT_EQ(kindOf("", "D", {}), rigidity);
     EXPECT_EQ(kindOf("", "flexural_rigidity", {}), rigidity);
+    EXPECT_EQ(kindOf("", "felt_stiffness", {}), felt);
+    EXPECT_EQ(kindOf("", "scalar_felt_stiffness", {}), felt);
     EXPECT_EQ(kindOf("# stiffness_unit N_m\n", "E", {}), rigidity);
+    EXPECT_EQ(kindOf("# stiffness_unit N/m\n", "stiffness", {}), felt);
     EXPECT_EQ(kindOf("# stiffness_unit Pa\n", "D", {}), modulus);
     EXPECT_EQ(kindOf("# stiffness_unit Pa\n", "D", rigidity), rigidity);
     EXPECT_EQ(kindOf("# stiffness_unit kPa\n", "stiffness", modulus), modulus);
-    EXPECT_TRUE(contains(textRefusal("# stiffness_unit kPa\n1 2 3 7\n"), {"Pa or N_m", "\"kPa\""}));
+    EXPECT_TRUE(contains(textRefusal("# stiffness_unit kPa\n1 2 3 7\n"), {"Pa, N_m or N/m", "\"kPa\""}));
 }
 
 TEST(Stiffness, IsUniformOnlyWhereTheFileHasNone)

@@ -109,6 +109,15 @@ TEST(PointCloud, UnitsAreThoseOfFiles)
 {
     EXPECT_STREQ(unitOf(StiffnessKind::modulus), "Pa");
     EXPECT_STREQ(unitOf(StiffnessKind::rigidity), "N_m");
+    EXPECT_STREQ(unitOf(StiffnessKind::felt), "N/m");
+}
+
+TEST(PointCloud, WhatWasFeltIsNeitherModulusNorRigidity)
+{
+    const PointCloud map({{0, 0, 0}}, {400}, StiffnessKind::felt);
+
+    EXPECT_TRUE(std::isnan(map.modulus(0, {})));
+    EXPECT_TRUE(std::isnan(map.rigidity(0, {})));
 }
 
 } // namespace

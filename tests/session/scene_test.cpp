@@ -402,7 +402,7 @@ TEST(Scene, AStiffnessThatContradictsTheFileIsRefusedUnderItsOwnName)
     EXPECT_TRUE(
         says(read({{"stiffness_range", "0,1kPa"}}), {"--stiffness-range: expected two stiffnesses above zero"}));
     EXPECT_TRUE(says(read({{"stiffness_range", "1kPa,2mm"}}), {"--stiffness-range", "unknown unit \"mm\""}));
-    EXPECT_TRUE(says(read({{"stiffness_unit", "kPa"}}), {"--stiffness-unit: expected Pa or N_m", "kPa"}));
+    EXPECT_TRUE(says(read({{"stiffness_unit", "kPa"}}), {"--stiffness-unit: expected Pa, N_m or N/m", "kPa"}));
     EXPECT_TRUE(says(read({{"stiffness_property", "qualty"}}), {"scan.ply", "qualty"}));
     EXPECT_TRUE(says(read({{"uniform", "nan"}}), {"--uniform", "finite"}));
     for (const char* key : {"stiffness_property", "stiffness_unit", "stiffness_range", "uniform", "columns",

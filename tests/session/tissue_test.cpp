@@ -82,6 +82,29 @@ TEST(Tissue, TheForceFollowsTheExponentialToTheCapAndTheDentGoesWithTheDepth)
         << "the same depth, the same dent; a table may round";
 }
 
+TEST(Tissue, WithEverythingOffEachTickIsThePlainSpringInSeries)
+{
+    // No digest of a session is the same on every processor: what a tick must be is computed here, from k_c and c.
+    const HandPath   hand      = handTo(1.5e-3, 2.6);
+    constexpr double kRounding = 1e-10; // relative; a stiffening of 1e-3 / m is 7e-7
+    const auto       springs   = [&](double stiffening) {
+        const Scene even = scene(kEven, stiffening, {});
+        int         same = 0;
+        for (const TickRecord& record : run(even, hand)) {
+            if (pullOf(record) < 1.4e-3 || record.compliance == 0) continue;
+            const double radius = even.patch.footprintRadius;
+            const double own    = 2e5 * std::numbers::pi * radius * radius / even.material.thickness; // k_c
+            const double felt   = 1 / (1 / own + record.compliance);
+            same += std::abs(record.stiffness / felt - 1) < kRounding &&
+                    glm::length(record.wanted - felt * (record.proxy - record.hip)) <
+                        kRounding * glm::length(record.wanted);
+        }
+        return same;
+    };
+    EXPECT_GT(springs(0), 500);
+    EXPECT_EQ(springs(1e-3), 0);
+}
+
 TEST(Tissue, AHeldFingerLosesForceAndNotItsDent)
 {
     const Relaxation              meat{{{{0.26, 0.41}, {0.31, 4.3}}}, 2};

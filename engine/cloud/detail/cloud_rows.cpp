@@ -54,14 +54,16 @@ std::string lookUpList()
 
 std::optional<StiffnessKind> kindOfUnit(std::string_view unit)
 {
-    for (const StiffnessKind kind : {StiffnessKind::modulus, StiffnessKind::rigidity})
+    for (const StiffnessKind kind : kStiffnessKinds)
         if (unit == unitOf(kind)) return kind;
     return std::nullopt;
 }
 
 const char* nameOf(StiffnessKind kind)
 {
-    return kind == StiffnessKind::modulus ? "modulus [Pa]" : "flexural rigidity [N_m]";
+    return kind == StiffnessKind::modulus    ? "modulus [Pa]"
+           : kind == StiffnessKind::rigidity ? "flexural rigidity [N_m]"
+                                             : "felt stiffness [N/m]";
 }
 
 /// Returns the index of the only property of that name.
@@ -95,6 +97,7 @@ void checkPositive(const ByteReader& reader, double value, const char* what)
 
 StiffnessKind kindByName(std::string_view property) noexcept
 {
+    if (property.ends_with("felt_stiffness")) return StiffnessKind::felt;
     return property == "D" || property.ends_with("flexural_rigidity") ? StiffnessKind::rigidity
                                                                       : StiffnessKind::modulus;
 }
@@ -168,14 +171,14 @@ void CloudRows::chooseKind(std::string_view property)
     } else if (header_.stiffnessUnit) {
         const auto kind = kindOfUnit(*header_.stiffnessUnit);
         if (!kind)
-            reader_.fail("expected a comment stiffness_unit Pa or N_m, found " + inQuotes(*header_.stiffnessUnit) +
+            reader_.fail("expected a comment stiffness_unit Pa, N_m or N/m, found " + inQuotes(*header_.stiffnessUnit) +
                          "; name the kind of stiffness to overrule it");
         kind_ = *kind;
         why   = "by the file's comment";
     } else {
         kind_ = kindByName(property);
-        why   = kind_ == StiffnessKind::rigidity ? "by its name"
-                                                 : "because neither a setting, the file nor the name says otherwise";
+        why   = kind_ != StiffnessKind::modulus ? "by its name"
+                                                : "because neither a setting, the file nor the name says otherwise";
     }
     if (header_.stiffnessUnit) report_.statedKind = kindOfUnit(*header_.stiffnessUnit);
     report_.stiffnessSource = "property " + inQuotes(property) + " as " + nameOf(kind_) + " " + why;
@@ -204,8 +207,9 @@ void CloudRows::chooseStiffness()
     const std::string none = "the file has no property " + lookUpList() + " but only: " + listed(header_.properties);
     if (settings_.range) reader_.fail("a stiffness range needs a property to map, but " + none + "; name one of these");
     kind_ = settings_.stiffnessKind.value_or(StiffnessKind::modulus);
-    if (!settings_.uniformStiffness && kind_ == StiffnessKind::rigidity)
-        reader_.fail(none + "; name one of these, or a uniform flexural rigidity");
+    if (!settings_.uniformStiffness && kind_ != StiffnessKind::modulus)
+        reader_.fail(none + "; name one of these, or a uniform " +
+                     (kind_ == StiffnessKind::rigidity ? "flexural rigidity" : "felt stiffness"));
     uniform_ = settings_.uniformStiffness.value_or(kDefaultModulus);
     checkPositive(reader_, uniform_, "uniform stiffness");
     report_.stiffnessAssumed = !settings_.uniformStiffness;

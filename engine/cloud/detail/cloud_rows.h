@@ -44,8 +44,9 @@ using CloudRow = std::array<double, kSlots>;
 
 /// The names under which stiffness is looked for; the first that is there wins. Programs for point clouds put
 /// "scalar_" before the names of their own properties. Quality, confidence and intensity mean too many things.
-inline constexpr std::array<std::string_view, 6> kStiffnessProperties = {
-    "stiffness", "scalar_stiffness", "flexural_rigidity", "scalar_flexural_rigidity", "D", "E"};
+inline constexpr std::array<std::string_view, 8> kStiffnessProperties = {
+    "stiffness", "scalar_stiffness", "flexural_rigidity",    "scalar_flexural_rigidity", "D",
+    "E",         "felt_stiffness",   "scalar_felt_stiffness"};
 
 /// Returns the kind of a stiffness of which only the property's name is known.
 [[nodiscard]] StiffnessKind kindByName(std::string_view property) noexcept;

@@ -27,9 +27,7 @@ bool isPlainName(const std::string& name)
 } // namespace
 
 RowWriter::RowWriter(const PointCloud& cloud, std::span<const NamedField> extraFields)
-    : cloud_(cloud),
-      extraFields_(extraFields), columns_{"x", "y", "z",
-                                          cloud.kind() == StiffnessKind::modulus ? "stiffness" : "flexural_rigidity"},
+    : cloud_(cloud), extraFields_(extraFields), columns_{"x", "y", "z", propertyOf(cloud.kind())},
       comments_{"length_unit m", std::string("stiffness_unit ") + unitOf(cloud.kind())}
 {
     for (const NamedField& field : extraFields) {

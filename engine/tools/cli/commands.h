@@ -16,6 +16,7 @@ void addConvertCommand(CLI::App& app);
 void addPaintCommand(CLI::App& app);
 void addTouchCommand(CLI::App& app);
 void addMaterialsCommand(CLI::App& app);
+void addFitCommand(CLI::App& app);
 void addSolveCommand(CLI::App& app);
 void addDevicesCommand(CLI::App& app);
 void addDoctorCommand(CLI::App& app);

@@ -84,7 +84,7 @@ nlohmann::json scatterJson(const ScatterPlan& plan)
 void printText(const InfoOptions& options, const LoadedCloud& loaded, const QualityReport& quality,
                const std::optional<ScatterPlan>& plan, const nlohmann::json& report)
 {
-    const std::string unit = report["stiffness_unit"] == "Pa" ? "Pa" : "N m";
+    const std::string unit = report["stiffness_unit"] == "N_m" ? "N m" : report["stiffness_unit"];
     std::string       properties;
     for (const std::string& property : loaded.report.properties)
         properties += (properties.empty() ? "" : ", ") + property;
@@ -117,11 +117,11 @@ void printInfo(const InfoOptions& options)
     const auto              plan   = scatterPlan(whole, loaded);
     std::optional<Progress> progress("looking at the points");
     progress->mayLast();
-    constexpr double    kMostTried = 1e6; // points: enough to judge a mesh by the points through which it is touched
-    const SoftObject    object     = plan && double(plan->points) <= kMostTried
-                                         ? options.source.loadObject(whole).object
-                                         : SoftObject(loaded.cloud, scene.material, loaded.faces, loaded.normals);
-    const QualityReport quality    = qualityReport(object, loaded, scene);
+    constexpr double kMostTried = 1e6; // points: enough to judge a mesh by the points through which it is touched
+    const SoftObject object = plan && loaded.cloud.kind() != StiffnessKind::felt && double(plan->points) <= kMostTried
+                                  ? options.source.loadObject(whole).object
+                                  : SoftObject(loaded.cloud, scene.material, loaded.faces, loaded.normals);
+    const QualityReport quality = qualityReport(object, loaded, scene);
     progress.reset();
 
     nlohmann::json report   = cloudJson(options.source.name, loaded.cloud, loaded.faces, loaded.report);

@@ -104,6 +104,7 @@ int main(int argumentCount, char** arguments)
                "  palpate touch sample:skin --out touch          a poke into a wart, with pictures\n"
                "  palpate info scan.ply --length-unit mm         what a file holds and how it is read\n"
                "  palpate materials                              measured materials, for the key material\n"
+               "  palpate fit probes.csv --page probes.html      stiffness, stiffening and relaxation of measured presses\n"
                "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
                "  palpate paint scan.ply --stroke 'at=0,0,30mm radius=5mm value=2MPa' --out wart.ply\n"
                "                                                 a stiff spot on it; the rest of the file is kept\n"
@@ -125,6 +126,7 @@ int main(int argumentCount, char** arguments)
     palp::addSolveCommand(app);
     palp::addInfoCommand(app);
     palp::addMaterialsCommand(app);
+    palp::addFitCommand(app);
     palp::addConvertCommand(app);
     palp::addPaintCommand(app);
     palp::addDevicesCommand(app);

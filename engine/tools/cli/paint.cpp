@@ -60,7 +60,7 @@ RepaintedPly write(const PaintOptions& o, const Canvas& canvas, const PointCloud
 {
     if (keepsOriginal(o, canvas)) return repaintPly(canvas.file, canvas.scene.reading, painted, o.out);
     writeCloud(o.out, painted, {}, {CloudEncoding::binaryLittleEndian, canvas.loaded.faces});
-    return {painted.kind() == StiffnessKind::modulus ? "stiffness" : "flexural_rigidity", true};
+    return {propertyOf(painted.kind()), true};
 }
 
 nlohmann::json jsonOf(const StrokeOrder& order, const StrokeReport& report)
@@ -83,7 +83,7 @@ void paint(const PaintOptions& o)
     refuseSourceAsTarget("--out", canvas.file.empty() ? o.source.name : canvas.file, o.out);
     const SoftObject         object(canvas.loaded.cloud);
     const PointCloud&        cloud  = object.cloud();
-    const std::string        unit   = cloud.kind() == StiffnessKind::modulus ? "Pa" : "N m";
+    const std::string        unit   = cloud.kind() == StiffnessKind::rigidity ? "N m" : unitOf(cloud.kind());
     const double             metres = metresPerPlainNumber(o.source, canvas.scene);
     std::vector<StrokeOrder> orders;
     const auto               what = [](std::size_t k) { return "--stroke " + std::to_string(k + 1); };

@@ -70,9 +70,7 @@ StrokeOrder parseStroke(const std::string& text, const std::string& what, double
     order.radius = parseQuantity(words.at("radius"), Dimension::length, what + ": radius", metresPerPlainNumber);
     if (!(order.radius > 0)) throw Error(what + ": expected a radius above zero, found \"" + words.at("radius") + "\"");
     if (words.contains("value")) {
-        order.value =
-            parseQuantity(words.at("value"), kind == StiffnessKind::modulus ? Dimension::pressure : Dimension::rigidity,
-                          what + ": value");
+        order.value = parseQuantity(words.at("value"), dimensionOf(kind), what + ": value");
         if (!(*order.value > 0))
             throw Error(what + ": expected a value above zero, found \"" + words.at("value") + "\"");
     }

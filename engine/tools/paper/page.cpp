@@ -83,15 +83,32 @@ void addSection(std::ostringstream& html, const Section& section)
     html << "</div>\n";
 }
 
+/// Writes all of a page up to its title.
+void addHead(std::ostringstream& html, const std::string& name, const std::string& title)
+{
+    html << "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+            "content=\"width=device-width\"><title>"
+         << escaped(name) << "</title>\n<style>" << kStyle << "</style></head><body>\n<h1>" << escaped(title)
+         << "</h1>\n";
+}
+
 } // namespace
+
+std::string plainPage(const std::string& title, std::span<const std::string> text, std::span<const Section> sections)
+{
+    std::ostringstream html;
+    addHead(html, "Palpate: " + title, title);
+    for (const std::string& paragraph : text) html << "<p>" << escaped(paragraph) << "</p>\n";
+    for (const Section& section : sections) addSection(html, section);
+    html << "</body></html>\n";
+    return html.str();
+}
 
 std::string reportPage(std::span<const Section> sections, const Origins& origins)
 {
     std::ostringstream html;
-    html << "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
-            "content=\"width=device-width\"><title>Palpate: the paper, computed again</title>\n<style>"
-         << kStyle << "</style></head><body>\n<h1>The paper, computed again</h1>\n"
-         << "<p>Kumari and Chaudhuri, “Haptic Rendering of Thin, Deformable Objects with Spatially Varying Stiffness” "
+    addHead(html, "Palpate: the paper, computed again", "The paper, computed again");
+    html << "<p>Kumari and Chaudhuri, “Haptic Rendering of Thin, Deformable Objects with Spatially Varying Stiffness” "
             "(arXiv 2005.11799). Its claims are in our words. Every figure and number below was made by one command, "
             "<code>"
          << escaped(origins.command)

@@ -35,7 +35,7 @@ good 'version' --version
 holds 'palpate 0.'
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info materials convert paint render view export hunt study perceive paper devices doctor calibrate bench; do
+for command in touch solve info materials fit convert paint render view export hunt study perceive paper devices doctor calibrate bench; do
     # shellcheck disable=SC2086  # a command, or one within another
     good "help of $command" $command --help; holds 'Examples:'
     mv out.txt help.txt
@@ -50,6 +50,31 @@ good 'materials' materials
 holds 'ecoflex-0030 ' && holds 'CC BY 4.0' && holds '810 1/m'
 good 'materials for scripts' materials --json
 holds '"modulus": 97260.0'
+
+# --- measurements
+awk -v OFS=, 'BEGIN { print "probe,depth [mm],force,x,y,z"
+    for (p = 0; p < 9; ++p) for (n = 0; n < 10; ++n) print p, n / 4, 300 * (exp(0.2 * n) - 1) / 800, p % 3 / 50, int(p / 3) / 50, 0 }' >probes.csv
+good 'presses' fit probes.csv --page probes.html --out felt.csv
+holds '"stiffening": 800, "relaxation": "none"' && holds 'K' && holds 'cubic'
+grep -q '<svg' probes.html && passed=$((passed + 1)) || complain 'the page of presses has no plot'
+good 'presses for scripts' fit probes.csv --json
+holds '"interval_from": "covariance"' && holds '"other_residuals"'
+good 'the map of presses' info felt.csv
+holds '300 N/m' && holds 'felt stiffness [N/m]'
+good 'a map' fit felt.csv --footprint-radius 8mm --thickness 4mm --foundation 1MPa/m --window 12cm --solver host --page map.html --out fitted.ply
+holds 'left over'
+good 'what is left' info fitted.ply
+holds 'residual'
+bad 'a map is no object' 'palpate fit makes an object of it' touch felt.csv
+bad 'a map without a tip' 'give --footprint-radius' fit felt.csv
+bad 'a tip larger than the map' 'is the unit right' fit felt.csv --footprint-radius 60mm --window 20cm
+bad 'an object is no map' 'found a stiffness in Pa' fit fitted.ply --footprint-radius 8mm
+bad 'presses have no tip' 'take no keys of scenes' fit probes.csv --footprint-radius 8mm
+bad 'a page of another kind' 'ends in .html' fit probes.csv --page probes.svg
+sed 's/,\([0-9.]*\),\([0-9.]*,[0-9.]*,0\)$/,-\1,\2/' probes.csv >pulls.csv
+bad 'presses that pull' 'turn the sign' fit pulls.csv
+sed 's/ \[mm\]//' probes.csv >metres.csv
+bad 'presses in metres' 'call the column "depth [mm]"' fit metres.csv
 good 'list of samples' info --samples
 for sample in ellipsoid sheet pad hemisphere saddle skin palm ear-lobe; do holds "sample:$sample"; done
 good 'a sample as a file' convert sample:skin skin.ply --points 5000

@@ -1,5 +1,6 @@
 // The scenes in samples/scenes: each reads, its README's numbers hold, and the schema knows what the reader knows.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -12,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/contact/contact.h"
+#include "engine/force/relaxing_contact.h"
 #include "engine/pipeline/deform.h"
 #include "engine/session/hand_path.h"
 #include "engine/tools/study/hunt_scene.h"
@@ -75,7 +77,7 @@ TEST(SampleScenes, EveryFileHasARowInTheReadmeAndNoRowIsWithoutAFile)
     for (const Row& row : readme()) rows.insert(row.name);
 
     EXPECT_EQ(files, rows);
-    EXPECT_EQ(files.size(), 11u);
+    EXPECT_EQ(files.size(), 13u);
 }
 
 TEST(SampleScenes, TheFingerFeelsWhatTheReadmeSays)
@@ -98,6 +100,43 @@ TEST(SampleScenes, TheFingerFeelsWhatTheReadmeSays)
         EXPECT_NEAR(std::log(stiff.feltStiffness / soft.feltStiffness) / std::log(1.07), row.steps, 0.05);
         EXPECT_LT(stiff.feltStiffness, scene.stiffnessCap) << "a contrast that the cap clips is not felt";
     }
+}
+
+TEST(SampleScenes, AHeldFingerLosesTheForceThatTheReadmeSays)
+{
+    std::istringstream text(contentsOf(kScenes / "README.md"));
+    int                found = 0;
+    bool               held  = false; // inside the table
+    for (std::string line; std::getline(text, line);) {
+        if (!line.starts_with("|")) held = false;
+        if (line.starts_with("| held |")) held = true;
+        if (!held || line.starts_with("| held |") || line.starts_with("|-")) continue;
+        std::ranges::replace(line, '|', ' ');
+        std::istringstream    words(line);
+        std::string           name;
+        double                depth = 0;
+        std::array<double, 3> forces{};
+        words >> name >> depth >> forces[0] >> forces[1] >> forces[2];
+        ASSERT_TRUE(words) << line;
+        SCOPED_TRACE(name);
+        const auto       rows   = readme();
+        const auto       row    = std::ranges::find(rows, name, &Row::name);
+        const Scene      scene  = sceneOf(kScenes / (name + ".json"));
+        const SoftObject object = loadObject(scene).object;
+        const Patch      soft   = deform(object, touchAt(object, row->soft, scene.from, 10e-3), scene.patch);
+
+        const DepthLaw   law = DepthLaw::capped(soft.feltStiffness, scene.material.stiffening, scene.stiffnessCap);
+        RelaxingContact  contact(scene.material.relaxation, scene.patch.footprintRadius);
+        constexpr double kRounding = 0.005; // as above, and three digits
+        for (int tick = 0; tick <= 10'000; ++tick) {
+            const double force = contact.step({law, depth * 1e-3, {}, tick == 0 ? 0 : 1e-3}).force;
+            const auto   which = tick == 0 ? 0 : tick == 1000 ? 1 : tick == 10'000 ? 2 : -1;
+            if (which < 0) continue;
+            EXPECT_NEAR(force, forces[std::size_t(which)], kRounding * force) << tick;
+        }
+        ++found;
+    }
+    EXPECT_EQ(found, 2);
 }
 
 TEST(SampleScenes, ThePlaceOfEachSceneIsOnItsCloud)

@@ -1,0 +1,98 @@
+#include "engine/tools/fit/probe_table.h"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "engine/core/contract.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palp::fit {
+namespace {
+
+const std::string kRising = "0,0\n1,0.1\n2,0.3\n3,0.6\n4,1\n";
+
+std::string refusal(const std::string& text)
+{
+    try {
+        (void)parseProbes(text, "probes.csv");
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+::testing::AssertionResult says(const std::string& text, std::initializer_list<std::string> parts)
+{
+    const std::string said = refusal(text);
+    for (const std::string& part : parts)
+        if (said.find(part) == std::string::npos)
+            return ::testing::AssertionFailure() << "\"" << said << "\" lacks \"" << part << "\"";
+    return ::testing::AssertionSuccess();
+}
+
+TEST(ProbeTable, ReadsProbesThatAreMixedWithUnitsAndPlaces)
+{
+    const auto probes =
+        parseProbes("# a scan\r\nprobe, depth [mm], note, force [mN], x [cm], y [cm], z [cm], nx, ny, nz\r\n"
+                    "a,0,?,0,1,2,3,0,0,1\r\nb,0,,0,4,5,6,0,1,0\r\n"
+                    "a,1,,100,1,2,3,0,0,1\r\na,2,,250,1,2,3,0,0,1\r\na,3,,300,1,2,3,0,0,1\r\n"
+                    "a,3,,310,1,2,3,0,0,1\r\nb,1,,2,4,5,6,0,1,0\r\nb,2,,3,4,5,6,0,1,0\r\n"
+                    "b,3,,4,4,5,6,0,1,0\r\nb,4,,5,4,5,6,0,1,0",
+                    "probes.csv");
+
+    ASSERT_EQ(probes.size(), 2u);
+    EXPECT_EQ(probes[0].name, "a");
+    EXPECT_EQ(probes[0].depth, (std::vector<double>{0, 1e-3, 2e-3, 3e-3, 3e-3}));
+    EXPECT_EQ(probes[0].force, (std::vector<double>{0, 0.1, 0.25, 0.3, 0.31}));
+    EXPECT_EQ(probes[1].place, glm::dvec3(0.04, 0.05, 0.06));
+    EXPECT_EQ(probes[1].normal, glm::dvec3(0, 1, 0));
+    EXPECT_TRUE(probes[0].time.empty());
+}
+
+TEST(ProbeTable, WithoutNamesAllRowsAreOneProbeAndWithTimesItMayGoBack)
+{
+    const auto probes = parseProbes("time,depth,force\n0,0,0\n1,1e-3,1\n2,1e-3,0.8\n3,0,0\n4,0,0\n", "p");
+
+    ASSERT_EQ(probes.size(), 1u);
+    EXPECT_EQ(probes[0].time.size(), 5u);
+    EXPECT_EQ(probes[0].deepest(), 1e-3);
+    EXPECT_EQ(probes[0].forceRange(), 1);
+}
+
+TEST(ProbeTable, EachMistakeIsOneSentenceWithItsLineAndARemedy)
+{
+    EXPECT_TRUE(
+        says("depth,force\n" + kRising, {"probes.csv, line 3", "probe 1", "at most 100 mm", "1.00 m", "depth [mm]"}));
+    EXPECT_TRUE(says("depth [mm],force\n0,0\n1,-0.1\n2,-0.3\n3,-0.6\n4,-1\n", {"line 6", "-1.00 N", "turn the sign"}));
+    EXPECT_TRUE(says("depth [mm],force\n0,0\n1,100\n2,300\n3,600\n4,5000\n", {"line 6", "5.00 kN", "force [mN]"}));
+    EXPECT_TRUE(says("depth [mm],force\n0,0\n2,0.3\n1,0.1\n3,0.6\n4,1\n",
+                     {"line 4", "1.00 mm after 2.00 mm", "sort the rows"}));
+    EXPECT_TRUE(says("depth [mm],force\n0,0\n1,0.1\n2,0.3\n", {"line 4", "at least 5 rows", "found 3"}));
+    EXPECT_TRUE(
+        says("depth [mm],force\n-1,0\n1,0.1\n2,0.3\n3,0.6\n4,1\n", {"line 2", "depth of 0 or more", "-1.00 mm"}));
+    EXPECT_TRUE(says("depth [mm],force,time\n0,0,0\n1,1,1\n1,1,1\n1,1,2\n1,1,3\n", {"line 4", "times that rise"}));
+    EXPECT_TRUE(says("depth [mm],force\n1,1\n1,1\n1,1\n1,1\n1,1\n", {"depths that differ"}));
+    EXPECT_TRUE(says("depth [mm],force\n0,0\n1,0\n2,0\n3,0\n4,0\n", {"force above zero"}));
+    EXPECT_TRUE(says("depth [furlong],force\n" + kRising, {"line 1", "\"depth\"", "furlong", "mm"}));
+    EXPECT_TRUE(says("deep,force\n" + kRising, {"column \"depth\"", "deep,force"}));
+    EXPECT_TRUE(says("depth,depth,force\n", {"one column \"depth\", found two"}));
+    EXPECT_TRUE(says("depth,force\n0\n", {"line 2", "at least 2 numbers, found 1"}));
+    EXPECT_TRUE(says("depth,force\n0,nan\n", {"line 2", "column force", "\"nan\""}));
+    EXPECT_TRUE(says("depth,force\n", {"rows below a header line"}));
+}
+
+TEST(ProbeTable, IsKnownByItsHeader)
+{
+    const TemporaryFolder folder;
+    const auto            holds = [&](const std::string& text) {
+        std::ofstream(folder.path() / "a.csv") << text;
+        return holdsProbes(folder.path() / "a.csv");
+    };
+    EXPECT_TRUE(holds("# a comment\n\nprobe,\"depth [mm]\",force(N)\n"));
+    EXPECT_FALSE(holds("x,y,z,felt_stiffness\n1,2,3,4\n"));
+    EXPECT_FALSE(holds(""));
+}
+
+} // namespace
+} // namespace palp::fit
