@@ -16,7 +16,8 @@ std::uint32_t groupsAlong(std::uint32_t invocations, std::uint32_t size)
 
 Kernel::Kernel(Context& context, const KernelCode& code, Workgroup workgroup, std::span<const std::uint32_t> constants)
 {
-    PALP_EXPECT(!code.spirv.empty(), std::string("the kernel ") + code.name + " has no code");
+    const bool hasCode = context.processor().kind == ProcessorKind::host ? code.host != nullptr : !code.spirv.empty();
+    PALP_EXPECT(hasCode, std::string("the kernel ") + code.name + " has no code");
     PALP_EXPECT(code.buffers >= 0 && code.pushBytes >= 0 && code.pushBytes % 4 == 0,
                 std::string("the kernel ") + code.name + " has " + std::to_string(code.buffers) + " buffers and " +
                     std::to_string(code.pushBytes) + " bytes of push constants");

@@ -12,7 +12,7 @@ namespace palp::compute {
 /// compute_shaders/CMakeLists.txt.
 struct KernelCode {
     const char*                    name = "";
-    std::span<const std::uint32_t> spirv;
+    std::span<const std::uint32_t> spirv;               ///< none if only the host has it
     int                            buffers   = 0;       ///< storage buffers at bindings 0 .. buffers-1 of set 0
     int                            pushBytes = 0;       ///< [byte] size of the push constants, at most 128
     HostKernel                     host      = nullptr; ///< the same for the host, if there is one

@@ -58,6 +58,13 @@ double wallMilliseconds()
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// Returns whether the host may solve for the rims of this plate exactly, which gives other bits.
+bool mayHaveRims(const Plate& plate)
+{
+    const Extremes of = extremesOf(plate.rigidity.values());
+    return of.most > MultigridPlateSolver::kRimContrast * of.least;
+}
+
 /// Returns the least time of three calls, after one that is not timed [ms].
 template <class Call>
 double leastTime(const PlateSolver::Clock& clock, const Call& call)
@@ -116,7 +123,7 @@ struct PlateSolver::Multigrid {
         : context(settings), likeTheHost(isHost() || (bits == SoftwareBits::ofTheHost &&
                                                       context.processor().kind == compute::ProcessorKind::software)),
           kernels(context, Schedule::automatic, Precision::best,
-                  likeTheHost ? Smoother::chebyshev : Smoother::automatic)
+                  likeTheHost && !isHost() ? Smoother::chebyshev : Smoother::automatic)
     {
     }
 
@@ -263,7 +270,8 @@ private:
     {
         constexpr double kLoosest = 1e-2; // beyond it the estimate of the first steps is a guess
         if (!kernelsOfEights)
-            kernelsOfEights.emplace(context, Schedule::automatic, Precision::floatGradients, Smoother::chebyshev,
+            kernelsOfEights.emplace(context, Schedule::automatic, Precision::floatGradients,
+                                    isHost() ? Smoother::automatic : Smoother::chebyshev,
                                     isHost() ? FieldLayout::sideBySide : FieldLayout::apart);
         eights.prepare(context, *kernelsOfEights, wanted, kEight, std::min(kLoosest, std::sqrt(tolerance)));
         return eights.solver->rounding() <= std::max(tolerance, MultigridPlateSolver::kLeastFloatTolerance);
@@ -373,6 +381,12 @@ PlateSolver::Multigrid& PlateSolver::bestFor(const Plate& plate, double toleranc
 {
     if (plate.grid.nodes() > learned_->shortage.most()) {
         note_ = learned_->shortageNote;
+        return host();
+    }
+    if (processor_->likeTheHost && !processor_->isHost() && mayHaveRims(plate)) {
+        note_ = processor_->context.processor().name +
+                " does not solve rims of inclusions exactly, as the host may from a contrast of " +
+                formatNumber(MultigridPlateSolver::kRimContrast) + " on";
         return host();
     }
     if (processor_->reaches(tolerance)) return *processor_;

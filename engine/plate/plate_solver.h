@@ -21,7 +21,8 @@ struct ContextSettings;
 /// The way in which Vulkan in software solves a plate.
 enum class SoftwareBits {
     itsOwn,   ///< the way that is fastest there
-    ofTheHost ///< the host's way, with the same bits as the host: for replays
+    ofTheHost ///< the host's way, with the same bits as the host: for replays. From MultigridPlateSolver::kRimContrast on
+              ///< the host itself takes over, because it may solve for rims exactly, which has no shader
 };
 
 /// What footprints on one plate feel.
@@ -37,7 +38,8 @@ struct FootprintSolution {
 ///  - for plates of as many nodes or more, if one does not fit its memory, until a later one does: now and then one is
 ///    tried; loads that do not fit it together are split into batches before;
 ///  - for one plate, if the processor has no doubles and the tolerance needs them, if it stops short of the tolerance
-///    for want of them, or if something is no longer a number.
+///    for want of them, or if something is no longer a number; and if Vulkan in software has to give the host's bits,
+///    which depend on exact rims there.
 /// The reference takes over for a plate that multigrid in doubles does not solve within its 200 steps, up to 513 x 513
 /// nodes: beyond, factorising takes minutes and gigabytes, and an answer that is reported as not converged is better.
 /// Such a plate is remembered, and the reference solves those like it at once: of as many cells and the same edges,

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "engine/plate/host/frame.h"
+#include "engine/plate/host/rim_view.h"
 
 // Entries of the operator's matrix: plate_divisor.comp and coarse_assemble.comp. They are the operator's answers to
 // unit deflections, so that there is no second list of them.
@@ -13,6 +14,10 @@
 // not test for numbers that are not finite.
 
 namespace palp::PALPATE_ISA {
+
+void rimEntries(const PlateLevel& g, const float* D, const RimView& rim, float* to);
+void rimEntries(const PlateLevel& g, const float* D, const RimView& rim, double* to);
+
 namespace {
 
 /// Entries of the operator's row at a node; places count from `at`, the rigidity there.
@@ -206,7 +211,51 @@ void assembleOf(const HostDispatch& d)
     assembleAll(g, D, band, Places{});
 }
 
+/// Writes the rows of a rim's nodes: eight numbers each, the diagonal, the entries of the six neighbours before it in
+/// the order of rim_kernels.cpp, and one that is not used.
+template <class Real>
+void rimEntriesOf(const PlateLevel& g, const float* D, const RimView& rim, Real* to)
+{
+    const PlateLevel     level  = named(g);
+    const std::ptrdiff_t stride = g.cellsZ + 1;
+    for (int n = 0; n < rim.unknowns; ++n, to += 8) {
+        const int i = rim.nodes[n] / int(stride), j = rim.nodes[n] % int(stride);
+        if (i >= kNear && j >= kNear && i <= g.cellsX - kNear && j <= g.cellsZ - kNear) {
+            Row<Real>  row{D + rim.nodes[n], stride, g.shapeAt, kMiddle, kMiddle};
+            const auto entry = [&]<int di, int dj>(std::integer_sequence<int, di, dj>) {
+                row.unitI = kMiddle + di;
+                row.unitJ = kMiddle + dj;
+                return row.operatorAt(level, kMiddle, kMiddle);
+            };
+            to[0] = entry(std::integer_sequence<int, 0, 0>{});
+            to[1] = entry(std::integer_sequence<int, 0, -1>{});
+            to[2] = entry(std::integer_sequence<int, 0, -2>{});
+            to[3] = entry(std::integer_sequence<int, -1, -1>{});
+            to[4] = entry(std::integer_sequence<int, -1, 0>{});
+            to[5] = entry(std::integer_sequence<int, -1, 1>{});
+            to[6] = entry(std::integer_sequence<int, -2, 0>{});
+            continue;
+        }
+        constexpr int kPlaces[7][2] = {{0, 0}, {0, -1}, {0, -2}, {-1, -1}, {-1, 0}, {-1, 1}, {-2, 0}};
+        Row<Real>     row{D, stride, g.shapeAt, 0, 0};
+        for (int m = 0; m < 7; ++m) {
+            row.unitI = i + kPlaces[m][0];
+            row.unitJ = j + kPlaces[m][1];
+            to[m]     = row.unitI >= 0 && row.unitJ >= 0 && row.unitJ <= g.cellsZ ? row.operatorAt(g, i, j) : Real(0);
+        }
+    }
+}
+
 } // namespace
+
+[[gnu::flatten]] void rimEntries(const PlateLevel& g, const float* D, const RimView& rim, float* to)
+{
+    rimEntriesOf(g, D, rim, to);
+}
+[[gnu::flatten]] void rimEntries(const PlateLevel& g, const float* D, const RimView& rim, double* to)
+{
+    rimEntriesOf(g, D, rim, to);
+}
 
 void divisor(const HostDispatch& d)
 {

@@ -13,6 +13,8 @@ struct HostKernels {
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"
+    /// What only the host has: the exact correction at rims, see rim_kernels.cpp.
+    compute::HostKernel rimFactor, rimFirst, rimLast, rimStart_f32, rimStart_f64;
 };
 
 /// Loads that the kernels take side by side in HostVariant::together.

@@ -15,6 +15,11 @@ namespace palp::PALPATE_ISA {
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"
+void rimFactor(const compute::HostDispatch& d);
+void rimFirst(const compute::HostDispatch& d);
+void rimLast(const compute::HostDispatch& d);
+void rimStart_f32(const compute::HostDispatch& d);
+void rimStart_f64(const compute::HostDispatch& d);
 
 extern const HostKernels kTable, kTogether;
 
@@ -25,7 +30,11 @@ constexpr HostKernels kTable{
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"
-};
+    .rimFactor    = &rimFactor,
+    .rimFirst     = &rimFirst,
+    .rimLast      = &rimLast,
+    .rimStart_f32 = &rimStart_f32,
+    .rimStart_f64 = &rimStart_f64};
 
 // The same, with those on fields for several loads. What is prepared for a rigidity, and scalars, have no fields.
 #define PALPATE_TOGETHER(name)                                                                                         \
@@ -56,6 +65,9 @@ constexpr HostKernels kTogether = [] {
     PALPATE_REALS_TOGETHER(update)
     PALPATE_REALS_TOGETHER(result)
     PALPATE_REALS_TOGETHER(footprints)
+    PALPATE_TOGETHER(rimFirst)
+    PALPATE_TOGETHER(rimLast)
+    PALPATE_REALS_TOGETHER(rimStart)
     return all;
 }();
 

@@ -1,4 +1,4 @@
-#include "engine/plate/host/operator_rows.h"
+#include "engine/plate/host/tile_runs.h"
 
 // Extra sweeps where the rigidity jumps: plate_relax_tile.comp and plate_copy_tile.comp. Listed tiles that are
 // neighbours along z are processed together.
@@ -12,14 +12,9 @@ void forEachRun(const HostDispatch& d, const uint* list, Visit&& visit)
 {
     const PlateLevel& g = pushed<RelaxPush>(d).level;
     for (std::ptrdiff_t load = 0; load < fieldsOf<Real>(d); ++load)
-        for (uint n = 0; n < d.groups.x;) {
-            const int tile = int(list[1 + n]), firstI = tile / tilesZ(g) * kTile, firstJ = tile % tilesZ(g) * kTile;
-            int       lastJ = firstJ - 1;
-            do lastJ += kTile;
-            while (++n < d.groups.x && list[1 + n] == list[n] + 1 && lastJ < g.cellsZ);
-            visit(load * nodesOf(g), firstI, min(firstI + kTile - 1, g.cellsX),
-                  ColumnRange{firstJ, min(lastJ, g.cellsZ)});
-        }
+        forEachTileRun(g, list + 1, d.groups.x, [&](int firstI, int lastI, ColumnRange columns) {
+            visit(load * nodesOf(g), firstI, lastI, columns);
+        });
 }
 
 template <class Real>

@@ -57,6 +57,10 @@ constexpr double kRounding = 1e-7; ///< error of rigidities and answer in floats
 /// 64 cells, up to 4.8e-5 at 1000, 4.3e-4 at 1e4, 3.5e-3 at 1e5 and 2.6e-2 at 1e6.
 constexpr double kFloatRounding = 5e-5, kRoundedContrast = 1000;
 
+/// Exact rims take less time than sweeps of tiles if their factors do not take more work [multiplications per node], per
+/// load that is solved with them. Where strong jumps need many sweeps more work pays.
+constexpr double kRimWork = 300, kStrongRimWork = 5000;
+
 std::string shortest(double value)
 {
     char text[32];
@@ -125,7 +129,7 @@ struct MultigridPlateSolver::Impl {
     std::vector<double>             works;      ///< of a unit of each load along a unit of its deflection [N m]
 
     std::optional<CommandList> prepareList;
-    std::array<Lists, 3>       lists;               ///< by how the rigidity jumps
+    std::array<Lists, 4>       lists;               ///< by how the rigidity jumps
     Jumps                      jumps = Jumps::none; ///< chooses among them
 
     Impl(compute::Context& processor, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted)
@@ -362,6 +366,7 @@ struct MultigridPlateSolver::Impl {
         context.run(*prepareList);
         const double contrast = of.most / of.least;
         expectJumps(passes.foundJumps() ? jumpsOf(contrast) : Jumps::none);
+        if (k.rims && jumps != Jumps::none && contrast > kRimContrast && factorRims()) expectJumps(Jumps::rims);
         rounding = k.doubles             ? kRounding
                    : passes.foundJumps() ? kFloatRounding * std::max(1.0, contrast / kRoundedContrast)
                                          : kFloatRounding;
@@ -372,6 +377,13 @@ struct MultigridPlateSolver::Impl {
     {
         constexpr double kStrong = 3000; // beyond it, more sweeps of the tiles cost less time than the steps they save
         return contrast > kStrong ? Jumps::strong : Jumps::some;
+    }
+
+    /// Where a stiff island lies in the rim, floats hide how the soft part holds it, from a contrast of 1e4 on.
+    bool factorRims()
+    {
+        const bool strong = jumps == Jumps::strong;
+        return passes.factorRims(strong, strong ? kStrongRimWork : kRimWork * loads);
     }
 
     void expectJumps(Jumps expected)

@@ -44,9 +44,10 @@ enum class Precision {
 /// The smoother of the errors that coarser grids cannot represent. Two steps of Chebyshev's iteration smooth better
 /// than one sweep in red and black, and worse than two.
 enum class Smoother {
-    automatic, ///< Chebyshev's on the host, else red and black
+    automatic, ///< Chebyshev's with exact rims on the host, else red and black
     redBlack,  ///< each colour from the newest values of the other: half the work for an invocation per node
-    chebyshev  ///< all nodes from the values before: half the work for rows of nodes
+    chebyshev, ///< all nodes from the values before: half the work for rows of nodes
+    exactRims  ///< the same, and nodes around strong jumps of the rigidity are solved for exactly: on the host alone
 };
 
 /// The order of the fields of several loads in memory. The answers are the same.
@@ -107,6 +108,7 @@ public:
     MultigridPlateSolver& operator=(MultigridPlateSolver&&) noexcept;
 
     static constexpr double kLeastTolerance      = 1e-7; ///< rigidities and answers are rounded to floats [1]
+    static constexpr double kRimContrast         = 600;  ///< from which Smoother::exactRims may pay [1]
     static constexpr double kLeastFloatTolerance = 1e-4; ///< what floats alone reach at contrast 1000 [1]
 
     /// Takes another rigidity [N m] on the same grid, and another shape of the foundation [1] if the plate has one.

@@ -37,7 +37,8 @@ const std::vector<Map>& maps()
 {
     static const std::vector<Map> all{{"linear", "linear", 10, true},   {"hyperbolic", "hyperbolic", 10, true},
                                       {"wart", "wart", 100, true},      {"disc_100", "disc", 100, false},
-                                      {"disc_0.1", "disc", 0.1, false}, {"discs", "discs", 1000, false}};
+                                      {"disc_0.1", "disc", 0.1, false}, {"disc_1000", "disc", 1000, false},
+                                      {"disc_1e5", "disc", 1e5, false}, {"discs", "discs", 1000, false}};
     return all;
 }
 

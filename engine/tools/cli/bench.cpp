@@ -207,7 +207,7 @@ void addBenchCommand(CLI::App& app)
         ->add_option(
             "--maps", o->maps,
             "rigidities of new_map, new_load, contrast and table, separated by commas: linear, hyperbolic, wart, "
-            "disc_100, disc_0.1, discs [all; of table linear, wart, disc_100]")
+            "disc_100, disc_0.1, disc_1000, disc_1e5, discs [all; of table linear, wart, disc_100]")
         ->delimiter(',');
     bench
         ->add_option("--schedule", o->schedule,

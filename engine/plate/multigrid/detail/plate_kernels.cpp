@@ -41,12 +41,17 @@ Shapes shapesFor(const compute::Context& context)
 
 /// Chooses the smoother. Where an operator row by row costs the same for all nodes as for half of them, half sweeps are
 /// expensive.
-Smoothing smoothingBy(Smoother smoother, Schedule schedule, const compute::Context& context)
+Smoother chosen(Smoother smoother, Schedule schedule, const compute::Context& context)
 {
-    if (smoother == Smoother::automatic) {
-        const bool byRows = context.processor().kind == compute::ProcessorKind::host && schedule != Schedule::fused;
-        smoother          = byRows ? Smoother::chebyshev : Smoother::redBlack;
-    }
+    const bool isHost = context.processor().kind == compute::ProcessorKind::host;
+    PALP_EXPECT(isHost || smoother != Smoother::exactRims, "only the host solves rims exactly");
+    if (smoother != Smoother::automatic) return smoother;
+    return isHost && schedule != Schedule::fused ? Smoother::exactRims : Smoother::redBlack;
+}
+
+Smoothing smoothingBy(Smoother smoother)
+{
+    if (smoother == Smoother::exactRims) smoother = Smoother::chebyshev;
     return smoother == Smoother::redBlack ? Smoothing{smoother, 1, 2, 6, 16} : Smoothing{smoother, 2, 2, 2, 16};
 }
 
@@ -62,6 +67,15 @@ bool isFused(const compute::Context& context, Schedule schedule, Smoother smooth
     PALP_EXPECT(fits || schedule != Schedule::fused, "the processor's workgroups are too small for fused passes");
     return schedule == Schedule::fused ||
            (schedule == Schedule::automatic && fits && isHardware(context) && smoother == Smoother::redBlack);
+}
+
+PlateKernels::All::ExactRims rimKernels(compute::Context& context, const HostKernels& host, bool doubles)
+{
+    const auto kernel = [&](const char* name, int buffers, compute::HostKernel code) {
+        return compute::Kernel(context, {name, {}, buffers, int(sizeof(shared::LevelPush)), code}, {});
+    };
+    return {host.rimFactor, kernel("rim_first", 3, host.rimFirst), kernel("rim_last", 5, host.rimLast),
+            kernel("rim_start", 3, doubles ? host.rimStart_f64 : host.rimStart_f32)};
 }
 
 PlateKernels::All::Fused fusedKernels(compute::Context& context, const Shapes& shapes, bool doubles)
@@ -97,7 +111,7 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
     all_.reset(new All{
         .doubles       = f64,
         .coarseDoubles = coarse,
-        .smoothing     = smoothingBy(smoother, schedule, context),
+        .smoothing     = smoothingBy(chosen(smoother, schedule, context)),
         .together      = sideBySide ? kLoadsTogether : 1,
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape)                                              \
     .name = compute::Kernel(context, kernels::name(host), shapes.shape),
@@ -113,6 +127,7 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
         all_->coarseSolve  = compute::Kernel(context, kernels::coarseSolve<double>(host), shapes.alone);
         all_->coarseInvert = compute::Kernel(context, kernels::coarseInvert<double>(host), shapes.alone);
     }
+    if (chosen(smoother, schedule, context) == Smoother::exactRims) all_->rims.emplace(rimKernels(context, host, f64));
     if (isFused(context, schedule, all_->smoothing.by)) all_->fused.emplace(fusedKernels(context, shapes, f64));
 }
 

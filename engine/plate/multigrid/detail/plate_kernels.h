@@ -9,7 +9,7 @@ namespace palp {
 
 /// The smoothing before and after each correction: sweeps in red and black, or steps of Chebyshev's iteration.
 struct Smoothing {
-    Smoother by;          ///< not automatic
+    Smoother by;          ///< redBlack or chebyshev
     int      nested;      ///< on the coarser levels of the nested iteration
     int      finest;      ///< in the cycles of the finest level
     int      tiles;       ///< extra sweeps, in red and black, of the tiles where the rigidity jumps
@@ -29,6 +29,12 @@ struct PlateKernels::All {
 #include "compute_shaders/shared/plate_kernels.def"
     };
 
+    /// The exact correction at the rims of inclusions, which only the host has; see rim.h.
+    struct ExactRims {
+        compute::HostKernel factor;
+        compute::Kernel     first, last, start;
+    };
+
     bool      doubles       = false; ///< in conjugate gradients
     bool      coarseDoubles = false; ///< on the coarsest level
     Smoothing smoothing;
@@ -38,7 +44,8 @@ struct PlateKernels::All {
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"
-    std::optional<Fused> fused{}; ///< if the schedule is Schedule::fused
+    std::optional<ExactRims> rims{};  ///< if the smoother is Smoother::exactRims
+    std::optional<Fused>     fused{}; ///< if the schedule is Schedule::fused
 
     [[nodiscard]] std::size_t realBytes() const noexcept
     {

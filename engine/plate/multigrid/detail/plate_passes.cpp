@@ -244,7 +244,9 @@ int PlatePasses::takeChebyshevStep(Recorder& pass, std::size_t l, int at, const 
 // Makes extra sweeps of w[at] in the tiles where the rigidity jumps. The residual's memory is free while they run.
 void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first)
 {
-    const int sweeps = jumps_ == Jumps::none ? 0 : jumps_ == Jumps::some ? k.smoothing.tiles : k.smoothing.strongTiles;
+    const int sweeps = jumps_ == Jumps::some     ? k.smoothing.tiles
+                       : jumps_ == Jumps::strong ? k.smoothing.strongTiles
+                                                 : 0;
     if (sweeps == 0) return;
     const LevelBuffers& b = levels[l];
     for (int n = 0; n < sweeps; ++n)
@@ -258,8 +260,42 @@ void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_
     work.tileSweeps[l] += sweeps;
 }
 
+// Sets w[at] to the exact answer on the rim, with all other nodes at 0.
+void PlatePasses::solveFirstRim(Recorder& pass, std::size_t l, int at)
+{
+    const LevelBuffers& b = levels[l];
+    pass(k.rims->first, {rimViews_[l], b.force, b.w[at]}, shared::LevelPush{level(l)}, {1, 1, loads_});
+}
+
+// Corrects w[at] on the rim so that no residual is left there.
+void PlatePasses::solveLastRim(Recorder& pass, std::size_t l, int at)
+{
+    const LevelBuffers& b = levels[l];
+    pass(k.rims->last, {rimViews_[l], b.rigidity, b.force, b.w[at], b.residual()}, shared::LevelPush{level(l)},
+         {1, 1, loads_});
+    work.tileSweeps.resize(levels.size());
+    work.tileSweeps[l] += 1;
+}
+
+// Makes the first half of a level's smoothing, from zero; returns which w holds the result.
+int PlatePasses::smoothFirst(Recorder& pass, std::size_t l, int sweeps, bool rimIsSolved)
+{
+    if (jumps_ == Jumps::rims && !rimIsSolved) {
+        solveFirstRim(pass, l, 0);
+        return smoothInReverse(pass, l, 0, sweeps);
+    }
+    const int at = smoothFromZero(pass, l, sweeps);
+    sweepTiles(pass, l, at, 0);
+    return at;
+}
+
 // Runs one symmetric cycle for the forces of level l; returns which of its w holds the answer.
-int PlatePasses::runCycle(Recorder& pass, std::size_t l, int sweeps)
+//
+// Rims are solved for at the very beginning and end of a level, outside of the other smoothing. The first of these
+// leaves everything at 0 if there are no forces on the rim of the finest level. So it is with conjugate gradients on
+// that level once an answer has been corrected there: every direction comes from a cycle whose end left no residual on
+// the rim.
+int PlatePasses::runCycle(Recorder& pass, std::size_t l, int sweeps, bool rimIsSolved)
 {
     if (isFused()) return runFusedCycle(pass, l, sweeps);
     const LevelBuffers& b = levels[l];
@@ -267,8 +303,7 @@ int PlatePasses::runCycle(Recorder& pass, std::size_t l, int sweeps)
         solveCoarsest(pass, b.force);
         return 0;
     }
-    int at = smoothFromZero(pass, l, sweeps);
-    sweepTiles(pass, l, at, 0);
+    int                        at    = smoothFirst(pass, l, sweeps, rimIsSolved);
     const LevelBuffers&        below = levels[l + 1];
     const shared::TransferPush transfer{level(l), level(l + 1)};
     pass(k.residual, {b.rigidity, b.force, b.w[at], b.residual()}, shared::LevelPush{level(l)},
@@ -279,7 +314,9 @@ int PlatePasses::runCycle(Recorder& pass, std::size_t l, int sweeps)
     pass(k.correct, {b.tableX, b.tableZ, below.w[from], b.w[1 - at], b.w[at]}, transfer, everyNode(k.correct, l));
     at = 1 - at;
     sweepTiles(pass, l, at, 1);
-    return smoothInReverse(pass, l, at, sweeps);
+    at = smoothInReverse(pass, l, at, sweeps);
+    if (jumps_ == Jumps::rims) solveLastRim(pass, l, at);
+    return at;
 }
 
 // Runs the same cycle in fewer dispatches.
@@ -342,7 +379,7 @@ void PlatePasses::takeGradientSteps(Recorder& pass, std::size_t l, int count, in
         const shared::ScalarsPush scalars{loads_, partials_, n == 1 ? begins : 0, std::uint32_t(argumentBytes() / 4),
                                           judged ? float(tolerance) : 0.0F};
         const int                 before = pass.list.dispatches();
-        const Buffer&             z      = b.w[runCycle(pass, l, sweeps)];
+        const Buffer&             z      = b.w[runCycle(pass, l, sweeps, l == 0)];
         if (l == 0) dispatchesPerCycle_ = pass.list.dispatches() - before;
         if (isFused()) {
             takeFusedStep(pass, l, z, n, scalars.begins, scalars.tolerance);
@@ -434,6 +471,10 @@ void PlatePasses::iterateNested(Recorder& pass)
         else
             pass(k.interpolate, {b.tableX, b.tableZ, below.answer, b.answer}, transfer, everyNode(k.interpolate, l));
         computeResidual(pass, l);
+        if (l == 0 && jumps_ == Jumps::rims) {
+            pass(k.rims->start, {rimViews_[0], b.left, b.answer}, shared::LevelPush{level(0)}, {1, 1, loads_});
+            computeResidual(pass, 0);
+        }
         if (l > 0) takeGradientSteps(pass, l, l == 1 ? kLastSteps : kNestedSteps, k.smoothing.nested, 2, 0);
     }
 }
@@ -445,6 +486,35 @@ void PlatePasses::Recorder::operator()(const Kernel& kernel, const compute::Bind
         list.dispatchIndirect(kernel, bindings, push, passes.arguments_, passes.argumentsFor(groups));
     else
         list.dispatch(kernel, bindings, push, groups);
+}
+
+bool PlatePasses::factorRims(bool inDoubles, double workPerNode)
+{
+    const std::size_t last = levels.size() - 1;
+    for (std::size_t l = rims_.size(); l < last; ++l) {
+        rims_.emplace_back();
+        rimViews_.emplace_back(context_, "rim of level " + std::to_string(l), sizeof(RimView), Intent::processor);
+    }
+    double left = workPerNode * double(nodes());
+    for (std::size_t l = 0; l < last; ++l) {
+        if (!rims_[l].divide(level(l), levels[l].rigidity.as<float>(), levels[l].tiles.as<std::uint32_t>().data(),
+                             left))
+            return false;
+        left -= rims_[l].work();
+    }
+    for (std::size_t l = 0; l < last; ++l) {
+        const shared::LevelPush push{level(l)};
+        std::uint32_t           lost = 1;
+        for (const bool doubles : {inDoubles, true}) {
+            RimView              view = rims_[l].prepare(doubles);
+            std::array<void*, 3> buffers{&view, levels[l].rigidity.mapped(), &lost};
+            k.rims->factor({buffers.data(), &push, nullptr, {}, {}});
+            std::memcpy(rimViews_[l].mapped(), &view, sizeof view);
+            if (lost == 0) break;
+        }
+        if (lost > 0) return false;
+    }
+    return true;
 }
 
 bool PlatePasses::foundJumps() const

@@ -12,6 +12,7 @@
 #include "engine/plate/multigrid/detail/grid_hierarchy.h"
 #include "engine/plate/multigrid/detail/plate_kernels.h"
 #include "engine/plate/multigrid/detail/plate_tail.h"
+#include "engine/plate/multigrid/detail/rim.h"
 
 namespace palp {
 
@@ -36,7 +37,12 @@ struct PlateWork {
 };
 
 /// The sharpness of the rigidity's variation from node to node.
-enum class Jumps { none, some, strong };
+enum class Jumps {
+    none,
+    some,
+    strong, ///< more extra sweeps
+    rims    ///< no extra sweeps: the nodes around jumps are solved for exactly
+};
 
 /// Records the multigrid method as passes over the levels' memory, which the solver joins to command lists.
 ///
@@ -74,6 +80,11 @@ public:
     /// Sets how many extra sweeps the lists recorded from now on have where the rigidity jumps; with fewer, jumps take
     /// more steps.
     void expectJumps(Jumps expected) noexcept { jumps_ = expected; }
+    /// Factors the rims of the last rigidity for Jumps::rims.
+    /// \param inDoubles    at once: else floats are tried first
+    /// \param workPerNode  that may be spent, of the finest level [multiplications]
+    /// \return whether that is enough, and rounding spares the factors
+    [[nodiscard]] bool factorRims(bool inDoubles, double workPerNode);
     /// Returns whether the last prepareRigidity() that ran found jumps on the finest level.
     [[nodiscard]] bool foundJumps() const;
     /// Returns whether the last prepareRigidity() that ran found a part of the plate that is so loosely held that
@@ -119,7 +130,10 @@ private:
     [[nodiscard]] int sweepBothColours(Recorder& pass, std::size_t l, int at, std::uint32_t first, bool fromZero);
     [[nodiscard]] int takeChebyshevStep(Recorder& pass, std::size_t l, int at, const ChebyshevStep& how);
     void              sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first);
-    [[nodiscard]] int runCycle(Recorder& pass, std::size_t l, int sweeps);
+    void              solveFirstRim(Recorder& pass, std::size_t l, int at);
+    void              solveLastRim(Recorder& pass, std::size_t l, int at);
+    [[nodiscard]] int smoothFirst(Recorder& pass, std::size_t l, int sweeps, bool rimIsSolved);
+    [[nodiscard]] int runCycle(Recorder& pass, std::size_t l, int sweeps, bool rimIsSolved = false);
     [[nodiscard]] int runFusedCycle(Recorder& pass, std::size_t l, int sweeps);
     void takeFusedStep(Recorder& pass, std::size_t l, const compute::Buffer& z, int step, std::uint32_t begins,
                        float tolerance);
@@ -133,6 +147,8 @@ private:
 
     std::optional<compute::Buffer> zeroes_; ///< a deflection of zero, for the first sweep in red and black
     compute::Buffer                band_, factor_, lost_, sums_, arguments_, hostArguments_, hostTiles_;
+    std::vector<Rim>               rims_;                ///< by level, where the kernels solve them
+    std::vector<compute::Buffer>   rimViews_;            ///< a RimView each
     std::optional<PlateTail>       tail_;                ///< if the schedule is fused
     std::optional<compute::Buffer> groupSums_, tickets_; ///< likewise: see cg_last_group.glsl
     Jumps                          jumps_              = Jumps::none;

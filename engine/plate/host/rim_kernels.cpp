@@ -1,0 +1,430 @@
+#include "engine/plate/host/operator_rows.h"
+#include "engine/plate/host/rim_view.h"
+#include "engine/plate/host/tile_runs.h"
+
+// The exact correction at the rims of inclusions: a sparse factor in dense fronts, and its solves. See
+// engine/plate/multigrid/detail/rim.h. There is no shader for it.
+//
+// All arithmetic is in vectors of eight numbers whatever the instruction set, in one order: the bits are the same.
+
+namespace palp::PALPATE_ISA {
+
+void rimEntries(const PlateLevel& g, const float* D, const RimView& rim, float* to);
+void rimEntries(const PlateLevel& g, const float* D, const RimView& rim, double* to);
+
+namespace {
+
+constexpr int kLanes = kLoadsTogether;
+
+inline std::ptrdiff_t max(std::ptrdiff_t a, std::ptrdiff_t b)
+{
+    return a < b ? b : a;
+}
+
+template <class Real>
+Together<Real> eightOf(const Real* from)
+{
+    Together<Real> v;
+    __builtin_memcpy(&v, from, sizeof v);
+    return v;
+}
+
+template <class Real>
+void store(Real* to, const Together<Real>& v)
+{
+    __builtin_memcpy(to, &v, sizeof v);
+}
+
+/// Subtracts the columns before c from kVectors vectors of column c of a front.
+template <int kVectors, class Real>
+void subtractColumns(Real* front, int rows, int c, int before, int row)
+{
+    Together<Real> sums[kVectors];
+    Real*          column = front + std::ptrdiff_t(c) * rows + row;
+    for (int v = 0; v < kVectors; ++v) sums[v] = eightOf(column + v * kLanes);
+    for (int k = 0; k < before; ++k) {
+        const Real* other  = front + std::ptrdiff_t(k) * rows;
+        const Real  factor = other[c];
+        for (int v = 0; v < kVectors; ++v) sums[v] -= factor * eightOf(other + row + v * kLanes);
+    }
+    for (int v = 0; v < kVectors; ++v) store(column + v * kLanes, sums[v]);
+}
+
+/// A front while it is factored: rows of its own unknowns and its border, then as many rows as own ones for P^-1.
+struct Workplace {
+    int upper; ///< rows of the first kind, whole vectors
+    int rows;  ///< of both
+
+    explicit Workplace(const RimFront& f)
+        : upper((f.own + f.border + kLanes - 1) / kLanes * kLanes), rows(upper + f.ownRows)
+    {
+    }
+};
+
+constexpr int kSlots = 8; ///< of a node in the list of entries: the diagonal, those before it, nothing
+
+/// Eliminates a front's own unknowns: P = L L', B L^-' and, in the rows below, L^-'; what is left of C is at its end.
+/// \param entries  of all unknowns
+/// \return whether rounding leaves something of each pivot
+template <class Real>
+bool eliminate(const RimFront& f, const Real* entries, Real* front, Real* inverse)
+{
+    const Real      doubtful = Real(sizeof(Real) == sizeof(double) ? kLeastPivotDouble : kDoubtfulPivot);
+    const Workplace at(f);
+    for (int c = 0; c < f.own + f.border; ++c) {
+        Real*     column = front + std::ptrdiff_t(c) * at.rows;
+        const int before = min(c, f.own), end = c < f.own ? at.rows : at.upper;
+        if (c < f.own) column[at.upper + c] = Real(1);
+        int row = c / kLanes * kLanes;
+        for (; row + 4 * kLanes <= end; row += 4 * kLanes) subtractColumns<4>(front, at.rows, c, before, row);
+        for (; row < end; row += kLanes) subtractColumns<1>(front, at.rows, c, before, row);
+        if (c >= f.own) continue;
+        const Real pivot = column[c];
+        if (!(pivot > doubtful * entries[std::ptrdiff_t(f.first + c) * kSlots])) return false;
+        inverse[c] = Real(1) / sqrt(pivot);
+        for (row = c / kLanes * kLanes; row < end; row += kLanes)
+            store(column + row, inverse[c] * eightOf(column + row));
+    }
+    return true;
+}
+
+/// Writes B P^-1 and P^-1 from what eliminate() left.
+template <class Real>
+void keepColumns(const RimFront& f, const Real* front, const Real* inverse, Real* columns)
+{
+    const Workplace at(f);
+    const int       rows = f.rows();
+    for (int k = f.own - 1; k >= 0; --k) {
+        const Real* from = front + std::ptrdiff_t(k) * at.rows;
+        Real*       to   = columns + std::ptrdiff_t(k) * rows;
+        for (int r = 0; r < f.borderRows; ++r) to[r] = r < f.border ? from[f.own + r] : Real(0);
+        for (int r = 0; r < f.ownRows; ++r) to[f.borderRows + r] = from[at.upper + r];
+        for (int r = 0; r < rows; r += kLanes) {
+            Together<Real> sum = eightOf(to + r);
+            for (int m = k + 1; m < f.own; ++m) sum -= from[m] * eightOf(columns + std::ptrdiff_t(m) * rows + r);
+            store(to + r, inverse[k] * sum);
+        }
+    }
+    // Rounding must leave P^-1 symmetric, or the cycle would not be.
+    for (int k = 0; k < f.own; ++k)
+        for (int r = 0; r < k; ++r)
+            columns[std::ptrdiff_t(k) * rows + f.borderRows + r] = columns[std::ptrdiff_t(r) * rows + f.borderRows + k];
+}
+
+constexpr int kBefore[6][2] = {{0, -1}, {0, -2}, {-1, -1}, {-1, 0}, {-1, 1}, {-2, 0}};
+
+/// Writes what the matrix has at a front's own columns.
+template <class Real>
+void assemble(const PlateLevel& g, const RimView& rim, const RimFront& f, const Real* entries, const int* localOf,
+              Real* front)
+{
+    const int nodes = g.cellsZ + 1, rows = Workplace(f).rows;
+    for (int own = 0; own < f.own; ++own) {
+        const int unknown = f.first + own, node = rim.nodes[unknown], i = node / nodes, j = node % nodes;
+        Real*     column = front + std::ptrdiff_t(own) * rows;
+        column[own]      = entries[std::ptrdiff_t(unknown) * kSlots];
+        for (int n = 0; n < 6; ++n)
+            for (int sign : {1, -1}) {
+                const int a = i + sign * kBefore[n][0], b = j + sign * kBefore[n][1];
+                if (a < 0 || b < 0 || a > g.cellsX || b > g.cellsZ) continue;
+                const int other = rim.numbers[a * nodes + b];
+                if (other < unknown) continue; // not of the rim, or another column's
+                const int later                                                    = sign > 0 ? unknown : other;
+                column[other < f.first + f.own ? other - f.first : localOf[other]] = entries[later * kSlots + 1 + n];
+            }
+    }
+}
+
+/// Adds what a front before it left of its border.
+template <class Real>
+void extendAdd(const RimView& rim, const RimFront& from, const Real* left, const RimFront& f, const int* localOf,
+               int* local, Real* front)
+{
+    const int  stride = from.borderRows, rows = Workplace(f).rows;
+    const int* border = rim.borders + from.borderAt;
+    for (int n = 0; n < from.border; ++n)
+        local[n] = border[n] < f.first + f.own ? border[n] - f.first : localOf[border[n]];
+    for (int c = 0; c < from.border; ++c) {
+        Real*       column = front + std::ptrdiff_t(local[c]) * rows;
+        const Real* own    = left + std::ptrdiff_t(c) * stride;
+        for (int n = c; n < from.border;) {
+            int run = n + 1;
+            while (run < from.border && local[run] == local[run - 1] + 1) ++run;
+            Real* to = column + local[n];
+#pragma GCC ivdep
+            for (int m = n; m < run; ++m) to[m - n] += own[m];
+            n = run;
+        }
+    }
+}
+
+/// What fronts left of their borders and no later one has taken yet, one above the other.
+class Left {
+public:
+    struct One {
+        int            front;
+        std::ptrdiff_t at;
+    };
+
+    std::ptrdiff_t put(int n, const RimFront& f)
+    {
+        const std::ptrdiff_t at = height_;
+        all_[count_++]          = {n, at};
+        height_ += std::ptrdiff_t(f.borderRows) * f.border;
+        return at;
+    }
+    One take()
+    {
+        height_ = all_[--count_].at;
+        return all_[count_];
+    }
+    [[nodiscard]] std::ptrdiff_t height() const { return height_; }
+
+private:
+    One            all_[kMostOpenFronts + 1];
+    int            count_  = 0;
+    std::ptrdiff_t height_ = 0;
+};
+
+std::ptrdiff_t stackOf(const RimView& rim)
+{
+    Left           left;
+    std::ptrdiff_t most = 0;
+    for (int n = 0; n < rim.frontCount; ++n) {
+        if (!rim.fronts[n].isLeaf) {
+            left.take();
+            left.take();
+        }
+        left.put(n, rim.fronts[n]);
+        most = max(most, left.height());
+    }
+    return most;
+}
+
+/// \return whether rounding leaves something of each pivot
+template <class Real>
+bool factorRim(const PlateLevel& g, const float* D, const RimView& rim)
+{
+    static thread_local Scratch<Real> listed, fronts, stacked, inverses;
+    static thread_local Scratch<int>  locals;
+    Real* const                       entries = listed.of(std::ptrdiff_t(rim.unknowns) * kSlots);
+    Real* const                       front   = fronts.of(2 * std::ptrdiff_t(rim.mostRows) * rim.mostRows);
+    Real* const                       inverse = inverses.of(rim.mostRows);
+    int* const                        localOf = locals.of(std::ptrdiff_t(rim.unknowns) + rim.mostRows);
+    Real* const                       stack   = stacked.of(stackOf(rim));
+    rimEntries(g, D, rim, entries);
+
+    Left left;
+    for (int n = 0; n < rim.frontCount; ++n) {
+        const RimFront& f = rim.fronts[n];
+        const Workplace at(f);
+        for (std::ptrdiff_t m = 0; m < std::ptrdiff_t(f.own + f.border) * at.rows; ++m) front[m] = Real(0);
+        for (int m = 0; m < f.border; ++m) localOf[rim.borders[f.borderAt + m]] = f.own + m;
+        assemble(g, rim, f, entries, localOf, front);
+        if (!f.isLeaf)
+            for (int half = 0; half < 2; ++half) {
+                const auto taken = left.take();
+                extendAdd(rim, rim.fronts[taken.front], stack + taken.at, f, localOf, localOf + rim.unknowns, front);
+            }
+        if (!eliminate(f, entries, front, inverse)) return false;
+        keepColumns(f, front, inverse, static_cast<Real*>(rim.columns) + f.columnsAt);
+        Real* to = stack + left.put(n, f);
+        for (int c = 0; c < f.border; ++c)
+            for (int r = c; r < f.border; ++r)
+                to[std::ptrdiff_t(c) * f.borderRows + r] = front[std::ptrdiff_t(f.own + c) * at.rows + f.own + r];
+    }
+    return true;
+}
+
+template <class Real>
+Real sumOf(const Together<Real>& v)
+{
+    return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
+
+/// Subtracts B P^-1 y from the border's numbers, four columns at a time.
+/// \param y  the border's numbers, then the front's own; both followed by zeros
+template <class Real>
+void forwardFront(const RimFront& f, const Real* columns, Real* y)
+{
+    const std::ptrdiff_t rows = f.rows();
+    const Real*          own  = y + f.borderRows;
+    int                  k    = 0;
+    for (; k + 4 <= f.own; k += 4) {
+        const Real* c = columns + k * rows;
+        for (int r = 0; r < f.borderRows; r += kLanes)
+            store(y + r,
+                  eightOf(y + r) - ((own[k] * eightOf(c + r) + own[k + 1] * eightOf(c + rows + r)) +
+                                    (own[k + 2] * eightOf(c + 2 * rows + r) + own[k + 3] * eightOf(c + 3 * rows + r))));
+    }
+    for (; k < f.own; ++k)
+        for (int r = 0; r < f.borderRows; r += kLanes)
+            store(y + r, eightOf(y + r) - own[k] * eightOf(columns + k * rows + r));
+}
+
+/// Computes the front's own numbers, P^-1 y - (B P^-1)' x.
+/// \param y  -x of the border, then y of the front; both followed by zeros
+template <class Real>
+void backwardFront(const RimFront& f, const Real* columns, const Real* y, Real* x)
+{
+    const std::ptrdiff_t rows = f.rows();
+    int                  k    = 0;
+    for (; k + 4 <= f.own; k += 4) {
+        const Real*    c = columns + k * rows;
+        Together<Real> sums[4];
+        for (auto& sum : sums) sum = Together<Real>(Real(0));
+        for (int r = 0; r < rows; r += kLanes) {
+            const Together<Real> here = eightOf(y + r);
+            for (int n = 0; n < 4; ++n) sums[n] += eightOf(c + n * rows + r) * here;
+        }
+        for (int n = 0; n < 4; ++n) x[k + n] = sumOf(sums[n]);
+    }
+    for (; k < f.own; ++k) {
+        Together<Real> sum(Real(0));
+        for (int r = 0; r < rows; r += kLanes) sum += eightOf(columns + k * rows + r) * eightOf(y + r);
+        x[k] = sumOf(sum);
+    }
+}
+
+/// The same for loads side by side, row by row; the sums of a column are the same eight.
+template <class Real>
+void forwardFront(const RimFront& f, const Real* columns, Together<Real>* y)
+{
+    const std::ptrdiff_t  rows = f.rows();
+    const Together<Real>* own  = y + f.borderRows;
+    int                   k    = 0;
+    for (; k + 4 <= f.own; k += 4) {
+        const Real* c = columns + k * rows;
+        for (int r = 0; r < f.border; ++r)
+            y[r] -= (c[r] * own[k] + c[rows + r] * own[k + 1]) +
+                    (c[2 * rows + r] * own[k + 2] + c[3 * rows + r] * own[k + 3]);
+    }
+    for (; k < f.own; ++k)
+        for (int r = 0; r < f.border; ++r) y[r] -= columns[k * rows + r] * own[k];
+}
+
+template <class Real>
+void backwardFront(const RimFront& f, const Real* columns, const Together<Real>* y, Together<Real>* x)
+{
+    const std::ptrdiff_t rows = f.rows();
+    for (int k = 0; k < f.own; ++k) {
+        Together<Real> v[kLanes];
+        for (auto& sum : v) sum = Together<Real>(Real(0));
+        for (int r = 0; r < rows; r += kLanes)
+            for (int n = 0; n < kLanes; ++n) v[n] += columns[k * rows + r + n] * y[r + n];
+        x[k] = ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+    }
+}
+
+/// Solves for all unknowns x in place.
+template <class Real, class At>
+void solveRim(const RimView& rim, At* x, At* y)
+{
+    const auto* all = static_cast<const Real*>(rim.columns);
+    for (int n = 0; n < rim.frontCount; ++n) {
+        const RimFront& f      = rim.fronts[n];
+        const int*      border = rim.borders + f.borderAt;
+        At* const       own    = y + f.borderRows;
+        for (int m = 0; m < f.border; ++m) y[m] = x[border[m]];
+        for (int m = 0; m < f.own; ++m) own[m] = x[f.first + m];
+        forwardFront(f, all + f.columnsAt, y);
+        for (int m = 0; m < f.border; ++m) x[border[m]] = y[m];
+    }
+    for (int n = rim.frontCount - 1; n >= 0; --n) {
+        const RimFront& f      = rim.fronts[n];
+        const int*      border = rim.borders + f.borderAt;
+        At* const       own    = y + f.borderRows;
+        for (int m = 0; m < f.border; ++m) y[m] = At(Real(0)) - x[border[m]];
+        for (int m = f.border; m < f.borderRows; ++m) y[m] = At(Real(0));
+        for (int m = 0; m < f.own; ++m) own[m] = x[f.first + m];
+        for (int m = f.own; m < f.ownRows; ++m) own[m] = At(Real(0));
+        backwardFront(f, all + f.columnsAt, y, x + f.first);
+    }
+}
+
+/// Calls add(node, x) with the solution for given(node) at each node of the rim.
+template <class Real, class Given, class Add>
+void correctRim(const RimView& rim, const Given& given, const Add& add)
+{
+    const auto by = [&]<class Factor>(Factor) {
+        using At = AsMany<Factor, Real>;
+        static thread_local Scratch<At> scratch;
+        At* const                       x = scratch.of(std::ptrdiff_t(rim.unknowns) + rim.mostRows);
+        for (int n = 0; n < rim.unknowns; ++n) x[n] = At(given(rim.nodes[n]));
+        solveRim<Factor>(rim, x, x + rim.unknowns);
+        for (int n = 0; n < rim.unknowns; ++n) add(rim.nodes[n], x[n]);
+    };
+    if (rim.doubles)
+        by(double());
+    else
+        by(float());
+}
+
+template <class Real>
+void rimFirstOf(const HostDispatch& d)
+{
+    const PlateLevel& g   = pushed<LevelPush>(d).level;
+    const RimView&    rim = *bound<const RimView>(d, 0);
+    for (std::ptrdiff_t load = 0; load < fieldsOf<Real>(d); ++load) {
+        const Real* force = bound<const Real>(d, 1) + load * nodesOf(g);
+        Real*       w     = bound<Real>(d, 2) + load * nodesOf(g);
+        for (std::ptrdiff_t n = 0; n < nodesOf(g); ++n) w[n] = Real(NumberOf<Real>(0));
+        correctRim<Real>(
+            rim, [=](int node) { return force[node]; }, [=](int node, const auto& x) { w[node] = Real(x); });
+    }
+}
+
+template <class Real>
+void rimLastOf(const HostDispatch& d)
+{
+    const PlateLevel& g     = pushed<LevelPush>(d).level;
+    const RimView&    rim   = *bound<const RimView>(d, 0);
+    const auto*       D     = bound<const float>(d, 1);
+    const int         nodes = g.cellsZ + 1;
+    for (std::ptrdiff_t load = 0; load < fieldsOf<Real>(d); ++load) {
+        const Real* force = bound<const Real>(d, 2) + load * nodesOf(g);
+        Real*       w     = bound<Real>(d, 3) + load * nodesOf(g);
+        Real*       left  = bound<Real>(d, 4) + load * nodesOf(g);
+        forEachTileRun(g, rim.tiles + 1, rim.tiles[0], [&](int i, int lastI, ColumnRange columns) {
+            PlainField<Real>                     field{w, nodes};
+            OperatorRows<Real, PlainField<Real>> rows(g, D, field, i, columns);
+            for (; i <= lastI; ++i) {
+                const Real* f  = force + std::ptrdiff_t(i) * nodes;
+                Real*       to = left + std::ptrdiff_t(i) * nodes;
+                rows.next(i, RowTo{[=](int j, const Real& a) { return f[j] - a; },
+                                   [=](int j, const Real& value) { to[j] = value; }});
+            }
+        });
+        correctRim<Real>(
+            rim, [=](int node) { return left[node]; }, [=](int node, const auto& x) { w[node] += Real(x); });
+    }
+}
+
+template <class Real>
+void rimStartOf(const HostDispatch& d)
+{
+    const PlateLevel& g   = pushed<LevelPush>(d).level;
+    const RimView&    rim = *bound<const RimView>(d, 0);
+    for (std::ptrdiff_t load = 0; load < fieldsOf<Real>(d); ++load) {
+        const Real* left   = bound<const Real>(d, 1) + load * nodesOf(g);
+        Real*       answer = bound<Real>(d, 2) + load * nodesOf(g);
+        correctRim<Real>(
+            rim, [=](int node) { return left[node]; }, [=](int node, const auto& x) { answer[node] += Real(x); });
+    }
+}
+
+} // namespace
+
+void rimFactor(const HostDispatch& d)
+{
+    const PlateLevel& g   = pushed<LevelPush>(d).level;
+    const RimView&    rim = *bound<const RimView>(d, 0);
+    const auto*       D   = bound<const float>(d, 1);
+    *bound<uint>(d, 2)    = (rim.doubles ? factorRim<double>(g, D, rim) : factorRim<float>(g, D, rim)) ? 0U : 1U;
+}
+
+PALPATE_ALONE_AND_TOGETHER(rimFirst, float)
+PALPATE_ALONE_AND_TOGETHER(rimLast, float)
+PALPATE_REALS_ALONE_AND_TOGETHER(rimStart)
+
+} // namespace palp::PALPATE_ISA
