@@ -335,6 +335,7 @@ int palpate_object_from_points(const palpate_points* points, const char* scene, 
         const palpate_points given = taken(points, "palpate_points");
         Scene                whole = parseScene(scene ? scene : "{}", "scene", ".", {.withoutCloud = true});
         SoftObject           object(cloudOf(given), whole.material, facesOf(given), normalsOf(given));
+        object.survey().expectSurface();
         object = onTissue(object, whole);
         makeObject(out, {std::move(whole), std::move(object)});
     });
