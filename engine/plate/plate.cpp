@@ -5,7 +5,8 @@
 #include <cmath>
 #include <sstream>
 
-#include <Eigen/Eigenvalues>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
@@ -73,21 +74,24 @@ std::optional<std::string> whyShapeIsBad(const PlateGrid& grid, const NodeField&
                     index % shape.nodesZ(), "]");
 }
 
-/// Returns how firmly a foundation of this shape holds a rigid plate beside one that is 1 everywhere [1]: the least of
-/// the shares with which it resists a shift and turns about two axes, all of them together.
+/// Returns at least how firmly a foundation of this shape holds a rigid plate beside one that is 1 everywhere (which has
+/// 0.44) [1]: the least of the shares with which it resists a shift and turns about two axes, all of them together.
 double shareOfRigidMotions(const NodeField& shape)
 {
     if (shape.values().empty()) return 1;
-    Eigen::Matrix3d held = Eigen::Matrix3d::Zero(), whole = held;
+    glm::dmat3 held(0);
+    glm::dvec3 whole(0); // of an even foundation, for which the three motions do not mix
     for (int i = 0; i < shape.nodesX(); ++i)
         for (int j = 0; j < shape.nodesZ(); ++j) {
-            const Eigen::Vector3d motion(1, 2.0 * i / (shape.nodesX() - 1) - 1, 2.0 * j / (shape.nodesZ() - 1) - 1);
-            const Eigen::Matrix3d square = motion * motion.transpose();
-            whole += square;
-            held += shape(i, j) * square;
+            const glm::dvec3 motion(1, 2.0 * i / (shape.nodesX() - 1) - 1, 2.0 * j / (shape.nodesZ() - 1) - 1);
+            whole += motion * motion;
+            held += shape(i, j) * glm::outerProduct(motion, motion);
         }
-    const auto shares = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d>(held, whole).eigenvalues();
-    return std::max(0.0, shares.minCoeff());
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) held[a][b] /= std::sqrt(whole[a] * whole[b]);
+    // The product of the two larger eigenvalues is at most the square of their mean.
+    const double trace = held[0][0] + held[1][1] + held[2][2];
+    return trace > 0 ? std::clamp(glm::determinant(held) / (trace * trace / 4), 0.0, 1.0) : 0;
 }
 
 /// Returns why the foundation does not hold the plate; empty if it does. A foundation stops every motion, unless its

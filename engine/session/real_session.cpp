@@ -13,7 +13,7 @@
 #include "engine/core/real_time.h"
 #include "engine/core/thread_time.h"
 #include "engine/session/clutch.h"
-#include "engine/session/detail/solve_pace.h"
+#include "engine/session/detail/deformation_loop.h"
 #include "engine/session/force_state.h"
 #include "engine/session/interrupt.h"
 
@@ -40,20 +40,11 @@ struct Shown {
     const char*   words      = ""; ///< of static storage
 };
 
-/// The deformation's output for the caller.
-struct ShownPatch {
-    std::optional<Patch> patch;
-    double               solveTime = 0; ///< [s]
-};
-
 /// The data that the threads share, and nothing else.
 struct Shared {
     Latest<TimedHand>    hand; ///< with threads of the paper only, as is the next
     Latest<ProxyContact> held;
-    Latest<Touch>        touch;
-    Latest<PatchUpdate>  update;
     Latest<Shown>        shown;
-    Latest<ShownPatch>   patch;
 
     std::atomic<bool>       over = false; ///< everybody ends
     std::mutex              mutex;        ///< of the next two; the servo takes it after its last tick
@@ -72,7 +63,8 @@ struct Shared {
 class RealSession {
 public:
     RealSession(const SessionParts& parts, const RealSessionSettings& settings)
-        : parts_(parts), settings_(settings), contact_(parts.object, parts.scene),
+        : parts_(parts), settings_(settings), deformation_(parts.solver, parts.scene.deformationRate),
+          contact_(parts.object, parts.scene),
           force_(parts.scene, parts.frame.inScene(parts.device.info()), parts.first), clutch_(parts.frame.clutch)
     {
     }
@@ -80,24 +72,22 @@ public:
     SessionSummary run(std::string& warning);
 
 private:
-    void                            servoThread();
-    TickRecord                      tick(const ForceHalf::TickTime& now, const HapticState& state, bool letGo) noexcept;
-    const ProxyContact&             held(double time, const Hand& hand) noexcept;
-    void                            proxyThread();
-    void                            deformationThread();
-    [[nodiscard]] DeformationAnswer solved(const Touch& touch, double lead);
-    void                            watch();
-    void                            publish(const ProxyContact& held) noexcept;
+    void                servoThread();
+    TickRecord          tick(const ForceHalf::TickTime& now, const HapticState& state, bool letGo) noexcept;
+    const ProxyContact& held(double time, const Hand& hand) noexcept;
+    void                proxyThread();
+    void                watch();
+    void                publish(const ProxyContact& held) noexcept;
 
     const SessionParts&        parts_;
     const RealSessionSettings& settings_;
     Shared                     shared_;
+    DeformationLoop            deformation_;
     ContactHalf                contact_;      ///< of the servo's thread, or of the proxy's
     ProxyContact               nothing_;      ///< of the servo's thread, before the proxy's first answer
     ForceHalf                  force_;        ///< of the servo's thread
     Clutch                     clutch_;       ///< of the servo's thread
     SessionSummary             summary_;      ///< of the servo's thread
-    SessionSummary             slow_;         ///< of the deformation's
     std::string                warning_;      ///< of the servo's
     std::exception_ptr         failure_;      ///< of the servo's
     double                     lastTick_ = 0; ///< [s] of the servo's
@@ -168,8 +158,8 @@ TickRecord RealSession::tick(const ForceHalf::TickTime& now, const HapticState& 
     hand.clutched               = clutch_.isHeld();
     hand.letGo                  = letGo;
     const ProxyContact& contact = held(now.time, hand);
-    shared_.update.take();
-    return force_.tick(now, hand, contact, shared_.update.held());
+    deformation_.update.take();
+    return force_.tick(now, hand, contact, deformation_.update.held());
 }
 
 /// Returns the contact of the hand: computed here, or the latest of the proxy's thread.
@@ -207,48 +197,8 @@ void RealSession::proxyThread()
 
 void RealSession::publish(const ProxyContact& held) noexcept
 {
-    shared_.touch.draft() = held.touch;
-    shared_.touch.publish();
-}
-
-/// Runs the deformation: solves for the newest touch, once a period.
-void RealSession::deformationThread()
-{
-    const double  nominal = 1 / parts_.scene.deformationRate;
-    Metronome     metronome(std::chrono::duration_cast<std::chrono::nanoseconds>(Seconds(nominal)));
-    SolvePace     pace(nominal);
-    std::uint64_t done = 0;
-    while (!shared_.over) {
-        metronome.wait();
-        shared_.touch.take();
-        const Touch* touch = shared_.touch.held();
-        if (!touch || touch->sequence == done) continue;
-        done                     = touch->sequence;
-        const auto        began  = Clock::now();
-        const auto        before = stopped_.load();
-        DeformationAnswer answer = solved(*touch, pace.begins(Seconds(began.time_since_epoch()).count()));
-        const auto        since  = Clock::now() - began - Clock::duration(stopped_ - before); // stopped is not solving
-        const double      took   = std::max(0.0, Seconds(since).count());
-        pace.ended(took);
-        if (!answer.update && !touch->touching) continue; // nothing is near
-        slow_.solve.add(took);
-        slow_.addPatch(answer.update.has_value(), answer.why);
-        if (!answer.update) continue;
-        shared_.update.draft() = *answer.update;
-        shared_.update.publish();
-        shared_.patch.draft() = {std::move(answer.patch), took};
-        shared_.patch.publish();
-    }
-}
-
-/// Solves one patch. If anything fails there is no patch for this touch, and the session goes on with the one before.
-DeformationAnswer RealSession::solved(const Touch& touch, double lead)
-{
-    try {
-        return parts_.solver(touch, lead);
-    } catch (const std::exception& error) {
-        return {{}, {}, error.what()};
-    }
+    deformation_.touch.draft() = held.touch;
+    deformation_.touch.publish();
 }
 
 /// Shows the session to the caller, on its thread, until the servo ends.
@@ -259,8 +209,8 @@ void RealSession::watch()
     while (!shared_.ended.wait_for(lock, period, [this] { return shared_.served; })) {
         if (!settings_.onView) continue;
         lock.unlock();
-        shared_.patch.take();
-        const ShownPatch* const patch = shared_.patch.held();
+        deformation_.patch.take();
+        const ShownPatch* const patch = deformation_.patch.held();
         if (shared_.shown.take()) {
             const Shown& shown = *shared_.shown.held();
             settings_.onView({shown.record, shown.loopPeriod, patch ? patch->solveTime : 0, shown.buttons, shown.words,
@@ -298,7 +248,7 @@ SessionSummary RealSession::run(std::string& warning)
 {
     {
         ThreadGroup threads(shared_.over);
-        threads.add([this] { deformationThread(); });
+        threads.add([this] { deformation_.run(shared_.over, &stopped_); });
         if (settings_.threads == SessionThreads::paper) threads.add([this] { proxyThread(); });
         threads.add([this] {
             try {
@@ -314,13 +264,14 @@ SessionSummary RealSession::run(std::string& warning)
     }
     warning = warning_;
     if (failure_) std::rethrow_exception(failure_);
-    summary_.patches       = slow_.patches;
-    summary_.failedPatches = slow_.failedPatches;
-    summary_.solve         = slow_.solve;
-    summary_.fault         = force_.governor().fault();
-    summary_.why           = slow_.why;
+    const SessionSummary& slow = deformation_.slow;
+    summary_.patches           = slow.patches;
+    summary_.failedPatches     = slow.failedPatches;
+    summary_.solve             = slow.solve;
+    summary_.fault             = force_.governor().fault();
+    summary_.why               = slow.why;
     if (summary_.deviceFault != DeviceFault::none) summary_.deviceWords = parts_.device.faultWords();
-    summary_.whyPatchless = slow_.whyPatchless;
+    summary_.whyPatchless = slow.whyPatchless;
     return summary_;
 }
 

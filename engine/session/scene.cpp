@@ -259,10 +259,13 @@ Scene sceneOf(const JsonObject& file, const std::filesystem::path& folder, const
     Scene                              scene;
     scene.toolKeys   = overrides.toolKeys;
     const auto cloud = sources.about(sceneKey("cloud"));
-    if (!cloud)
+    if (cloud && overrides.withoutCloud)
+        throw Error(cloud->what + ": expected a scene without a cloud, because the object is given, found " +
+                    cloud->text + "; omit the key");
+    if (!cloud && !overrides.withoutCloud)
         throw Error(file.where() + ": the key \"cloud\" is missing; expected " + sceneKey("cloud").expected() +
                     ", such as sample:skin");
-    readCloudKey(scene, *cloud, folder);
+    if (cloud) readCloudKey(scene, *cloud, folder);
     if (isSample(scene)) takeSample(scene);
     for (const SceneKey* key : keys) {
         auto one = sources.about(*key);
@@ -308,7 +311,7 @@ Scene readScene(const std::filesystem::path& file, const SceneOverrides& overrid
 std::string sceneJson(const Scene& scene)
 {
     Scene whole = scene;
-    if (!isSample(whole)) whole.cloud = std::filesystem::absolute(whole.cloud).string();
+    if (!isSample(whole) && !whole.cloud.empty()) whole.cloud = std::filesystem::absolute(whole.cloud).string();
     whole.stiffness    = lawWithFileIn(whole.stiffness, std::filesystem::current_path());
     whole.below.volume = lawWithFileIn(whole.below.volume, std::filesystem::current_path());
     std::string text;

@@ -134,6 +134,9 @@ struct SceneOverrides {
     bool flagsInLengthUnit = false;
 
     const std::vector<SceneKey>* toolKeys = nullptr; ///< that a tool adds to the library's, see scene_keys.h
+
+    /// The caller has the object: the scene needs no cloud, and must name none.
+    bool withoutCloud = false;
 };
 
 /// Reads a scene file: JSON, comments allowed, SI unless a text states its unit. samples/scenes/scene.schema.json

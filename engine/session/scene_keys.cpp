@@ -246,7 +246,7 @@ std::vector<SceneKey> objectKeys()
          .schema       = R"({"type": "string", "minLength": 1, "examples": ["sample:skin", "scan.ply"]})",
          .decidesCloud = true,
          .read         = [](S&, const V&) {}, // the scene's reader has read it before the others
-         .write        = [](const S& s) { return quotedJson(s.cloud); }},
+         .write        = [](const S& s) { return textOrNothing(s.cloud); }},
         countKey(
             {.name = "points", .help = "number of points of a sample", .bounds = KeyBounds{16, 10'000'000}},
             [](auto& s) -> auto& { return s.points; }),

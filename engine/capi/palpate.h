@@ -1,0 +1,229 @@
+/* palpate.h - touch of soft, thin objects of varying stiffness, for C and for every language that calls C.
+ *
+ * A session in four calls, in a haptic loop that the host owns:
+ *
+ *     palpate_object*  object;
+ *     palpate_session* session;
+ *     palpate_object_from_scene("{\"cloud\": \"sample:skin\"}", ".", &object);
+ *     palpate_session_create(object, NULL, &session);
+ *     for (;;) palpate_session_step(session, seconds, &hand, &answer);      // answer.force goes to the device
+ *
+ * Lengths are in metres, forces in newtons, moduli in pascals, times in seconds. Functions that can fail return
+ * PALPATE_OK or a code; palpate_error_text() then has a sentence for the calling thread: what, where, what was expected
+ * and found. No function throws, calls back, or ends the program. Structs begin with their size, which the caller sets
+ * (PALPATE_INIT does), so that a program that was compiled with an older header goes on working.
+ *
+ * Threads: an object may be used by several threads at once; palpate_session_step() belongs to one thread and
+ * palpate_session_deformed() to one other; what creates and destroys runs while nobody uses the handle.
+ */
+#ifndef PALPATE_H
+#define PALPATE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__)
+#define PALPATE_API __attribute__((visibility("default")))
+#else
+#define PALPATE_API
+#endif
+
+#define PALPATE_VERSION_MAJOR 0
+#define PALPATE_VERSION_MINOR 1
+
+/* palpate_hand hand = PALPATE_INIT(palpate_hand); sets the size, and all else to 0. */
+#ifdef __cplusplus
+} // extern "C"
+template <class Struct>
+inline Struct palpate_sized()
+{
+    Struct made{};
+    made.size = sizeof made;
+    return made;
+}
+extern "C" {
+#define PALPATE_INIT(type) palpate_sized<type>()
+#else
+#define PALPATE_INIT(type) {.size = sizeof(type)}
+#endif
+
+typedef enum palpate_code {
+    PALPATE_OK        = 0,
+    PALPATE_REFUSED   = 1, /* an argument, a file or a scene is wrong: the sentence says which */
+    PALPATE_NO_MEMORY = 2,
+    PALPATE_BROKEN    = 3 /* a mistake of the library's own */
+} palpate_code;
+
+/* Returns "0.1.0". */
+PALPATE_API const char* palpate_version(void);
+/* Returns why the last call of this thread failed; empty if none did. Valid until this thread's next call. */
+PALPATE_API const char* palpate_error_text(void);
+
+/* --- objects --- */
+
+typedef struct palpate_object palpate_object;
+
+typedef enum palpate_number { PALPATE_FLOAT64 = 0, PALPATE_FLOAT32 = 1 } palpate_number;
+typedef enum palpate_stiffness {
+    PALPATE_MODULUS  = 0, /* Young's modulus [Pa] */
+    PALPATE_RIGIDITY = 1  /* flexural rigidity [N m] */
+} palpate_stiffness;
+
+/* Points with a stiffness. The arrays are read during the call and may be read-only. */
+typedef struct palpate_points {
+    size_t          size;
+    size_t          count;             /* of points */
+    const void*     positions;         /* x, y, z of each [m], side by side */
+    int             position_type;     /* palpate_number */
+    size_t          position_stride;   /* bytes from a point to the next; 0: side by side */
+    const void*     stiffness;         /* one for each point; NULL: uniform_stiffness */
+    int             stiffness_type;    /* palpate_number */
+    size_t          stiffness_stride;  /* bytes; 0: side by side */
+    int             stiffness_kind;    /* palpate_stiffness */
+    double          uniform_stiffness; /* [Pa] or [N m] */
+    const void*     normals;           /* outward, of each point, 0 where unknown; may be NULL */
+    int             normal_type;       /* palpate_number */
+    size_t          normal_stride;     /* bytes; 0: side by side */
+    const uint32_t* faces;             /* three points each; may be NULL */
+    size_t          face_count;
+} palpate_points;
+
+/* Makes an object of points. scene: the keys of samples/scenes/README.md but "cloud", as JSON; NULL: all defaults. */
+PALPATE_API int palpate_object_from_points(const palpate_points* points, const char* scene, palpate_object** out);
+/* Makes the object of a scene with a cloud. folder: where relative paths start; NULL: the current one. */
+PALPATE_API int palpate_object_from_scene(const char* scene, const char* folder, palpate_object** out);
+/* Makes the object of a scene file. */
+PALPATE_API int palpate_object_from_file(const char* path, palpate_object** out);
+/* NULL is allowed, here and in the other destroy functions. Sessions keep what they need of the object. */
+PALPATE_API void palpate_object_destroy(palpate_object* object);
+
+/* Returns the number of points; 0 for NULL. */
+PALPATE_API size_t palpate_object_size(const palpate_object* object);
+/* Writes x, y, z of each point at rest [m]; count: room for as many points, at least the object's. */
+PALPATE_API int palpate_object_positions(const palpate_object* object, double* xyz, size_t count);
+/* Writes the stiffness of each point in the unit that it was given in. */
+PALPATE_API int palpate_object_stiffness(const palpate_object* object, double* values, size_t count);
+/* Writes the scene in force as JSON with every key. size: room in text; needed, if not NULL, gets what it takes with the
+   final zero. A text that is too small is refused. */
+PALPATE_API int palpate_object_scene(const palpate_object* object, char* text, size_t size, size_t* needed);
+
+/* --- one touch at a time, without a device --- */
+
+typedef struct palpate_touch_result {
+    size_t size;
+    double felt_stiffness;       /* that a finger feels: contact and plate in series [N/m] */
+    double compliance;           /* of the plate under the fingertip [m/N] */
+    double contact_stiffness;    /* [N/m] */
+    double rigidity;             /* flexural, at the contact [N m] */
+    double solver_error;         /* relative, in the energy norm; NaN: the solver has none */
+    double discretisation_error; /* relative, of the compliance; NaN: the grid tells none */
+    double place[3];             /* on the surface [m] */
+    double normal[3];            /* of the chart there, towards the finger */
+} palpate_touch_result;
+
+/* Touches the object. place: [m]; the nearest point within a quarter of the patch window is touched. from: the side that
+   the finger comes from; NULL: away from the middle of the object. */
+PALPATE_API int palpate_touch(const palpate_object* object, const double place[3], const double from[3],
+                              palpate_touch_result* result);
+/* Writes every point under a force [N] at a place: x, y, z of each [m]. */
+PALPATE_API int palpate_touch_displaced(const palpate_object* object, const double place[3], const double from[3],
+                                        double force, double* xyz, size_t count);
+/* Writes the felt stiffness [N/m] at each place, on all cores; NaN where nothing can be touched. places: x, y, z each;
+   from: a direction for each, or NULL. failed, if not NULL, gets how many are NaN. */
+PALPATE_API int palpate_felt_map(const palpate_object* object, const double* places, const double* from, size_t count,
+                                 double* felt, size_t* failed);
+
+/* --- sessions --- */
+
+typedef struct palpate_session palpate_session;
+
+/* What holds the hand, as far as it is known; 0: unknown. */
+typedef struct palpate_session_settings {
+    size_t size;
+    double device_mass;       /* of the arm as the grip feels it [kg] */
+    double device_damping;    /* of the arm without its motors [N s/m] */
+    double maximum_force;     /* that the device holds [N] */
+    double maximum_stiffness; /* of a wall that it renders stably at 1 kHz [N/m] */
+} palpate_session_settings;
+
+typedef struct palpate_hand {
+    size_t   size;
+    double   position[3]; /* of the haptic interface point [m] */
+    double   velocity[3]; /* filtered [m/s] */
+    double   age;         /* of the position [s] */
+    uint32_t buttons;     /* bit 0, held for 20 ms, clears a fault of the governor */
+    uint32_t absent;      /* not 0: the device has no position now; no force flows */
+} palpate_hand;
+
+/* Bits of palpate_answer.flags. */
+#define PALPATE_TOUCHING 1u   /* the hand presses on the surface */
+#define PALPATE_STOPPED 2u    /* the governor has stopped the force until the first button is held */
+#define PALPATE_WAITING 4u    /* no force flows yet: the hand is too fast, presses already, or the force comes on */
+#define PALPATE_BAD_INPUT 8u  /* the hand or the time was not finite, or the time did not rise: zero force */
+#define PALPATE_NO_PATCH 16u  /* the plate has no answer for this place yet, or an old one */
+#define PALPATE_TOO_DEEP 32u  /* the deflection exceeds what the theory holds for */
+
+typedef struct palpate_answer {
+    size_t   size;
+    double   force[3];  /* on the hand, governed [N] */
+    uint32_t flags;
+    uint32_t fault;     /* of the governor, a number; palpate_session_words() has the words */
+    double   proxy[3];  /* where the tool is held [m] */
+    double   normal[3]; /* of the surface there; 0 without contact */
+    double   depth;     /* of the hand below the proxy, along the normal [m] */
+    double   stiffness; /* rendered [N/m] */
+} palpate_answer;
+
+/* Starts a session with a thread that solves plates. settings: NULL for a device of which nothing is known. */
+PALPATE_API int palpate_session_create(const palpate_object* object, const palpate_session_settings* settings,
+                                       palpate_session** out);
+/* Ends the thread, and a recording. */
+PALPATE_API void palpate_session_destroy(palpate_session* session);
+/* Runs one tick: call it about a thousand times a second with the time of the hand's clock. It takes some microseconds,
+   never waits, and allocates nothing. Whatever fails, answer->force is finite, and 0 if there is any doubt. */
+PALPATE_API int palpate_session_step(palpate_session* session, double time, const palpate_hand* hand,
+                                     palpate_answer* answer);
+/* Writes why the last tick had no force, as a sentence for a person; empty while forces flow. For the thread of step(). */
+PALPATE_API int palpate_session_words(const palpate_session* session, char* text, size_t size);
+/* Writes every point under the force of the newest answer of the plate [m] if that is another one than *sequence, which
+   then counts up; else nothing. For a renderer's thread. */
+PALPATE_API int palpate_session_deformed(palpate_session* session, double* xyz, size_t count, uint64_t* sequence);
+/* Records from the next tick on into a new folder, which palpate run --replay and numpy read. */
+PALPATE_API int palpate_session_record(palpate_session* session, const char* folder);
+/* Ends the recording. ticks, lost: how many are on disk and not; may be NULL. */
+PALPATE_API int palpate_session_stop_recording(palpate_session* session, uint64_t* ticks, uint64_t* lost);
+
+/* Runs a whole session in virtual time, as fast as it goes: the hand is at places[n] (x, y, z) at times[n], on straight
+   lines in between, and forces[n] (x, y, z), proxies[n] get the answers of each millisecond from times[0] on. ticks: room
+   for as many; the session is that long. The same input gives the same bits. proxies may be NULL. */
+PALPATE_API int palpate_run(const palpate_object* object, const double* times, const double* places, size_t count,
+                            size_t ticks, double* forces, double* proxies);
+
+/* --- the plate alone --- */
+
+typedef enum palpate_edge { PALPATE_CLAMPED = 0, PALPATE_SUPPORTED = 1, PALPATE_FREE = 2 } palpate_edge;
+
+/* A Kirchhoff plate of varying flexural rigidity on a foundation, (cells_x + 1) x (cells_z + 1) nodes, x first. */
+typedef struct palpate_plate {
+    size_t        size;
+    int           cells_x, cells_z;
+    double        size_x, size_z; /* [m] */
+    double        poisson;
+    double        foundation; /* [Pa/m] */
+    int           edges[4];   /* palpate_edge of the sides x = 0, x = size_x, z = 0, z = size_z */
+    const double* rigidity;   /* at the nodes [N m] */
+} palpate_plate;
+
+/* Solves for the deflection [m] under forces at the nodes [N]. error, if not NULL, gets the estimate, relative in the
+   energy norm. */
+PALPATE_API int palpate_plate_solve(const palpate_plate* plate, const double* forces, double tolerance,
+                                    double* deflection, double* error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

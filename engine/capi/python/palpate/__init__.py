@@ -1,0 +1,462 @@
+"""Touch of soft, thin objects of varying stiffness, from numpy arrays.
+
+>>> import numpy as np, palpate
+>>> x, y = np.meshgrid(np.linspace(-0.03, 0.03, 61), np.linspace(-0.03, 0.03, 61))
+>>> points = np.column_stack([x.ravel(), y.ravel(), 0 * x.ravel()])             # (3721, 3) [m]
+>>> stiffness = np.where(np.hypot(x, y).ravel() < 5e-3, 3e6, 3e5)               # (3721,) [Pa]
+>>> skin = palpate.Object(points, stiffness, thickness="4 mm", foundation="1.74 MPa/m", window="40 mm", cells=32)
+>>> touch = skin.touch([0, 0, 0], side=[0, 0, 1])
+>>> 400 < touch.felt < 1000                                                     # [N/m]
+True
+
+It is a thin layer over libpalpate.so.0 (palpate.h): numpy is the only dependency, and calls release the interpreter's
+lock. Lengths are in metres, forces in newtons, moduli in pascals, times in seconds. Arrays may have any layout and may be
+read-only; what comes back is new, writable and in C order. What is wrong raises palpate.Error with a sentence.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+from pathlib import Path
+from typing import Any, NamedTuple, Optional, Union
+
+import numpy as np
+
+__all__ = ["Answer", "Error", "Object", "Session", "Touch", "felt_map", "plate", "read_recording", "version"]
+
+ArrayLike = Any
+_double_p = ctypes.POINTER(ctypes.c_double)
+_size_p = ctypes.POINTER(ctypes.c_size_t)
+_u64_p = ctypes.POINTER(ctypes.c_uint64)
+
+
+class Error(ValueError):
+    """What was asked for cannot be done; the text says what, where, what was expected and found."""
+
+
+def _library() -> ctypes.CDLL:
+    tried = []
+    beside = Path(__file__).with_name("libpalpate.so.0")
+    for name in (os.environ.get("PALPATE_LIBRARY"), str(beside) if beside.exists() else None, "libpalpate.so.0"):
+        if not name:
+            continue
+        try:
+            return ctypes.CDLL(name)
+        except OSError as error:
+            tried.append(str(error))
+    raise ImportError("palpate: expected the library libpalpate.so.0, found none: " + "; ".join(tried) +
+                      "; install libpalpate0, or set PALPATE_LIBRARY to its path")
+
+
+_lib = _library()
+
+
+class _Struct(ctypes.Structure):
+    """A struct that begins with its size."""
+
+    def __init__(self, **values: Any) -> None:
+        super().__init__(**values)
+        self.size = ctypes.sizeof(self)
+
+
+class _Points(_Struct):
+    _fields_ = [("size", ctypes.c_size_t), ("count", ctypes.c_size_t), ("positions", ctypes.c_void_p),
+                ("position_type", ctypes.c_int), ("position_stride", ctypes.c_size_t), ("stiffness", ctypes.c_void_p),
+                ("stiffness_type", ctypes.c_int), ("stiffness_stride", ctypes.c_size_t),
+                ("stiffness_kind", ctypes.c_int), ("uniform_stiffness", ctypes.c_double), ("normals", ctypes.c_void_p),
+                ("normal_type", ctypes.c_int), ("normal_stride", ctypes.c_size_t), ("faces", ctypes.c_void_p),
+                ("face_count", ctypes.c_size_t)]
+
+
+class _TouchResult(_Struct):
+    _fields_ = [("size", ctypes.c_size_t), ("felt_stiffness", ctypes.c_double), ("compliance", ctypes.c_double),
+                ("contact_stiffness", ctypes.c_double), ("rigidity", ctypes.c_double),
+                ("solver_error", ctypes.c_double), ("discretisation_error", ctypes.c_double),
+                ("place", ctypes.c_double * 3), ("normal", ctypes.c_double * 3)]
+
+
+class _SessionSettings(_Struct):
+    _fields_ = [("size", ctypes.c_size_t), ("device_mass", ctypes.c_double), ("device_damping", ctypes.c_double),
+                ("maximum_force", ctypes.c_double), ("maximum_stiffness", ctypes.c_double)]
+
+
+class _Hand(_Struct):
+    _fields_ = [("size", ctypes.c_size_t), ("position", ctypes.c_double * 3), ("velocity", ctypes.c_double * 3),
+                ("age", ctypes.c_double), ("buttons", ctypes.c_uint32), ("absent", ctypes.c_uint32)]
+
+
+class _Answer(_Struct):
+    _fields_ = [("size", ctypes.c_size_t), ("force", ctypes.c_double * 3), ("flags", ctypes.c_uint32),
+                ("fault", ctypes.c_uint32), ("proxy", ctypes.c_double * 3), ("normal", ctypes.c_double * 3),
+                ("depth", ctypes.c_double), ("stiffness", ctypes.c_double)]
+
+
+class _Plate(_Struct):
+    _fields_ = [("size", ctypes.c_size_t), ("cells_x", ctypes.c_int), ("cells_z", ctypes.c_int),
+                ("size_x", ctypes.c_double), ("size_z", ctypes.c_double), ("poisson", ctypes.c_double),
+                ("foundation", ctypes.c_double), ("edges", ctypes.c_int * 4), ("rigidity", ctypes.c_void_p)]
+
+
+def _declare(name: str, result: Any, *arguments: Any) -> None:
+    function = getattr(_lib, name)
+    function.restype = result
+    function.argtypes = list(arguments)
+
+
+_void, _int, _text, _size = ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_size_t
+_declare("palpate_version", _text)
+_declare("palpate_error_text", _text)
+_declare("palpate_object_from_points", _int, ctypes.POINTER(_Points), _text, ctypes.POINTER(_void))
+_declare("palpate_object_from_scene", _int, _text, _text, ctypes.POINTER(_void))
+_declare("palpate_object_from_file", _int, _text, ctypes.POINTER(_void))
+_declare("palpate_object_destroy", None, _void)
+_declare("palpate_object_size", _size, _void)
+_declare("palpate_object_positions", _int, _void, _void, _size)
+_declare("palpate_object_stiffness", _int, _void, _void, _size)
+_declare("palpate_object_scene", _int, _void, _text, _size, _size_p)
+_declare("palpate_touch", _int, _void, _void, _void, ctypes.POINTER(_TouchResult))
+_declare("palpate_touch_displaced", _int, _void, _void, _void, ctypes.c_double, _void, _size)
+_declare("palpate_felt_map", _int, _void, _void, _void, _size, _void, _size_p)
+_declare("palpate_session_create", _int, _void, ctypes.POINTER(_SessionSettings), ctypes.POINTER(_void))
+_declare("palpate_session_destroy", None, _void)
+_declare("palpate_session_step", _int, _void, ctypes.c_double, ctypes.POINTER(_Hand), ctypes.POINTER(_Answer))
+_declare("palpate_session_words", _int, _void, _text, _size)
+_declare("palpate_session_deformed", _int, _void, _void, _size, _u64_p)
+_declare("palpate_session_record", _int, _void, _text)
+_declare("palpate_session_stop_recording", _int, _void, _u64_p, _u64_p)
+_declare("palpate_run", _int, _void, _void, _void, _size, _size, _void, _void)
+_declare("palpate_plate_solve", _int, ctypes.POINTER(_Plate), _void, ctypes.c_double, _void, _double_p)
+
+
+def _check(code: int) -> None:
+    if code != 0:
+        raise Error(_lib.palpate_error_text().decode("utf-8", "replace") or f"palpate: error {code}")
+
+
+def version() -> str:
+    """Returns the library's version.
+
+    >>> palpate.version().count(".")
+    2
+    """
+    return _lib.palpate_version().decode()
+
+
+def _doubles(values: ArrayLike, what: str, *shape: Optional[int]) -> np.ndarray:
+    """Returns values as doubles in C order, of a shape in which None stands for any length."""
+    try:
+        array = np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise Error(f"{what}: expected numbers, found {error}") from None
+    fits = array.ndim == len(shape) and all(want in (None, have) for want, have in zip(shape, array.shape))
+    if not fits:
+        wanted = ", ".join("n" if want is None else str(want) for want in shape)
+        raise Error(f"{what}: expected an array of shape ({wanted}), found {array.shape}")
+    return array
+
+
+def _three(values: Optional[ArrayLike], what: str) -> Optional[np.ndarray]:
+    return None if values is None else _doubles(values, what, 3)
+
+
+def _address(array: Optional[np.ndarray]) -> Optional[int]:
+    return None if array is None else array.ctypes.data
+
+
+class Touch(NamedTuple):
+    """The answer to one touch."""
+
+    felt: float                 #: stiffness that a finger feels [N/m]
+    compliance: float           #: of the plate under the fingertip [m/N]
+    contact: float              #: stiffness of the contact itself [N/m]
+    rigidity: float             #: flexural, at the contact [N m]
+    error: float                #: of the solver, relative
+    discretisation: float       #: error of the grid, relative; NaN: unknown
+    place: np.ndarray           #: (3,) on the surface [m]
+    normal: np.ndarray          #: (3,) towards the finger
+    points: Optional[np.ndarray]  #: (n, 3) every point under the force that was asked for [m]
+
+
+class Answer(NamedTuple):
+    """The answer to one tick of a session."""
+
+    force: np.ndarray   #: (3,) on the hand, governed [N]
+    touching: bool
+    stopped: bool       #: the governor has stopped the force, until the first button is held for 20 ms
+    waiting: bool       #: no force flows yet
+    bad_input: bool
+    proxy: np.ndarray   #: (3,) where the tool is held [m]
+    normal: np.ndarray  #: (3,) of the surface there; 0 without contact
+    depth: float        #: of the hand below the proxy [m]
+    stiffness: float    #: rendered [N/m]
+
+
+class Object:
+    """A soft object of points.
+
+    points: (n, 3) [m]. stiffness: (n,), or one number for all, in `unit`: "Pa" of Young's modulus, "N m" of the flexural
+    rigidity. normals: (n, 3) outward, 0 where unknown. faces: (m, 3) numbers of points. Further keywords are the keys of
+    a scene: thickness="4 mm", window=0.04, cells=64, foundation="1.74 MPa/m", ...
+
+    >>> palpate.Object([[0, 0, 0]], 1e6)
+    Traceback (most recent call last):
+    ...
+    palpate.Error: the cloud has fewer than seven points or most of them coincide, so there is no surface to touch; ...
+    """
+
+    def __init__(self, points: ArrayLike, stiffness: ArrayLike, unit: str = "Pa", normals: Optional[ArrayLike] = None,
+                 faces: Optional[ArrayLike] = None, **scene: Any) -> None:
+        self._handle = _void()
+        places = _doubles(points, "points", None, 3)
+        given = _Points(count=len(places), positions=_address(places))
+        kinds = {"Pa": 0, "N m": 1, "N_m": 1}
+        if unit not in kinds:
+            raise Error(f'unit: expected "Pa" or "N m", found {unit!r}')
+        given.stiffness_kind = kinds[unit]
+        values = None
+        if np.ndim(stiffness) == 0:
+            given.uniform_stiffness = float(stiffness)
+        else:
+            values = _doubles(stiffness, "stiffness", len(places))
+            given.stiffness = _address(values)
+        outward = None if normals is None else _doubles(normals, "normals", len(places), 3)
+        given.normals = _address(outward)
+        corners = None
+        if faces is not None:
+            numbers = np.asarray(faces)
+            if numbers.ndim != 2 or numbers.shape[1] != 3 or not np.issubdtype(numbers.dtype, np.integer):
+                raise Error(f"faces: expected whole numbers of shape (n, 3), found {numbers.dtype} of {numbers.shape}")
+            if len(numbers) and (numbers.min() < 0 or numbers.max() >= len(places)):
+                raise Error(f"faces: expected numbers from 0 to {len(places) - 1}, "
+                            f"found {numbers.min()} to {numbers.max()}")
+            corners = np.ascontiguousarray(numbers, dtype=np.uint32)
+            given.faces, given.face_count = _address(corners), len(corners)
+        _check(_lib.palpate_object_from_points(ctypes.byref(given), json.dumps(scene).encode(),
+                                               ctypes.byref(self._handle)))
+
+    @classmethod
+    def scene(cls, scene: Union[str, dict], folder: Union[str, os.PathLike] = ".") -> "Object":
+        """Makes the object of a scene: a dict or JSON with a key "cloud".
+
+        >>> len(palpate.Object.scene({"cloud": "sample:sheet", "points": 2000}))
+        2000
+        """
+        made = cls.__new__(cls)
+        made._handle = _void()
+        text = scene if isinstance(scene, str) else json.dumps(scene)
+        _check(_lib.palpate_object_from_scene(text.encode(), os.fsencode(folder), ctypes.byref(made._handle)))
+        return made
+
+    @classmethod
+    def file(cls, path: Union[str, os.PathLike]) -> "Object":
+        """Makes the object of a scene file."""
+        made = cls.__new__(cls)
+        made._handle = _void()
+        _check(_lib.palpate_object_from_file(os.fsencode(path), ctypes.byref(made._handle)))
+        return made
+
+    def __del__(self) -> None:
+        handle, self._handle = getattr(self, "_handle", None), None
+        if handle:
+            _lib.palpate_object_destroy(handle)
+
+    def __len__(self) -> int:
+        return _lib.palpate_object_size(self._handle)
+
+    @property
+    def points(self) -> np.ndarray:
+        """(n, 3) at rest [m]."""
+        xyz = np.empty((len(self), 3))
+        _check(_lib.palpate_object_positions(self._handle, _address(xyz), len(self)))
+        return xyz
+
+    @property
+    def stiffness(self) -> np.ndarray:
+        """(n,) in the unit that it was given in."""
+        values = np.empty(len(self))
+        _check(_lib.palpate_object_stiffness(self._handle, _address(values), len(self)))
+        return values
+
+    @property
+    def settings(self) -> dict:
+        """Every key of the scene in force."""
+        needed = _size()
+        _check(_lib.palpate_object_scene(self._handle, None, 0, ctypes.byref(needed)))
+        text = ctypes.create_string_buffer(needed.value)
+        _check(_lib.palpate_object_scene(self._handle, text, needed, None))
+        return json.loads(text.value)
+
+    def touch(self, at: ArrayLike, force: Optional[float] = None, side: Optional[ArrayLike] = None) -> Touch:
+        """Touches the object at a place, (3,) [m]: its nearest point within a quarter of the patch window.
+
+        force: [N]; if given, the answer has every point under it. side: (3,) from where the finger comes; None: away from
+        the middle of the object.
+        """
+        place, direction = _three(at, "at"), _three(side, "side")
+        found = _TouchResult()
+        _check(_lib.palpate_touch(self._handle, _address(place), _address(direction), ctypes.byref(found)))
+        moved = None
+        if force is not None:
+            moved = np.empty((len(self), 3))
+            _check(_lib.palpate_touch_displaced(self._handle, _address(place), _address(direction), float(force),
+                                                _address(moved), len(self)))
+        return Touch(found.felt_stiffness, found.compliance, found.contact_stiffness, found.rigidity,
+                     found.solver_error, found.discretisation_error, np.array(found.place), np.array(found.normal), moved)
+
+    def felt_map(self, places: Optional[ArrayLike] = None, sides: Optional[ArrayLike] = None) -> np.ndarray:
+        """Returns the felt stiffness [N/m], (m,), at places (m, 3) [m], on all cores; NaN where nothing can be touched.
+
+        places: None for every point of the object. sides: (m, 3) from where the finger comes to each.
+        """
+        at = self.points if places is None else _doubles(places, "places", None, 3)
+        directions = None if sides is None else _doubles(sides, "sides", len(at), 3)
+        felt = np.empty(len(at))
+        _check(_lib.palpate_felt_map(self._handle, _address(at), _address(directions), len(at), _address(felt), None))
+        return felt
+
+    def run(self, times: ArrayLike, places: ArrayLike, ticks: Optional[int] = None) -> "tuple[np.ndarray, np.ndarray]":
+        """Runs a whole session in virtual time: a hand at places (n, 3) [m] at times (n,) [s], on straight lines between.
+
+        Returns forces (ticks, 3) [N] and proxies (ticks, 3) [m], one for each millisecond from times[0] on. ticks: None
+        for as long as the hand moves. The same input gives the same bits.
+        """
+        at = _doubles(times, "times", None)
+        path = _doubles(places, "places", len(at), 3)
+        if ticks is None:
+            ticks = int(round(1000 * (at[-1] - at[0]))) if len(at) > 1 and np.isfinite(at[-1] - at[0]) else 0
+        if not 0 <= ticks <= 86_400_000:
+            raise Error(f"ticks: expected 0 to 86400000, which is a day, found {ticks}")
+        forces, proxies = np.zeros((ticks, 3)), np.zeros((ticks, 3))
+        _check(_lib.palpate_run(self._handle, _address(at), _address(path), len(at), ticks, _address(forces),
+                                _address(proxies)))
+        return forces, proxies
+
+    def session(self, mass: float = 0, damping: float = 0, maximum_force: float = 0,
+                maximum_stiffness: float = 0) -> "Session":
+        """Starts a session in real time; what is not known of the device that holds the hand stays 0.
+
+        mass [kg], damping [N s/m] of the arm without its motors, maximum_force [N], maximum_stiffness [N/m].
+        """
+        return Session(self, mass, damping, maximum_force, maximum_stiffness)
+
+
+class Session:
+    """A session that a loop of yours steps about a thousand times a second; made by Object.session().
+
+    It may be a context manager. step() belongs to one thread, deformed() to one other.
+    """
+
+    def __init__(self, of: Object, mass: float, damping: float, force: float, stiffness: float) -> None:
+        self._handle = _void()
+        self._count = len(of)
+        self._sequence = ctypes.c_uint64(0)
+        self._hand, self._answer = _Hand(), _Answer()
+        settings = _SessionSettings(device_mass=mass, device_damping=damping, maximum_force=force,
+                                    maximum_stiffness=stiffness)
+        _check(_lib.palpate_session_create(of._handle, ctypes.byref(settings), ctypes.byref(self._handle)))
+
+    def close(self) -> None:
+        """Ends the session and its recording; later calls do nothing."""
+        handle, self._handle = getattr(self, "_handle", None), None
+        if handle:
+            _lib.palpate_session_destroy(handle)
+
+    __del__ = close
+
+    def __enter__(self) -> "Session":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
+
+    def step(self, time: float, position: ArrayLike, velocity: ArrayLike = (0, 0, 0), buttons: int = 0,
+             age: float = 0) -> Answer:
+        """Runs one tick. time [s] rises; position (3,) [m], velocity (3,) [m/s]; age [s] of the position.
+
+        A hand that is not finite gives zero force and bad_input, and no exception.
+        """
+        hand, answer = self._hand, self._answer
+        hand.position[:] = [float(v) for v in position]
+        hand.velocity[:] = [float(v) for v in velocity]
+        hand.buttons, hand.age = buttons & 0xFFFF, age
+        _check(_lib.palpate_session_step(self._handle, time, ctypes.byref(hand), ctypes.byref(answer)))
+        flags = answer.flags
+        return Answer(np.array(answer.force), bool(flags & 1), bool(flags & 2), bool(flags & 4), bool(flags & 8),
+                      np.array(answer.proxy), np.array(answer.normal), answer.depth, answer.stiffness)
+
+    @property
+    def words(self) -> str:
+        """Why the last tick had no force; empty while forces flow."""
+        text = ctypes.create_string_buffer(1024)
+        _check(_lib.palpate_session_words(self._handle, text, len(text)))
+        return text.value.decode("utf-8", "replace")
+
+    def deformed(self) -> Optional[np.ndarray]:
+        """Returns every point under the present force, (n, 3) [m], if the plate has a new answer; else None."""
+        before = self._sequence.value
+        xyz = np.empty((self._count, 3))
+        _check(_lib.palpate_session_deformed(self._handle, _address(xyz), self._count, ctypes.byref(self._sequence)))
+        return xyz if self._sequence.value != before else None
+
+    def record(self, folder: Union[str, os.PathLike]) -> None:
+        """Records from the next tick on into a new folder."""
+        _check(_lib.palpate_session_record(self._handle, os.fsencode(folder)))
+
+    def stop_recording(self) -> "tuple[int, int]":
+        """Ends the recording; returns how many ticks are on disk, and how many are lost."""
+        ticks, lost = ctypes.c_uint64(), ctypes.c_uint64()
+        _check(_lib.palpate_session_stop_recording(self._handle, ctypes.byref(ticks), ctypes.byref(lost)))
+        return ticks.value, lost.value
+
+
+def felt_map(points: ArrayLike, stiffness: ArrayLike, unit: str = "Pa", **scene: Any) -> np.ndarray:
+    """Returns the felt stiffness [N/m] at every point, (n,). Arguments as of Object.
+
+    >>> felt = palpate.felt_map(points, stiffness, thickness="4 mm", foundation="1.74 MPa/m", window="40 mm", cells=16)
+    >>> felt.shape, bool(np.nanmax(felt) > 1.5 * np.nanmin(felt))
+    ((3721,), True)
+    """
+    return Object(points, stiffness, unit, **scene).felt_map()
+
+
+def plate(rigidity: ArrayLike, forces: ArrayLike, size: "tuple[float, float]" = (1, 1), poisson: float = 0.3,
+          edges: "Union[str, tuple[str, str, str, str]]" = "clamped", foundation: float = 0,
+          tolerance: float = 1e-4) -> "tuple[np.ndarray, float]":
+    """Solves a Kirchhoff plate of varying rigidity: rigidity (m, n) [N m] and forces (m, n) [N] at its nodes.
+
+    size: (x, z) [m]. edges: "clamped", "supported" or "free", or four of them for x = 0, x = size, z = 0, z = size.
+    foundation: [Pa/m]. Returns the deflection (m, n) [m] and the estimate of its relative error in the energy norm.
+
+    >>> D, f = np.ones((33, 33)), np.zeros((33, 33))
+    >>> f[16, 16] = 1
+    >>> w, error = palpate.plate(D, f)
+    >>> abs(w[16, 16] / 0.00560 - 1) < 0.03   # Timoshenko and Woinowsky-Krieger 1959, table 37
+    True
+    """
+    D = _doubles(rigidity, "rigidity", None, None)
+    f = _doubles(forces, "forces", *D.shape)
+    names = {"clamped": 0, "supported": 1, "free": 2}
+    four = (edges,) * 4 if isinstance(edges, str) else tuple(edges)
+    if len(four) != 4 or any(edge not in names for edge in four):
+        raise Error(f"edges: expected clamped, supported or free, or four of them, found {edges!r}")
+    if min(D.shape) < 2:
+        raise Error(f"rigidity: expected at least 5 x 5 nodes, found {D.shape}")
+    given = _Plate(cells_x=D.shape[0] - 1, cells_z=D.shape[1] - 1, size_x=size[0], size_z=size[1], poisson=poisson,
+                   foundation=foundation, rigidity=_address(D))
+    given.edges[:] = [names[edge] for edge in four]
+    w, error = np.empty(D.shape), ctypes.c_double()
+    _check(_lib.palpate_plate_solve(ctypes.byref(given), _address(f), tolerance, _address(w), ctypes.byref(error)))
+    return w, error.value
+
+
+def read_recording(folder: Union[str, os.PathLike]) -> "tuple[np.ndarray, dict]":
+    """Reads a recorded session: its ticks as a structured array ("time", "hip", "force", ...), and session.json."""
+    place = Path(folder)
+    try:
+        ticks = np.load(place / "ticks.npy")
+        about = json.loads((place / "session.json").read_text())
+    except (OSError, ValueError) as error:
+        raise Error(f"{place}: expected the folder of a recorded session, found {error}") from None
+    return ticks, about

@@ -1,0 +1,128 @@
+#include "engine/session/stepped_session.h"
+
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "engine/session/detail/deformation_loop.h"
+
+namespace palp {
+namespace {
+
+bool isFinite(const glm::dvec3& v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool isGood(const Hand& hand)
+{
+    const glm::dquat& q = hand.orientation;
+    return isFinite(hand.position) && isFinite(hand.velocity) && std::isfinite(q.w) && isFinite({q.x, q.y, q.z});
+}
+
+} // namespace
+
+struct SteppedSession::Impl {
+    SoftObject               object;
+    Scene                    scene;
+    HapticDeviceInfo         device;
+    Deformation              deformation;
+    Servo                    servo;
+    DeformationLoop          loop;
+    std::optional<Recording> recording;
+    TickRecord               last{};
+    Hand                     hand{};    ///< the last good one
+    double                   time  = 0; ///< [s] of the last tick
+    bool                     begun = false;
+    std::uint64_t            steps = 0;
+    std::atomic<bool>        over  = false;
+    std::thread              thread;
+
+    Impl(SoftObject touched, const Scene& given, const HapticDeviceInfo& hold)
+        : object(std::move(touched)), scene(given), device(hold), deformation(object, scene),
+          servo(object, scene, device, deformation.firstLaw()), loop(deformation.solver(), scene.deformationRate)
+    {
+        thread = std::thread([this] { loop.run(over); });
+    }
+
+    ~Impl()
+    {
+        over = true;
+        thread.join();
+    }
+};
+
+SteppedSession::SteppedSession(SoftObject object, const Scene& scene, const HapticDeviceInfo& device)
+    : impl_(std::make_unique<Impl>(std::move(object), scene, device))
+{
+}
+
+SteppedSession::~SteppedSession() = default;
+
+const TickRecord& SteppedSession::step(double time, const Hand& given) noexcept
+{
+    constexpr double kNominal = 1e-3; // [s] of the first tick, and of one whose time is not good
+    Impl&            s        = *impl_;
+    const bool       rises    = std::isfinite(time) && (!s.begun || time > s.time);
+    const bool       good     = rises && isGood(given);
+    const double     dt       = s.begun && rises ? time - s.time : kNominal;
+    if (rises) s.time = time;
+    s.begun = true;
+    ++s.steps;
+    Hand hand = good ? given : s.hand;
+    if (good) s.hand = given;
+    if (!good) hand.device = DeviceFault::kinematics;
+    hand.answerTime = s.time;
+    hand.sequence   = s.steps;
+    s.loop.update.take();
+    s.last = s.servo.tick({s.time, dt}, hand, s.loop.update.held());
+    if (!good) s.last.force = {};
+    s.loop.touch.draft() = s.servo.touch();
+    s.loop.touch.publish();
+    if (s.recording) s.recording->push(s.last);
+    return s.last;
+}
+
+bool SteppedSession::takePatch() noexcept
+{
+    return impl_->loop.patch.take();
+}
+
+const Patch* SteppedSession::patch() const noexcept
+{
+    const ShownPatch* const shown = impl_->loop.patch.held();
+    return shown && shown->patch ? &*shown->patch : nullptr;
+}
+
+void SteppedSession::record(const std::filesystem::path& folder, const std::string& program)
+{
+    SessionInfo info{.scene    = impl_->scene,
+                     .versions = {{"palpate", program}},
+                     .solver   = impl_->deformation.plateSolver().name(),
+                     .command  = program,
+                     .cloud    = fingerprint(impl_->object.cloud()),
+                     .hand     = impl_->device};
+    impl_->recording.emplace(folder, info);
+}
+
+RecordingReport SteppedSession::stopRecording()
+{
+    RecordingReport report;
+    if (impl_->recording) report = impl_->recording->finish();
+    impl_->recording.reset();
+    return report;
+}
+
+const SoftObject& SteppedSession::object() const noexcept
+{
+    return impl_->object;
+}
+
+const Scene& SteppedSession::scene() const noexcept
+{
+    return impl_->scene;
+}
+
+} // namespace palp

@@ -1,0 +1,155 @@
+"""Tests of the Python package. Arguments: a scratch folder that may be emptied."""
+
+import doctest
+import shutil
+import sys
+import threading
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+import palpate
+
+SCRATCH = Path(sys.argv.pop())
+SCENE = dict(thickness="4 mm", poisson=0.45, foundation="1.74 MPa/m", window="40 mm", cells=32, footprint_radius="3.6 mm",
+             solver="host")
+
+
+def sheet():
+    x, y = np.meshgrid(np.linspace(-0.03, 0.03, 61), np.linspace(-0.03, 0.03, 61))
+    points = np.column_stack([x.ravel(), y.ravel(), 0 * x.ravel()])
+    return points, np.where(np.hypot(x, y).ravel() < 5e-3, 3e6, 3e5)
+
+
+class Arrays(unittest.TestCase):
+    def setUp(self):
+        self.points, self.stiffness = sheet()
+        self.felt = palpate.Object(self.points, self.stiffness, **SCENE).touch([0, 0, 0], side=[0, 0, 1]).felt
+
+    def touched(self, points, stiffness):
+        return palpate.Object(points, stiffness, **SCENE).touch([0, 0, 0], side=[0, 0, 1]).felt
+
+    def test_any_layout_gives_the_same(self):
+        wide = np.zeros((len(self.points), 7))
+        wide[:, 2:5] = self.points
+        self.assertEqual(self.touched(wide[:, 2:5], self.stiffness), self.felt)
+        self.assertEqual(self.touched(np.asfortranarray(self.points), self.stiffness[::1]), self.felt)
+        self.assertEqual(self.touched(self.points[::-1], self.stiffness[::-1]) > 0, True)
+        self.assertEqual(self.touched(self.points.tolist(), list(self.stiffness)), self.felt)
+        frozen = self.points.copy()
+        frozen.flags.writeable = False
+        self.assertEqual(self.touched(frozen, self.stiffness), self.felt)
+        self.assertAlmostEqual(self.touched(self.points.astype(np.float32), self.stiffness) / self.felt, 1, places=4)
+
+    def test_what_comes_back_is_ones_own(self):
+        made = palpate.Object(self.points, self.stiffness, **SCENE)
+        points = made.points
+        np.testing.assert_array_equal(points, self.points)
+        points[:] = 7
+        np.testing.assert_array_equal(made.points, self.points)
+        np.testing.assert_array_equal(made.stiffness, self.stiffness)
+        self.assertTrue(points.flags.c_contiguous and points.flags.writeable)
+        self.assertEqual(made.settings["cells"], 32)
+
+    def test_a_rigidity_is_the_modulus_times_its_factor(self):
+        per = 4e-3 ** 3 / 12 / (1 - 0.45 ** 2)
+        made = palpate.Object(self.points, per * self.stiffness, unit="N m", **SCENE)
+        self.assertAlmostEqual(made.touch([0, 0, 0], side=[0, 0, 1]).felt / self.felt, 1, places=9)
+
+    def test_what_is_wrong_is_a_sentence(self):
+        for words, wrong in ((("points", "(n, 3)"), lambda: palpate.Object(self.points[:, :2], 1e6)),
+                             (("stiffness", "(3721)"), lambda: palpate.Object(self.points, self.stiffness[:-1])),
+                             (("stiffness", "numbers"), lambda: palpate.Object(self.points, ["soft"] * 3721)),
+                             (("unit", "MPa"), lambda: palpate.Object(self.points, 1e6, unit="MPa")),
+                             (("point 0",), lambda: palpate.Object(self.points, -1)),
+                             (("point 5",), lambda: palpate.Object(np.where(np.arange(3721)[:, None] == 5, np.nan,
+                                                                            self.points), 1e6)),
+                             (("faces", "3720"), lambda: palpate.Object(self.points, 1e6, faces=[[0, 1, 9999]])),
+                             (("thickness",), lambda: palpate.Object(self.points, 1e6, thicknes="4 mm")),
+                             (("window",), lambda: palpate.Object(self.points, 1e6, window="a lot")),
+                             (("JSON",), lambda: palpate.Object.scene("nonsense")),
+                             (("nowhere",), lambda: palpate.Object.file("/nowhere.json")),
+                             (("edges",), lambda: palpate.plate(np.ones((9, 9)), np.ones((9, 9)), edges="soft")),
+                             (("forces", "(9, 9)"), lambda: palpate.plate(np.ones((9, 9)), np.ones((9, 8)))),
+                             (("nowhere",), lambda: palpate.read_recording("/nowhere"))):
+            with self.assertRaises(palpate.Error) as caught:
+                wrong()
+            for word in words:
+                self.assertIn(word, str(caught.exception))
+
+
+class Touching(unittest.TestCase):
+    def setUp(self):
+        self.made = palpate.Object(*sheet(), **SCENE)
+
+    def test_a_force_moves_the_points(self):
+        touch = self.made.touch([0, 0, 0], force=0.5, side=[0, 0, 1])
+        self.assertEqual(touch.points.shape, (3721, 3))
+        self.assertAlmostEqual(-touch.points[:, 2].min() / (0.5 * touch.compliance), 1, delta=0.3)
+        self.assertIsNone(self.made.touch([0, 0, 0]).points)
+
+    def test_a_felt_map_is_one_touch_after_the_other(self):
+        places = np.array([[0, 0, 0], [0.02, 0, 0], [9, 9, 9]])
+        felt = self.made.felt_map(places, sides=np.tile([0, 0, 1.0], (3, 1)))
+        for n in range(2):
+            self.assertAlmostEqual(felt[n] / self.made.touch(places[n], side=[0, 0, 1]).felt, 1, places=6)
+        self.assertTrue(np.isnan(felt[2]))
+
+    def test_a_run_is_the_same_again_and_pushes_back(self):
+        times, places = [0, 1, 2], [[0, 0, 3e-3], [0, 0, -1.5e-3], [0, 0, -1.5e-3]]
+        forces, proxies = self.made.run(times, places)
+        again, _ = self.made.run(times, places)
+        np.testing.assert_array_equal(forces, again)
+        self.assertEqual(forces.shape, (2000, 3))
+        felt = self.made.touch([0, 0, 0], side=[0, 0, 1]).felt
+        self.assertAlmostEqual(forces[-1, 2] / (felt * 1.5e-3), 1, delta=0.05)
+        self.assertAlmostEqual(proxies[-1, 2], 0, delta=1e-4)
+
+
+class Sessions(unittest.TestCase):
+    def test_a_loop_of_ones_own(self):
+        made = palpate.Object(*sheet(), **SCENE)
+        folder = SCRATCH / "recorded"
+        with made.session(maximum_force=4) as session, made.session() as other:
+            session.record(folder)
+            seen, over = [], threading.Event()
+
+            def draw():
+                while not over.is_set():
+                    seen.append(session.deformed())
+                    time.sleep(0.01)
+
+            painter = threading.Thread(target=draw)
+            painter.start()
+            begin = time.monotonic()
+            now = 0.0
+            while now < 3:
+                now = time.monotonic() - begin
+                answer = session.step(now, [0, 0, 3e-3 - 4.5e-3 * min(1, now)])
+                other.step(now, [0, 0, 0.01])
+                time.sleep(0.001)
+            over.set()
+            painter.join()
+            self.assertTrue(answer.touching and not answer.stopped, session.words)
+            self.assertGreater(answer.force[2], 0.2)
+            wrong = session.step(now + 1, [0, float("nan"), 0])
+            self.assertTrue(wrong.bad_input and not wrong.force.any())
+            self.assertTrue(any(points is not None and points[:, 2].min() < -1e-4 for points in seen))
+            ticks, lost = session.stop_recording()
+        table, about = palpate.read_recording(folder)
+        self.assertEqual((len(table), lost), (ticks, 0))
+        self.assertGreater(table["force"][-2][2], 0.2)
+        self.assertIn("scene", about)
+
+
+if __name__ == "__main__":
+    shutil.rmtree(SCRATCH, ignore_errors=True)
+    SCRATCH.mkdir(parents=True)
+    points, stiffness = sheet()
+    done = doctest.testmod(palpate, optionflags=doctest.ELLIPSIS,
+                           extraglobs={"palpate": palpate, "np": np, "points": points, "stiffness": stiffness})
+    print(done)
+    if done.failed or done.attempted < 10:
+        sys.exit(1)
+    unittest.main()
