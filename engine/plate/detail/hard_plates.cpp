@@ -56,11 +56,9 @@ void HardPlates::remember(const Plate& plate, double tolerance, std::string why)
 {
     constexpr std::size_t kMost = 8; // those of several grids, or of one that becomes softer
     if (all_.size() == kMost) all_.erase(all_.begin());
-    all_.push_back({{plate.grid, plate.edges, plate.poissonRatio, plate.foundation, {}, plate.foundationShape},
-                    contrastOf(plate),
-                    largestJump(plate),
-                    tolerance,
-                    std::move(why)});
+    Plate like    = plate;
+    like.rigidity = {};
+    all_.push_back({std::move(like), contrastOf(plate), largestJump(plate), tolerance, std::move(why)});
 }
 
 const std::string* HardPlates::knownBecause(const Plate& plate, double tolerance) const
