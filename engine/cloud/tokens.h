@@ -9,6 +9,9 @@
 
 namespace palp {
 
+/// What spreadsheets and editors put before text in UTF-8.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 /// Takes the next word off the front of `rest`: the text between blanks and tabs; empty if there is none.
 [[nodiscard]] inline std::string_view nextWord(std::string_view& rest)
 {

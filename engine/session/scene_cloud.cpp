@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "engine/cloud/cloud_format.h"
+#include "engine/cloud/face_orientation.h"
 #include "engine/cloud/mesh_points.h"
 #include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
@@ -107,6 +108,16 @@ void refuseTooLarge(const Scene& scene, const ScatterPlan& plan)
                 " between them; is length_unit right? scatter = off touches the vertices");
 }
 
+/// Turns flipped triangles round: their normals are the points' sides, and what lies behind a seam between two sides is
+/// another sheet to the finger.
+void turnFlippedFaces(LoadedCloud& loaded)
+{
+    const std::size_t turned = turnToNeighbours(loaded.faces, loaded.cloud.positions());
+    if (turned > 0)
+        loaded.report.warnings.push_back(std::to_string(turned) + " of " + std::to_string(loaded.faces.size()) +
+                                         " triangles faced against their neighbours and were turned round");
+}
+
 } // namespace
 
 std::string openingOf(const Scene& scene, const std::string& key)
@@ -122,6 +133,7 @@ LoadedCloud loadBareCloud(const Scene& scene)
     if (isSample(scene)) return sampleOf(scene);
     LoadedCloud loaded = readCloud(scene.cloud, scene.reading);
     refuseContradiction(scene, loaded);
+    turnFlippedFaces(loaded);
     const Bounds bounds = loaded.cloud.bounds();
     if (const auto plan = scatterPlan(scene, loaded)) {
         refuseTooLarge(scene, *plan);

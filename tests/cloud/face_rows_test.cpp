@@ -1,6 +1,10 @@
 #include "engine/cloud/detail/face_rows.h"
 
+#include <cmath>
 #include <limits>
+
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 #include "tests/cloud/cloud_parsing.h"
 #include "tests/support/temporary_folder.h"
@@ -32,6 +36,65 @@ TEST(FaceRows, PolygonsBecomeFansAboutTheirFirstCorner)
     EXPECT_EQ(loaded.faces, (Triangles{{0, 1, 2}, {3, 2, 1}, {3, 1, 0}, {4, 3, 2}, {4, 2, 1}, {4, 1, 0}}));
     EXPECT_EQ(loaded.report.faces, 3u);
     EXPECT_EQ(loaded.report.degenerateFaces, 0u);
+}
+
+/// Area of the triangles of a flat file, and of those that face down [m^2].
+std::pair<double, double> areas(const LoadedCloud& loaded)
+{
+    double all = 0, down = 0;
+    for (const Triangle& t : loaded.faces) {
+        const glm::dvec3 a = loaded.cloud.positions()[t[0]];
+        const double     z = glm::cross(loaded.cloud.positions()[t[1]] - a, loaded.cloud.positions()[t[2]] - a).z / 2;
+        all += std::abs(z);
+        down += std::max(0.0, -z);
+    }
+    return {all, down};
+}
+
+/// Each polygon from each of its corners on: a notched square, a spiral, a star and a comb, and one that is drawn on the
+/// same line twice.
+TEST(FaceRows, ConcavePolygonsBecomeTrianglesWithinThem)
+{
+    using Places = std::vector<glm::dvec2>;
+    Places star, comb{{0, 0}, {9, 0}};
+    for (int k = 0; k < 14; ++k)
+        star.emplace_back((k % 2 ? 1 : 3) * std::cos(k * 0.4488), (k % 2 ? 1 : 3) * std::sin(k * 0.4488));
+    for (int k = 9; k >= 0; --k) comb.emplace_back(k, k % 2 ? 5 : 1);
+    for (Places places :
+         {Places{{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}},
+          Places{{0, 0}, {5, 0}, {5, 5}, {1, 5}, {1, 2}, {3, 2}, {3, 3}, {2, 3}, {2, 4}, {4, 4}, {4, 1}, {0, 1}}, star,
+          comb, Places{{0, 0}, {2, 0}, {4, 0}, {4, 4}, {3, 4}, {3, 1}, {1, 1}, {1, 4}, {0, 4}}}) {
+        double area = 0;
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            const glm::dvec2 a = places[k], b = places[(k + 1) % places.size()];
+            area += 0.5 * (a.x * b.y - a.y * b.x);
+        }
+        for (std::size_t turn = 0; turn < places.size(); ++turn) {
+            std::rotate(places.begin(), places.begin() + 1, places.end());
+            std::string text, face = std::to_string(places.size());
+            for (std::size_t k = 0; k < places.size(); ++k) {
+                text += std::to_string(places[k].x) + " " + std::to_string(places[k].y) + " 0\n";
+                face += " " + std::to_string(k);
+            }
+            const LoadedCloud loaded = ply("ply\nformat ascii 1.0\nelement vertex " + std::to_string(places.size()) +
+                                           "\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+                                           "property list uchar int vertex_indices\nend_header\n" +
+                                           text + face + "\n");
+            const auto [all, down]   = areas(loaded);
+            EXPECT_EQ(loaded.faces.size(), places.size() - 2);
+            EXPECT_NEAR(all, area, 1e-5 * area) << "corners are written with six digits";
+            EXPECT_EQ(down, 0);
+        }
+    }
+}
+
+TEST(FaceRows, APolygonThatCrossesItselfStaysAFan)
+{
+    EXPECT_EQ(ply("ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+                  "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                  "0 1 0\n-.59 -.81 0\n.95 .31 0\n-.95 .31 0\n.59 -.81 0\n5 0 1 2 3 4\n")
+                  .faces.size(),
+              3u);
 }
 
 TEST(FaceRows, TooFewCornersAndOneTwiceAreLeftOutAndCounted)

@@ -137,6 +137,17 @@ TEST(GlbFile, IndicesAreBytesShortsOrWords)
     EXPECT_TRUE(contains(refusal(floats), {"mesh 0: expected indices as whole numbers, found floats"}));
 }
 
+TEST(GlbFile, BytesBeyondTheStatedLengthAreSaidAndDoNoHarm)
+{
+    for (const std::string& tail : {std::string("\n"), std::string(9, '\0')}) {
+        const LoadedCloud loaded = parsed(glb(kSquare, squareBytes()) + tail, CloudFormat::glb);
+        EXPECT_EQ(loaded.faces.size(), 2u);
+        ASSERT_EQ(loaded.report.warnings.size(), 1u);
+        EXPECT_TRUE(contains(loaded.report.warnings[0], {std::to_string(tail.size()) + " bytes after"}));
+    }
+    EXPECT_TRUE(read(kSquare).report.warnings.empty());
+}
+
 TEST(GlbFile, OtherVersionsAreRefused)
 {
     for (const char version : {1, 3}) {

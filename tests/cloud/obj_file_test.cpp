@@ -55,6 +55,16 @@ TEST(ObjFile, LinesThatAreNotKnownAreCounted)
     EXPECT_TRUE(contains(loaded.report.warnings[0], {"2 lines were omitted", "in line 5"}));
 }
 
+// A first vertex that was passed over would give every face the wrong corners.
+TEST(ObjFile, AByteOrderMarkHidesNoVertex)
+{
+    const LoadedCloud loaded = obj("\xEF\xBB\xBF" + kFour + "f 1 2 3\n");
+
+    EXPECT_EQ(loaded.cloud.size(), 4u);
+    EXPECT_EQ(loaded.faces, (std::vector<Triangle>{{0, 1, 2}}));
+    EXPECT_TRUE(loaded.report.warnings.empty());
+}
+
 TEST(ObjFile, ACommentMayStateTheUnitAndASettingWins)
 {
     EXPECT_EQ(obj("# length_unit mm\n" + kFour).cloud.bounds().high.x, 1e-3);

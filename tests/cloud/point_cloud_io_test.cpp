@@ -267,8 +267,9 @@ TEST(Stiffness, IsUniformOnlyWhereTheFileHasNone)
 TEST(Stiffness, ZeroAndNegativeValuesAreRefusedWithTheirRow)
 {
     for (const std::string value : {"0", "-0", "-2.5"})
-        EXPECT_TRUE(contains(textRefusal("1 2 3 7\n4 5 6 " + value + "\n"),
-                             {"line 2", "point 1", "above zero", "\"stiffness\" " + value, "--range"}));
+        EXPECT_TRUE(
+            contains(textRefusal("1 2 3 7\n4 5 6 " + value + "\n"),
+                     {"line 2", "point 1", "above zero", "\"stiffness\" " + value, "--stiffness-range FROM,TO"}));
     EXPECT_EQ(text("1 2 3 7\n4 5 6 -2\n", withRange("stiffness", 10, 20)).cloud.stiffness()[1], 10);
 }
 

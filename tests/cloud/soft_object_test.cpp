@@ -41,6 +41,30 @@ TEST(SoftObject, AnotherMaterialSharesEverythingElseAndGivesAnotherRigidity)
     EXPECT_DOUBLE_EQ(thick.rigidity(1), 8 * object.rigidity(1));
 }
 
+/// A sheet alone has no side; its faces give it one, but not to points that lie in none.
+TEST(SoftObject, FacesSayWhichSideIsTheOuterOne)
+{
+    constexpr std::uint32_t kAlong = 12;
+    for (const double up : {1.0, -1.0}) {
+        std::vector<glm::dvec3> places;
+        std::vector<Triangle>   faces;
+        for (std::uint32_t i = 0; i < kAlong * kAlong; ++i) {
+            const std::uint32_t x = i % kAlong, y = i / kAlong;
+            places.emplace_back(x, y, 0);
+            if (x + 1 == kAlong || y + 1 >= kAlong - 1) continue; // the last row lies in no face
+            const std::uint32_t next = i + kAlong;
+            faces.push_back(up > 0 ? Triangle{i, i + 1, next} : Triangle{i, next, i + 1});
+            faces.push_back(up > 0 ? Triangle{i + 1, next + 1, next} : Triangle{i + 1, next, next + 1});
+        }
+        const SoftObject object(PointCloud(places, std::vector<double>(places.size(), 1), StiffnessKind::modulus), {},
+                                faces);
+        for (std::size_t i = 0; i < object.size(); ++i) {
+            EXPECT_EQ(object.survey().given(i), i < kAlong * (kAlong - 1)) << i;
+            EXPECT_TRUE(!object.survey().given(i) || up * object.survey().normal(i).z > 0.99) << i;
+        }
+    }
+}
+
 TEST(SoftObject, AnswersAfterItWasMovedAndAfterItsOriginIsGone)
 {
     std::optional<SoftObject> first   = square();

@@ -60,6 +60,12 @@ TEST(VtkXmlFile, FilesOfOtherProgramsGiveTheSameCloudInEveryForm)
     }
 }
 
+TEST(VtkXmlFile, AByteOrderMarkMayStandBeforeIt)
+{
+    for (const std::string& bytes : {std::string(kXmlAscii), bytesOfHex(kXmlAppendedRaw)})
+        expectTheWrittenObject(vtk("\xEF\xBB\xBF" + bytes));
+}
+
 TEST(VtkXmlFile, PiecesFollowEachOther)
 {
     const LoadedCloud loaded =

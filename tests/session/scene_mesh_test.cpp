@@ -189,6 +189,31 @@ TEST_F(SceneMesh, BadMeshesAreTouchedWithTheForceOfGoodOnes)
     for (const auto& [what, text] : meshes) EXPECT_NEAR(forceOn(text) / good, 1, 0.02) << what;
 }
 
+/// Where one triangle is flipped, what lies beyond its edge is no other side: a stiff corner there is felt.
+TEST_F(SceneMesh, AFlippedTriangleHidesNoStiffness)
+{
+    const auto felt = [&](const char* second) {
+        const Scene scene = sceneOf(std::string("ply\nformat ascii 1.0\ncomment length_unit mm\nelement vertex 4\n"
+                                                "property float x\nproperty float y\nproperty float z\n"
+                                                "property float stiffness\nelement face 2\n"
+                                                "property list uchar int vertex_indices\nend_header\n"
+                                                "-30 -30 0 3e5\n30 -30 0 3e5\n30 30 0 9e6\n-30 30 0 3e5\n3 0 1 3\n") +
+                                    second);
+        const LoadedObject loaded = loadObject(scene);
+        const bool         said   = std::ranges::any_of(loaded.report.warnings, [](const std::string& sentence) {
+            return sentence.find("1 of 2 triangles faced against") != std::string::npos;
+        });
+        PlateSolver        solver("host");
+        return std::pair(deform(loaded.object, Contact{{0, 0, 0}, {0, 0, 1}}, scene.patch, solver).compliance, said);
+    };
+    const auto [good, saidOfGood] = felt("3 1 2 3\n");
+    const auto [flipped, said]    = felt("3 1 3 2\n");
+
+    EXPECT_FALSE(saidOfGood);
+    EXPECT_TRUE(said);
+    EXPECT_EQ(flipped, good) << "the triangle is turned back before points are scattered over it";
+}
+
 TEST_F(SceneMesh, AMeshThatIsNoSurfaceIsRefused)
 {
     const char* const nanometres = "v 0 0 0\nv 1e-9 0 0\nv 0 1e-9 0\nf 1 2 3\n";

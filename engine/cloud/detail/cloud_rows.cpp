@@ -297,7 +297,8 @@ void CloudRows::refuseRow(const CloudRow& row, Place place) const
             failAtRow(place, "expected a coordinate below " + shown(kLargestCoordinate) + " m" + found +
                                  "; is the length unit right?");
         if (slot == kSlotStiffness && !settings_.range && !(row[slot] > 0))
-            failAtRow(place, "expected a stiffness above zero" + found + "; map the property with --range FROM,TO");
+            failAtRow(place,
+                      "expected a stiffness above zero" + found + "; map the property with --stiffness-range FROM,TO");
     }
     PALP_EXPECT(false, "a usable row is refused");
 }

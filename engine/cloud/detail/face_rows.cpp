@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/cloud/detail/polygon.h"
 #include "engine/cloud/tokens.h"
 
 namespace palp {
@@ -72,8 +73,32 @@ std::vector<Triangle> FaceRows::byPoints(std::span<const std::uint32_t> pointOfR
     return left;
 }
 
+/// Puts triangles that lie within their polygon in the place of fans that do not.
+void FaceRows::keepWithinPolygons(const LoadedCloud& loaded)
+{
+    const auto positions = loaded.cloud.positions();
+    const auto pointOf   = [&](std::uint32_t row) { return loaded.pointOfRow.empty() ? row : loaded.pointOfRow[row]; };
+    std::vector<std::uint32_t> rows;
+    std::vector<glm::dvec3>    corners;
+    auto                       fan = triangles_.begin();
+    for (const std::uint32_t size : fans_) {
+        const auto triangles = std::exchange(fan, fan + size);
+        if (size < 2) continue;
+        rows.assign({(*triangles)[0], (*triangles)[1]});
+        for (auto triangle = triangles; triangle != fan; ++triangle) rows.push_back((*triangle)[2]);
+        if (std::ranges::any_of(rows, [&](std::uint32_t row) { return pointOf(row) == kNoPoint; })) continue;
+        corners.clear();
+        for (const std::uint32_t row : rows) corners.push_back(positions[pointOf(row)]);
+        if (const auto within = trianglesOfConcave(corners))
+            std::ranges::transform(*within, triangles, [&](const Triangle& t) {
+                return Triangle{rows[t[0]], rows[t[1]], rows[t[2]]};
+            });
+    }
+}
+
 void FaceRows::finish(LoadedCloud& loaded)
 {
+    keepWithinPolygons(loaded);
     loaded.report.faces           = faces_;
     loaded.report.degenerateFaces = degenerate_;
     loaded.faces = loaded.pointOfRow.empty() ? std::move(triangles_) : byPoints(loaded.pointOfRow, loaded.report);

@@ -9,8 +9,9 @@
 
 namespace palp {
 
-/// Makes triangles of the faces of a file: a polygon becomes a fan about its first corner. A face with fewer than three
-/// corners, or with a corner twice, is omitted and counted; so are triangles of points that were merged. Faces may come before the points they are made of.
+/// Makes triangles of the faces of a file: a polygon becomes a fan about its first corner, or, where that would leave a
+/// concave polygon, triangles that lie within it. A face with fewer than three corners, or with a corner twice, is omitted
+/// and counted; so are triangles of points that were merged. Faces may come before the points they are made of.
 /// Use: for each face `addCorner` and then `endFace`; `finish` once all points are read.
 /// \thread one
 class FaceRows {
@@ -35,6 +36,7 @@ public:
 
 private:
     [[nodiscard]] bool                  cornersDiffer();
+    void                                keepWithinPolygons(const LoadedCloud& loaded);
     [[nodiscard]] std::vector<Triangle> byPoints(std::span<const std::uint32_t> pointOfRow, CloudFileReport& report);
 
     const ByteReader&          reader_;

@@ -36,6 +36,7 @@ std::uint32_t word(ByteReader& reader)
 struct Glb {
     Json                   json;
     std::vector<std::byte> binary;
+    std::uint32_t          length = 0; ///< of the file as its header states it [bytes]
 };
 
 Glb readChunks(ByteReader& reader)
@@ -44,10 +45,11 @@ Glb readChunks(ByteReader& reader)
         reader.fail("byte 0: expected a binary glTF file, which begins with glTF, found another");
     if (const std::uint32_t version = word(reader); version != 2)
         reader.fail("byte 4: expected glTF 2, found version " + std::to_string(version));
-    if (const std::uint32_t length = word(reader); length != reader.size())
-        reader.fail("byte 8: the header promises " + std::to_string(length) + " bytes, found " +
+    Glb glb;
+    glb.length = word(reader);
+    if (glb.length > reader.size())
+        reader.fail("byte 8: the header promises " + std::to_string(glb.length) + " bytes, found " +
                     std::to_string(reader.size()) + "; it may have been cut short while it was copied");
-    Glb                 glb;
     const std::uint32_t jsonLength = word(reader);
     if (word(reader) != kJsonChunk) reader.fail("byte 16: expected a first chunk of JSON, found another");
     if (jsonLength > std::min(kMostJson, reader.remaining()))
@@ -60,7 +62,7 @@ Glb readChunks(ByteReader& reader)
         reader.fail("byte 20: expected JSON, found something else; is the file damaged?");
     }
     if (!glb.json.is_object()) reader.fail("byte 20: expected an object of JSON");
-    if (reader.remaining() == 0) return glb;
+    if (reader.offset() >= glb.length) return glb;
     const std::uint32_t length = word(reader);
     if (word(reader) != kBinaryChunk)
         reader.failAtByte("expected a chunk of binary data before this byte, found another");
@@ -96,6 +98,9 @@ public:
         if (otherPrimitives_ > 0)
             rows_.warn(std::to_string(otherPrimitives_) + " parts of meshes were omitted: only triangles are read, not "
                                                           "points, lines, strips and fans");
+        if (reader_.size() > glb_.length)
+            rows_.warn(std::to_string(reader_.size() - glb_.length) + " bytes after the file's stated end, from byte " +
+                       std::to_string(glb_.length) + " on, were not read: padding, or a damaged file");
         LoadedCloud loaded = rows_.finish();
         faces_.finish(loaded);
         return loaded;

@@ -42,6 +42,8 @@ private:
     std::optional<std::string_view> wholeLine()
     {
         auto line = reader_.line();
+        if (line && reader_.lineNumber() == 1 && line->starts_with(kByteOrderMark))
+            line->remove_prefix(kByteOrderMark.size());
         if (!line || !line->ends_with('\\')) return line;
         joined_.clear();
         for (; line && line->ends_with('\\'); line = reader_.line()) {

@@ -85,6 +85,7 @@ LoadedCloud parseBinary(ByteReader& reader, const CloudReadSettings& settings)
             soup.addCorner(at(3 * corner), at(3 * corner + 1), at(3 * corner + 2), CloudRows::Place::byte);
         soup.endFace();
     }
+    soup.rows().warnOfTail();
     return soup.finish();
 }
 
@@ -217,8 +218,11 @@ LoadedCloud parseStl(std::istream& stream, std::uint64_t size, const std::string
                      const CloudReadSettings& settings)
 {
     const auto triangles = statedTriangles(stream, size);
-    const bool isBinary  = triangles && size == kBefore + kTriangle * *triangles;
-    const bool isAscii   = !isBinary && beginsWithSolid(stream);
+    // Some programs pad. The four bytes of text that an ASCII file has in place of the number promise more than it holds.
+    const bool isWhole  = triangles && size == kBefore + kTriangle * *triangles;
+    const bool isPadded = triangles && *triangles > 0 && size > kBefore + kTriangle * *triangles;
+    const bool isBinary = isWhole || isPadded;
+    const bool isAscii  = !isBinary && beginsWithSolid(stream);
     ByteReader reader(stream, size, name);
     if (isBinary) return parseBinary(reader, settings);
     if (isAscii) return AsciiParser(reader, settings).parse();

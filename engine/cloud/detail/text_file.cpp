@@ -11,8 +11,7 @@
 namespace palp {
 namespace {
 
-constexpr std::string_view kByteOrderMark  = "\xEF\xBB\xBF"; ///< that some spreadsheets put before UTF-8 text
-constexpr std::size_t      kUnnamedColumns = 4;              ///< x y z stiffness
+constexpr std::size_t kUnnamedColumns = 4; ///< x y z stiffness
 
 /// Splits a line at a separator, or at blanks if that is ' '.
 class Fields {

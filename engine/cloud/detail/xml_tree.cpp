@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "engine/cloud/tokens.h"
+
 namespace palp {
 namespace {
 
@@ -22,6 +24,7 @@ public:
 
     std::pair<XmlElement, std::string_view> parse()
     {
+        if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
         skipBlanks();
         if (rest_.starts_with("<?")) static_cast<void>(upTo("?>", "the first line"));
         skipComments();
