@@ -207,12 +207,16 @@ void fitMap(const FitOptions& o)
     const LoadedCloud loaded = o.source.loadCloud(scene);
     demandMap(o, scene, loaded.cloud);
     if (!o.out.empty()) refuseSourceAsTarget("--out", scene.cloud, o.out);
-    PlateSolver          solver = openSolver(scene.solver);
-    const SoftObject     measured(loaded.cloud, scene.material, loaded.faces, loaded.normals);
+    PlateSolver solver = openSolver(scene.solver);
+    LoadedCloud guess  = loaded; // one modulus everywhere
+    const auto  at     = loaded.cloud.positions();
+    guess.cloud =
+        PointCloud({at.begin(), at.end()}, std::vector<double>(at.size(), kDefaultModulus), StiffnessKind::modulus);
+    const SoftObject     start = objectOf(std::move(guess), scene).object;
     Progress             progress("fitting " + o.source.name);
     fit::FeltFitSettings settings{scene.patch, o.places, 15,
                                   [&](std::size_t done, std::size_t total) { progress.at(done, total); }};
-    const fit::FeltFit   found = fit::fitFeltMap(measured, settings, solver);
+    const fit::FeltFit   found = fit::fitFeltMap(start, loaded.cloud.stiffness(), settings, solver);
     if (!o.out.empty()) {
         const auto felt = loaded.cloud.stiffness();
         writeCloud(o.out, found.object.cloud(),

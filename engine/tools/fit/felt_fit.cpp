@@ -5,7 +5,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/cloud/point_cloud_io.h"
 #include "engine/core/contract.h"
 #include "engine/core/parallel.h"
 #include "engine/tools/paper/felt_map.h"
@@ -54,27 +53,18 @@ std::vector<double> feltAt(report::FeltMap map)
 
 } // namespace
 
-FeltFit fitFeltMap(const SoftObject& measured, const FeltFitSettings& settings, PlateSolver& solver)
+FeltFit fitFeltMap(const SoftObject& start, std::span<const double> measured, const FeltFitSettings& settings,
+                   PlateSolver& solver)
 {
-    PALP_EXPECT(measured.cloud().kind() == StiffnessKind::felt, "the cloud is no map of felt stiffness");
+    PALP_EXPECT(start.cloud().kind() == StiffnessKind::modulus, "the object has no modulus to begin with");
+    PALP_EXPECT(measured.size() == start.size(),
+                std::to_string(measured.size()) + " measured values for " + std::to_string(start.size()) + " points");
     constexpr double kExponent = 4.0 / 3;
     constexpr double kSettled  = 2e-3; // [1] median of the corrections that counts as none: a fiftieth of a map's noise
-    constexpr double kGains = 0.5; // [1] a step of which more is left has met what is as fine as a touch: noise grows
-    const auto       target = measured.cloud().stiffness();
-    const auto       positions = measured.positions();
-    const auto       normals   = [&] {
-        std::vector<glm::vec3> all;
-        for (std::size_t n = 0; n < measured.size(); ++n)
-            all.push_back(measured.survey().given(n) ? glm::vec3(measured.survey().normal(n)) : glm::vec3(0));
-        return all;
-    }();
-
-    std::vector<double> modulus(measured.size(), kDefaultModulus);
-    FeltFit fit{SoftObject(PointCloud({positions.begin(), positions.end()}, modulus, StiffnessKind::modulus),
-                           measured.material(), {measured.faces().begin(), measured.faces().end()}, normals),
-                {},
-                {}};
-    fit.reach = std::max(2 * settings.patch.footprintRadius, 1.2 * measured.spacing());
+    constexpr double kGains    = 0.5;  // [1] a step that leaves more has met what is as fine as a touch: noise grows
+    std::vector<double> modulus(start.cloud().stiffness().begin(), start.cloud().stiffness().end());
+    FeltFit             fit{start, {}, {}};
+    fit.reach = std::max(2 * settings.patch.footprintRadius, 1.2 * start.spacing());
     for (;; ++fit.steps) {
         const auto whole = std::size_t(settings.mostSteps + 1);
         if (settings.onStep) settings.onStep(std::size_t(fit.steps), whole);
@@ -82,7 +72,7 @@ FeltFit fitFeltMap(const SoftObject& measured, const FeltFitSettings& settings, 
         fit.leftOut         = map.leftOut;
         fit.felt            = feltAt(std::move(map));
         std::vector<double> wanting(modulus.size());
-        for (std::size_t n = 0; n < wanting.size(); ++n) wanting[n] = std::log(target[n] / fit.felt[n]);
+        for (std::size_t n = 0; n < wanting.size(); ++n) wanting[n] = std::log(measured[n] / fit.felt[n]);
         const std::vector<double> correction = smoothed(wanting, fit.object, fit.reach);
         const double              before     = fit.unsettled;
         fit.rest                             = medianSize(wanting);
@@ -92,7 +82,7 @@ FeltFit fitFeltMap(const SoftObject& measured, const FeltFitSettings& settings, 
         for (std::size_t n = 0; n < modulus.size(); ++n) modulus[n] *= std::exp(kExponent * correction[n]);
         fit.object = fit.object.repainted(modulus);
     }
-    for (std::size_t n = 0; n < modulus.size(); ++n) fit.residual.push_back(fit.felt[n] / target[n] - 1);
+    for (std::size_t n = 0; n < modulus.size(); ++n) fit.residual.push_back(fit.felt[n] / measured[n] - 1);
     return fit;
 }
 

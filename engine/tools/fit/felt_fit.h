@@ -32,7 +32,7 @@ struct FeltFit {
 
 /// Finds the modulus of each point with which the program's own map of felt stiffness agrees with a measured one.
 ///
-/// From one modulus everywhere, a step touches the object (report::feltMap()) and multiplies
+/// A step touches the object (report::feltMap()) and multiplies
 ///
 ///     E <- E (S[measured / felt])^(4/3)
 ///
@@ -40,8 +40,10 @@ struct FeltFit {
 /// plate alone) to E^1 (the contact alone), so with that exponent an error loses two thirds in a step at either end.
 /// What is finer than a touch S takes out: it cannot be told from noise and is left as residual. For the same reason it
 /// ends when a step corrects less than half of what was left.
-/// \param measured  an object whose cloud is of kind felt [N/m]: its faces, normals and material are kept
+/// \param start     what was measured: its points, material, foundation and first guess of the modulus [Pa]
+/// \param measured  felt stiffness at each of its points [N/m]
 /// \throws Error if nothing can be touched
-[[nodiscard]] FeltFit fitFeltMap(const SoftObject& measured, const FeltFitSettings& settings, PlateSolver& solver);
+[[nodiscard]] FeltFit fitFeltMap(const SoftObject& start, std::span<const double> measured,
+                                 const FeltFitSettings& settings, PlateSolver& solver);
 
 } // namespace palp::fit
