@@ -15,8 +15,9 @@ ComplianceTable::Values ComplianceTracker::lookUp(const glm::dvec3& contact) con
 {
     if (guessing_)
         if (const auto guess = first_->at(contact)) return *guess;
-    if (law_ != ComplianceLaw::table) return table_.middle();
-    if (const auto place = table_.chart.project(contact)) return table_.at(*place);
+    if (!table_) return {};
+    if (law_ != ComplianceLaw::table) return table_->middle();
+    if (const auto place = table_->chart.project(contact)) return table_->at(*place);
     // The contact is behind the sphere, or not finite: the last felt value stays.
     return {compliance_.handed - compliance_.offset, contact_.handed - contact_.offset, true};
 }
@@ -39,7 +40,7 @@ void ComplianceTracker::land(const ComplianceTick& now) noexcept
 
     compliance_ = contact_ = {};
     guessing_              = false;
-    const bool reached     = hasTable_ && !lookUp(now.contact).clamped;
+    const bool reached     = table_ && !lookUp(now.contact).clamped;
     fits_                  = reached && now.time - adopted_ <= kLate * period_;
     guessing_              = !reached && first_ && first_->at(now.contact);
     landed_                = now.time;
@@ -57,11 +58,10 @@ void ComplianceTracker::adopt(const ComplianceTick& now) noexcept
     const ComplianceTable::Values before   = lookUp(now.contact);
     const double                  interval = now.time - adopted_;
     const bool                    paused   = interval > (flown_ ? std::min(kPause * period_, kLongest) : kLongest);
-    if (hasTable_ && !paused) period_ += kWeight * (std::max(interval, kShortest) - period_);
-    table_    = *now.newest;
-    hasTable_ = true;
-    flown_    = false;
-    adopted_  = now.time;
+    if (table_ && !paused) period_ += kWeight * (std::max(interval, kShortest) - period_);
+    table_   = now.newest;
+    flown_   = false;
+    adopted_ = now.time;
 
     const bool                    guessed = std::exchange(guessing_, false);
     const ComplianceTable::Values after   = lookUp(now.contact);
@@ -88,14 +88,14 @@ std::optional<LocalCompliance> ComplianceTracker::tick(const ComplianceTick& now
     touching_         = now.touching;
     flown_            = flown_ || !touching_;
     if (landed || !touching_) land(now);
-    if (now.newest && now.newest->sequence != (hasTable_ ? table_.sequence : 0) && now.newest->usable()) adopt(now);
+    if (now.newest && now.newest->sequence != (table_ ? table_->sequence : 0) && now.newest->usable()) adopt(now);
     if (guessing_ && now.time - landed_ > kLongestGuess) guessing_ = false;
     if (!answers()) return {};
 
     const ComplianceTable::Values here = lookUp(now.contact);
     return LocalCompliance{hand(compliance_, here.lnCompliance, now.time),
                            hand(contact_, here.lnContactStiffness, now.time), here.clamped,
-                           now.time - (guessing_ ? landed_ : table_.time), guessing_ ? 0 : table_.chart.curvature};
+                           now.time - (guessing_ ? landed_ : table_->time), guessing_ ? 0 : table_->chart.curvature};
 }
 
 std::optional<LocalCompliance> ComplianceTracker::near(const glm::dvec3& place) const noexcept
@@ -104,7 +104,7 @@ std::optional<LocalCompliance> ComplianceTracker::near(const glm::dvec3& place) 
     const ComplianceTable::Values there = lookUp(place);
     return LocalCompliance{std::exp(there.lnCompliance + compliance_.offset),
                            std::exp(there.lnContactStiffness + contact_.offset), there.clamped, 0,
-                           table_.chart.curvature};
+                           table_ ? table_->chart.curvature : 0};
 }
 
 } // namespace palp

@@ -23,11 +23,12 @@ constexpr auto namesOf(ComplianceLaw)
 
 /// The servo's input of one tick.
 struct ComplianceTick {
-    glm::dvec3             contact{};          ///< [m] of the proxy, world
-    double                 time     = 0;       ///< [s] of the servo's clock
-    double                 dt       = 0;       ///< [s] since the last tick
-    const ComplianceTable* newest   = nullptr; ///< of the deformation thread; null: none yet
-    bool                   touching = true;    ///< false: in free space. The next contact then starts without an offset
+    glm::dvec3 contact{}; ///< [m] of the proxy, world
+    double     time = 0;  ///< [s] of the servo's clock
+    double     dt   = 0;  ///< [s] since the last tick
+    /// Of the deformation thread; null: none yet. It is read where it lies: it stays as it is while inUse() names it.
+    const ComplianceTable* newest   = nullptr;
+    bool                   touching = true; ///< false: in free space. The next contact then starts without an offset
 };
 
 struct LocalCompliance {
@@ -74,6 +75,9 @@ public:
 
     [[nodiscard]] double period() const noexcept { return period_; } ///< of the tables, smoothed [s]
 
+    /// Returns the table that the next tick may still read, besides the newest; null: none.
+    [[nodiscard]] const ComplianceTable* inUse() const noexcept { return table_; }
+
 private:
     /// One of the two logarithms on its way to the hand.
     struct Carried {
@@ -84,7 +88,7 @@ private:
     };
 
     [[nodiscard]] ComplianceTable::Values lookUp(const glm::dvec3& contact) const noexcept;
-    [[nodiscard]] bool                    answers() const noexcept { return hasTable_ || guessing_; }
+    [[nodiscard]] bool                    answers() const noexcept { return table_ || guessing_; }
     void                                  land(const ComplianceTick& now) noexcept;
     void                                  adopt(const ComplianceTick& now) noexcept;
     void                                  carry(Carried& carried, double before, double after) const noexcept;
@@ -92,16 +96,16 @@ private:
 
     ComplianceLaw         law_;
     const HomogeneousLaw* first_; // may be null
-    ComplianceTable       table_{};
-    bool                  hasTable_ = false;
-    bool                  touching_ = false;
-    bool                  fits_     = false;    // the table in use was made for this contact, as far as is known
-    bool                  guessing_ = false;    // the homogeneous law answers
-    double                landed_   = 0;        // when this contact began [s]
-    bool                  flown_    = false;    // in free space since the table came
-    double                adopted_  = 0;        // when the table came [s]
-    double                period_   = 1.0 / 30; // [s] the slowest deformation thread that is planned for
-    Carried               compliance_, contact_;
+    /// The table in use, where the deformation thread put it; null: none yet. A copy would cost the servo's tick 2.4 KB.
+    const ComplianceTable* table_    = nullptr;
+    bool                   touching_ = false;
+    bool                   fits_     = false;    // the table in use was made for this contact, as far as is known
+    bool                   guessing_ = false;    // the homogeneous law answers
+    double                 landed_   = 0;        // when this contact began [s]
+    bool                   flown_    = false;    // in free space since the table came
+    double                 adopted_  = 0;        // when the table came [s]
+    double                 period_   = 1.0 / 30; // [s] the slowest deformation thread that is planned for
+    Carried                compliance_, contact_;
 };
 
 } // namespace palp

@@ -153,11 +153,20 @@ double FootprintLattice::lnCompliance(double ofRigidity) const
 
 TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver, double tolerance)
 {
+    TableSolution  result;
+    MiddleSolution middle = solveTable(plate, lattice, solver, tolerance, result.table);
+    result.middle         = std::move(middle.solution);
+    result.compliance     = middle.compliance;
+    return result;
+}
+
+MiddleSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver, double tolerance,
+                          ComplianceTable& table)
+{
     const std::size_t middle = lattice.loads.size() / 2;
     FootprintSolution solved = solver.solveFootprints(plate, lattice.loads, middle, tolerance);
-    TableSolution     result;
-    result.table.side    = lattice.shape.side;
-    result.table.spacing = lattice.shape.radius;
+    table.side               = lattice.shape.side;
+    table.spacing            = lattice.shape.radius;
 
     const double node = plate.rigidity.values().front(); // logarithms are of ratios to it: exactly 0 if all are alike
     NodeField    over(plate.grid);
@@ -171,12 +180,10 @@ TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, Pl
     for (std::size_t n = 0; n < solved.responses.size(); ++n) {
         const ComplianceTable::Entry felt = complianceOf(solved.responses[n]);
         const ComplianceTable::Entry own  = homogeneous[n];
-        result.table.compliance[n]       = {felt.value - own.value, felt.slopeX - own.slopeX, felt.slopeZ - own.slopeZ};
-        result.table.contactStiffness[n] = contactOf(lattice, n, over, node);
+        table.compliance[n]       = {felt.value - own.value, felt.slopeX - own.slopeX, felt.slopeZ - own.slopeZ};
+        table.contactStiffness[n] = contactOf(lattice, n, over, node);
     }
-    result.middle     = std::move(solved.whole);
-    result.compliance = solved.responses[middle].work;
-    return result;
+    return {std::move(solved.whole), solved.responses[middle].work};
 }
 
 } // namespace palp

@@ -71,4 +71,15 @@ struct TableSolution {
 [[nodiscard]] TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver,
                                        double tolerance);
 
+/// The solution in the middle of a table.
+struct MiddleSolution {
+    PlateSolution solution;   ///< under 1 N
+    double        compliance; ///< c there [m/N]
+};
+
+/// Does the same into a table that is there, so that who reads it needs no copy. Its sequence number, time and chart
+/// stay as they are.
+[[nodiscard]] MiddleSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver,
+                                        double tolerance, ComplianceTable& table);
+
 } // namespace palp

@@ -399,14 +399,13 @@ void bendPlate(Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 }
 
 /// Bends the plate also under each footprint of a lattice.
-ComplianceTable bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLattice& lattice,
-                          PlateSolver& solver)
+void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLattice& lattice, PlateSolver& solver,
+               ComplianceTable& table)
 {
     const StageClock clock(patch.times.solve);
-    TableSolution    solved = solveTable(patch.plate, lattice, solver, settings.tolerance);
-    solved.table.chart      = patch.chart;
-    keep(patch, std::move(solved.middle), solved.compliance);
-    return solved.table;
+    MiddleSolution   middle = solveTable(patch.plate, lattice, solver, settings.tolerance, table);
+    table.chart             = patch.chart;
+    keep(patch, std::move(middle.solution), middle.compliance);
 }
 
 // --- 2.6, equation 9: the plate moves the points, and in series with the contact it is what the hand feels
@@ -516,15 +515,25 @@ PatchWithTable deformWithTable(const SoftObject& object, const Contact& contact,
                                const FootprintLattice& lattice, PlateSolver& solver,
                                const std::optional<Frame>& carried)
 {
-    PatchWithTable result;
-    Patch&         patch   = result.patch;
+    PatchWithTable  result;
+    ComplianceTable table;
+    result.patch = deformWithTable(object, contact, settings, lattice, solver, carried, table);
+    if (result.patch.deformed()) result.table = table;
+    return result;
+}
+
+Patch deformWithTable(const SoftObject& object, const Contact& contact, const PatchSettings& settings,
+                      const FootprintLattice& lattice, PlateSolver& solver, const std::optional<Frame>& carried,
+                      ComplianceTable& table)
+{
+    Patch patch;
     patch.coarse           = coarseFor(object, contact, settings);
     const SoftObject& used = patch.coarse ? patch.coarse->object() : object;
-    if (!makePlate(patch, used, contact, settings, carried)) return result;
-    result.table = bendPlate(patch, settings, lattice, solver);
+    if (!makePlate(patch, used, contact, settings, carried)) return patch;
+    bendPlate(patch, settings, lattice, solver, table);
     movePoints(patch);
     findStiffness(patch, used, settings);
-    return result;
+    return patch;
 }
 
 std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)

@@ -41,6 +41,11 @@ struct PatchWithTable {
                                              const PatchSettings& settings, const FootprintLattice& lattice,
                                              PlateSolver& solver, const std::optional<Frame>& carried = {});
 
+/// Does the same into a table that is there: the one that the servo will read. It is written if the patch is deformed().
+[[nodiscard]] Patch deformWithTable(const SoftObject& object, const Contact& contact, const PatchSettings& settings,
+                                    const FootprintLattice& lattice, PlateSolver& solver,
+                                    const std::optional<Frame>& carried, ComplianceTable& table);
+
 /// Estimates how far the compliance is from its limit of fine grids, relative [1]: the change of c from a grid twice as
 /// coarse, divided by 3 (Richardson, second order). Empty if the cells are not a multiple of 4 or the footprint is too
 /// small.

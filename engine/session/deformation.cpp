@@ -76,14 +76,22 @@ DeformationAnswer Deformation::solveAhead(const Touch& touch, double lead)
     return answer;
 }
 
+/// Returns memory for an answer that nobody reads. Shares end on the thread that calls this, or on one that has handed
+/// them back to it: a count of one stays one.
+const std::shared_ptr<PatchUpdate>& Deformation::freeSlot()
+{
+    const auto found = std::ranges::find_if(slots_, [](const auto& slot) { return slot.use_count() == 1; });
+    return found != slots_.end() ? *found : slots_.emplace_back(std::make_shared<PatchUpdate>());
+}
+
 DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touch)
 {
     try {
-        PatchWithTable solved = deformWithTable(*object_, contact, settings_, lattice_, solver_, frame_);
-        if (!solved.table) return {{}, {}, "the points around the contact determine no surface"};
-        Patch& patch = solved.patch;
-        frame_       = patch.chart.frame;
-        PatchUpdate update{*solved.table};
+        const std::shared_ptr<PatchUpdate>& slot   = freeSlot();
+        PatchUpdate&                        update = *slot;
+        Patch patch = deformWithTable(*object_, contact, settings_, lattice_, solver_, frame_, update.table);
+        if (!patch.deformed()) return {{}, {}, "the points around the contact determine no surface"};
+        frame_                = patch.chart.frame;
         update.table.sequence = touch.sequence;
         update.table.time     = touch.time;
         const auto& w         = patch.response.values();
@@ -92,7 +100,7 @@ DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touc
         update.mostResponse   = *std::max_element(w.begin(), w.end());
         update.errorEstimate  = patch.report.errorEstimate.value_or(0);
         update.iterations     = patch.report.iterations.value_or(0);
-        return {update, std::move(patch), {}};
+        return {slot, std::move(patch), {}};
     } catch (const Error& error) { // the window is off the object, or the plate has no solution there
         return {{}, {}, error.what()};
     }

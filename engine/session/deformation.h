@@ -1,7 +1,9 @@
 #pragma once
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/pipeline/deform.h"
 #include "engine/pipeline/homogeneous_sites.h"
@@ -11,10 +13,12 @@ namespace palp {
 
 /// The answer to a touch: the result of the slow half of a session.
 struct DeformationAnswer {
-    std::optional<PatchUpdate> update;     ///< for the servo; empty: nothing could be solved there
-    std::optional<Patch>       patch;      ///< for an observer; there whenever `update` is
-    std::string                why;        ///< a failure, also one that a second try mended; may be empty
-    std::string                takeover{}; ///< who solves plates now, and why; empty: who did before
+    /// For the servo, where the solver wrote it; null: nothing could be solved there. It stays as it is as long as
+    /// somebody has a share in it, also beyond the life of the deformation. The servo's thread takes no share.
+    std::shared_ptr<const PatchUpdate> update;
+    std::optional<Patch>               patch;      ///< for an observer; there whenever `update` is
+    std::string                        why;        ///< a failure, also one that a second try mended; may be empty
+    std::string                        takeover{}; ///< who solves plates now, and why; empty: who did before
 };
 
 /// Turns a touch into an answer. It may take long, and throw. `lead` is the time [s] from the touch to the middle of that
@@ -65,9 +69,10 @@ public:
     [[nodiscard]] const PlateSolver& plateSolver() const noexcept { return solver_; }
 
 private:
-    [[nodiscard]] DeformationAnswer solveSomewhere(const Touch& touch, double lead);
-    [[nodiscard]] DeformationAnswer solveAhead(const Touch& touch, double lead);
-    [[nodiscard]] DeformationAnswer solveAt(const Contact& contact, const Touch& touch);
+    [[nodiscard]] DeformationAnswer                   solveSomewhere(const Touch& touch, double lead);
+    [[nodiscard]] DeformationAnswer                   solveAhead(const Touch& touch, double lead);
+    [[nodiscard]] DeformationAnswer                   solveAt(const Contact& contact, const Touch& touch);
+    [[nodiscard]] const std::shared_ptr<PatchUpdate>& freeSlot();
 
     const SoftObject*    object_; ///< never null
     ComplianceLaw        law_;
@@ -77,6 +82,8 @@ private:
     FootprintLattice     lattice_;
     HomogeneousLaw       firstLaw_;
     std::optional<Frame> frame_; ///< of the last patch, carried to the next
+    /// Memory for answers. One that nobody else has a share in is free: in a session there are four at most, and one.
+    std::vector<std::shared_ptr<PatchUpdate>> slots_;
 };
 
 } // namespace palp

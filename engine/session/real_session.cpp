@@ -158,8 +158,7 @@ TickRecord RealSession::tick(const ForceHalf::TickTime& now, const HapticState& 
     hand.clutched               = clutch_.isHeld();
     hand.letGo                  = letGo;
     const ProxyContact& contact = held(now.time, hand);
-    deformation_.update.take();
-    return force_.tick(now, hand, contact, deformation_.update.held());
+    return force_.tick(now, hand, contact, deformation_.newest(force_.tableInUse()));
 }
 
 /// Returns the contact of the hand: computed here, or the latest of the proxy's thread.

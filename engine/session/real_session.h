@@ -37,7 +37,7 @@ struct RealSessionSettings {
 
 /// Runs a whole session in real time: servo and deformation have threads of their own, and the caller watches.
 ///
-///     servo 1 ms --Touch--> deformation 1/rate --PatchUpdate--> servo     each a three-slot hand-off, newest wins
+///     servo 1 ms --Touch--> deformation 1/rate --PatchUpdate--> servo     each a hand-off in slots, newest wins
 ///       \--TickRecord--> caller <--Patch--/                          read in place, nothing is copied out
 ///
 ///     paper:  force 1 ms --Hand--> proxy 1 ms --Touch--> deformation; the force takes the proxy's latest answer, a

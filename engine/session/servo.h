@@ -20,7 +20,7 @@
 
 namespace palp {
 
-/// The deformation's message to the servo about one patch. Trivially copyable: it passes through a three-slot hand-off.
+/// The deformation's message to the servo about one patch. The solver writes it where the servo reads it.
 struct PatchUpdate {
     ComplianceTable table;             ///< with sequence number and time
     double          rigidity      = 0; ///< D in the middle [N m]
@@ -166,13 +166,14 @@ public:
     };
 
     /// Runs one tick of the force.
-    /// \param newest  the deformation's last update; null: none yet
+    /// \param newest  the deformation's last update; null: none yet. It stays as it is while tableInUse() is its table
     /// \return the record of the tick, complete but for tickTime
     TickRecord tick(const TickTime& now, const Hand& hand, const ProxyContact& held,
                     const PatchUpdate* newest) noexcept;
 
-    [[nodiscard]] const ForceGovernor& governor() const noexcept { return governor_; }
-    [[nodiscard]] const glm::dvec3&    lean() const noexcept { return lean_.way(); } ///< [m] for the next proxy's tick
+    [[nodiscard]] const ForceGovernor&   governor() const noexcept { return governor_; }
+    [[nodiscard]] const ComplianceTable* tableInUse() const noexcept { return compliance_.inUse(); } ///< null: none
+    [[nodiscard]] const glm::dvec3& lean() const noexcept { return lean_.way(); } ///< [m] for the next proxy's tick
 
 private:
     /// The wanted force and the payment for it, in the metres of the scene.
@@ -241,8 +242,9 @@ public:
         return force_.tick(now, hand, contact_.tick(now.time, hand.position, force_.lean()), newest);
     }
 
-    [[nodiscard]] const Touch&         touch() const noexcept { return contact_.touch(); }
-    [[nodiscard]] const ForceGovernor& governor() const noexcept { return force_.governor(); }
+    [[nodiscard]] const Touch&           touch() const noexcept { return contact_.touch(); }
+    [[nodiscard]] const ForceGovernor&   governor() const noexcept { return force_.governor(); }
+    [[nodiscard]] const ComplianceTable* tableInUse() const noexcept { return force_.tableInUse(); } ///< null: none
 
 private:
     ContactHalf contact_;

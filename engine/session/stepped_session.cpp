@@ -76,8 +76,7 @@ const TickRecord& SteppedSession::step(double time, const Hand& given) noexcept
     if (!good) hand.device = DeviceFault::kinematics;
     hand.answerTime = s.time;
     hand.sequence   = s.steps;
-    s.loop.update.take();
-    s.last = s.servo.tick({s.time, dt}, hand, s.loop.update.held());
+    s.last          = s.servo.tick({s.time, dt}, hand, s.loop.newest(s.servo.tableInUse()));
     if (!good) s.last.force = {};
     s.loop.touch.draft() = s.servo.touch();
     s.loop.touch.publish();

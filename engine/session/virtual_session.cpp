@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <optional>
+#include <memory>
 #include <utility>
 
+#include "engine/core/latest_pair.h"
 #include "engine/core/thread_time.h"
 #include "engine/session/clutch.h"
 #include "engine/session/force_state.h"
@@ -46,11 +47,12 @@ private:
 SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTick& onTick,
                           const std::atomic<bool>* stop)
 {
-    Servo                      servo(parts.object, parts.scene, parts.frame.inScene(parts.device.info()), parts.first);
-    SessionSummary             summary;
-    std::optional<PatchUpdate> inUse, underWay;
-    ZeroAtLast                 zero(parts.device);
-    Clutch                     clutch(parts.frame.clutch);
+    Servo          servo(parts.object, parts.scene, parts.frame.inScene(parts.device.info()), parts.first);
+    SessionSummary summary;
+    std::shared_ptr<const PatchUpdate>             underWay;
+    LatestPair<std::shared_ptr<const PatchUpdate>> updates; // one thread, but a table may be in use still
+    ZeroAtLast                                     zero(parts.device);
+    Clutch                                         clutch(parts.frame.clutch);
 
     const auto every = std::max<std::int64_t>(1, std::llround(1 / (parts.scene.deformationRate * kTick))); // ticks
     const auto ticks = std::llround(seconds / kTick);
@@ -59,22 +61,26 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
         const double time = double(n) * kTick;
         zero.now          = time + kTick;
         if (n % every == 0) {
-            if (underWay) inUse = underWay;
-            underWay.reset();
+            if (underWay) {
+                updates.draft() = std::exchange(underWay, nullptr);
+                updates.publish();
+            }
             if (const Touch& touch = servo.touch(); touch.sequence > 0) {
                 const auto        began  = Clock::now();
                 DeformationAnswer answer = parts.solver(touch, kLead * double(every) * kTick);
                 if (answer.update || touch.touching) {
                     summary.solve.add(secondsSince(began));
-                    summary.addPatch(answer.update.has_value(), answer.why);
+                    summary.addPatch(answer.update != nullptr, answer.why);
                 }
                 underWay = std::move(answer.update);
             }
         }
-        const double began = threadSeconds();
-        Hand         hand  = parts.frame.handOf(clutch.step(parts.device.read(time), false));
-        hand.clutched      = clutch.isHeld();
-        TickRecord record  = servo.tick({time, kTick}, hand, inUse ? &*inUse : nullptr);
+        updates.take([&](const auto& update) { return update && &update->table == servo.tableInUse(); });
+        const auto* const newest = updates.newest();
+        const double      began  = threadSeconds();
+        Hand              hand   = parts.frame.handOf(clutch.step(parts.device.read(time), false));
+        hand.clutched            = clutch.isHeld();
+        TickRecord record        = servo.tick({time, kTick}, hand, newest ? newest->get() : nullptr);
         parts.device.light(std::uint8_t(lightOf(forceState(record))));
         parts.device.render(parts.frame.toDevice(servo.governor().force()));
         record.tickTime = threadSeconds() - began;

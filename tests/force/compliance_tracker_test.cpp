@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/allocations.h"
+#include "tests/support/published_tables.h"
 
 namespace palp {
 namespace {
@@ -30,6 +31,7 @@ ComplianceTable tableOf(std::uint64_t sequence, double value, double slope = 0, 
 /// Ticks with a contact that rests; ln c of each.
 struct Servo {
     ComplianceTracker handOver;
+    PublishedTables   published;
     double            time = 0;
     glm::dvec3        contact{};
     bool              touching = true;
@@ -39,7 +41,7 @@ struct Servo {
     double tick(const ComplianceTable& table, double dt = kTick)
     {
         time += dt;
-        const auto handed = handOver.tick({contact, time, dt, &table, touching});
+        const auto handed = handOver.tick({contact, time, dt, published.place(table, handOver), touching});
         return handed ? std::log(handed->compliance) : std::numeric_limits<double>::quiet_NaN();
     }
 };

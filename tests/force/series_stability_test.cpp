@@ -8,6 +8,7 @@
 
 #include "engine/force/compliance_tracker.h"
 #include "engine/force/force_law.h"
+#include "tests/support/published_tables.h"
 
 namespace palp {
 namespace {
@@ -76,6 +77,7 @@ double leftWithWrongCompliance(double contact, double ratio, ComplianceLaw law, 
     std::mt19937_64                  random(seed);
     std::uniform_real_distribution<> factor(-std::log(4.0), std::log(4.0)), period(8e-3, 67e-3);
     ComplianceTracker                handOver(law);
+    PublishedTables                  places;
     ComplianceTable                  coming, newest;
     const auto                       draw = [&](double now) {
         coming.sequence += 1;
@@ -97,7 +99,7 @@ double leftWithWrongCompliance(double contact, double ratio, ComplianceLaw law, 
                 draw(now);
                 next = now + period(random);
             }
-            const auto handed = handOver.tick({{}, now, kTick, &newest});
+            const auto handed = handOver.tick({{}, now, kTick, places.place(newest, handOver)});
             now += kTick;
             if (!handed) return HUGE_VAL;
             return std::min(cap, feltStiffness(ForceLaw::series, handed->contactStiffness, handed->compliance)) * depth;

@@ -13,6 +13,7 @@
 #include "engine/pipeline/patch_warnings.h"
 #include "engine/plate/load.h"
 #include "tests/pipeline/crossing.h"
+#include "tests/support/published_tables.h"
 
 namespace palp {
 namespace {
@@ -229,6 +230,7 @@ TEST(DeformWithTable, AHandThatSlidesOverAHomogeneousEllipsoidFeelsNothing)
     };
 
     ComplianceTracker              handOver;
+    PublishedTables                places;
     RecentMotion                   motion;
     std::optional<ComplianceTable> coming, published;
     std::uint64_t                  sequence = 0;
@@ -249,7 +251,8 @@ TEST(DeformWithTable, AHandThatSlidesOverAHomogeneousEllipsoidFeelsNothing)
             coming->sequence = ++sequence;
             coming->time     = time;
         }
-        const auto handed = handOver.tick({hand, time, kTick, published ? &*published : nullptr});
+        const auto handed =
+            handOver.tick({hand, time, kTick, published ? places.place(*published, handOver) : nullptr});
         EXPECT_FALSE(handed && handed->clamped) << time;
         if (handed)
             stiffness.push_back(

@@ -9,6 +9,7 @@
 #include "engine/cloud/samples.h"
 #include "engine/pipeline/deform.h"
 #include "tests/pipeline/crossing.h"
+#include "tests/support/published_tables.h"
 
 namespace palp {
 namespace {
@@ -122,6 +123,7 @@ TEST(ComplianceTracker, OnARoundObjectOfRandomPointsTheForceFollowsTheObject)
         const auto lattice = footprintLattice(
             object, settings, tableSide(ComplianceLaw::table, 1 / rate, settings.footprintRadius), solver);
         ComplianceTracker              handOver;
+        PublishedTables                places;
         RecentMotion                   motion;
         std::optional<ComplianceTable> coming, published;
         std::uint64_t                  sequence = 0;
@@ -141,7 +143,8 @@ TEST(ComplianceTracker, OnARoundObjectOfRandomPointsTheForceFollowsTheObject)
                 coming->sequence = ++sequence;
                 coming->time     = time;
             }
-            const auto handed = handOver.tick({hand, time, kTick, published ? &*published : nullptr});
+            const auto handed =
+                handOver.tick({hand, time, kTick, published ? places.place(*published, handOver) : nullptr});
             EXPECT_FALSE(handed && handed->clamped) << time;
             if (!handed || arc < -kReach) continue;
             const double along = (arc + kReach) / kEvery,

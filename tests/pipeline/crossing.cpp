@@ -7,6 +7,7 @@
 
 #include "engine/chart/resample.h"
 #include "engine/force/force_law.h"
+#include "tests/support/published_tables.h"
 
 namespace palp {
 namespace {
@@ -132,6 +133,7 @@ Crossed crossed(const Sheet& sheet, const Crossing& crossing, ComplianceLaw law,
 
     Crossed                 result;
     ComplianceTracker       handOver(law);
+    PublishedTables         places;
     RecentMotion            motion;
     ComplianceTable         coming, published; // what is being solved for, and what the servo sees
     std::uint64_t           sequence   = 0;
@@ -147,7 +149,7 @@ Crossed crossed(const Sheet& sheet, const Crossing& crossing, ComplianceLaw law,
             coming.sequence = ++sequence;
             coming.time     = time;
         }
-        const auto handed = handOver.tick({contact, time, kTick, &published});
+        const auto handed = handOver.tick({contact, time, kTick, places.place(published, handOver)});
         if (!handed || time < crossing.from) continue;
 
         const double                  logarithm = std::log(handed->compliance);

@@ -23,7 +23,7 @@ TEST(FailureTeller, SaysEachKindOfReasonOnceWhateverItsNumbers)
         [&](const Touch&, double) -> DeformationAnswer {
             const std::string& why = answers[next++ % answers.size()];
             if (why == "throw") throw std::runtime_error("the processor is lost");
-            if (why.empty()) return {PatchUpdate(), {}, {}};
+            if (why.empty()) return {std::make_shared<PatchUpdate>(), {}, {}};
             return {{}, {}, why};
         },
         [&](const std::string& sentence) { told.push_back(sentence); });
@@ -53,7 +53,7 @@ TEST(FailureTeller, SaysWhoTookOverThoughTheTouchHasAPatch)
     std::string              takeover;
     const PatchSolver        solver = tellingFailures(
         [&](const Touch&, double) -> DeformationAnswer {
-            return {PatchUpdate(), {}, {}, takeover};
+            return {std::make_shared<PatchUpdate>(), {}, {}, takeover};
         },
         [&](const std::string& sentence) { told.push_back(sentence); });
     static_cast<void>(solver(Touch(), 1.0 / 60));

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <set>
 
 #include <glm/geometric.hpp>
 
+#include "engine/core/latest_pair.h"
 #include "engine/session/deformation.h"
 #include "engine/session/recorded_session.h"
 #include "engine/session/scripted_hand.h"
@@ -306,38 +309,76 @@ TEST(VirtualSession, AForceLeavesInTheTickThatComputesIt)
 
 TEST(Servo, ATickAllocatesNothing)
 {
-    const SheetSession         session(sheetScene(kWart));
-    Servo                      servo(session.object, session.scene);
-    Deformation                deformation(session.object, session.scene);
-    std::optional<PatchUpdate> news;
-    std::size_t                allocated = 0;
+    const SheetSession                 session(sheetScene(kWart));
+    Servo                              servo(session.object, session.scene);
+    Deformation                        deformation(session.object, session.scene);
+    std::shared_ptr<const PatchUpdate> news;
+    std::size_t                        allocated = 0;
     for (int n = 0; n < 900; ++n) {
         const double     time   = 1e-3 * n;
         const glm::dvec3 hip    = session.hand.position(time);
         const auto       before = allocationsOfThisThread();
-        (void)servo.tick({time, 1e-3}, {hip, {}}, news ? &*news : nullptr);
+        (void)servo.tick({time, 1e-3}, {hip, {}}, news.get());
         if (n > 0) allocated += allocationsOfThisThread() - before;
         if (n % 100 == 99 && servo.touch().touching) news = deformation.solve(servo.touch(), 0.1).update;
     }
-    EXPECT_TRUE(news.has_value()) << "the hand came to touch";
+    EXPECT_TRUE(news != nullptr) << "the hand came to touch";
     EXPECT_EQ(allocated, 0U);
+}
+
+TEST(Servo, ReadsTablesWhereTheSolverWroteThemAndAsLongAsItUsesThem)
+{
+    const SheetSession session(sheetScene(kWart));
+    Servo              servo(session.object, session.scene);
+    auto               deformation = std::make_unique<Deformation>(session.object, session.scene);
+    LatestPair<std::shared_ptr<const PatchUpdate>> updates;
+    std::set<const ComplianceTable*>               written;
+    int                                            solved = 0;
+    for (int n = 0; n < 900; ++n) {
+        const double time = 1e-3 * n;
+        updates.take([&](const auto& update) { return update && &update->table == servo.tableInUse(); });
+        const auto* const newest = updates.newest();
+        (void)servo.tick({time, 1e-3}, {session.hand.position(time), {}}, newest ? newest->get() : nullptr);
+        if (newest) {
+            EXPECT_EQ(servo.tableInUse(), &(*newest)->table) << "a copy lies between";
+        }
+        if (n % 10 != 9 || !servo.touch().touching) continue;
+        const ComplianceTable* const       inUse  = servo.tableInUse();
+        const std::uint64_t                before = inUse ? inUse->sequence : 0;
+        std::shared_ptr<const PatchUpdate> update = deformation->solve(servo.touch(), 0.01).update;
+        ASSERT_NE(update, nullptr) << n;
+        EXPECT_NE(&update->table, inUse) << "the solver writes what the servo reads";
+        EXPECT_EQ(inUse ? inUse->sequence : 0, before);
+        written.insert(&update->table);
+        updates.draft() = std::move(update);
+        updates.publish();
+        if (++solved == 20) break;
+    }
+    EXPECT_EQ(solved, 20);
+    EXPECT_LE(written.size(), 5U) << "slots are used again: four in the hand-off, one being filled";
+
+    deformation.reset(); // with its solver, as when a processor is lost and another one takes over
+    const std::uint64_t last = servo.tableInUse()->sequence;
+    (void)servo.tick({0.9, 1e-3}, {session.hand.position(0.9), {}}, updates.newest()->get());
+    EXPECT_EQ(servo.tableInUse()->sequence, last) << "it outlives the deformation";
+    EXPECT_TRUE(servo.tableInUse()->usable());
 }
 
 TEST(Servo, AForceWhoseTableIsTooOldFadesAndEngagesAnewOnceThereAreTables)
 {
-    const SheetSession         session(sheetScene(kWart), HandMotion::press, 2);
-    Servo                      servo(session.object, session.scene);
-    Deformation                deformation(session.object, session.scene);
-    std::optional<PatchUpdate> news;
-    glm::dvec3                 last{};
-    double                     most = 0, again = 0, step = 0; // [N]
+    const SheetSession                 session(sheetScene(kWart), HandMotion::press, 2);
+    Servo                              servo(session.object, session.scene);
+    Deformation                        deformation(session.object, session.scene);
+    std::shared_ptr<const PatchUpdate> news;
+    glm::dvec3                         last{};
+    double                             most = 0, again = 0, step = 0; // [N]
     // Pressing, the hand is deepest after pi (h + d) / (2 speed) = 0.055 s, and stays there, but for a moment at 3.2 s.
     for (int n = 0; n < 6000; ++n) {
         const double     time    = 1e-3 * n;
         const bool       isDead  = time > 2 && time < 3;
         const bool       isAway  = time > 3.2 && time < 3.3;
         const glm::dvec3 hip     = session.hand.position(isAway ? 0 : std::min(time < 3.2 ? time : time - 3.3, 0.055));
-        const auto       record  = servo.tick({time, 1e-3}, {hip, {}}, news ? &*news : nullptr);
+        const auto       record  = servo.tick({time, 1e-3}, {hip, {}}, news.get());
         const double     force   = glm::length(record.force);
         const double     without = time - 2; // [s] a table
         if (!isDead && n % 16 == 0 && servo.touch().touching) news = deformation.solve(servo.touch(), 1.0 / 60).update;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -102,8 +103,9 @@ TEST(ScaledServo, AReleasedArmOnATwoSidedSpringAtTheCapSettles)
     DeviceFrame frame;
     frame.scale = kScale;
     arm.open();
-    ForceHalf   half(scaled(kStiff), arm.info());
-    PatchUpdate stiff; // one entry that is stiffer than any cap
+    ForceHalf                  half(scaled(kStiff), arm.info());
+    PatchUpdate                stiff; // one entry that is stiffer than any cap
+    std::array<PatchUpdate, 2> published;
     stiff.table.compliance[0].value       = std::log(1e-6);
     stiff.table.contactStiffness[0].value = std::log(1e6);
     double     before = 0, released = 0, left = 0, stiffest = 0; // [m] of the device, [N/m]
@@ -111,8 +113,10 @@ TEST(ScaledServo, AReleasedArmOnATwoSidedSpringAtTheCapSettles)
     for (int n = 0; n < 7000; ++n) {
         const double time = n * 1e-3;
         if (n % 16 == 0) {
-            stiff.table.sequence = std::uint64_t(n + 1);
-            stiff.table.time     = time;
+            PatchUpdate& next   = published[std::size_t(n / 16 % 2)]; // the other one is in use
+            next                = stiff;
+            next.table.sequence = std::uint64_t(n + 1);
+            next.table.time     = time;
         }
         if (n < 2000) arm.holdBy({.stiffness = 2000, .damping = 20});
         if (n == 2000) arm.holdBy({.stiffness = 2000, .damping = 20, .target = {0, 1e-3, 0}});
@@ -121,7 +125,7 @@ TEST(ScaledServo, AReleasedArmOnATwoSidedSpringAtTheCapSettles)
         ProxyContact held;
         held.touch = {std::uint64_t(n + 1), time, true, {}, {0, 1, 0}, {}};
         held.pull  = {0, -hand.position.y, 0};
-        record     = half.tick({time, 1e-3}, hand, held, &stiff);
+        record     = half.tick({time, 1e-3}, hand, held, &published[std::size_t(n / 16 % 2)]);
         arm.render(frame.toDevice(half.governor().force()));
         const double away = std::abs(arm.arm().position().y);
         stiffest          = std::max(stiffest, record.stiffness * kScale);

@@ -116,12 +116,11 @@ struct MultigridPlateSolver::Impl {
     struct FootprintBuffers {
         Buffer  words; ///< see shared/footprint_layout.h
         Staging hostWords;
-        Buffer  responses, hostResponses;
+        Buffer  responses; ///< 3 numbers per load, which the kernel writes where the host reads them
 
         FootprintBuffers(compute::Context& context, std::size_t count, std::size_t responseBytes)
             : words(context, "footprints", 4 * count, Intent::processor), hostWords(context, words),
-              responses(context, "responses", responseBytes, Intent::processor),
-              hostResponses(context, "responses for the host", responseBytes, Intent::readback)
+              responses(context, "responses", responseBytes, Intent::readback)
         {
         }
     };
@@ -179,7 +178,6 @@ struct MultigridPlateSolver::Impl {
             list.dispatch(k.footprints,
                           {passes.levels[0].left, passes.levels[0].answer, footprints->words, footprints->responses},
                           shared::VectorPush{std::uint32_t(passes.nodes()), 0, 0}, {1, 1, loads});
-            list.copy(footprints->responses, footprints->hostResponses);
         }
         list.copy(passes.state, hostState);
         list.timestamp();
@@ -404,7 +402,7 @@ struct MultigridPlateSolver::Impl {
         const auto began = Clock::now();
         upload(given);
         Responses responses{{}, iterate(began)};
-        footprints->hostResponses.makeVisibleToHost();
+        footprints->responses.makeVisibleToHost();
         for (std::size_t n = 0; n < given.size(); ++n)
             responses.of.push_back({response(n, shared::kResponseWork), response(n, shared::kResponseChangeX),
                                     response(n, shared::kResponseChangeZ)});
@@ -413,7 +411,7 @@ struct MultigridPlateSolver::Impl {
 
     [[nodiscard]] double response(std::size_t load, int word) const
     {
-        const Buffer&     from  = footprints->hostResponses;
+        const Buffer&     from  = footprints->responses;
         const std::size_t at    = load * shared::kResponseWords + std::size_t(word);
         const double      value = works[load] * (k.doubles ? from.as<double>()[at] : double(from.as<float>()[at]));
         if (!std::isfinite(value))

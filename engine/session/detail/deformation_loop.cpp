@@ -31,13 +31,20 @@ void DeformationLoop::run(const std::atomic<bool>& over, const std::atomic<Clock
         pace.ended(took);
         if (!answer.update && !newest->touching) continue; // nothing is near
         slow.solve.add(took);
-        slow.addPatch(answer.update.has_value(), answer.why);
+        slow.addPatch(answer.update != nullptr, answer.why);
         if (!answer.update) continue;
-        update.draft() = *answer.update;
-        update.publish();
+        update_.draft() = std::move(answer.update);
+        update_.publish();
         patch.draft() = {std::move(answer.patch), took};
         patch.publish();
     }
+}
+
+const PatchUpdate* DeformationLoop::newest(const ComplianceTable* inUse) noexcept
+{
+    update_.take([&](const auto& update) { return update && &update->table == inUse; });
+    const auto* const taken = update_.newest();
+    return taken ? taken->get() : nullptr; // no share of it: the last one may not end on the servo's thread
 }
 
 /// Solves one patch. If anything fails there is no patch for this touch, and the session goes on with the one before.
