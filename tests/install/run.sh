@@ -25,6 +25,13 @@ cmake --build "$place/outside" >"$place/build.log" 2>&1 || { cat "$place/build.l
 "$place/moved/bin/palpate" --version
 "$place/moved/bin/falcon_demo" --list | grep -q palm_wart # it finds the scenes that moved with it
 
+# A stranger's C program finds palpate.h and the library by pkg-config, wherever the tree lies.
+PKG_CONFIG_PATH=$(dirname "$(find "$place/moved" -name palpate.pc)")
+export PKG_CONFIG_PATH
+libraries=$(dirname "$PKG_CONFIG_PATH")
+eval "gcc -std=c11 -pedantic -Wall -Wextra -Werror $flags '$source/../capi/capi_program.c' -o '$place/c program' $(pkg-config --cflags --libs palpate) -lm"
+LD_LIBRARY_PATH=$libraries "$place/c program"
+
 # CHOLMOD is in part under the GPL: it must not be in what is passed on, see third_party_notes.md.
 [ ! -e "$place/moved/bin/palpate_peers" ] || { echo 'palpate_peers was installed'; exit 1; }
 if ldd "$place/moved/bin/palpate" | grep -E 'cholmod|openblas'; then echo 'palpate is linked with it'; exit 1; fi
