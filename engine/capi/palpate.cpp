@@ -494,11 +494,8 @@ int palpate_session_step(palpate_session* session, double time, const palpate_ha
     // Nothing here throws once the structs are known to be good; a sentence is made only if one is not.
     if (session && hand && answer && hand->size == sizeof *hand && answer->size == sizeof *answer) [[likely]] {
         palpate_answer    own{};
-        const double      before = session->last.time;
-        const bool        first  = session->last.faults == 0 && before == 0;
-        const TickRecord& r      = session->session.step(time, handOf(*hand));
-        const bool good = std::isfinite(time) && (first || time > before) && isFinite(vectorOf(hand->position)) &&
-                          isFinite(vectorOf(hand->velocity));
+        const TickRecord& r    = session->session.step(time, handOf(*hand));
+        const bool        good = (r.device & 0xFFU) != std::uint32_t(DeviceFault::kinematics); // as step() calls it
         put(r.force, own.force);
         own.flags = flagsOf(r, good);
         own.fault = r.faults & 0xFFU;
