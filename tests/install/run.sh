@@ -29,7 +29,9 @@ cmake --build "$place/outside" >"$place/build.log" 2>&1 || { cat "$place/build.l
 PKG_CONFIG_PATH=$(dirname "$(find "$place/moved" -name palpate.pc)")
 export PKG_CONFIG_PATH
 libraries=$(dirname "$PKG_CONFIG_PATH")
-eval "gcc -std=c11 -pedantic -Wall -Wextra -Werror $flags '$source/../capi/capi_program.c' -o '$place/c program' $(pkg-config --cflags --libs palpate) -lm"
+eval "set -- $(pkg-config --cflags --libs palpate)" # it quotes what a shell would divide
+# shellcheck disable=SC2086
+gcc -std=c11 -pedantic -Wall -Wextra -Werror $flags "$source/../capi/capi_program.c" -o "$place/c program" "$@" -lm
 LD_LIBRARY_PATH=$libraries "$place/c program"
 
 # CHOLMOD is in part under the GPL: it must not be in what is passed on, see third_party_notes.md.

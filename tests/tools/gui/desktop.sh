@@ -5,7 +5,7 @@
 set -u
 palpate=$1 work=$2 client=$3
 for tool in Xvfb xdotool "$client"; do
-    command -v $tool >/dev/null 2>&1 || { echo "$tool is missing"; exit 77; }
+    command -v "$tool" >/dev/null 2>&1 || { echo "$tool is missing"; exit 77; }
 done
 env -u DISPLAY -u WAYLAND_DISPLAY "$palpate" view 2>&1 </dev/null | grep -q 'made without GLFW' && { echo 'palpate opens no windows in this build'; exit 77; }
 rm -rf "$work" && mkdir -p "$work" && cd "$work" || exit 1
