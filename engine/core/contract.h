@@ -1,15 +1,16 @@
 #pragma once
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace palp {
 
 /// An error of what lies outside the program: a file, an option, a device. The message is one sentence for the user: it
 /// names the subject, the place (file, line or byte), what was expected, what was found and what to try. The programs
-/// print it and exit with 2.
+/// print it and exit with 2. It is one line whatever the names and words in it: see shownText().
 class Error : public std::runtime_error {
 public:
-    using std::runtime_error::runtime_error;
+    explicit Error(std::string_view sentence);
 };
 
 /// A broken precondition: a mistake in the calling code, never in the user's data.

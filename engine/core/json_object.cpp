@@ -8,23 +8,18 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/nearest_name.h"
+#include "engine/core/shown_text.h"
 
 namespace palp {
 namespace {
 
 using Json = nlohmann::json;
 
-std::string shortened(std::string text)
-{
-    constexpr std::size_t kMost = 200; // [bytes] of a user's own text in an error
-    for (char& c : text)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?'; // a terminal would execute them
-    return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
-}
+constexpr std::size_t kMostOfValue = 200; // [bytes] of a user's own text in an error
 
-std::string inQuotes(std::string_view text)
+std::string shortened(std::string_view text)
 {
-    return "\"" + std::string(text) + "\"";
+    return shownText(text, kMostOfValue);
 }
 
 /// A parser callback that throws at the second use of a key in one object; the library alone would keep the last one.
@@ -117,7 +112,7 @@ void JsonObject::allowOnly(std::span<const std::string_view> known) const
     for (const auto& [key, value] : node_->value.items()) {
         if (std::ranges::find(known, key) != known.end()) continue;
         const auto meant = nearestName(key, known);
-        throw Error(where_ + ": unknown key " + shortened(inQuotes(key)) +
+        throw Error(where_ + ": unknown key " + inQuotes(key) +
                     (meant ? ", did you mean " + inQuotes(*meant) + "?" : "") + "; known keys: " + listed(known));
     }
 }

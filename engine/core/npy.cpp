@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/core/file.h"
+#include "engine/core/shown_text.h"
 
 // The format: "\x93NUMPY", version (2 bytes), length of the header (2 bytes in version 1, else 4, little endian), the
 // header (a Python dictionary such as {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }), the numbers.
@@ -29,10 +30,7 @@ constexpr std::uint64_t kLongestHeader = 65536;
 
 std::string shortened(std::string_view text)
 {
-    constexpr std::size_t kMost = 60; // [bytes] of a file's own text in an error
-    std::string           plain;
-    for (const char c : text.substr(0, kMost)) plain += c >= ' ' && c <= '~' ? c : '?';
-    return text.size() <= kMost ? plain : plain + "...";
+    return shownText(text, kMostOfWord);
 }
 
 /// A reader of a stream that has `left` bytes; it reports where the stream ends too early.

@@ -15,6 +15,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/npy.h"
+#include "engine/core/shown_text.h"
 
 namespace palp {
 namespace {
@@ -71,15 +72,6 @@ private:
         fastest = std::max(fastest, speed);
     }
 };
-
-/// Returns a file's own word for a complaint.
-std::string plain(std::string_view word)
-{
-    constexpr std::size_t kMost = 60; // [bytes]
-    std::string           shown;
-    for (const char c : word.substr(0, kMost)) shown += c >= ' ' && c <= '~' ? c : '?'; // a terminal obeys others
-    return word.size() > kMost ? shown + "..." : shown;
-}
 
 constexpr std::string_view kBetween = ",; \t\r"; // separators of numbers
 
@@ -154,8 +146,8 @@ std::uint32_t buttonsOf(std::string_view word, const std::string& where)
     constexpr std::uint64_t kMost = 0xFFFF; // as many as a session records
     const auto              bits  = parseCount(word);
     if (!bits || *bits > kMost)
-        throw Error(where + ": expected buttons as a whole number from 0 to 65535, one bit each, found \"" +
-                    plain(word) + "\"");
+        throw Error(where + ": expected buttons as a whole number from 0 to 65535, one bit each, found " +
+                    inQuotes(word));
     return std::uint32_t(*bits);
 }
 
@@ -166,8 +158,8 @@ glm::dquat turnOf(std::string_view line, const std::array<std::size_t, 4>& colum
         const std::string_view word   = wordAt(line, columns[k]);
         const auto             number = parseNumber(word);
         if (!number)
-            throw Error(where + ": expected a number in column " + std::to_string(columns[k] + 1) + ", found \"" +
-                        plain(word) + "\"");
+            throw Error(where + ": expected a number in column " + std::to_string(columns[k] + 1) + ", found " +
+                        inQuotes(word));
         (k == 0 ? turn.x : k == 1 ? turn.y : k == 2 ? turn.z : turn.w) = *number;
     }
     constexpr double kRounded = 0.05; // [1] a quaternion in two decimal places is off by less
@@ -185,8 +177,8 @@ HandPose waypointOf(const std::array<std::string_view, 4>& words, const std::str
             throw Error(where + ": expected four columns, time [s], x, y, z [m], found " + std::to_string(k));
         const auto number = parseNumber(words[k]);
         if (!number)
-            throw Error(where + ": expected a number in column " + std::to_string(k + 1) + ", found \"" +
-                        plain(words[k]) + "\"");
+            throw Error(where + ": expected a number in column " + std::to_string(k + 1) + ", found " +
+                        inQuotes(words[k]));
         numbers[k] = *number;
     }
     return {numbers[0], {numbers[1], numbers[2], numbers[3]}};
@@ -196,8 +188,8 @@ bool isHeader(const std::array<std::string_view, 4>& words, const std::string& w
 {
     if (parseNumber(words[0])) return false;
     if (words[0].starts_with('t') || words[0].starts_with('T')) return true;
-    throw Error(where + ": expected the columns time, x, y, z in this order, found a first column \"" +
-                plain(words[0]) + "\"");
+    throw Error(where + ": expected the columns time, x, y, z in this order, found a first column " +
+                inQuotes(words[0]));
 }
 
 HandPath handOf(const NodeField& rows, const std::string& name)

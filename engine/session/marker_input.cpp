@@ -16,7 +16,7 @@
 
 namespace palp {
 struct MarkerInput::Impl {
-    explicit Impl(const MarkerSources& sources) : wantsKeys(sources.keys)
+    explicit Impl(const MarkerSources& sources) : wantsKeys(sources.keys), onKey(sources.onKey)
     {
         if (sources.address) socket.emplace(*sources.address, UdpEnd::here, "--markers");
     }
@@ -82,18 +82,19 @@ struct MarkerInput::Impl {
             std::size_t bytes = 1; // of a character of UTF-8: those that follow begin with the bits 10
             while (bytes < pressed.size() && (static_cast<unsigned char>(pressed[bytes]) & 0xC0U) == 0x80) ++bytes;
             const std::string_view key = pressed.substr(0, bytes);
-            hear(key == " " ? "space" : key == "\n" || key == "\r" ? "enter" : key);
+            if (!onKey || !onKey(key)) hear(key == " " ? "space" : key == "\n" || key == "\r" ? "enter" : key);
             pressed.remove_prefix(bytes);
         }
         return true;
     }
 
-    bool                       wantsKeys;
-    Hear                       hear;
-    std::optional<KeyTerminal> terminal;
-    std::optional<UdpSocket>   socket;
-    int                        wake = -1;
-    std::thread                thread;
+    bool                           wantsKeys;
+    decltype(MarkerSources::onKey) onKey;
+    Hear                           hear;
+    std::optional<KeyTerminal>     terminal;
+    std::optional<UdpSocket>       socket;
+    int                            wake = -1;
+    std::thread                    thread;
 };
 
 MarkerInput::MarkerInput(const MarkerSources& sources) : impl_(std::make_unique<Impl>(sources)) {}

@@ -13,6 +13,10 @@ namespace palp {
 struct MarkerSources {
     std::optional<UdpAddress> address{};    ///< at which datagrams of text are awaited, one marker each
     bool                      keys = false; ///< keys pressed in the program's terminal; without effect if it has none
+
+    /// Is told each key first, on the thread of MarkerInput, and returns true if the key has another meaning than a
+    /// marker; may be empty.
+    std::function<bool(std::string_view key)> onKey{};
 };
 
 /// Hears markers on a thread of its own, so that they are heard within a millisecond or two of their arrival.

@@ -370,7 +370,8 @@ std::vector<SceneKey> materialKeys()
              .unit      = "1/m",
              .example   = "0.8 1/mm",
              .dimension = D::perLength,
-             .bounds    = KeyBounds{0, 1e5}}, // e times stiffer after 10 um: no finger tells it from a wall
+             .bounds    = KeyBounds{0, 1e5}, // e times stiffer after 10 um: no finger tells it from a wall
+             .control   = Control{Panel::material, "stiffening", "1/m", 1, 0, 2000, false, 0, 10}},
             [](auto& s) -> auto& { return s.material.stiffening; }),
         {.name  = "relaxation",
          .help  = "shares of the force that die away under a finger that holds still, each with its time; none for a "
@@ -561,7 +562,8 @@ std::vector<SceneKey> servoKeys()
                        "the device",
              .group  = kSession,
              .unit   = "1",
-             .bounds = KeyBounds{kLeastWorkspaceScale, kMostWorkspaceScale}},
+             .bounds = KeyBounds{kLeastWorkspaceScale, kMostWorkspaceScale},
+             .control = Control{Panel::servo, "device scale", "", 1, 0.2, 10, true, 2}},
             [](auto& s) -> auto& { return s.workspaceScale; }),
         countKey(
             {.name  = "clutch_button",

@@ -7,6 +7,7 @@
 #include "engine/cloud/tokens.h"
 #include "engine/core/contract.h"
 #include "engine/core/nearest_name.h"
+#include "engine/core/shown_text.h"
 #include "engine/session/scene_keys.h"
 
 // Values of scene keys, from texts and to texts.
@@ -69,11 +70,7 @@ std::string SceneKey::expected() const
 void WrittenValue::refuse(const std::string& hint) const
 {
     constexpr std::size_t kMost = 200; // [bytes] of a user's own text in a complaint
-    std::string           found;
-    for (const char c : text.substr(0, kMost))
-        found += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c; // a terminal would obey them
-    throw Error(what + ": expected " + key.expected() + ", found \"" + found + (text.size() > kMost ? "..." : "") +
-                "\"" + hint);
+    throw Error(what + ": expected " + key.expected() + ", found \"" + shownText(text, kMost) + "\"" + hint);
 }
 
 double WrittenValue::number() const

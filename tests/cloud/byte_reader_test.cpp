@@ -69,11 +69,5 @@ TEST(ByteReader, LargeTakesAndSkipsCrossItsBlocks)
     EXPECT_TRUE(reader.onlyBlanksLeft());
 }
 
-TEST(ByteReader, TextForMessagesIsShortAndPrintable)
-{
-    EXPECT_EQ(inQuotes("a\x1b\n\xff"), "\"a???\"");
-    EXPECT_EQ(printable(std::string(1000, 'a')), std::string(60, 'a') + "...");
-}
-
 } // namespace
 } // namespace palp

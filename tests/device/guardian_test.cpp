@@ -70,7 +70,7 @@ void drive(int fd, Fate& fate, End end, const GovernedForce& force)
     setrlimit(RLIMIT_CORE, &none);
     FalconDevice device([&] { return std::make_unique<DescriptorLink>(fd, &fate.hangs); });
     device.open();
-    std::freopen("/dev/null", "w", stderr); // what std::terminate() says
+    if (!std::freopen("/dev/null", "w", stderr)) return; // what std::terminate() says
     std::thread grief([&] {
         while (steadyTime() < fate.at) std::this_thread::sleep_for(std::chrono::microseconds(50));
         comeToGrief(end, fate);

@@ -2,30 +2,26 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 
 #include <glm/geometric.hpp>
 
 #include "device/hid/bridge_report.h"
 #include "device/hid/bridge_stream.h"
+#include "tests/fuzz/fuzz_expect.h"
 
 namespace {
-
-void expect(bool holds)
-{
-    if (!holds) std::abort();
-}
 
 /// What must hold of every report that is believed: finite, within its fields, and it is written as it was read.
 void check(const palp::BridgeBytes& report)
 {
     palp::BridgeAnswer answer;
     if (palp::decode(report, answer) != palp::BridgeVerdict::good) return;
-    expect(std::isfinite(glm::length(answer.position) + glm::length(answer.velocity) + glm::length(answer.rendered)));
-    expect(std::abs(glm::length(answer.orientation) - 1) < 1e-2 && answer.buttonCount <= 32);
+    palp::fuzzExpect(
+        std::isfinite(glm::length(answer.position) + glm::length(answer.velocity) + glm::length(answer.rendered)));
+    palp::fuzzExpect(std::abs(glm::length(answer.orientation) - 1) < 1e-2 && answer.buttonCount <= 32);
     palp::BridgeAnswer again;
-    expect(palp::decode(palp::encode(answer), again) == palp::BridgeVerdict::good);
-    expect(again.position == answer.position && again.sequence == answer.sequence);
+    palp::fuzzExpect(palp::decode(palp::encode(answer), again) == palp::BridgeVerdict::good);
+    palp::fuzzExpect(again.position == answer.position && again.sequence == answer.sequence);
 }
 
 } // namespace

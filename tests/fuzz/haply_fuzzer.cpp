@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -10,23 +9,20 @@
 
 #include "device/haply/haply_message.h"
 #include "device/haply/web_socket.h"
+#include "tests/fuzz/fuzz_expect.h"
 
 namespace {
-
-void expect(bool holds)
-{
-    if (!holds) std::abort();
-}
 
 /// Whatever a service says: what is believed of it is finite, and a name that is taken can stand in a command.
 void check(const std::string& json)
 {
     palp::HaplyState state;
     if (palp::takeHaplyState(json, "049D", state) == palp::HaplyVerdict::good)
-        expect(std::isfinite(glm::length(state.position) + glm::length(state.velocity) + glm::length(state.rendered)) &&
-               std::abs(glm::length(state.orientation) - 1) < 1e-6);
-    for (const palp::HaplyDescription& device : palp::haplyDevices(json)) expect(palp::isHaplyId(device.id));
-    expect(palp::haplyEvent(json, "049D").words != nullptr);
+        palp::fuzzExpect(
+            std::isfinite(glm::length(state.position) + glm::length(state.velocity) + glm::length(state.rendered)) &&
+            std::abs(glm::length(state.orientation) - 1) < 1e-6);
+    for (const palp::HaplyDescription& device : palp::haplyDevices(json)) palp::fuzzExpect(palp::isHaplyId(device.id));
+    palp::fuzzExpect(palp::haplyEvent(json, "049D").words != nullptr);
     static_cast<void>(palp::dialectOf(palp::versionIn(json)));
     static_cast<void>(palp::forceScaleIn(json));
 }
@@ -58,6 +54,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     readFrames(data, size, palp::WebSocketSide::client);
     std::vector<std::uint8_t> frame(data, data + size);
     palp::kHaplyZero.silence(frame);
-    expect(!palp::kHaplyZero.pushes(frame));
+    palp::fuzzExpect(!palp::kHaplyZero.pushes(frame));
     return 0;
 }

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Writes small files that the readers accept, or nearly, for the fuzzers to start from. Argument: the folder.
 set -eu
-mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/obj" "$1/stl" "$1/glb" "$1/volume" "$1/npy" "$1/npy_cloud" "$1/vtk" "$1/vtk_xml" "$1/problem" "$1/scene" "$1/hand" "$1/haply" "$1/bridge"
+mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/obj" "$1/stl" "$1/glb" "$1/volume" "$1/npy" "$1/npy_cloud" "$1/vtk" "$1/vtk_xml" "$1/problem" "$1/scene" "$1/hand" "$1/haply" "$1/bridge" "$1/plan" "$1/hunt" "$1/trials" "$1/recording" "$1/falcon" "$1/probes"
 cd "$1"
 
 # The floats 1 and 2, little and big endian, and the doubles 1 and 2, little endian; printf takes octal.
@@ -110,3 +110,31 @@ printf 'HTTP/1.1 101 Switching Protocols\r\nSec-WebSocket-Accept: s3pPLMBiTxaQ9k
 # An answer of the bridge: header, sequence, flags; the fuzzer's harness adds the checksum.
 { printf '\001PB\021\001\000\006\000'; zeros 56; } >bridge/answer
 { printf '\001PB\021\001\000\026\000'; zeros 24; printf '\377\177'; zeros 30; } >bridge/turned
+
+cat >plan/all <<END
+{"title": "t", "seed": 7, "seconds": 5, "hand": "press", "repetitions": 2, // a comment
+ "conditions": [{"name": "even", "scene": {"cloud": "sample:sheet"}, "values": {"stiffness": 3e5}},
+  {"name": "wart", "scene": "a.json", "preset": "paper"}],
+ "tasks": [{"name": "r", "kind": "rating", "statement": "s", "least": "a", "most": "b"},
+  {"name": "y", "kind": "yes-no", "question": "q?", "yes_for": ["wart"], "no_for": ["even"]},
+  {"name": "p", "kind": "two-alternative", "question": "q?", "pairs": [["even", "wart"]], "right": "second"}]}
+END
+printf '{"nodules": [{"at": [0, 1e-3, 0], "radius": "4 mm", "modulus": "3 MPa", "depth": "2 mm"}], "press_force": "0.2 N", "too_hard": 2, "ground": 0.02}' >hunt/listed
+printf '{"random": {"count": 4, "radius": ["3 mm", "6 mm"], "modulus": [6e5, 3e6], "depth": ["1 mm", "5 mm"]}}' >hunt/random
+
+trials='participant,trial,block,task,kind,condition,condition_second,question,answer,correct,reaction_time_s,seed,session,session_second,mean_force_N,peak_force_N,version\r\n'
+printf "$trials"'p1,1,1,realism,rating,even,,"How, ""real""?",4,,1.25,7,p1/1a,,0.5,1.5,0.1.0\r\np1,2,1,cut' >trials/cut
+printf "$trials" >trials/empty
+
+# The first byte says which file of a recording it is. Rows of 64 bytes.
+rows="{'descr': [('time', '<f8'), ('hip', '<f8', (3,)), ('hip_velocity', '<f8', (3,)), ('missed', '<i4'), ('device', '<u4')], 'fortran_order': False, 'shape': (2,), }"
+{ printf 't\223NUMPY\001\000\366\000%-245s\n' "$rows"; printf "$d1$d1$d1$d1$d1$d1$d1$f1$f1$d2$d2$d2$d2$d2$d2$d2$f2$f2"; } >recording/ticks
+printf 's{"format": 2, "clock": "virtual", "solver": "host", "command": "palpate", "finished": true, "samples": 2, "realtime_ns": 1, "monotonic_ns": null, "cloud": "0", "scene": {"cloud": "sample:sheet"}, "hand": {"model": "arm", "maximum_force_N": 8, "maximum_stiffness_N_per_m": 2e3, "mass_kg": 0.1, "own_damping_N_s_per_m": 1, "weight_N": [0, -1, 0], "senses_grip": true}}' >recording/description
+printf 's{"format": 1, "clock": "real", "device": "host", "command": "palpate", "scene": {"cloud": "sample:sheet"}}' >recording/first
+printf 'm{"time": 0.5, "text": "a"}\n{"time": 1, "text": "b\\u0001"}\n{"ti' >recording/markers
+
+printf '<AAAABBBBPPPPADA><AAAABBBBPPPPDDA>gar<bage<AAAABBBBPPPPADA><AAAA' >falcon/stream
+printf '<AAAAAAAAAAAAAAA>' >falcon/zero
+
+printf '# a comment\nprobe,x,y,z,nx,ny,nz,time [ms],depth [mm],force [N],other\na,0,0,0,0,0,1,0,0,0,x\na,0,0,0,0,0,1,10,0.5,0.1,x\na,0,0,0,0,0,1,20,1,0.25,x\na,0,0,0,0,0,1,30,1.5,0.5,x\na,0,0,0,0,0,1,40,2,0.9,x\n' >probes/timed
+printf 'depth,force\n0,0\n1e-4,.1\n2e-4,.2\n3e-4,.3\n4e-4,.4\n' >probes/plain

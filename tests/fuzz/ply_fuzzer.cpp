@@ -29,10 +29,6 @@ void repaint(const std::string& bytes)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     fuzzCloud(data, size, CloudFormat::ply);
-    try {
-        repaint(std::string(reinterpret_cast<const char*>(data), size));
-    } catch (const Error&) {
-        return 0; // a refusal is a right answer
-    }
+    palp::fuzzRefusals([&] { repaint(std::string(reinterpret_cast<const char*>(data), size)); });
     return 0;
 }

@@ -1,6 +1,7 @@
 #include "engine/session/marker_input.h"
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -55,7 +56,8 @@ struct Heard {
 TEST(MarkerInput, EachDatagramIsAMarker)
 {
     Heard       heard;
-    MarkerInput input({.address = UdpAddress{"127.0.0.1", 0}});
+    const auto  takeAll = [](std::string_view) { return true; }; // keys, not datagrams: nobody clutches from afar
+    MarkerInput input({.address = UdpAddress{"127.0.0.1", 0}, .onKey = takeAll});
     input.listen([&](std::string_view text) { heard.add(text); });
     const UdpSocket from({"127.0.0.1", input.port()}, UdpEnd::there, "a test");
 
@@ -97,8 +99,9 @@ TEST(MarkerInputChild, DISABLED_TellsItsKeys) // its standard input is a termina
     ASSERT_EQ(::tcgetattr(STDIN_FILENO, &before), 0);
     static_cast<void>(catchInterrupts());
     {
-        Heard       heard;
-        MarkerInput input({.keys = true});
+        Heard            heard;
+        std::atomic<int> clutched = 0;
+        MarkerInput input({.keys = true, .onKey = [&](std::string_view key) { return key == "k" && ++clutched > 0; }});
         input.listen([&](std::string_view text) { heard.add(text); });
         ::tcgetattr(STDIN_FILENO, &during);
         EXPECT_TRUE(input.hearsKeys());
@@ -113,6 +116,7 @@ TEST(MarkerInputChild, DISABLED_TellsItsKeys) // its standard input is a termina
         const auto               texts = heard.wait(4);
         std::vector<std::string> wanted{"m", "space", "\xC3\xA9", "enter"};
         EXPECT_EQ(texts, wanted);
+        EXPECT_EQ(clutched, 1) << "the key that has another meaning is no marker";
     }
     ::tcgetattr(STDIN_FILENO, &after);
     EXPECT_EQ(after.c_lflag, before.c_lflag) << "the terminal is as it was";
@@ -144,7 +148,7 @@ TEST(MarkerInput, KeysOfTheTerminalAreMarkersAndTheTerminalIsGivenBack)
     ASSERT_EQ(::poll(&from, 1, 30'000), 1);
     ASSERT_EQ(::read(ready[0], &byte, 1), 1) << "the child has failed before";
 
-    ASSERT_EQ(::write(master, "m ", 2), 2);
+    ASSERT_EQ(::write(master, "mk ", 3), 3);
     int stopped = 0;
     ASSERT_EQ(::waitpid(child, &stopped, WUNTRACED), child);
     ASSERT_TRUE(WIFSTOPPED(stopped)) << stopped;

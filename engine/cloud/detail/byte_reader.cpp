@@ -16,7 +16,6 @@ constexpr std::size_t kBlock = std::size_t(1) << 20;
 constexpr std::size_t kLongestLine = std::size_t(1) << 16;
 
 /// Longest text of a file that a message repeats [characters].
-constexpr std::size_t kLongestQuote = 60;
 
 bool isBlank(char c)
 {
@@ -24,18 +23,6 @@ bool isBlank(char c)
 }
 
 } // namespace
-
-std::string printable(std::string_view text)
-{
-    std::string shown;
-    for (const char c : text.substr(0, kLongestQuote)) shown += (c >= ' ' && c <= '~') ? c : '?';
-    return text.size() > kLongestQuote ? shown + "..." : shown;
-}
-
-std::string inQuotes(std::string_view text)
-{
-    return '"' + printable(text) + '"';
-}
 
 bool isBlankText(std::string_view text)
 {

@@ -7,13 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/core/shown_text.h"
+
 namespace palp {
-
-/// Returns text of a file for use in a message: without control characters, cut where it is long.
-[[nodiscard]] std::string printable(std::string_view text);
-
-/// Returns the same in quotes.
-[[nodiscard]] std::string inQuotes(std::string_view text);
 
 /// Returns true if the text holds nothing but blanks, tabs and line ends.
 [[nodiscard]] bool isBlankText(std::string_view text);

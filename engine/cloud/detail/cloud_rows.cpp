@@ -40,7 +40,7 @@ std::string listed(const std::vector<std::string>& names)
 {
     std::string text;
     for (std::size_t i = 0; i < std::min(names.size(), kLongestList); ++i)
-        text += (i ? ", " : "") + printable(names[i]);
+        text += (i ? ", " : "") + shownText(names[i], kMostOfWord);
     if (names.size() > kLongestList) text += " and " + std::to_string(names.size() - kLongestList) + " more";
     return text.empty() ? "none" : text;
 }
@@ -149,7 +149,7 @@ void CloudRows::chooseNormals()
 void CloudRows::chooseLengthUnit()
 {
     const bool        chosen = !settings_.lengthUnit.empty();
-    const std::string unit   = printable(chosen ? settings_.lengthUnit : header_.lengthUnit.value_or("m"));
+    const std::string unit   = shownText(chosen ? settings_.lengthUnit : header_.lengthUnit.value_or("m"), kMostOfWord);
     const std::string source = chosen               ? "from the setting"
                                : header_.lengthUnit ? "from the file's comment"
                                                     : "because neither the file nor a setting names a unit";
@@ -421,7 +421,8 @@ LoadedCloud CloudRows::finish()
     report_.format             = header_.format;
     report_.points             = positions_.size();
     report_.coordinateRounding = metresPerUnit_ * rounding_.step();
-    for (const std::string& property : header_.properties) report_.properties.push_back(printable(property));
+    for (const std::string& property : header_.properties)
+        report_.properties.push_back(shownText(property, kMostOfWord));
     LoadedCloud loaded{PointCloud(std::move(positions_), std::move(stiffness_), kind_), std::move(report_)};
     loaded.report.normals = !normals_.empty();
     loaded.normals        = std::move(normals_);

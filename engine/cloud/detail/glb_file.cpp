@@ -90,8 +90,8 @@ public:
     LoadedCloud parse()
     {
         if (const Json* const needed = find(glb_.json, "extensionsRequired"); needed && !needed->empty())
-            fail("extensionsRequired: expected a file that needs no extensions, found " + printable(needed->dump()) +
-                 "; save it without compression");
+            fail("extensionsRequired: expected a file that needs no extensions, found " +
+                 shownText(needed->dump(), kMostOfWord) + "; save it without compression");
         const std::size_t roots = has(glb_.json, "scenes") ? index(glb_.json, "scene", "the file", 0) : 0;
         visited_.assign(has(glb_.json, "nodes") ? list(glb_.json, "nodes", "the file").size() : 0, 0);
         takeNodes(list(element("scenes", roots), "nodes", "scene " + std::to_string(roots)), glm::dmat4(1));
@@ -133,7 +133,7 @@ private:
         if (!value && absent) return *absent;
         if (!value || !value->is_number_unsigned() || value->get<std::uint64_t>() >= (std::uint64_t(1) << 53))
             fail(what + ": expected a whole number as \"" + key + "\", found " +
-                 (value ? printable(value->dump()) : std::string("none")));
+                 (value ? shownText(value->dump(), kMostOfWord) : std::string("none")));
         return value->get<std::uint64_t>();
     }
 
@@ -193,7 +193,7 @@ private:
             for (const Json& node : nodes) {
                 if (!node.is_number_unsigned() || node.get<std::uint64_t>() >= visited_.size())
                     fail("a list of nodes: expected numbers below " + std::to_string(visited_.size()) + ", found " +
-                                                                printable(node.dump()));
+                                                                shownText(node.dump(), kMostOfWord));
                 left.emplace_back(node.get<std::uint64_t>(), above);
             }
         };
@@ -274,7 +274,7 @@ private:
         if (has(json, "sparse")) fail(what + ": expected all its numbers in a row, found \"sparse\"; save it without");
         if (const Json* const is = find(json, "type"); !is || *is != type)
             fail(what + ": expected the type " + type + ", found " +
-                 (is ? printable(is->dump()) : std::string("none")));
+                 (is ? shownText(is->dump(), kMostOfWord) : std::string("none")));
         Accessor accessor;
         accessor.count           = index(json, "count", what);
         accessor.type            = int(index(json, "componentType", what) % 10'000);

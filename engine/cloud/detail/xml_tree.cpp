@@ -131,7 +131,7 @@ private:
             skipComments();
             if (passed("</")) break;
             if (!rest_.starts_with('<') || rest_.starts_with("<!") || rest_.starts_with("<?"))
-                fail("expected an element or </" + std::string(printable(element.name)) + ">");
+                fail("expected an element or </" + shownText(element.name, kMostOfWord) + ">");
             element.children.push_back(this->element(depth + 1));
             if (raw_) return element;
             const std::size_t next = std::min(rest_.find('<'), rest_.size()); // text between children is not used

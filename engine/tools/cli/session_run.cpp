@@ -42,8 +42,9 @@ std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object
 }
 
 /// Runs a session in real time, with a line that shows what the hand feels.
+/// \param clutch  see RealSessionSettings; may be null
 SessionSummary playLive(const SessionOptions& o, double seconds, const SessionParts& parts, SessionTap& tap,
-                        const OnTick& also)
+                        const OnTick& also, const std::atomic<bool>* clutch)
 {
     const bool           line = isatty(STDERR_FILENO) != 0 && !o.json;
     TickRing<TickRecord> ring(also ? 4096 : 1); // four seconds; from the servo to this thread
@@ -57,6 +58,7 @@ SessionSummary playLive(const SessionOptions& o, double seconds, const SessionPa
     settings.seconds = seconds;
     settings.threads = *valueNamed<SessionThreads>(o.threads);
     settings.stop    = &catchInterrupts();
+    settings.clutch  = clutch;
     settings.onStart = [&](std::chrono::steady_clock::time_point start) { tap.begin(start); };
     settings.onTick  = [&, heard = bool(also)](const TickRecord& record) {
         tap.push(record);
@@ -102,14 +104,38 @@ std::vector<std::unique_ptr<TickStream>> streamsOf(const SessionOptions& o)
     return streams;
 }
 
-/// Opens the address of markers, if anything takes them. A participant's keys are none.
-std::unique_ptr<MarkerInput> markersOf(const SessionOptions& o)
+bool takesMarkers(const SessionOptions& o)
 {
-    if (o.record.empty() && o.streams.empty()) return nullptr;
+    return !o.record.empty() || !o.streams.empty();
+}
+
+/// Opens the address of markers, if anything takes them, and the keyboard. A participant's keys mean nothing.
+/// \param clutch  is held and let go of by the key K; null: there is nothing to hold
+std::unique_ptr<MarkerInput> markersOf(const SessionOptions& o, std::atomic<bool>* clutch)
+{
+    if (!takesMarkers(o) && !clutch) return nullptr;
     MarkerSources sources;
     sources.keys = !o.blind && isatty(STDERR_FILENO) != 0;
     if (!o.markers.empty()) sources.address = markerAddress(o.markers);
+    if (clutch)
+        sources.onKey = [clutch](std::string_view key) {
+            const bool isClutch = key == "k" || key == "K";
+            if (isClutch) *clutch = !*clutch;
+            return isClutch;
+        };
     return std::make_unique<MarkerInput>(sources);
+}
+
+/// Says what keys mean, where they are heard.
+void sayKeys(const SessionOptions& o, bool hasClutch)
+{
+    std::cerr << "palpate: "
+              << (hasClutch ? "K holds the clutch and lets go of it: no force flows meanwhile, and the tool stays; "
+                            : "")
+              << (!takesMarkers(o) ? ""
+                  : hasClutch      ? "each other key marks its moment; "
+                                   : "each key marks its moment; ")
+              << "Ctrl-C ends\n";
 }
 
 std::unique_ptr<Recording> recordingOf(const SessionOptions& o, const SessionParts& parts, SessionClock clock,
@@ -207,7 +233,6 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     const SessionClock clock = optionNamed<SessionClock>("--clock", o.clock);
     Deformation        deformation(loaded.object, scene); // what can fail fails before a folder is made
     const auto         streams = streamsOf(o);
-    auto               markers = markersOf(o);
     SessionHand        hand    = handFor(o.hand, scene, loaded.object);
     if (hand.isHeldByPerson() && clock != SessionClock::real)
         throw Error("--hand " + o.hand.hand + ": a person holds it, in real time; omit --clock virtual");
@@ -221,6 +246,9 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
         run.warnings.insert(run.warnings.end(), more.begin(), more.end());
     const std::atomic<bool>& stop = catchInterrupts();
     waitForHoming(*hand.device, stop);
+    const bool        hasClutch = hand.record && clock == SessionClock::real; // a hand without a device has no middle
+    std::atomic<bool> isClutched{false};
+    auto              markers = markersOf(o, hasClutch ? &isClutched : nullptr);
 
     const SessionParts parts{scene,
                              loaded.object,
@@ -239,8 +267,8 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
         if (onTick) onTick(record);
     };
     if (markers) markers->listen([&tap](std::string_view text) { tap.mark(text); });
-    if (markers && markers->hearsKeys()) std::cerr << "palpate: each key marks its moment; Ctrl-C ends\n";
-    run.summary = clock == SessionClock::real ? playLive(o, hand.seconds, parts, tap, onTick)
+    if (markers && markers->hearsKeys()) sayKeys(o, hasClutch);
+    run.summary = clock == SessionClock::real ? playLive(o, hand.seconds, parts, tap, onTick, &isClutched)
                                               : playVirtual(parts, hand.seconds, each, &stop);
     markers.reset();
     if (recording) run.recorded = recording->finish();
@@ -287,7 +315,8 @@ void addMarkersOption(CLI::App& command, std::string& address)
     command.add_option(
         "--markers", address,
         "takes each datagram of text at udp:PORT of this machine, or at udp:HOST:PORT, as a marker of "
-        "its moment; keys pressed in the terminal of run and hunt, and F7 in the window, are markers too");
+        "its moment; keys pressed in the terminal of run and hunt, and F7 in the window, are markers too (with a "
+        "device K is its clutch instead)");
 }
 
 void addSessionOptions(CLI::App& command, SessionOptions& options)

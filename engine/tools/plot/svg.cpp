@@ -6,33 +6,16 @@
 #include <cmath>
 
 #include "engine/core/contract.h"
+#include "engine/core/shown_text.h"
 
 namespace palp {
 namespace {
-
-// Bytes of the UTF-8 letter at the start of a text, 0 if there is none: a file name need not be UTF-8, XML must.
-std::size_t letterLength(std::string_view text)
-{
-    const auto        byte   = [&](std::size_t n) { return static_cast<unsigned char>(text[n]); };
-    const unsigned    first  = byte(0);
-    const std::size_t length = first < 0x80                    ? 1
-                               : first >= 0xC2 && first < 0xE0 ? 2
-                               : first >= 0xE0 && first < 0xF0 ? 3
-                               : first >= 0xF0 && first < 0xF5 ? 4
-                                                               : 0;
-    if (length > text.size()) return 0;
-    for (std::size_t n = 1; n < length; ++n)
-        if ((byte(n) & 0xC0) != 0x80) return 0;
-    if (length == 3 && ((first == 0xE0 && byte(1) < 0xA0) || (first == 0xED && byte(1) >= 0xA0))) return 0;
-    if (length == 4 && ((first == 0xF0 && byte(1) < 0x90) || (first == 0xF4 && byte(1) >= 0x90))) return 0;
-    return length;
-}
 
 std::string escaped(std::string_view text)
 {
     std::string safe;
     while (!text.empty()) {
-        const std::size_t length = letterLength(text);
+        const std::size_t length = firstCharacter(text).bytes; // a file name need not be UTF-8, XML must
         const char        c      = text.front();
         if (length == 0)
             safe += '?';

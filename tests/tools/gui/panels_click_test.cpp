@@ -173,8 +173,8 @@ TEST_F(PanelsClick, ASliderThatComesBackToItsValueWishesNothing)
 TEST_F(PanelsClick, AnotherMapIsAWish)
 {
     openScene();
-    click({200, 319});
-    click({200, 380}); // the third of the list below
+    click({200, 340});
+    click({200, 401}); // the third of the list below
 
     ASSERT_TRUE(wishes_.values.contains("map"));
     EXPECT_EQ(wishes_.values.at("map"), "gall-peters");
@@ -183,8 +183,8 @@ TEST_F(PanelsClick, AnotherMapIsAWish)
 TEST_F(PanelsClick, AnotherEdgeOfOneSideIsAWish)
 {
     openScene();
-    click({250, 403});
-    click({250, 443}); // the second of the list below
+    click({250, 424});
+    click({250, 464}); // the second of the list below
 
     ASSERT_TRUE(wishes_.values.contains("edges"));
     EXPECT_EQ(wishes_.values.at("edges"), "x0=clamped,x1=supported,z0=clamped,z1=clamped");

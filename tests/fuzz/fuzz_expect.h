@@ -1,0 +1,40 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+
+/// Stops the fuzzer, which then keeps the input.
+inline void fuzzExpect(bool holds)
+{
+    if (!holds) std::abort();
+}
+
+/// A sentence that a terminal can show and `--json` can repeat: one line, without control characters, in UTF-8.
+inline void fuzzExpectSentence(const std::string& text)
+{
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]), next = static_cast<unsigned char>(text.c_str()[i + 1]);
+        fuzzExpect(byte >= 0x20 && byte != 0x7f && !(byte == 0xc2 && next < 0xa0));
+    }
+    static_cast<void>(nlohmann::json(text).dump()); // throws where it is no UTF-8
+}
+
+/// Does what may be refused: an Error is a right answer if it is such a sentence, and nothing else may come out.
+template <class Act>
+void fuzzRefusals(const Act& act)
+{
+    try {
+        act();
+    } catch (const Error& error) {
+        fuzzExpectSentence(error.what());
+    }
+}
+
+} // namespace palp

@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <malloc.h>
+#include <unistd.h>
+
+// palp_fuzz_replay SEEDS...: gives each harness the seeds of its folder in SEEDS, whole, cut short, and with single bytes
+// changed. It needs no clang, so that every machine runs it. It also measures memory: a reader that believes a header asks
+// for more than its input can hold.
+
+#define PALPATE_HARNESS(name) extern "C" int fuzz_##name(const std::uint8_t*, std::size_t);
+#include "fuzz_harnesses.def"
+#undef PALPATE_HARNESS
+
+namespace {
+
+using Harness = int (*)(const std::uint8_t*, std::size_t);
+struct Named {
+    const char* name;
+    Harness     run;
+};
+constexpr Named kHarnesses[] = {
+#define PALPATE_HARNESS(name) {#name, &fuzz_##name},
+#include "fuzz_harnesses.def"
+#undef PALPATE_HARNESS
+};
+
+std::atomic<std::size_t> live{0}, peak{0}; // [bytes] that operator new gave
+
+/// [bytes] of memory for each byte of an input. A point of a file in text takes 8 bytes ("1 2 3 4\n") and 56 in memory,
+/// twice while it is sorted and once more as it is written back; a harness holds its input twice.
+constexpr std::size_t kMostPerByte = 24;
+/// [bytes] beside it: buffers of streams, the table of keys, zlib's window.
+constexpr std::size_t kMostBeside = std::size_t(512) << 10;
+
+const char*                      current = "";
+const std::vector<std::uint8_t>* input   = nullptr;
+
+/// Keeps the input at which the program ends; libFuzzer's way of telling.
+[[noreturn]] void keep(int signal)
+{
+    static constexpr char kFile[] = "fuzz-replay-crash";
+    if (std::FILE* const file = std::fopen(kFile, "wb")) {
+        std::fwrite(input->data(), 1, input->size(), file);
+        std::fclose(file);
+    }
+    std::fprintf(stderr, "%s: FAILED with signal %d, the input is kept as %s\n", current, signal, kFile);
+    std::_Exit(1);
+}
+
+class Replay {
+public:
+    explicit Replay(const Named& harness) : harness_(harness) { current = harness.name; }
+
+    void whole(const std::vector<std::uint8_t>& bytes)
+    {
+        ++inputs_;
+        input                    = &bytes;
+        const std::size_t before = live;
+        peak                     = before;
+        harness_.run(bytes.data(), bytes.size());
+        const std::size_t taken = peak - before;
+        most_                   = std::max(most_, taken);
+        if (taken > kMostBeside + kMostPerByte * bytes.size()) {
+            std::fprintf(stderr, "%zu bytes of memory for an input of %zu\n", taken, bytes.size());
+            std::abort();
+        }
+    }
+
+    /// The input cut short and with bytes changed, at places that are even over it.
+    void damaged(std::vector<std::uint8_t> bytes)
+    {
+        constexpr std::size_t kPlaces = 250;
+        const std::size_t     step    = bytes.size() / kPlaces + 1;
+        for (std::size_t at = 0; at < bytes.size(); at += step) {
+            whole({bytes.begin(), bytes.begin() + std::ptrdiff_t(at)});
+            for (const int change : {0x01, 0x80, 0xFF}) {
+                bytes[at] = std::uint8_t(bytes[at] ^ change);
+                whole(bytes);
+                bytes[at] = std::uint8_t(bytes[at] ^ change);
+            }
+        }
+    }
+
+    [[nodiscard]] std::size_t inputs() const noexcept { return inputs_; }
+    [[nodiscard]] std::size_t most() const noexcept { return most_; }
+
+private:
+    const Named& harness_;
+    std::size_t  inputs_ = 0, most_ = 0;
+};
+
+std::vector<std::uint8_t> contentsOf(const std::filesystem::path& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+} // namespace
+
+void* operator new(std::size_t size)
+{
+    void* const memory = std::malloc(size ? size : 1);
+    if (!memory) throw std::bad_alloc();
+    const std::size_t now = live += ::malloc_usable_size(memory);
+    for (std::size_t most = peak; now > most && !peak.compare_exchange_weak(most, now);) {
+    }
+    return memory;
+}
+void operator delete(void* memory) noexcept
+{
+    if (memory) live -= ::malloc_usable_size(memory);
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept
+{
+    operator delete(memory);
+}
+
+int main(int count, char** arguments)
+{
+    for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, keep);
+    std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
+    for (const Named& harness : kHarnesses) {
+        Replay      replay(harness);
+        std::size_t seeds = 0;
+        for (int n = 1; n < count; ++n) {
+            const auto folder = std::filesystem::path(arguments[n]) / harness.name;
+            if (!std::filesystem::is_directory(folder)) continue;
+            for (const auto& file : std::filesystem::directory_iterator(folder)) {
+                const auto bytes = contentsOf(file.path());
+                replay.whole(bytes);
+                replay.damaged(bytes);
+                ++seeds;
+            }
+        }
+        std::printf("%-10s %3zu seeds, %6zu inputs, at most %4zu KiB of memory\n", harness.name, seeds, replay.inputs(),
+                    replay.most() >> 10U);
+        if (seeds == 0) {
+            std::fprintf(stderr, "%s: FAILED: there is no seed for it\n", harness.name);
+            return 1;
+        }
+    }
+    return 0;
+}
