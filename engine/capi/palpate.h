@@ -14,7 +14,7 @@
  * (PALPATE_INIT does), so that a program that was compiled with an older header goes on working.
  *
  * Threads: an object may be used by several threads at once; palpate_session_step() belongs to one thread and
- * palpate_session_deformed() to one other; what creates and destroys runs while nobody uses the handle.
+ * palpate_session_deformed() to one other; what creates, destroys and records runs while nobody uses the handle.
  */
 #ifndef PALPATE_H
 #define PALPATE_H
@@ -70,7 +70,8 @@ typedef struct palpate_object palpate_object;
 typedef enum palpate_number { PALPATE_FLOAT64 = 0, PALPATE_FLOAT32 = 1 } palpate_number;
 typedef enum palpate_stiffness {
     PALPATE_MODULUS  = 0, /* Young's modulus [Pa] */
-    PALPATE_RIGIDITY = 1  /* flexural rigidity [N m] */
+    PALPATE_RIGIDITY = 1, /* flexural rigidity [N m] */
+    PALPATE_FELT     = 2  /* what a probe felt [N/m]: a map, refused until palpate fit has made an object of it */
 } palpate_stiffness;
 
 /* Points with a stiffness. The arrays are read during the call and may be read-only. */
@@ -84,7 +85,7 @@ typedef struct palpate_points {
     int             stiffness_type;    /* palpate_number */
     size_t          stiffness_stride;  /* bytes; 0: side by side */
     int             stiffness_kind;    /* palpate_stiffness */
-    double          uniform_stiffness; /* [Pa] or [N m] */
+    double          uniform_stiffness; /* [Pa] or [N m]; 0: as the scene's key "stiffness" or "material" says */
     const void*     normals;           /* outward, of each point, 0 where unknown; may be NULL */
     int             normal_type;       /* palpate_number */
     size_t          normal_stride;     /* bytes; 0: side by side */
@@ -92,7 +93,9 @@ typedef struct palpate_points {
     size_t          face_count;
 } palpate_points;
 
-/* Makes an object of points. scene: the keys of samples/scenes/README.md but "cloud", as JSON; NULL: all defaults. */
+/* Makes an object of points. scene: the keys of samples/scenes/README.md but those of files and samples, as JSON; NULL:
+   all defaults. Points with faces that are too far apart for the fingertip are replaced by points on the faces, unless
+   the scene's key "scatter" is "off": palpate_object_size() tells. */
 PALPATE_API int palpate_object_from_points(const palpate_points* points, const char* scene, palpate_object** out);
 /* Makes the object of a scene with a cloud. folder: where relative paths start; NULL: the current one. */
 PALPATE_API int palpate_object_from_scene(const char* scene, const char* folder, palpate_object** out);
@@ -136,6 +139,43 @@ PALPATE_API int palpate_touch_displaced(const palpate_object* object, const doub
    from: a direction for each, or NULL. failed, if not NULL, gets how many are NaN. */
 PALPATE_API int palpate_felt_map(const palpate_object* object, const double* places, const double* from, size_t count,
                                  double* felt, size_t* failed);
+
+/* Touches one place in each cube of this spacing [m] that holds points, on all cores, and writes the felt stiffness at
+   every point of the object, interpolated between the places [N/m]. touched, if not NULL, gets how many places there
+   were. */
+PALPATE_API int palpate_felt_map_every(const palpate_object* object, double spacing, double* felt, size_t count,
+                                       size_t* touched);
+
+/* --- what a person would notice: a prediction, not a study --- */
+
+/* A path over an object; all 0 is the scene's place, the east of the map there and a third of the patch window. */
+typedef struct palpate_path {
+    size_t        size;
+    const double* place;     /* its middle [m]; NULL: the scene's */
+    const double* from;      /* the side that the finger comes from; NULL: the scene's */
+    const double* direction; /* along the surface; NULL: the east of the map */
+    double        reach;     /* to either side [m]; 0: a third of the window */
+    int           places;    /* with a finger at rest, 3 to 1001; 0: 41 */
+} palpate_path;
+
+/* Just noticeable steps for people whose smallest noticed change is weber[0], [1] and [2]; one step is told right in
+   three of four trials. */
+typedef struct palpate_perception {
+    size_t size;
+    double softest, hardest; /* felt along the path [N/m] */
+    double weber[3];         /* 0.07, 0.15 and 0.22 */
+    double at_rest[3];       /* steps between the softest and the hardest place */
+    double sliding[3];       /* the same for a finger that slides, through all of a session */
+    double passing[3];       /* of these, within 5 mm */
+    double floor[3];         /* sliding over the same points with one stiffness: an artefact, below 0.5 if all is well */
+    double right[3];         /* share of right answers, sliding: 0.5 is guessing */
+    double held;             /* share of the slide in which a wall or a fold holds the hand; it counts in no step */
+} palpate_perception;
+
+/* Predicts what is noticed along a path; some seconds. path: NULL for all 0. along, felt: room for count places each, at
+   least those of the path; they get where each lies, from the middle [m], and its felt stiffness [N/m]. May be NULL. */
+PALPATE_API int palpate_perceive(const palpate_object* object, const palpate_path* path, palpate_perception* result,
+                                 double* along, double* felt, size_t count);
 
 /* --- sessions --- */
 
@@ -189,10 +229,11 @@ PALPATE_API int palpate_session_step(palpate_session* session, double time, cons
                                      palpate_answer* answer);
 /* Writes why the last tick had no force, as a sentence for a person; empty while forces flow. For the thread of step(). */
 PALPATE_API int palpate_session_words(const palpate_session* session, char* text, size_t size);
-/* Writes every point under the force of the newest answer of the plate [m] if that is another one than *sequence, which
-   then counts up; else nothing. For a renderer's thread. */
+/* Writes every point [m] as the newest answer of the plate and the force of now bend it, if that answer is another one
+   than *sequence or the force has ended, and counts *sequence up; else nothing. Begin with 0. For a renderer's thread. */
 PALPATE_API int palpate_session_deformed(palpate_session* session, double* xyz, size_t count, uint64_t* sequence);
-/* Records from the next tick on into a new folder, which palpate run --replay and numpy read. */
+/* Records from the next tick on into a new folder, for palpate export and view, and numpy. Points of the caller's are
+   kept in it as cloud.ply. */
 PALPATE_API int palpate_session_record(palpate_session* session, const char* folder);
 /* Ends the recording. ticks, lost: how many are on disk and not; may be NULL. */
 PALPATE_API int palpate_session_stop_recording(palpate_session* session, uint64_t* ticks, uint64_t* lost);

@@ -1,5 +1,6 @@
 #include "engine/cloud/point_cloud.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -54,6 +55,9 @@ PointCloud::PointCloud(std::vector<glm::dvec3> positions, std::vector<double> st
         if (!finite(p))
             throw Error("point " + std::to_string(i) + ": expected a finite position, found (" + std::to_string(p.x) +
                         ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + ")");
+        if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > kLargestCoordinate)
+            throw Error("point " + std::to_string(i) + ": expected coordinates of at most 1e9 m, found (" +
+                        std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) + ")");
         bounds_.low  = glm::min(bounds_.low, p);
         bounds_.high = glm::max(bounds_.high, p);
     }

@@ -35,9 +35,13 @@ struct Bounds {
     [[nodiscard]] double     diagonal() const noexcept;                             ///< [m]
 };
 
+/// Largest coordinate [m]: no hand feels larger objects, and squared distances overflow 32-bit floats from 1e19 m on.
+inline constexpr double kLargestCoordinate = 1e9;
+
 /// Points at rest and a stiffness for each.
 ///
-/// Invariant: at least one point, as many stiffnesses as positions, everything finite, every stiffness > 0.
+/// Invariant: at least one point, as many stiffnesses as positions, no coordinate beyond kLargestCoordinate, every
+/// stiffness finite and > 0.
 /// Never changed after construction: deformation is a field beside the cloud.
 /// \thread immutable, so free to share
 /// \differs the paper's d_i is "stiffness" without a unit; here the cloud says whether it is E [Pa] or D [N m]

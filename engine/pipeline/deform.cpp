@@ -124,6 +124,12 @@ bool isClosedBehind(const SoftObject& object, const glm::dvec3& contact, const g
         const double      depth = glm::dot(contact - p, outward);
         return depth > reach && glm::length(p + depth * outward - contact) < reach;
     };
+    constexpr double kWorth = 20; // points that cost what a ball does [1]; a stray point afar makes a tube of millions
+    if (end / (2 * reach) > double(object.size()) / kWorth) {
+        for (std::uint32_t point = 0; point < object.size(); ++point)
+            if (holds(point)) return true;
+        return false;
+    }
     std::vector<std::uint32_t> near; // balls about the middles of the tube's pieces, each as long as wide
     for (double depth = 2 * reach; depth < end + 2 * reach; depth += 2 * reach) {
         object.index().gather(contact - depth * outward, std::sqrt(2.0) * reach, near);

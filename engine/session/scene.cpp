@@ -227,6 +227,8 @@ double metresPerPlainNumber(const SceneOverrides& overrides, const Sources& sour
 void demandUse(const Scene& scene, const SceneKey& key, const Statement& one)
 {
     const std::string omit = "; omit " + std::string(one.origin.origin == Origin::flag ? flagOf(key.name) : key.name);
+    if (scene.cloud.empty() && key.cloud != SceneKey::For::anyCloud && key.name != "scatter")
+        throw Error(one.what + ": expected a file or a sample as the cloud, found points of the caller's" + omit);
     if (key.cloud == SceneKey::For::sample && !isSample(scene))
         throw Error(one.what + ": expected a sample as the cloud, found the file " + scene.cloud + omit);
     if (key.cloud == SceneKey::For::file && isSample(scene))

@@ -198,6 +198,14 @@ struct LoadedObject {
 /// Does the same as loadCloud() without the overlay.
 [[nodiscard]] LoadedCloud loadBareCloud(const Scene& scene);
 
+/// Returns a cloud that was read, or that a caller has made, as the scene touches it: with triangles turned round that
+/// face against their neighbours, a mesh through points on its faces, and the scene's law in place of the stiffness.
+/// \throws Error as loadCloud()
+[[nodiscard]] LoadedCloud asTouched(LoadedCloud loaded, const Scene& scene);
+
+/// Returns what complaints call the scene's cloud.
+[[nodiscard]] std::string cloudName(const Scene& scene);
+
 /// Returns 16 hexadecimal digits that tell clouds apart: FNV-1a over the bits of places and stiffnesses. They do not
 /// protect against malice.
 [[nodiscard]] std::string fingerprint(const PointCloud& cloud);

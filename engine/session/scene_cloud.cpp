@@ -102,7 +102,7 @@ void refuseContradiction(const Scene& scene, const LoadedCloud& loaded)
 void refuseTooLarge(const Scene& scene, const ScatterPlan& plan)
 {
     if (plan.distance <= std::max(plan.wanted, plan.fingertip)) return;
-    throw Error(scene.cloud + ": expected faces that " + std::to_string(kMostMeshPoints) +
+    throw Error(cloudName(scene) + ": expected faces that " + std::to_string(kMostMeshPoints) +
                 " points can stand for, no farther apart than the fingertip's radius of " +
                 formatQuantity(plan.fingertip, "m") + ", found " + formatQuantity(plan.distance, "m") +
                 " between them; is length_unit right? scatter = off touches the vertices");
@@ -128,11 +128,21 @@ std::string openingOf(const Scene& scene, const std::string& key)
     return origin == Origin::scene ? where + ": key \"" + key + "\"" : where;
 }
 
+std::string cloudName(const Scene& scene)
+{
+    return scene.cloud.empty() ? "the given points" : scene.cloud;
+}
+
 LoadedCloud loadBareCloud(const Scene& scene)
 {
     if (isSample(scene)) return sampleOf(scene);
     LoadedCloud loaded = readCloud(scene.cloud, scene.reading);
     refuseContradiction(scene, loaded);
+    return asTouched(std::move(loaded), scene);
+}
+
+LoadedCloud asTouched(LoadedCloud loaded, const Scene& scene)
+{
     turnFlippedFaces(loaded);
     const Bounds bounds = loaded.cloud.bounds();
     if (const auto plan = scatterPlan(scene, loaded)) {
@@ -156,8 +166,9 @@ LoadedCloud loadCloud(const Scene& scene)
 LoadedObject objectOf(LoadedCloud loaded, const Scene& scene)
 {
     if (loaded.cloud.kind() == StiffnessKind::felt)
-        throw Error(scene.cloud + ": expected a modulus [Pa] or a flexural rigidity [N_m], found a map of what a probe "
-                                  "felt [N/m]; palpate fit makes an object of it");
+        throw Error(cloudName(scene) +
+                    ": expected a modulus [Pa] or a flexural rigidity [N_m], found a map of what a probe "
+                    "felt [N/m]; palpate fit makes an object of it");
     const SoftObject object(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals);
     return {onTissue(object.standingFor(std::move(loaded.mesh)), scene), std::move(loaded.report)};
 }

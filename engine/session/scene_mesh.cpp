@@ -66,7 +66,7 @@ std::optional<ScatterPlan> scatterPlan(const Scene& scene, const LoadedCloud& lo
     if (!(size.area > 0)) {
         if (!asked) return std::nullopt;
         throw Error(openingOf(scene, "scatter") +
-                    ": expected a cloud with faces to scatter points over, found none in " + scene.cloud +
+                    ": expected a cloud with faces to scatter points over, found none in " + cloudName(scene) +
                     "; omit scatter");
     }
     const auto points = double(loaded.cloud.size());

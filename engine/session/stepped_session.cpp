@@ -97,13 +97,26 @@ const Patch* SteppedSession::patch() const noexcept
 
 void SteppedSession::record(const std::filesystem::path& folder, const std::string& program)
 {
+    const bool  nameless = impl_->scene.cloud.empty();
     SessionInfo info{.scene    = impl_->scene,
                      .versions = {{"palpate", program}},
                      .solver   = impl_->deformation.plateSolver().name(),
                      .command  = program,
                      .cloud    = fingerprint(impl_->object.cloud()),
                      .hand     = impl_->device};
+    if (nameless) { // a caller's points: the scene gets a file of them
+        info.scene.cloud     = (folder / "cloud.ply").string();
+        info.scene.scatter   = Scatter::off;
+        info.scene.stiffness = "own"; // also where a material would say another one
+    }
     impl_->recording.emplace(folder, info);
+    if (!nameless) return;
+    try {
+        writeCloud(info.scene.cloud, impl_->object.cloud(), {}, {.faces = impl_->object.faces()});
+    } catch (...) {
+        impl_->recording.reset();
+        throw;
+    }
 }
 
 RecordingReport SteppedSession::stopRecording()

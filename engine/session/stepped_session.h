@@ -36,7 +36,7 @@ public:
     /// Returns the patch that takePatch() took last; null before.
     [[nodiscard]] const Patch* patch() const noexcept;
 
-    /// Records from now on into a new folder, see Recording.
+    /// Records from now on into a new folder, see Recording. If the scene names no cloud, the folder gets cloud.ply.
     /// \throws Error as Recording does
     void            record(const std::filesystem::path& folder, const std::string& program);
     RecordingReport stopRecording();

@@ -138,6 +138,14 @@ static void try_touches(const palpate_object* object)
     CLAIM(fabs(felt[0] / stiff.felt_stiffness - 1) < 1e-6 && fabs(felt[1] / soft.felt_stiffness - 1) < 1e-6);
     CLAIM(isnan(felt[2]));
 
+    double* at_points = malloc(kCount * sizeof *at_points);
+    size_t  touched   = 0;
+    CLAIM(palpate_felt_map_every(object, 4e-3, at_points, kCount, &touched) == PALPATE_OK && touched > 150);
+    CLAIM(touched < 300 && at_points[kCount / 2] > 1.3 * at_points[kCount / 2 + 20]);
+    CLAIM(refused(palpate_felt_map_every(object, 0, at_points, kCount, NULL), "spacing"));
+    CLAIM(refused(palpate_felt_map_every(object, 4e-3, at_points, 7, NULL), "room for 3721"));
+    free(at_points);
+
     double* xyz = malloc(3 * kCount * sizeof *xyz);
     CLAIM(palpate_touch_displaced(object, middle, side, 0.5, xyz, kCount) == PALPATE_OK);
     double deepest = 0;
@@ -162,6 +170,31 @@ static void try_touches(const palpate_object* object)
     } older = {offsetof(palpate_touch_result, contact_stiffness), 0, 0, 42};
     CLAIM(palpate_touch(object, middle, side, (palpate_touch_result*)(void*)&older) == PALPATE_OK);
     CLAIM(older.felt_stiffness == stiff.felt_stiffness && older.next == 42);
+}
+
+static void try_perception(const palpate_object* object)
+{
+    const double       middle[3] = {0, 0, 0}, side[3] = {0, 0, 1}, direction[3] = {2, 0, 0};
+    double             along[21], felt[21];
+    palpate_perception noticed = PALPATE_INIT(palpate_perception);
+    palpate_path       path    = PALPATE_INIT(palpate_path);
+    path.place                 = middle;
+    path.from                  = side;
+    path.direction             = direction;
+    path.reach                 = 12e-3;
+    path.places                = 21;
+    CLAIM(palpate_perceive(object, &path, &noticed, along, felt, 21) == PALPATE_OK);
+    CLAIM(fabs(along[0] + 12e-3) < 2e-4 && fabs(along[20] - 12e-3) < 2e-4);
+    CLAIM(felt[10] > 1.5 * felt[0] && noticed.hardest >= felt[10] && noticed.softest <= felt[0]);
+    CLAIM(noticed.weber[0] == 0.07 && noticed.sliding[0] > 5 && noticed.sliding[2] < noticed.sliding[0]);
+    CLAIM(noticed.floor[0] < 0.5 && noticed.right[0] > 0.99 && noticed.held < 0.1);
+    CLAIM(refused(palpate_perceive(object, &path, &noticed, along, felt, 20), "room for 21"));
+    path.reach = 9;
+    CLAIM(refused(palpate_perceive(object, &path, &noticed, NULL, NULL, 0), "reach"));
+    path.reach  = 0;
+    path.places = 2;
+    CLAIM(refused(palpate_perceive(object, &path, &noticed, NULL, NULL, 0), "places"));
+    CLAIM(refused(palpate_perceive(object, &path, NULL, NULL, NULL, 0), "palpate_perception"));
 }
 
 /* Presses 1.5 mm deep within a second of the session's time and returns the largest force. */
@@ -298,6 +331,7 @@ int main(int argc, char** argv)
     free(rows); /* the object has its own */
     if (object) {
         try_touches(object);
+        try_perception(object);
         try_sessions(object);
         if (argc > 1) try_recordings(object, argv[1]);
         try_runs(object);

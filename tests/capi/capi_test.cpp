@@ -99,13 +99,22 @@ TEST(CInterface, AHostsLoopFeelsWhatTouchSays)
     }
     over = true;
     renderer.join();
+    const std::uint64_t dented = seen;
+    std::vector<double> after  = xyz;
+    const double        end    = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    session.step(end + 1e-3, 0.1); // the hand is gone at once: no patch follows
+    EXPECT_EQ(palpate_session_deformed(session.handle, after.data(), count, &seen), PALPATE_OK);
+    EXPECT_GT(seen, dented) << "a renderer hears that the force has ended";
+    double left = 0;
+    for (std::size_t n = 0; n < count; ++n) left = std::max(left, std::abs(after[3 * n + 2]));
+    EXPECT_LT(left, 1e-12) << "the sheet is flat again";
 
     EXPECT_TRUE(last.flags & PALPATE_TOUCHING);
     EXPECT_FALSE(last.flags & (PALPATE_STOPPED | PALPATE_WAITING | PALPATE_BAD_INPUT)) << last.fault;
     EXPECT_NEAR(last.depth, 1.5e-3, 5e-5) << "the sheet's points are 2 mm apart";
     EXPECT_NEAR(last.force[2], felt.felt_stiffness * last.depth, 0.03 * last.force[2])
         << "the place of the nearest point against that of the proxy";
-    EXPECT_GT(seen, 0u);
+    EXPECT_GT(dented, 0u);
     double deepest = 0;
     for (std::size_t n = 0; n < count; ++n) deepest = std::min(deepest, xyz[3 * n + 2]);
     EXPECT_LT(deepest, -0.3 * last.force[2] * felt.compliance);
@@ -150,6 +159,98 @@ TEST(CInterface, RandomStructsAreAnswered)
         EXPECT_EQ(none, nullptr);
     }
     EXPECT_GT(refused, 8000) << "plates without rigidity and points without places";
+}
+
+TEST(CInterface, AFirstStepAgainAtItsTimeIsBadInput)
+{
+    const Object  object;
+    const Session session(object);
+    EXPECT_FALSE(session.step(0, 5e-3).flags & PALPATE_BAD_INPUT);
+    EXPECT_TRUE(session.step(0, 5e-3).flags & PALPATE_BAD_INPUT);
+    EXPECT_FALSE(session.step(1e-3, 5e-3).flags & PALPATE_BAD_INPUT);
+}
+
+TEST(CInterface, AnObjectIsForSeveralThreadsAtOnce)
+{
+    const Object             object;
+    const double             side[3] = {0, 0, 1};
+    std::vector<double>      felt(4);
+    std::vector<std::thread> threads;
+    for (std::size_t n = 0; n < felt.size(); ++n)
+        threads.emplace_back([&, n] {
+            const double place[3] = {0, 0, 0};
+            auto         result   = PALPATE_INIT(palpate_touch_result);
+            EXPECT_EQ(palpate_touch(object.handle, place, side, &result), PALPATE_OK) << palpate_error_text();
+            felt[n] = result.felt_stiffness;
+        });
+    for (std::thread& thread : threads) thread.join();
+    for (const double value : felt) EXPECT_EQ(value, felt[0]);
+}
+
+/// A sheet of eight triangles, 60 mm a side: a finger between its nine corners must feel it.
+TEST(CInterface, FacesAreTouchedBetweenTheirCorners)
+{
+    std::vector<double>        xyz;
+    std::vector<std::uint32_t> faces;
+    for (std::uint32_t i = 0; i < 3; ++i)
+        for (std::uint32_t j = 0; j < 3; ++j) {
+            xyz.insert(xyz.end(), {30e-3 * i - 30e-3, 30e-3 * j - 30e-3, 0});
+            const std::uint32_t a = 3 * i + j;
+            if (i < 2 && j < 2) faces.insert(faces.end(), {a, a + 3, a + 4, a, a + 4, a + 1});
+        }
+    auto points              = PALPATE_INIT(palpate_points);
+    points.count             = xyz.size() / 3;
+    points.positions         = xyz.data();
+    points.uniform_stiffness = 3e5;
+    points.faces             = faces.data();
+    points.face_count        = faces.size() / 3;
+    const char* const scene  = R"({"window": "20 mm", "cells": 16, "footprint_radius": "3 mm", "solver": "host"})";
+    palpate_object*   object = nullptr;
+    ASSERT_EQ(palpate_object_from_points(&points, scene, &object), PALPATE_OK) << palpate_error_text();
+
+    EXPECT_GT(palpate_object_size(object), 1000u);
+    const double place[3] = {14e-3, 16e-3, 0};
+    auto         result   = PALPATE_INIT(palpate_touch_result);
+    EXPECT_EQ(palpate_touch(object, place, nullptr, &result), PALPATE_OK) << palpate_error_text();
+    palpate_object_destroy(object);
+
+    palpate_object* vertices = nullptr;
+    EXPECT_EQ(palpate_object_from_points(&points, R"({"scatter": "off"})", &vertices), PALPATE_OK)
+        << palpate_error_text();
+    EXPECT_EQ(palpate_object_size(vertices), points.count);
+    palpate_object_destroy(vertices);
+}
+
+TEST(CInterface, AStiffnessIsTheCallersOrTheScenes)
+{
+    std::vector<double> xyz;
+    for (int n = 0; n < 400; ++n) xyz.insert(xyz.end(), {1e-3 * (n % 20), 1e-3 * (n / 20), 0});
+    auto points               = PALPATE_INIT(palpate_points);
+    points.count              = xyz.size() / 3;
+    points.positions          = xyz.data();
+    const auto firstStiffness = [&](const char* scene) -> double {
+        palpate_object* object = nullptr;
+        if (palpate_object_from_points(&points, scene, &object) != PALPATE_OK) return -1;
+        std::vector<double> values(points.count);
+        EXPECT_EQ(palpate_object_stiffness(object, values.data(), values.size()), PALPATE_OK);
+        palpate_object_destroy(object);
+        return values[0];
+    };
+
+    EXPECT_EQ(firstStiffness("{}"), -1);
+    EXPECT_NE(std::string(palpate_error_text()).find("material"), std::string::npos) << palpate_error_text();
+    EXPECT_EQ(firstStiffness(R"({"stiffness": "constant:value=5e4"})"), 5e4);
+    const double ofMaterial = firstStiffness(R"({"material": "ecoflex-0030"})");
+    EXPECT_GT(ofMaterial, 0) << palpate_error_text();
+    points.uniform_stiffness = 7e4;
+    EXPECT_EQ(firstStiffness(R"({"material": "ecoflex-0030"})"), 7e4) << "the material's other values are wanted";
+    EXPECT_NE(ofMaterial, 7e4);
+    EXPECT_EQ(firstStiffness(R"({"stiffness": "constant:value=5e4"})"), -1);
+    EXPECT_EQ(firstStiffness(R"({"length_unit": "mm"})"), -1) << "a key of files";
+    EXPECT_EQ(firstStiffness(R"({"points": 500})"), -1) << "a key of samples";
+    points.stiffness_kind = PALPATE_FELT;
+    EXPECT_EQ(firstStiffness("{}"), -1);
+    EXPECT_NE(std::string(palpate_error_text()).find("palpate fit"), std::string::npos) << palpate_error_text();
 }
 
 TEST(CInterface, SentencesBelongToTheirThread)

@@ -96,6 +96,24 @@ class Touching(unittest.TestCase):
             self.assertAlmostEqual(felt[n] / self.made.touch(places[n], side=[0, 0, 1]).felt, 1, places=6)
         self.assertTrue(np.isnan(felt[2]))
 
+    def test_a_felt_map_by_cubes_lies_near_the_touches(self):
+        felt = self.made.felt_map(spacing=4e-3)
+        self.assertEqual(felt.shape, (3721,))
+        middle = np.argmin(np.linalg.norm(self.made.points, axis=1))
+        touched = self.made.touch([0, 0, 0], side=[0, 0, 1]).felt
+        self.assertAlmostEqual(felt[middle] / touched, 1, delta=0.2)  # the places lie some millimetres beside it
+        with self.assertRaises(palpate.Error):
+            self.made.felt_map(spacing=-1)
+
+    def test_what_is_noticed_along_a_path_over_the_stiff_disc(self):
+        found = self.made.perceive(place=[0, 0, 0], side=[0, 0, 1], direction=[1, 0, 0], reach=0.015, places=11)
+        np.testing.assert_allclose(found.along, np.linspace(-0.015, 0.015, 11), atol=1e-6)
+        self.assertEqual(np.argmax(found.felt), 5)
+        self.assertTrue(np.all(found.sliding > 1) and np.all(found.floor < 0.5), (found.sliding, found.floor))
+        self.assertTrue(np.all(np.diff(found.at_rest) < 0), "duller people tell fewer steps")
+        with self.assertRaises(palpate.Error):
+            self.made.perceive(places=2)
+
     def test_a_run_is_the_same_again_and_pushes_back(self):
         times, places = [0, 1, 2], [[0, 0, 3e-3], [0, 0, -1.5e-3], [0, 0, -1.5e-3]]
         forces, proxies = self.made.run(times, places)

@@ -241,6 +241,33 @@ TEST(TouchedSurface, ADensityThatVariesIsNoHole)
 }
 
 /// At the rim of a thin body the points around determine a surface across the hand's. The proxy's normal stands in.
+TEST(TouchedSurface, AStrayPointFarAwayCostsNothing)
+{
+    Cloud cloud;
+    cloud.add(sheet(5'000, 0, 3), wart);
+    const double alone = deform(cloud.object(), {glm::dvec3(0), {0, 0, 1}}, kTouch).feltStiffness;
+    cloud.add({{0, 0, -1e8}, {1e8, 3, 2}}, uniform); // a scanner's error, or a wrong unit
+    // Balls in turn along the way to it would be 1e10.
+    const Patch beside = deform(cloud.object(), {glm::dvec3(0), {0, 0, 1}}, kTouch);
+    EXPECT_NEAR(beside.feltStiffness / alone, 1, 1e-3) << "the survey counts them: two of 5000";
+}
+
+TEST(TouchedSurface, AWindowBetweenThePointsIsRefused)
+{
+    Cloud cloud;
+    cloud.add(sheet(5'000, 0, 3), uniform);
+    const SoftObject    object = cloud.object();
+    const PatchSettings tiny{.window = 1e-7, .cells = 8, .footprintRadius = 2e-8}; // no point lies in it
+    Contact             contact{glm::dvec3(0.2e-3, 0.1e-3, 0), {0, 0, 1}};
+    for (const bool felt : {false, true}) {
+        contact.felt = felt;
+        try {
+            EXPECT_FALSE(deform(object, contact, tiny).deformed());
+        } catch (const Error&) { // one sentence is as good
+        }
+    }
+}
+
 TEST(TouchedSurface, TheRimOfAThinBodyIsTouched)
 {
     Cloud plate;

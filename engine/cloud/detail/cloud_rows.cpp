@@ -18,9 +18,6 @@ namespace {
 /// Points are indexed by 32-bit numbers, of which the last means "none".
 constexpr std::uint64_t kMostPoints = 0xFFFF'FFFEu;
 
-/// Largest coordinate [m]: no hand feels larger objects, and squared distances overflow 32-bit floats from 1e19 m on.
-constexpr double kLargestCoordinate = 1e9;
-
 /// Rows between two looks at the clock: about a millisecond.
 constexpr std::uint64_t kRowsPerProgress = 1u << 14;
 

@@ -126,10 +126,11 @@ struct WholeBall {
 };
 
 /// Takes all points of the ball, their normals turned to the finger's side; empty if they turn too far from the nearest
-/// one's, or if some are known to face the other way.
+/// one's, if some are known to face the other way, or if there are none.
 std::optional<WholeBall> wholeBall(const SoftObject& object, const Contact& contact,
                                    std::span<const std::uint32_t> ball, std::uint32_t nearest)
 {
+    if (ball.empty()) return {};
     constexpr double     kAlike = 0.3; // cosine of 73 degrees [1]
     const SurfaceSurvey& survey = object.survey();
     const double         side   = glm::dot(survey.normal(nearest), contact.outward) < 0 ? -1 : 1;

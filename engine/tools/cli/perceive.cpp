@@ -17,7 +17,7 @@
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/solver_choice.h"
 #include "engine/tools/paper/perception_figures.h"
-#include "engine/tools/paper/scene_perception.h"
+#include "engine/perception/scene_perception.h"
 #include "engine/tools/paper/section.h"
 
 // palpate perceive: predicts what a person would notice of an object's stiffness.

@@ -9,10 +9,10 @@
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/quantity.h"
+#include "engine/perception/perception.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/counted.h"
 #include "engine/tools/cli/study_run.h"
-#include "engine/tools/paper/perception.h"
 #include "engine/tools/study/study_analysis.h"
 
 namespace palp {
@@ -99,7 +99,7 @@ Json jsonOf(const AnswerSummary& s)
                          {"median", *s.median},
                          {"mean_bootstrap_95", s.meanInterval ? listOf(*s.meanInterval) : Json()}};
     all["prediction"] = {
-        {"noticeable_steps", orNull(s.steps)}, {"right", orNull(s.predicted)}, {"weber", report::kRigidHandleWeber}};
+        {"noticeable_steps", orNull(s.steps)}, {"right", orNull(s.predicted)}, {"weber", kRigidHandleWeber}};
     return all;
 }
 
@@ -135,8 +135,8 @@ void printText(const AnswerSummary& s)
     if (s.right) std::cout << "  right: " << percent(*s.right) << "\n";
     if (s.predicted)
         std::cout << "  predicted, not measured: " << std::lround(100 * *s.predicted)
-                  << " % right, J = " << decimals(*s.steps) << " steps of "
-                  << std::lround(100 * report::kRigidHandleWeber) << " %\n";
+                  << " % right, J = " << decimals(*s.steps) << " steps of " << std::lround(100 * kRigidHandleWeber)
+                  << " %\n";
 }
 
 } // namespace

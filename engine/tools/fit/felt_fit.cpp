@@ -7,7 +7,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/parallel.h"
-#include "engine/tools/paper/felt_map.h"
+#include "engine/perception/felt_map.h"
 
 namespace palp::fit {
 namespace {
@@ -45,7 +45,7 @@ std::vector<double> smoothed(const std::vector<double>& values, const SoftObject
 }
 
 /// Returns what is felt at each point: what a touch told where one was, else between the touches.
-std::vector<double> feltAt(report::FeltMap map)
+std::vector<double> feltAt(FeltMap map)
 {
     for (std::size_t n = 0; n < map.places.size(); ++n) map.atPoints[map.places[n]] = map.stiffness[n];
     return std::move(map.atPoints);
@@ -68,9 +68,9 @@ FeltFit fitFeltMap(const SoftObject& start, std::span<const double> measured, co
     for (;; ++fit.steps) {
         const auto whole = std::size_t(settings.mostSteps + 1);
         if (settings.onStep) settings.onStep(std::size_t(fit.steps), whole);
-        report::FeltMap map = report::feltMap(fit.object, settings.patch, settings.places, solver);
-        fit.leftOut         = map.leftOut;
-        fit.felt            = feltAt(std::move(map));
+        FeltMap map = feltMap(fit.object, settings.patch, settings.places, solver);
+        fit.leftOut = map.leftOut;
+        fit.felt    = feltAt(std::move(map));
         std::vector<double> wanting(modulus.size());
         for (std::size_t n = 0; n < wanting.size(); ++n) wanting[n] = std::log(measured[n] / fit.felt[n]);
         const std::vector<double> correction = smoothed(wanting, fit.object, fit.reach);

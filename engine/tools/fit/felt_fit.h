@@ -32,7 +32,7 @@ struct FeltFit {
 
 /// Finds the modulus of each point with which the program's own map of felt stiffness agrees with a measured one.
 ///
-/// A step touches the object (report::feltMap()) and multiplies
+/// A step touches the object (feltMap()) and multiplies
 ///
 ///     E <- E (S[measured / felt])^(4/3)
 ///

@@ -3,7 +3,7 @@
 #include "engine/core/quantity.h"
 #include "engine/tools/paper/parts.h"
 #include "engine/tools/paper/perception_figures.h"
-#include "engine/tools/paper/scene_perception.h"
+#include "engine/perception/scene_perception.h"
 
 namespace palp::report {
 namespace {

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "engine/core/quantity.h"
-#include "engine/tools/paper/felt_path.h"
+#include "engine/perception/felt_path.h"
 #include "engine/tools/paper/parts.h"
-#include "engine/tools/paper/perception.h"
+#include "engine/perception/perception.h"
 #include "engine/tools/plot/line_plot.h"
 
 namespace palp::report {

@@ -1,8 +1,8 @@
 #pragma once
 #include <string>
 
-#include "engine/tools/paper/felt_map.h"
-#include "engine/tools/paper/scene_perception.h"
+#include "engine/perception/felt_map.h"
+#include "engine/perception/scene_perception.h"
 #include "engine/tools/render/cloud_figure.h"
 
 namespace palp::report {

@@ -6,7 +6,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/uniform.h"
-#include "engine/tools/paper/perception.h"
+#include "engine/perception/perception.h"
 #include "engine/tools/plot/colour_map.h"
 #include "engine/tools/plot/legend.h"
 #include "engine/tools/plot/svg.h"
@@ -104,8 +104,8 @@ AnswerSummary finished(const Group& group, const Stiffnesses& stiffnesses)
     }
     const auto a = stiffnesses.find(group.first), b = stiffnesses.find(group.second);
     if (!group.second.empty() && s.right && a != stiffnesses.end() && b != stiffnesses.end()) {
-        s.steps     = report::noticeableSteps(a->second, b->second, report::kRigidHandleWeber);
-        s.predicted = report::rightAnswers(*s.steps);
+        s.steps     = noticeableSteps(a->second, b->second, kRigidHandleWeber);
+        s.predicted = rightAnswers(*s.steps);
     }
     return s;
 }

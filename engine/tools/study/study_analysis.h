@@ -47,7 +47,7 @@ using Stiffnesses = std::map<std::string, double>;
 /// Sums up answers over participants, in the order in which they first occur. The interval of a mean rating is a
 /// bootstrap over participants, because the answers of one participant are not independent: 2000 random selections,
 /// percentiles, the same in every run.
-/// \source Efron 1979, "Bootstrap methods: another look at the jackknife"; predictions: engine/tools/paper/perception.h
+/// \source Efron 1979, "Bootstrap methods: another look at the jackknife"; predictions: engine/perception/perception.h
 [[nodiscard]] std::vector<AnswerSummary> analyse(const std::vector<TrialRow>& rows, const Stiffnesses& stiffnesses);
 
 /// Plots shares with their intervals, and predictions beside them, as a self-contained SVG picture.

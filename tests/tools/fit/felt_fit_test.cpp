@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/session/scene.h"
-#include "engine/tools/paper/felt_map.h"
+#include "engine/perception/felt_map.h"
 #include "tests/session/sheet_session.h"
 
 namespace palp::fit {
@@ -18,7 +18,7 @@ struct SlowSheet {
     Scene                 scene  = sheetScene(R"({"law": "exponential", "from": 0.2e6, "to": 0.8e6, "axis": "x"})");
     SoftObject            object = thinned();
     PlateSolver           solver{"host"};
-    const report::FeltMap map = report::feltMap(object, scene.patch, 400, solver);
+    const FeltMap map = feltMap(object, scene.patch, 400, solver);
 
     SoftObject thinned()
     {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/tools/paper/perception.h"
+#include "engine/perception/perception.h"
 
 namespace palp::study {
 namespace {

@@ -24,7 +24,7 @@ from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 
-__all__ = ["Answer", "Error", "Object", "Session", "Touch", "felt_map", "plate", "read_recording", "version"]
+__all__ = ["Answer", "Error", "Object", "Perception", "Session", "Touch", "felt_map", "plate", "read_recording", "version"]
 
 ArrayLike = Any
 _double_p = ctypes.POINTER(ctypes.c_double)
@@ -77,6 +77,17 @@ class _TouchResult(_Struct):
                 ("place", ctypes.c_double * 3), ("normal", ctypes.c_double * 3)]
 
 
+class _Path(_Struct):
+    _fields_ = [("size", ctypes.c_size_t), ("place", ctypes.c_void_p), ("from_", ctypes.c_void_p),
+                ("direction", ctypes.c_void_p), ("reach", ctypes.c_double), ("places", ctypes.c_int)]
+
+
+class _Perception(_Struct):
+    _fields_ = [("size", ctypes.c_size_t), ("softest", ctypes.c_double), ("hardest", ctypes.c_double)] + [
+        (name, ctypes.c_double * 3) for name in ("weber", "at_rest", "sliding", "passing", "floor", "right")] + [
+        ("held", ctypes.c_double)]
+
+
 class _SessionSettings(_Struct):
     _fields_ = [("size", ctypes.c_size_t), ("device_mass", ctypes.c_double), ("device_damping", ctypes.c_double),
                 ("maximum_force", ctypes.c_double), ("maximum_stiffness", ctypes.c_double)]
@@ -119,6 +130,8 @@ _declare("palpate_object_scene", _int, _void, _text, _size, _size_p)
 _declare("palpate_touch", _int, _void, _void, _void, ctypes.POINTER(_TouchResult))
 _declare("palpate_touch_displaced", _int, _void, _void, _void, ctypes.c_double, _void, _size)
 _declare("palpate_felt_map", _int, _void, _void, _void, _size, _void, _size_p)
+_declare("palpate_felt_map_every", _int, _void, ctypes.c_double, _void, _size, _size_p)
+_declare("palpate_perceive", _int, _void, ctypes.POINTER(_Path), ctypes.POINTER(_Perception), _void, _void, _size)
 _declare("palpate_session_create", _int, _void, ctypes.POINTER(_SessionSettings), ctypes.POINTER(_void))
 _declare("palpate_session_destroy", None, _void)
 _declare("palpate_session_step", _int, _void, ctypes.c_double, ctypes.POINTER(_Hand), ctypes.POINTER(_Answer))
@@ -177,6 +190,21 @@ class Touch(NamedTuple):
     place: np.ndarray           #: (3,) on the surface [m]
     normal: np.ndarray          #: (3,) towards the finger
     points: Optional[np.ndarray]  #: (n, 3) every point under the force that was asked for [m]
+
+
+class Perception(NamedTuple):
+    """What people would notice along a path: a prediction, not a study. Arrays of (3,) are for people whose smallest
+    noticed change is `weber`; one just noticeable step is told right in three of four trials."""
+
+    along: np.ndarray    #: (places,) where each lies, from the middle of the path [m]
+    felt: np.ndarray     #: (places,) stiffness felt there with a finger at rest [N/m]
+    weber: np.ndarray    #: (3,) 0.07, 0.15, 0.22
+    at_rest: np.ndarray  #: (3,) steps between the softest and the hardest place
+    sliding: np.ndarray  #: (3,) the same for a finger that slides, through all of a session
+    passing: np.ndarray  #: (3,) of these, within 5 mm
+    floor: np.ndarray    #: (3,) sliding over the same points with one stiffness: an artefact, below 0.5 if all is well
+    right: np.ndarray    #: (3,) share of right answers, sliding; 0.5 is guessing
+    held: float          #: share of the slide in which a wall or a fold holds the hand
 
 
 class Answer(NamedTuple):
@@ -305,16 +333,42 @@ class Object:
         return Touch(found.felt_stiffness, found.compliance, found.contact_stiffness, found.rigidity,
                      found.solver_error, found.discretisation_error, np.array(found.place), np.array(found.normal), moved)
 
-    def felt_map(self, places: Optional[ArrayLike] = None, sides: Optional[ArrayLike] = None) -> np.ndarray:
+    def felt_map(self, places: Optional[ArrayLike] = None, sides: Optional[ArrayLike] = None,
+                 spacing: Optional[float] = None) -> np.ndarray:
         """Returns the felt stiffness [N/m], (m,), at places (m, 3) [m], on all cores; NaN where nothing can be touched.
 
-        places: None for every point of the object. sides: (m, 3) from where the finger comes to each.
+        places: None for every point of the object. sides: (m, 3) from where the finger comes to each. spacing: [m]; one
+        place is touched in each cube of this edge, and every point gets what lies between them.
         """
+        if spacing is not None:
+            if places is not None or sides is not None:
+                raise Error("spacing: expected places or a spacing, found both")
+            felt = np.empty(len(self))
+            _check(_lib.palpate_felt_map_every(self._handle, float(spacing), _address(felt), len(felt), None))
+            return felt
         at = self.points if places is None else _doubles(places, "places", None, 3)
         directions = None if sides is None else _doubles(sides, "sides", len(at), 3)
         felt = np.empty(len(at))
         _check(_lib.palpate_felt_map(self._handle, _address(at), _address(directions), len(at), _address(felt), None))
         return felt
+
+    def perceive(self, place: Optional[ArrayLike] = None, side: Optional[ArrayLike] = None,
+                 direction: Optional[ArrayLike] = None, reach: float = 0, places: int = 41) -> Perception:
+        """Predicts what is noticed along a straight path over the object; it takes some seconds.
+
+        place: (3,) its middle [m]; None: the scene's. side: (3,) from where the finger comes. direction: (3,) along the
+        surface; None: the east of the map. reach: to either side [m]; 0: a third of the patch window. places: with a
+        finger at rest, 3 to 1001.
+        """
+        middle, outward, way = _three(place, "place"), _three(side, "side"), _three(direction, "direction")
+        asked = _Path(place=_address(middle), from_=_address(outward), direction=_address(way), reach=float(reach),
+                      places=int(places))
+        found, room = _Perception(), max(3, int(places) or 41)
+        along, felt = np.empty(room), np.empty(room)
+        _check(_lib.palpate_perceive(self._handle, ctypes.byref(asked), ctypes.byref(found), _address(along),
+                                     _address(felt), room))
+        return Perception(along, felt, *(np.array(getattr(found, name)) for name in
+                                         ("weber", "at_rest", "sliding", "passing", "floor", "right")), found.held)
 
     def run(self, times: ArrayLike, places: ArrayLike, ticks: Optional[int] = None) -> "tuple[np.ndarray, np.ndarray]":
         """Runs a whole session in virtual time: a hand at places (n, 3) [m] at times (n,) [s], on straight lines between.

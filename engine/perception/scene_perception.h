@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "engine/tools/paper/felt_path.h"
-#include "engine/tools/paper/perception.h"
+#include "engine/perception/felt_path.h"
+#include "engine/perception/perception.h"
 
-namespace palp::report {
+namespace palp {
 
 /// The steps that one group of people would notice along a path.
 struct NoticedSteps {
@@ -45,4 +45,4 @@ struct ScenePerception {
                                        PlateSolver&                                         solver,
                                        const std::function<void(std::size_t, std::size_t)>& onStep = {});
 
-} // namespace palp::report
+} // namespace palp

@@ -1,4 +1,4 @@
-#include "engine/tools/paper/perception.h"
+#include "engine/perception/perception.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include "engine/core/contract.h"
 
-namespace palp::report {
+namespace palp {
 
 double noticeableSteps(double a, double b, double weber) noexcept
 {
@@ -51,4 +51,4 @@ double largestRange(std::span<const double> along, std::span<const double> value
     return range;
 }
 
-} // namespace palp::report
+} // namespace palp

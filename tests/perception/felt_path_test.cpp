@@ -1,4 +1,4 @@
-#include "engine/tools/paper/felt_path.h"
+#include "engine/perception/felt_path.h"
 
 #include <cmath>
 #include <numbers>
@@ -7,10 +7,10 @@
 
 #include <glm/geometric.hpp>
 
-#include "engine/tools/paper/scene_perception.h"
+#include "engine/perception/scene_perception.h"
 #include "tests/session/sheet_session.h"
 
-namespace palp::report {
+namespace palp {
 namespace {
 
 struct Felt {
@@ -141,4 +141,4 @@ TEST(FeltPath, TheHomogeneousTwinHasTheGeometricMeanEverywhere)
 }
 
 } // namespace
-} // namespace palp::report
+} // namespace palp

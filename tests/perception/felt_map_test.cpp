@@ -1,14 +1,14 @@
-#include "engine/tools/paper/felt_map.h"
+#include "engine/perception/felt_map.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "engine/perception/perception.h"
 #include "engine/session/scene.h"
-#include "engine/tools/paper/perception.h"
 #include "tests/session/sheet_session.h"
 
-namespace palp::report {
+namespace palp {
 namespace {
 
 TEST(FeltMap, ShowsAWartAndNothingElse)
@@ -44,4 +44,4 @@ TEST(FeltMap, WhatCannotBeTouchedIsCountedAndNoPlaceAtAllIsRefused)
 }
 
 } // namespace
-} // namespace palp::report
+} // namespace palp

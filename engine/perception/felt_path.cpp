@@ -1,4 +1,4 @@
-#include "engine/tools/paper/felt_path.h"
+#include "engine/perception/felt_path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,12 +11,12 @@
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
 #include "engine/force/governor.h"
+#include "engine/perception/perception.h"
 #include "engine/session/deformation.h"
 #include "engine/session/scripted_hand.h"
 #include "engine/session/virtual_session.h"
-#include "engine/tools/paper/perception.h"
 
-namespace palp::report {
+namespace palp {
 namespace {
 
 /// Returns points of the surface along the line, from end to end.
@@ -185,4 +185,4 @@ FeltRange rangeOf(const std::vector<FeltTick>& ticks)
     return rangeOf(along, logarithms);
 }
 
-} // namespace palp::report
+} // namespace palp

@@ -7,7 +7,7 @@
 #include "engine/session/hand_path.h"
 #include "engine/session/scene.h"
 
-namespace palp::report {
+namespace palp {
 
 /// A line over an object, along which a finger feels.
 struct FeltLine {
@@ -69,4 +69,4 @@ inline constexpr double kPassing = 5e-3; ///< about a fingertip's width [m]
 [[nodiscard]] FeltRange rangeOf(const std::vector<FeltPlace>& places, ForceLaw law);
 [[nodiscard]] FeltRange rangeOf(const std::vector<FeltTick>& ticks); ///< of those in which the hand is not held
 
-} // namespace palp::report
+} // namespace palp

@@ -1,6 +1,6 @@
-#include "engine/tools/paper/scene_perception.h"
+#include "engine/perception/scene_perception.h"
 
-namespace palp::report {
+namespace palp {
 namespace {
 
 std::array<NoticedSteps, 3> stepsOf(const FeltRange& felt, const FeltRange& artefact)
@@ -39,4 +39,4 @@ ScenePerception perceive(const Scene& scene, const SoftObject& object, const Fel
     return result;
 }
 
-} // namespace palp::report
+} // namespace palp

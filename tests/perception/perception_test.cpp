@@ -1,4 +1,4 @@
-#include "engine/tools/paper/perception.h"
+#include "engine/perception/perception.h"
 
 #include <cmath>
 #include <limits>
@@ -10,7 +10,7 @@
 #include "engine/plate/load.h"
 #include "engine/plate/plate_solver.h"
 
-namespace palp::report {
+namespace palp {
 namespace {
 
 /// A contact that passes a stiff wart: the deflection under it, and the score of who compares it with a plate without
@@ -94,4 +94,4 @@ TEST(Perception, TheLargestRangeWithinALengthIsThatOfAllPairs)
 }
 
 } // namespace
-} // namespace palp::report
+} // namespace palp

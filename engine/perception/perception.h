@@ -2,7 +2,7 @@
 #include <array>
 #include <span>
 
-namespace palp::report {
+namespace palp {
 
 // The functions below predict what a person would notice of stiffness. They are no user study.
 
@@ -40,4 +40,4 @@ inline constexpr double kRigidHandleWeber = kWeberFractions.back();
 /// \param values  one per position
 [[nodiscard]] double largestRange(std::span<const double> along, std::span<const double> values, double within);
 
-} // namespace palp::report
+} // namespace palp

@@ -1,11 +1,14 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "engine/contact/contact.h"
 #include "engine/pipeline/deform.h"
 
-namespace palp::report {
+namespace palp {
 
 /// The felt stiffness of an object from place to place.
 struct FeltMap {
@@ -25,9 +28,30 @@ struct FeltMap {
 [[nodiscard]] FeltMap feltMap(const SoftObject& object, const PatchSettings& settings, std::size_t wanted,
                               PlateSolver& solver, const std::function<void(std::size_t, std::size_t)>& onStep = {});
 
+/// Does the same on all cores, with one place in each cube of this edge [m] that holds points.
+/// \param solver  as PlateSolver takes it; every thread opens its own
+/// \throws Error if no place can be touched
+/// \thread any; starts threads
+[[nodiscard]] FeltMap feltMapEvery(const SoftObject& object, const PatchSettings& settings, double edge,
+                                   std::string_view solver);
+
+/// The felt stiffness of many touches.
+struct FeltTouches {
+    std::vector<double> stiffness;   ///< [N/m], in the order of the touches; NaN where nothing can be touched
+    std::size_t         leftOut = 0; ///< of them
+    std::string         why;         ///< of one that was left out
+};
+
+/// Touches an object many times, on all cores.
+/// \param contact  makes the n-th contact; throws Error where there is none; called from several threads
+/// \param solver   as PlateSolver takes it; every thread opens its own
+/// \thread any; starts threads
+[[nodiscard]] FeltTouches feltTouches(const SoftObject& object, const PatchSettings& settings, std::size_t count,
+                                      const std::function<Contact(std::size_t)>& contact, std::string_view solver);
+
 /// Returns, at every point, the share of right answers when the place is compared with the object's typical one [1]:
 /// 0.5 to 1.
 /// \param weber  smallest relative change that is noticed [1]
 [[nodiscard]] std::vector<double> detectability(const FeltMap& map, double weber);
 
-} // namespace palp::report
+} // namespace palp
