@@ -9,6 +9,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/detail/shell_patch.h"
 #include "engine/plate/load.h"
 
 namespace palp {
@@ -60,6 +61,35 @@ double bendingRadius(const Plate& plate, const NodeField& w)
             energy += here;
         }
     return std::sqrt(sum / energy);
+}
+
+/// ln D over that of some node: exactly 0 if all are alike.
+struct OverNode {
+    double    node = 0, mean = 0; ///< rigidity of that node, geometric mean [N m]
+    NodeField over;
+
+    explicit OverNode(const Plate& plate) : node(plate.rigidity.values().front()), over(plate.grid)
+    {
+        double sum = 0;
+        for (std::size_t n = 0; n < over.values().size(); ++n)
+            sum += over.values()[n] = std::log(plate.rigidity.values()[n] / node);
+        mean = node * std::exp(sum / double(over.values().size()));
+    }
+};
+
+/// Writes what footprints feel, less what they feel of the window alone.
+/// \param own  of the window: ln c(e)/c(0) with its slopes
+MiddleSolution fillTable(FootprintSolution solved, const FootprintLattice& lattice, const OverNode& rigidity,
+                         const ComplianceTable::Entries& own, ComplianceTable& table)
+{
+    table.side    = lattice.shape.side;
+    table.spacing = lattice.shape.radius;
+    for (std::size_t n = 0; n < solved.responses.size(); ++n) {
+        const ComplianceTable::Entry felt = complianceOf(solved.responses[n]);
+        table.compliance[n] = {felt.value - own[n].value, felt.slopeX - own[n].slopeX, felt.slopeZ - own[n].slopeZ};
+        table.contactStiffness[n] = contactOf(lattice, n, rigidity.over, rigidity.node);
+    }
+    return {std::move(solved.whole), solved.responses[lattice.loads.size() / 2].work};
 }
 
 } // namespace
@@ -163,27 +193,31 @@ TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, Pl
 MiddleSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver, double tolerance,
                           ComplianceTable& table)
 {
-    const std::size_t middle = lattice.loads.size() / 2;
-    FootprintSolution solved = solver.solveFootprints(plate, lattice.loads, middle, tolerance);
-    table.side               = lattice.shape.side;
-    table.spacing            = lattice.shape.radius;
-
-    const double node = plate.rigidity.values().front(); // logarithms are of ratios to it: exactly 0 if all are alike
-    NodeField    over(plate.grid);
-    double       sum = 0;
-    for (std::size_t n = 0; n < over.values().size(); ++n)
-        sum += over.values()[n] = std::log(plate.rigidity.values()[n] / node);
+    FootprintSolution solved = solver.solveFootprints(plate, lattice.loads, lattice.loads.size() / 2, tolerance);
+    const OverNode    over(plate);
     // The window's correction depends on how far a dent spreads, (D/k)^(1/4): a foundation that is firmer throughout is
     // as good as a softer sheet.
     const double firmer = plate.foundationShape.values().empty() ? 1 : geometricMean(plate.foundationShape.values());
-    const auto   homogeneous = lattice.homogeneous(node * std::exp(sum / double(over.values().size())) / firmer);
-    for (std::size_t n = 0; n < solved.responses.size(); ++n) {
-        const ComplianceTable::Entry felt = complianceOf(solved.responses[n]);
-        const ComplianceTable::Entry own  = homogeneous[n];
-        table.compliance[n]       = {felt.value - own.value, felt.slopeX - own.slopeX, felt.slopeZ - own.slopeZ};
-        table.contactStiffness[n] = contactOf(lattice, n, over, node);
+    return fillTable(std::move(solved), lattice, over, lattice.homogeneous(over.mean / firmer), table);
+}
+
+MiddleSolution solveTable(const Shell& shell, const FootprintLattice& lattice, PlateSolver& solver, double tolerance,
+                          ComplianceTable& table)
+{
+    constexpr double         kLoose = 1e-2; // works are right to its square
+    const std::size_t        middle = lattice.loads.size() / 2;
+    FootprintSolution        solved = solver.solveFootprints(shell, lattice.loads, middle, tolerance);
+    ComplianceTable::Entries own{};
+    if (lattice.loads.size() > 1) {
+        const auto mean =
+            solver.solveFootprints(homogeneousOf(shell), lattice.loads, middle, std::max(tolerance, kLoose));
+        const auto at = complianceOf(mean.responses[middle]);
+        for (std::size_t n = 0; n < mean.responses.size(); ++n) {
+            own[n] = complianceOf(mean.responses[n]);
+            own[n].value -= at.value;
+        }
     }
-    return {std::move(solved.whole), solved.responses[middle].work};
+    return fillTable(std::move(solved), lattice, OverNode(shell.bending), own, table);
 }
 
 } // namespace palp

@@ -82,4 +82,9 @@ struct MiddleSolution {
 [[nodiscard]] MiddleSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver,
                                         double tolerance, ComplianceTable& table);
 
+/// Does the same on a shell. What the window does to footprints off its middle, and the phase of the grid, are those of
+/// a shell of the mean rigidity and curvature, which is solved as well.
+[[nodiscard]] MiddleSolution solveTable(const Shell& shell, const FootprintLattice& lattice, PlateSolver& solver,
+                                        double tolerance, ComplianceTable& table);
+
 } // namespace palp

@@ -13,6 +13,7 @@
 #include "engine/cloud/surface_flood.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/detail/shell_patch.h"
 #include "engine/pipeline/detail/touched_surface.h"
 #include "engine/plate/load.h"
 
@@ -400,7 +401,9 @@ void bendPlate(Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 {
     const StageClock  clock(patch.times.solve);
     const Footprint   finger(unitLoad(patch.plate.grid, settings));
-    FootprintSolution solved = solver.solveFootprints(patch.plate, {&finger, 1}, 0, settings.tolerance);
+    FootprintSolution solved = patch.curvature
+                                   ? solver.solveFootprints(shellOf(patch), {&finger, 1}, 0, settings.tolerance)
+                                   : solver.solveFootprints(patch.plate, {&finger, 1}, 0, settings.tolerance);
     keep(patch, std::move(solved.whole), solved.responses.front().work);
 }
 
@@ -409,7 +412,8 @@ void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLatti
                ComplianceTable& table)
 {
     const StageClock clock(patch.times.solve);
-    MiddleSolution   middle = solveTable(patch.plate, lattice, solver, settings.tolerance, table);
+    MiddleSolution   middle = patch.curvature ? solveTable(shellOf(patch), lattice, solver, settings.tolerance, table)
+                                              : solveTable(patch.plate, lattice, solver, settings.tolerance, table);
     table.chart             = patch.chart;
     keep(patch, std::move(middle.solution), middle.compliance);
 }
@@ -477,6 +481,8 @@ bool makePlate(Patch& patch, const SoftObject& object, const Contact& contact, c
     if (!patch.deformed()) return false;
     layFlat(patch, object, std::move(surface), settings, carried); // 2.3: which an equal-area map lays flat,
     fillRigidity(patch, object, settings);                         // 2.4: where a grid takes over their rigidity
+    const StageClock clock(patch.times.resample);
+    curvePatch(patch, object, settings); //      and, if it is to be a shell, their curvature
     return true;
 }
 
@@ -542,19 +548,54 @@ Patch deformWithTable(const SoftObject& object, const Contact& contact, const Pa
     return patch;
 }
 
+namespace {
+
+/// Returns the compliance on a grid of twice the spacing; empty if it cannot be solved there.
+std::optional<double> coarseCompliance(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
+{
+    const PlateGrid& fine  = patch.plate.grid;
+    Plate            plate = patch.plate;
+    plate.grid             = {fine.cellsX / 2, fine.cellsZ / 2, 2 * fine.spacingX, 2 * fine.spacingZ};
+    plate.rigidity         = everySecondOf(patch.plate.rigidity, plate.grid);
+    plate.foundationShape  = everySecondOf(patch.plate.foundationShape, plate.grid);
+    if (whyUnsolvable(plate)) return {};
+    const Footprint finger(unitLoad(plate.grid, settings));
+    const auto      of = [&](const auto& what) {
+        return solver.solveFootprints(what, {&finger, 1}, 0, settings.tolerance).responses.front().work;
+    };
+    if (!patch.curvature) return of(plate);
+    Shell shell              = shellOf(patch);
+    shell.bending            = plate;
+    shell.membraneCompliance = everySecondOf(shell.membraneCompliance, plate.grid);
+    shell.curvatureX         = everySecondOf(shell.curvatureX, plate.grid);
+    shell.curvatureZ         = everySecondOf(shell.curvatureZ, plate.grid);
+    shell.curvatureXZ        = everySecondOf(shell.curvatureXZ, plate.grid);
+    return of(shell);
+}
+
+} // namespace
+
 std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 {
-    const PlateGrid& fine = patch.plate.grid;
-    if (!patch.deformed() || settings.cells % 4 != 0 || settings.footprintRadius < 2 * fine.spacingX) return {};
-    Plate coarse           = patch.plate;
-    coarse.grid            = {fine.cellsX / 2, fine.cellsZ / 2, 2 * fine.spacingX, 2 * fine.spacingZ};
-    coarse.rigidity        = everySecondOf(patch.plate.rigidity, coarse.grid);
-    coarse.foundationShape = everySecondOf(patch.plate.foundationShape, coarse.grid);
-    if (whyUnsolvable(coarse)) return {};
-    const Footprint finger(unitLoad(coarse.grid, settings));
-    const double    compliance =
-        solver.solveFootprints(coarse, {&finger, 1}, 0, settings.tolerance).responses.front().work;
-    return std::abs(compliance - patch.compliance) / 3 / patch.compliance;
+    if (!patch.deformed() || settings.cells % 4 != 0 || settings.footprintRadius < 2 * patch.plate.grid.spacingX)
+        return {};
+    const auto compliance = coarseCompliance(patch, settings, solver);
+    if (!compliance) return {};
+    return std::abs(*compliance - patch.compliance) / 3 / patch.compliance;
+}
+
+std::optional<SupportRange> supportRange(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
+{
+    if (!patch.curvature) return {};
+    const Footprint finger(unitLoad(patch.plate.grid, settings));
+    const auto      felt = [&](Edge edge) {
+        Shell shell         = shellOf(patch);
+        shell.bending.edges = {edge, edge, edge, edge};
+        shell.stressEdges   = stressEdgesFor(shell.bending.edges);
+        const double c = solver.solveFootprints(shell, {&finger, 1}, 0, settings.tolerance).responses.front().work;
+        return feltStiffness(settings.forceLaw, patch.contactStiffness, c);
+    };
+    return SupportRange{felt(Edge::supported), felt(Edge::clamped)};
 }
 
 } // namespace palp

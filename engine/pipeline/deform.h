@@ -52,4 +52,17 @@ struct PatchWithTable {
 [[nodiscard]] std::optional<double> discretisationError(const Patch& patch, const PatchSettings& settings,
                                                         PlateSolver& solver);
 
+/// Felt stiffness of a shell [N/m] by how the surface beyond its window holds it.
+struct SupportRange {
+    double supported = 0; ///< cut from a larger body: no deflection, and no strain along the edge
+    double clamped   = 0; ///< held as firmly as can be
+};
+
+/// Solves the patch's shell with either support on all sides. Where a surface is curved one way, or both ways against
+/// each other, a dent reaches as far as the object does, and its support decides within this range; where it bulges both
+/// ways and the window is some eight lengths wide, both are nearly alike.
+/// \return empty if the patch is no shell
+[[nodiscard]] std::optional<SupportRange> supportRange(const Patch& patch, const PatchSettings& settings,
+                                                       PlateSolver& solver);
+
 } // namespace palp

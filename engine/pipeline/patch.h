@@ -2,11 +2,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/chart/chart.h"
+#include "engine/chart/curvature_field.h"
 #include "engine/chart/resample.h"
 #include "engine/chart/sphere_fit.h"
 #include "engine/cloud/coarse_object.h"
@@ -30,6 +33,17 @@ constexpr auto namesOf(Neighbourhood)
     return std::to_array<NamedValue<Neighbourhood>>({{surface, "surface"}, {ball, "ball"}});
 }
 
+/// The ways in which a thin sheet resists.
+enum class Theory {
+    plate, ///< it bends as if it were flat: the paper's
+    shell  ///< where it is curved its membrane resists too; see Shell
+};
+constexpr auto namesOf(Theory)
+{
+    using enum Theory;
+    return std::to_array<NamedValue<Theory>>({{plate, "plate"}, {shell, "shell"}});
+}
+
 /// The constants of a scene that decide what a touch feels like, apart from the object itself.
 ///
 /// Patch window, footprint and area of contact are lengths that are never derived from the points at the contact. So
@@ -42,7 +56,8 @@ struct PatchSettings {
     Map           map             = Map::lambertAzimuthal;
     Neighbourhood neighbourhood   = Neighbourhood::surface;
     Resampling    resampling      = Resampling::logMean;
-    PlateEdges    edges{}; ///< of the window
+    Theory        theory          = Theory::plate;
+    PlateEdges    edges{}; ///< of the window; of a shell that is cut from a larger body best all supported
     ForceLaw      forceLaw  = ForceLaw::series;
     double        tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
 };
@@ -64,10 +79,17 @@ struct Patch {
         false; ///< the points around determine no surface that agrees with the hand's: the proxy's is taken
     double      unrolled = 0; ///< share of the exponential map in the positions [1]; 0: the sphere follows the surface
     PatchWindow window;
-    Plate       plate;                 ///< rigidity at the nodes, edges, foundation
-    double      spacing           = 0; ///< typical distance of neighbouring points at the contact [m]
-    double      noise             = 0; ///< standard deviation of the points there about the surface [m]
-    double      thickness         = 0; ///< of the object at the contact [m]
+    Plate       plate;                ///< rigidity at the nodes, edges, foundation
+    NodeField   membraneCompliance{}; ///< 1/(E h) at the nodes [m/N], where the settings ask for a shell
+    /// Of the surface at the nodes, if it bent as a shell; empty: as a plate.
+    std::optional<CurvatureField> curvature;
+    std::string flatBecause; ///< why it bent as a plate although a shell was asked for; empty: it need not
+    std::pair<double, double> principal{}; ///< curvatures at the contact, the larger by size first; 0 without a shell
+                                           ///< [1/m] > 0: bulges to the finger
+    double      shellLength = 0; ///< l over which a dent of the shell dies away [m]; 0 where no shell was asked for
+    double      spacing     = 0; ///< typical distance of neighbouring points at the contact [m]
+    double      noise       = 0; ///< standard deviation of the points there about the surface [m]
+    double      thickness   = 0; ///< of the object at the contact [m]
     std::size_t nodesWithoutPoint = 0; ///< see Resampled
     NodeField   response;              ///< deflection per force at the nodes [m/N]
     double      compliance       = 0;  ///< c: response averaged over the footprint, work-conjugate [m/N]

@@ -39,6 +39,36 @@ double edgeDeflection(const NodeField& field)
     return most;
 }
 
+/// Adds what limits a shell, or what a plate that is no shell leaves out.
+void addCurvature(std::vector<std::string>& result, const Patch& patch, const PatchSettings& settings)
+{
+    constexpr double kLocal = 8;                 // lengths: the window's edges then change 1 % of what a dome feels [1]
+    constexpr double kSag = 0.25, kFolded = 0.5; // [1]
+    if (!patch.flatBecause.empty())
+        result.push_back("it bent as a flat plate, not as the shell that was asked for: " + patch.flatBecause);
+    if (!patch.curvature) return;
+    const auto [most, least] = patch.principal;
+    const double     lengths = settings.window / patch.shellLength;
+    constexpr double kOneWay = 0.1; // the lesser curvature over the larger, below which a dent reaches far [1]
+    if (least / most < kOneWay)
+        result.push_back(
+            "the surface is curved " +
+            std::string(least / most < -kOneWay ? "both ways against each other" : "one way") +
+            " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
+            "and --edges");
+    else if (lengths < kLocal)
+        result.push_back("the patch window is " + formatNumber(lengths) + " lengths of the shell wide (" +
+                         formatQuantity(patch.shellLength, "m") +
+                         " each), so that its edges are felt; try a --window of " +
+                         formatQuantity(kLocal * patch.shellLength, "m"));
+    if (std::abs(most) * settings.window / 8 > kSag)
+        result.push_back("the surface is too deep for the theory of shallow shells: it sags " +
+                         formatNumber(std::abs(most) * settings.window / 8) +
+                         " of the patch window's width, expected at most 0.25; try a smaller --window");
+    if (patch.unrolled > kFolded)
+        result.push_back("the surface lies far off a sphere, and a shell's forces do not follow its folds well");
+}
+
 } // namespace
 
 std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force,
@@ -73,6 +103,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     if (patch.sideUnsure)
         result.push_back("the cloud has no other side behind this place, so the finger's side is a guess (" +
                          directionText(patch.chart.frame.normal) + "); set --from");
+    addCurvature(result, patch, settings);
     constexpr double kElsewhere = 0.5,
                      kFarOut    = 8; // [spacings]; [standard deviations of noise], of which few are beyond 5
     const double away           = glm::length(patch.chart.origin - patch.contact.point);

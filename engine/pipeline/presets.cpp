@@ -13,6 +13,7 @@ PatchSettings withPreset(PatchSettings settings, Preset preset)
     settings.forceLaw      = paper ? ForceLaw::paper : ForceLaw::series;
     settings.edges         = {};
     if (paper) settings.foundation = 0;
+    if (paper) settings.theory = Theory::plate;
     return settings;
 }
 
@@ -28,6 +29,9 @@ std::vector<std::string> differencesFromPaper(const PatchSettings& settings)
     if (settings.resampling != Resampling::nearest)
         lines.push_back(std::string("rigidity by ") + name(settings.resampling) +
                         ", the paper's by nearest: it jitters while the grid slides");
+    if (settings.theory != Theory::plate)
+        lines.push_back(std::string("theory ") + name(settings.theory) +
+                        ", the paper's is a plate: what is curved is as soft as what is flat");
     if (settings.edges != PlateEdges{}) lines.push_back("edges other than clamped, the paper's are clamped");
     if (settings.foundation != 0)
         lines.push_back("elastic foundation of " + formatQuantity(settings.foundation, "Pa/m") +

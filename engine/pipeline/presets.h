@@ -20,7 +20,7 @@ constexpr auto namesOf(Preset)
 }
 
 /// Returns these settings with the preset's map, resampling, edges, foundation and force law.
-/// `palpate` leaves the foundation as it is, `paper` removes it.
+/// `palpate` leaves foundation and theory as they are; `paper` removes the foundation and bends a plate.
 [[nodiscard]] PatchSettings withPreset(PatchSettings settings, Preset preset);
 
 /// Returns one line per respect in which the settings differ from the paper's method; empty for the preset `paper`.

@@ -17,7 +17,9 @@
 #include "engine/plate/detail/hard_plates.h"
 #include "engine/plate/detail/memory_shortage.h"
 #include "engine/plate/multigrid/multigrid_plate_solver.h"
+#include "engine/plate/multigrid/multigrid_shell_solver.h"
 #include "engine/plate/reference/reference_plate_solver.h"
+#include "engine/plate/reference/reference_shell_solver.h"
 
 namespace palp {
 namespace {
@@ -32,6 +34,30 @@ bool fitsReference(const PlateGrid& grid)
 std::string stoppedAt(const SolveReport& report)
 {
     return "the multigrid solver stopped at an error of about " + formatNumber(*report.errorEstimate);
+}
+
+/// Solves for footprints on a shell on the host: the whole one to the tolerance, and the others to its square root, so
+/// that their works are right to it.
+FootprintSolution byHost(const Shell& shell, std::span<const Footprint> loads, std::size_t whole, double tolerance)
+{
+    constexpr double       kLoosest = 1e-2; // as of a plate's footprints [1]
+    MultigridShellSolver   solver(shell);
+    std::vector<NodeField> others;
+    for (std::size_t n = 0; n < loads.size(); ++n)
+        if (n != whole) others.push_back(loads[n].load(shell.bending.grid));
+    const NodeField   middle = loads[whole].load(shell.bending.grid);
+    ShellAnswer       first  = solver.solve({&middle, 1}, tolerance).front();
+    const auto        rest   = solver.solve(others, std::min(kLoosest, std::sqrt(tolerance)));
+    FootprintSolution solution;
+    for (std::size_t n = 0; n < loads.size(); ++n) {
+        const ShellAnswer& of = n == whole ? first : rest[n < whole ? n : n - 1];
+        solution.responses.push_back(responseOf(loads[n], of.deflection));
+        solution.responses.back().work = of.work;
+        if (!of.report.converged) solution.whole.report = of.report;
+    }
+    if (solution.whole.report.converged) solution.whole.report = first.report;
+    solution.whole.deflection = std::move(first.deflection);
+    return solution;
 }
 
 /// Whether they differ in the values of their maps alone. Exactly: what a plate's answer is must not depend on the plates that were solved before.
@@ -495,6 +521,46 @@ FootprintSolution PlateSolver::solveFootprints(const Plate& plate, std::span<con
     if (!answer) answer = byReference(plate, loads, whole, tolerance);
     countTakeover(answer->whole.report.solver);
     return std::move(*answer);
+}
+
+FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,
+                                               double tolerance)
+{
+    PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
+    FootprintSolution solution;
+    if (processor_) {
+        solution = byHost(shell, loads, whole, tolerance);
+        if (!processor_->isHost()) note_ = name_ + " has no kernels for shells yet";
+    }
+    if (!processor_ || (!solution.whole.report.converged && fitsReference(shell.bending.grid))) {
+        if (processor_) note_ = stoppedAt(solution.whole.report);
+        solution = byReference(shell, loads, whole, tolerance);
+    }
+    countTakeover(solution.whole.report.solver);
+    return solution;
+}
+
+FootprintSolution PlateSolver::byReference(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,
+                                           double tolerance)
+{
+    const auto                 began = std::chrono::steady_clock::now();
+    const ReferenceShellSolver solver(shell);
+    const auto                 made = std::chrono::steady_clock::now();
+    FootprintSolution          solution;
+    for (std::size_t n = 0; n < loads.size(); ++n) {
+        ShellSolution of = solver.solve(loads[n].load(shell.bending.grid));
+        solution.responses.push_back(responseOf(loads[n], of.deflection));
+        if (n != whole) continue;
+        SolveReport& report       = solution.whole.report;
+        report.solver             = kReference;
+        report.errorEstimate      = of.errorEstimate;
+        report.converged          = of.errorEstimate * of.errorEstimate <= tolerance; // as for plates
+        solution.whole.deflection = std::move(of.deflection);
+    }
+    using Milliseconds                      = std::chrono::duration<double, std::milli>;
+    solution.whole.report.setUpMilliseconds = Milliseconds(made - began).count();
+    solution.whole.report.milliseconds      = Milliseconds(std::chrono::steady_clock::now() - made).count();
+    return solution;
 }
 
 FootprintSolution PlateSolver::byReference(const Plate& plate, std::span<const Footprint> loads, std::size_t whole,

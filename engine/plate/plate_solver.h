@@ -11,6 +11,7 @@
 #include "engine/plate/footprint.h"
 #include "engine/plate/plate.h"
 #include "engine/plate/plate_trial.h"
+#include "engine/plate/shell.h"
 
 namespace palp {
 
@@ -96,6 +97,11 @@ public:
     [[nodiscard]] FootprintSolution solveFootprints(const Plate& plate, std::span<const Footprint> loads,
                                                     std::size_t whole, double tolerance = 1e-4);
 
+    /// Does the same for a shell. No GPU has kernels for shells yet: the host solves them, and note() says so. On the
+    /// reference solver every load is solved by the reference solver of shells.
+    [[nodiscard]] FootprintSolution solveFootprints(const Shell& shell, std::span<const Footprint> loads,
+                                                    std::size_t whole, double tolerance = 1e-4);
+
     /// Returns the time that it is [ms]; only differences count.
     using Clock = std::function<double()>;
 
@@ -148,6 +154,8 @@ private:
     [[nodiscard]] static std::vector<PlateSolution>
     byReference(const Plate& plate, std::span<const NodeField> nodalForces, double tolerance);
     [[nodiscard]] static FootprintSolution byReference(const Plate& plate, std::span<const Footprint> loads,
+                                                       std::size_t whole, double tolerance);
+    [[nodiscard]] static FootprintSolution byReference(const Shell& shell, std::span<const Footprint> loads,
                                                        std::size_t whole, double tolerance);
 
     SoftwareBits               bits_;

@@ -105,6 +105,8 @@ public:
     /// Returns the statement of the strongest source about the key, by itself, by its material or by its preset.
     [[nodiscard]] std::optional<Statement> about(const SceneKey& key) const
     {
+        if (key.name == "edges")
+            if (auto edges = aboutEdges(key)) return edges;
         for (const Origin origin : kRanks) {
             if (auto stated = statedBy(origin, key)) return stated;
             const auto sets = sets_.find(origin);
@@ -122,6 +124,19 @@ public:
 
 private:
     static constexpr std::array kRanks{Origin::flag, Origin::environment, Origin::scene}; // the strongest first
+
+    /// Returns what is said about the edges by themselves; else those of a window that is cut from a larger body, if it is
+    /// a shell's: clamped ones, which presets have, would hold its membrane as well.
+    [[nodiscard]] std::optional<Statement> aboutEdges(const SceneKey& edges) const
+    {
+        for (const Origin origin : kRanks)
+            if (auto stated = statedBy(origin, edges)) return stated;
+        const auto theory = about(sceneKey("theory"));
+        if (!theory || theory->text != name(Theory::shell)) return std::nullopt;
+        return Statement{name(Edge::supported),
+                         theory->what,
+                         {theory->origin.origin, theory->origin.where + ": theory " + theory->text}};
+    }
 
     [[nodiscard]] std::optional<Statement> statedBy(Origin origin, const SceneKey& key) const
     {

@@ -313,8 +313,8 @@ std::vector<SceneKey> materialKeys()
         wordKey(
             {.name  = "preset",
              .help  = "sets map, neighbourhood, resampling, edges, foundation and force_law: palpate, or paper as "
-                      "Kumari and "
-                      "Chaudhuri published it, without stiffening and relaxation; keys beside it win over it",
+                      "Kumari and Chaudhuri published it, a flat plate without stiffening and relaxation; keys beside "
+                      "it win over it",
              .group = kTouch},
             [](auto& s) -> auto& { return s.preset; }),
         textKey(
@@ -437,6 +437,13 @@ std::vector<SceneKey> patchKeys()
              .group   = kTouch,
              .control = Control{Panel::patch, "resampling"}},
             [](auto& s) -> auto& { return s.patch.resampling; }),
+        wordKey(
+            {.name = "theory",
+             .help =
+                 "how a thin sheet resists: plate bends as if it were flat, shell also by forces in its surface where "
+                 "that is curved; a shell's edges are supported unless edges says otherwise",
+             .group = kTouch},
+            [](auto& s) -> auto& { return s.patch.theory; }),
         {.name   = "edges",
          .help   = "edges of the patch window: one name for all, or SIDE=EDGE of the sides x0, x1, z0, z1",
          .group  = kTouch,
@@ -556,13 +563,13 @@ std::vector<SceneKey> servoKeys()
              .bounds    = KeyBounds{0, 1}},
             [](auto& s) -> auto& { return s.startHeight; }),
         numberKey(
-            {.name   = "workspace_scale",
-             .help   = "millimetres of the scene per millimetre of the device: 3 explores a 120 mm object with a "
-                       "workspace of 40 mm; forces are not scaled, and what is rendered is at most stiffness_cap at "
-                       "the device",
-             .group  = kSession,
-             .unit   = "1",
-             .bounds = KeyBounds{kLeastWorkspaceScale, kMostWorkspaceScale},
+            {.name    = "workspace_scale",
+             .help    = "millimetres of the scene per millimetre of the device: 3 explores a 120 mm object with a "
+                        "workspace of 40 mm; forces are not scaled, and what is rendered is at most stiffness_cap at "
+                        "the device",
+             .group   = kSession,
+             .unit    = "1",
+             .bounds  = KeyBounds{kLeastWorkspaceScale, kMostWorkspaceScale},
              .control = Control{Panel::servo, "device scale", "", 1, 0.2, 10, true, 2}},
             [](auto& s) -> auto& { return s.workspaceScale; }),
         countKey(
@@ -637,6 +644,7 @@ std::map<std::string, std::string, std::less<>> presetValues(Preset preset)
                                                            {"edges", edgesText(set.edges)}};
     if (preset == Preset::paper) { // the paper's sheet has none of these
         values["foundation"] = plainNumber(set.foundation);
+        values["theory"]     = name(set.theory);
         values["stiffening"] = "0";
         values["relaxation"] = "none";
     }

@@ -20,19 +20,6 @@ using Matrix   = Eigen::SparseMatrix<double>;
 using Factors  = Eigen::SimplicialLDLT<Matrix, Eigen::Lower, Eigen::AMDOrdering<int>>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-constexpr PlateEdges kAllFree{Edge::free, Edge::free, Edge::free, Edge::free};
-
-/// The membrane as the plate that phi lies under.
-Plate membraneOf(const Shell& shell)
-{
-    Plate membrane;
-    membrane.grid         = shell.bending.grid;
-    membrane.edges        = shell.stressEdges;
-    membrane.poissonRatio = -shell.bending.poissonRatio;
-    membrane.rigidity     = shell.membraneCompliance;
-    return membrane;
-}
-
 /// Numbers the unknowns of one field from `first` on. With `pinned` three corners are held as well: a phi that no side
 /// holds is known but for a linear function, which carries no force.
 std::vector<int> numbered(const Plate& plate, int first, bool pinned)
@@ -52,11 +39,6 @@ double geometricMean(const NodeField& field)
     double sum = 0;
     for (const double value : field.values()) sum += std::log(value);
     return std::exp(sum / double(field.values().size()));
-}
-
-bool isFinite(const NodeField& field)
-{
-    return std::ranges::all_of(field.values(), [](double value) { return std::isfinite(value); });
 }
 
 /// Adds the second derivative of a field's own energy, times `scale`.
@@ -109,24 +91,6 @@ void addCoupling(Triplets& entries, const Shell& shell, const Plate& membrane, c
 
 } // namespace
 
-std::optional<std::string> whyUnsolvable(const Shell& shell)
-{
-    if (auto why = whyUnsolvable(shell.bending)) return why;
-    const PlateGrid& grid = shell.bending.grid;
-    if (!shell.membraneCompliance.on(grid)) return "the membrane's compliance is on another grid than the rigidity";
-    if (!std::ranges::all_of(shell.membraneCompliance.values(), [](double c) { return c > 0 && std::isfinite(c); }))
-        return "the membrane's compliance has to be positive and finite everywhere";
-    for (const NodeField* curvature : {&shell.curvatureX, &shell.curvatureZ, &shell.curvatureXZ}) {
-        if (!curvature->on(grid)) return "a curvature is on another grid than the rigidity";
-        if (!isFinite(*curvature)) return "a curvature is not finite";
-    }
-    if (shell.bending.poissonRatio < 0) return "a shell's Poisson's ratio has to be at least 0";
-    if (shell.stressEdges == kAllFree) return std::nullopt;
-    if (const auto why = whyUnsolvable(membraneOf(shell)))
-        return "the edges of the membrane: " + *why + " (let all four be free or hold two neighbouring sides)";
-    return std::nullopt;
-}
-
 struct ReferenceShellSolver::Impl {
     PlateGrid        grid;
     std::vector<int> ofW, ofPhi;
@@ -139,7 +103,7 @@ struct ReferenceShellSolver::Impl {
         const Plate membrane = membraneOf(shell);
         ofW                  = numbered(shell.bending, 0, false);
         const int unknownsW  = 1 + *std::ranges::max_element(ofW);
-        ofPhi                = numbered(membrane, unknownsW, shell.stressEdges == kAllFree);
+        ofPhi                = numbered(membrane, unknownsW, isStressFree(shell));
         const int unknowns   = 1 + *std::ranges::max_element(ofPhi);
         phiUnit = std::sqrt(geometricMean(shell.bending.rigidity) / geometricMean(shell.membraneCompliance));
 

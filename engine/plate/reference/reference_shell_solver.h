@@ -1,33 +1,9 @@
 #pragma once
 #include <memory>
-#include <optional>
-#include <string>
 
-#include "engine/plate/plate.h"
+#include "engine/plate/shell.h"
 
 namespace palp {
-
-/// A thin shallow shell: a plate whose surface at rest is curved, so that it resists by forces in its plane as well.
-///
-///     stationary point of  1/2 a(D, nu; w, w) - int w (kx phi_zz + kz phi_xx - 2 kxz phi_xz)
-///                          - 1/2 a(C, -nu; phi, phi) + 1/2 int k s w^2 - int q w
-///
-/// a(D, nu; w, w) is the bending energy of Plate. Deflection w [m] is positive along the load, into the surface; phi
-/// [N m] is Airy's function, whose second derivatives are the membrane forces Nx = phi_zz, Nz = phi_xx, Nxz = -phi_xz
-/// [N/m], tension positive. C = 1/(E t) [m/N] is the compliance of the membrane: phi lies under the plate's operator.
-///
-/// An edge of phi is named as a plate's. Clamped: no force across the edge, the border of an object. Supported: no
-/// normal force and no strain along the edge, as of a window cut from a larger body. Free: held in the plane.
-/// \source  Marguerre 1938, linear part; Reissner 1946, stresses and small displacements of shallow spherical shells
-struct Shell {
-    Plate      bending;            ///< D, nu, foundation
-    NodeField  membraneCompliance; ///< C [m/N], > 0
-    PlateEdges stressEdges{Edge::supported, Edge::supported, Edge::supported, Edge::supported};
-    NodeField  curvatureX, curvatureZ, curvatureXZ; ///< kx, kz, kxz [1/m], > 0 where the surface bulges to the finger
-};
-
-/// Returns in one sentence why a shell cannot be solved; empty if it can.
-[[nodiscard]] std::optional<std::string> whyUnsolvable(const Shell& shell);
 
 struct ShellSolution {
     NodeField deflection;     ///< w [m]

@@ -62,6 +62,19 @@ Json windowJson(const Patch& patch)
             {"rigidity_max", *most}};
 }
 
+/// What a touch with a shell says of it; null without one.
+Json shellJson(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
+{
+    if (!patch.curvature) return nullptr;
+    const auto range = supportRange(patch, settings, solver);
+    return {{"curvatures", {patch.principal.first, patch.principal.second}},
+            {"fit_radius", patch.curvature->radius},
+            {"length", patch.shellLength},
+            {"window_lengths", settings.window / patch.shellLength},
+            {"felt_stiffness_supported", range->supported},
+            {"felt_stiffness_clamped", range->clamped}};
+}
+
 Json timesJson(const StageTimes& t)
 {
     return {{"gather", t.gather},   {"fit", t.fit},     {"project", t.project}, {"resample", t.resample},
@@ -84,6 +97,7 @@ Json settingsJson(const Material& material, const PatchSettings& s)
             {"neighbourhood", name(s.neighbourhood)},
             {"resampling", name(s.resampling)},
             {"force_law", name(s.forceLaw)},
+            {"theory", name(s.theory)},
             {"edges",
              {{"x0", name(s.edges.x0)}, {"x1", name(s.edges.x1)}, {"z0", name(s.edges.z0)}, {"z1", name(s.edges.z1)}}}};
 }
@@ -104,6 +118,7 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
     report["chart"]["unrolled"]     = patch.unrolled;
     report["noise"]                 = patch.noise;
     report["window"]                = windowJson(patch);
+    report["shell"]                 = shellJson(patch, settings, solver);
     report["rigidity_at_contact"]   = patch.plate.rigidity(middle, middle);
     report["compliance"]            = patch.compliance;
     report["contact_stiffness"]     = patch.contactStiffness;

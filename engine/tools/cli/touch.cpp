@@ -75,6 +75,15 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
     std::printf("  contact stiffness  %s\n", quantity("contact_stiffness", "N/m").c_str());
     std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(),
                 name(settings.forceLaw));
+    if (const auto& shell = r["shell"]; !shell.is_null())
+        std::printf(
+            "  shell              curvatures %s and %s, window %.1f lengths of %s, felt %s with supported and %s with "
+            "clamped edges\n",
+            formatQuantity(shell["curvatures"][0], "1/m").c_str(),
+            formatQuantity(shell["curvatures"][1], "1/m").c_str(), shell["window_lengths"].get<double>(),
+            formatQuantity(shell["length"], "m").c_str(),
+            formatQuantity(shell["felt_stiffness_supported"], "N/m").c_str(),
+            formatQuantity(shell["felt_stiffness_clamped"], "N/m").c_str());
     if (!scene.material.isLinear())
         std::printf("  depth              %s of the hand at once, %s in the end (stiffening %.4g 1/m, relaxation %s)\n",
                     quantity("depth", "m").c_str(), quantity("depth_relaxed", "m").c_str(), scene.material.stiffening,

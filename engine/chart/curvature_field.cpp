@@ -1,0 +1,362 @@
+#include "engine/chart/curvature_field.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+namespace {
+
+constexpr int kLattice = 9; ///< fits along a side of the window: 5 mm apart in 40 mm, less than half of most radii
+constexpr int kSurvey  = 5; ///< the same for the fits from which the radius follows
+
+constexpr double kLeastSpacings = 5;    ///< radius of a fit, at least [spacings]: some 80 points
+constexpr double kNoiseError    = 9.5;  ///< error of the tensor over noise spacing / radius^3, measured [1]
+constexpr double kSurveyError   = 2.5;  ///< that of the survey [1/m]: a tenth of what a fingertip's surface has
+constexpr double kWantedError   = 0.05; ///< that of the fits over the typical curvature [1]
+constexpr double kFaces         = 0.26; ///< cosine of 75 degrees: points that face farther away lie around an edge [1]
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// A point in the frame of a fit: h ~ q0 + q1 a + q2 b + (q3 a^2 + 2 q4 a b + q5 b^2) / 2, in radii.
+struct Sighting {
+    Vector6 row;
+    double  height = 0, share = 0; ///< [radii], [1]
+};
+
+/// Looks at a sheet from its normal at a place.
+std::vector<Sighting> sightingsOf(const SurfaceSheet& sheet, std::span<const std::size_t> near,
+                                  const glm::dvec3& centre, const Frame& axes, double radius)
+{
+    std::vector<Sighting> seen;
+    seen.reserve(near.size());
+    for (const std::size_t n : near) {
+        const glm::dvec3 d = (sheet.places[n] - centre) / radius;
+        const double     a = glm::dot(d, axes.east), b = glm::dot(d, axes.north), h = glm::dot(d, axes.normal);
+        const double     rest = 1 - a * a - b * b;
+        if (rest <= 0 || std::abs(h) > 1 || glm::dot(sheet.normals[n], axes.normal) < kFaces) continue;
+        seen.push_back({{1, a, b, a * a / 2, a * b, b * b / 2}, h, rest * rest});
+    }
+    return seen;
+}
+
+/// Returns the coefficients, from weighted points; empty if the points do not determine them.
+std::optional<Vector6> quadricOf(std::span<const Sighting> seen, std::span<const double> weights)
+{
+    constexpr double kDetermined = 1e-4; // least over largest pivot [1]: a full disc has 0.02, half a one 0.002
+    Matrix6          normal      = Matrix6::Zero();
+    Vector6          right       = Vector6::Zero();
+    for (std::size_t n = 0; n < seen.size(); ++n) {
+        const double weight = seen[n].share * weights[n];
+        normal.selfadjointView<Eigen::Lower>().rankUpdate(seen[n].row, weight);
+        right += weight * seen[n].height * seen[n].row;
+    }
+    const Eigen::LDLT<Matrix6> factors(normal.selfadjointView<Eigen::Lower>());
+    const Vector6              pivots = factors.vectorD();
+    if (!(pivots.minCoeff() > kDetermined * pivots.maxCoeff())) return {};
+    return factors.solve(right);
+}
+
+double medianOf(std::vector<double>& values)
+{
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+}
+
+/// Fits twice more, with less weight for points that lie far from the fit.
+/// \source Beaton & Tukey 1974, the biweight, with 4.7 standard deviations
+std::optional<Vector6> robustQuadricOf(std::span<const Sighting> seen)
+{
+    constexpr double    kFar = 4.7, kNormal = 1.48, kExact = 1e-12; // [1]; [1]; [radii]
+    constexpr int       kReweights = 2;
+    std::vector<double> weights(seen.size(), 1.0), apart(seen.size());
+    auto                fit = quadricOf(seen, weights);
+    for (int turn = 0; fit && turn < kReweights; ++turn) {
+        for (std::size_t n = 0; n < seen.size(); ++n) apart[n] = std::abs(seen[n].height - seen[n].row.dot(*fit));
+        std::vector<double> sorted = apart;
+        const double        far    = kFar * kNormal * medianOf(sorted);
+        if (far < kExact) break;
+        for (std::size_t n = 0; n < seen.size(); ++n) {
+            const double rest = std::max(0.0, 1 - apart[n] * apart[n] / (far * far));
+            weights[n]        = rest * rest;
+        }
+        fit = quadricOf(seen, weights);
+    }
+    return fit;
+}
+
+glm::dmat3 product(const glm::dvec3& a, const glm::dvec3& b)
+{
+    return glm::outerProduct(a, b);
+}
+
+/// Returns the second fundamental form of a fit whose slopes are small.
+LocalCurvature curvatureOf(const Vector6& fit, const Frame& axes, double radius)
+{
+    const double     slope = std::sqrt(1 + fit[1] * fit[1] + fit[2] * fit[2]);
+    const glm::dvec3 e = axes.east, n = axes.north;
+    LocalCurvature   result;
+    result.normal = glm::normalize(axes.normal - fit[1] * e - fit[2] * n);
+    result.tensor = (fit[3] * product(e, e) + fit[4] * (product(e, n) + product(n, e)) + fit[5] * product(n, n)) *
+                    (-1 / (radius * slope));
+    return result;
+}
+
+/// Returns the points of a sheet within a distance.
+std::vector<std::size_t> within(std::span<const glm::dvec3> places, const glm::dvec3& centre, double distance)
+{
+    std::vector<std::size_t> near;
+    for (std::size_t n = 0; n < places.size(); ++n) {
+        const glm::dvec3 d = places[n] - centre;
+        if (glm::dot(d, d) < distance * distance) near.push_back(n);
+    }
+    return near;
+}
+
+/// Returns the mean normal of the points about a place, weighted as in a fit; empty if they have none.
+std::optional<glm::dvec3> meanNormal(const SurfaceSheet& sheet, std::span<const std::size_t> near,
+                                     const glm::dvec3& centre, double radius)
+{
+    glm::dvec3 sum{};
+    for (const std::size_t n : near) {
+        const glm::dvec3 d    = (sheet.places[n] - centre) / radius;
+        const double     rest = std::max(0.0, 1 - glm::dot(d, d));
+        sum += rest * rest * sheet.normals[n];
+    }
+    const double length = glm::length(sum);
+    if (!(length > 0)) return {};
+    return sum / length;
+}
+
+/// The places of the points in the chart, and where the surface is at a place of the chart.
+class Charted {
+public:
+    Charted(std::span<const glm::dvec3> places, std::span<const ChartPoint> positions)
+        : places_(places), positions_(positions)
+    {
+    }
+
+    /// Returns the weighted mean of the points about a place of the chart, so that it moves smoothly as the place does; of
+    /// the nearest one where there are none.
+    [[nodiscard]] glm::dvec3 at(const ChartPoint& place, double radius) const
+    {
+        glm::dvec3  sum{};
+        double      all = 0, least = std::numeric_limits<double>::infinity();
+        std::size_t nearest = 0;
+        for (std::size_t n = 0; n < places_.size(); ++n) {
+            const double x = positions_[n].x - place.x, z = positions_[n].z - place.z;
+            const double squared = x * x + z * z;
+            if (squared < least) {
+                least   = squared;
+                nearest = n;
+            }
+            const double rest = 1 - squared / (radius * radius);
+            if (rest <= 0) continue;
+            sum += rest * rest * places_[n];
+            all += rest * rest;
+        }
+        return all > 0 ? sum / all : places_[nearest];
+    }
+
+private:
+    std::span<const glm::dvec3> places_;
+    std::span<const ChartPoint> positions_;
+};
+
+using Lattice = std::vector<std::optional<LocalCurvature>>; ///< row by row along z
+
+/// Fits at the nodes of a lattice over the window.
+Lattice fitLattice(const PatchWindow& window, int side, const Charted& charted, const SurfaceSheet& sheet,
+                   double radius)
+{
+    constexpr double kAbout = 0.3; // radius of the mean that is a fit's centre, over that of the fit [1]
+    Lattice          lattice;
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j) {
+            const ChartPoint place{window.corner.x + window.grid.sizeX() * i / (side - 1),
+                                   window.corner.z + window.grid.sizeZ() * j / (side - 1)};
+            lattice.push_back(fitCurvature(sheet, charted.at(place, kAbout * radius), radius));
+        }
+    return lattice;
+}
+
+/// What a survey finds in the window [1/m].
+struct Bend {
+    double typical = 0, largest = 0;
+};
+
+Bend bendOf(const Lattice& lattice, double noise)
+{
+    double squares = 0, count = 0, largest = 0;
+    for (const auto& here : lattice) {
+        if (!here) continue;
+        const double k = here->largest();
+        squares += k * k;
+        largest = std::max(largest, k);
+        ++count;
+    }
+    constexpr double kFlat = 1e-6; // a plane, whatever the object [1/m]
+    return {std::sqrt(std::max(kFlat * kFlat, squares / std::max(count, 1.0) - noise * noise)), largest};
+}
+
+/// Returns the radius of all fits [m]; see curvatureField().
+double radiusFor(const PatchWindow& window, const Charted& charted, const SurfaceSheet& sheet,
+                 const CurvatureSettings& settings)
+{
+    const double least     = kLeastSpacings * settings.spacing;
+    const double most      = std::max(least, settings.mostRadius);
+    const double cube      = kNoiseError * settings.noise * settings.spacing;
+    const double radius    = std::clamp(std::cbrt(cube / kSurveyError), least, most);
+    const Bend   bend      = bendOf(fitLattice(window, kSurvey, charted, sheet, radius), cube / std::pow(radius, 3));
+    const double felt      = settings.lengthRoot / std::sqrt(bend.typical);
+    const double quiet     = std::cbrt(cube / (kWantedError * bend.typical));
+    const double following = 0.5 / std::max(bend.largest, bend.typical);
+    const double wanted    = std::min(std::max(felt, quiet), following);
+    return std::clamp(wanted, least, most);
+}
+
+/// Gives places without a fit that of the nearest place with one; false if there is none.
+bool fillGaps(Lattice& lattice, int side)
+{
+    const Lattice known    = lattice;
+    bool          complete = true;
+    for (int n = 0; n < side * side; ++n) {
+        int least = std::numeric_limits<int>::max();
+        for (int m = 0; m < side * side && !known[std::size_t(n)]; ++m) {
+            const int di = n / side - m / side, dj = n % side - m % side;
+            if (!known[std::size_t(m)] || di * di + dj * dj >= least) continue;
+            least                   = di * di + dj * dj;
+            lattice[std::size_t(n)] = known[std::size_t(m)];
+        }
+        complete &= lattice[std::size_t(n)].has_value();
+    }
+    return complete;
+}
+
+/// A place along one axis of the lattice: weights of four nodes.
+struct Along {
+    int                   first = 0;
+    std::array<double, 4> weights{};
+};
+
+/// Returns the weights of cubic interpolation through values and central slopes; at the ends the curve goes on straight.
+/// \param t  place along the lattice, 0 to side - 1 [lattice spacings]
+Along alongAt(double t, int side)
+{
+    const int    before = std::clamp(int(t), 0, side - 2);
+    const double u = t - before, v = 1 - u;
+    Along        result{std::clamp(before - 1, 0, side - 4), {}};
+    const auto   add = [&](int node, double weight) { result.weights.at(std::size_t(node - result.first)) += weight; };
+    const auto   put = [&](int node, double weight) {
+        if (node < 0) {
+            add(0, 2 * weight);
+            add(1, -weight);
+        } else if (node >= side) {
+            add(side - 1, 2 * weight);
+            add(side - 2, -weight);
+        } else {
+            add(node, weight);
+        }
+    };
+    put(before - 1, -0.5 * u * v * v);
+    put(before, v * (1 + u - 1.5 * u * u));
+    put(before + 1, u * (1 + v - 1.5 * v * v));
+    put(before + 2, -0.5 * v * u * u);
+    return result;
+}
+
+/// The tensor in a chart's axes [1/m].
+struct ChartTensor {
+    double x = 0, z = 0, xz = 0;
+};
+
+ChartTensor inChart(const LocalCurvature& here, const Frame& frame)
+{
+    const Frame carried = frame.carriedTo(here.normal);
+    return {glm::dot(carried.east, here.tensor * carried.east), glm::dot(carried.north, here.tensor * carried.north),
+            glm::dot(carried.east, here.tensor * carried.north)};
+}
+
+CurvatureField interpolated(const PatchWindow& window, const std::vector<ChartTensor>& lattice)
+{
+    CurvatureField field{NodeField(window.grid), NodeField(window.grid), NodeField(window.grid)};
+    const int      cellsX = window.grid.cellsX, cellsZ = window.grid.cellsZ;
+    for (int i = 0; i <= cellsX; ++i)
+        for (int j = 0; j <= cellsZ; ++j) {
+            const Along x = alongAt(double(i) * (kLattice - 1) / cellsX, kLattice);
+            const Along z = alongAt(double(j) * (kLattice - 1) / cellsZ, kLattice);
+            for (std::size_t m = 0; m < 4; ++m)
+                for (std::size_t n = 0; n < 4; ++n) {
+                    const double       weight = x.weights[m] * z.weights[n];
+                    const ChartTensor& here = lattice[(std::size_t(x.first) + m) * kLattice + std::size_t(z.first) + n];
+                    field.x(i, j) += weight * here.x;
+                    field.z(i, j) += weight * here.z;
+                    field.xz(i, j) += weight * here.xz;
+                }
+        }
+    return field;
+}
+
+} // namespace
+
+double LocalCurvature::largest() const noexcept
+{
+    const Frame  axes = Frame::about(normal);
+    const double a = glm::dot(axes.east, tensor * axes.east), c = glm::dot(axes.north, tensor * axes.north);
+    const double b = glm::dot(axes.east, tensor * axes.north);
+    return std::abs(a + c) / 2 + std::hypot((a - c) / 2, b);
+}
+
+std::optional<LocalCurvature> fitCurvature(const SurfaceSheet& sheet, const glm::dvec3& centre, double radius)
+{
+    constexpr double kDiagonal = 1.42; // a point within the radius along the surface and in height is within this [1]
+    constexpr int    kTurns    = 2;
+    PALP_EXPECT(sheet.places.size() == sheet.normals.size(), std::to_string(sheet.places.size()) + " places and " +
+                                                                 std::to_string(sheet.normals.size()) + " normals");
+    const auto near  = within(sheet.places, centre, kDiagonal * radius);
+    const auto first = meanNormal(sheet, near, centre, radius);
+    if (!first) return {};
+    LocalCurvature result{*first};
+    for (int turn = 0; turn < kTurns; ++turn) {
+        constexpr std::size_t kFewest = 12; // points for six unknowns
+        const Frame           axes    = Frame::about(result.normal);
+        const auto            seen    = sightingsOf(sheet, near, centre, axes, radius);
+        if (seen.size() < kFewest) return {};
+        const std::vector<double> alike(seen.size(), 1.0);
+        const auto                fit = turn + 1 < kTurns ? quadricOf(seen, alike) : robustQuadricOf(seen);
+        if (!fit) return {};
+        result = curvatureOf(*fit, axes, radius);
+    }
+    return result;
+}
+
+std::optional<CurvatureField> curvatureField(const PatchWindow& window, const Frame& frame,
+                                             std::span<const glm::dvec3> places, std::span<const ChartPoint> positions,
+                                             const SurfaceSheet& sheet, const CurvatureSettings& settings)
+{
+    PALP_EXPECT(places.size() == positions.size() && !places.empty(),
+                std::to_string(places.size()) + " places, " + std::to_string(positions.size()) + " positions");
+    PALP_EXPECT(settings.spacing > 0, std::to_string(settings.spacing) + " m between the points");
+    const Charted charted(places, positions);
+    const double  radius  = radiusFor(window, charted, sheet, settings);
+    Lattice       lattice = fitLattice(window, kLattice, charted, sheet, radius);
+    if (!fillGaps(lattice, kLattice)) return {};
+    std::vector<ChartTensor> tensors;
+    for (const auto& here : lattice) tensors.push_back(inChart(*here, frame));
+    CurvatureField field = interpolated(window, tensors);
+    field.radius         = radius;
+    return field;
+}
+
+} // namespace palp

@@ -1,0 +1,68 @@
+#pragma once
+#include <optional>
+#include <span>
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include "engine/chart/chart.h"
+#include "engine/chart/resample.h"
+#include "engine/core/grid.h"
+
+namespace palp {
+
+/// A piece of surface that is touched from one side.
+struct SurfaceSheet {
+    std::span<const glm::dvec3> places;  ///< [m]
+    std::span<const glm::dvec3> normals; ///< [1] unit, roughly, towards the finger; one for each place
+};
+
+/// How a surface bends at a place.
+struct LocalCurvature {
+    glm::dvec3 normal{};  ///< [1] unit, towards the side of the sheet's normals
+    glm::dmat3 tensor{0}; ///< [1/m] in the world's axes, symmetric, nothing along the normal; > 0 bulges to the finger
+
+    [[nodiscard]] double largest() const noexcept; ///< [1/m] of the two principal curvatures, the larger by size
+};
+
+/// Fits a quadric to the points of a sheet about a place.
+///
+/// Points count (1 - r^2 / radius^2)^2, r their distance along the surface, and less the farther they lie from the
+/// quadric (Tukey's weights), so that stray points do not matter. The frame is turned to the fitted normal and the fit
+/// done again. Of noise it keeps an error of about 9.5 noise spacing / radius^3, and of the shape's own change one that
+/// grows as radius^2: 4 % of an ellipsoid of half axes 60, 45, 35 mm at 20 mm.
+/// \param centre  on or near the surface [m]
+/// \return empty if the points determine no quadric
+[[nodiscard]] std::optional<LocalCurvature> fitCurvature(const SurfaceSheet& sheet, const glm::dvec3& centre,
+                                                         double radius);
+
+struct CurvatureSettings {
+    double spacing    = 0; ///< of the sheet's points [m], > 0
+    double noise      = 0; ///< their standard deviation about the surface [m]
+    double mostRadius = 0; ///< of a fit [m], at least five spacings are taken
+    double lengthRoot = 0; ///< length over which a shell of curvature k feels its edge, times sqrt k [m^(1/2)]
+};
+
+/// The curvature tensor of the surface at the nodes of a window, in the chart's axes, > 0 where it bulges to the finger.
+struct CurvatureField {
+    NodeField x, z, xz;   ///< [1/m]
+    double    radius = 0; ///< of the fits [m]
+};
+
+/// Fits the curvature on a lattice over the window and interpolates it at the nodes.
+///
+/// All fits have one radius: as small as noise permits, which may change the tensor by 5 % of what is typical in the
+/// window, but not below the length of a shell of that curvature, beyond which detail is not felt, nor above half the
+/// smallest radius of curvature. It changes smoothly as the window moves. The tensors are turned into the chart by
+/// carrying its axes along the shortest arc to each normal. Beyond the border of the surface that of the border goes on.
+///
+/// \param places     of the points that have a place in the chart [m]
+/// \param positions  these places [m], as many
+/// \param sheet      the surface, better farther than the window by `mostRadius`
+/// \return empty if nowhere in the window the points determine a quadric
+/// \thread pure
+[[nodiscard]] std::optional<CurvatureField>
+curvatureField(const PatchWindow& window, const Frame& frame, std::span<const glm::dvec3> places,
+               std::span<const ChartPoint> positions, const SurfaceSheet& sheet, const CurvatureSettings& settings);
+
+} // namespace palp

@@ -1,0 +1,135 @@
+#include "engine/pipeline/detail/shell_patch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "engine/core/extremes.h"
+#include "engine/pipeline/detail/touched_surface.h"
+
+namespace palp {
+namespace {
+
+/// Returns the length of a shell over which a dent dies away, times the root of the curvature [m^(1/2)].
+double lengthRoot(const Material& material)
+{
+    const double nu = material.poissonRatio;
+    return std::sqrt(material.thickness) / std::pow(12 * (1 - nu * nu), 0.25);
+}
+
+/// Returns the mean of a field.
+double meanOf(const NodeField& field)
+{
+    double sum = 0;
+    for (const double value : field.values()) sum += value;
+    return sum / double(field.values().size());
+}
+
+double meanOfSquares(const NodeField& field)
+{
+    double sum = 0;
+    for (const double value : field.values()) sum += value * value;
+    return sum / double(field.values().size());
+}
+
+/// Fits the curvature, to a piece of surface that is larger than the window by the radius of the largest fit.
+std::optional<CurvatureField> findCurvature(const Patch& patch, const SoftObject& object, const PatchSettings& settings)
+{
+    const double               most   = settings.window / 2;
+    const double               radius = std::numbers::sqrt2 * settings.window / 2 + most;
+    std::vector<std::uint32_t> ball;
+    object.index().gather(patch.contact.point, radius, ball);
+    TouchedSurface surface = touchedSurface(object, patch.contact, ball, radius);
+    if (glm::dot(surface.normal, patch.chart.frame.normal) < 0)
+        for (glm::dvec3& normal : surface.normals) normal = -normal;
+
+    std::vector<glm::dvec3> places;
+    places.reserve(patch.touched);
+    for (std::size_t k = 0; k < patch.touched; ++k) places.push_back(object.positions()[patch.points[k]]);
+    return curvatureField(patch.window, patch.chart.frame, places, std::span(patch.positions).first(patch.touched),
+                          {surface.places, surface.normals},
+                          {.spacing    = patch.spacing,
+                           .noise      = surface.noise,
+                           .mostRadius = most,
+                           .lengthRoot = lengthRoot(object.material())});
+}
+
+/// Returns whether the membrane adds nothing that a solver's tolerance would show: the plate's own path is taken then.
+///
+/// Of the window's slowest wave, bending resists by 4 pi^4 D / a^4 and the membrane of a sphere by k^2 / C.
+bool isAsGoodAsFlat(const Patch& patch, const CurvatureField& field)
+{
+    constexpr double kNothing = 1e-6; // of the stiffness [1]
+    const double     k2       = std::max({meanOfSquares(field.x), meanOfSquares(field.z), meanOfSquares(field.xz)});
+    const double     a = patch.plate.grid.sizeX(), wave = 4 * std::pow(std::numbers::pi / a, 4);
+    return k2 / geometricMean(patch.membraneCompliance.values()) <
+           kNothing * (wave * geometricMean(patch.plate.rigidity.values()) + patch.plate.foundation);
+}
+
+} // namespace
+
+PlateEdges stressEdgesFor(const PlateEdges& edges) noexcept
+{
+    const auto of = [](Edge edge) {
+        return edge == Edge::free ? Edge::clamped : edge == Edge::clamped ? Edge::free : Edge::supported;
+    };
+    return {of(edges.x0), of(edges.x1), of(edges.z0), of(edges.z1)};
+}
+
+Shell shellOf(const Patch& patch)
+{
+    return {patch.plate,        patch.membraneCompliance, stressEdgesFor(patch.plate.edges),
+            patch.curvature->x, patch.curvature->z,       patch.curvature->xz};
+}
+
+Shell homogeneousOf(const Shell& shell)
+{
+    const PlateGrid& grid   = shell.bending.grid;
+    Shell            mean   = shell;
+    mean.bending.rigidity   = NodeField(grid, geometricMean(shell.bending.rigidity.values()));
+    mean.membraneCompliance = NodeField(grid, geometricMean(shell.membraneCompliance.values()));
+    mean.curvatureX         = NodeField(grid, meanOf(shell.curvatureX));
+    mean.curvatureZ         = NodeField(grid, meanOf(shell.curvatureZ));
+    mean.curvatureXZ        = NodeField(grid, meanOf(shell.curvatureXZ));
+    if (shell.bending.foundationShape.values().empty()) return mean;
+    mean.bending.foundation *= geometricMean(shell.bending.foundationShape.values());
+    mean.bending.foundationShape = {};
+    return mean;
+}
+
+void curvePatch(Patch& patch, const SoftObject& object, const PatchSettings& settings)
+{
+    if (settings.theory == Theory::plate) return;
+    const auto stayFlat = [&](const char* why) { patch.flatBecause = why; };
+    if (settings.neighbourhood == Neighbourhood::ball)
+        return stayFlat("the points of a ball are no surface with a curvature; set neighbourhood surface");
+    if (patch.normalFelt) return stayFlat("the points around determine no curvature, as at a rim");
+    patch.curvature = findCurvature(patch, object, settings);
+    if (!patch.curvature) return stayFlat("the points in the patch window determine no curvature");
+
+    const Material& material = object.material();
+    patch.membraneCompliance = NodeField(patch.plate.grid);
+    for (std::size_t n = 0; n < patch.membraneCompliance.values().size(); ++n)
+        patch.membraneCompliance.values()[n] =
+            1 / (material.modulus(patch.plate.rigidity.values()[n]) * material.thickness);
+    const int    middle = settings.cells / 2;
+    const double x = patch.curvature->x(middle, middle), z = patch.curvature->z(middle, middle),
+                 xz   = patch.curvature->xz(middle, middle);
+    const double mean = (x + z) / 2, apart = std::hypot((x - z) / 2, xz);
+    patch.principal   = {mean + std::copysign(apart, mean), mean - std::copysign(apart, mean)};
+    const double felt = patch.principal.first * patch.principal.second > 0
+                            ? std::sqrt(patch.principal.first * patch.principal.second)
+                            : std::abs(patch.principal.first);
+    patch.shellLength = lengthRoot(material) / std::sqrt(felt);
+    if (const auto why = whyUnsolvable(shellOf(patch))) {
+        patch.flatBecause = *why;
+        patch.curvature.reset();
+    } else if (isAsGoodAsFlat(patch, *patch.curvature)) {
+        patch.curvature.reset();
+    }
+}
+
+} // namespace palp

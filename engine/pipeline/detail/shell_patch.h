@@ -1,0 +1,21 @@
+#pragma once
+#include "engine/pipeline/patch.h"
+
+namespace palp {
+
+/// Makes a shell of the patch's plate, if the settings ask for one: finds how the touched surface is curved, and what its
+/// membrane resists. Where that cannot be, the patch stays a plate, and says why in `flatBecause`.
+/// \param object  that the patch's points are of
+void curvePatch(Patch& patch, const SoftObject& object, const PatchSettings& settings);
+
+/// Returns the shell of a patch that is one.
+[[nodiscard]] Shell shellOf(const Patch& patch);
+
+/// Returns the edges of the membrane that go with a window's edges: a free one is a border of the object, where no force
+/// crosses it; a supported one cuts the window from a larger body; a clamped one holds it in its plane as well.
+[[nodiscard]] PlateEdges stressEdgesFor(const PlateEdges& edges) noexcept;
+
+/// Returns the shell whose rigidity, compliance and curvature are throughout the means of this one.
+[[nodiscard]] Shell homogeneousOf(const Shell& shell);
+
+} // namespace palp

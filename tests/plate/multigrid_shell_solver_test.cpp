@@ -1,0 +1,291 @@
+#include "engine/plate/multigrid/multigrid_shell_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/plate/load.h"
+#include "engine/plate/reference/reference_plate_solver.h"
+#include "engine/plate/reference/reference_shell_solver.h"
+
+namespace palp {
+namespace {
+
+constexpr double kSize     = 40e-3; ///< of the window [m]
+constexpr double kPoisson  = 0.45;  ///< [1]
+constexpr double kRigidity = 1e-4;  ///< of the softest part [N m]
+
+using Map = std::function<double(double x, double z)>; ///< over the window's size, from -1/2 to 1/2
+
+Map even()
+{
+    return [](double, double) { return 1.0; };
+}
+Map linear(double contrast)
+{
+    return [=](double x, double) { return 1 + (contrast - 1) * (x + 0.5); };
+}
+Map wart(double contrast)
+{
+    return [=](double x, double z) {
+        const double squared = std::pow(x - 0.05, 2) + std::pow(z + 0.05, 2);
+        return 1 + (contrast - 1) * std::exp(-squared / (2 * 0.06 * 0.06));
+    };
+}
+Map disc(double contrast)
+{
+    return [=](double x, double z) { return std::hypot(x - 0.05, z + 0.05) < 0.15 ? contrast : 1; };
+}
+
+PlateEdges allSides(Edge edge)
+{
+    return {edge, edge, edge, edge};
+}
+
+struct Bend {
+    Map x, z, xz; ///< over the curvature that the length stands for [1]
+};
+
+/// A shell whose modulus varies, so that the compliance of its membrane is the inverse of its rigidity.
+/// \param lengths  window over the shell's length; 0: flat
+Shell shellOf(PlateGrid grid, const Map& modulus, const Bend& bend, double lengths, Edge bending = Edge::supported,
+              Edge stress = Edge::supported)
+{
+    // l^4 = D C / k^2 with C the compliance of the membrane: any C serves, as long as k goes with it.
+    const double compliance = 1e-3, curvature = std::sqrt(kRigidity * compliance) * std::pow(lengths / kSize, 2);
+    Shell        shell;
+    shell.bending.grid         = grid;
+    shell.bending.edges        = allSides(bending);
+    shell.stressEdges          = allSides(stress);
+    shell.bending.poissonRatio = kPoisson;
+    shell.bending.rigidity = shell.membraneCompliance = shell.curvatureX = shell.curvatureZ = shell.curvatureXZ =
+        NodeField(grid);
+    for (int i = 0; i <= grid.cellsX; ++i)
+        for (int j = 0; j <= grid.cellsZ; ++j) {
+            const double x = double(i) / grid.cellsX - 0.5, z = double(j) / grid.cellsZ - 0.5;
+            shell.bending.rigidity(i, j)   = kRigidity * modulus(x, z);
+            shell.membraneCompliance(i, j) = compliance / modulus(x, z);
+            shell.curvatureX(i, j)         = curvature * bend.x(x, z);
+            shell.curvatureZ(i, j)         = curvature * bend.z(x, z);
+            shell.curvatureXZ(i, j)        = curvature * bend.xz(x, z);
+        }
+    return shell;
+}
+
+PlateGrid square(int cells)
+{
+    return {cells, cells, kSize / cells, kSize / cells};
+}
+
+Bend constant(double x, double z, double xz)
+{
+    return {[=](double, double) { return x; }, [=](double, double) { return z; }, [=](double, double) { return xz; }};
+}
+
+/// Ridges across the window, five sixths of a wave to each side, aslant.
+Bend ridges()
+{
+    const Map wave = [](double x, double z) { return std::cos(2 * std::numbers::pi * (5.0 / 3 * x + 0.5 * z + 0.1)); };
+    return {wave, [=](double x, double z) { return 0.1 * wave(x, z); },
+            [=](double x, double z) { return 0.3 * wave(x, z); }};
+}
+
+NodeField fingertip(const PlateGrid& grid, double x = 0, double z = 0)
+{
+    return footprintLoad(grid, 1, kSize / 2 + x, kSize / 2 + z, 4e-3);
+}
+
+double largestDifference(const NodeField& a, const NodeField& b)
+{
+    double most = 0, size = 0;
+    for (std::size_t n = 0; n < a.values().size(); ++n) {
+        most = std::max(most, std::abs(a.values()[n] - b.values()[n]));
+        size = std::max(size, std::abs(b.values()[n]));
+    }
+    return most / size;
+}
+
+ShellAnswer solved(const Shell& shell, const NodeField& load, double tolerance = 1e-7, int mostSteps = 60)
+{
+    return MultigridShellSolver(shell).solve({&load, 1}, tolerance, mostSteps).front();
+}
+
+TEST(MultigridShellSolver, IsTheReferenceWhateverGridMapCurvatureAndEdges)
+{
+    using enum Edge;
+    const PlateGrid oblong{37, 22, kSize / 37, kSize / 22};
+    for (const auto& [bending, stress] : {std::pair{supported, supported}, std::pair{clamped, free},
+                                          std::pair{clamped, clamped}, std::pair{clamped, supported}})
+        for (const auto& [grid, map, bend, lengths] : {std::tuple{square(32), even(), constant(1, 1, 0), 12.0},
+                                                       std::tuple{square(32), wart(10), constant(0.7, 0.5, 0.35), 8.0},
+                                                       std::tuple{square(40), linear(10), ridges(), 16.0},
+                                                       std::tuple{oblong, wart(10), constant(1, -1, 0.2), 8.0}}) {
+            const Shell         shell = shellOf(grid, map, bend, lengths, bending, stress);
+            const NodeField     load  = fingertip(grid, 3e-3, -2e-3);
+            const ShellSolution exact = ReferenceShellSolver(shell).solve(load);
+            const ShellAnswer   found = solved(shell, load);
+            const auto          where = edgesText(allSides(bending)) + " " + edgesText(allSides(stress)) + ", " +
+                               std::to_string(grid.cellsX) + " cells, " + std::to_string(lengths) + " lengths";
+            EXPECT_TRUE(found.report.converged) << where;
+            // Coefficients of the levels are floats, 6e-8, and the plate's condition makes some tens of it.
+            EXPECT_LT(largestDifference(found.deflection, exact.deflection), 5e-6) << where;
+            EXPECT_NEAR(found.work / dot(load, exact.deflection), 1, 2e-6) << where;
+            if (stress != free) {
+                EXPECT_LT(largestDifference(found.stressFunction, exact.stressFunction), 5e-6) << where;
+            }
+        }
+}
+
+TEST(MultigridShellSolver, IsTheReferenceAtAFreeBorderOfTheObject)
+{
+    // There the deflection is free and no force crosses the border, so that phi and its slope are nothing.
+    Shell shell               = shellOf(square(32), wart(10), constant(1, 0.5, 0.3), 8);
+    shell.bending.edges.x0    = Edge::free;
+    shell.stressEdges.x0      = Edge::clamped;
+    shell.bending.edges.z1    = Edge::free;
+    shell.stressEdges.z1      = Edge::clamped;
+    const NodeField     load  = fingertip(square(32), -12e-3, 10e-3);
+    const ShellSolution exact = ReferenceShellSolver(shell).solve(load);
+    const ShellAnswer   found = solved(shell, load);
+    EXPECT_LT(largestDifference(found.deflection, exact.deflection), 5e-6);
+    EXPECT_LT(largestDifference(found.stressFunction, exact.stressFunction), 5e-6);
+}
+
+TEST(MultigridShellSolver, StandsOnAFoundationThatVaries)
+{
+    Shell shell                   = shellOf(square(32), wart(10), constant(1, 0.5, 0.1), 8);
+    shell.bending.foundation      = kRigidity / std::pow(6e-3, 4);
+    shell.bending.foundationShape = NodeField(shell.bending.grid, 1);
+    for (int j = 0; j <= 32; ++j)
+        for (int i = 0; i <= 16; ++i) shell.bending.foundationShape(i, j) = 7;
+    const NodeField load = fingertip(shell.bending.grid);
+    EXPECT_LT(largestDifference(solved(shell, load).deflection, ReferenceShellSolver(shell).solve(load).deflection),
+              5e-6);
+}
+
+TEST(MultigridShellSolver, OfNoCurvatureIsThePlate)
+{
+    const Shell     shell = shellOf(square(32), wart(10), constant(0, 0, 0), 0, Edge::clamped);
+    const NodeField load  = fingertip(shell.bending.grid);
+    EXPECT_LT(
+        largestDifference(solved(shell, load).deflection, ReferencePlateSolver(shell.bending).solve(load).deflection),
+        5e-6);
+}
+
+/// Returns how many steps the compliance takes to be right to a share.
+int stepsTo(double share, const Shell& shell, const NodeField& load)
+{
+    MultigridShellSolver solver(shell);
+    const double         exact = solver.solve({&load, 1}, 1e-7).front().work;
+    for (int steps = 1;; ++steps) // no tolerance stops it before
+        if (std::abs(solver.solve({&load, 1}, 1e-12, steps).front().work / exact - 1) < share) return steps;
+}
+
+TEST(MultigridShellSolver, TakesAsManyStepsOnFineGridsAndStrongCurvatures)
+{
+    const std::vector<std::pair<std::string, Bend>> bends = {{"sphere", constant(1, 1, 0)},
+                                                             {"twist", constant(0.7, 0.5, 0.35)},
+                                                             {"cylinder", constant(1, 0, 0)},
+                                                             {"saddle", constant(1, -1, 0)},
+                                                             {"ridges", ridges()}};
+    for (const int cells : {64, 128})
+        for (const auto& [name, bend] : bends)
+            for (const double lengths : {4.0, 12.0, 30.0}) {
+                const auto where =
+                    name + ", " + std::to_string(cells) + " cells, " + std::to_string(lengths) + " lengths";
+                const NodeField load = fingertip(square(cells));
+                EXPECT_LE(stepsTo(1e-4, shellOf(square(cells), linear(10), bend, lengths), load), 4) << where;
+                EXPECT_LE(stepsTo(1e-4, shellOf(square(cells), wart(100), bend, lengths), load), 4) << where;
+                if (cells == 64) {
+                    EXPECT_LE(stepsTo(1e-4, shellOf(square(cells), disc(100), bend, lengths), load), 7) << where;
+                }
+            }
+}
+
+/// A curvature that changes its sign from patch to patch, an eighth of the window wide, as fits to points may give it.
+Map randomPatches(std::mt19937& random)
+{
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::vector<double>                    values(81);
+    for (double& value : values) value = uniform(random);
+    return [values](double x, double z) {
+        const double u = 8 * (x + 0.5), v = 8 * (z + 0.5);
+        const auto   i = std::size_t(std::min(u, 7.0)), j = std::size_t(std::min(v, 7.0));
+        const auto   along = [&](std::size_t row) {
+            return std::lerp(values[row * 9 + j], values[row * 9 + j + 1], v - double(j));
+        };
+        return std::lerp(along(i), along(i + 1), u - double(i));
+    };
+}
+
+TEST(MultigridShellSolver, NeverFailsOnRandomMapsAndCurvatures)
+{
+    std::mt19937                           random(11);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    constexpr Edge                         kEdges[] = {Edge::clamped, Edge::supported};
+    const auto                             edge     = [&] { return kEdges[random() % 2]; };
+    for (int trial = 0; trial < 40; ++trial) {
+        const double contrast  = trial % 4 == 0 ? 1000 : 100;
+        const Map    rough     = [&](double, double) { return std::exp(uniform(random) * std::log(contrast) / 2); };
+        const Bend   bend      = {randomPatches(random), randomPatches(random), randomPatches(random)};
+        const double lengths   = 20 * (1 + uniform(random));
+        Shell        shell     = shellOf(square(64), rough, bend, lengths);
+        shell.bending.edges    = {edge(), edge(), edge(), edge()};
+        shell.stressEdges      = {edge(), edge(), edge(), edge()};
+        const NodeField   load = fingertip(square(64), 12e-3 * uniform(random), 12e-3 * uniform(random));
+        const ShellAnswer one  = solved(shell, load, 1e-4);
+        EXPECT_TRUE(one.report.converged) << trial;
+        EXPECT_LE(*one.report.iterations, contrast == 1000 ? 26 : 18) << trial; // measured: 23 and 16
+        if (trial % 8 == 0) {
+            EXPECT_NEAR(one.work / dot(load, ReferenceShellSolver(shell).solve(load).deflection), 1, 1e-6) << trial;
+        }
+    }
+}
+
+TEST(MultigridShellSolver, GivesEachOfSeveralLoadsTheAnswerThatItHasAlone)
+{
+    const Shell            shell = shellOf(square(32), wart(10), constant(1, 0.3, 0), 8);
+    std::vector<NodeField> loads;
+    for (int n = 0; n < 11; ++n) loads.push_back(fingertip(square(32), (n - 5) * 2e-3, n * 1e-3));
+    loads[4] = NodeField(square(32)); // nothing
+    MultigridShellSolver solver(shell);
+    const auto           together = solver.solve(loads, 1e-5);
+    ASSERT_EQ(together.size(), loads.size());
+    for (std::size_t n = 0; n < loads.size(); ++n) {
+        const ShellAnswer alone = solved(shell, loads[n], 1e-5);
+        EXPECT_NEAR(together[n].work, alone.work, 1e-9 * alone.work)
+            << n; // a load that waits for others goes on a step
+        EXPECT_TRUE(together[n].report.converged) << n;
+    }
+    EXPECT_EQ(together[4].work, 0);
+}
+
+TEST(MultigridShellSolver, ReportsWhatIsMissing)
+{
+    const Shell       shell = shellOf(square(64), disc(100), constant(1, 1, 0), 12);
+    const NodeField   load  = fingertip(square(64));
+    const double      exact = solved(shell, load).work;
+    const ShellAnswer early = solved(shell, load, 1e-12, 2);
+    EXPECT_FALSE(early.report.converged);
+    for (const double tolerance : {1e-1, 1e-2, 1e-3}) {
+        const ShellAnswer found = solved(shell, load, tolerance);
+        EXPECT_LT(std::abs(found.work / exact - 1), tolerance * tolerance + 1e-9) << tolerance;
+        EXPECT_LT(*found.report.errorEstimate, tolerance);
+    }
+}
+
+TEST(MultigridShellSolver, RefusesWhatCannotBeSolved)
+{
+    Shell shell                    = shellOf(square(16), even(), constant(1, 1, 0), 8);
+    shell.membraneCompliance(3, 3) = -1;
+    EXPECT_THROW(MultigridShellSolver{shell}, Error);
+}
+
+} // namespace
+} // namespace palp
