@@ -43,6 +43,9 @@ inline constexpr std::string_view kRelaxationForm =
 /// Writes it so that parseRelaxation() reads the same values back.
 [[nodiscard]] std::string relaxationText(const Relaxation& relaxation);
 
+/// The largest b [1/m]: a force that grows by e after 10 um; no finger tells it from a wall.
+inline constexpr double kMostStiffening = 1e5;
+
 /// The constants that turn the stiffness of a point into plate numbers and forces; one per scene.
 struct Material {
     double     thickness    = 4e-3; ///< [m] of the soft sheet; skin 1.5e-3, rubber sheet 4e-3

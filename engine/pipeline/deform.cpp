@@ -374,10 +374,17 @@ void fillRigidity(Patch& patch, const SoftObject& object, const PatchSettings& s
     patch.plate             = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
                                std::move(resampled.rigidity)};
     refuseIfEmpty(patch, settings);
-    if (object.foundationShape().empty() || settings.foundation == 0) return;
-    for (std::size_t k = 0; k < touched.size(); ++k) rigidities[k] = object.foundationShape()[touched[k]];
-    patch.plate.foundationShape =
-        resampleRigidity(patch.window, places, rigidities, settings.resampling, finest, sparsest).rigidity;
+    const auto atNodes = [&](std::span<const double> ofPoints, auto asRatio) {
+        for (std::size_t k = 0; k < touched.size(); ++k) rigidities[k] = asRatio(ofPoints[touched[k]]);
+        return resampleRigidity(patch.window, places, rigidities, settings.resampling, finest, sparsest).rigidity;
+    };
+    if (!object.foundationShape().empty() && settings.foundation > 0)
+        patch.plate.foundationShape = atNodes(object.foundationShape(), [](double shape) { return shape; });
+    if (object.stiffening().empty()) return;
+    // e^(b d) is by how much the tangent has grown at a depth: its logarithm's mean is that of b, zeros included.
+    constexpr double kDepth = 1e-4; // [m] e^(b d) is then at most e^10
+    patch.stiffeningAtNodes = atNodes(object.stiffening(), [](double b) { return std::exp(b * kDepth); });
+    for (double& b : patch.stiffeningAtNodes.values()) b = std::max(0.0, std::log(b) / kDepth);
 }
 
 // --- 2.5, equations 6 to 8: the plate bends under a unit force
@@ -415,6 +422,7 @@ void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLatti
     MiddleSolution   middle = patch.curvature ? solveTable(shellOf(patch), lattice, solver, settings.tolerance, table)
                                               : solveTable(patch.plate, lattice, solver, settings.tolerance, table);
     table.chart             = patch.chart;
+    fillStiffening(patch.stiffeningAtNodes, lattice, table);
     keep(patch, std::move(middle.solution), middle.compliance);
 }
 
@@ -434,6 +442,9 @@ void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& 
     const double modulus   = object.material().modulus(patch.plate.rigidity(middle, middle));
     patch.contactStiffness = contactStiffness(modulus, settings.footprintRadius, object.material().thickness);
     patch.feltStiffness    = feltStiffness(settings.forceLaw, patch.contactStiffness, patch.compliance);
+    patch.stiffening       = object.material().stiffening;
+    if (!patch.stiffeningAtNodes.values().empty())
+        patch.stiffening = responseOf(Footprint(unitLoad(patch.plate.grid, settings)), patch.stiffeningAtNodes).work;
 }
 
 constexpr double kDense = 0.3; ///< spacing over the side of the cubes below which one point per cube will do [1]
