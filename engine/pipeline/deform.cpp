@@ -381,10 +381,8 @@ void fillRigidity(Patch& patch, const SoftObject& object, const PatchSettings& s
     if (!object.foundationShape().empty() && settings.foundation > 0)
         patch.plate.foundationShape = atNodes(object.foundationShape(), [](double shape) { return shape; });
     if (object.stiffening().empty()) return;
-    // e^(b d) is by how much the tangent has grown at a depth: its logarithm's mean is that of b, zeros included.
-    constexpr double kDepth = 1e-4; // [m] e^(b d) is then at most e^10
-    patch.stiffeningAtNodes = atNodes(object.stiffening(), [](double b) { return std::exp(b * kDepth); });
-    for (double& b : patch.stiffeningAtNodes.values()) b = std::max(0.0, std::log(b) / kDepth);
+    patch.stiffeningAtNodes = atNodes(object.stiffening(), growthOf);
+    for (double& growth : patch.stiffeningAtNodes.values()) growth = stiffeningOf(growth);
 }
 
 // --- 2.5, equations 6 to 8: the plate bends under a unit force
