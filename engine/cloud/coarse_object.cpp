@@ -66,7 +66,8 @@ CoarseObject::CoarseObject(const SoftObject& dense, double side, Cubes cubes)
       object_(
           SoftObject(PointCloud(std::move(cubes.positions), meansOf(dense.cloud().stiffness()), dense.cloud().kind()),
                      dense.material(), {}, cubes.normals)
-              .withFoundation(meansOf(dense.foundationShape())))
+              .withFoundation(meansOf(dense.foundationShape()))
+              .withStiffening(meansOf(dense.stiffening(), false)))
 {
 }
 
@@ -74,19 +75,21 @@ CoarseObject::CoarseObject(const CoarseObject& shape, const SoftObject& dense)
     : side_(shape.side_), members_(shape.members_), begins_(shape.begins_),
       object_(shape.object_.repainted(meansOf(dense.cloud().stiffness()))
                   .withMaterial(dense.material())
-                  .withFoundation(meansOf(dense.foundationShape())))
+                  .withFoundation(meansOf(dense.foundationShape()))
+                  .withStiffening(meansOf(dense.stiffening(), false)))
 {
 }
 
-std::vector<double> CoarseObject::meansOf(std::span<const double> values) const
+std::vector<double> CoarseObject::meansOf(std::span<const double> values, bool byLogarithm) const
 {
     if (values.empty()) return {};
     std::vector<double> means(begins_->size() - 1);
     inParallel(means.size(), kPiece, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             double sum = 0;
-            for (const std::uint32_t point : membersOf(k)) sum += std::log(values[point]);
-            means[k] = std::exp(sum / double(membersOf(k).size()));
+            for (const std::uint32_t point : membersOf(k)) sum += byLogarithm ? std::log(values[point]) : values[point];
+            const double mean = sum / double(membersOf(k).size());
+            means[k]          = byLogarithm ? std::exp(mean) : mean;
         }
     });
     return means;

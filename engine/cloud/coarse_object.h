@@ -10,7 +10,7 @@
 namespace palp {
 
 /// A dense object by fewer points: one for those of each cube, on either side of a thin body, at their mean position with
-/// the mean of their logarithmic stiffness, and of the foundation below them. A touch that asks for no finer detail then costs the same however dense the
+/// the mean of their logarithmic stiffness, of how it grows with depth, and of the foundation below them. A touch that asks for no finer detail then costs the same however dense the
 /// object is.
 /// \thread immutable, so free to share
 class CoarseObject {
@@ -35,7 +35,8 @@ private:
     struct Cubes;
 
     CoarseObject(const SoftObject& dense, double side, Cubes cubes);
-    [[nodiscard]] std::vector<double> meansOf(std::span<const double> values) const; ///< of their logarithms
+    /// Returns the mean of each coarse point's members, by their logarithms or as they are.
+    [[nodiscard]] std::vector<double> meansOf(std::span<const double> values, bool byLogarithm = true) const;
 
     double                                            side_ = 0;
     std::shared_ptr<const std::vector<std::uint32_t>> members_; ///< of the first coarse point, of the second ...

@@ -1,5 +1,7 @@
 #include "engine/cloud/material.h"
 
+#include <algorithm>
+#include <cmath>
 #include <array>
 #include <charconv>
 
@@ -52,6 +54,20 @@ std::string relaxationText(const Relaxation& relaxation)
         text +=
             (n == 0 ? "" : ",") + shortest(relaxation.terms[n].share) + "@" + shortest(relaxation.terms[n].time) + "s";
     return text.empty() ? "none" : text;
+}
+
+namespace {
+constexpr double kGrowthDepth = 1e-4; ///< [m]
+}
+
+double growthOf(double stiffening) noexcept
+{
+    return std::exp(stiffening * kGrowthDepth);
+}
+
+double stiffeningOf(double growth) noexcept
+{
+    return std::clamp(std::log(growth) / kGrowthDepth, 0.0, kMostStiffening);
 }
 
 } // namespace palp

@@ -43,6 +43,16 @@ inline constexpr std::string_view kRelaxationForm =
 /// Writes it so that parseRelaxation() reads the same values back.
 [[nodiscard]] std::string relaxationText(const Relaxation& relaxation);
 
+/// The largest b [1/m]: a force that grows by e after 10 um; no finger tells it from a wall.
+inline constexpr double kMostStiffening = 1e5;
+
+/// Returns e^(b d) at d = 0.1 mm, by how much the tangent of a force has grown there [1]. What takes the mean of
+/// logarithms, or paints in them, then takes that of b, zeros included.
+/// \param stiffening  b, 0 to kMostStiffening [1/m]
+[[nodiscard]] double growthOf(double stiffening) noexcept;
+/// Returns the inverse of growthOf() [1/m]; 0 for what rounding has brought below 1.
+[[nodiscard]] double stiffeningOf(double growth) noexcept;
+
 /// The constants that turn the stiffness of a point into plate numbers and forces; one per scene.
 struct Material {
     double     thickness    = 4e-3; ///< [m] of the soft sheet; skin 1.5e-3, rubber sheet 4e-3

@@ -406,6 +406,20 @@ MeshPoints scatterOver(std::span<const glm::dvec3> vertices, std::span<const Tri
         }
 }
 
+std::vector<double> interpolated(const MeshPoints& points, std::span<const Triangle> faces,
+                                 std::span<const double> values)
+{
+    std::vector<double> result;
+    result.reserve(points.size());
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        const Triangle& face  = faces[points.triangles[n]];
+        const double    first = values[face[0]];
+        result.push_back(first + points.weights[n].x * (values[face[1]] - first) +
+                         points.weights[n].y * (values[face[2]] - first));
+    }
+    return result;
+}
+
 std::vector<double> logInterpolated(const MeshPoints& points, std::span<const Triangle> faces,
                                     std::span<const double> values)
 {

@@ -57,6 +57,11 @@ struct MeshPoints {
 [[nodiscard]] MeshPoints scatterOver(std::span<const glm::dvec3> vertices, std::span<const Triangle> faces,
                                      const ScatterSettings& settings);
 
+/// Returns the values of the points, from those of the vertices, weighted as the points lie between the corners.
+/// \param values  of the vertices
+[[nodiscard]] std::vector<double> interpolated(const MeshPoints& points, std::span<const Triangle> faces,
+                                               std::span<const double> values);
+
 /// Returns the values of the points, from those of the vertices by the mean of their logarithms, weighted as the points
 /// lie between the corners.
 /// \param values  of the vertices, > 0

@@ -43,7 +43,8 @@ SoftObject::SoftObject(PointCloud cloud, const Material& material, std::vector<T
       mesh_(std::make_shared<const SurfaceMesh>()),
       survey_(std::make_shared<const SurfaceSurvey>(
           *index_, normals.empty() ? std::span<const glm::vec3>(normalsOf(*faces_, cloud_.positions())) : normals)),
-      foundationShape_(std::make_shared<const std::vector<double>>()), material_(material)
+      foundationShape_(std::make_shared<const std::vector<double>>()),
+      stiffening_(std::make_shared<const std::vector<double>>()), material_(material)
 {
 }
 
@@ -78,6 +79,16 @@ SoftObject SoftObject::withFoundation(std::vector<double> shape) const
     SoftObject other       = *this;
     other.foundationShape_ = std::make_shared<const std::vector<double>>(std::move(shape));
     other.coarse_          = coarseShapes();
+    return other;
+}
+
+SoftObject SoftObject::withStiffening(std::vector<double> b) const
+{
+    const auto isGood = [](double value) { return value >= 0 && value <= kMostStiffening; };
+    PALP_EXPECT((b.empty() || b.size() == size()) && std::ranges::all_of(b, isGood), "a stiffening for each point");
+    SoftObject other  = *this;
+    other.stiffening_ = std::make_shared<const std::vector<double>>(std::move(b));
+    other.coarse_     = coarseShapes();
     return other;
 }
 

@@ -17,8 +17,8 @@ class CoarseObject;
 /// A touched object: points with a stiffness, the index over them, perhaps a mesh, and the material of the sheet.
 ///
 /// Nothing of it changes while it is touched; a touch returns its deformation as a field beside the object. Copies,
-/// repainted(), withMaterial() and withFoundation() share positions, index, survey, faces and mesh: of a million points only the stiffness is
-/// copied.
+/// repainted(), withMaterial(), withFoundation() and withStiffening() share positions, index, survey, faces and mesh: of
+/// a million points only the stiffness is copied.
 /// It may be moved and copied freely, because the index holds its own copy of the positions.
 /// \thread immutable, so free to share
 class SoftObject {
@@ -43,6 +43,10 @@ public:
     /// \param shape  for each point the foundation below it over that of the scene [1], > 0; empty: 1 everywhere
     [[nodiscard]] SoftObject withFoundation(std::vector<double> shape) const;
 
+    /// Returns the same points, each of which stiffens with depth in its own way.
+    /// \param b  [1/m] of each point, 0 to kMostStiffening, see DepthLaw; empty: the material's everywhere
+    [[nodiscard]] SoftObject withStiffening(std::vector<double> b) const;
+
     [[nodiscard]] const PointCloud&         cloud() const noexcept { return cloud_; }
     [[nodiscard]] const NeighbourIndex&     index() const noexcept { return *index_; }
     [[nodiscard]] const SurfaceSurvey&      survey() const noexcept { return *survey_; }
@@ -60,6 +64,9 @@ public:
 
     /// Returns what withFoundation() took [1]; empty: the foundation is the same everywhere.
     [[nodiscard]] std::span<const double> foundationShape() const noexcept { return *foundationShape_; }
+
+    /// Returns what withStiffening() took [1/m]; empty: material() says it.
+    [[nodiscard]] std::span<const double> stiffening() const noexcept { return *stiffening_; }
 
     /// Returns the flexural rigidity D at a point [N m].
     [[nodiscard]] double rigidity(std::size_t point) const noexcept { return cloud_.rigidity(point, material_); }
@@ -83,6 +90,7 @@ private:
     std::shared_ptr<const SurfaceMesh>           mesh_;            ///< never null
     std::shared_ptr<const SurfaceSurvey>         survey_;          ///< never null
     std::shared_ptr<const std::vector<double>>   foundationShape_; ///< never null
+    std::shared_ptr<const std::vector<double>>   stiffening_;      ///< [1/m] never null
     Material                                     material_;
     std::shared_ptr<CoarseObjects>               coarse_ = std::make_shared<CoarseObjects>(); ///< never null
 };

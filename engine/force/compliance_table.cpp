@@ -29,7 +29,7 @@ Place placeOf(double coordinate, const ComplianceTable& table) noexcept
     return {cell, along - cell};
 }
 
-/// One of a table's two functions.
+/// One of a table's functions.
 struct Lattice {
     const ComplianceTable::Entries& entries;
     int                             side;
@@ -78,7 +78,8 @@ bool finite(const ComplianceTable::Entry& entry) noexcept
 ComplianceTable::Values ComplianceTable::middle() const noexcept
 {
     const auto n = std::size_t(side * side / 2);
-    return {compliance[n].value, contactStiffness[n].value, false};
+    return {compliance[n].value, contactStiffness[n].value, false,
+            stiffens ? std::optional(stiffening[n].value) : std::nullopt};
 }
 
 ComplianceTable::Values ComplianceTable::at(const ChartPoint& place) const noexcept
@@ -90,6 +91,8 @@ ComplianceTable::Values ComplianceTable::at(const ChartPoint& place) const noexc
         const Place px = placeOf(inside.x, *this), pz = placeOf(inside.z, *this);
         look.lnCompliance       = Lattice{compliance, side, spacing}.at(px, pz);
         look.lnContactStiffness = Lattice{contactStiffness, side, spacing}.at(px, pz);
+        if (stiffens)
+            look.stiffening = std::max(0.0, Lattice{stiffening, side, spacing}.at(px, pz)); // cubics overshoot
     }
     look.clamped = inside.x != place.x || inside.z != place.z;
     return look;
@@ -102,7 +105,7 @@ bool ComplianceTable::usable() const noexcept
     const auto all = [this](const Entries& entries) {
         return std::all_of(entries.begin(), entries.begin() + side * side, finite);
     };
-    return all(compliance) && all(contactStiffness);
+    return all(compliance) && all(contactStiffness) && (!stiffens || all(stiffening));
 }
 
 } // namespace palp

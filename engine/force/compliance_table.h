@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <type_traits>
 
 #include "engine/chart/chart.h"
@@ -34,6 +35,8 @@ struct ComplianceTable {
         double lnCompliance       = 0;     ///< of c [m/N]
         double lnContactStiffness = 0;     ///< of k_c [N/m]
         bool   clamped            = false; ///< beyond the reach: the nearest place within it answers
+
+        std::optional<double> stiffening{}; ///< b [1/m]; empty: it is the scene's
     };
 
     std::uint64_t sequence = 0;       ///< of the contact that it was solved for; 0: none
@@ -43,6 +46,8 @@ struct ComplianceTable {
     double        spacing = 0;        ///< of the entries [m]
     Entries       compliance{};       ///< ln c
     Entries       contactStiffness{}; ///< ln k_c, of the rigidity's geometric mean over the footprint
+    bool          stiffens = false;   ///< b varies from place to place; else the next is not read
+    Entries       stiffening{};       ///< b, see DepthLaw: its mean over the footprint [1/m]
 
     [[nodiscard]] double reach() const noexcept { return side / 2 * spacing; } ///< along each axis [m]
 

@@ -8,6 +8,8 @@ namespace palp {
 namespace {
 
 constexpr double kLongestGuess = 0.25; ///< [s] as long as a table may stay in use
+constexpr double kRate         = 10;   ///< [1/s] 1 % per ms, our own prototype's: faster is felt as a tick, slower lags
+constexpr double kDepth        = 2e-3; ///< [m] at which an offset of b is as much of the tangent as one of ln k
 
 } // namespace
 
@@ -19,17 +21,17 @@ ComplianceTable::Values ComplianceTracker::lookUp(const glm::dvec3& contact) con
     if (law_ != ComplianceLaw::table) return table_->middle();
     if (const auto place = table_->chart.project(contact)) return table_->at(*place);
     // The contact is behind the sphere, or not finite: the last felt value stays.
-    return {compliance_.handed - compliance_.offset, contact_.handed - contact_.offset, true};
+    return {compliance_.handed - compliance_.offset, contact_.handed - contact_.offset, true,
+            table_->stiffens ? std::optional(stiffening_.handed - stiffening_.offset) : std::nullopt};
 }
 
-/// Updates the offset of a logarithm when the table changes its value at the contact.
-void ComplianceTracker::carry(Carried& carried, double before, double after) const noexcept
+/// Updates the offset of what is carried when the table changes its value at the contact.
+/// \param rate  at which the offset dies at least, of it in a second
+void ComplianceTracker::carry(Carried& carried, double before, double after, double rate) const noexcept
 {
-    constexpr double kRate = 10; // [1/s] 1 % per ms, our own prototype's: faster is felt as a tick, slower lags
-
     const bool goesOn = touching_ && fits_;
     carried.offset    = law_ == ComplianceLaw::table && goesOn ? before + carried.offset - after : 0;
-    carried.rate      = std::max(kRate, std::abs(carried.offset) / period_);
+    carried.rate      = std::max(rate, std::abs(carried.offset) / period_);
     carried.from      = goesOn ? carried.handed : after;
 }
 
@@ -38,15 +40,16 @@ void ComplianceTracker::land(const ComplianceTick& now) noexcept
 {
     constexpr double kLate = 1.5; // [periods] a table that is in use for longer has missed its successor
 
-    compliance_ = contact_ = {};
-    guessing_              = false;
-    const bool reached     = table_ && !lookUp(now.contact).clamped;
-    fits_                  = reached && now.time - adopted_ <= kLate * period_;
-    guessing_              = !reached && first_ && first_->at(now.contact);
-    landed_                = now.time;
-    const auto here        = lookUp(now.contact);
+    compliance_ = contact_ = stiffening_ = {};
+    guessing_                            = false;
+    const bool reached                   = table_ && !lookUp(now.contact).clamped;
+    fits_                                = reached && now.time - adopted_ <= kLate * period_;
+    guessing_                            = !reached && first_ && first_->at(now.contact);
+    landed_                              = now.time;
+    const auto here                      = lookUp(now.contact);
     compliance_.handed = compliance_.from = here.lnCompliance;
     contact_.handed = contact_.from = here.lnContactStiffness;
+    stiffening_.handed = stiffening_.from = here.stiffening.value_or(0);
 }
 
 void ComplianceTracker::adopt(const ComplianceTick& now) noexcept
@@ -66,8 +69,10 @@ void ComplianceTracker::adopt(const ComplianceTick& now) noexcept
     const bool                    guessed = std::exchange(guessing_, false);
     const ComplianceTable::Values after   = lookUp(now.contact);
     fits_                                 = fits_ || guessed;
-    carry(compliance_, before.lnCompliance, after.lnCompliance);
-    carry(contact_, before.lnContactStiffness, after.lnContactStiffness);
+    carry(compliance_, before.lnCompliance, after.lnCompliance, kRate);
+    carry(contact_, before.lnContactStiffness, after.lnContactStiffness, kRate);
+    if (after.stiffening)
+        carry(stiffening_, before.stiffening.value_or(*after.stiffening), *after.stiffening, kRate / kDepth);
     fits_ = touching_; // from here on this contact has a table of its own
 }
 
@@ -76,12 +81,12 @@ double ComplianceTracker::hand(Carried& carried, double wanted, double time) con
     carried.handed = wanted + carried.offset;
     if (law_ == ComplianceLaw::blend)
         carried.handed = std::lerp(carried.from, wanted, std::min(1.0, (time - adopted_) / period_));
-    return std::exp(carried.handed);
+    return carried.handed;
 }
 
 std::optional<LocalCompliance> ComplianceTracker::tick(const ComplianceTick& now) noexcept
 {
-    for (Carried* carried : {&compliance_, &contact_})
+    for (Carried* carried : {&compliance_, &contact_, &stiffening_})
         carried->offset =
             std::copysign(std::max(0.0, std::abs(carried->offset) - carried->rate * now.dt), carried->offset);
     const bool landed = now.touching && !touching_;
@@ -93,18 +98,22 @@ std::optional<LocalCompliance> ComplianceTracker::tick(const ComplianceTick& now
     if (!answers()) return {};
 
     const ComplianceTable::Values here = lookUp(now.contact);
-    return LocalCompliance{hand(compliance_, here.lnCompliance, now.time),
-                           hand(contact_, here.lnContactStiffness, now.time), here.clamped,
+    LocalCompliance               answer{std::exp(hand(compliance_, here.lnCompliance, now.time)),
+                           std::exp(hand(contact_, here.lnContactStiffness, now.time)), here.clamped,
                            now.time - (guessing_ ? landed_ : table_->time), guessing_ ? 0 : table_->chart.curvature};
+    if (here.stiffening) answer.stiffening = std::max(0.0, hand(stiffening_, *here.stiffening, now.time));
+    return answer;
 }
 
 std::optional<LocalCompliance> ComplianceTracker::near(const glm::dvec3& place) const noexcept
 {
     if (!answers()) return {};
     const ComplianceTable::Values there = lookUp(place);
-    return LocalCompliance{std::exp(there.lnCompliance + compliance_.offset),
+    LocalCompliance               answer{std::exp(there.lnCompliance + compliance_.offset),
                            std::exp(there.lnContactStiffness + contact_.offset), there.clamped, 0,
                            table_ ? table_->chart.curvature : 0};
+    if (there.stiffening) answer.stiffening = std::max(0.0, *there.stiffening + stiffening_.offset);
+    return answer;
 }
 
 } // namespace palp

@@ -37,6 +37,8 @@ struct LocalCompliance {
     bool   clamped          = false; ///< the contact lies beyond the table's reach, or no table was there yet
     double age              = 0;     ///< [s] of the contact that the table was solved for; without one, of this contact
     double curvature        = 0;     ///< [1/m] of the table's chart, see Chart
+
+    std::optional<double> stiffening{}; ///< b [1/m]; empty: it is the scene's
 };
 
 /// Compliance at 1 kHz from tables at 30 to 60 Hz.
@@ -49,7 +51,7 @@ struct LocalCompliance {
 ///
 /// Where a new table disagrees with the old one at the contact, the difference is carried as an offset of ln c, and of
 /// ln k_c, which dies at 1 % per millisecond, or within one period if that is faster. In free space tables change
-/// without: nothing is felt. Nor does a contact carry an offset that began beyond the reach of its table, or with one
+/// without: nothing is felt. b, where it varies, goes the same way. Nor does a contact carry an offset that began beyond the reach of its table, or with one
 /// that was not replaced in time: that table was made for another place, and what it says is no value to keep.
 ///
 /// A contact that finds no table, or that begins beyond its reach, is answered by the homogeneous law of its place, if
@@ -79,20 +81,20 @@ public:
     [[nodiscard]] const ComplianceTable* inUse() const noexcept { return table_; }
 
 private:
-    /// One of the two logarithms on its way to the hand.
+    /// One of the two logarithms, or b, on its way to the hand.
     struct Carried {
-        double handed = 0; // in the last tick [1]
-        double offset = 0; // from the table's value [1]
-        double rate   = 0; // at which the offset dies [1/s]
-        double from   = 0; // where a blend began [1]
+        double handed = 0; // in the last tick [1] or [1/m]
+        double offset = 0; // from the table's value, likewise
+        double rate   = 0; // at which the offset dies, of it in a second
+        double from   = 0; // where a blend began, likewise
     };
 
     [[nodiscard]] ComplianceTable::Values lookUp(const glm::dvec3& contact) const noexcept;
     [[nodiscard]] bool                    answers() const noexcept { return table_ || guessing_; }
     void                                  land(const ComplianceTick& now) noexcept;
     void                                  adopt(const ComplianceTick& now) noexcept;
-    void                                  carry(Carried& carried, double before, double after) const noexcept;
-    [[nodiscard]] double                  hand(Carried& carried, double wanted, double time) const noexcept;
+    void                 carry(Carried& carried, double before, double after, double rate) const noexcept;
+    [[nodiscard]] double hand(Carried& carried, double wanted, double time) const noexcept;
 
     ComplianceLaw         law_;
     const HomogeneousLaw* first_; // may be null
@@ -105,7 +107,7 @@ private:
     bool                   flown_    = false;    // in free space since the table came
     double                 adopted_  = 0;        // when the table came [s]
     double                 period_   = 1.0 / 30; // [s] the slowest deformation thread that is planned for
-    Carried                compliance_, contact_;
+    Carried                compliance_, contact_, stiffening_;
 };
 
 } // namespace palp

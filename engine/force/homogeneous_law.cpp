@@ -12,7 +12,7 @@
 
 namespace palp {
 
-HomogeneousLaw::HomogeneousLaw(std::vector<Site> sites, double cell) : cell_(cell)
+HomogeneousLaw::HomogeneousLaw(std::vector<Site> sites, double cell, bool stiffens) : cell_(cell), stiffens_(stiffens)
 {
     PALP_EXPECT(cell > 0 && !sites.empty(),
                 std::to_string(sites.size()) + " sites in cells of " + std::to_string(cell) + " m");
@@ -40,7 +40,7 @@ std::optional<ComplianceTable::Values> HomogeneousLaw::at(const glm::dvec3& plac
 {
     constexpr double        kReach = 1.5; // [cells] 27 cubes hold all that is within one cell, and most of the rest
     ComplianceTable::Values sum{0, 0, true};
-    double                  weights = 0;
+    double                  weights = 0, stiffening = 0;
     if (!std::isfinite(place.x + place.y + place.z)) return {};
     for (int dx = -1; dx <= 1; ++dx)
         for (int dy = -1; dy <= 1; ++dy)
@@ -53,11 +53,13 @@ std::optional<ComplianceTable::Values> HomogeneousLaw::at(const glm::dvec3& plac
                     weights += share * share;
                     sum.lnCompliance += share * share * site.lnCompliance;
                     sum.lnContactStiffness += share * share * site.lnContactStiffness;
+                    stiffening += share * share * site.stiffening;
                 }
             }
     if (!(weights > 0)) return {};
     sum.lnCompliance /= weights;
     sum.lnContactStiffness /= weights;
+    if (stiffens_) sum.stiffening = stiffening / weights;
     return sum;
 }
 

@@ -19,10 +19,12 @@ public:
         glm::dvec3 point{};                ///< [m]
         double     lnCompliance       = 0; ///< of c [m/N]
         double     lnContactStiffness = 0; ///< of k_c [N/m]
+        double     stiffening         = 0; ///< b [1/m], if it varies
     };
 
-    /// \param cell  [m] about the distance between sites; above zero
-    HomogeneousLaw(std::vector<Site> sites, double cell);
+    /// \param cell      [m] about the distance between sites; above zero
+    /// \param stiffens  the sites say how the force stiffens
+    HomogeneousLaw(std::vector<Site> sites, double cell, bool stiffens = false);
 
     /// Returns the mean of the sites within 1.5 cells, weighted by (1 - (distance / 1.5 cells)^2)^2; marked as clamped,
     /// since it is no table's. Empty if there are none.
@@ -34,6 +36,7 @@ private:
     [[nodiscard]] Key keyOf(const glm::dvec3& place, int dx, int dy, int dz) const noexcept;
 
     double            cell_; ///< [m]
+    bool              stiffens_;
     glm::dvec3        corner_{};
     std::vector<Site> sites_; ///< by their keys
     std::vector<Key>  keys_;  ///< of the sites, rising

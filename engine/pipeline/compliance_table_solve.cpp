@@ -220,4 +220,14 @@ MiddleSolution solveTable(const Shell& shell, const FootprintLattice& lattice, P
     return fillTable(std::move(solved), lattice, OverNode(shell.bending), own, table);
 }
 
+void fillStiffening(const NodeField& stiffening, const FootprintLattice& lattice, ComplianceTable& table)
+{
+    table.stiffens = !stiffening.values().empty();
+    if (!table.stiffens) return;
+    for (std::size_t n = 0; n < lattice.loads.size(); ++n) {
+        const FootprintResponse mean = responseOf(lattice.loads[n], stiffening);
+        table.stiffening[n]          = {mean.work, mean.changeX, mean.changeZ};
+    }
+}
+
 } // namespace palp

@@ -87,4 +87,8 @@ struct MiddleSolution {
 [[nodiscard]] MiddleSolution solveTable(const Shell& shell, const FootprintLattice& lattice, PlateSolver& solver,
                                         double tolerance, ComplianceTable& table);
 
+/// Fills in how the force stiffens under each footprint: the mean of b, weighted as the load is.
+/// \param stiffening  b at the nodes [1/m]; empty: the table does not say it
+void fillStiffening(const NodeField& stiffening, const FootprintLattice& lattice, ComplianceTable& table);
+
 } // namespace palp

@@ -374,10 +374,15 @@ void fillRigidity(Patch& patch, const SoftObject& object, const PatchSettings& s
     patch.plate             = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
                                std::move(resampled.rigidity)};
     refuseIfEmpty(patch, settings);
-    if (object.foundationShape().empty() || settings.foundation == 0) return;
-    for (std::size_t k = 0; k < touched.size(); ++k) rigidities[k] = object.foundationShape()[touched[k]];
-    patch.plate.foundationShape =
-        resampleRigidity(patch.window, places, rigidities, settings.resampling, finest, sparsest).rigidity;
+    const auto atNodes = [&](std::span<const double> ofPoints, auto asRatio) {
+        for (std::size_t k = 0; k < touched.size(); ++k) rigidities[k] = asRatio(ofPoints[touched[k]]);
+        return resampleRigidity(patch.window, places, rigidities, settings.resampling, finest, sparsest).rigidity;
+    };
+    if (!object.foundationShape().empty() && settings.foundation > 0)
+        patch.plate.foundationShape = atNodes(object.foundationShape(), [](double shape) { return shape; });
+    if (object.stiffening().empty()) return;
+    patch.stiffeningAtNodes = atNodes(object.stiffening(), growthOf);
+    for (double& growth : patch.stiffeningAtNodes.values()) growth = stiffeningOf(growth);
 }
 
 // --- 2.5, equations 6 to 8: the plate bends under a unit force
@@ -415,6 +420,7 @@ void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLatti
     MiddleSolution   middle = patch.curvature ? solveTable(shellOf(patch), lattice, solver, settings.tolerance, table)
                                               : solveTable(patch.plate, lattice, solver, settings.tolerance, table);
     table.chart             = patch.chart;
+    fillStiffening(patch.stiffeningAtNodes, lattice, table);
     keep(patch, std::move(middle.solution), middle.compliance);
 }
 
@@ -434,6 +440,9 @@ void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& 
     const double modulus   = object.material().modulus(patch.plate.rigidity(middle, middle));
     patch.contactStiffness = contactStiffness(modulus, settings.footprintRadius, object.material().thickness);
     patch.feltStiffness    = feltStiffness(settings.forceLaw, patch.contactStiffness, patch.compliance);
+    patch.stiffening       = object.material().stiffening;
+    if (!patch.stiffeningAtNodes.values().empty())
+        patch.stiffening = responseOf(Footprint(unitLoad(patch.plate.grid, settings)), patch.stiffeningAtNodes).work;
 }
 
 constexpr double kDense = 0.3; ///< spacing over the side of the cubes below which one point per cube will do [1]

@@ -18,6 +18,7 @@ struct Piece {
     double     area       = 0; ///< [m^2]
     double     lnRigidity = 0; ///< mean of ln D, by area
     double     lnFirmer   = 0; ///< mean of ln of the foundation's shape, by area
+    double     stiffening = 0; ///< mean of b, by area [1/m]
 };
 
 std::vector<Piece> piecesOf(const SoftObject& object, double cell)
@@ -32,6 +33,7 @@ std::vector<Piece> piecesOf(const SoftObject& object, double cell)
         cube.point += area * p;
         cube.area += area;
         cube.lnRigidity += area * std::log(object.rigidity(n));
+        if (!object.stiffening().empty()) cube.stiffening += area * object.stiffening()[n];
         if (!object.foundationShape().empty()) cube.lnFirmer += area * std::log(object.foundationShape()[n]);
     }
     std::vector<Piece> pieces;
@@ -39,20 +41,21 @@ std::vector<Piece> piecesOf(const SoftObject& object, double cell)
         cube.point /= cube.area;
         cube.lnRigidity /= cube.area;
         cube.lnFirmer /= cube.area;
+        cube.stiffening /= cube.area;
         pieces.push_back(cube);
     }
     return pieces;
 }
 
-/// Returns the mean of a piece's logarithm about a place, weighted by a Gaussian.
+/// Returns the mean of one of a piece's means about a place, weighted by a Gaussian.
 double meanAbout(const glm::dvec3& place, double deviation, const std::vector<Piece>& pieces,
-                 const std::vector<std::uint32_t>& near, double Piece::*logarithm)
+                 const std::vector<std::uint32_t>& near, double Piece::*ofPiece)
 {
     double sum = 0, weights = 0;
     for (const std::uint32_t n : near) {
         const glm::dvec3 away   = pieces[n].point - place;
         const double     weight = pieces[n].area * std::exp(-glm::dot(away, away) / (2 * deviation * deviation));
-        sum += weight * pieces[n].*logarithm;
+        sum += weight * pieces[n].*ofPiece;
         weights += weight;
     }
     return sum / weights;
@@ -77,17 +80,18 @@ HomogeneousLaw homogeneousLaw(const SoftObject& object, const FootprintLattice& 
         std::vector<std::uint32_t> near;
         for (std::size_t n = begin; n < end; ++n) {
             index.gather(points[n], kReach * felt, near);
-            const auto mean = [&](double deviation, double Piece::*logarithm) {
-                return meanAbout(points[n], deviation, pieces, near, logarithm);
+            const auto mean = [&](double deviation, double Piece::*ofPiece) {
+                return meanAbout(points[n], deviation, pieces, near, ofPiece);
             };
             const double bends = mean(felt, &Piece::lnRigidity), lies = mean(under, &Piece::lnRigidity);
             const double firmer = lattice.onFoundation() ? mean(felt, &Piece::lnFirmer) : 0;
             // s times the foundation and D are 1/s times as compliant as the foundation and D/s.
             sites[n] = {points[n], lattice.lnCompliance(std::exp(bends - firmer)) - firmer,
-                        std::log(lattice.shape.contactPerRigidity) + lies};
+                        std::log(lattice.shape.contactPerRigidity) + lies,
+                        object.stiffening().empty() ? 0 : mean(under, &Piece::stiffening)};
         }
     });
-    return {std::move(sites), cell};
+    return {std::move(sites), cell, !object.stiffening().empty()};
 }
 
 } // namespace palp

@@ -95,6 +95,8 @@ struct Patch {
     double      compliance       = 0;  ///< c: response averaged over the footprint, work-conjugate [m/N]
     double      contactStiffness = 0;  ///< k_c [N/m]
     double      feltStiffness    = 0;  ///< [N/m]
+    double      stiffening       = 0;  ///< b under the footprint [1/m], see DepthLaw
+    NodeField   stiffeningAtNodes;     ///< [1/m]; empty: b is the same everywhere
 
     /// The object that was touched in place of one far denser than the grid; empty: the object itself. The points below
     /// are its.

@@ -87,9 +87,8 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
         result.push_back(
             "the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
             formatQuantity(half, "m") + "): Kirchhoff plate theory does not hold here; press with less than " +
-            formatQuantity(material.stiffening > 0
-                               ? depthLawOf(patch, material).force(load * half / deepest / patch.feltStiffness)
-                               : load * half / deepest,
+            formatQuantity(patch.stiffening > 0 ? depthLawOf(patch).force(load * half / deepest / patch.feltStiffness)
+                                                : load * half / deepest,
                            "N"));
     if (patch.nodesWithoutPoint > 0)
         result.push_back(

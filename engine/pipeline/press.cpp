@@ -2,16 +2,16 @@
 
 namespace palp {
 
-DepthLaw depthLawOf(const Patch& patch, const Material& material) noexcept
+DepthLaw depthLawOf(const Patch& patch) noexcept
 {
-    return {patch.feltStiffness, material.stiffening};
+    return {patch.feltStiffness, patch.stiffening};
 }
 
 Press pressOf(const Patch& patch, const Material& material, double force) noexcept
 {
-    const DepthLaw law = depthLawOf(patch, material);
+    const DepthLaw law = depthLawOf(patch);
     Press          press{law.depthOf(force), force, law.depthOf(force / (1 - material.relaxation.shares()))};
-    if (material.stiffening > 0) press.load = law.stiffness * press.depth;
+    if (patch.stiffening > 0) press.load = law.stiffness * press.depth;
     return press;
 }
 

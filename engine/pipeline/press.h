@@ -6,7 +6,7 @@
 namespace palp {
 
 /// The elastic law of a patch, without a cap: that of the place, not of a device.
-[[nodiscard]] DepthLaw depthLawOf(const Patch& patch, const Material& material) noexcept;
+[[nodiscard]] DepthLaw depthLawOf(const Patch& patch) noexcept;
 
 /// What a force does to a patch. Where the force stiffens with depth, the dent does not grow with the force, but with
 /// the depth: it is the one that `load` makes of a linear plate. A linear material has load = force, to the bit.

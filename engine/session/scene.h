@@ -203,6 +203,9 @@ struct LoadedObject {
 /// \throws Error as loadCloud()
 [[nodiscard]] LoadedCloud asTouched(LoadedCloud loaded, const Scene& scene);
 
+/// Returns whether the scene, or its material, says how the force stiffens: it wins over what a file says of its points.
+[[nodiscard]] bool statesStiffening(const Scene& scene);
+
 /// Returns what complaints call the scene's cloud.
 [[nodiscard]] std::string cloudName(const Scene& scene);
 

@@ -163,13 +163,20 @@ LoadedCloud loadCloud(const Scene& scene)
     return loaded;
 }
 
+bool statesStiffening(const Scene& scene)
+{
+    const auto stated = scene.origins.find("stiffening");
+    return stated != scene.origins.end() && stated->second.origin != Origin::standard;
+}
+
 LoadedObject objectOf(LoadedCloud loaded, const Scene& scene)
 {
     if (loaded.cloud.kind() == StiffnessKind::felt)
         throw Error(cloudName(scene) +
                     ": expected a modulus [Pa] or a flexural rigidity [N_m], found a map of what a probe "
                     "felt [N/m]; palpate fit makes an object of it");
-    const SoftObject object(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals);
+    SoftObject object(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals);
+    if (!statesStiffening(scene)) object = object.withStiffening(std::move(loaded.stiffening));
     return {onTissue(object.standingFor(std::move(loaded.mesh)), scene), std::move(loaded.report)};
 }
 

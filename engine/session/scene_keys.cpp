@@ -364,13 +364,15 @@ std::vector<SceneKey> materialKeys()
          .read         = [](S& s, const V& v) { s.below = parseBelow(v.text, v.what); },
          .write        = [](const S& s) { return belowJson(s.below); }},
         numberKey(
-            {.name      = "stiffening",
-             .help      = "b by which the force stiffens with depth, K (e^(b d) - 1) / b; meat 800; 0 for a spring",
+            {.name = "stiffening",
+             .help =
+                 "b by which the force stiffens with depth, K (e^(b d) - 1) / b; meat 800; 0 for a spring; omitted: "
+                 "the file's property stiffening, if it has one",
              .group     = kTouch,
              .unit      = "1/m",
              .example   = "0.8 1/mm",
              .dimension = D::perLength,
-             .bounds    = KeyBounds{0, 1e5}, // e times stiffer after 10 um: no finger tells it from a wall
+             .bounds    = KeyBounds{0, kMostStiffening},
              .control   = Control{Panel::material, "stiffening", "1/m", 1, 0, 2000, false, 0, 10}},
             [](auto& s) -> auto& { return s.material.stiffening; }),
         {.name  = "relaxation",

@@ -95,8 +95,12 @@ void scatterOverFaces(LoadedCloud& loaded, const ScatterPlan& plan)
     CloudFileReport&    report    = loaded.report;
     MeshPoints          points    = scatterOver(loaded.cloud.positions(), loaded.faces, {.distance = plan.wanted});
     std::vector<double> stiffness = logInterpolated(points, loaded.faces, loaded.cloud.stiffness());
-    report.scatteredPoints        = points.size();
-    report.scatterDistance        = points.distance;
+    if (!loaded.stiffening.empty()) {
+        loaded.stiffening = interpolated(points, loaded.faces, loaded.stiffening);
+        for (double& b : loaded.stiffening) b = std::clamp(b, 0.0, kMostStiffening); // weights are rounded
+    }
+    report.scatteredPoints = points.size();
+    report.scatterDistance = points.distance;
     if (points.distance > plan.wanted)
         report.warnings.push_back("points are scattered over the faces " + formatQuantity(points.distance, "m") +
                                   " apart instead of " + formatQuantity(plan.wanted, "m") + ", because no more than " +

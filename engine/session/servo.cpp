@@ -67,9 +67,9 @@ double AnswerPeriod::add(std::uint64_t sequence, double time) noexcept
 
 ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, const HomogeneousLaw* first)
     : law_(scene.patch.forceLaw), thickness_(scene.material.thickness), linear_(scene.material.isLinear()),
-      stiffening_(scene.material.stiffening), patchPeriod_(1 / scene.deformationRate), scale_(scene.workspaceScale),
-      compliance_(scene.complianceLaw, first), relaxing_(scene.material.relaxation, scene.patch.footprintRadius),
-      governor_(governorOf(scene, limits))
+      ofScene_(scene.material.stiffening), stiffening_(ofScene_), patchPeriod_(1 / scene.deformationRate),
+      scale_(scene.workspaceScale), compliance_(scene.complianceLaw, first),
+      relaxing_(scene.material.relaxation, scene.patch.footprintRadius), governor_(governorOf(scene, limits))
 {
 }
 
@@ -126,7 +126,7 @@ void ForceHalf::relax(WantedForce& want, const DepthLaw& law, double dt, const P
 double ForceHalf::plateLoad(const WantedForce& want, const GovernorOutput& out, const ProxyContact& held) const noexcept
 {
     const double pressed = std::max(0.0, glm::dot(out.force, held.touch.outward));
-    if (linear_) return pressed;
+    if (linear_ && stiffening_ == 0) return pressed;
     const double     wanted = glm::length(want.force), pull = glm::length(held.pull);
     constexpr double kSome = 1e-3; // [1] of the load: below it a force says nothing about the share that is rendered
     const double     share = wanted > kSome * want.load ? std::min(1.0, glm::length(out.force) / wanted) : out.gain;
@@ -140,14 +140,20 @@ double ForceHalf::stiffnessOf(const std::optional<LocalCompliance>& local) const
     return std::min(feltStiffness(law_, local->contactStiffness, local->compliance), steepest());
 }
 
-/// Returns what a contact of one stiffness stores, as a multiple of what it does with the other [1].
-double ForceHalf::storedRatio(double stiffness, double other, double depth) const noexcept
+/// Returns the b that is wanted [1/m].
+double ForceHalf::stiffeningOf(const std::optional<LocalCompliance>& local) const noexcept
 {
-    if (stiffening_ == 0) return stiffness / other;
-    const double cap = steepest();
-    const double one = DepthLaw{stiffness, stiffening_, cap}.energy(depth);
-    const double two = DepthLaw{other, stiffening_, cap}.energy(depth);
-    return one > 0 && two > 0 ? one / two : 1;
+    return local ? local->stiffening.value_or(ofScene_) : ofScene_;
+}
+
+/// Returns what a contact at one place stores, as a multiple of what it does at the other [1].
+double ForceHalf::storedRatio(const LocalCompliance& one, const LocalCompliance& other, double depth) const noexcept
+{
+    const DepthLaw here{stiffnessOf(one), stiffeningOf(one), steepest()};
+    const DepthLaw there{stiffnessOf(other), stiffeningOf(other), steepest()};
+    if (here.stiffening == 0 && there.stiffening == 0) return here.stiffness / there.stiffness;
+    const double more = here.energy(depth), less = there.energy(depth);
+    return more > 0 && less > 0 ? more / less : 1;
 }
 
 /// Takes the slope of what is stored from its differences over a way on which a table's cubics are straight.
@@ -160,9 +166,9 @@ StiffnessSlope ForceHalf::slopeAt(const ProxyContact& held) const noexcept
     const glm::dvec3 one = glm::normalize(glm::cross(outward, other)), two = glm::cross(outward, one);
     StiffnessSlope   slope;
     for (const glm::dvec3& along : {one, two}) {
-        const auto   ahead = compliance_.near(place + kWay * along), behind = compliance_.near(place - kWay * along);
-        const double more = stiffnessOf(ahead), less = stiffnessOf(behind);
-        if (more > 0 && less > 0) slope.ofLogarithm += std::log(storedRatio(more, less, depth)) / (2 * kWay) * along;
+        const auto ahead = compliance_.near(place + kWay * along), behind = compliance_.near(place - kWay * along);
+        if (stiffnessOf(ahead) > 0 && stiffnessOf(behind) > 0)
+            slope.ofLogarithm += std::log(storedRatio(*ahead, *behind, depth)) / (2 * kWay) * along;
         if (ahead) slope.curvature = ahead->curvature;
     }
     return slope;
@@ -173,7 +179,7 @@ void ForceHalf::leanOn(const ProxyContact& held, const Hand& hand, const WantedF
 {
     if (held.touch.touching) {
         StiffnessSlope slope = slopeAt(held);
-        if (!linear_ && want.stiffness > 0) slope.leverage = want.stored / want.stiffness;
+        if (!(linear_ && stiffening_ == 0) && want.stiffness > 0) slope.leverage = want.stored / want.stiffness;
         lean_.step(slope, held.pull, glm::length(hand.position - lastHand_));
     } else {
         lean_.end();
@@ -205,6 +211,7 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     const Touch& touch = held.touch;
     const auto handed  = compliance_.tick({touch.point - held.lean, now.time, now.dt, newest ? &newest->table : nullptr,
                                            touch.touching}); // also in free space
+    stiffening_        = stiffeningOf(handed);
     const WantedForce want = wantedForce(stiffnessOf(handed), now.dt, hand, held);
     leanOn(held, hand, want);
 

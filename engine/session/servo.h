@@ -191,7 +191,9 @@ private:
     [[nodiscard]] double plateLoad(const WantedForce& want, const GovernorOutput& out,
                                    const ProxyContact& held) const noexcept;
     [[nodiscard]] double stiffnessOf(const std::optional<LocalCompliance>& local) const noexcept;
-    [[nodiscard]] double storedRatio(double stiffness, double other, double depth) const noexcept;
+    [[nodiscard]] double stiffeningOf(const std::optional<LocalCompliance>& local) const noexcept;
+    [[nodiscard]] double storedRatio(const LocalCompliance& one, const LocalCompliance& other,
+                                     double depth) const noexcept;
     [[nodiscard]] StiffnessSlope slopeAt(const ProxyContact& held) const noexcept;
     void                         leanOn(const ProxyContact& held, const Hand& hand, const WantedForce& want) noexcept;
 
@@ -202,8 +204,9 @@ private:
 
     ForceLaw          law_;
     double            thickness_;   ///< [m]
-    bool              linear_;      ///< the material's force is stiffness times depth
-    double            stiffening_;  ///< [1/m]
+    bool              linear_;      ///< the material's force is stiffness times depth, if b is 0 here too
+    double            ofScene_;     ///< b of the scene [1/m]
+    double            stiffening_;  ///< b in this tick [1/m]
     double            patchPeriod_; ///< of the deformation [s]
     double            scale_;       ///< metres of the scene per metre of the device [1]
     AnswerPeriod      answers_;

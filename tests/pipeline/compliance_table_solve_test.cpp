@@ -297,5 +297,36 @@ TEST(Warnings, AskForTheWindowThatTheFoundationNeeds)
     EXPECT_FALSE(warnedAt(varied, 12.5, mean));
 }
 
+TEST(ComplianceTable, SaysHowTheForceStiffensUnderEachFootprint)
+{
+    const SoftObject    even = homogeneous("sheet", 5);
+    std::vector<double> b(even.size()); // [1/m] 280 to 520 in a table
+    for (std::size_t n = 0; n < b.size(); ++n) b[n] = std::max(0.0, 400 + 2e4 * even.positions()[n].x);
+    const SoftObject       object = even.withStiffening(b);
+    PlateSolver            solver("host");
+    const FootprintLattice lattice = footprintLattice(even, kSkin, 5, solver);
+    const Contact          contact{glm::dvec3(0), {0, 0, 1}};
+
+    const auto plain = deformWithTable(even, contact, kSkin, lattice, solver),
+               soft  = deformWithTable(object, contact, kSkin, lattice, solver);
+    ASSERT_TRUE(plain.table && soft.table);
+    EXPECT_FALSE(plain.table->stiffens || plain.table->at({0, 0}).stiffening);
+    EXPECT_EQ(soft.table->compliance[0].value, plain.table->compliance[0].value) << "the plate is the same";
+    const Frame& axes = soft.patch.chart.frame;
+    for (const double x : {-5e-3, -1e-3, 0.0, 2.3e-3, 6e-3}) {
+        const ChartPoint place{x * axes.east.x, x * axes.north.x}; // along the world's x
+        ASSERT_TRUE(soft.table->at(place).stiffening);
+        EXPECT_NEAR(*soft.table->at(place).stiffening, 400 + 2e4 * x, 4) << "a percent, as the points lie by chance";
+    }
+    EXPECT_NEAR(soft.patch.stiffening, 400, 4);
+    EXPECT_EQ(plain.patch.stiffening, 0);
+
+    for (double& each : b) each = 250;
+    EXPECT_NEAR(deform(even.withStiffening(b), contact, kSkin, solver).stiffening, 250, 1e-6);
+    Material firm   = even.material();
+    firm.stiffening = 250;
+    EXPECT_EQ(deform(even.withMaterial(firm), contact, kSkin, solver).stiffening, 250);
+}
+
 } // namespace
 } // namespace palp

@@ -9,6 +9,7 @@
 
 #include "engine/force/depth_law.h"
 #include "tests/session/sheet_session.h"
+#include "tests/support/temporary_folder.h"
 
 // Sessions whose material stiffens with depth, and relaxes.
 
@@ -42,6 +43,18 @@ HandPath handTo(double depth, double seconds, double reach = 0, double frequency
                          kHeight - (kHeight + depth) * (down - up)}});
     }
     return HandPath(path);
+}
+
+/// Runs over points each of which stiffens as `b` says of its place [1/m].
+template <class Law>
+std::vector<TickRecord> runOver(const Scene& of, const HandPath& hand, const Law& b)
+{
+    SheetSession        session(of);
+    std::vector<double> stiffening;
+    for (const glm::dvec3& p : session.object.positions()) stiffening.push_back(b(p));
+    session.object = session.object.withStiffening(std::move(stiffening));
+    session.hand   = hand;
+    return session.run(hand.waypoints().back().time);
 }
 
 std::vector<TickRecord> run(const Scene& of, const HandPath& hand)
@@ -173,6 +186,83 @@ TEST(Tissue, AClosedStrokeOverALumpGivesTheHandNothing)
         EXPECT_LT(work, 0.01e-3) << stiffening << " " << relaxation.count << ": a force is a tick late";
         EXPECT_GT(work, relaxation.count == 0 ? -0.1e-3 : -most) << "a spring of any law takes as little";
     }
+}
+
+TEST(Tissue, PointsThatAllStiffenAlikeAreAMaterialThatDoes)
+{
+    const HandPath hand     = handTo(2e-3, 3, 6e-3, 1);
+    const auto     material = run(scene(kWart, 500, {}), hand);
+    const auto     points   = runOver(scene(kWart, 0, {}), hand, [](const glm::dvec3&) { return 500.0; });
+    ASSERT_EQ(material.size(), points.size());
+    double most = 0, force = 0; // [N]
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        most  = std::max(most, glm::length(points[n].wanted - material[n].wanted));
+        force = std::max(force, glm::length(material[n].wanted));
+        EXPECT_NEAR(points[n].maxDeflection, material[n].maxDeflection, 1e-7);
+    }
+    EXPECT_GT(force, 0.5);
+    EXPECT_LT(most, 1e-6 * force) << "the points' logarithms are rounded on their way to the nodes";
+}
+
+TEST(Tissue, AFingerFeelsWhereTheObjectBeginsToStiffen)
+{
+    constexpr double              kMost = 700, kDepth = 2e-3; // [1/m], [m]
+    const auto                    half   = [](const glm::dvec3& p) { return p.x > 0 ? kMost : 0.0; };
+    const HandPath                hand   = handTo(kDepth, 4, 15e-3, 0.5);
+    const std::vector<TickRecord> spring = run(scene(kEven, 0, {}), hand), stiff = run(scene(kEven, kMost, {}), hand),
+                                  both = runOver(scene(kEven, 0, {}), hand, half);
+    double left = 0, right = 0, step = 0;
+    for (std::size_t n = 2050; n < both.size(); ++n) {
+        const double x = both[n].hip.x, force = glm::length(both[n].wanted);
+        step = std::max(step, glm::length(both[n].wanted - both[n - 1].wanted));
+        if (x < -12e-3) left = std::max(left, std::abs(force / glm::length(spring[n].wanted) - 1));
+        if (x > 12e-3) right = std::max(right, std::abs(force / glm::length(stiff[n].wanted) - 1));
+    }
+    EXPECT_LT(left, 0.01) << "it is the spring where b is 0; the footprint is 4.4 mm wide";
+    EXPECT_LT(right, 0.01);
+    EXPECT_GT(glm::length(stiff.back().wanted), 1.5 * glm::length(spring.back().wanted)) << "or nothing was tested";
+    const double rise = glm::length(stiff.back().wanted) - glm::length(spring.back().wanted); // [N]
+    EXPECT_LT(step, 3 * rise * 47e-6 / 8.8e-3)
+        << "a tick at 47 mm/s: it rises over the fingertip's width, not at a line";
+}
+
+TEST(Tissue, AClosedStrokeIntoWhatStiffensGivesTheHandNothing)
+{
+    constexpr double kCycle = 0.8;          // [s]
+    for (const double sign : {1.0, -1.0}) { // pressed where it is a spring, and where it is not
+        const auto                    half = [&](const glm::dvec3& p) { return sign * p.x > 0 ? 600.0 : 0.0; };
+        const std::vector<TickRecord> records =
+            runOver(scene(kWart, 0, {}), handTo(1.5e-3, 2.3 + 2.5 * kCycle, 10e-3, 1 / kCycle, true), half);
+        double work = 0; // [J]
+        for (std::size_t n = 1; n < records.size(); ++n)
+            work += glm::dot(records[n].force + records[n - 1].force, records[n].hip - records[n - 1].hip) / 2;
+        std::printf("  b to the %s: %.4f mJ to the hand\n", sign > 0 ? "right" : "left", work * 1e3);
+        EXPECT_LT(work, 0.01e-3) << "a force is a tick late";
+        EXPECT_GT(work, -0.3e-3) << "lateral forces give back most of what the depth took";
+    }
+}
+
+TEST(Tissue, APropertyOfTheFileIsThePointsStiffeningUnlessTheSceneStatesOne)
+{
+    const TemporaryFolder folder;
+    std::string           rows = "x,y,z,stiffness,stiffening\n";
+    for (int i = 0; i < 40; ++i)
+        for (int j = 0; j < 40; ++j)
+            rows +=
+                std::to_string(i * 1e-3) + "," + std::to_string(j * 1e-3) + ",0,3e5," + (i < 20 ? "0" : "800") + "\n";
+    const std::string head = R"({"cloud": ")" + folder.write("half.csv", rows).string() + R"(", "length_unit": "m")";
+    const auto        own  = loadObject(parseScene(head + "}", "a test", "."));
+    ASSERT_EQ(own.object.stiffening().size(), 1600u);
+    EXPECT_EQ(own.object.stiffening().front(), 0);
+    EXPECT_EQ(own.object.stiffening().back(), 800);
+    ASSERT_TRUE(own.report.stiffening);
+    EXPECT_EQ(own.report.stiffening->largest, 800);
+    EXPECT_TRUE(loadObject(parseScene(head + R"(, "stiffening": 100})", "a test", ".")).object.stiffening().empty());
+    EXPECT_TRUE(loadObject(parseScene(head + R"(, "material": "liver"})", "a test", ".")).object.stiffening().empty());
+
+    const auto bad = folder.write("bad.csv", "x,y,z,stiffening\n0,0,0,1\n1,0,0,-3\n");
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(readCloud(bad)); }),
+                      {"line 3", "point 1", "stiffening from 0 to", "found \"stiffening\" -3"}));
 }
 
 } // namespace

@@ -27,7 +27,7 @@ constexpr std::size_t kLongestList = 40;
 constexpr std::array<const char*, 3> kCoordinateNames = {"x", "y", "z"};
 
 /// The slots of which a number must be finite.
-constexpr std::array kUsedSlots = {kSlotX, kSlotY, kSlotZ, kSlotStiffness};
+constexpr std::array kUsedSlots = {kSlotX, kSlotY, kSlotZ, kSlotStiffness, kSlotStiffening};
 
 /// The names of a normal's components: of PLY files, of PCD files, and of CloudCompare's text files.
 constexpr std::array<std::array<std::string_view, 3>, 3> kNormalNames = {
@@ -123,10 +123,18 @@ CloudRows::CloudRows(const ByteReader& reader, CloudHeader header, const CloudRe
     }
     chooseLengthUnit();
     chooseStiffness();
+    chooseStiffening();
     chooseNormals();
     // The first slot of a property that has several: the format delivers its number only there.
     for (std::size_t slot = 0; slot < kSlots; ++slot)
         if (columns_[slot]) source_[slot] = slotOf(*columns_[slot]);
+}
+
+void CloudRows::chooseStiffening()
+{
+    for (const std::string_view name : kStiffeningProperties)
+        if (!columns_[kSlotStiffening] && settings_.stiffnessProperty != name)
+            columns_[kSlotStiffening] = find(reader_, header_.properties, name);
 }
 
 void CloudRows::chooseNormals()
@@ -236,6 +244,7 @@ void CloudRows::makeRoom(std::uint64_t points)
         reader_.fail("expected at most " + std::to_string(kMostPoints) + " points, found " + std::to_string(points));
     positions_.reserve(points);
     if (columns_[kSlotStiffness]) stiffness_.reserve(points);
+    if (columns_[kSlotStiffening]) stiffening_.reserve(points);
     if (columns_[kSlotNormalX]) normals_.reserve(points);
 }
 
@@ -244,7 +253,8 @@ bool CloudRows::usable(const CloudRow& row) const noexcept
     // NaN fails every comparison.
     const double limit = kLargestCoordinate / metresPerUnit_;
     return std::abs(row[kSlotX]) <= limit && std::abs(row[kSlotY]) <= limit && std::abs(row[kSlotZ]) <= limit &&
-           std::isfinite(row[kSlotStiffness]) && (settings_.range || row[kSlotStiffness] > 0);
+           std::isfinite(row[kSlotStiffness]) && (settings_.range || row[kSlotStiffness] > 0) &&
+           row[kSlotStiffening] >= 0 && row[kSlotStiffening] <= kMostStiffening;
 }
 
 void CloudRows::add(const CloudRow& row, Place place)
@@ -279,6 +289,7 @@ void CloudRows::add(const CloudRow& row, Place place)
         found_ = {first ? value : std::min(found_.smallest, value), first ? value : std::max(found_.largest, value)};
         stiffness_.push_back(value);
     }
+    if (columns_[kSlotStiffening]) stiffening_.push_back(used[kSlotStiffening]);
     ++rowsRead_;
 }
 
@@ -290,7 +301,9 @@ void CloudRows::refuseRow(const CloudRow& row, Place place) const
         const std::string found = ", found " + inQuotes(header_.properties[*column]) + " " + shown(row[slot]);
         if (!std::isfinite(row[slot]))
             failAtRow(place, "expected a finite number" + found + "; such points can be dropped with --drop-invalid");
-        if (slot != kSlotStiffness && std::abs(row[slot]) > kLargestCoordinate / metresPerUnit_)
+        if (slot == kSlotStiffening && !(row[slot] >= 0 && row[slot] <= kMostStiffening))
+            failAtRow(place, "expected a stiffening from 0 to " + shown(kMostStiffening) + " 1/m" + found);
+        if (slot <= kSlotZ && std::abs(row[slot]) > kLargestCoordinate / metresPerUnit_)
             failAtRow(place, "expected a coordinate below " + shown(kLargestCoordinate) + " m" + found +
                                  "; is the length unit right?");
         if (slot == kSlotStiffness && !settings_.range && !(row[slot] > 0))
@@ -346,6 +359,7 @@ void CloudRows::mergePlaces()
     if (places.empty()) return;
     struct Sum {
         double        logarithms = 0; ///< of the stiffness
+        double        stiffening = 0; ///< [1/m]
         std::uint32_t points     = 0;
         bool          differ     = false;
     };
@@ -356,15 +370,19 @@ void CloudRows::mergePlaces()
             sums.emplace_back();
             positions_[place] = positions_[i];
             stiffness_[place] = stiffness_[i];
+            if (!stiffening_.empty()) stiffening_[place] = stiffening_[i];
             if (!normals_.empty()) normals_[place] = normals_[i];
         } else if (!normals_.empty()) {
             normals_[place] += normals_[i];
         }
         sums[place].logarithms += std::log(stiffness_[i]);
+        if (!stiffening_.empty()) sums[place].stiffening += stiffening_[i];
         sums[place].differ |= stiffness_[i] != stiffness_[place];
         ++sums[place].points;
     }
     for (std::size_t place = 0; place < sums.size(); ++place) {
+        if (!stiffening_.empty() && sums[place].points > 1)
+            stiffening_[place] = sums[place].stiffening / sums[place].points;
         if (sums[place].differ) stiffness_[place] = std::exp(sums[place].logarithms / sums[place].points);
         if (normals_.empty() || sums[place].points == 1) continue;
         normals_[place] = directionOf(normals_[place].x, normals_[place].y, normals_[place].z);
@@ -372,6 +390,7 @@ void CloudRows::mergePlaces()
     report_.duplicatePositions = places.size() - sums.size();
     positions_.resize(sums.size());
     stiffness_.resize(sums.size());
+    if (!stiffening_.empty()) stiffening_.resize(sums.size());
     if (!normals_.empty()) normals_.resize(sums.size());
     places_ = std::move(places);
     warn(std::to_string(report_.duplicatePositions) +
@@ -415,6 +434,10 @@ LoadedCloud CloudRows::finish()
              " points were omitted: they have NaN, with which such files mark what the instrument did not see");
     mergePlaces();
     if (std::ranges::all_of(normals_, [](const glm::vec3& n) { return n == glm::vec3(0); })) normals_.clear();
+    if (!stiffening_.empty()) {
+        const auto [least, most] = std::ranges::minmax(stiffening_);
+        report_.stiffening       = PropertyRange{least, most};
+    }
     report_.format             = header_.format;
     report_.points             = positions_.size();
     report_.coordinateRounding = metresPerUnit_ * rounding_.step();
@@ -423,6 +446,7 @@ LoadedCloud CloudRows::finish()
     LoadedCloud loaded{PointCloud(std::move(positions_), std::move(stiffness_), kind_), std::move(report_)};
     loaded.report.normals = !normals_.empty();
     loaded.normals        = std::move(normals_);
+    loaded.stiffening     = std::move(stiffening_);
     loaded.pointOfRow     = pointsOfRows();
     return loaded;
 }

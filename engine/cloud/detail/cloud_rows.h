@@ -33,7 +33,8 @@ enum RowSlot : std::size_t {
     kSlotY,
     kSlotZ,
     kSlotStiffness,
-    kSlotNormalX, ///< of a normal of any length; zero or NaN: the point has none
+    kSlotStiffening, ///< b [1/m], see DepthLaw
+    kSlotNormalX,    ///< of a normal of any length; zero or NaN: the point has none
     kSlotNormalY,
     kSlotNormalZ,
     kSlots
@@ -47,6 +48,9 @@ using CloudRow = std::array<double, kSlots>;
 inline constexpr std::array<std::string_view, 8> kStiffnessProperties = {
     "stiffness", "scalar_stiffness", "flexural_rigidity",    "scalar_flexural_rigidity", "D",
     "E",         "felt_stiffness",   "scalar_felt_stiffness"};
+
+/// The names under which stiffening is looked for.
+inline constexpr std::array<std::string_view, 2> kStiffeningProperties = {"stiffening", "scalar_stiffening"};
 
 /// Returns the kind of a stiffness of which only the property's name is known.
 [[nodiscard]] StiffnessKind kindByName(std::string_view property) noexcept;
@@ -97,6 +101,7 @@ private:
     [[nodiscard]] bool usable(const CloudRow& row) const noexcept;
     void               mapRange();
     void               chooseNormals();
+    void               chooseStiffening();
     void               mergePlaces();
 
     [[nodiscard]] std::vector<std::uint32_t> pointsOfRows() const; ///< see LoadedCloud::pointOfRow
@@ -113,9 +118,10 @@ private:
     std::vector<std::uint32_t> droppedRows_; ///< rising
     std::vector<std::uint32_t> places_;      ///< point of each row that was not dropped; empty: all differ
 
-    std::vector<glm::dvec3> positions_; ///< [m]
-    std::vector<double>     stiffness_; ///< [Pa] or [N m], or in the property's unit until mapRange
-    std::vector<glm::vec3>  normals_;   ///< of unit length, or zero
+    std::vector<glm::dvec3> positions_;  ///< [m]
+    std::vector<double>     stiffness_;  ///< [Pa] or [N m], or in the property's unit until mapRange
+    std::vector<double>     stiffening_; ///< [1/m]; empty: the file has none
+    std::vector<glm::vec3>  normals_;    ///< of unit length, or zero
     CoordinateRounding      rounding_;
     StiffnessKind           kind_          = StiffnessKind::modulus;
     double                  metresPerUnit_ = 1; ///< [m]

@@ -103,6 +103,8 @@ nlohmann::json cloudJson(const std::string& name, const PointCloud& cloud, std::
             {"stiffness_unit", unitOf(cloud.kind())},
             {"stiffness_min", found.least},
             {"stiffness_max", found.most},
+            {"stiffening", report.stiffening ? nlohmann::json{report.stiffening->smallest, report.stiffening->largest}
+                                             : nlohmann::json(nullptr)},
             {"low", pointJson(cloud.bounds().low)},
             {"high", pointJson(cloud.bounds().high)}};
 }

@@ -21,10 +21,11 @@ struct ConvertOptions {
     bool        json = false;
 };
 
-/// The normals of a cloud as three fields, which all formats can hold.
-struct NormalFields {
-    explicit NormalFields(const std::vector<glm::vec3>& normals)
+/// What a cloud has beside its stiffness as fields, which all formats can hold.
+struct OtherFields {
+    OtherFields(const std::vector<glm::vec3>& normals, std::span<const double> stiffening)
     {
+        if (!stiffening.empty()) fields.push_back({"stiffening", "1/m", stiffening});
         for (int k = 0; k < 3 && !normals.empty(); ++k) {
             for (const glm::vec3& normal : normals) values[std::size_t(k)].push_back(double(normal[k]));
             fields.push_back({std::string("n") + "xyz"[k], "", values[std::size_t(k)]});
@@ -32,7 +33,7 @@ struct NormalFields {
     }
 
     std::array<std::vector<double>, 3> values;
-    std::vector<NamedField>            fields; ///< nx, ny, nz, or none
+    std::vector<NamedField>            fields; ///< stiffening, nx, ny, nz, or fewer
 };
 
 void convert(const ConvertOptions& options)
@@ -41,10 +42,10 @@ void convert(const ConvertOptions& options)
     const auto&         target   = formatToWrite(options.target);
     const Scene         scene    = withPointsOfFile(options.source.load());
     refuseSourceAsTarget("TARGET", scene.cloud, options.target);
-    const LoadedCloud  loaded = options.source.loadCloud(scene);
-    const bool         faces  = target.holdsFaces;
-    const NormalFields normals(loaded.normals);
-    writeCloud(options.target, loaded.cloud, normals.fields, {encoding, loaded.faces});
+    const LoadedCloud loaded = options.source.loadCloud(scene);
+    const bool        faces  = target.holdsFaces;
+    const OtherFields others(loaded.normals, loaded.stiffening);
+    writeCloud(options.target, loaded.cloud, others.fields, {encoding, loaded.faces});
     std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
     if (!faces && !loaded.faces.empty())
         warnings.push_back("the " + std::to_string(loaded.faces.size()) + " triangles were not written: only " +

@@ -95,6 +95,9 @@ void printText(const InfoOptions& options, const LoadedCloud& loaded, const Qual
     printText(quality, loaded.report.duplicatePositions);
     std::cout << "  stiffness   " << formatQuantity(report["stiffness_min"], unit) << " to "
               << formatQuantity(report["stiffness_max"], unit) << ": " << loaded.report.stiffnessSource << "\n";
+    if (const auto& range = report["stiffening"]; !range.is_null())
+        std::cout << "  stiffening  " << formatQuantity(range[0], "1/m") << " to " << formatQuantity(range[1], "1/m")
+                  << ": of each point, from the file\n";
     if (loaded.report.faces > 0) std::cout << "  faces       " << facesText(loaded) << "\n";
     if (plan) std::cout << "  scattered   " << scatterText(loaded, *plan) << "\n";
     if (!loaded.normals.empty()) std::cout << "  normals     in the file\n";

@@ -48,19 +48,53 @@ bool isPly(const std::string& file)
     return !file.empty() && formatToRead(file).format == CloudFormat::ply;
 }
 
+/// What the strokes make: the stiffness, and how points stiffen.
+struct Painted {
+    PointCloud          cloud;
+    std::vector<double> stiffening;        ///< [1/m]; empty: the source has none
+    bool                stiffens  = false; ///< a stroke has painted it
+    std::size_t         changed   = 0;     ///< points with another stiffness
+    std::size_t         stiffened = 0;     ///< points with another stiffening
+};
+
 /// Returns true if the new file is the original with another stiffness.
-bool keepsOriginal(const PaintOptions& o, const Canvas& canvas)
+bool keepsOriginal(const PaintOptions& o, const Canvas& canvas, const Painted& painted)
 {
-    return isPly(canvas.file) && isPly(o.out) && canvas.loaded.report.scatteredPoints == 0;
+    return isPly(canvas.file) && isPly(o.out) && canvas.loaded.report.scatteredPoints == 0 && !painted.stiffens;
 }
 
 /// Writes the source's file with the new stiffness, or else a new file.
 /// \return how the stiffness is found in it
-RepaintedPly write(const PaintOptions& o, const Canvas& canvas, const PointCloud& painted)
+RepaintedPly write(const PaintOptions& o, const Canvas& canvas, const Painted& painted)
 {
-    if (keepsOriginal(o, canvas)) return repaintPly(canvas.file, canvas.scene.reading, painted, o.out);
-    writeCloud(o.out, painted, {}, {CloudEncoding::binaryLittleEndian, canvas.loaded.faces});
-    return {propertyOf(painted.kind()), true};
+    if (keepsOriginal(o, canvas, painted)) return repaintPly(canvas.file, canvas.scene.reading, painted.cloud, o.out);
+    std::vector<NamedField> fields;
+    if (!painted.stiffening.empty()) fields.push_back({"stiffening", "1/m", painted.stiffening});
+    writeCloud(o.out, painted.cloud, fields, {CloudEncoding::binaryLittleEndian, canvas.loaded.faces});
+    return {propertyOf(painted.cloud.kind()), true};
+}
+
+std::vector<double> growthsOf(const LoadedCloud& loaded)
+{
+    std::vector<double> growths(loaded.cloud.size(), 1);
+    if (!loaded.stiffening.empty()) std::ranges::transform(loaded.stiffening, growths.begin(), growthOf);
+    return growths;
+}
+
+Painted paintedBy(const StiffnessPainting& stiffness, const StiffnessPainting& growth, const LoadedCloud& loaded)
+{
+    Painted painted{.cloud = stiffness.cloud(), .stiffening = loaded.stiffening, .stiffens = growth.changed()};
+    for (std::size_t i = 0; i < loaded.cloud.size(); ++i)
+        painted.changed += painted.cloud.stiffness()[i] != loaded.cloud.stiffness()[i] ? 1 : 0;
+    if (!painted.stiffens) return painted;
+    painted.stiffening.resize(loaded.cloud.size());
+    const std::vector<double> before = growthsOf(loaded);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        if (growth.stiffness()[i] == before[i]) continue; // what was not painted keeps its bits
+        painted.stiffening[i] = stiffeningOf(growth.stiffness()[i]);
+        ++painted.stiffened;
+    }
+    return painted;
 }
 
 nlohmann::json jsonOf(const StrokeOrder& order, const StrokeReport& report)
@@ -71,7 +105,8 @@ nlohmann::json jsonOf(const StrokeOrder& order, const StrokeReport& report)
             {"radius", order.radius},
             {"strength", order.strength},
             {"value", order.value ? nlohmann::json(*order.value) : nlohmann::json()},
-            {"smooth", !order.value},
+            {"stiffening", order.stiffening ? nlohmann::json(*order.stiffening) : nlohmann::json()},
+            {"smooth", !order.value && !order.stiffening},
             {"dabs", report.dabs},
             {"points", report.points}};
 }
@@ -91,29 +126,37 @@ void paint(const PaintOptions& o)
         orders.push_back(parseStroke(o.strokes[k], what(k), metres, cloud.kind()));
 
     StiffnessPainting painting(object);
+    const SoftObject  growing = object.repainted(growthsOf(canvas.loaded));
+    StiffnessPainting growth(growing);
     nlohmann::json    strokes = nlohmann::json::array();
     std::string       lines;
     for (std::size_t k = 0; k < orders.size(); ++k) {
-        const StrokeReport report = paintStroke(orders[k], what(k), object, painting);
-        strokes.push_back(jsonOf(orders[k], report));
+        const StrokeOrder& order  = orders[k];
+        const StrokeReport report = paintStroke(order, what(k), object, order.stiffening ? growth : painting);
+        strokes.push_back(jsonOf(order, report));
         lines += "  stroke " + std::to_string(k + 1) + "    " + std::to_string(report.dabs) + " dabs over " +
                  std::to_string(report.points) + " points, " +
-                 (orders[k].value ? "towards " + formatQuantity(*orders[k].value, unit) : "smoothing") + "\n";
+                 (order.value        ? "towards " + formatQuantity(*order.value, unit)
+                  : order.stiffening ? "stiffening towards " + formatQuantity(*order.stiffening, "1/m")
+                                     : "smoothing") +
+                 "\n";
     }
-    const PointCloud   painted = painting.cloud();
+    const Painted      painted = paintedBy(painting, growth, canvas.loaded);
     const RepaintedPly written = write(o, canvas, painted);
-    std::size_t        changed = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i) changed += painted.stiffness()[i] != cloud.stiffness()[i] ? 1 : 0;
-    if (changed == 0) canvas.warnings.emplace_back("no stroke changed anything");
-    const bool kept = keepsOriginal(o, canvas);
+    if (painted.changed + painted.stiffened == 0) canvas.warnings.emplace_back("no stroke changed anything");
+    const bool kept = keepsOriginal(o, canvas, painted);
+    if (painted.stiffens && isPly(canvas.file))
+        canvas.warnings.emplace_back(
+            "a stroke of stiffening makes a new file: of the original's properties only stiffness and faces are kept");
     if (!written.appended && !canvas.scene.reading.stiffnessProperty.empty())
         canvas.warnings.push_back("the stiffness keeps its property: read it with --stiffness-property " +
                                   written.property + ", and without --stiffness-range");
-    const auto [least, most] = std::minmax_element(painted.stiffness().begin(), painted.stiffness().end());
+    const auto [least, most] = std::minmax_element(painted.cloud.stiffness().begin(), painted.cloud.stiffness().end());
     if (o.json) {
         std::cout << jsonText(nlohmann::json{{"name", o.source.name},
                                              {"points", cloud.size()},
-                                             {"changed_points", changed},
+                                             {"changed_points", painted.changed},
+                                             {"stiffened_points", painted.stiffened},
                                              {"strokes", strokes},
                                              {"stiffness_unit", unitOf(cloud.kind())},
                                              {"stiffness_min", *least},
@@ -125,7 +168,8 @@ void paint(const PaintOptions& o)
                                              {"warnings", canvas.warnings}});
         return;
     }
-    std::cout << o.out << ": " << cloud.size() << " points, " << changed << " with another stiffness\n"
+    std::cout << o.out << ": " << cloud.size() << " points, " << painted.changed << " with another stiffness"
+              << (painted.stiffens ? ", " + std::to_string(painted.stiffened) + " with another stiffening\n" : "\n")
               << lines << "  stiffness   " << formatQuantity(*least, unit) << " to " << formatQuantity(*most, unit)
               << ", property " << written.property
               << (kept ? ", all else as in " + canvas.file : std::string(", in a new file in metres")) << "\n";
@@ -145,6 +189,7 @@ void addPaintCommand(CLI::App& app)
                      "  at        its middle X,Y,Z on the surface, or a path X,Y,Z;X,Y,Z;...\n"
                      "  radius    of the brush; its effect falls smoothly from the middle to this distance\n"
                      "  value     stiffness that it approaches, by equal factors; or instead of it\n"
+                     "  stiffening  how the force grows with depth, b [1/m], that it approaches; or instead of both\n"
                      "  smooth    approaches the mean around each point\n"
                      "  strength  share of the way that it goes in the middle, up to 1 [1]")
         ->required()
@@ -161,6 +206,7 @@ void addPaintCommand(CLI::App& app)
         "  palpate paint scan.ply --length-unit mm --stroke 'at=12,0,30;15,2,30;18,5,29 radius=3 value=1MPa "
         "strength=0.5' \\\n"
         "    --stroke 'at=12,0,30 radius=8 smooth' --out painted.ply\n"
+        "  palpate paint sample:palm --stroke 'at=0,0,0 radius=1cm stiffening=800' --out stiffens.ply\n"
         "  palpate paint samples/scenes/palm.json --stroke 'at=0,0,0 radius=1cm smooth' --out smoother.ply --json");
     command->callback([options] { paint(*options); });
 }

@@ -123,6 +123,7 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
     report["compliance"]            = patch.compliance;
     report["contact_stiffness"]     = patch.contactStiffness;
     report["felt_stiffness"]        = patch.feltStiffness;
+    report["stiffening"]            = patch.stiffening;
     report["depth"]                 = press.depth;
     report["depth_relaxed"]         = press.later;
     report["deflection_at_contact"] = press.load * patch.response(middle, middle);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kSuch = "such as 'at=0,0,30mm radius=5mm value=2MPa'";
 
-constexpr std::array<std::string_view, 5> kKeys = {"at", "radius", "value", "strength", "smooth"};
+constexpr std::array<std::string_view, 6> kKeys = {"at", "radius", "value", "stiffening", "strength", "smooth"};
 
 using Words = std::map<std::string, std::string, std::less<>>;
 
@@ -32,7 +32,8 @@ Words wordsOf(const std::string& text, const std::string& what)
         if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
             const auto meant = nearestName(key, kKeys);
             throw Error(what + ": unknown word \"" + std::string(word) +
-                        "\"; expected at=, radius=, value= or smooth, " + "and strength=, without blanks inside" +
+                        "\"; expected at=, radius=, value=, stiffening= or smooth, " +
+                        "and strength=, without blanks inside" +
                         (meant ? "; did you mean " + std::string(*meant) + "?" : ""));
         }
         if ((key == "smooth") != (equals == word.size()) || (key != "smooth" && value.empty()))
@@ -62,9 +63,10 @@ StrokeOrder parseStroke(const std::string& text, const std::string& what, double
     const Words words = wordsOf(text, what);
     for (const char* key : {"at", "radius"})
         if (!words.contains(key)) throw Error(what + ": expected " + key + "=, found none, " + kSuch);
-    if (words.contains("value") == words.contains("smooth"))
-        throw Error(what + ": expected either value= or smooth, found " +
-                    (words.contains("value") ? "both" : "none of them, ") + (words.contains("value") ? "" : kSuch));
+    const auto effects = words.count("value") + words.count("stiffening") + words.count("smooth");
+    if (effects != 1)
+        throw Error(what + ": expected one of value=, stiffening= and smooth, found " +
+                    (effects > 1 ? std::to_string(effects) + " of them" : std::string("none of them, ") + kSuch));
     StrokeOrder order;
     order.path   = pathOf(words.at("at"), what, metresPerPlainNumber);
     order.radius = parseQuantity(words.at("radius"), Dimension::length, what + ": radius", metresPerPlainNumber);
@@ -73,6 +75,12 @@ StrokeOrder parseStroke(const std::string& text, const std::string& what, double
         order.value = parseQuantity(words.at("value"), dimensionOf(kind), what + ": value");
         if (!(*order.value > 0))
             throw Error(what + ": expected a value above zero, found \"" + words.at("value") + "\"");
+    }
+    if (const auto b = words.find("stiffening"); b != words.end()) {
+        order.stiffening = parseQuantity(b->second, Dimension::perLength, what + ": stiffening");
+        if (!(*order.stiffening >= 0 && *order.stiffening <= kMostStiffening))
+            throw Error(what + ": expected a stiffening from 0 to " + shown(kMostStiffening) + " 1/m, found \"" +
+                        b->second + "\"");
     }
     if (const auto strength = words.find("strength"); strength != words.end()) {
         order.strength = parseQuantity(strength->second, Dimension::none, what + ": strength");
@@ -102,7 +110,8 @@ StrokeReport paintStroke(const StrokeOrder& order, const std::string& what, cons
     for (std::size_t k = 0; k < dabs.size(); ++k) {
         progress.at(k, dabs.size());
         const Brush brush{dabs[k], order.radius, order.strength};
-        for (const std::uint32_t point : order.value ? painting.paint(brush, *order.value) : painting.smooth(brush)) {
+        const auto  value = order.stiffening ? growthOf(*order.stiffening) : order.value;
+        for (const std::uint32_t point : value ? painting.paint(brush, *value) : painting.smooth(brush)) {
             report.points += covered[point] ? 0 : 1;
             covered[point] = true;
         }

@@ -15,7 +15,8 @@ struct StrokeOrder {
     std::vector<glm::dvec3> path;         ///< corners [m]
     double                  radius   = 0; ///< [m]
     double                  strength = 1; ///< [1]
-    std::optional<double>   value;        ///< [Pa] or [N m]; empty: the stroke smooths
+    std::optional<double>   value;        ///< [Pa] or [N m]; empty: the stroke smooths, or paints the next
+    std::optional<double>   stiffening;   ///< b [1/m], see DepthLaw
 };
 
 /// Reads a stroke.
@@ -32,6 +33,7 @@ struct StrokeReport {
 };
 
 /// Paints a stroke and shows progress on a terminal.
+/// \param painting  of the stiffness, or of growthOf() the stiffening if the stroke is one of that
 /// \throws Error if a corner of the path is farther from the cloud than the radius
 [[nodiscard]] StrokeReport paintStroke(const StrokeOrder& order, const std::string& what, const SoftObject& object,
                                        StiffnessPainting& painting);

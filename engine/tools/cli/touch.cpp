@@ -84,10 +84,10 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
             formatQuantity(shell["length"], "m").c_str(),
             formatQuantity(shell["felt_stiffness_supported"], "N/m").c_str(),
             formatQuantity(shell["felt_stiffness_clamped"], "N/m").c_str());
-    if (!scene.material.isLinear())
+    if (!scene.material.isLinear() || r["stiffening"].get<double>() > 0)
         std::printf("  depth              %s of the hand at once, %s in the end (stiffening %.4g 1/m, relaxation %s)\n",
-                    quantity("depth", "m").c_str(), quantity("depth_relaxed", "m").c_str(), scene.material.stiffening,
-                    relaxationText(scene.material.relaxation).c_str());
+                    quantity("depth", "m").c_str(), quantity("depth_relaxed", "m").c_str(),
+                    r["stiffening"].get<double>(), relaxationText(scene.material.relaxation).c_str());
     std::printf("  error              discretisation %s, solver %s (%s)\n",
                 error["discretisation"].is_null() ? "unknown" : percent(error["discretisation"].get<double>()).c_str(),
                 percent(error["solver"].get<double>()).c_str(), r["solver"]["name"].get<std::string>().c_str());

@@ -758,6 +758,13 @@ good 'paint the cloud of a scene' paint soft.json --stroke 'at=0,0,1.5mm radius=
 holds '4000 points, '
 good 'paint over a law of a scene' paint scene.json --stroke 'at=0,0,0 radius=6mm smooth' --out law.ply
 holds 'take the key "stiffness" out'
+good 'paint how a place stiffens' paint soft.json --stroke 'at=0,0,1.5mm radius=6mm stiffening=800' --out stiffens.csv
+holds ' with another stiffening'
+good 'and read it' info stiffens.csv
+holds 'stiffening  0 1/m to 7' # the middle lies between points
+good 'and feel it' touch stiffens.csv --place 0,0,1.5mm --window 40mm --cells 32 --force 1 --json
+holds '"stiffening": '
+bad 'a stiffening below zero' 'stiffening from 0 to' paint soft.json --stroke 'at=0,0,1.5mm radius=6mm stiffening=-1' --out no.csv
 good 'painting beside everything' paint sample:skin --points 5000 --stroke 'at=0,0,1.5mm radius=6mm value=1MPa' --stiffness constant:value=1e6 --out same.ply
 holds 'no stroke changed anything'
 mesh='paint mesh.ply --uniform 1kPa --out no.ply --stroke'
@@ -765,8 +772,8 @@ mesh='paint mesh.ply --uniform 1kPa --out no.ply --stroke'
 {
     bad 'a stroke without a place' '--stroke 1: expected at=' $mesh 'radius=1mm value=1kPa'
     bad 'a stroke without a radius' '--stroke 1: expected radius=' $mesh 'at=1,1,0 value=1kPa'
-    bad 'a stroke towards nothing' 'either value= or smooth' $mesh 'at=1,1,0 radius=1mm'
-    bad 'a stroke towards both' 'found both' $mesh 'at=1,1,0 radius=1mm smooth value=1kPa'
+    bad 'a stroke towards nothing' 'one of value=, stiffening= and smooth' $mesh 'at=1,1,0 radius=1mm'
+    bad 'a stroke towards both' 'found 2 of them' $mesh 'at=1,1,0 radius=1mm smooth value=1kPa'
     bad 'a slip in a stroke' 'did you mean radius?' $mesh 'at=1,1,0 radios=1mm smooth'
     bad 'a word twice' 'radius is given twice' $mesh 'at=1,1,0 radius=1mm radius=2mm smooth'
     bad 'the second stroke' '--stroke 2: ' $mesh 'at=1,1,0 radius=1mm smooth' --stroke 'at=1,1,0 radius=-1mm smooth'
