@@ -1,6 +1,6 @@
 // What the C interface adds to a tick: the servo's own tick, SteppedSession::step() and palpate_session_step(), each with a
-// deformation of its own, side by side in one loop at 1 kHz with one hand that slides over the skin. Medians in
-// microseconds, which other programs on the machine hardly move; `above_us` is the last less the first.
+// deformation of its own, by turns in one loop at 1 kHz with one hand that slides over a sheet. Medians in microseconds,
+// which other programs on the machine hardly move; `above_us` is the last less the first.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -65,12 +65,12 @@ struct BareServo {
     }
 };
 
-/// One session of each kind, over one object.
+/// One session of each kind, each over an object of its own: on a shared one two would find it in the caches of the other.
 struct Sessions {
     palp::Scene          scene  = palp::parseScene(kScene, "step_benchmark", ".");
     palp::SoftObject     object = palp::loadObject(scene).object;
     BareServo            bare{object, scene};
-    palp::SteppedSession stepped{object, scene};
+    palp::SteppedSession stepped{palp::loadObject(scene).object, scene};
     palpate_object*      made    = nullptr;
     palpate_session*     session = nullptr;
 
@@ -104,38 +104,34 @@ double median(std::vector<double> values)
 
 void steps(benchmark::State& state)
 {
-    Sessions                           of;
+    constexpr std::size_t kBlock = 250; // ticks of one kind in a row, so that each finds its own code in the caches
+    Sessions              of;
     std::array<std::vector<double>, 3> took;
-    const auto                         begin = Clock::now();
-    double                             last = 0, pressed = 0;
-    std::size_t                        turn = 0;
+    std::size_t                        tick = 0, touching = 0;
     for (auto _ : state) {
         std::this_thread::sleep_for(std::chrono::microseconds(900));
-        const double now = std::chrono::duration<double>(Clock::now() - begin).count();
-        palp::Hand   hand;
+        const std::size_t who = tick++ / kBlock % 3;
+        const double      now = 1e-3 * double(took[who].size() + 1); // of this kind's own session
+        palp::Hand        hand;
         hand.position = {8e-3 * std::cos(3 * now), 8e-3 * std::sin(3 * now), std::max(-1e-3, 3e-3 - 4e-3 * now)};
         auto theirs   = PALPATE_INIT(palpate_hand);
         auto answer   = PALPATE_INIT(palpate_answer);
         for (int k = 0; k < 3; ++k) theirs.position[k] = hand.position[k];
-        for (int n = 0; n < 3; ++n) { // whoever comes first finds the caches cold, so they take turns
-            const std::size_t who = (turn + std::size_t(n)) % 3;
-            if (who == 0)
-                took[0].push_back(of.bare.tick(now, now - last, hand));
-            else if (who == 1)
-                took[1].push_back(timeOf([&] { benchmark::DoNotOptimize(of.stepped.step(now, hand)); }));
-            else
-                took[2].push_back(timeOf([&] { demand(palpate_session_step(of.session, now, &theirs, &answer)); }));
+        if (who == 0) {
+            took[0].push_back(of.bare.tick(now, 1e-3, hand));
+        } else if (who == 1) {
+            took[1].push_back(timeOf([&] { benchmark::DoNotOptimize(of.stepped.step(now, hand)); }));
+        } else {
+            took[2].push_back(timeOf([&] { demand(palpate_session_step(of.session, now, &theirs, &answer)); }));
+            touching += (answer.flags & PALPATE_TOUCHING) != 0;
         }
-        ++turn;
-        last = now;
-        pressed += (answer.flags & PALPATE_TOUCHING) != 0;
-        state.SetIterationTime(1e-6 * took[2].back());
+        state.SetIterationTime(1e-6 * took[who].back());
     }
     state.counters["servo_us"]   = median(took[0]);
     state.counters["stepped_us"] = median(took[1]);
     state.counters["c_us"]       = median(took[2]);
     state.counters["above_us"]   = median(took[2]) - median(took[0]);
-    state.counters["touching"]   = pressed / double(took[2].size());
+    state.counters["touching"]   = double(touching) / double(took[2].size());
 }
 BENCHMARK(steps)->Name("step/1 kHz")->UseManualTime()->Unit(benchmark::kMicrosecond)->Iterations(15000);
 
