@@ -1,0 +1,1 @@
+"""A stand-in of SofaPython3 for the test of samples/sofa."""
