@@ -52,7 +52,7 @@ FootprintSolution byHost(const Shell& shell, std::span<const Footprint> loads, s
     for (std::size_t n = 0; n < loads.size(); ++n) {
         const ShellAnswer& of = n == whole ? first : rest[n < whole ? n : n - 1];
         solution.responses.push_back(responseOf(loads[n], of.deflection));
-        solution.responses.back().work = of.work;
+        solution.responses.back().work = of.work + shearWork(shell, of.deflection);
         if (!of.report.converged) solution.whole.report = of.report;
     }
     if (solution.whole.report.converged) solution.whole.report = first.report;
@@ -550,6 +550,7 @@ FootprintSolution PlateSolver::byReference(const Shell& shell, std::span<const F
     for (std::size_t n = 0; n < loads.size(); ++n) {
         ShellSolution of = solver.solve(loads[n].load(shell.bending.grid));
         solution.responses.push_back(responseOf(loads[n], of.deflection));
+        solution.responses.back().work += shearWork(shell, of.deflection);
         if (n != whole) continue;
         SolveReport& report       = solution.whole.report;
         report.solver             = kReference;

@@ -97,8 +97,9 @@ public:
     [[nodiscard]] FootprintSolution solveFootprints(const Plate& plate, std::span<const Footprint> loads,
                                                     std::size_t whole, double tolerance = 1e-4);
 
-    /// Does the same for a shell. No GPU has kernels for shells yet: the host solves them, and note() says so. On the
-    /// reference solver every load is solved by the reference solver of shells.
+    /// Does the same for a shell; works hold its shear across the thickness too, see shearWork(). No GPU has kernels for
+    /// shells yet: the host solves them, and note() says so. On the reference solver every load is solved by the
+    /// reference solver of shells.
     [[nodiscard]] FootprintSolution solveFootprints(const Shell& shell, std::span<const Footprint> loads,
                                                     std::size_t whole, double tolerance = 1e-4);
 

@@ -35,4 +35,12 @@ struct Shell {
 /// Returns whether phi is held by no side: it is then known but for a linear function, which carries no force.
 [[nodiscard]] bool isStressFree(const Shell& shell) noexcept;
 
+/// Returns the work that a load does beyond that along w because the sheet is sheared across its thickness as well [N m],
+/// to the first order in thickness over length: the forces Q = div M across it, times Q / (5/6 G h).
+///
+/// Where a dent is only some thicknesses wide this matters: a dome of h/R 0.02 is 4 % softer by it, one of 0.04 7 %.
+/// \param w  of that load [m]
+/// \source  Reissner 1945; Castigliano's theorem
+[[nodiscard]] double shearWork(const Shell& shell, const NodeField& w);
+
 } // namespace palp

@@ -132,7 +132,9 @@ private:
         for (const Origin origin : kRanks)
             if (auto stated = statedBy(origin, edges)) return stated;
         const auto theory = about(sceneKey("theory"));
-        if (!theory || theory->text != name(Theory::shell)) return std::nullopt;
+        if (!theory) return std::nullopt;
+        const WrittenValue given{sceneKey("theory"), theory->text, theory->what};
+        if (given.value<Theory>() != Theory::shell) return std::nullopt;
         return Statement{name(Edge::supported),
                          theory->what,
                          {theory->origin.origin, theory->origin.where + ": theory " + theory->text}};

@@ -87,7 +87,8 @@ double exactCompliance(double curvatureX, double curvatureZ, double window = 40e
     shell.curvatureZ         = NodeField(grid, curvatureZ);
     shell.curvatureXZ        = NodeField(grid);
     const NodeField load     = footprintLoad(grid, 1, window / 2, window / 2, kShell.footprintRadius);
-    return dot(load, ReferenceShellSolver(shell).solve(load).deflection);
+    const NodeField w        = ReferenceShellSolver(shell).solve(load).deflection;
+    return dot(load, w) + shearWork(shell, w);
 }
 
 bool warned(const Patch& patch, const PatchSettings& settings, const char* words)

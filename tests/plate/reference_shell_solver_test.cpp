@@ -225,6 +225,25 @@ TEST(ReferenceShellSolver, APressedSphereIsUnderCompression)
     EXPECT_LT(s.errorEstimate, 1e-6); // rounding
 }
 
+TEST(ShearWork, IsThatOfASupportedPlateOfFiniteThickness)
+{
+    // Of a wave sin(m pi x / a) sin(n pi z / a) on supported sides shear bends a sheet further by D K^2 / (5/6 G h), K^2
+    // the sum of the squares of both wave numbers (Mindlin 1951), with G h = 1 / (2 (1 + nu) C).
+    const auto excess = [](int cells) {
+        const Shell shell = homogeneous(cells, kSize, {0, 0, 0});
+        NodeField   load(shell.bending.grid);
+        for (int i = 0; i <= cells; ++i)
+            for (int j = 0; j <= cells; ++j) load(i, j) = std::sin(2 * kPi * i / cells) * std::sin(3 * kPi * j / cells);
+        const NodeField w = ReferenceShellSolver(shell).solve(load).deflection;
+        return shearWork(shell, w) / dot(load, w);
+    };
+    const double squares = (4 + 9) * std::pow(kPi / kSize, 2);
+    const double exact   = kRigidity * squares * 2 * (1 + kPoisson) * kCompliance * 6 / 5;
+    const double coarse = excess(64) / exact - 1, fine = excess(128) / exact - 1;
+    EXPECT_LT(std::abs(fine), 0.04); // the outermost rows are left out, whose share falls with their width
+    EXPECT_LT(std::abs(fine), 0.6 * std::abs(coarse));
+}
+
 TEST(ReferenceShellSolver, SaysWhyAShellCannotBeSolved)
 {
     Shell shell                    = homogeneous(8, kSize, {1, 1, 0});

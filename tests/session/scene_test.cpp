@@ -107,6 +107,26 @@ TEST(Scene, AnEmptyVariableSaysNothing)
               4e-3);
 }
 
+TEST(Scene, AShellsWindowHasSupportedEdgesUnlessEdgesSaysOtherwise)
+{
+    const PlateEdges  supported{Edge::supported, Edge::supported, Edge::supported, Edge::supported};
+    const std::string shell = R"({"cloud": "sample:skin", "theory": "shell")";
+    const Scene       plain = parsed(shell + "}");
+    EXPECT_EQ(plain.patch.edges, supported);
+    EXPECT_EQ(plain.origins.at("edges").where, "s.json: theory shell");
+    EXPECT_EQ(parsed(shell + R"(, "preset": "palpate"})").patch.edges, supported) << "presets have clamped ones";
+    EXPECT_EQ(parsed(shell + R"(, "edges": "clamped"})").patch.edges, PlateEdges{});
+    EXPECT_EQ(parsed(R"({"cloud": "sample:skin", "edges": "clamped"})", overrides({{"theory", "shell"}})).patch.edges,
+              PlateEdges{})
+        << "a flag's theory does not undo what the file says of the edges";
+
+    const Scene flat = parsed(shell + "}", overrides({{"theory", "plate"}}));
+    EXPECT_EQ(flat.patch.theory, Theory::plate);
+    EXPECT_EQ(flat.patch.edges, PlateEdges{});
+    EXPECT_EQ(parsed(shell + "}", overrides({{"preset", "paper"}})).patch.theory, Theory::plate);
+    EXPECT_EQ(parsed(shell + "}", overrides({{"preset", "paper"}})).patch.edges, PlateEdges{});
+}
+
 TEST(Scene, EveryKeyOfEverySpellingIsRead)
 {
     const Scene scene = parsed(R"({
@@ -114,11 +134,12 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
         "thickness": "0.5 cm", "poisson": -0.2, "foundation": "2 MPa/m", "window": 0.05, "cells": 32.0,
         "stiffening": "0.81 1/mm", "relaxation": "0.26@0.41s,0.31@4.3", "material": "meat",
         "footprint_radius": "3mm", "map": "gall-peters", "resampling": "nearest", "edges": {"x0": "free"},
-        "force_law": "paper", "tolerance": 1e-6, "compliance_law": "blend", "table_size": 7, "deformation_rate": 30,
+        "theory": "shell", "force_law": "paper", "tolerance": 1e-6, "compliance_law": "blend", "table_size": 7, "deformation_rate": 30,
         "proxy": "sphere", "static_friction": 1, "dynamic_friction": 0, "max_force": "500 mN",
         "stiffness_cap": 800, "solver": "host", "place": [1e-3, 0, 0], "from": [0, 0, 2], "start_height": "2 cm",
         "workspace_scale": 3, "clutch_button": 2})");
 
+    EXPECT_EQ(scene.patch.theory, Theory::shell);
     EXPECT_EQ(scene.workspaceScale, 3);
     EXPECT_EQ(scene.clutchButton, 2);
     EXPECT_EQ(scene.points, 1000u);
