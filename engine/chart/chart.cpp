@@ -109,6 +109,33 @@ std::optional<ChartPoint> Chart::project(const glm::dvec3& point) const
     return ChartPoint{cylindrical.x / std::numbers::sqrt2, cylindrical.z * std::numbers::sqrt2};
 }
 
+void Chart::project(std::span<const glm::dvec3> points, std::span<ChartPoint> positions,
+                    std::span<std::uint8_t> on) const
+{
+    PALP_EXPECT(positions.size() == points.size() && on.size() == points.size(), "room for every point");
+    if (map != Map::lambertAzimuthal) {
+        for (std::size_t n = 0; n < points.size(); ++n) {
+            const auto position = project(points[n]);
+            on[n]               = position.has_value();
+            if (position) positions[n] = *position;
+        }
+        return;
+    }
+    // The formulas of the single point, with neither calls nor branches, so that they become vector instructions.
+    const glm::dvec3 o = origin, e = frame.east, n = frame.north, u = frame.normal;
+    const double     c = curvature, c2 = curvature * curvature;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+        const double x = points[k].x - o.x, y = points[k].y - o.y, z = points[k].z - o.z;
+        const double east    = x * e.x + y * e.y + z * e.z;
+        const double north   = x * n.x + y * n.y + z * n.z;
+        const double up      = 1 + c * (x * u.x + y * u.y + z * u.z);
+        const double stretch = std::sqrt(up * up + c2 * (east * east + north * north));
+        const double scale   = std::sqrt(2 / (stretch * (stretch + up)));
+        positions[k]         = {scale * east, scale * north};
+        on[k]                = std::uint8_t((up >= -kRim * stretch) & (stretch != 0));
+    }
+}
+
 std::optional<glm::dvec3> Chart::lift(const ChartPoint& position) const
 {
     double x = position.x, z = position.z;

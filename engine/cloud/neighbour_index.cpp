@@ -389,6 +389,9 @@ struct NeighbourIndex::Impl {
     void gatherRanks(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
                      std::vector<std::uint32_t>& found) const;
 
+    void gatherRising(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
+                      std::vector<std::uint32_t>& found) const;
+
     /// Fills `candidates` with at least the k nearest.
     /// \return  false unless all of them are within `start` [index units]
     [[nodiscard]] bool findCandidates(const FloatSphere& sphere, double start, std::size_t k,
@@ -436,6 +439,35 @@ void NeighbourIndex::Impl::gatherRanks(const FloatSphere& sphere, const glm::dve
             }
         }
     });
+}
+
+void NeighbourIndex::Impl::gatherRising(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
+                                        std::vector<std::uint32_t>& found) const
+{
+    constexpr std::uint32_t    kWhole  = 0xffffffff;
+    const Shell                shell   = sphere.shell(radius * frame.scale);
+    const double               radius2 = radius * radius;
+    const auto                 surely  = [&](float distance2) { return distance2 <= shell.inner2; };
+    std::vector<std::uint32_t> near;
+    tree.query(sphere.centre(), sphere.searchRadius(radius * frame.scale),
+               [&](std::uint32_t block, float&) { near.push_back(block); });
+    std::sort(near.begin(), near.end());
+    found.resize(near.size() * kBlockPoints);
+    std::uint32_t* to = found.data();
+    for (const std::uint32_t number : near) {
+        const std::uint32_t first = number * kBlockPoints;
+        float               distance2[kBlockPoints];
+        std::uint32_t       inside = filter.measure(blocks[number], shell, distance2);
+        if (inside == kWhole && std::all_of(distance2, distance2 + kBlockPoints, surely)) {
+            for (std::uint32_t lane = 0; lane < kBlockPoints; ++lane) *to++ = first + lane;
+            continue;
+        }
+        for (; inside != 0; inside &= inside - 1) {
+            const auto lane = std::uint32_t(std::countr_zero(inside));
+            if (surely(distance2[lane]) || squaredDistance(exact[first + lane], centre) <= radius2) *to++ = first + lane;
+        }
+    }
+    found.resize(std::size_t(to - found.data()));
 }
 
 bool NeighbourIndex::Impl::findCandidates(const FloatSphere& sphere, double start, std::size_t k,
@@ -592,6 +624,22 @@ void NeighbourIndex::gatherRanks(const glm::dvec3& centre, double radius, std::v
         index.gatherRanks(*sphere, centre, radius, found);
     else
         index.eachWithin(centre, radius, [&](std::size_t rank) { found.push_back(std::uint32_t(rank)); });
+}
+
+void NeighbourIndex::gatherRising(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const
+{
+    found.clear();
+    const Impl& index = *impl_;
+    if (const auto sphere = index.sphereFor(centre, radius))
+        index.gatherRising(*sphere, centre, radius, found);
+    else
+        index.eachWithin(centre, radius, [&](std::size_t rank) { found.push_back(std::uint32_t(rank)); });
+}
+
+void NeighbourIndex::pointsOf(std::span<const std::uint32_t> ranks, std::vector<std::uint32_t>& points) const
+{
+    points.resize(ranks.size());
+    for (std::size_t k = 0; k < ranks.size(); ++k) points[k] = impl_->pointAt(ranks[k]);
 }
 
 double NeighbourIndex::spacing() const noexcept

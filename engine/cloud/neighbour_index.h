@@ -55,6 +55,12 @@ public:
     /// Does what gather() does, with ranks in place of points.
     void gatherRanks(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const;
 
+    /// Does the same, in rising order: what is read of hundreds of thousands of points then comes from memory in order too.
+    void gatherRising(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const;
+
+    /// Replaces `points` by those that have the ranks.
+    void pointsOf(std::span<const std::uint32_t> ranks, std::vector<std::uint32_t>& points) const;
+
     /// Returns the mean distance between points of the surface, 1/sqrt(points per square metre) [m]: the median over up
     /// to 2000 points, spread evenly, of d6 sqrt(pi/6), d6 the distance to the sixth neighbour. Computed once, at
     /// construction. 0 if the cloud has fewer than seven points or most of them coincide.

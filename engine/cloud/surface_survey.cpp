@@ -211,9 +211,11 @@ void SurfaceSurvey::Measuring::settleNoise(const RankRun& run, std::span<const f
 }
 
 SurfaceSurvey::SurfaceSurvey(const NeighbourIndex& index, std::span<const glm::vec3> given)
-    : normals_(index.size()), noises_(index.size()), sided_(index.size())
+    : ranks_(index.size()), normals_(index.size()), noises_(index.size()), sided_(index.size())
 {
     PALP_EXPECT(given.empty() || given.size() == index.size(), "normals of other points");
+    const std::vector<std::uint32_t> points = index.pointsByRank();
+    for (std::size_t rank = 0; rank < points.size(); ++rank) ranks_[points[rank]] = std::uint32_t(rank);
     if (!(index.spacing() > 0)) return;
     spacings_          = localSpacingsByRank(index);
     const auto eachRun = [&](auto&& measure) {
@@ -229,21 +231,9 @@ SurfaceSurvey::SurfaceSurvey(const NeighbourIndex& index, std::span<const glm::v
         const std::vector<float> raw = noises_;
         eachRun([&](Measuring& m, const RankRun& run) { m.settleNoise(run, raw); });
     }
-    fromRanksToPoints(index.pointsByRank());
+    byPoint_.resize(points.size());
+    for (std::size_t rank = 0; rank < points.size(); ++rank) byPoint_[points[rank]] = spacings_[rank];
     takeSides(given);
-}
-
-/// Sorts what was measured by rank.
-void SurfaceSurvey::fromRanksToPoints(std::span<const std::uint32_t> points)
-{
-    const auto sorted = [&](auto& values) {
-        auto byRank = values;
-        for (std::size_t rank = 0; rank < points.size(); ++rank) values[points[rank]] = byRank[rank];
-    };
-    sorted(spacings_);
-    sorted(normals_);
-    sorted(noises_);
-    sorted(sided_);
 }
 
 /// Takes the side, but not the direction, from given normals: where they are the better ones is not known, and ours fit
@@ -252,9 +242,11 @@ void SurfaceSurvey::takeSides(std::span<const glm::vec3> given)
 {
     for (std::size_t i = 0; i < given.size(); ++i) {
         if (!(glm::dot(given[i], given[i]) > 0)) continue;
-        if (glm::dot(normals_[i], given[i]) < 0) normals_[i] = -normals_[i];
-        if (glm::dot(normals_[i], normals_[i]) == 0) normals_[i] = glm::normalize(given[i]);
-        sided_[i] = kGiven;
+        const std::uint32_t rank   = ranks_[i];
+        glm::vec3&          normal = normals_[rank];
+        if (glm::dot(normal, given[i]) < 0) normal = -normal;
+        if (glm::dot(normal, normal) == 0) normal = glm::normalize(given[i]);
+        sided_[rank] = kGiven;
     }
 }
 

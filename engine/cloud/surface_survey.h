@@ -30,22 +30,39 @@ public:
     /// \throws Error if the cloud has fewer than seven points or most of them coincide: there is nothing to touch
     void expectSurface() const;
 
-    [[nodiscard]] std::span<const double> spacings() const noexcept { return spacings_; } ///< [m]; empty: no surface
-    [[nodiscard]] double     spacing(std::size_t point) const noexcept { return spacings_[point]; } ///< around it [m]
-    [[nodiscard]] glm::dvec3 normal(std::size_t point) const noexcept { return normals_[point]; }   ///< unit, or 0 [1]
-    [[nodiscard]] double     noise(std::size_t point) const noexcept { return noises_[point]; }     ///< [m]
-    [[nodiscard]] bool       sided(std::size_t point) const noexcept { return sided_[point] != 0; } ///< see above
+    [[nodiscard]] std::span<const double> spacings() const noexcept { return byPoint_; } ///< [m]; empty: no surface
+    [[nodiscard]] double     spacing(std::size_t point) const noexcept { return byPoint_[point]; } ///< around it [m]
+    [[nodiscard]] glm::dvec3 normal(std::size_t point) const noexcept
+    {
+        return normals_[ranks_[point]];
+    }                                                                                               ///< unit, or 0 [1]
+    [[nodiscard]] double noise(std::size_t point) const noexcept { return noises_[ranks_[point]]; } ///< [m]
+    [[nodiscard]] bool   sided(std::size_t point) const noexcept { return sided_[ranks_[point]] != 0; } ///< see above
     /// Returns whether the side is that of a given normal.
-    [[nodiscard]] bool given(std::size_t point) const noexcept { return sided_[point] == kGiven; }
+    [[nodiscard]] bool given(std::size_t point) const noexcept { return sided_[ranks_[point]] == kGiven; }
+
+    // The same along the curve of the index: a touch asks about hundreds of thousands of points, and neighbours then lie
+    // side by side in memory.
+
+    [[nodiscard]] double     spacingOfRank(std::size_t rank) const noexcept { return spacings_[rank]; } ///< [m]
+    [[nodiscard]] glm::dvec3 normalOfRank(std::size_t rank) const noexcept
+    {
+        return normals_[rank];
+    }                                                                                           ///< unit, or 0 [1]
+    [[nodiscard]] double noiseOfRank(std::size_t rank) const noexcept { return noises_[rank]; } ///< [m]
+    [[nodiscard]] bool   sidedOfRank(std::size_t rank) const noexcept { return sided_[rank] != 0; }
 
 private:
     class Measuring;
 
-    void fromRanksToPoints(std::span<const std::uint32_t> points);
     void takeSides(std::span<const glm::vec3> given);
 
     static constexpr std::uint8_t kGiven = 2; ///< in sided_; 1: by layers
 
+    std::vector<std::uint32_t> ranks_;   ///< of each point along the curve
+    std::vector<double>        byPoint_; ///< spacing of each point [m]
+
+    // By rank:
     std::vector<double>       spacings_; ///< [m]
     std::vector<glm::vec3>    normals_;  ///< [1]
     std::vector<float>        noises_;   ///< [m]

@@ -1,6 +1,7 @@
 #include "engine/pipeline/deform.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -57,23 +58,25 @@ double gatherRadius(const PatchSettings& settings, double spacing)
     return chord + kernelReach(spacing, cellOf(settings));
 }
 
-void gatherPoints(Patch& patch, const SoftObject& object, const Contact& contact, const PatchSettings& settings)
+Ball gatherPoints(Patch& patch, const SoftObject& object, const Contact& contact, const PatchSettings& settings)
 {
     const StageClock clock(patch.times.gather);
     patch.contact   = contact;
     patch.thickness = object.material().thickness;
     patch.spacing   = spacingAt(object, contact.point);
-    object.index().gather(contact.point, gatherRadius(settings, patch.spacing), patch.gathered);
+    Ball ball{{}, {}, contact.point, gatherRadius(settings, patch.spacing)};
+    object.index().gatherRising(ball.centre, ball.radius, ball.ranks);
+    object.index().pointsOf(ball.ranks, ball.points);
+    return ball;
 }
 
 /// Keeps, of the ball, the surface that the finger touches; everything, in the paper's way.
-TouchedSurface touchedSurface(Patch& patch, const SoftObject& object, const PatchSettings& settings)
+TouchedSurface touchedSurface(Patch& patch, const SoftObject& object, const Ball& ball, const PatchSettings& settings)
 {
     if (settings.neighbourhood == Neighbourhood::ball) return {};
     const StageClock clock(patch.times.gather);
-    TouchedSurface   surface =
-        touchedSurface(object, patch.contact, patch.gathered, gatherRadius(settings, patch.spacing));
-    patch.noise = surface.noise;
+    TouchedSurface   surface = touchedSurface(object, patch.contact, ball);
+    patch.noise              = surface.noise;
     return surface;
 }
 
@@ -94,7 +97,8 @@ void takeFeltNormal(Patch& patch, const TouchedSurface& surface)
     patch.sphere.fit.gradient  = contact.outward;
 }
 
-void fitSphereTo(Patch& patch, const SoftObject& object, const TouchedSurface& surface, const PatchSettings& settings)
+void fitSphereTo(Patch& patch, const SoftObject& object, const Ball& ball, const TouchedSurface& surface,
+                 const PatchSettings& settings)
 {
     const StageClock clock(patch.times.fit);
     if (settings.neighbourhood == Neighbourhood::surface) {
@@ -103,8 +107,8 @@ void fitSphereTo(Patch& patch, const SoftObject& object, const TouchedSurface& s
         return;
     }
     std::vector<glm::dvec3> points;
-    points.reserve(patch.gathered.size());
-    for (std::uint32_t point : patch.gathered) points.push_back(object.positions()[point]);
+    points.reserve(ball.points.size());
+    for (const std::uint32_t point : ball.points) points.push_back(object.positions()[point]);
     patch.sphere = fitSphere(points);
 }
 
@@ -183,25 +187,31 @@ void projectPoints(Patch& patch, const SoftObject& object, std::span<const std::
 std::vector<std::optional<ChartPoint>> unroll(const Patch& patch, const SoftObject& object,
                                               const TouchedSurface& surface, const PatchSettings& settings)
 {
-    std::vector<double> steps;
-    steps.reserve(surface.inBall.size());
-    for (const std::uint32_t number : surface.inBall)
-        steps.push_back(SurfaceFlood::kStep * object.survey().spacing(patch.gathered[number]));
+    std::vector<glm::dvec3> places(surface.size()), normals(surface.size());
+    std::vector<double>     steps(surface.size());
+    for (std::size_t k = 0; k < surface.size(); ++k) {
+        places[k]  = surface.place(k);
+        normals[k] = surface.normalAt(k);
+        steps[k]   = SurfaceFlood::kStep * object.survey().spacing(surface.point(k));
+    }
     const double careful = settings.window / 2 + kernelReach(patch.spacing, cellOf(settings)); // beyond, nothing counts
-    return exponentialMap(patch.chart.origin, patch.chart.frame, surface.places, surface.normals, steps,
+    return exponentialMap(patch.chart.origin, patch.chart.frame, places, normals, steps,
                           gatherRadius(settings, patch.spacing), careful);
 }
 
 /// Returns the share of the window's points whose normal is turned away from the sphere's, fully from 60 degrees on.
 double turnedShare(const Patch& patch, const TouchedSurface& surface, const PatchSettings& settings)
 {
-    constexpr double kAlong = 0.77, kTurned = 0.5; // cosines of 40 and 60 degrees [1]
-    const double     side   = glm::dot(patch.sphere.fit.normal(surface.anchor), surface.normal) < 0 ? -1 : 1;
-    double           turned = 0, all = 0;
-    for (std::size_t k = 0; k < surface.places.size(); ++k) {
-        const glm::dvec3 p = surface.places[k];
+    constexpr double      kAlong = 0.77, kTurned = 0.5; // cosines of 40 and 60 degrees [1]
+    const double          side   = glm::dot(patch.sphere.fit.normal(surface.anchor), surface.normal) < 0 ? -1 : 1;
+    double                turned = 0, all = 0;
+    constexpr std::size_t kEnough = 8000; // points: the share is then right to 0.001
+    const EvenShare       chosen  = EvenShare::of(surface.size(), kEnough);
+    for (std::size_t k = 0; k < surface.size(); ++k) {
+        if (!chosen.has(surface.rank(k))) continue;
+        const glm::dvec3 p = surface.place(k);
         if (glm::length(p - surface.anchor) > settings.window / 2) continue;
-        const double cosine = side * glm::dot(surface.normals[k], patch.sphere.fit.normal(p));
+        const double cosine = side * glm::dot(surface.normalAt(k), patch.sphere.fit.normal(p));
         turned += std::clamp((kAlong - cosine) / (kAlong - kTurned), 0.0, 1.0);
         ++all;
     }
@@ -231,22 +241,44 @@ double unrolledShare(const Patch& patch, const TouchedSurface& surface, const Pa
     return std::max(risen(shape, kFollows, kAstray), risen(turnedShare(patch, surface, settings), kFew, kMany));
 }
 
-/// Lays the touched surface flat, by the sphere's map, by the exponential map, or by both in parts.
-/// \return for each point of the ball whether it has its place
-std::vector<bool> layTouched(Patch& patch, const SoftObject& object, const TouchedSurface& surface,
-                             const PatchSettings& settings)
+/// The points of a ball whose place in the chart is found.
+struct Laid {
+    std::vector<std::uint32_t> touched; ///< ranks of those of the touched surface
+    std::vector<std::uint32_t> others;  ///< points that are not of it
+};
+
+/// Finds the places of a whole ball's points by the sphere's map.
+/// \return true if all have one
+bool projectWhole(Patch& patch, const TouchedSurface& surface)
 {
-    patch.unrolled = unrolledShare(patch, surface, settings);
+    constexpr std::size_t            kPiece = 256; // points: their numbers stay in the nearest cache
+    std::array<glm::dvec3, kPiece>   places;       // [m]
+    std::array<std::uint8_t, kPiece> on;           // 1: has a place
+    std::size_t                      found = 0;
+    patch.positions.resize(surface.size());
+    for (std::size_t from = 0; from < surface.size(); from += kPiece) {
+        const std::size_t piece = std::min(kPiece, surface.size() - from);
+        for (std::size_t k = 0; k < piece; ++k) places[k] = surface.place(from + k);
+        patch.chart.project(std::span(places).first(piece), std::span(patch.positions).subspan(from, piece),
+                            std::span(on).first(piece));
+        for (std::size_t k = 0; k < piece; ++k) found += on[k];
+    }
+    return found == surface.size();
+}
+
+/// Lays a piece of the ball flat, by the sphere's map, by the exponential map, or by both in parts.
+Laid layPiece(Patch& patch, const SoftObject& object, const Ball& ball, const TouchedSurface& surface,
+              const PatchSettings& settings)
+{
     std::vector<std::optional<ChartPoint>> unrolled;
     if (patch.unrolled > 0) unrolled = unroll(patch, object, surface, settings);
-    std::vector<bool> laid(patch.gathered.size());
-    patch.points.reserve(patch.gathered.size());
-    patch.positions.reserve(patch.gathered.size());
-    for (std::size_t k = 0; k < surface.places.size(); ++k) {
+    std::vector<bool> known(ball.points.size());
+    Laid              laid;
+    for (std::size_t k = 0; k < surface.size(); ++k) {
         std::optional<ChartPoint> position;
         if (patch.unrolled > 0) position = unrolled[k];
-        if (patch.unrolled < 1 && glm::dot(surface.normals[k], surface.normal) > 0) {
-            const auto onSphere = patch.chart.project(surface.places[k]);
+        if (patch.unrolled < 1 && glm::dot(surface.normalAt(k), surface.normal) > 0) {
+            const auto onSphere = patch.chart.project(surface.place(k));
             if (onSphere && position)
                 position = ChartPoint{std::lerp(onSphere->x, position->x, patch.unrolled),
                                       std::lerp(onSphere->z, position->z, patch.unrolled)};
@@ -254,39 +286,52 @@ std::vector<bool> layTouched(Patch& patch, const SoftObject& object, const Touch
                 position = onSphere;
         }
         if (!position) continue;
-        laid[surface.inBall[k]] = true;
-        patch.points.push_back(patch.gathered[surface.inBall[k]]);
+        known[surface.inBall(k)] = true;
+        laid.touched.push_back(surface.rank(k));
+        patch.points.push_back(surface.point(k));
         patch.positions.push_back(*position);
     }
+    for (std::size_t k = 0; k < known.size(); ++k)
+        if (!known[k]) laid.others.push_back(ball.points[k]);
     return laid;
 }
 
-void turnOver(TouchedSurface& surface)
+/// Lays all of a ball flat by the sphere's map.
+/// \return the ranks of the points that have a place
+std::vector<std::uint32_t> layBall(Patch& patch, const Ball& ball, const SoftObject& object)
 {
-    surface.normal = -surface.normal;
-    for (glm::dvec3& normal : surface.normals) normal = -normal;
+    std::vector<std::uint32_t> ranks;
+    for (std::size_t k = 0; k < ball.points.size(); ++k)
+        if (const auto position = patch.chart.project(object.positions()[ball.points[k]])) {
+            ranks.push_back(ball.ranks[k]);
+            patch.points.push_back(ball.points[k]);
+            patch.positions.push_back(*position);
+        }
+    patch.touched = patch.points.size();
+    return ranks;
 }
 
 /// Makes the chart, and lays the points flat in it, those of the touched surface first.
-void layFlat(Patch& patch, const SoftObject& object, TouchedSurface surface, const PatchSettings& settings,
-             const std::optional<Frame>& carried)
+/// \return the ranks of these
+std::vector<std::uint32_t> layFlat(Patch& patch, const SoftObject& object, const Ball& ball, TouchedSurface surface,
+                                   const PatchSettings& settings, const std::optional<Frame>& carried)
 {
     const StageClock clock(patch.times.project);
     patch.chart = chartAt(patch, object, settings, carried);
-    if (glm::dot(surface.normal, patch.chart.frame.normal) < 0) turnOver(surface); // the finger's side was a guess
-    if (settings.neighbourhood == Neighbourhood::ball) {
-        projectPoints(patch, object, patch.gathered);
+    if (settings.neighbourhood == Neighbourhood::ball) return layBall(patch, ball, object);
+    if (glm::dot(surface.normal, patch.chart.frame.normal) < 0) surface.turnOver(); // the finger's side was a guess
+    patch.unrolled = unrolledShare(patch, surface, settings);
+    if (patch.unrolled == 0 && surface.allFace() && projectWhole(patch, surface)) {
+        patch.points  = ball.points;
         patch.touched = patch.points.size();
-        return;
+        return ball.ranks;
     }
-    const std::vector<bool> laid = layTouched(patch, object, surface, settings);
-    patch.touched                = patch.points.size();
-    if (patch.touched == patch.gathered.size()) return;
+    patch.positions.clear();
+    Laid laid     = layPiece(patch, object, ball, surface, settings);
+    patch.touched = patch.points.size();
     // The rest of the ball, the other side of a thin body above all, moves with the touched side but does not count.
-    std::vector<std::uint32_t> others;
-    for (std::size_t k = 0; k < laid.size(); ++k)
-        if (!laid[k]) others.push_back(patch.gathered[k]);
-    projectPoints(patch, object, others);
+    projectPoints(patch, object, laid.others);
+    return std::move(laid.touched);
 }
 
 // --- 2.4: a grid takes over the rigidity of the points
@@ -341,25 +386,54 @@ double quantileOfSquares(std::span<double> values, double share)
     return values.front();
 }
 
+/// The areas that points stand for [m^2].
+struct Areas {
+    double all = 0, closer = 0,
+           sparser = 0; ///< of all, of those closer than a spacing, and of those sparser than another
+};
+
+/// \param close, sparse  these spacings [m]
+[[gnu::noinline]] Areas areasOf(const SurfaceSurvey& survey, std::span<const std::uint32_t> ranks, double close,
+                                double sparse)
+{
+    double all = 0, closer = 0, sparser = 0;
+    for (const std::uint32_t rank : ranks) {
+        const double s = survey.spacingOfRank(rank);
+        all += s * s;
+        closer += s < close ? s * s : 0;
+        sparser += s > sparse ? s * s : 0;
+    }
+    return {all, closer, sparser};
+}
+
 /// Returns the spacings of the closest and of the sparsest points of the touched surface [m]: the patch's own for both,
 /// unless the density varies. Each point counts by the area that it stands for, and a twentieth of it may be closer or
 /// sparser still.
-std::pair<double, double> spacingsOf(const Patch& patch, const SoftObject& object)
+/// \param ranks  of these points
+std::pair<double, double> spacingsOf(const Patch& patch, const SoftObject& object, std::span<const std::uint32_t> ranks)
 {
-    constexpr double    kUneven = 2, kRest = 0.05; // [1] ratio to the patch's own; share of the area
-    std::vector<double> spacings(patch.touched);
-    for (std::size_t k = 0; k < patch.touched; ++k) spacings[k] = object.survey().spacing(patch.points[k]);
-    double area = 0, closer = 0, sparser = 0; // [m^2] of all points, and of those that are uneven
-    for (const double s : spacings) {
-        area += s * s;
-        closer += s * kUneven < patch.spacing ? s * s : 0;
-        sparser += s > kUneven * patch.spacing ? s * s : 0;
-    }
-    return {closer > kRest * area ? quantileOfSquares(spacings, kRest) : patch.spacing,
-            sparser > kRest * area ? quantileOfSquares(spacings, 1 - kRest) : patch.spacing};
+    constexpr double     kUneven = 2, kRest = 0.05; // [1] ratio to the patch's own; share of the area
+    const SurfaceSurvey& survey = object.survey();
+    const Areas          area   = areasOf(survey, ranks, patch.spacing / kUneven, patch.spacing * kUneven);
+    const bool           close = area.closer > kRest * area.all, sparse = area.sparser > kRest * area.all;
+    if (!close && !sparse) return {patch.spacing, patch.spacing};
+    std::vector<double> spacings(ranks.size());
+    std::ranges::transform(ranks, spacings.begin(), [&](std::uint32_t rank) { return survey.spacingOfRank(rank); });
+    return {close ? quantileOfSquares(spacings, kRest) : patch.spacing,
+            sparse ? quantileOfSquares(spacings, 1 - kRest) : patch.spacing};
 }
 
-void fillRigidity(Patch& patch, const SoftObject& object, const PatchSettings& settings)
+/// Computes the rigidities of some points [N m]: with nothing but a load and a product for each, many loads are under way.
+void rigiditiesOf(const SoftObject& object, std::span<const std::uint32_t> points, std::span<double> rigidities)
+{
+    const auto   stiffness = object.cloud().stiffness();
+    const double perUnit   = object.cloud().kind() == StiffnessKind::modulus ? object.material().rigidity(1) : 1;
+    for (std::size_t k = 0; k < points.size(); ++k) rigidities[k] = stiffness[points[k]] * perUnit;
+}
+
+/// \param ranks  of the points of the touched surface
+void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::uint32_t> ranks,
+                  const PatchSettings& settings)
 {
     const StageClock    clock(patch.times.resample);
     std::vector<double> rigidities(patch.touched);
@@ -367,8 +441,8 @@ void fillRigidity(Patch& patch, const SoftObject& object, const PatchSettings& s
     const auto          places  = std::span(patch.positions).first(patch.touched);
     patch.window                = PatchWindow::square(settings.window, settings.cells);
     refuseIfFew(patch, settings);
-    for (std::size_t k = 0; k < touched.size(); ++k) rigidities[k] = object.rigidity(touched[k]);
-    const auto [finest, sparsest] = spacingsOf(patch, object);
+    rigiditiesOf(object, touched, rigidities);
+    const auto [finest, sparsest] = spacingsOf(patch, object, ranks);
     Resampled resampled     = resampleRigidity(patch.window, places, rigidities, settings.resampling, finest, sparsest);
     patch.nodesWithoutPoint = resampled.nodesWithoutPoint;
     patch.plate             = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
@@ -430,8 +504,7 @@ void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLatti
 void movePoints(Patch& patch)
 {
     const StageClock clock(patch.times.lift);
-    patch.pointResponse.reserve(patch.positions.size());
-    for (const ChartPoint& p : patch.positions) patch.pointResponse.push_back(responseAt(patch, p));
+    patch.pointResponse = responsesAt(patch, patch.positions);
 }
 
 void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& settings)
@@ -484,15 +557,18 @@ std::shared_ptr<const CoarseObject> coarseFor(const SoftObject& object, const Co
 bool makePlate(Patch& patch, const SoftObject& object, const Contact& contact, const PatchSettings& settings,
                const std::optional<Frame>& carried)
 {
-    gatherPoints(patch, object, contact, settings);                   // 2.1: the points near the contact,
-    TouchedSurface surface = touchedSurface(patch, object, settings); // on the side that is touched,
-    fitSphereTo(patch, object, surface, settings);                    // 2.2: lie close to a sphere,
-    if (!patch.deformed()) return false;
-    layFlat(patch, object, std::move(surface), settings, carried); // 2.3: which an equal-area map lays flat,
-    fillRigidity(patch, object, settings);                         // 2.4: where a grid takes over their rigidity
-    const StageClock clock(patch.times.resample);
-    curvePatch(patch, object, settings); //      and, if it is to be a shell, their curvature
-    return true;
+    Ball           ball    = gatherPoints(patch, object, contact, settings); // 2.1: the points near the contact,
+    TouchedSurface surface = touchedSurface(patch, object, ball, settings);  // on the side that is touched,
+    fitSphereTo(patch, object, ball, surface, settings);                     // 2.2: lie close to a sphere,
+    if (patch.deformed()) {
+        const auto ranks = layFlat(patch, object, ball, std::move(surface), settings,
+                                   carried);          // 2.3: which an equal-area map lays flat,
+        fillRigidity(patch, object, ranks, settings); // 2.4: where a grid takes over their rigidity
+        const StageClock clock(patch.times.resample);
+        curvePatch(patch, object, settings); //      and, if it is to be a shell, their curvature
+    }
+    patch.gathered = std::move(ball.points);
+    return patch.deformed();
 }
 
 /// Returns the values at the nodes of a grid of twice the spacing; none of none.

@@ -1,5 +1,6 @@
 #include "engine/pipeline/patch.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include <glm/geometric.hpp>
@@ -36,6 +37,26 @@ double responseAt(const Patch& patch, const ChartPoint& place)
     return patch.window.holds(place)
                ? interpolate(patch.window.grid, patch.response, place.x - corner.x, place.z - corner.z)
                : 0;
+}
+
+std::vector<double> responsesAt(const Patch& patch, std::span<const ChartPoint> places)
+{
+    const PlateGrid     grid   = patch.window.grid;
+    const ChartPoint    corner = patch.window.corner;
+    const double        sizeX = grid.sizeX(), sizeZ = grid.sizeZ(), perX = 1 / grid.spacingX, perZ = 1 / grid.spacingZ;
+    const std::size_t   stride = std::size_t(grid.nodesZ());
+    const double* const field  = patch.response.values().data();
+    std::vector<double> responses(places.size());
+    for (std::size_t n = 0; n < places.size(); ++n) {
+        const double x = places[n].x - corner.x, z = places[n].z - corner.z;
+        if (!(x >= 0 && x <= sizeX && z >= 0 && z <= sizeZ)) continue;
+        const int     i = std::min(int(x * perX), grid.cellsX - 1), j = std::min(int(z * perZ), grid.cellsZ - 1);
+        const double  u = x * perX - i, v = z * perZ - j; // [spacings]
+        const double* w    = field + std::size_t(i) * stride + std::size_t(j);
+        const double  near = w[0] + v * (w[1] - w[0]), far = w[stride] + v * (w[stride + 1] - w[stride]);
+        responses[n] = near + u * (far - near);
+    }
+    return responses;
 }
 
 void eachMoving(const Patch& patch, std::span<const glm::dvec3> positions,

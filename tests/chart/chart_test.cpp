@@ -309,6 +309,33 @@ TEST(Chart, ProjectsAlongTheRadius)
         }
 }
 
+/// Domes, bowls and planes, with points in front, behind and in the very centre.
+TEST(Chart, ManyPointsGoWhereEachOfThemGoes)
+{
+    std::mt19937_64                  random(6);
+    std::uniform_real_distribution<> along(-0.2, 0.2);
+    for (const Map map : kAllMaps)
+        for (const double curvature : {8.0, -8.0, 0.0}) {
+            const Chart             chart = tilted(map, curvature);
+            std::vector<glm::dvec3> points(301);
+            for (glm::dvec3& p : points) p = chart.origin + glm::dvec3(along(random), along(random), along(random));
+            if (curvature != 0) points[7] = chart.origin - chart.frame.normal / curvature;
+            std::vector<ChartPoint>   positions(points.size());
+            std::vector<std::uint8_t> on(points.size());
+            chart.project(points, positions, on);
+            std::size_t dropped = 0;
+            for (std::size_t k = 0; k < points.size(); ++k) {
+                const auto alone = chart.project(points[k]);
+                ASSERT_EQ(on[k] != 0, alone.has_value()) << name(map) << ", point " << k;
+                dropped += !alone;
+                if (!alone) continue;
+                ASSERT_EQ(positions[k].x, alone->x) << name(map) << ", point " << k;
+                ASSERT_EQ(positions[k].z, alone->z) << name(map) << ", point " << k;
+            }
+            EXPECT_EQ(dropped > 0, curvature != 0) << "else the fixture has no far hemisphere";
+        }
+}
+
 TEST(Chart, FarHemisphereAndTheCentreAreDropped)
 {
     for (const Map map : kAllMaps)

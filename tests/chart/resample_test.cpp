@@ -70,25 +70,31 @@ TEST(Resample, NearestTakesTheValueOfTheNearestPoint)
         }
 }
 
-/// The formula of the docstring, summed node by node instead of point by point.
+/// The formula of the docstring, summed node by node instead of point by point: where a point reaches many nodes, where
+/// it reaches 4 x 4, and with rigidities far from 1.
 TEST(Resample, LogMeanIsTheGaussianMeanOfTheLogarithm)
 {
-    const PatchWindow window = PatchWindow::square(1, 12);
-    const Scatter     s      = scatter(1, 400, 3, [](const ChartPoint& p) { return p.x > 0.1 ? 50.0 : 0.5; });
-    const Resampled   r      = resampleRigidity(window, s.positions, s.rigidities, Resampling::logMean, s.spacing);
-    const double      width  = std::max(s.spacing, 0.5 / 12);
-    for (int i = 0; i <= 12; ++i)
-        for (int j = 0; j <= 12; ++j) {
-            const ChartPoint node    = nodeOf(window, i, j);
-            double           weights = 0, logs = 0;
-            for (std::size_t n = 0; n < s.positions.size(); ++n) {
-                const double dx = s.positions[n].x - node.x, dz = s.positions[n].z - node.z;
-                if (std::max(std::abs(dx), std::abs(dz)) > 4 * width) continue;
-                const double w = std::exp(-(dx * dx + dz * dz) / (2 * width * width));
-                weights += w;
-                logs += w * std::log(s.rigidities[n]);
-            }
-            EXPECT_NEAR(r.rigidity(i, j) / std::exp(logs / weights), 1, 1e-12) << "another order of the same sum";
+    for (const std::size_t points : {400, 6000})
+        for (const double unit : {1.0, 1e-290}) {
+            const PatchWindow window = PatchWindow::square(1, 12);
+            const auto        law    = [&](const ChartPoint& p) { return (p.x > 0.1 ? 50.0 : 0.5) * unit; };
+            const Scatter     s      = scatter(1, points, 3, law);
+            const Resampled   r = resampleRigidity(window, s.positions, s.rigidities, Resampling::logMean, s.spacing);
+            const double      width = std::max(s.spacing, 0.5 / 12);
+            for (int i = 0; i <= 12; ++i)
+                for (int j = 0; j <= 12; ++j) {
+                    const ChartPoint node    = nodeOf(window, i, j);
+                    double           weights = 0, logs = 0;
+                    for (std::size_t n = 0; n < s.positions.size(); ++n) {
+                        const double dx = s.positions[n].x - node.x, dz = s.positions[n].z - node.z;
+                        if (std::max(std::abs(dx), std::abs(dz)) > 4 * width) continue;
+                        const double w = std::exp(-(dx * dx + dz * dz) / (2 * width * width));
+                        weights += w;
+                        logs += w * std::log(s.rigidities[n]);
+                    }
+                    EXPECT_NEAR(std::log(r.rigidity(i, j)) - logs / weights, 0, 1e-12)
+                        << "another order of the same sum";
+                }
         }
 }
 

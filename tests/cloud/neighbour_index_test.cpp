@@ -58,6 +58,13 @@ void expectGather(const NeighbourIndex& index, const Points& points, const glm::
 {
     EXPECT_EQ(sorted(index.gather(centre, radius)), bruteGather(points, centre, radius))
         << "radius " << radius << " at " << centre.x << ", " << centre.y << ", " << centre.z;
+
+    std::vector<std::uint32_t> rising, inOrder;
+    index.gatherRising(centre, radius, rising);
+    EXPECT_TRUE(std::is_sorted(rising.begin(), rising.end()));
+    index.pointsOf(rising, inOrder);
+    std::sort(inOrder.begin(), inOrder.end());
+    EXPECT_EQ(inOrder, bruteGather(points, centre, radius)) << "in rising order";
 }
 
 void expectNearest(const NeighbourIndex& index, const Points& points, const glm::dvec3& centre, std::size_t k)

@@ -335,5 +335,42 @@ TEST(Pipeline, WhatTheDataOrTheWindowLimitsIsSaid)
     EXPECT_TRUE(warned(whole, wide, 0.1, "off the fitted sphere"));
 }
 
+/// The wart's top lies off the sphere by far more than a touch elsewhere: an even share has to say what all points do.
+TEST(Pipeline, DensePointsFeelAsTheirEvenShareDoes)
+{
+    const Sample&           sample = sampleNamed("skin");
+    const Object            skin(makeSample(sample, 100'000, 1));
+    const PatchSettings     settings{.foundation      = sample.foundation,
+                                     .window          = sample.window,
+                                     .cells           = 100,
+                                     .footprintRadius = sample.footprintRadius};
+    const Patch             patch = skin.touch(sample.place, {0, 0, 1}, settings);
+    std::vector<glm::dvec3> places;
+    std::vector<double>     weights;
+    const double            radius = std::sqrt(2.0) * settings.window / 2 + 4 * patch.spacing;
+    for (const std::uint32_t point : patch.gathered) {
+        const glm::dvec3 d = skin.positions()[point] - patch.sphere.fit.reference;
+        places.push_back(skin.positions()[point]);
+        weights.push_back(std::pow(std::max(0.0, 1 - glm::dot(d, d) / (radius * radius)), 2));
+    }
+    ASSERT_GT(patch.gathered.size(), 20'000u);
+
+    const SphereFitResult all = fitSphereThrough(patch.sphere.fit.reference, places, weights);
+    EXPECT_GT(all.fit.misfit, 0.1e-3) << "else every share says the same";
+    EXPECT_NEAR(patch.sphere.fit.curvature / all.fit.curvature, 1, 5e-3) << "2000 points of a surface that differs";
+    EXPECT_GT(glm::dot(glm::normalize(patch.sphere.fit.gradient), glm::normalize(all.fit.gradient)), 1 - 1e-6);
+}
+
+TEST(Pipeline, ResponsesOfManyPlacesAreThoseOfEach)
+{
+    const Patch             patch  = homogeneous("sheet", 16).touch({0, 0, 0}, {0, 0, 1}, kCoarse);
+    std::vector<ChartPoint> places = patch.positions;
+    const double            half   = kCoarse.window / 2;
+    for (const double x : {-half, half, -1.01 * half, 1.01 * half}) places.push_back({x, -x});
+    const std::vector<double> responses = responsesAt(patch, places);
+    for (std::size_t n = 0; n < places.size(); ++n)
+        ASSERT_NEAR(responses[n], responseAt(patch, places[n]), 1e-13 * patch.compliance) << "rounding, of " << n;
+}
+
 } // namespace
 } // namespace palp

@@ -8,8 +8,10 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
 #include "engine/pipeline/deform.h"
+#include "engine/pipeline/detail/touched_surface.h"
 #include "engine/pipeline/patch_warnings.h"
 #include "engine/pipeline/presets.h"
 
@@ -354,6 +356,20 @@ TEST(DenseCloud, FeelsAsTheSparseOneAndMovesSmoothly)
         }
         EXPECT_GT(inside, 70'000u);
     }
+}
+
+/// A flood costs ten times as much. The ball reaches far down the sides, and its points come in any order.
+TEST(TouchedSurface, ABallOfACurvedSurfaceIsTakenWhole)
+{
+    const Sample&    sample = sampleNamed("ellipsoid");
+    const SoftObject object(makeSample(sample, 40'000, 1), sample.material);
+    Ball             ball{{}, {}, sample.place, 30e-3};
+    object.index().gatherRising(ball.centre, ball.radius, ball.ranks);
+    object.index().pointsOf(ball.ranks, ball.points);
+    EXPECT_TRUE(touchedSurface(object, {sample.place, {0, 0, 1}}, ball).whole());
+    std::reverse(ball.ranks.begin(), ball.ranks.end());
+    std::reverse(ball.points.begin(), ball.points.end());
+    EXPECT_TRUE(touchedSurface(object, {sample.place, {0, 0, 1}}, ball).whole());
 }
 
 } // namespace

@@ -16,6 +16,9 @@
 //     exp(-a^2 / (2 s^2))  exp(a h / s^2)^m  exp(-(m h)^2 / (2 s^2)),
 // so that a point needs three exponentials and powers, which are made four at a time; the last factor is a table.
 // Exponents stay below 32, so powers lose no more than some 50 units in the last place.
+//
+// Where points are dense, the square holds 4 x 4 nodes, and points follow each other along a curve: then the sums of
+// those which reach the same nodes are made in registers.
 
 namespace palp {
 namespace {
@@ -55,27 +58,59 @@ PALPATE_PART void exponentials(double factor, const double* t, double* to, std::
     for (std::size_t n = 0; n < count; ++n) to[n] = exponential(factor * t[n]);
 }
 
-/// The nodes along one axis that points reach.
-struct Reach {
-    std::vector<int>    first, count;
-    std::vector<double> from;  ///< of each point from its first node [m]
-    std::vector<double> ratio; ///< of the factors of neighbouring nodes, but for the table [1]
+/// Returns ln x to 1e-15 for normal x, without branches.
+PALPATE_PART double logarithm(double x)
+{
+    // x = 2^n m with m from sqrt(1/2) to sqrt(2), and ln m = 2 artanh t, t = (m - 1) / (m + 1), |t| < 0.172.
+    constexpr std::uint64_t kRootOfHalf = 0x3fe6a09e667f3bcd, kMantissa = 0xfffffffffffff, kOne = 0x3ff;
+    constexpr double        kHigh = 0x1.62e42fefa3800p-1, kLow = 0x1.ef35793c76730p-45; // ln 2
+    constexpr double        kWhole = 0x1p52; // a whole number in its lowest bits is added to it
+    const auto              bits   = std::bit_cast<std::uint64_t>(x) + ((kOne << 52) - kRootOfHalf);
+    const double            m      = std::bit_cast<double>((bits & kMantissa) + kRootOfHalf);
+    const double            n =
+        std::bit_cast<double>((bits >> 52) | std::bit_cast<std::uint64_t>(kWhole)) - (kWhole + double(kOne));
+    const double t = (m - 1) / (m + 1), t2 = t * t;
+    double       series = 1.0 / 21; // the sum of t^2k / (2k + 1): the first term omitted is 7e-19
+    series              = series * t2 + 1.0 / 19;
+    series              = series * t2 + 1.0 / 17;
+    series              = series * t2 + 1.0 / 15;
+    series              = series * t2 + 1.0 / 13;
+    series              = series * t2 + 1.0 / 11;
+    series              = series * t2 + 1.0 / 9;
+    series              = series * t2 + 1.0 / 7;
+    series              = series * t2 + 1.0 / 5;
+    series              = series * t2 + 1.0 / 3;
+    return n * kHigh + (2 * t + (2 * t * t2 * series + n * kLow));
+}
 
-    explicit Reach(std::size_t points) : first(points), count(points), from(points), ratio(points) {}
+/// Computes ln x [1] of positive numbers, normal ones: exponential() takes no others back either.
+PALPATE_PART void logarithms(const double* x, double* to, std::size_t count)
+{
+#pragma GCC ivdep
+    for (std::size_t n = 0; n < count; ++n) to[n] = logarithm(x[n]);
+}
+
+constexpr std::size_t kPiece = 256; ///< points that are treated together: their numbers stay in the nearest cache
+
+/// The nodes along one axis that points of a piece reach.
+struct Reach {
+    int    first[kPiece], count[kPiece];
+    double from[kPiece];  ///< of each point from its first node [m]
+    double ratio[kPiece]; ///< of the factors of neighbouring nodes, but for the table [1]
 
     PALPATE_PART void find(std::span<const ChartPoint> positions, double ChartPoint::*axis, double corner, double width,
                            double spacing, int nodes)
     {
-        const double reach = kResamplingReach * width;
-        for (std::size_t n = 0; n < first.size(); ++n) {
+        const double reach = kResamplingReach * width, per = 1 / spacing;
+        for (std::size_t n = 0; n < positions.size(); ++n) {
             const double position = positions[n].*axis - corner;
-            const double low      = std::max(0.0, std::ceil((position - reach) / spacing));
-            const double high     = std::min(nodes - 1.0, std::floor((position + reach) / spacing));
+            const double low      = std::max(0.0, std::ceil((position - reach) * per));
+            const double high     = std::min(nodes - 1.0, std::floor((position + reach) * per));
             first[n]              = int(std::min(low, double(nodes)));
             count[n]              = int(std::max(high - low + 1, 0.0));
             from[n]               = count[n] > 0 ? position - low * spacing : 0;
         }
-        exponentials(spacing / (width * width), from.data(), ratio.data(), first.size());
+        exponentials(spacing / (width * width), from, ratio, positions.size());
     }
 };
 
@@ -130,33 +165,119 @@ PALPATE_PART void addRow(double factor, const double* factors, const double* log
     }
 }
 
+/// Sums at 4 x 4 nodes, of points that follow each other.
+class RunOfPoints {
+public:
+    explicit RunOfPoints(const Task& task) : task_(task) {}
+
+    PALPATE_PART void add(int i, int j, const double* alongX, const double* alongZ, double logarithm)
+    {
+        if (i != i_ || j != j_) {
+            handOver();
+            i_ = i;
+            j_ = j;
+        }
+        Numbers z;
+        std::memcpy(&z, alongZ, sizeof z);
+        const Numbers l = z * logarithm;
+        w0_ += alongX[0] * z;
+        w1_ += alongX[1] * z;
+        w2_ += alongX[2] * z;
+        w3_ += alongX[3] * z;
+        l0_ += alongX[0] * l;
+        l1_ += alongX[1] * l;
+        l2_ += alongX[2] * l;
+        l3_ += alongX[3] * l;
+    }
+    PALPATE_PART void handOver()
+    {
+        if (i_ < 0) return;
+        double* row = task_.sums + std::size_t(i_) * 2 * task_.stride + std::size_t(j_);
+        for (const Numbers* sum : {&w0_, &l0_, &w1_, &l1_, &w2_, &l2_, &w3_, &l3_}) {
+            Numbers there;
+            std::memcpy(&there, row, sizeof there);
+            there += *sum;
+            std::memcpy(row, &there, sizeof there);
+            row += task_.stride;
+        }
+        w0_ = w1_ = w2_ = w3_ = l0_ = l1_ = l2_ = l3_ = Numbers{};
+        i_                                            = -1;
+    }
+
+private:
+    const Task& task_;
+    int         i_ = -1, j_ = -1; ///< the first node; -1: no point yet
+    Numbers     w0_{}, w1_{}, w2_{}, w3_{}, l0_{}, l1_{}, l2_{}, l3_{};
+};
+
+/// The points that come near the window, a piece at a time: where a ball is gathered about a square, a third do not.
+class NearPoints {
+public:
+    ChartPoint positions[kPiece];  ///< [m]
+    double     rigidities[kPiece]; ///< [N m]
+
+    explicit NearPoints(const Task& task) : task_(task)
+    {
+        const double reach  = kResamplingReach * task.width;
+        const auto&  corner = task.window.corner;
+        low_                = {corner.x - reach, corner.z - reach};
+        high_ = {corner.x + task.window.grid.sizeX() + reach, corner.z + task.window.grid.sizeZ() + reach};
+    }
+    /// Returns how many points the next piece has; 0: no more.
+    PALPATE_PART std::size_t next()
+    {
+        std::size_t count = 0;
+        for (; next_ < task_.positions.size() && count < kPiece; ++next_) {
+            const ChartPoint p = task_.positions[next_];
+            positions[count]   = p;
+            rigidities[count]  = task_.rigidities[next_];
+            count += std::size_t((p.x >= low_.x) & (p.x <= high_.x) & (p.z >= low_.z) & (p.z <= high_.z));
+        }
+        return count;
+    }
+
+private:
+    const Task& task_;
+    ChartPoint  low_, high_;
+    std::size_t next_ = 0;
+};
+
 PALPATE_PART void spreadAll(const Task& task)
 {
-    const PlateGrid&    grid   = task.window.grid;
-    const std::size_t   points = task.positions.size();
-    Reach               x(points), z(points);
-    std::vector<double> nearest(points); // the weight of the first node, but for the tables [1]
-    x.find(task.positions, &ChartPoint::x, task.window.corner.x, task.width, grid.spacingX, grid.nodesX());
-    z.find(task.positions, &ChartPoint::z, task.window.corner.z, task.width, grid.spacingZ, grid.nodesZ());
-    for (std::size_t n = 0; n < points; ++n) nearest[n] = x.from[n] * x.from[n] + z.from[n] * z.from[n];
-    exponentials(-0.5 / (task.width * task.width), nearest.data(), nearest.data(), points);
-
+    const PlateGrid&          grid   = task.window.grid;
     const std::vector<double> tableX = tableOf(grid.spacingX, task.width, grid.nodesX());
     const std::vector<double> tableZ = tableOf(grid.spacingZ, task.width, grid.nodesZ());
     std::vector<double>       factors(tableX.size() + 2 * tableZ.size());
-    double* const             alongX     = factors.data();
-    double* const             alongZ     = alongX + tableX.size();
-    double* const             logarithms = alongZ + tableZ.size();
-    for (std::size_t n = 0; n < points; ++n) {
-        if (x.count[n] == 0 || z.count[n] == 0) continue;
-        const double logarithm = std::log(task.rigidities[n]);
-        factorsOf(x.ratio[n], 1, tableX.data(), x.count[n], alongX);
-        const int registers = factorsOf(z.ratio[n], nearest[n], tableZ.data(), z.count[n], alongZ);
-        for (int m = 0; m < registers * kLanes; ++m) logarithms[m] = alongZ[m] * logarithm;
-        double* row = task.sums + std::size_t(x.first[n]) * 2 * task.stride + std::size_t(z.first[n]);
-        for (int r = 0; r < x.count[n]; ++r, row += 2 * task.stride)
-            addRow(alongX[r], alongZ, logarithms, registers, row, row + task.stride);
+    double* const             alongX   = factors.data();
+    double* const             alongZ   = alongX + tableX.size();
+    double* const             weighted = alongZ + tableZ.size();
+    Reach                     x, z;
+    double                    nearest[kPiece];     // the weight of the first node, but for the tables [1]
+    double                    logarithmOf[kPiece]; // ln(D / 1 N m)
+    RunOfPoints               run(task);
+    NearPoints                near(task);
+    while (const std::size_t count = near.next()) {
+        const auto positions = std::span<const ChartPoint>(near.positions, count);
+        x.find(positions, &ChartPoint::x, task.window.corner.x, task.width, grid.spacingX, grid.nodesX());
+        z.find(positions, &ChartPoint::z, task.window.corner.z, task.width, grid.spacingZ, grid.nodesZ());
+        for (std::size_t n = 0; n < count; ++n) nearest[n] = x.from[n] * x.from[n] + z.from[n] * z.from[n];
+        exponentials(-0.5 / (task.width * task.width), nearest, nearest, count);
+        logarithms(near.rigidities, logarithmOf, count);
+        for (std::size_t n = 0; n < count; ++n) {
+            if (x.count[n] == 0 || z.count[n] == 0) continue;
+            factorsOf(x.ratio[n], 1, tableX.data(), x.count[n], alongX);
+            const int registers = factorsOf(z.ratio[n], nearest[n], tableZ.data(), z.count[n], alongZ);
+            if (x.count[n] <= kLanes && registers == 1) {
+                run.add(x.first[n], z.first[n], alongX, alongZ, logarithmOf[n]);
+                continue;
+            }
+            for (int m = 0; m < registers * kLanes; ++m) weighted[m] = alongZ[m] * logarithmOf[n];
+            double* row = task.sums + std::size_t(x.first[n]) * 2 * task.stride + std::size_t(z.first[n]);
+            for (int r = 0; r < x.count[n]; ++r, row += 2 * task.stride)
+                addRow(alongX[r], alongZ, weighted, registers, row, row + task.stride);
+        }
     }
+    run.handOver();
 }
 
 PALPATE_PART void meansOf(const double* weight, const double* logarithm, std::span<double> row)
@@ -276,7 +397,7 @@ private:
 LogMeanSums::LogMeanSums(const PatchWindow& window, std::span<const ChartPoint> positions,
                          std::span<const double> rigidities, double width)
     : grid_(window.grid), stride_(std::size_t(grid_.nodesZ() + kLanes)),
-      sums_(2 * std::size_t(grid_.nodesX()) * stride_)
+      sums_(2 * std::size_t(grid_.nodesX() + kLanes) * stride_)
 {
     spread({window, positions, rigidities, width, stride_, sums_.data()});
 }

@@ -21,7 +21,7 @@ public:
 private:
     PlateGrid           grid_;
     std::size_t         stride_; ///< of a row of one sum, with a margin that whole registers may run into
-    std::vector<double> sums_;   ///< for each row of nodes those of w [1], then those of w ln(D / 1 N m)
+    std::vector<double> sums_;   ///< for each row of nodes, and a few more, those of w [1], then those of w ln(D / 1 N m)
 };
 
 /// Returns true if a quick test shows that every node of a window has a point nearby, as resampleRigidity() counts it;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -32,11 +32,11 @@ constexpr double kTurned = 0.26, kFaces = 0.76; ///< cosines of 75 and 40 degree
 glm::dvec3 meanNormal(const TouchedSurface& surface, const glm::dvec3& centre, double radius)
 {
     glm::dvec3 sum{};
-    for (std::size_t k = 0; k < surface.places.size(); ++k) {
-        const glm::dvec3 d     = surface.places[k] - centre;
+    surface.eachNear(centre, radius, [&](const glm::dvec3& place, const glm::dvec3& normal) {
+        const glm::dvec3 d     = place - centre;
         const double     share = std::max(0.0, 1 - glm::dot(d, d) / (radius * radius));
-        sum += share * share * surface.normals[k];
-    }
+        sum += share * share * normal;
+    });
     const double length = glm::length(sum);
     return length > 0 ? sum / length : glm::dvec3(0);
 }
@@ -46,139 +46,110 @@ glm::dvec3 anchorOf(const TouchedSurface& surface, const glm::dvec3& contact)
 {
     const double            radius = std::max(kNear * surface.spacing, kNoisyNear * surface.noise);
     std::vector<glm::dvec3> near;
-    for (const glm::dvec3& place : surface.places)
-        if (glm::length(place - contact) <= radius) near.push_back(place);
+    surface.eachNear(contact, radius, [&](const glm::dvec3& place, const glm::dvec3&) { near.push_back(place); });
     const SphereFitResult fit = fitSphere(near);
     if (!fit.usable()) return contact;
     const glm::dvec3 foot = fit.fit.foot(contact);
     return glm::length(foot - contact) <= radius ? foot : contact;
 }
 
-/// Chooses an even share of the points, the same ones wherever the finger is.
-class EvenShare {
-public:
-    /// \param share  [1] from 2 on: all points, with the weight 1
-    explicit EvenShare(double share) : share_(share) {}
-
-    /// Returns 1 for points of the share, 0 for others, and in between at its limit, so that points come and go gently
-    /// where the share changes [1].
-    [[nodiscard]] double weightOf(std::uint32_t point) const
-    {
-        constexpr double        kLimit  = 0.1;         // of the share [1]
-        constexpr std::uint32_t kGolden = 2654435769U; // 2^32 over the golden ratio: multiples are evenly spread
-        const double            place   = (point * kGolden) * 0x1p-32;
-        return std::clamp((share_ - place) / (kLimit * share_), 0.0, 1.0);
-    }
-
-private:
-    double share_; ///< [1]
-};
-
 /// Fits the sphere to a share of the surface's points.
-/// \param ball  the points that the surface's numbers are of
-SphereFitResult fitSphereTo(const TouchedSurface& surface, std::span<const std::uint32_t> ball, double radius,
-                            const EvenShare& chosen)
+SphereFitResult fitSphereTo(const TouchedSurface& surface, double radius, const EvenShare& chosen)
 {
     std::vector<glm::dvec3> points;
     std::vector<double>     weights;
-    for (std::size_t k = 0; k < surface.places.size(); ++k) {
-        const double taken = chosen.weightOf(ball[surface.inBall[k]]);
-        if (taken == 0) continue;
-        const glm::dvec3 p     = surface.places[k];
+    for (std::size_t k = 0; k < surface.size(); ++k) {
+        const std::uint32_t rank = surface.rank(k);
+        if (!chosen.has(rank)) continue;
+        const glm::dvec3 p     = surface.place(k);
         const glm::dvec3 d     = p - surface.anchor;
         const double     share = std::max(0.0, 1 - glm::dot(d, d) / (radius * radius));
         const double     faces =
-            std::clamp((glm::dot(surface.normals[k], surface.normal) - kTurned) / (kFaces - kTurned), 0.0, 1.0);
+            std::clamp((glm::dot(surface.normalAt(k), surface.normal) - kTurned) / (kFaces - kTurned), 0.0, 1.0);
         if (share * faces == 0) continue;
         points.push_back(p);
-        weights.push_back(taken * share * share * faces);
+        weights.push_back(chosen.weightOf(rank) * share * share * faces);
     }
     return fitSphereThrough(surface.anchor, points, weights);
 }
 
-/// Fits the sphere to the surface: to an even share of very many points if they lie on a sphere so well that the others
-/// would say the same.
-SphereFitResult fitSphereTo(const TouchedSurface& surface, std::span<const std::uint32_t> ball, double radius)
+/// Fits the sphere to the surface: to an even share of very many points, which say what all of them would.
+SphereFitResult fitSphereTo(const TouchedSurface& surface, double radius)
 {
-    constexpr double kEnough = 2000; // points
-    constexpr double kClose  = 0.02; // [1] misfit over the radius: felt stiffness then moves by less than 1e-4
-    const auto       count   = double(surface.places.size());
-    if (count > 2 * kEnough) {
-        SphereFitResult few = fitSphereTo(surface, ball, radius, EvenShare(kEnough / count));
-        if (few.usable() && few.fit.misfit < kClose * radius) return few;
-    }
-    return fitSphereTo(surface, ball, radius, EvenShare(2));
+    constexpr std::size_t kEnough = 2000; // points: felt stiffness then moves by less than 1e-4
+    return fitSphereTo(surface, radius, EvenShare::of(surface.size(), kEnough));
 }
 
 /// Fills in what follows from places and normals.
-void describe(TouchedSurface& surface, std::span<const std::uint32_t> ball, const glm::dvec3& contact, double radius)
+void describe(TouchedSurface& surface, const glm::dvec3& contact, double radius)
 {
     surface.anchor = anchorOf(surface, contact);
     surface.normal = meanNormal(surface, surface.anchor, kFacing * radius);
-    surface.sphere = fitSphereTo(surface, ball, radius);
+    surface.sphere = fitSphereTo(surface, radius);
 }
 
-/// All points of a ball, as one surface.
+/// What all points of a ball have in common.
 struct WholeBall {
-    TouchedSurface surface;
-    double         widest    = 0; ///< spacing [m]
-    double         mostNoise = 0; ///< [m]
+    glm::dvec3 first{};       ///< normal of the nearest one, towards the finger [1]
+    double     least     = 1; ///< cosine of the largest angle between it and a normal, whatever their signs [1]
+    double     widest    = 0; ///< spacing [m]
+    double     mostNoise = 0; ///< [m]
 };
 
-/// Takes all points of the ball, their normals turned to the finger's side; empty if they turn too far from the nearest
-/// one's, if some are known to face the other way, or if there are none.
-std::optional<WholeBall> wholeBall(const SoftObject& object, const Contact& contact,
-                                   std::span<const std::uint32_t> ball, std::uint32_t nearest)
+/// Looks at all points of the ball; empty if their normals turn too far from the nearest one's, if some are known to face
+/// the other way, or if there are none.
+std::optional<WholeBall> wholeBall(const SoftObject& object, const Contact& contact, const Ball& ball,
+                                   std::uint32_t nearest)
 {
-    if (ball.empty()) return {};
+    if (ball.ranks.empty()) return {};
     constexpr double     kAlike = 0.3; // cosine of 73 degrees [1]
     const SurfaceSurvey& survey = object.survey();
     const double         side   = glm::dot(survey.normal(nearest), contact.outward) < 0 ? -1 : 1;
-    const glm::dvec3     first  = side * survey.normal(nearest);
-    WholeBall            whole;
-    TouchedSurface&      surface = whole.surface;
+    WholeBall            whole{side * survey.normal(nearest)};
     bool                 outward = false, inward = false;
-    surface.normals.resize(ball.size());
-    surface.places.resize(ball.size());
-    for (std::size_t k = 0; k < ball.size(); ++k) {
-        const std::uint32_t point  = ball[k];
-        const glm::dvec3    normal = survey.normal(point);
-        const double        cosine = glm::dot(normal, first);
-        if (std::abs(cosine) < kAlike) return {};
-        (cosine > 0 ? outward : inward) |= survey.sided(point);
-        if (outward && inward) return {};
-        surface.normals[k] = cosine < 0 ? -normal : normal;
-        surface.places[k]  = object.positions()[point];
-        whole.widest       = std::max(whole.widest, survey.spacing(point));
-        whole.mostNoise    = std::max(whole.mostNoise, survey.noise(point));
+    const auto           look = [&](std::span<const std::uint32_t> ranks) { // without branches
+        float noise = 0;
+        for (const std::uint32_t rank : ranks) {
+                      const double cosine = glm::dot(survey.normalOfRank(rank), whole.first);
+                      const bool   sided  = survey.sidedOfRank(rank);
+                      whole.least         = std::min(whole.least, std::abs(cosine));
+                      outward |= sided & (cosine > 0);
+                      inward |= sided & !(cosine > 0);
+                      whole.widest = std::max(whole.widest, survey.spacingOfRank(rank));
+                      noise        = std::max(noise, float(survey.noiseOfRank(rank)));
+        }
+        whole.mostNoise = std::max(whole.mostNoise, double(noise));
+    };
+    constexpr std::size_t kPiece = 256; // points: after each it is seen whether to go on
+    for (std::span<const std::uint32_t> left = ball.ranks; !left.empty();) {
+        const auto piece = left.first(std::min(left.size(), kPiece));
+        look(piece);
+        if (!(whole.least >= kAlike) || (outward && inward)) return {};
+        left = left.subspan(piece.size());
     }
-    surface.inBall.resize(ball.size());
-    std::iota(surface.inBall.begin(), surface.inBall.end(), 0);
     return whole;
 }
 
 /// Returns true if the points, seen along a normal, nowhere lie one over the other: the heights within a square of two
 /// spacings differ by no more than those of a slope of 45 degrees and noise. Sheets so near to each other that they pass
 /// are told apart by the sides that the survey knows.
-bool isOneSheet(const WholeBall& whole, const glm::dvec3& centre, double radius)
+bool isOneSheet(const TouchedSurface& surface, const WholeBall& whole, const Ball& ball)
 {
-    constexpr double kSquare = 2, kSteep = 2.9, kNoisy = 8; // [spacings], [spacings], [standard deviations of noise]
-    constexpr int    kMostSquares = 1024;                   // along a side
-    const TouchedSurface& surface = whole.surface;
-    const double          widest = whole.widest, noise = whole.mostNoise;
-    const int             side = std::clamp(int(2 * radius / (kSquare * widest)), 1, kMostSquares);
-    const Frame           axes = Frame::about(surface.normals.front());
+    constexpr double   kSquare = 2, kSteep = 2.9, kNoisy = 8; // [spacings], [spacings], [standard deviations of noise]
+    constexpr int      kMostSquares = 1024;                   // along a side
+    const double       widest = whole.widest, noise = whole.mostNoise, radius = ball.radius;
+    const int          side = std::clamp(int(2 * radius / (kSquare * widest)), 1, kMostSquares);
+    const Frame        axes = Frame::about(glm::normalize(whole.first));
     std::vector<float> low(std::size_t(side * side), std::numeric_limits<float>::max()); // [m] heights in each square
     std::vector<float> high(low.size(), std::numeric_limits<float>::lowest());
-    const auto         place = [&](double along) {
-        return std::size_t(std::clamp(int((along + radius) / (2 * radius) * side), 0, side - 1));
-    };
-    for (const glm::dvec3& p : surface.places) {
-        const glm::dvec3  d      = p - centre;
-        const std::size_t square = place(glm::dot(d, axes.east)) * std::size_t(side) + place(glm::dot(d, axes.north));
-        const auto        height = float(glm::dot(d, axes.normal));
-        low[square]              = std::min(low[square], height);
-        high[square]             = std::max(high[square], height);
+    const double       perSquare = side / (2 * radius);
+    const auto         place = [&](double along) { return std::clamp(int((along + radius) * perSquare), 0, side - 1); };
+    for (std::size_t k = 0; k < surface.size(); ++k) {
+        const glm::dvec3 d      = surface.place(k) - ball.centre;
+        const auto       square = std::size_t(place(glm::dot(d, axes.east)) * side + place(glm::dot(d, axes.north)));
+        const auto       height = float(glm::dot(d, axes.normal));
+        low[square]             = std::min(low[square], height);
+        high[square]            = std::max(high[square], height);
     }
     const double most = std::max(kSteep * widest, kSteep / kSquare * 2 * radius / side) + kNoisy * noise;
     for (std::size_t k = 0; k < low.size(); ++k)
@@ -188,6 +159,48 @@ bool isOneSheet(const WholeBall& whole, const glm::dvec3& centre, double radius)
 
 } // namespace
 
+TouchedSurface::TouchedSurface(const SoftObject& object, const Ball& ball, const glm::dvec3& first, double least)
+    : object_(&object), ball_(&ball), positions_(object.index().positionsByRank()), whole_(true), first_(first),
+      least_(least)
+{
+}
+
+TouchedSurface::TouchedSurface(const SoftObject& object, const Ball& ball, std::span<const std::uint32_t> inBall,
+                               std::span<const glm::dvec3> normals)
+    : object_(&object), ball_(&ball), positions_(object.index().positionsByRank()),
+      inBall_(inBall.begin(), inBall.end()), normals_(normals.begin(), normals.end())
+{
+}
+
+bool TouchedSurface::allFace() const
+{
+    // Angles add up at most; the reserve is for normals that floats round.
+    constexpr double kReserve = 1e-3; // [rad]
+    const auto       angle    = [](double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)); };
+    return whole_ && angle(least_) + angle(glm::dot(first_, normal)) < std::numbers::pi / 2 - kReserve;
+}
+
+template <class Visit>
+void TouchedSurface::eachNear(const glm::dvec3& centre, double radius, Visit&& visit) const
+{
+    // Few of very many points: the index finds them, unless it would find some that are not of the ball.
+    if (whole_ && glm::length(centre - ball_->centre) + radius < ball_->radius) {
+        std::vector<std::uint32_t> near;
+        object_->index().gatherRanks(centre, radius, near);
+        for (const std::uint32_t rank : near) visit(positions_[rank], normalOfRank(rank));
+        return;
+    }
+    for (std::size_t k = 0; k < size(); ++k)
+        if (glm::length(place(k) - centre) <= radius) visit(place(k), normalAt(k));
+}
+
+void TouchedSurface::turnOver()
+{
+    normal = -normal;
+    first_ = -first_;
+    for (glm::dvec3& n : normals_) n = -n;
+}
+
 double spacingAt(const SoftObject& object, const glm::dvec3& place)
 {
     object.survey().expectSurface();
@@ -196,29 +209,25 @@ double spacingAt(const SoftObject& object, const glm::dvec3& place)
     return here > kUneven * all || all > kUneven * here ? here : all;
 }
 
-TouchedSurface touchedSurface(const SoftObject& object, const Contact& contact, std::span<const std::uint32_t> ball,
-                              double radius)
+TouchedSurface touchedSurface(const SoftObject& object, const Contact& contact, const Ball& ball)
 {
     object.survey().expectSurface();
     const std::uint32_t nearest = object.index().nearest(contact.point, 1).front().point;
     const double        spacing = spacingAt(object, contact.point), noise = object.survey().noise(nearest);
-    const auto          finished = [&](TouchedSurface& surface) {
+    const auto          finished = [&](TouchedSurface surface) {
         surface.spacing = spacing;
         surface.noise   = noise;
-        describe(surface, ball, contact.point, radius);
-        return std::move(surface);
+        describe(surface, contact.point, ball.radius);
+        return surface;
     };
-    if (auto whole = wholeBall(object, contact, ball, nearest); whole && isOneSheet(*whole, contact.point, radius))
-        return finished(whole->surface);
-    SurfaceFlood   flood(object);
-    TouchedSurface surface;
-    const auto     numbers = flood.reachIn(ball, contact.point, contact.outward);
-    const auto     normals = flood.normals();
-    surface.inBall.assign(numbers.begin(), numbers.end());
-    surface.normals.assign(normals.begin(), normals.end());
-    surface.places.reserve(numbers.size());
-    for (const std::uint32_t number : numbers) surface.places.push_back(object.positions()[ball[number]]);
-    return finished(surface);
+    const auto whole = wholeBall(object, contact, ball, nearest);
+    if (whole) {
+        TouchedSurface surface(object, ball, whole->first, whole->least);
+        if (isOneSheet(surface, *whole, ball)) return finished(std::move(surface));
+    }
+    SurfaceFlood flood(object);
+    const auto   numbers = flood.reachIn(ball.points, contact.point, contact.outward);
+    return finished(TouchedSurface(object, ball, numbers, flood.normals()));
 }
 
 } // namespace palp
