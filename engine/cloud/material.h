@@ -46,6 +46,9 @@ inline constexpr std::string_view kRelaxationForm =
 /// The largest b [1/m]: a force that grows by e after 10 um; no finger tells it from a wall.
 inline constexpr double kMostStiffening = 1e5;
 
+/// The least and the largest foundation of a point [Pa/m]; a micrometre of steel has less.
+inline constexpr double kLeastFoundation = 1, kMostFoundation = 1e15;
+
 /// Returns e^(b d) at d = 0.1 mm, by how much the tangent of a force has grown there [1]. What takes the mean of
 /// logarithms, or paints in them, then takes that of b, zeros included.
 /// \param stiffening  b, 0 to kMostStiffening [1/m]

@@ -74,6 +74,7 @@ struct CloudFileReport {
     std::string                  stiffnessSource;            ///< which property, its unit, and why
     std::optional<PropertyRange> stiffnessProperty;          ///< of the values before a range; empty if uniform
     std::optional<PropertyRange> stiffening;                 ///< b of the points [1/m]; empty: the file has none
+    std::optional<PropertyRange> foundation;                 ///< below the points [Pa/m]; empty: the file has none
     bool                         lengthUnitAssumed = false;  ///< neither the file nor a setting states one: metres
     bool                         stiffnessAssumed  = false;  ///< neither the file nor a setting: kDefaultModulus
     std::optional<StiffnessKind> statedKind;                 ///< of the property, by the file's comment
@@ -95,6 +96,9 @@ struct LoadedCloud {
     /// For each point its b [1/m], see DepthLaw; empty if the file has no property for it.
     std::vector<double> stiffening{};
 
+    /// For each point the foundation below it [Pa/m]; empty if the file has no property for it.
+    std::vector<double> foundation{};
+
     /// For each row of the file its point, or kNoPoint if it was omitted. Empty if every row is a point of its own.
     std::vector<std::uint32_t> pointOfRow{};
 };
@@ -106,7 +110,7 @@ struct LoadedCloud {
 /// PCD: ascii, binary and binary_compressed; fields with COUNT > 1 are skipped, and points with NaN, which is its sign
 /// for "no return", are omitted and counted. Bytes after the last row of a binary PLY or PCD file are a warning. Text: one point per line, `x y z [stiffness]` or named by
 /// a header line or by `columns`. Quality, confidence and intensity never become stiffness unless the user names them.
-/// A property "stiffening" is b [1/m] of each point, from 0 to kMostStiffening.
+/// A property "stiffening" is b [1/m] of each point, from 0 to kMostStiffening; "foundation" is that below it [Pa/m].
 /// Points at exactly the same place become one, in the place of the first, with the mean of the logarithms of their
 /// stiffness; faces then name that one. The place must not be the only one.
 /// \throws Error naming the file, the line or byte, what was expected and what was found

@@ -331,8 +331,9 @@ std::string sceneJson(const Scene& scene)
 {
     Scene whole = scene;
     if (!isSample(whole) && !whole.cloud.empty()) whole.cloud = std::filesystem::absolute(whole.cloud).string();
-    whole.stiffness    = lawWithFileIn(whole.stiffness, std::filesystem::current_path());
-    whole.below.volume = lawWithFileIn(whole.below.volume, std::filesystem::current_path());
+    whole.stiffness = lawWithFileIn(whole.stiffness, std::filesystem::current_path());
+    for (std::string* law : {&whole.below.volume, &whole.below.foundation})
+        *law = lawWithFileIn(*law, std::filesystem::current_path());
     std::string text;
     for (const SceneKey* key : sceneKeysWith(scene.toolKeys))
         if (const std::string value = key->write(whole); !value.empty())

@@ -41,6 +41,37 @@ std::string volumeOf(const JsonObject& below)
     return law;
 }
 
+/// Returns the law of the foundation, checked but for its file.
+std::string foundationLawOf(const JsonObject& below)
+{
+    const bool        isText = below.kind("foundation") == JsonObject::Kind::text;
+    const std::string law    = isText ? below.text("foundation") : below.json("foundation");
+    try {
+        static_cast<void>(parseSpatialLaw(law, {-1, -1, -1}, {1, 1, 1}, SpatialLaw::Space::volume, LawFiles::left));
+    } catch (const Error& error) {
+        throw Error(below.where() + ": key \"foundation\": " + error.what());
+    }
+    return law;
+}
+
+/// Returns the foundation below each point over that of the scene [1].
+std::vector<double> shapeOf(const SoftObject& object, const Scene& scene, std::span<const double> ofFile)
+{
+    std::vector<double> shape(ofFile.begin(), ofFile.end());
+    if (scene.below.isOwn && shape.empty())
+        throw Error("own: expected a file with a property foundation [Pa/m], found none; see palpate info");
+    if (!scene.below.isOwn) {
+        const Bounds&    bounds = object.cloud().bounds();
+        const SpatialLaw law =
+            parseSpatialLaw(scene.below.foundation, bounds.low, bounds.high, SpatialLaw::Space::volume);
+        shape.clear();
+        for (const glm::dvec3& p : object.positions())
+            shape.push_back(law.valueAt(p, "point " + std::to_string(shape.size())));
+    }
+    for (double& value : shape) value /= scene.patch.foundation;
+    return shape;
+}
+
 // clang-format off
 constexpr std::string_view kSchema = R"({"anyOf": [{"type": "object", "additionalProperties": false, "required": ["depth", "modulus"], "properties":
 {"depth": {"description": "of the tissue between the sheet and what does not give [m]", "anyOf": [{"type": "number",
@@ -54,17 +85,25 @@ foundation the scene states [Pa]", "anyOf": [{"type": "number", "minimum": 1, "m
 {"description": "of its middle below the surface [m]", "anyOf": [{"type": "number", "minimum": 1e-05, "maximum": 1},
 {"type": "string"}]}, "radius": {"description": "[m]", "anyOf": [{"type": "number", "minimum": 1e-05, "maximum": 1},
 {"type": "string"}]}, "modulus": {"description": "Young's [Pa]", "anyOf": [{"type": "number", "minimum": 1, "maximum":
-1000000000000.0}, {"type": "string"}]}}}}}}, {"type": "string"}]})";
+1000000000000.0}, {"type": "string"}]}}}}}}, {"type": "object",
+"additionalProperties": false, "required": ["foundation"], "properties": {"foundation": {"description": "a law of the
+foundation over the cloud [Pa/m]", "anyOf": [{"type": "object"}, {"type": "string"}]}}}, {"type": "string"}]})";
 // clang-format on
 
 } // namespace
 
 SceneBelow parseBelow(std::string_view text, const std::string& what)
 {
-    if (text == "none") return {};
-    const JsonObject object = JsonObject::parse(text, what);
-    object.allowOnly({"depth", "modulus", "volume", "nodules"});
     SceneBelow below;
+    below.isOwn = text == "own";
+    if (text == "none" || below.isOwn) return below;
+    const JsonObject object = JsonObject::parse(text, what);
+    object.allowOnly({"depth", "modulus", "volume", "nodules", "foundation"});
+    if (object.has("foundation")) {
+        object.allowOnly({"foundation"});
+        below.foundation = foundationLawOf(object);
+        return below;
+    }
     below.tissue.depth   = object.quantity("depth", kLength);
     below.tissue.modulus = object.quantity("modulus", kModulus);
     if (object.has("volume")) below.volume = volumeOf(object);
@@ -79,10 +118,13 @@ SceneBelow parseBelow(std::string_view text, const std::string& what)
 std::string belowJson(const SceneBelow& below)
 {
     if (!below.isThere()) return {};
+    if (below.isOwn) return "\"own\"";
+    const auto lawJson = [](const std::string& law) {
+        return law.starts_with('{') ? Json::parse(law, nullptr, true, true) : Json(law);
+    };
+    if (!below.foundation.empty()) return Json{{"foundation", lawJson(below.foundation)}}.dump();
     Json json{{"depth", below.tissue.depth}, {"modulus", below.tissue.modulus}};
-    if (!below.volume.empty())
-        json["volume"] =
-            below.volume.starts_with('{') ? Json::parse(below.volume, nullptr, true, true) : Json(below.volume);
+    if (!below.volume.empty()) json["volume"] = lawJson(below.volume);
     for (const BuriedNodule& n : below.tissue.nodules)
         json["nodules"].push_back(
             {{"at", {n.at.x, n.at.y, n.at.z}}, {"depth", n.depth}, {"radius", n.radius}, {"modulus", n.modulus}});
@@ -98,17 +140,19 @@ std::string belowWithFileIn(const std::string& text, const std::filesystem::path
 {
     try {
         Json below = Json::parse(text, nullptr, true, true);
-        if (!below.contains("volume")) return text;
-        Json&             volume = below["volume"];
-        const std::string law    = volume.is_string() ? volume.get<std::string>() : volume.dump();
-        volume                   = lawWithFileIn(law, folder);
+        for (const char* key : {"volume", "foundation"}) {
+            if (!below.contains(key)) continue;
+            Json&             value = below[key];
+            const std::string law   = value.is_string() ? value.get<std::string>() : value.dump();
+            value                   = lawWithFileIn(law, folder);
+        }
         return below.dump();
     } catch (const Json::exception&) {
         return text; // the reader refuses it, and says why
     }
 }
 
-SoftObject onTissue(const SoftObject& object, const Scene& scene)
+SoftObject onTissue(const SoftObject& object, const Scene& scene, std::span<const double> ofFile)
 {
     TissueBelow tissue = scene.below.tissue;
     const auto  hidden = scene.overlay ? scene.overlay->below(object.cloud(), scene) : std::vector<BuriedNodule>();
@@ -122,12 +166,17 @@ SoftObject onTissue(const SoftObject& object, const Scene& scene)
         throw Error(openingOf(scene, "below") +
                     ": expected a foundation above 0, which the tissue makes firmer or softer, found 0; give the key "
                     "\"foundation\"");
+    if (!scene.below.isTissue() && !hidden.empty())
+        throw Error(
+            "hunt: a nodule with a depth lies in tissue of a depth and a modulus, and the scene's key \"below\" "
+            "states the foundation by itself");
     tissue.nodules.insert(tissue.nodules.end(), hidden.begin(), hidden.end());
     if (!scene.below.volume.empty()) {
         const Bounds& bounds = object.cloud().bounds();
         tissue.volume        = parseSpatialLaw(scene.below.volume, bounds.low, bounds.high, SpatialLaw::Space::volume);
     }
     try {
+        if (!scene.below.isTissue()) return object.withFoundation(shapeOf(object, scene, ofFile));
         return object.withFoundation(foundationShape(object, tissue, scene.patch.footprintRadius));
     } catch (const Error& error) {
         throw Error(openingOf(scene, "below") + ": " + error.what());

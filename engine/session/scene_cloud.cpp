@@ -177,7 +177,7 @@ LoadedObject objectOf(LoadedCloud loaded, const Scene& scene)
                     "felt [N/m]; palpate fit makes an object of it");
     SoftObject object(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals);
     if (!statesStiffening(scene)) object = object.withStiffening(std::move(loaded.stiffening));
-    return {onTissue(object.standingFor(std::move(loaded.mesh)), scene), std::move(loaded.report)};
+    return {onTissue(object.standingFor(std::move(loaded.mesh)), scene, loaded.foundation), std::move(loaded.report)};
 }
 
 LoadedObject loadObject(const Scene& scene)
@@ -192,6 +192,7 @@ bool haveSameCloud(const Scene& a, const Scene& b)
     if (a.below.isThere() &&
         (a.patch.footprintRadius != b.patch.footprintRadius || a.material.thickness != b.material.thickness))
         return false; // how deep a finger feels depends on both
+    if (a.below.isThere() && !a.below.isTissue() && a.patch.foundation != b.patch.foundation) return false;
     if (a.toolKeys != b.toolKeys) return false;
     return std::ranges::all_of(sceneKeysWith(a.toolKeys), [&](const SceneKey* key) {
         return !key->decidesCloud || key->write(a) == key->write(b);

@@ -350,16 +350,17 @@ std::vector<SceneKey> materialKeys()
              .unit      = "Pa/m",
              .example   = "1.74 MPa/m",
              .dimension = D::foundation,
-             .bounds    = KeyBounds{0, 1e15}, // a micrometre of steel has less
+             .bounds    = KeyBounds{0, kMostFoundation},
              .control   = foundation},
             [](auto& s) -> auto& { return s.patch.foundation; }),
-        {.name         = "below",
-         .help         = "the tissue below the sheet where it varies: how deep it is, its modulus, and nodules in it; "
-                         "none for a foundation that is the same everywhere",
-         .group        = kTouch,
-         .kind         = Kind::object,
-         .form         = kBelowForm,
-         .schema       = std::string(belowSchema()),
+        {.name   = "below",
+         .help   = "the tissue below the sheet where it varies: how deep it is, its modulus, and nodules in it; or "
+                   "{\"foundation\": LAW}, or own for the file's property foundation [Pa/m], about the key "
+                   "foundation; none for a foundation that is the same everywhere",
+         .group  = kTouch,
+         .kind   = Kind::object,
+         .form   = kBelowForm,
+         .schema = std::string(belowSchema()),
          .decidesCloud = true,
          .read         = [](S& s, const V& v) { s.below = parseBelow(v.text, v.what); },
          .write        = [](const S& s) { return belowJson(s.below); }},

@@ -99,6 +99,7 @@ void scatterOverFaces(LoadedCloud& loaded, const ScatterPlan& plan)
         loaded.stiffening = interpolated(points, loaded.faces, loaded.stiffening);
         for (double& b : loaded.stiffening) b = std::clamp(b, 0.0, kMostStiffening); // weights are rounded
     }
+    if (!loaded.foundation.empty()) loaded.foundation = logInterpolated(points, loaded.faces, loaded.foundation);
     report.scatteredPoints = points.size();
     report.scatterDistance = points.distance;
     if (points.distance > plan.wanted)

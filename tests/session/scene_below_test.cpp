@@ -335,5 +335,60 @@ TEST(Below, WhatIsWrongIsSaidInOneSentence)
     EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(loadObject(none)); }), {"below", "foundation above 0"}));
 }
 
+/// A sheet whose foundation is 2 MPa/m by itself, by a law, or point by point.
+Scene onFoundation(const std::string& foundation, const std::string& below, const std::string& cloud = "sample:sheet")
+{
+    return parseScene(R"({"poisson": 0.45, "window": "60 mm", "cells": 64, "thickness": "3 mm"})", "a test", ".",
+                      {.flags = {{"cloud", cloud}, {"foundation", foundation + " MPa/m"}, {"below", below}}});
+}
+
+TEST(Below, ALawOfTheFoundationIsFeltAsItsValue)
+{
+    const Scene  plain = onFoundation("2", "none");
+    const double felt  = feltOn(loadObject(plain).object, plain);
+    for (const char* unit : {"2", "0.7", "5"}) { // whatever the scene's own foundation is
+        const Scene even = onFoundation(unit, R"({"foundation": {"law": "constant", "value": 2e6}})");
+        EXPECT_NEAR(feltOn(loadObject(even).object, even) / felt, 1, 1e-4) << unit << ": the solver's tolerance";
+    }
+    const Scene  rising = onFoundation("2", R"({"foundation": "linear:from=1e6,to=8e6,axis=x"})");
+    const auto   object = loadObject(rising).object;
+    const double soft = feltOn(object, rising, {-30e-3, 0, 0}), firm = feltOn(object, rising, {30e-3, 0, 0});
+    EXPECT_GT(firm, 1.3 * soft);
+    EXPECT_NEAR(*std::ranges::min_element(object.foundationShape()), 0.5, 0.01);
+    EXPECT_NEAR(*std::ranges::max_element(object.foundationShape()), 4, 0.05);
+
+    const Scene again = parseScene(sceneJson(rising), "again", ".");
+    EXPECT_EQ(belowJson(again.below), belowJson(rising.below));
+    EXPECT_FALSE(haveSameCloud(rising, onFoundation("3", R"({"foundation": "linear:from=1e6,to=8e6,axis=x"})")));
+    EXPECT_TRUE(holds(refusalOf([] { static_cast<void>(onFoundation("2", R"({"foundation": "soft"})")); }),
+                      {"below", "foundation", "soft"}));
+    EXPECT_TRUE(holds(refusalOf([] { static_cast<void>(onFoundation("2", R"({"foundation": "soft", "depth": 1})")); }),
+                      {"unknown key \"depth\"", "known keys: foundation"}));
+}
+
+TEST(Below, TheFoundationOfAFileIsFeltWhereTheSceneSaysOwn)
+{
+    const TemporaryFolder folder;
+    std::string           rows = "x,y,z,stiffness,foundation\n";
+    for (int i = -60; i < 60; ++i)
+        for (int j = -60; j < 60; ++j)
+            rows +=
+                std::to_string(i * 1e-3) + "," + std::to_string(j * 1e-3) + ",0,3e5," + (i < 0 ? "5e5" : "2e7") + "\n";
+    const std::string file = folder.write("half.csv", rows).string();
+    const Scene       own = onFoundation("2", "own", file), none = onFoundation("0.5", "none", file);
+    const auto        half = loadObject(own).object, even = loadObject(none).object;
+    ASSERT_EQ(half.foundationShape().size(), 14400u);
+    EXPECT_TRUE(even.foundationShape().empty());
+    EXPECT_NEAR(feltOn(half, own, {-28e-3, 0, 0}) / feltOn(even, none, {-28e-3, 0, 0}), 1, 0.02)
+        << "far from the firm half";
+    EXPECT_GT(feltOn(half, own, {28e-3, 0, 0}), 2 * feltOn(half, own, {-28e-3, 0, 0}));
+    EXPECT_EQ(sceneJson(parseScene(sceneJson(own), "again", ".")), sceneJson(own));
+    EXPECT_TRUE(holds(refusalOf([] { static_cast<void>(loadObject(onFoundation("2", "own"))); }),
+                      {"below", "property foundation", "found none"}));
+    const auto bad = folder.write("bad.csv", "x,y,z,foundation\n0,0,0,1e6\n1,0,0,0\n");
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(readCloud(bad)); }),
+                      {"line 3", "foundation from 1 to 1e15 Pa/m", "found \"foundation\" 0"}));
+}
+
 } // namespace
 } // namespace palp

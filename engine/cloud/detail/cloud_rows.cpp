@@ -27,7 +27,7 @@ constexpr std::size_t kLongestList = 40;
 constexpr std::array<const char*, 3> kCoordinateNames = {"x", "y", "z"};
 
 /// The slots of which a number must be finite.
-constexpr std::array kUsedSlots = {kSlotX, kSlotY, kSlotZ, kSlotStiffness, kSlotStiffening};
+constexpr std::array kUsedSlots = {kSlotX, kSlotY, kSlotZ, kSlotStiffness, kSlotStiffening, kSlotFoundation};
 
 /// The names of a normal's components: of PLY files, of PCD files, and of CloudCompare's text files.
 constexpr std::array<std::array<std::string_view, 3>, 3> kNormalNames = {
@@ -123,18 +123,19 @@ CloudRows::CloudRows(const ByteReader& reader, CloudHeader header, const CloudRe
     }
     chooseLengthUnit();
     chooseStiffness();
-    chooseStiffening();
+    chooseOthers();
     chooseNormals();
     // The first slot of a property that has several: the format delivers its number only there.
     for (std::size_t slot = 0; slot < kSlots; ++slot)
         if (columns_[slot]) source_[slot] = slotOf(*columns_[slot]);
 }
 
-void CloudRows::chooseStiffening()
+void CloudRows::chooseOthers()
 {
-    for (const std::string_view name : kStiffeningProperties)
-        if (!columns_[kSlotStiffening] && settings_.stiffnessProperty != name)
-            columns_[kSlotStiffening] = find(reader_, header_.properties, name);
+    for (const OtherProperty& other : kOtherProperties)
+        for (const std::string_view name : other.names)
+            if (!columns_[other.slot] && settings_.stiffnessProperty != name)
+                columns_[other.slot] = find(reader_, header_.properties, name);
 }
 
 void CloudRows::chooseNormals()
@@ -244,8 +245,15 @@ void CloudRows::makeRoom(std::uint64_t points)
         reader_.fail("expected at most " + std::to_string(kMostPoints) + " points, found " + std::to_string(points));
     positions_.reserve(points);
     if (columns_[kSlotStiffness]) stiffness_.reserve(points);
-    if (columns_[kSlotStiffening]) stiffening_.reserve(points);
+    for (std::size_t k = 0; k < others_.size(); ++k)
+        if (columns_[kOtherProperties[k].slot]) others_[k].reserve(points);
     if (columns_[kSlotNormalX]) normals_.reserve(points);
+}
+
+/// Returns true if a point has no such property, or a good one.
+bool CloudRows::isWithin(const OtherProperty& other, const CloudRow& row) const noexcept
+{
+    return !columns_[other.slot] || (row[other.slot] >= other.least && row[other.slot] <= other.most);
 }
 
 bool CloudRows::usable(const CloudRow& row) const noexcept
@@ -254,7 +262,7 @@ bool CloudRows::usable(const CloudRow& row) const noexcept
     const double limit = kLargestCoordinate / metresPerUnit_;
     return std::abs(row[kSlotX]) <= limit && std::abs(row[kSlotY]) <= limit && std::abs(row[kSlotZ]) <= limit &&
            std::isfinite(row[kSlotStiffness]) && (settings_.range || row[kSlotStiffness] > 0) &&
-           row[kSlotStiffening] >= 0 && row[kSlotStiffening] <= kMostStiffening;
+           std::ranges::all_of(kOtherProperties, [&](const OtherProperty& other) { return isWithin(other, row); });
 }
 
 void CloudRows::add(const CloudRow& row, Place place)
@@ -289,7 +297,8 @@ void CloudRows::add(const CloudRow& row, Place place)
         found_ = {first ? value : std::min(found_.smallest, value), first ? value : std::max(found_.largest, value)};
         stiffness_.push_back(value);
     }
-    if (columns_[kSlotStiffening]) stiffening_.push_back(used[kSlotStiffening]);
+    for (std::size_t k = 0; k < others_.size(); ++k)
+        if (columns_[kOtherProperties[k].slot]) others_[k].push_back(used[kOtherProperties[k].slot]);
     ++rowsRead_;
 }
 
@@ -301,8 +310,9 @@ void CloudRows::refuseRow(const CloudRow& row, Place place) const
         const std::string found = ", found " + inQuotes(header_.properties[*column]) + " " + shown(row[slot]);
         if (!std::isfinite(row[slot]))
             failAtRow(place, "expected a finite number" + found + "; such points can be dropped with --drop-invalid");
-        if (slot == kSlotStiffening && !(row[slot] >= 0 && row[slot] <= kMostStiffening))
-            failAtRow(place, "expected a stiffening from 0 to " + shown(kMostStiffening) + " 1/m" + found);
+        for (const OtherProperty& other : kOtherProperties)
+            if (slot == other.slot && !isWithin(other, row))
+                failAtRow(place, std::string("expected ") + other.expected + found);
         if (slot <= kSlotZ && std::abs(row[slot]) > kLargestCoordinate / metresPerUnit_)
             failAtRow(place, "expected a coordinate below " + shown(kLargestCoordinate) + " m" + found +
                                  "; is the length unit right?");
@@ -358,10 +368,10 @@ void CloudRows::mergePlaces()
     std::vector<std::uint32_t> places = placesOf(positions_);
     if (places.empty()) return;
     struct Sum {
-        double        logarithms = 0; ///< of the stiffness
-        double        stiffening = 0; ///< [1/m]
-        std::uint32_t points     = 0;
-        bool          differ     = false;
+        double                                      logarithms = 0; ///< of the stiffness
+        std::array<double, kOtherProperties.size()> others{};
+        std::uint32_t                               points = 0;
+        bool                                        differ = false;
     };
     std::vector<Sum> sums;
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -370,19 +380,21 @@ void CloudRows::mergePlaces()
             sums.emplace_back();
             positions_[place] = positions_[i];
             stiffness_[place] = stiffness_[i];
-            if (!stiffening_.empty()) stiffening_[place] = stiffening_[i];
+            for (std::vector<double>& other : others_)
+                if (!other.empty()) other[place] = other[i];
             if (!normals_.empty()) normals_[place] = normals_[i];
         } else if (!normals_.empty()) {
             normals_[place] += normals_[i];
         }
         sums[place].logarithms += std::log(stiffness_[i]);
-        if (!stiffening_.empty()) sums[place].stiffening += stiffening_[i];
+        for (std::size_t k = 0; k < others_.size(); ++k)
+            if (!others_[k].empty()) sums[place].others[k] += others_[k][i];
         sums[place].differ |= stiffness_[i] != stiffness_[place];
         ++sums[place].points;
     }
     for (std::size_t place = 0; place < sums.size(); ++place) {
-        if (!stiffening_.empty() && sums[place].points > 1)
-            stiffening_[place] = sums[place].stiffening / sums[place].points;
+        for (std::size_t k = 0; k < others_.size() && sums[place].points > 1; ++k)
+            if (!others_[k].empty()) others_[k][place] = sums[place].others[k] / sums[place].points;
         if (sums[place].differ) stiffness_[place] = std::exp(sums[place].logarithms / sums[place].points);
         if (normals_.empty() || sums[place].points == 1) continue;
         normals_[place] = directionOf(normals_[place].x, normals_[place].y, normals_[place].z);
@@ -390,7 +402,8 @@ void CloudRows::mergePlaces()
     report_.duplicatePositions = places.size() - sums.size();
     positions_.resize(sums.size());
     stiffness_.resize(sums.size());
-    if (!stiffening_.empty()) stiffening_.resize(sums.size());
+    for (std::vector<double>& other : others_)
+        if (!other.empty()) other.resize(sums.size());
     if (!normals_.empty()) normals_.resize(sums.size());
     places_ = std::move(places);
     warn(std::to_string(report_.duplicatePositions) +
@@ -434,10 +447,13 @@ LoadedCloud CloudRows::finish()
              " points were omitted: they have NaN, with which such files mark what the instrument did not see");
     mergePlaces();
     if (std::ranges::all_of(normals_, [](const glm::vec3& n) { return n == glm::vec3(0); })) normals_.clear();
-    if (!stiffening_.empty()) {
-        const auto [least, most] = std::ranges::minmax(stiffening_);
-        report_.stiffening       = PropertyRange{least, most};
-    }
+    const auto rangeOf = [](const std::vector<double>& values) -> std::optional<PropertyRange> {
+        if (values.empty()) return {};
+        const auto [least, most] = std::ranges::minmax(values);
+        return PropertyRange{least, most};
+    };
+    report_.stiffening         = rangeOf(others_[0]);
+    report_.foundation         = rangeOf(others_[1]);
     report_.format             = header_.format;
     report_.points             = positions_.size();
     report_.coordinateRounding = metresPerUnit_ * rounding_.step();
@@ -446,7 +462,8 @@ LoadedCloud CloudRows::finish()
     LoadedCloud loaded{PointCloud(std::move(positions_), std::move(stiffness_), kind_), std::move(report_)};
     loaded.report.normals = !normals_.empty();
     loaded.normals        = std::move(normals_);
-    loaded.stiffening     = std::move(stiffening_);
+    loaded.stiffening     = std::move(others_[0]);
+    loaded.foundation     = std::move(others_[1]);
     loaded.pointOfRow     = pointsOfRows();
     return loaded;
 }

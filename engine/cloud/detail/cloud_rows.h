@@ -34,6 +34,7 @@ enum RowSlot : std::size_t {
     kSlotZ,
     kSlotStiffness,
     kSlotStiffening, ///< b [1/m], see DepthLaw
+    kSlotFoundation, ///< of the tissue below [Pa/m]
     kSlotNormalX,    ///< of a normal of any length; zero or NaN: the point has none
     kSlotNormalY,
     kSlotNormalZ,
@@ -49,8 +50,20 @@ inline constexpr std::array<std::string_view, 8> kStiffnessProperties = {
     "stiffness", "scalar_stiffness", "flexural_rigidity",    "scalar_flexural_rigidity", "D",
     "E",         "felt_stiffness",   "scalar_felt_stiffness"};
 
-/// The names under which stiffening is looked for.
-inline constexpr std::array<std::string_view, 2> kStiffeningProperties = {"stiffening", "scalar_stiffening"};
+/// A property beside the stiffness that a file may have for its points, in SI units.
+struct OtherProperty {
+    RowSlot                         slot = kSlots;
+    std::array<std::string_view, 2> names{}; ///< the first that is there wins
+    double                          least = 0, most = 0;
+    const char*                     expected = ""; ///< in words
+};
+inline constexpr std::array<OtherProperty, 2> kOtherProperties = {
+    {{kSlotStiffening, {"stiffening", "scalar_stiffening"}, 0, kMostStiffening, "a stiffening from 0 to 1e5 1/m"},
+     {kSlotFoundation,
+      {"foundation", "scalar_foundation"},
+      kLeastFoundation,
+      kMostFoundation,
+      "a foundation from 1 to 1e15 Pa/m"}}};
 
 /// Returns the kind of a stiffness of which only the property's name is known.
 [[nodiscard]] StiffnessKind kindByName(std::string_view property) noexcept;
@@ -99,9 +112,10 @@ private:
     void               refuseRow(const CloudRow& row, Place place) const;
     [[noreturn]] void  failAtRow(Place place, const std::string& message) const;
     [[nodiscard]] bool usable(const CloudRow& row) const noexcept;
+    [[nodiscard]] bool isWithin(const OtherProperty& other, const CloudRow& row) const noexcept;
     void               mapRange();
     void               chooseNormals();
-    void               chooseStiffening();
+    void               chooseOthers();
     void               mergePlaces();
 
     [[nodiscard]] std::vector<std::uint32_t> pointsOfRows() const; ///< see LoadedCloud::pointOfRow
@@ -118,17 +132,17 @@ private:
     std::vector<std::uint32_t> droppedRows_; ///< rising
     std::vector<std::uint32_t> places_;      ///< point of each row that was not dropped; empty: all differ
 
-    std::vector<glm::dvec3> positions_;  ///< [m]
-    std::vector<double>     stiffness_;  ///< [Pa] or [N m], or in the property's unit until mapRange
-    std::vector<double>     stiffening_; ///< [1/m]; empty: the file has none
-    std::vector<glm::vec3>  normals_;    ///< of unit length, or zero
-    CoordinateRounding      rounding_;
-    StiffnessKind           kind_          = StiffnessKind::modulus;
-    double                  metresPerUnit_ = 1; ///< [m]
-    double                  uniform_       = 0; ///< [Pa] or [N m]
-    PropertyRange           found_;             ///< of the property, in its unit
-    std::uint64_t           rowsRead_   = 0;
-    bool                    omitUnseen_ = false;
+    std::vector<glm::dvec3> positions_; ///< [m]
+    std::vector<double>     stiffness_; ///< [Pa] or [N m], or in the property's unit until mapRange
+    std::array<std::vector<double>, kOtherProperties.size()> others_;  ///< empty: the file has none
+    std::vector<glm::vec3>                                   normals_; ///< of unit length, or zero
+    CoordinateRounding                                       rounding_;
+    StiffnessKind                                            kind_          = StiffnessKind::modulus;
+    double                                                   metresPerUnit_ = 1; ///< [m]
+    double                                                   uniform_       = 0; ///< [Pa] or [N m]
+    PropertyRange                                            found_;             ///< of the property, in its unit
+    std::uint64_t                                            rowsRead_   = 0;
+    bool                                                     omitUnseen_ = false;
 };
 
 } // namespace palp

@@ -105,6 +105,8 @@ nlohmann::json cloudJson(const std::string& name, const PointCloud& cloud, std::
             {"stiffness_max", found.most},
             {"stiffening", report.stiffening ? nlohmann::json{report.stiffening->smallest, report.stiffening->largest}
                                              : nlohmann::json(nullptr)},
+            {"foundation", report.foundation ? nlohmann::json{report.foundation->smallest, report.foundation->largest}
+                                             : nlohmann::json(nullptr)},
             {"low", pointJson(cloud.bounds().low)},
             {"high", pointJson(cloud.bounds().high)}};
 }

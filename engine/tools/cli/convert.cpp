@@ -23,8 +23,10 @@ struct ConvertOptions {
 
 /// What a cloud has beside its stiffness as fields, which all formats can hold.
 struct OtherFields {
-    OtherFields(const std::vector<glm::vec3>& normals, std::span<const double> stiffening)
+    explicit OtherFields(const LoadedCloud& loaded)
     {
+        const auto& [normals, stiffening, foundation] = std::tie(loaded.normals, loaded.stiffening, loaded.foundation);
+        if (!foundation.empty()) fields.push_back({"foundation", "Pa/m", foundation});
         if (!stiffening.empty()) fields.push_back({"stiffening", "1/m", stiffening});
         for (int k = 0; k < 3 && !normals.empty(); ++k) {
             for (const glm::vec3& normal : normals) values[std::size_t(k)].push_back(double(normal[k]));
@@ -33,7 +35,7 @@ struct OtherFields {
     }
 
     std::array<std::vector<double>, 3> values;
-    std::vector<NamedField>            fields; ///< stiffening, nx, ny, nz, or fewer
+    std::vector<NamedField>            fields; ///< foundation, stiffening, nx, ny, nz, or fewer
 };
 
 void convert(const ConvertOptions& options)
@@ -44,7 +46,7 @@ void convert(const ConvertOptions& options)
     refuseSourceAsTarget("TARGET", scene.cloud, options.target);
     const LoadedCloud loaded = options.source.loadCloud(scene);
     const bool        faces  = target.holdsFaces;
-    const OtherFields others(loaded.normals, loaded.stiffening);
+    const OtherFields others(loaded);
     writeCloud(options.target, loaded.cloud, others.fields, {encoding, loaded.faces});
     std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
     if (!faces && !loaded.faces.empty())

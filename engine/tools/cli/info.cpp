@@ -98,6 +98,9 @@ void printText(const InfoOptions& options, const LoadedCloud& loaded, const Qual
     if (const auto& range = report["stiffening"]; !range.is_null())
         std::cout << "  stiffening  " << formatQuantity(range[0], "1/m") << " to " << formatQuantity(range[1], "1/m")
                   << ": of each point, from the file\n";
+    if (const auto& range = report["foundation"]; !range.is_null())
+        std::cout << "  foundation  " << formatQuantity(range[0], "Pa/m") << " to " << formatQuantity(range[1], "Pa/m")
+                  << ": below each point, from the file, if the scene says below: own\n";
     if (loaded.report.faces > 0) std::cout << "  faces       " << facesText(loaded) << "\n";
     if (plan) std::cout << "  scattered   " << scatterText(loaded, *plan) << "\n";
     if (!loaded.normals.empty()) std::cout << "  normals     in the file\n";
