@@ -35,6 +35,15 @@ std::ifstream openForReading(const std::filesystem::path& path)
     return file;
 }
 
+std::ifstream openRegularFile(const std::filesystem::path& path)
+{
+    std::error_code ignored;
+    if (std::filesystem::is_fifo(path, ignored))
+        throw Error(path.string() + ": expected a regular file whose size is known, found a pipe; write what comes "
+                                    "through it into a file, and name that");
+    return openForReading(path);
+}
+
 std::uint64_t sizeOfFile(const std::filesystem::path& path)
 {
     std::error_code     failure;

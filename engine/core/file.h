@@ -13,6 +13,10 @@ namespace palp {
 /// \throws Error "PATH: cannot be read: REASON" (missing, a folder, no permission)
 [[nodiscard]] std::ifstream openForReading(const std::filesystem::path& path);
 
+/// Opens a file for binary reading whose size has to be known before.
+/// \throws Error as openForReading() does, and for a named pipe, which would wait for a writer
+[[nodiscard]] std::ifstream openRegularFile(const std::filesystem::path& path);
+
 /// Returns the size of a file [bytes].
 /// \throws Error naming the path if it is no regular file
 [[nodiscard]] std::uint64_t sizeOfFile(const std::filesystem::path& path);

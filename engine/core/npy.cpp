@@ -175,7 +175,7 @@ struct OpenArray {
     bool                       fortran   = false;
 };
 
-OpenArray openArray(Bytes& bytes, std::uint64_t size, std::size_t dimensions, const std::string& name)
+OpenArray openArray(Bytes& bytes, std::uint64_t size, std::size_t dimensions, bool mayHaveTail, const std::string& name)
 {
     std::string magic(std::min<std::uint64_t>(size, kMagic.size()), '\0');
     bytes.read(magic.data(), magic.size(), "its first bytes");
@@ -202,7 +202,8 @@ OpenArray openArray(Bytes& bytes, std::uint64_t size, std::size_t dimensions, co
                       : numbers * each;
         shape += (shape.empty() ? "" : " x ") + std::to_string(each);
     }
-    if (bytes.left() % array.eachBytes != 0 || numbers != all)
+    const bool whole = bytes.left() % array.eachBytes == 0 && numbers == all;
+    if (!whole && !(mayHaveTail && numbers <= all))
         throw Error(name + ": a shape of " + shape + " asks for " + std::to_string(numbers) + " numbers of " +
                     std::to_string(array.eachBytes) + " bytes, found " + std::to_string(bytes.left()) + " bytes");
     return array;
@@ -224,15 +225,16 @@ void readAll(Bytes& bytes, const OpenArray& array, const std::function<void(std:
 void readNpyRows(std::istream& in, std::uint64_t size, const std::string& name, const NpyRows& to)
 {
     Bytes           bytes(in, size, name);
-    const OpenArray array = openArray(bytes, size, 2, name);
+    const OpenArray array = openArray(bytes, size, 2, bool(to.tail), name);
     to.begin(std::size_t(array.shape[0]), std::size_t(array.shape[1]));
     readAll(bytes, array, to.row);
+    if (to.tail && bytes.left() > 0) to.tail(size - bytes.left(), bytes.left());
 }
 
 void readNpyVolume(std::istream& in, std::uint64_t size, const std::string& name, const NpyVolume& to)
 {
     Bytes           bytes(in, size, name);
-    const OpenArray array = openArray(bytes, size, 3, name);
+    const OpenArray array = openArray(bytes, size, 3, false, name);
     to.begin({int(array.shape[0]), int(array.shape[1]), int(array.shape[2])}, array.fortran);
     readAll(bytes, array, to.values);
 }
@@ -259,7 +261,7 @@ NodeField parseNpy(std::istream& in, std::uint64_t size, const std::string& name
 
 NodeField readNpy(const std::filesystem::path& path)
 {
-    std::ifstream   in = openForReading(path);
+    std::ifstream   in = openRegularFile(path);
     std::error_code failure;
     const auto      size = std::filesystem::file_size(path, failure);
     if (failure) throw Error(path.string() + ": cannot be read: " + failure.message());

@@ -24,6 +24,8 @@ namespace palp {
 struct NpyRows {
     std::function<void(std::size_t rows, std::size_t columns)> begin; ///< once, before anything is allocated for rows
     std::function<void(std::span<const double> row)>           row;   ///< each row; its values need not be finite
+    /// Once, last, if bytes follow the last row; without it they are refused.
+    std::function<void(std::uint64_t from, std::uint64_t bytes)> tail{};
 };
 
 /// Reads the same row by row, for arrays that are no field of a grid.

@@ -163,7 +163,7 @@ void readGrid(SpatialLaw& law, const JsonObject& object, const Region& region, L
     if (object.has("length_unit")) settings.lengthUnit = object.text("length_unit");
     if (object.has("origin")) settings.origin = region.point(object, "origin");
     if (object.has("spacing")) settings.spacing = spacingOf(object);
-    if (files == LawFiles::left) return static_cast<void>(openForReading(law.file));
+    if (files == LawFiles::left) return static_cast<void>(openRegularFile(law.file));
     law.volume = std::make_shared<const VolumeGrid>(readVolume(law.file, settings));
 }
 

@@ -186,7 +186,7 @@ void readCloudKey(Scene& scene, const Statement& said, const std::filesystem::pa
     const bool                  inScene = said.origin.origin == Origin::scene;
     const std::filesystem::path path    = inScene ? folder / named : named;
     try {
-        static_cast<void>(openForReading(path));
+        static_cast<void>(openRegularFile(path));
     } catch (const Error& error) {
         throw Error(said.what + ": expected " + expected + ", found one that is not there: " + error.what() +
                     (inScene && named.is_relative() ? "; paths start at the scene's folder" : ""));

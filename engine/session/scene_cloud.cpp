@@ -98,14 +98,10 @@ void refuseContradiction(const Scene& scene, const LoadedCloud& loaded)
                     "; omit stiffness_unit or correct the comment in " + scene.cloud);
 }
 
-/// Refuses a mesh on which so many points as can be made lie farther apart than the fingertip is wide.
+/// \throws Error with scatterRefusal() of the plan, if it is refused
 void refuseTooLarge(const Scene& scene, const ScatterPlan& plan)
 {
-    if (plan.distance <= std::max(plan.wanted, plan.fingertip)) return;
-    throw Error(cloudName(scene) + ": expected faces that " + std::to_string(kMostMeshPoints) +
-                " points can stand for, no farther apart than the fingertip's radius of " +
-                formatQuantity(plan.fingertip, "m") + ", found " + formatQuantity(plan.distance, "m") +
-                " between them; is length_unit right? scatter = off touches the vertices");
+    if (const std::string why = scatterRefusal(plan); !why.empty()) throw Error(cloudName(scene) + ": " + why);
 }
 
 /// Turns flipped triangles round: their normals are the points' sides, and what lies behind a seam between two sides is

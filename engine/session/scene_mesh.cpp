@@ -83,6 +83,15 @@ std::optional<ScatterPlan> scatterPlan(const Scene& scene, const LoadedCloud& lo
     return plan;
 }
 
+std::string scatterRefusal(const ScatterPlan& plan)
+{
+    if (plan.distance <= std::max(plan.wanted, plan.fingertip)) return {};
+    return "expected faces that " + std::to_string(kMostMeshPoints) +
+           " points can stand for, no farther apart than the fingertip's radius of " +
+           formatQuantity(plan.fingertip, "m") + ", found " + formatQuantity(plan.distance, "m") +
+           " between them; is length_unit right? scatter = off touches the vertices";
+}
+
 Scene withPointsOfFile(Scene scene)
 {
     const auto stated = scene.origins.find("scatter");

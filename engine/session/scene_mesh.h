@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <optional>
+#include <string>
 
 #include "engine/cloud/point_cloud_io.h"
 #include "engine/session/scene.h"
@@ -27,6 +28,10 @@ struct ScatterPlan {
 /// \return nothing if the cloud's own points are touched
 /// \throws Error if the scene asks for points on a mesh and there is none
 [[nodiscard]] std::optional<ScatterPlan> scatterPlan(const Scene& scene, const LoadedCloud& loaded);
+
+/// Returns why a mesh is refused on which so many points as can be made lie farther apart than the fingertip's radius;
+/// empty if it is not.
+[[nodiscard]] std::string scatterRefusal(const ScatterPlan& plan);
 
 /// Returns the scene with the points of its file, unless somebody asks for points on the faces: what converts or paints
 /// a file keeps its vertices.

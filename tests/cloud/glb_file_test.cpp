@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/core/counted.h"
 #include "tests/cloud/cloud_parsing.h"
 
 namespace palp {
@@ -143,7 +144,7 @@ TEST(GlbFile, BytesBeyondTheStatedLengthAreSaidAndDoNoHarm)
         const LoadedCloud loaded = parsed(glb(kSquare, squareBytes()) + tail, CloudFormat::glb);
         EXPECT_EQ(loaded.faces.size(), 2u);
         ASSERT_EQ(loaded.report.warnings.size(), 1u);
-        EXPECT_TRUE(contains(loaded.report.warnings[0], {std::to_string(tail.size()) + " bytes after"}));
+        EXPECT_TRUE(contains(loaded.report.warnings[0], {counted(tail.size(), "byte") + " after"}));
     }
     EXPECT_TRUE(read(kSquare).report.warnings.empty());
 }
@@ -165,7 +166,7 @@ TEST(GlbFile, IndicesMayBeAbsentAndOtherPrimitivesAreCounted)
     const LoadedCloud lines =
         read(with(R"("primitives": [)", R"("primitives": [{"mode": 1, "attributes": {"POSITION": 0}}, )"));
     ASSERT_EQ(lines.report.warnings.size(), 1u);
-    EXPECT_TRUE(contains(lines.report.warnings[0], {"1 parts of meshes"}));
+    EXPECT_TRUE(contains(lines.report.warnings[0], {"1 part of meshes"}));
 }
 
 TEST(GlbFile, WhatWouldChangeTheTrianglesIsRefusedByName)
@@ -178,6 +179,18 @@ TEST(GlbFile, WhatWouldChangeTheTrianglesIsRefusedByName)
     EXPECT_TRUE(contains(refusal(with(R"("byteLength": 60})", R"("byteLength": 60, "uri": "a.bin"})")),
                          {"accessor 0", ".glb"}));
     EXPECT_TRUE(contains(refusal(with(R"({"mesh": 0})", R"({"mesh": 0, "skin": 0})")), {"node 0", "skin"}));
+}
+
+TEST(GlbFile, ExtensionsOfMaterialsAndTexturesChangeNoTriangle)
+{
+    const auto asking = [](const std::string& names) {
+        return with(R"("scene": 0)", R"("scene": 0, "extensionsRequired": [)" + names + "]");
+    };
+
+    EXPECT_EQ(read(asking(R"("KHR_materials_unlit", "KHR_texture_transform")")).faces, read(with("", "")).faces);
+    EXPECT_TRUE(contains(refusal(asking(R"("KHR_materials_unlit", "KHR_mesh_quantization")")),
+                         {"extensionsRequired", "KHR_mesh_quantization"}));
+    EXPECT_TRUE(contains(refusal(asking("7")), {"extensionsRequired", "found 7"}));
 }
 
 TEST(GlbFile, ARefusalNamesThePlaceAndWhatWasExpected)

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/core/counted.h"
 #include "tests/cloud/cloud_parsing.h"
 
 namespace palp {
@@ -50,6 +51,19 @@ TEST(NpyCloud, OtherShapesAreRefused)
     EXPECT_TRUE(contains(refusal({{1, 2, 3, 4, 5, 6}, {1, 2, 3, 4, 5, 6}}), {"found 6", "array[:, :4]"}));
     EXPECT_TRUE(
         contains(refusalOf(npy({{1, 2, 3}, {4, 5, 6}}).substr(0, 170), CloudFormat::npy), {"2 x 3", "found 42 bytes"}));
+}
+
+TEST(NpyCloud, BytesAfterTheLastRowAreAWarning)
+{
+    const std::string two = npy({{1, 2, 3}, {4, 5, 6}});
+    for (const std::string& tail : {std::string("\n"), std::string(48, '\0')}) {
+        const LoadedCloud loaded = parsed(two + tail, CloudFormat::npy);
+        EXPECT_EQ(loaded.cloud.positions()[1], glm::dvec3(4, 5, 6));
+        ASSERT_EQ(loaded.report.warnings.size(), 1u);
+        EXPECT_TRUE(contains(loaded.report.warnings[0],
+                             {counted(tail.size(), "byte") + " after", "byte " + std::to_string(two.size())}));
+    }
+    EXPECT_TRUE(parsed(two, CloudFormat::npy).report.warnings.empty());
 }
 
 TEST(NpyCloud, NumbersThatAreNotFiniteAreRefusedOrDropped)

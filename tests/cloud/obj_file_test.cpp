@@ -52,7 +52,7 @@ TEST(ObjFile, LinesThatAreNotKnownAreCounted)
     const LoadedCloud loaded = obj(kFour + "cstype bezier\nf 1 2 3\ncurv 0 1 2\n");
 
     ASSERT_EQ(loaded.report.warnings.size(), 1u);
-    EXPECT_TRUE(contains(loaded.report.warnings[0], {"2 lines were omitted", "in line 5"}));
+    EXPECT_TRUE(contains(loaded.report.warnings[0], {"2 lines omitted", "in line 5"}));
 }
 
 // A first vertex that was passed over would give every face the wrong corners.

@@ -138,7 +138,7 @@ TEST(PcdFile, CompressedFilesOfAnotherProgramAreRead)
     }
     EXPECT_EQ(loaded.report.format, "PCD, binary_compressed");
     EXPECT_TRUE(loaded.report.warnings.empty());
-    EXPECT_TRUE(contains(pcd(compressed(216, 640, data + "\n")).report.warnings.at(0), {"1 bytes after the last row"}));
+    EXPECT_TRUE(contains(pcd(compressed(216, 640, data + "\n")).report.warnings.at(0), {"1 byte after the last row"}));
 }
 
 TEST(PcdFile, CompressedFilesThatDoNotUnpackAreRefused)
@@ -219,7 +219,7 @@ TEST(PcdFile, BodiesThatDoNotFitTheHeaderAreRefused)
 
     EXPECT_EQ(pcd(binary).cloud.size(), 2u);
     EXPECT_TRUE(contains(pcdRefusal(binary.substr(0, binary.size() - 1)), {"byte", "2 points", "only 23 bytes"}));
-    EXPECT_TRUE(contains(pcd(binary + "!").report.warnings.at(0), {"1 bytes after the last row"})) << "no error";
+    EXPECT_TRUE(contains(pcd(binary + "!").report.warnings.at(0), {"1 byte after the last row"})) << "no error";
     EXPECT_TRUE(contains(pcdRefusal(ascii + "1 2 3        "), {"expected 2 points, found 1"}));
     EXPECT_TRUE(contains(pcdRefusal(ascii + "1 2 3\n4 5   \n"), {"line 13", "\"z\""}));
     EXPECT_TRUE(contains(pcdRefusal(ascii + "1 2 3\n4 5 six\n"), {"line 13", "\"z\"", "\"six\""}));

@@ -354,7 +354,7 @@ TEST(PlyFile, WhatFollowsTheLastElementIsRefusedInTextAndAWarningInBytes)
     EXPECT_TRUE(contains(plyRefusal(text + "7 8 9\n"),
                          {"byte " + std::to_string(text.size()), "end of the file", "6 more bytes"}));
     EXPECT_TRUE(contains(ply(binaryXyz() + "\n").report.warnings.at(0),
-                         {"1 bytes after the last row, from byte " + std::to_string(binaryXyz().size())}));
+                         {"1 byte after the last row, from byte " + std::to_string(binaryXyz().size())}));
     EXPECT_TRUE(ply(binaryXyz()).report.warnings.empty());
 }
 

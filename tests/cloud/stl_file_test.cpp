@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/core/counted.h"
 #include "tests/cloud/cloud_parsing.h"
 
 namespace palp {
@@ -72,8 +73,7 @@ TEST(StlFile, PaddingAfterTheLastTriangleIsSaidAndDoesNoHarm)
             const LoadedCloud loaded = parsed(binary(kTwo, head) + tail, CloudFormat::stl);
             EXPECT_EQ(loaded.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
             ASSERT_FALSE(loaded.report.warnings.empty());
-            EXPECT_TRUE(
-                contains(loaded.report.warnings[0], {std::to_string(tail.size()) + " bytes after", "byte 184"}));
+            EXPECT_TRUE(contains(loaded.report.warnings[0], {counted(tail.size(), "byte") + " after", "byte 184"}));
         }
 }
 

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include "engine/core/contract.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palp {
@@ -39,6 +41,18 @@ TEST_F(Files, AWrittenFileHoldsTheBytesAndNothingElseRemains)
 
     EXPECT_EQ(contentsOf(folder_ / "a"), bytes);
     EXPECT_EQ(namesInFolder(), std::vector<std::string>{"a"});
+}
+
+TEST_F(Files, APipeIsRefusedAndNotWaitedFor)
+{
+    ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+
+    try {
+        static_cast<void>(openRegularFile(folder_ / "pipe"));
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_TRUE(std::string(error.what()).find("found a pipe") != std::string::npos) << error.what();
+    }
 }
 
 TEST_F(Files, AnOlderFileIsReplacedWhole)

@@ -10,6 +10,7 @@
 #include "engine/cloud/detail/places.h"
 #include "engine/cloud/tokens.h"
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/quantity.h"
 
 namespace palp {
@@ -333,9 +334,13 @@ void CloudRows::failAtRow(Place place, const std::string& message) const
 
 void CloudRows::warnOfTail()
 {
-    if (reader_.remaining() > 0)
-        warn(std::to_string(reader_.remaining()) + " bytes after the last row, from byte " +
-             std::to_string(reader_.offset()) + " on, were not read: padding, or a damaged file");
+    if (reader_.remaining() > 0) warnOfTail(reader_.offset(), reader_.remaining());
+}
+
+void CloudRows::warnOfTail(std::uint64_t from, std::uint64_t bytes)
+{
+    warn(counted(bytes, "byte") + " after the last row, from byte " + std::to_string(from) +
+         " on, not read: padding, or a damaged file");
 }
 
 void CloudRows::mapRange()

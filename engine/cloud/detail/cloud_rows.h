@@ -98,6 +98,9 @@ public:
     /// Adds a warning if bytes are left at the end of a binary file.
     void warnOfTail();
 
+    /// Adds a warning of so many bytes that were not read.
+    void warnOfTail(std::uint64_t from, std::uint64_t bytes);
+
     /// Takes the next row of the file, which is the reader's last line or ends at the reader's offset.
     /// \throws Error naming the row if a number is not finite or the stiffness not above zero
     void add(const CloudRow& row, Place place);

@@ -14,6 +14,7 @@
 #include "engine/cloud/detail/cloud_rows.h"
 #include "engine/cloud/detail/face_rows.h"
 #include "engine/cloud/detail/scalar_type.h"
+#include "engine/core/counted.h"
 
 // A reader of our own, because of glTF only positions, indices and nodes matter here, and all of a hostile file is
 // checked in one place.
@@ -89,24 +90,35 @@ public:
 
     LoadedCloud parse()
     {
-        if (const Json* const needed = find(glb_.json, "extensionsRequired"); needed && !needed->empty())
-            fail("extensionsRequired: expected a file that needs no extensions, found " +
-                 shownText(needed->dump(), kMostOfWord) + "; save it without compression");
+        refuseUnknownExtensions();
         const std::size_t roots = has(glb_.json, "scenes") ? index(glb_.json, "scene", "the file", 0) : 0;
         visited_.assign(has(glb_.json, "nodes") ? list(glb_.json, "nodes", "the file").size() : 0, 0);
         takeNodes(list(element("scenes", roots), "nodes", "scene " + std::to_string(roots)), glm::dmat4(1));
         if (otherPrimitives_ > 0)
-            rows_.warn(std::to_string(otherPrimitives_) + " parts of meshes were omitted: only triangles are read, not "
-                                                          "points, lines, strips and fans");
+            rows_.warn(counted(otherPrimitives_, "part") +
+                       " of meshes omitted: only triangles are read, not points, lines, strips and fans");
         if (reader_.size() > glb_.length)
-            rows_.warn(std::to_string(reader_.size() - glb_.length) + " bytes after the file's stated end, from byte " +
-                       std::to_string(glb_.length) + " on, were not read: padding, or a damaged file");
+            rows_.warn(counted(reader_.size() - glb_.length, "byte") + " after the file's stated end, from byte " +
+                       std::to_string(glb_.length) + " on, not read: padding, or a damaged file");
         LoadedCloud loaded = rows_.finish();
         faces_.finish(loaded);
         return loaded;
     }
 
 private:
+    /// Refuses a file that needs an extension, unless it changes no triangle: those of materials are about colours.
+    void refuseUnknownExtensions() const
+    {
+        const Json* const needed = find(glb_.json, "extensionsRequired");
+        if (!needed) return;
+        for (const Json& each : *needed) {
+            const std::string name = each.is_string() ? each.get<std::string>() : each.dump();
+            if (name.find("_materials_") != name.npos || name.find("_texture_") != name.npos) continue;
+            fail("extensionsRequired: expected extensions of materials and textures only, found " +
+                 shownText(name, kMostOfWord) + "; save it without compression");
+        }
+    }
+
     static CloudHeader header()
     {
         CloudHeader header;

@@ -43,7 +43,8 @@ LoadedCloud parseNpyCloud(std::istream& stream, std::uint64_t size, const std::s
                      for (std::size_t i = 0; i < row.size(); ++i)
                          if (slots[i] != kSlots) values[slots[i]] = row[i];
                      rows->add(values, CloudRows::Place::unpacked);
-                 }});
+                 },
+                 [&](std::uint64_t from, std::uint64_t bytes) { rows->warnOfTail(from, bytes); }});
     return rows->finish();
 }
 

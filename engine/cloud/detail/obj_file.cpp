@@ -10,6 +10,7 @@
 #include "engine/cloud/detail/cloud_rows.h"
 #include "engine/cloud/detail/face_rows.h"
 #include "engine/cloud/tokens.h"
+#include "engine/core/counted.h"
 
 namespace palp {
 namespace {
@@ -30,8 +31,8 @@ public:
         while (const auto line = wholeLine()) takeLine(*line);
         if (!rows_) reader_.fail("expected vertices, lines such as \"v 0 0 1\", found none; is it an OBJ file?");
         if (unknown_ > 0)
-            rows_->warn(std::to_string(unknown_) + " lines were omitted, the first in line " +
-                        std::to_string(firstUnknown_) + ": only v and f are read, not curves and surfaces");
+            rows_->warn(counted(unknown_, "line") + " omitted, the first in line " + std::to_string(firstUnknown_) +
+                        ": only v and f are read, not curves and surfaces");
         LoadedCloud loaded = rows_->finish();
         faces_.finish(loaded);
         return loaded;

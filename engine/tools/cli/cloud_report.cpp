@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
 #include "engine/core/spatial_law.h"
-#include "engine/tools/cli/counted.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/study/hunt_scene.h"
 

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <iostream>
 
+#include "engine/core/counted.h"
 #include "engine/core/quantity.h"
-#include "engine/tools/cli/counted.h"
 
 namespace palp {
 namespace {

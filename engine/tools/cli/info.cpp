@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/cloud/samples.h"
+#include "engine/core/counted.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
 #include "engine/session/scene_mesh.h"
@@ -54,7 +55,7 @@ std::string roundCount(std::size_t count)
 std::string facesText(const LoadedCloud& loaded)
 {
     const CloudFileReport& report = loaded.report;
-    std::string text = std::to_string(loaded.faces.size()) + " triangles of " + std::to_string(report.faces) + " faces";
+    std::string            text   = counted(loaded.faces.size(), "triangle") + " of " + counted(report.faces, "face");
     if (report.degenerateFaces > 0)
         text += ", " + std::to_string(report.degenerateFaces) + " left out: fewer than three corners, or one twice";
     if (report.droppedFaces > 0) text += ", " + std::to_string(report.droppedFaces) + " left out: lost a point";
@@ -66,9 +67,9 @@ std::string scatterText(const LoadedCloud& loaded, const ScatterPlan& plan)
 {
     return std::to_string(loaded.cloud.size()) + " vertices, " + formatQuantity(plan.spacing, "m") +
            " apart, with edges up to " + formatQuantity(plan.longestEdge, "m") + ": a fingertip of " +
-           formatQuantity(plan.fingertip, "m") + " touches " + std::to_string(loaded.faces.size()) +
-           " triangles through about " + roundCount(plan.points) + " points at least " +
-           formatQuantity(plan.distance, "m") + " apart, scattered over them";
+           formatQuantity(plan.fingertip, "m") + " touches " + counted(loaded.faces.size(), "triangle") +
+           " through about " + roundCount(plan.points) + " points at least " + formatQuantity(plan.distance, "m") +
+           " apart, scattered over them";
 }
 
 nlohmann::json scatterJson(const ScatterPlan& plan)
@@ -102,7 +103,7 @@ void printText(const InfoOptions& options, const LoadedCloud& loaded, const Qual
         std::cout << "  foundation  " << formatQuantity(range[0], "Pa/m") << " to " << formatQuantity(range[1], "Pa/m")
                   << ": below each point, from the file, if the scene says below: own\n";
     if (loaded.report.faces > 0) std::cout << "  faces       " << facesText(loaded) << "\n";
-    if (plan) std::cout << "  scattered   " << scatterText(loaded, *plan) << "\n";
+    if (plan && quality.refusal.empty()) std::cout << "  scattered   " << scatterText(loaded, *plan) << "\n";
     if (!loaded.normals.empty()) std::cout << "  normals     in the file\n";
     if (!properties.empty()) std::cout << "  properties  " << properties << "\n";
     for (const std::string& line : meaningForTouch(quality)) std::cout << "  for touch   " << line << "\n";
@@ -124,10 +125,11 @@ void printInfo(const InfoOptions& options)
     std::optional<Progress> progress("looking at the points");
     progress->mayLast();
     constexpr double kMostTried = 1e6; // points: enough to judge a mesh by the points through which it is touched
-    const SoftObject object = plan && loaded.cloud.kind() != StiffnessKind::felt && double(plan->points) <= kMostTried
-                                  ? options.source.loadObject(whole).object
-                                  : SoftObject(loaded.cloud, scene.material, loaded.faces, loaded.normals);
-    const QualityReport quality = qualityReport(object, loaded, scene);
+    const SoftObject object  = plan && loaded.cloud.kind() != StiffnessKind::felt && double(plan->points) <= kMostTried
+                                   ? options.source.loadObject(whole).object
+                                   : SoftObject(loaded.cloud, scene.material, loaded.faces, loaded.normals);
+    QualityReport    quality = qualityReport(object, loaded, scene);
+    if (plan) quality.refusal = scatterRefusal(*plan);
     progress.reset();
 
     nlohmann::json report   = cloudJson(options.source.name, loaded.cloud, loaded.faces, loaded.report);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <span>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -145,6 +147,7 @@ std::vector<std::string> meaningForTouch(const QualityReport& r)
     constexpr double         kFewestAcross = 3; // points across a patch window: 9 in all are asked for
     const CloudQuality&      q             = r.quality;
     std::vector<std::string> said;
+    if (!r.refusal.empty()) return {"refused: " + r.refusal};
     if (!(q.spacing.typical > 0)) return {"there is no surface to touch: too few points in different places"};
     if (r.size > kBeyondReach)
         said.push_back("the object is " + metres(r.size) +
@@ -242,13 +245,24 @@ void demandPictureName(const std::string& option, const std::string& file)
         throw Error(option + ": expected a file that ends in .png or .svg, found \"" + file + "\"");
 }
 
+/// Returns what colours span [m]: what 90 % of the area have, and 90 % of the points, as a dense part may be small and
+/// hold most of them.
+ValueRange shownSpacings(const Spread& area, std::span<const double> ofPoints)
+{
+    constexpr double    kEven = 1.5; // to either side of the median at least: even clouds look even [1]
+    std::vector<double> sorted(ofPoints.begin(), ofPoints.end());
+    std::sort(sorted.begin(), sorted.end());
+    const auto at = [&](double share) { return sorted[std::size_t(share * double(sorted.size() - 1))]; };
+    return {std::min({area.low, at(0.05), area.typical / kEven}),
+            std::max({area.high, at(0.95), area.typical * kEven})};
+}
+
 void writeQualityPicture(const std::filesystem::path& file, const std::string& title, const SoftObject& object,
                          const CloudQuality& quality)
 {
-    constexpr double kEven = 1.5; // colours span at least this factor to either side: even clouds look even [1]
-    const Spread&    s     = quality.spacing;
-    const std::vector<double> noise = noiseInSpacings(object.survey(), object.size());
-    const ValueRange          range{std::min(s.low, s.typical / kEven), std::max(s.high, s.typical * kEven)};
+    const Spread&             s        = quality.spacing;
+    const std::vector<double> noise    = noiseInSpacings(object.survey(), object.size());
+    const ValueRange          range    = shownSpacings(s, object.survey().spacings());
     const Scale               scale    = range.high > 10 * range.low ? Scale::logarithmic : Scale::linear;
     const CloudPanel          panels[] = {
                  {object.survey().spacings(),

@@ -28,6 +28,7 @@ struct QualityReport {
     double       fingertip = 0; ///< radius [m]
     double       window    = 0; ///< edge of the patch window [m]
     double       size      = 0; ///< diagonal of the object's bounds [m]
+    std::string  refusal{};     ///< why nothing of it is touched; empty if it is
 };
 
 [[nodiscard]] QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded, const Scene& scene);

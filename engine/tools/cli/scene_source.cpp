@@ -102,7 +102,7 @@ Scene sceneFrom(const std::string& name, const std::map<std::string, std::string
     if (name.starts_with(kSamplePrefix)) // first, refuses an unknown sample
         static_cast<void>(sampleNamed(std::string_view(name).substr(kSamplePrefix.size())));
     else
-        static_cast<void>(openForReading(name));
+        static_cast<void>(openRegularFile(name));
     overrides.flags.try_emplace("cloud", name); // not as JSON: a file's name may hold bytes that JSON cannot
     return parseScene("{}", name, ".", overrides);
 }

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/patch_warnings.h"
@@ -21,7 +22,6 @@
 #include "engine/session/virtual_session.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
-#include "engine/tools/cli/counted.h"
 #include "engine/tools/cli/named_option.h"
 #include "engine/tools/cli/session_report.h"
 

@@ -7,11 +7,11 @@
 #include <set>
 
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/file.h"
 #include "engine/core/quantity.h"
 #include "engine/perception/perception.h"
 #include "engine/tools/cli/commands.h"
-#include "engine/tools/cli/counted.h"
 #include "engine/tools/cli/study_run.h"
 #include "engine/tools/study/study_analysis.h"
 
