@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 
 #include <glm/geometric.hpp>
@@ -39,6 +40,13 @@ double edgeDeflection(const NodeField& field)
     return most;
 }
 
+std::string withOneDecimal(double value)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f", value);
+    return text;
+}
+
 /// Adds what limits a shell, or what a plate that is no shell leaves out.
 void addCurvature(std::vector<std::string>& result, const Patch& patch, const PatchSettings& settings)
 {
@@ -57,14 +65,14 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
             " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
             "and --edges");
     else if (lengths < kLocal)
-        result.push_back("the patch window is " + formatNumber(lengths) + " lengths of the shell wide (" +
+        result.push_back("the patch window is " + withOneDecimal(lengths) + " lengths of the shell wide (" +
                          formatQuantity(patch.shellLength, "m") +
                          " each), so that its edges are felt; try a --window of " +
                          formatQuantity(kLocal * patch.shellLength, "m"));
     if (std::abs(most) * settings.window / 8 > kSag)
         result.push_back("the surface is too deep for the theory of shallow shells: it sags " +
-                         formatNumber(std::abs(most) * settings.window / 8) +
-                         " of the patch window's width, expected at most 0.25; try a smaller --window");
+                         withOneDecimal(100 * std::abs(most) * settings.window / 8) +
+                         " % of the patch window's width, expected at most 25; try a smaller --window");
     if (patch.unrolled > kFolded)
         result.push_back("the surface lies far off a sphere, and a shell's forces do not follow its folds well");
 }
@@ -119,7 +127,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     if (const double moving = edgeDeflection(patch.response) / largest(patch.response); moving > 0.02)
         result.push_back("the patch window's edge moves by " + std::to_string(std::lround(100 * moving)) +
                          " % of the largest deflection and nothing moves beyond it: the deformed cloud is torn there");
-    if (settings.foundation == 0)
+    if (settings.foundation == 0 && !patch.curvature) // a shell's own stiffness ends its dents; see addCurvature()
         result.push_back(
             "there is no foundation, so the size of the patch window decides: compliance grows with its area");
     if (const auto width = windowWanted(patch.plate); width && settings.window < *width)

@@ -194,6 +194,7 @@ TEST(ShellPatch, SaysWhatLimitsIt)
     small.window           = 20e-3;
     EXPECT_TRUE(warned(touchOf(dome, {0, 0, 50e-3}, small), small, "lengths of the shell wide"));
     EXPECT_FALSE(warned(touchOf(dome, {0, 0, 50e-3}), kShell, "lengths of the shell wide"));
+    EXPECT_FALSE(warned(touchOf(dome, {0, 0, 50e-3}), kShell, "no foundation")) << "a dome needs none";
     const auto tube = sheet([](double x, double) { return std::sqrt(0.08 * 0.08 - x * x); });
     EXPECT_TRUE(warned(touchOf(tube, {0, 0, 80e-3}), kShell, "curved one way"));
     const auto saddle = sheet([](double x, double y) { return 10 * (x * x - y * y); });
