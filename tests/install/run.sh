@@ -43,8 +43,10 @@ eval "set -- $(pkg-config --cflags --libs palpate)" # it quotes what a shell wou
 # shellcheck disable=SC2086
 gcc -std=c11 -pedantic -Wall -Wextra -Werror $flags "$source/../capi/capi_program.c" -o "$place/c program" "$@" -lm
 LD_LIBRARY_PATH=$libraries "$place/c program"
-[ -n "$sanitizers" ] || LD_LIBRARY_PATH=$libraries PYTHONPATH=$place/moved/lib/python3/dist-packages python3 -c 'import palpate; print(palpate.__file__)' |
-    grep -F "$place/moved/"
+python=${PALPATE_PYTHON:-/usr/bin/python3}
+if [ -z "$sanitizers" ] && "$python" -c 'import numpy' 2>/dev/null; then
+    LD_LIBRARY_PATH=$libraries PYTHONPATH=$place/moved/lib/python3/dist-packages "$python" -c 'import palpate; print(palpate.__file__)' | grep -F "$place/moved/"
+fi
 
 # The manual and the completion are those of the program.
 palpate=$place/moved/bin/palpate
