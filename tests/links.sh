@@ -4,7 +4,7 @@
 set -u
 cd "$1" || exit 1
 shift
-[ $# -gt 0 ] || set -- ./*.md engine/*.md engine/*/*.md engine/tools/*/README.md device/README.md tests/README.md samples/*/README.md
+[ $# -gt 0 ] || set -- ./*.md engine/*.md engine/*/*.md engine/tools/*/README.md device/*.md tests/*.md samples/*.md samples/*/README.md
 
 # prints "PAGE<tab>TARGET" of each link outside of code blocks
 links() {

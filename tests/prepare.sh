@@ -34,7 +34,7 @@ calls() { # calls DESCRIPTION PATTERN: expects the pattern in the calls; with an
     fi
 }
 
-for script in tests/run.sh samples/demo.sh; do
+for script in tests/run.sh samples/demo.sh engine/package/make.sh; do
     machine 0
     check "$script --help" 0 'usage:' sh $script --help
     check "$script with an unknown option" 2 'unknown option' sh $script --fast

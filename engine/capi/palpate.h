@@ -33,7 +33,7 @@ extern "C" {
 #endif
 
 #define PALPATE_VERSION_MAJOR 0
-#define PALPATE_VERSION_MINOR 1
+#define PALPATE_VERSION_MINOR 2
 
 /* palpate_hand hand = PALPATE_INIT(palpate_hand); sets the size, and all else to 0. */
 #ifdef __cplusplus
@@ -58,7 +58,7 @@ typedef enum palpate_code {
     PALPATE_BROKEN    = 3 /* a mistake of the library's own */
 } palpate_code;
 
-/* Returns "0.1.0". */
+/* Returns "0.2.0". */
 PALPATE_API const char* palpate_version(void);
 /* Returns why the last call of this thread failed; empty if none did. Valid until this thread's next call. */
 PALPATE_API const char* palpate_error_text(void);

@@ -4,7 +4,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <functional>
 #include <iostream>
+#include <memory>
 #include <new>
 #include <vector>
 
@@ -15,6 +17,8 @@
 #include "engine/compute/processor_error.h"
 #include "engine/core/contract.h"
 #include "engine/tools/cli/commands.h"
+#include "engine/tools/cli/manual.h"
+#include "engine/tools/cli/version.h"
 
 namespace {
 
@@ -86,6 +90,27 @@ void keepFreedMemory()
 #endif
 }
 
+/// Adds a flag that prints a text, and nothing else is done.
+void addPrinted(CLI::App& app, const std::string& flag, const std::string& help, std::function<std::string()> text)
+{
+    app.add_flag_callback(
+        flag, [text] { throw CLI::CallForVersion(text(), 0); }, help);
+}
+
+/// Adds the options that need no command. Those that come first are read first.
+void addOwnOptions(CLI::App& app)
+{
+    const auto json = std::make_shared<bool>();
+    auto*      flag = app.add_flag("--json", *json, "with --version: commit, compiled-in parts and formats, as JSON");
+    addPrinted(app, "--version", "prints the version",
+               [json] { return *json ? palp::versionJson() : palp::versionLine(); });
+    addPrinted(app, "--man", "prints the page of the manual: palpate --man | man -l -",
+               [&app] { return palp::manualPage(app); });
+    addPrinted(app, "--completion", "prints the completion for bash: eval \"$(palpate --completion)\"",
+               [&app] { return palp::bashCompletion(app); });
+    flag->needs("--version");
+}
+
 int printHelp(const CLI::App& app, const CLI::ParseError& request)
 {
     app.exit(request);
@@ -99,29 +124,30 @@ int main(int argumentCount, char** arguments)
     keepFreedMemory();
     CLI::App app("Palpate: feel a thin, soft object whose stiffness varies from place to place.");
     app.require_subcommand(1);
-    app.set_version_flag("--version", "palpate " PALPATE_VERSION);
-    app.footer("Examples:\n"
-               "  palpate touch sample:skin --out touch          a poke into a wart, with pictures\n"
-               "  palpate info scan.ply --length-unit mm         what a file holds and how it is read\n"
-               "  palpate materials                              measured materials, for the key material\n"
-               "  palpate fit probes.csv --page probes.html      stiffness, stiffening and relaxation of measured presses\n"
-               "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
-               "  palpate paint scan.ply --stroke 'at=0,0,30mm radius=5mm value=2MPa' --out wart.ply\n"
-               "                                                 a stiff spot on it; the rest of the file is kept\n"
-               "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
-               "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
-               "  palpate export session --csv session.csv       a recorded session as a table\n"
-               "  palpate hunt samples/scenes/nodule_hunt.json   a hand's search for hidden nodules, scored\n"
-               "  palpate study samples/studies/paper.json --participant P01 --out study   blinded trials, a table of "
-               "answers\n"
-               "  palpate render sample:palm --out palm.png      a picture of a touch, without a display\n"
-               "  palpate perceive sample:skin                   a prediction of what a person would notice\n"
-               "  palpate paper --out report                     the paper's experiments, computed again\n"
-               "  palpate devices                                processors and haptic devices of this machine\n"
-               "  palpate doctor                                 what it lacks for haptics, with remedies\n"
-               "  palpate calibrate --mass '200 g'               a Falcon weighs a mass to calibrate its force\n"
-               "  palpate bench --quick                          times of its solver and of alternatives\n"
-               "Run a command with --help for its options and examples.");
+    addOwnOptions(app);
+    app.footer(
+        "Examples:\n"
+        "  palpate touch sample:skin --out touch          a poke into a wart, with pictures\n"
+        "  palpate info scan.ply --length-unit mm         what a file holds and how it is read\n"
+        "  palpate materials                              measured materials, for the key material\n"
+        "  palpate fit probes.csv --page probes.html      stiffness, stiffening and relaxation of measured presses\n"
+        "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
+        "  palpate paint scan.ply --stroke 'at=0,0,30mm radius=5mm value=2MPa' --out wart.ply\n"
+        "                                                 a stiff spot on it; the rest of the file is kept\n"
+        "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
+        "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
+        "  palpate export session --csv session.csv       a recorded session as a table\n"
+        "  palpate hunt samples/scenes/nodule_hunt.json   a hand's search for hidden nodules, scored\n"
+        "  palpate study samples/studies/paper.json --participant P01 --out study   blinded trials, a table of "
+        "answers\n"
+        "  palpate render sample:palm --out palm.png      a picture of a touch, without a display\n"
+        "  palpate perceive sample:skin                   a prediction of what a person would notice\n"
+        "  palpate paper --out report                     the paper's experiments, computed again\n"
+        "  palpate devices                                processors and haptic devices of this machine\n"
+        "  palpate doctor                                 what it lacks for haptics, with remedies\n"
+        "  palpate calibrate --mass '200 g'               a Falcon weighs a mass to calibrate its force\n"
+        "  palpate bench --quick                          times of its solver and of alternatives\n"
+        "Run a command with --help for its options and examples.");
     palp::addTouchCommand(app);
     palp::addSolveCommand(app);
     palp::addInfoCommand(app);

@@ -10,6 +10,7 @@
 #include "device/hid/hidapi_system.h"
 #include "device/homing.h"
 #include "device/mouse_device.h"
+#include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/session/interrupt.h"
@@ -121,6 +122,15 @@ std::unique_ptr<SpaceMouse> capFor(const ViewOptions& o, HidSystem& system)
     return nullptr;
 }
 
+/// Returns the samples, and the files that were opened last.
+std::vector<std::string> offeredObjects()
+{
+    std::vector<std::string> offered;
+    for (const Sample& sample : samples()) offered.push_back(std::string(kSamplePrefix).append(sample.name));
+    std::ranges::copy(rememberedFiles(), std::back_inserter(offered));
+    return offered;
+}
+
 /// Returns the scorer of a scene in which something is hidden; empty for any other, and for recorded sessions.
 std::optional<study::HuntScorer> scorerFor(const SceneSource& source)
 {
@@ -140,6 +150,13 @@ void view(const ViewOptions& o)
     settings.what     = o.scene.name;
     settings.values   = o.scene.flags;
     settings.toolKeys = &study::huntKeys();
+    settings.opened   = [](const std::string& what) {
+        if (!what.starts_with(kSamplePrefix)) rememberFile(std::filesystem::absolute(what).string());
+    };
+    settings.offered = offeredObjects;
+    if (isFirstWindow())
+        settings.welcome = "Hold Space over the object and move the mouse to touch it; the wheel sets the depth, F1 "
+                           "shows all keys, and Object opens others";
     settings.open     = sceneFrom;
     settings.recorded = [&o](const Stage& stage, const HapticDevice& device) { return infoOf(o, stage, device); };
     SessionHand source;

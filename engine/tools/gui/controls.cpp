@@ -99,6 +99,7 @@ void Controls::perform(const PanelWishes& wishes)
     if (wishes.redo) redo();
     if (wishes.save) savePaint();
     if (wishes.resetFault) goOn();
+    if (!wishes.open.empty()) open(wishes.open);
     if (!wishes.values.empty()) change(wishes.values);
 }
 

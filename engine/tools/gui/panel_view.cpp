@@ -18,6 +18,18 @@ void drawColours(PanelDesk& desk)
         look.map = ColourMap(*map);
 }
 
+/// Draws the list of objects that can be opened.
+void drawObjects(PanelDesk& desk)
+{
+    if (desk.content.offered.empty()) return;
+    labelled(desk, "object");
+    const bool open = ImGui::BeginCombo("##object", desk.content.title.c_str(), ImGuiComboFlags_HeightLarge);
+    if (!open) return tip("Opens a sample, or a file that was opened before; files can also be dropped on the window");
+    for (const std::string& what : desk.content.offered)
+        if (ImGui::Selectable(what.c_str())) desk.wishes.open = what;
+    ImGui::EndCombo();
+}
+
 void drawToggles(PanelDesk& desk)
 {
     TouchLook&  look   = desk.state.look;
@@ -77,6 +89,7 @@ void drawTool(PanelDesk& desk)
 
 void drawViewSection(PanelDesk& desk)
 {
+    drawObjects(desk);
     drawColours(desk);
     labelled(desk, "exaggerate", "Factor on every displacement in the picture; forces do not change (X)");
     const double least = 1, most = 20;

@@ -33,6 +33,7 @@ struct PanelContent {
     std::vector<std::string> faults{};   ///< present faults, each a sentence with its remedy
     std::string              message{};  ///< on the last action: "saved ..."; may be empty
     std::string              realTime{}; ///< real-time rights that the system refused; empty if none
+    std::vector<std::string> offered{};  ///< objects that can be opened: samples, and files opened last; may be empty
 };
 
 /// The user's requests in the panels, to be met by the window.
@@ -41,6 +42,7 @@ struct PanelWishes {
          values; ///< of scene keys, as flags take them: {"thickness", "4 mm"}
     bool frame = false, reset = false, screenshot = false, record = false, undo = false, redo = false, save = false;
     bool resetFault = false; ///< of the governor: starts the session anew
+    std::string open{};      ///< an object of those offered; empty: none
 };
 
 /// Draws the panels over the view, with Dear ImGui: view, scene's values, touch, chart, timing, painting, keys.

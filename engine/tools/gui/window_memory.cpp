@@ -12,7 +12,8 @@
 namespace palp {
 namespace {
 
-constexpr int kLeast = 320, kMost = 16384; ///< [px]
+constexpr int         kLeast = 320, kMost = 16384; ///< [px]
+constexpr std::size_t kMostFiles = 8;
 
 std::filesystem::path fileOf()
 {
@@ -23,15 +24,47 @@ std::filesystem::path fileOf()
                          : std::filesystem::path();
 }
 
+nlohmann::json remembered()
+{
+    std::ifstream file(fileOf());
+    auto          read = nlohmann::json::parse(file, nullptr, false);
+    return read.is_object() ? read : nlohmann::json::object();
+}
+
+/// Writes one more value to the file; the others stay.
+void remember(const nlohmann::json& values) noexcept
+{
+    try {
+        const auto file = fileOf();
+        if (file.empty()) return;
+        nlohmann::json all = remembered();
+        all.update(values);
+        std::filesystem::create_directories(file.parent_path());
+        const std::string text = all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+        writeFileWhole(file, [&](std::ostream& stream) { stream << text; });
+    } catch (...) { // what is remembered is not worth an error
+    }
+}
+
+/// Returns the files as they were written, whether or not they are still there.
+std::vector<std::string> writtenFiles()
+{
+    const nlohmann::json     all = remembered();
+    std::vector<std::string> files;
+    if (!all.contains("files") || !all["files"].is_array()) return files;
+    for (const nlohmann::json& file : all["files"])
+        if (file.is_string() && files.size() < kMostFiles) files.push_back(file.get<std::string>());
+    return files;
+}
+
 } // namespace
 
 glm::ivec2 rememberedSize()
 {
     constexpr glm::ivec2 kUsual(1280, 720);
-    std::ifstream        file(fileOf());
-    const auto           read   = nlohmann::json::parse(file, nullptr, false);
+    const auto           read   = remembered();
     const auto           number = [&](const char* name) {
-        return read.is_object() && read.contains(name) && read[name].is_number_integer() ? read[name].get<long>() : 0;
+        return read.contains(name) && read[name].is_number_integer() ? read[name].get<long>() : 0;
     };
     const long width = number("width"), height = number("height");
     if (width < kLeast || height < kLeast || width > kMost || height > kMost) return kUsual;
@@ -40,14 +73,34 @@ glm::ivec2 rememberedSize()
 
 void rememberSize(const glm::ivec2& size) noexcept
 {
+    if (size.x >= kLeast && size.y >= kLeast) remember({{"width", size.x}, {"height", size.y}});
+}
+
+std::vector<std::string> rememberedFiles()
+{
+    std::vector<std::string> files = writtenFiles();
+    std::erase_if(files, [](const std::string& file) {
+        std::error_code ignored;
+        return !std::filesystem::exists(file, ignored);
+    });
+    return files;
+}
+
+void rememberFile(const std::string& file) noexcept
+{
     try {
-        const auto file = fileOf();
-        if (file.empty() || size.x < kLeast || size.y < kLeast) return;
-        std::filesystem::create_directories(file.parent_path());
-        const std::string text = nlohmann::json{{"width", size.x}, {"height", size.y}}.dump() + "\n";
-        writeFileWhole(file, [&](std::ostream& stream) { stream << text; });
-    } catch (...) { // a size is not worth an error
+        std::vector<std::string> files = writtenFiles();
+        std::erase(files, file);
+        files.insert(files.begin(), file);
+        if (files.size() > kMostFiles) files.resize(kMostFiles);
+        remember({{"files", files}});
+    } catch (...) { // as above
     }
+}
+
+bool isFirstWindow()
+{
+    return remembered().empty();
 }
 
 } // namespace palp

@@ -1,4 +1,7 @@
 #pragma once
+#include <string>
+#include <vector>
+
 #include <glm/vec2.hpp>
 
 namespace palp {
@@ -9,5 +12,15 @@ namespace palp {
 
 /// Writes the size to that file; if it cannot be written, the size is forgotten.
 void rememberSize(const glm::ivec2& size) noexcept;
+
+/// Returns the files that were opened last, newest first, at most eight; of those that are still there.
+[[nodiscard]] std::vector<std::string> rememberedFiles();
+
+/// Puts a file in front of them; if that cannot be written, the file is forgotten.
+/// \param file  an absolute path
+void rememberFile(const std::string& file) noexcept;
+
+/// Returns whether nothing is remembered: this user has never had a window.
+[[nodiscard]] bool isFirstWindow();
 
 } // namespace palp

@@ -96,6 +96,9 @@ void Workbench::openFirst()
     if (closing_) return;
     adopt(std::move(opened));
     controls_.resetView();
+    if (settings_.welcome.empty()) return;
+    const std::string& said = notices_.message();
+    notices_.say(settings_.welcome + (said.empty() ? "" : ". " + said));
 }
 
 /// Shows the name of what is being opened.
@@ -158,6 +161,8 @@ void Workbench::takeValues(const SceneValues& wanted)
 void Workbench::adopt(OpenedObject opened)
 {
     session_.stopReplay();
+    if (settings_.opened) settings_.opened(opened.what);
+    if (settings_.offered) offered_ = settings_.offered();
     object_.adopt(std::move(opened));
     if (settings_.titled) settings_.titled(object_.fileName());
     useObject();
@@ -350,6 +355,7 @@ PanelContent Workbench::content(const SessionView* view) const
     now.canRedo         = stage.painting().canRedo();
     now.message         = notices_.current();
     now.realTime        = session_.realTime();
+    now.offered         = offered_;
     return now;
 }
 

@@ -75,6 +75,7 @@ private:
     Controls                              controls_;
     PanelLayer                            panels_{nullptr};
     Latest<std::string>                   handAdvice_; ///< what the user is to do for a hand that gets ready
+    std::vector<std::string>              offered_;    ///< objects in the panels
     Poll                                  poll_;
     WindowInput                           input_;
     bool                                  closing_ = false;

@@ -33,6 +33,22 @@ bad() { # bad DESCRIPTION WORD ARGUMENTS...: exit code 2, one line on stderr tha
 # --- good runs
 good 'version' --version
 holds 'palpate 0.'
+good 'version for reports' --version --json
+for name in version commit compiler libraries window panels falcon sanitizers recording library; do holds "\"$name\":"; done
+bad 'JSON of nothing' '--version' --json
+good 'manual' --man
+mv out.txt manual.txt
+good 'completion' --completion
+mv out.txt completion.txt
+"$palpate" --help | sed -n 's/^  \([a-z][a-z]*\)  .*/\1/p' >commands.txt
+[ "$(grep -c . commands.txt)" -ge 19 ] || complain "the help lists too few commands: $(cat commands.txt)"
+while read -r command; do # each option of a command's help stands in both
+    grep -q "^\.SS palpate $command\$" manual.txt || complain "the manual has no command $command"
+    for option in $("$palpate" "$command" --help | sed -n 's/^  \(-.,\)*\(--[a-z][a-z-]*\).*/\2/p'); do
+        grep -q "^    $command) .*[ ']$option[ ']" completion.txt || complain "no completion of $command $option"
+    done
+    passed=$((passed + 1))
+done <commands.txt
 good 'help' --help
 holds 'Examples:'
 for command in touch solve info materials fit convert paint render view export hunt study perceive paper devices doctor calibrate bench; do

@@ -33,6 +33,7 @@ protected:
         PanelWishes now = drawPanels(state_, content_, 1);
         frame_.end();
         wishes_.values.merge(now.values);
+        if (!now.open.empty()) wishes_.open = now.open;
         for (bool PanelWishes::*one :
              {&PanelWishes::frame, &PanelWishes::reset, &PanelWishes::screenshot, &PanelWishes::record,
               &PanelWishes::undo, &PanelWishes::redo, &PanelWishes::save, &PanelWishes::resetFault})
@@ -124,6 +125,16 @@ TEST_F(PanelsClick, TheViewChangesAtOnce)
     EXPECT_EQ(state_.tool, Tool::paint);
     EXPECT_TRUE(wishes_.values.empty());
     EXPECT_FALSE(wishes_.frame || wishes_.reset || wishes_.screenshot || wishes_.record);
+}
+
+TEST_F(PanelsClick, AnObjectIsChosenFromTheList)
+{
+    content_.offered = {"sample:palm", "sample:skin", "/tmp/scan.ply"};
+    settle();
+    click({200, 60}); // where the colours are without a list
+    click({200, 101});
+    EXPECT_EQ(wishes_.open, "sample:skin");
+    EXPECT_EQ(state_.look.paint, ViewPaint::deflection) << "the rows below have moved";
 }
 
 TEST_F(PanelsClick, ASliderGoesAsFarAsItIsDragged)
