@@ -64,10 +64,7 @@ Ball gatherPoints(Patch& patch, const SoftObject& object, const Contact& contact
     patch.contact   = contact;
     patch.thickness = object.material().thickness;
     patch.spacing   = spacingAt(object, contact.point);
-    Ball ball{{}, {}, contact.point, gatherRadius(settings, patch.spacing)};
-    object.index().gatherRising(ball.centre, ball.radius, ball.ranks);
-    object.index().pointsOf(ball.ranks, ball.points);
-    return ball;
+    return ballOf(object, contact.point, gatherRadius(settings, patch.spacing));
 }
 
 /// Keeps, of the ball, the surface that the finger touches; everything, in the paper's way.

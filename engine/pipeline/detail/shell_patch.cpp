@@ -38,19 +38,21 @@ double meanOfSquares(const NodeField& field)
 /// Fits the curvature, to a piece of surface that is larger than the window by the radius of the largest fit.
 std::optional<CurvatureField> findCurvature(const Patch& patch, const SoftObject& object, const PatchSettings& settings)
 {
-    const double               most   = settings.window / 2;
-    const double               radius = std::numbers::sqrt2 * settings.window / 2 + most;
-    std::vector<std::uint32_t> ball;
-    object.index().gather(patch.contact.point, radius, ball);
-    TouchedSurface surface = touchedSurface(object, patch.contact, ball, radius);
-    if (glm::dot(surface.normal, patch.chart.frame.normal) < 0)
-        for (glm::dvec3& normal : surface.normals) normal = -normal;
+    const double         most = settings.window / 2;
+    const Ball           ball = ballOf(object, patch.contact.point, std::numbers::sqrt2 * settings.window / 2 + most);
+    const TouchedSurface surface = touchedSurface(object, patch.contact, ball);
+    const double         side    = glm::dot(surface.normal, patch.chart.frame.normal) < 0 ? -1 : 1;
+    std::vector<glm::dvec3> around, normals;
+    for (std::size_t k = 0; k < surface.size(); ++k) {
+        around.push_back(surface.place(k));
+        normals.push_back(side * surface.normalAt(k));
+    }
 
     std::vector<glm::dvec3> places;
     places.reserve(patch.touched);
     for (std::size_t k = 0; k < patch.touched; ++k) places.push_back(object.positions()[patch.points[k]]);
     return curvatureField(patch.window, patch.chart.frame, places, std::span(patch.positions).first(patch.touched),
-                          {surface.places, surface.normals},
+                          {around, normals},
                           {.spacing    = patch.spacing,
                            .noise      = surface.noise,
                            .mostRadius = most,

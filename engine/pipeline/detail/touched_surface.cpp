@@ -201,6 +201,14 @@ void TouchedSurface::turnOver()
     for (glm::dvec3& n : normals_) n = -n;
 }
 
+Ball ballOf(const SoftObject& object, const glm::dvec3& centre, double radius)
+{
+    Ball ball{{}, {}, centre, radius};
+    object.index().gatherRising(ball.centre, ball.radius, ball.ranks);
+    object.index().pointsOf(ball.ranks, ball.points);
+    return ball;
+}
+
 double spacingAt(const SoftObject& object, const glm::dvec3& place)
 {
     object.survey().expectSurface();

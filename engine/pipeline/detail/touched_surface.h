@@ -22,6 +22,9 @@ struct Ball {
     double                     radius = 0; ///< [m]
 };
 
+/// Gathers the points of an object within a radius of a place [m].
+[[nodiscard]] Ball ballOf(const SoftObject& object, const glm::dvec3& centre, double radius);
+
 /// Chooses an even share of an object's points, the same ones wherever the finger is. Ranks along the curve times the
 /// golden ratio are spread evenly over the unit interval: so are, over the surface, those that fall into a part of it.
 class EvenShare {
