@@ -98,7 +98,9 @@ HaplyPath parseHaplyPath(const std::string& text)
         "haply: expected HOST:PORT, a device's number such as 049D, or HOST:PORT/NUMBER, found \"";
     const bool        isNumbered = address.starts_with('['); // [::1], an address of IPv6, perhaps with a port behind it
     const std::size_t bracket    = isNumbered ? address.find(']') : 0;
-    if (bracket == std::string::npos) throw Error(kForms + text + "\"");
+    const bool        isClosed   = bracket != std::string::npos;
+    if (!isClosed || (isNumbered && bracket + 1 < address.size() && address[bracket + 1] != ':'))
+        throw Error(kForms + text + "\"");
     const std::size_t colon = address.find(':', bracket) == std::string::npos ? std::string::npos : address.rfind(':');
     if (colon == std::string::npos && slash == std::string::npos && !isNumbered) {
         if (!address.empty() && !isHaplyId(address)) throw Error(kForms + text + "\"");
