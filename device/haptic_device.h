@@ -89,8 +89,9 @@ struct HapticState {
     bool          homed        = false; ///< the position is known
     bool          inBox        = false; ///< within the workspace, and the kinematics could be solved
     bool          clutched     = false; ///< a clutch of its own is held, or was in a session that is replayed
-    int           missed       = 0;     ///< exchanges without an answer, in a row
-    DeviceFault   fault        = DeviceFault::closed;
+    int           missed       = 0;     ///< exchanges without an answer, in a row; of devices behind a service or a
+                                        ///< line of the system 20 in 100 ms, which may pause
+    DeviceFault fault = DeviceFault::closed;
 };
 
 /// Lights of a device that has them; values are sums of these.

@@ -13,15 +13,15 @@
 namespace palp {
 namespace {
 
-constexpr double kStale        = 10e-3; ///< [s] age of a sample from which on no force is sent, as of a Falcon
-constexpr int    kStaleTurns   = 10;    ///< the same in exchanges, where no clock runs between them
-constexpr double kSilence      = 0.1;   ///< [s] without a sample, see DeviceFault::silent
-constexpr int    kMissed       = 20;    ///< reads without a sample, likewise
-constexpr double kLongest      = 4e-3;  ///< [s] most time between two exchanges that is counted, as in the governor
-constexpr double kStep         = 1e-3;  ///< [s] of virtual time from exchange to exchange
-constexpr double kSilencedTime = 0.1;   ///< [s] of DeviceFault::silenced: the governor must see it, to engage anew
-constexpr double kFarOut       = 2;     ///< [1] times the workspace's radius: no arm reaches that far
-constexpr double kTooFast      = 100;   ///< [m/s] no velocity of a hand
+constexpr double kStale      = 10e-3; ///< [s] age of a sample from which on no force is sent, as of a Falcon
+constexpr int    kStaleTurns = 10;    ///< the same in exchanges, where no clock runs between them
+constexpr double kSilence    = 0.1;   ///< [s] without a sample, see DeviceFault::silent
+constexpr int    kMissed  = 20;   ///< reads without a sample, after which no force is asked for; as the governor has it
+constexpr double kLongest = 4e-3; ///< [s] most time between two exchanges that is counted, as in the governor
+constexpr double kStep    = 1e-3; ///< [s] of virtual time from exchange to exchange
+constexpr double kSilencedTime = 0.1; ///< [s] of DeviceFault::silenced: the governor must see it, to engage anew
+constexpr double kFarOut       = 2;   ///< [1] times the workspace's radius: no arm reaches that far
+constexpr double kTooFast      = 100; ///< [m/s] no velocity of a hand
 
 double secondsSince(std::chrono::steady_clock::time_point then)
 {
@@ -65,14 +65,15 @@ void LineDevice::open()
     if (open_) return;
     info_ = known_;
     line_->open(info_);
-    seen_        = {};
-    share_       = 0;
-    empty_       = 0;
-    lastTurn_    = Clock::now();
-    wanted_      = {};
-    words_       = "";
-    state_       = {};
-    state_.fault = DeviceFault::startingUp;
+    seen_         = {};
+    share_        = 0;
+    empty_        = 0;
+    lastTurn_     = Clock::now();
+    wanted_       = {};
+    words_        = "";
+    state_        = {};
+    readsWithout_ = 0;
+    state_.fault  = DeviceFault::startingUp;
     started_ = impossible_ = false;
     seenGood_ = seenGarbled_ = seenSilenced_ = 0;
     silencedUntil_ = lastSample_ = lastRead_ = 0;
@@ -219,13 +220,16 @@ void LineDevice::readInbox(double now) noexcept
     seenSilenced_ = sample.silenced;
     if (!started_) lastSample_ = now; // silence before the first read() does not count
     if (inbox.good == seenGood_) {
-        ++state_.missed;
+        // The governor stops for good where more than kMissed are missed: after kSilence, not after a pause of the system.
+        ++readsWithout_;
+        state_.missed = std::min(readsWithout_, int(kMissed * std::clamp((now - lastSample_) / kSilence, 0.0, 2.0)));
         return;
     }
     seenGood_              = inbox.good;
     seenGarbled_           = inbox.garbled;
     lastSample_            = now;
     state_.missed          = 0;
+    readsWithout_          = 0;
     state_.sequence        = inbox.good;
     state_.time            = settings_.pace == LinePace::thread ? now - secondsSince(inbox.time) : now;
     state_.age             = sample.age;
@@ -245,7 +249,7 @@ DeviceFault LineDevice::faultAt(double now) const noexcept
 {
     const Inbox& inbox = *inbox_.held();
     if (isFinal(inbox.sample.fault)) return inbox.sample.fault;
-    if (state_.missed > kMissed || !(now - lastSample_ <= kSilence))
+    if (readsWithout_ > kMissed || !(now - lastSample_ <= kSilence))
         return inbox.garbled != seenGarbled_ ? DeviceFault::garbled : DeviceFault::silent;
     if (seenGood_ == 0) return DeviceFault::startingUp;
     if (now < silencedUntil_) return DeviceFault::silenced;

@@ -150,6 +150,7 @@ private:
     bool          started_    = false; ///< read() has been called since open()
     bool          impossible_ = false; ///< the last position was impossible
     std::uint64_t seenGood_ = 0, seenGarbled_ = 0, seenSilenced_ = 0;
+    int           readsWithout_  = 0; ///< a sample, in a row
     double        silencedUntil_ = 0; ///< [s]
     double        lastSample_    = 0; ///< [s]
     double        lastRead_      = 0; ///< [s]

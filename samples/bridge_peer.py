@@ -45,8 +45,8 @@ def main(port, seconds):
     line.setblocking(False)
     start = time.monotonic()
     y = v = force = most = 0.0
-    rendered = heard = sequence = stopped = 0
-    patience, next_tick = 0.0, start
+    rendered = heard = sequence = stopped = enabled = 0
+    patience, next_tick, pushed = 0.0, start, start
     while (now := time.monotonic()) < start + seconds:
         try:
             while True:             # the newest command counts
@@ -57,8 +57,9 @@ def main(port, seconds):
                 if (kind, p, b, version >> 4) != (2, 0x50, 0x42, 1):
                     continue
                 rendered, heard, patience = number, now, min(ms * 1e-3, WATCHDOG_LIMIT)
-                stopped = stopped and flags & 1     # until a command without "enable"
-                force = fy * 1e-3 if flags & 1 and not stopped else 0.0
+                enabled = flags & 1
+                stopped = stopped and enabled       # until a command without "enable"
+                force = fy * 1e-3 if enabled and not stopped else 0.0
         except (BlockingIOError, ConnectionRefusedError):
             pass                    # nothing more, or nobody listens yet
         if force and now - heard > patience:        # the watchdog
@@ -66,10 +67,12 @@ def main(port, seconds):
         y, v = arm(y, v, force, now - start)
         most = max(most, abs(force))
         sequence = sequence + 1 & 0xFFFF
+        pushed = now if enabled or now - pushed > 1.5 else pushed
+        button = 1 if now - pushed > 1.0 else 0     # a second without "enable": a hand that clears the host's fault
         flags = 2 | 4 | (1 if force else 0) | (8 if stopped else 0)   # homed, in the box, motors on, stopped
         line.sendto(with_checksum(struct.pack(
-            ANSWER, 1, 0x50, 0x42, 0x11, sequence, flags, 0, 0, round(y * 1e6), 0, 0, round(v * 1e3), 0, 0, 0, 0, 0, 0,
-            int(now * 1e6) & 0xFFFFFFFF, rendered, 0, round(force * 1e3), 0, 500, 6000, 800, 3000, 0, 0)),
+            ANSWER, 1, 0x50, 0x42, 0x11, sequence, flags, button, 0, round(y * 1e6), 0, 0, round(v * 1e3), 0, 0, 0, 0, 0, 0,
+            int(now * 1e6) & 0xFFFFFFFF, rendered, 0, round(force * 1e3), 0, 500, 6000, 800, 3000, 1, 0)),
             ("127.0.0.1", port))
         next_tick += PERIOD
         time.sleep(max(0.0, next_tick - time.monotonic()))

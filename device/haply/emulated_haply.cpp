@@ -136,6 +136,7 @@ std::string EmulatedHaply::picture(bool isFull, bool hasPreset) const
                     {"current_cursor_force", vectorOf(isMoved ? force() : glm::dvec3(0))},
                     {"control_mode", force() == glm::dvec3(0) ? "idle" : "force"}}},
             {"status", {{"calibrated", trouble_ != HaplyTrouble::uncalibrated}, {"in_use", true}, {"ready", true}}}};
+        if (!settings_.echoes) device["state"].erase("current_cursor_force");
         if (trouble_ == HaplyTrouble::huge) device["state"]["cursor_position"]["x"] = 1e308;
         if (trouble_ == HaplyTrouble::keyless) device["state"].erase("cursor_position");
         if (isFull)

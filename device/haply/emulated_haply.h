@@ -37,6 +37,7 @@ struct EmulatedHaplySettings {
     HaplyDialect             dialect    = HaplyDialect::vector; ///< that it understands
     bool                     takesForce = true;                 ///< false: it ignores forces in either
     std::vector<std::string> ids        = {"049D"}; ///< of its Inverse3; the first one has the arm; empty: none yet
+    bool                     echoes     = true; ///< it says what it renders
     bool                     hasGrip    = true;
     double                   forceGate  = 0;
     double                   forceScale = 1;
@@ -90,6 +91,7 @@ public:
     void cause(HaplyTrouble trouble) noexcept { trouble_ = trouble; }
     void plug(std::vector<std::string> ids) { settings_.ids = std::move(ids); }
     void raise(const std::string& event); ///< JSON, to every listener
+    void ignoreForces() noexcept { settings_.takesForce = false; } ///< from now on, as if another client had them
     void stop();                          ///< it ends all connections, and takes no more
 
     [[nodiscard]] glm::dvec3         force() const noexcept;                           ///< [N] now, in our frame

@@ -1,6 +1,7 @@
 #include "device/haply/haply_line.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -17,6 +18,7 @@ constexpr double kGiveUp    = 20e-3; ///< [s] after which an answer is no longer
 constexpr double kLeastEcho = 0.05;  ///< [N] a force that the service must show
 constexpr double kEchoShare = 0.1;   ///< [1] of it, at least: filters may lower it
 constexpr int    kPatience  = 20;    ///< answers without it
+constexpr int    kLater     = 200;   ///< the same, once forces were shown: a filter may hold one back for a moment
 constexpr int    kAbsent    = 20;    ///< answers without the device, after which it is gone
 constexpr int    kAtOnce    = 64;    ///< messages that are read before the next request
 constexpr double kPause     = 0.1;   ///< [s] of a fault that the governor must see, to engage anew
@@ -43,6 +45,13 @@ bool readMore(ByteLine& line, std::string& text, double until)
         return false;
     }
     return text.size() <= kMostWebSocketMessage;
+}
+
+/// The numbers are hexadecimal, and people write them as they like.
+bool isSameId(std::string_view one, std::string_view other)
+{
+    const auto lower = [](unsigned char c) { return std::tolower(c); };
+    return std::ranges::equal(one, other, {}, lower, lower);
 }
 
 std::string decimal(double value)
@@ -100,7 +109,7 @@ void WebSocketClient::sendForce(std::string_view text)
 std::optional<std::string> WebSocketClient::receive(double timeout)
 {
     const double until = line_->now() + timeout;
-    for (;;) {
+    for (bool isLast = false;;) { // a flood of what is no text must not hold the caller
         while (std::optional<WebSocketMessage> message = reader_.next()) {
             if (message->kind == WebSocketKind::close) throw LineEnded("the service has said goodbye");
             if (message->kind == WebSocketKind::ping)
@@ -108,9 +117,11 @@ std::optional<std::string> WebSocketClient::receive(double timeout)
             if (message->kind == WebSocketKind::text) return std::move(message->payload);
         }
         std::array<std::uint8_t, 4096> bytes{};
-        const double                   left = std::max(0.0, until - line_->now());
-        const std::size_t              got  = line_->read(bytes, left);
-        if (got == 0 && !(until - line_->now() > 0)) return {};
+        if (isLast) return {};
+        const double      left = std::max(0.0, until - line_->now());
+        const std::size_t got  = line_->read(bytes, left);
+        isLast                 = !(until - line_->now() > 0);
+        if (got == 0 && isLast) return {};
         reader_.feed(std::span(bytes).first(got));
     }
 }
@@ -155,6 +166,8 @@ std::string describeFilters(const HaplyDescription& device, std::optional<double
 {
     std::string said;
     const auto  add = [&](const std::string& what) { said += (said.empty() ? "" : ", ") + what; };
+    if (!device.forceGate && !device.damping && !forceScale)
+        return "the Inverse Service does not say whether it filters forces";
     if (device.forceGate.value_or(0) != 0) add("a force gate of " + decimal(*device.forceGate));
     if (device.damping.value_or(0) != 0) add("damping of " + decimal(*device.damping));
     if (forceScale.value_or(1) != 1) add("a force scale of " + decimal(*forceScale));
@@ -188,7 +201,7 @@ HaplyLine::HaplyLine(HaplyOpener open, const HaplyLineSettings& settings) : open
 void HaplyLine::open(HapticDeviceInfo& info)
 {
     state_    = {};
-    inFlight_ = pushes_ = confirmed_ = swapped_ = isGone_ = false;
+    inFlight_ = pushes_ = confirmed_ = swapped_ = isGone_ = isBraked_ = takesNone_ = false;
     unheard_ = absent_ = 0;
     stoppedUntil_      = 0;
     stopWords_         = "";
@@ -200,10 +213,10 @@ void HaplyLine::open(HapticDeviceInfo& info)
         info                          = haplyInfo(device.type);
         info.isSimulation             = isSim;
         if (isSim) info.model = "emulated " + info.model;
-        info.path                     = settings_.host + "/" + device.id;
-        info.serial                   = device.serial.empty() ? device.id : device.serial;
-        info.rotates                  = service.hasGrips;
-        info.note                     = describeFilters(device, service.forceScale);
+        info.path    = settings_.host + "/" + device.id;
+        info.serial  = device.serial.empty() ? device.id : device.serial;
+        info.rotates = service.hasGrips;
+        info.note    = describeFilters(device, service.forceScale);
         if (device.preset != "arm_front_centered")
             info.note += std::string(info.note.empty() ? "" : "; ") +
                          "the Inverse Service does not say that its origin is the middle of the workspace";
@@ -243,15 +256,16 @@ HaplyDescription HaplyLine::findDevice(double until, HaplyService& service)
     service.version    = versionIn(askHaply(open_, "/version", 1));
     service.forceScale = forceScaleIn(askHaply(open_, "/settings/devices/force_scale", 1));
     for (double waited = 0;;) {
-        client_             = std::make_unique<WebSocketClient>(open_(HaplyPort::service), "localhost", 1);
-        const auto  picture = client_->receive(1);
-        const auto& devices = service.devices = haplyDevices(picture.value_or(""), &service.hasGrips);
-        const auto  found                     = std::ranges::find_if(
-                                 devices, [&](const HaplyDescription& device) { return settings_.id.empty() || device.id == settings_.id; });
+        client_              = std::make_unique<WebSocketClient>(open_(HaplyPort::service), "localhost", 1);
+        const double tried   = client_->line().now(); // a line's clock may begin with the line
+        const auto   picture = client_->receive(std::max(kTry, until - waited));
+        const auto&  devices = service.devices = haplyDevices(picture.value_or(""), &service.hasGrips);
+        const auto   found                     = std::ranges::find_if(devices, [&](const HaplyDescription& device) {
+            return settings_.id.empty() || isSameId(device.id, settings_.id);
+        });
         if (found != devices.end()) return *found;
-        const double before = client_->line().now();
-        while (client_->line().now() - before < kTry) static_cast<void>(client_->receive(kTry));
-        waited += kTry;
+        while (client_->line().now() - tried < kTry) static_cast<void>(client_->receive(kTry));
+        waited += client_->line().now() - tried;
         if (waited >= until) refuse(service);
     }
 }
@@ -317,10 +331,27 @@ void HaplyLine::exchange(const LineOrder& order, LineSample& sample) noexcept
     if (absent_ > kAbsent)
         return lose(sample, DeviceFault::unplugged, "the Inverse Service no longer lists the device");
     if (isGone_) return lose(sample, DeviceFault::unplugged, stopWords_);
-    const bool isStopped = clock_ < stoppedUntil_;
-    sample.fault         = isStopped ? DeviceFault::ownWatchdog : DeviceFault::none;
-    sample.words         = isStopped ? stopWords_ : "";
-    sample.silenced      = silenced_;
+    const char* const why = whyStopped();
+    sample.fault          = why ? DeviceFault::ownWatchdog : DeviceFault::none;
+    sample.words          = why ? why : "";
+    sample.silenced       = silenced_;
+}
+
+/// Stops forces for a while; a stop that lasts longer stays.
+void HaplyLine::stop(double until, const char* words) noexcept
+{
+    if (until < stoppedUntil_) return;
+    stoppedUntil_ = until;
+    stopWords_    = words;
+}
+
+/// Returns why no force may be asked for; null: it may.
+const char* HaplyLine::whyStopped() const noexcept
+{
+    if (isBraked_) return brakeWords_;
+    if (takesNone_)
+        return "the Inverse Service does not take forces; update it, or see whether another program drives the device";
+    return clock_ < stoppedUntil_ ? stopWords_ : nullptr;
 }
 
 void HaplyLine::hearEvents(double now)
@@ -332,11 +363,17 @@ void HaplyLine::hearEvents(double now)
             if (!text) return;
             const HaplyEvent event = haplyEvent(*text, id_);
             if (event.kind == HaplyEvent::Kind::nothing) continue;
-            isGone_       = isGone_ || event.kind == HaplyEvent::Kind::gone;
-            stopWords_    = event.words;
-            stoppedUntil_ = event.kind == HaplyEvent::Kind::released ? now + kPause
-                            : event.kind == HaplyEvent::Kind::braked ? kForever
-                                                                     : now + kStopped;
+            if (event.kind == HaplyEvent::Kind::gone) {
+                isGone_ = true;
+                stop(kForever, event.words);
+            } else if (event.kind == HaplyEvent::Kind::braked) {
+                isBraked_   = true;
+                brakeWords_ = event.words;
+            } else {
+                const bool isRelease = event.kind == HaplyEvent::Kind::released;
+                isBraked_            = isBraked_ && !isRelease;
+                stop(now + (isRelease ? kPause : kStopped), event.words);
+            }
         }
     } catch (const std::exception&) { // the events end; the device does not
         events_.reset();
@@ -376,23 +413,20 @@ void HaplyLine::take(const std::string& answer, LineSample& sample)
 /// Compares what the service says it renders with what it was sent.
 void HaplyLine::checkEcho()
 {
-    if (confirmed_ || !pushes_ || sent_ < kLeastEcho) return;
-    if (glm::length(state_.rendered) >= kEchoShare * sent_) {
-        confirmed_ = true;
-        unheard_   = 0;
-        return;
-    }
-    if (++unheard_ < kPatience) return;
+    const bool isAsked = pushes_ && sent_ >= kLeastEcho && state_.rendered; // what it does not say proves nothing
+    const bool isShown = isAsked && glm::length(*state_.rendered) >= kEchoShare * sent_;
+    confirmed_         = confirmed_ || isShown;
+    unheard_           = isAsked && !isShown ? unheard_ + 1 : 0;
+    if (unheard_ < (confirmed_ ? kLater : kPatience)) return;
     unheard_ = 0;
-    if (swapped_) {
-        stoppedUntil_ = kForever;
-        stopWords_    = "the Inverse Service does not take forces; update it, or see whether another program drives it";
-        return;
-    }
-    swapped_      = true;
-    dialect_      = dialect_ == HaplyDialect::vector ? HaplyDialect::values : HaplyDialect::vector;
-    stoppedUntil_ = clock_ + kPause;
-    stopWords_    = "the Inverse Service ignored a force; the other word for it is tried";
+    if (confirmed_)
+        return stop(clock_ + kStopped,
+                    "the Inverse Service no longer renders the force; does another program drive the device?");
+    takesNone_ = swapped_;
+    if (takesNone_) return;
+    swapped_ = true;
+    dialect_ = dialect_ == HaplyDialect::vector ? HaplyDialect::values : HaplyDialect::vector;
+    stop(clock_ + kPause, "the Inverse Service ignored a force; the other word for it is tried");
 }
 
 void HaplyLine::say(const LineOrder& order, double now)

@@ -101,6 +101,8 @@ private:
     bool                           hear(double timeout, LineSample& sample);
     void                           take(const std::string& answer, LineSample& sample);
     void                           checkEcho();
+    void                           stop(double until, const char* words) noexcept;
+    [[nodiscard]] const char*      whyStopped() const noexcept;
     void                           say(const LineOrder& order, double now);
     void                           lose(LineSample& sample, DeviceFault fault, const char* words) noexcept;
 
@@ -115,13 +117,16 @@ private:
     bool                             inFlight_     = false; ///< its answer has not come
     bool                             pushes_       = false; ///< the last request had a force
     double                           sent_         = 0;     ///< [N] its size
-    int                              unheard_      = 0;     ///< answers in a row that do not show the force
+    int                              unheard_      = 0;     ///< answers in a row that deny the force
     int                              absent_       = 0;     ///< answers in a row that do not list the device
     bool                             confirmed_    = false; ///< an answer has shown a force
     bool                             swapped_      = false; ///< the other word is tried
     bool                             isGone_       = false; ///< an event says so
-    double                           stoppedUntil_ = 0;     ///< [s]
-    const char*                      stopWords_    = "";
+    bool                             isBraked_     = false; ///< the emergency brake acts, until it is released
+    bool                             takesNone_    = false; ///< the service takes no forces
+    double                           stoppedUntil_ = 0;     ///< by anything else [s]
+    const char*                      stopWords_    = "";    ///< why, for anything else
+    const char*                      brakeWords_   = "";
     std::uint64_t                    silenced_     = 0;
 };
 

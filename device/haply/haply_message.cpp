@@ -104,6 +104,7 @@ constexpr std::array kGrips{"verse_grip", "wireless_verse_grip", "custom_verse_g
 /// Takes the first grip that there is.
 void takeGrip(const Json& json, HaplyState& state)
 {
+    state.buttons = 0; // of a grip that says nothing none is held: it may have gone to sleep
     for (const char* list : kGrips) {
         const Json* grip = elementOf(json, list, {});
         if (!grip || !at(*grip, {"state"})) continue;
@@ -125,16 +126,14 @@ void takeGrip(const Json& json, HaplyState& state)
 HaplyDescription describe(const Json& device)
 {
     HaplyDescription out;
-    out.id                  = textAt(device, {"device_id"});
-    out.type                = textAt(device, {"config", "type"});
-    out.serial              = textAt(device, {"config", "device_info", "uuid"});
-    out.preset              = textAt(device, {"config", "preset"});
-    out.calibrated          = truthAt(device, {"status", "calibrated"}).value_or(false);
-    out.ready               = truthAt(device, {"status", "ready"}).value_or(false);
-    out.forceGate           = numberAt(device, {"config", "filters", "force_gate", "gain"});
-    out.damping             = numberAt(device, {"config", "filters", "damping", "scalar"});
-    out.torqueScaling       = numberAt(device, {"config", "torque_scaling"});
-    out.gravityCompensation = truthAt(device, {"config", "gravity_compensation", "enabled"});
+    out.id         = textAt(device, {"device_id"});
+    out.type       = textAt(device, {"config", "type"});
+    out.serial     = textAt(device, {"config", "device_info", "uuid"});
+    out.preset     = textAt(device, {"config", "preset"});
+    out.calibrated = truthAt(device, {"status", "calibrated"}).value_or(false);
+    out.ready      = truthAt(device, {"status", "ready"}).value_or(false);
+    out.forceGate  = numberAt(device, {"config", "filters", "force_gate", "gain"});
+    out.damping    = numberAt(device, {"config", "filters", "damping", "scalar"});
     if (out.preset.empty()) out.preset = textAt(device, {"config", "preset", "preset"});
     return out;
 }
@@ -235,18 +234,30 @@ bool isHaplyId(std::string_view id) noexcept
            std::ranges::all_of(id, [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
 }
 
+namespace {
+
+/// Returns a force of less than 10 N with four decimal places, always of seven characters, whatever the locale of a host.
+std::string inNewtons(double force)
+{
+    std::array<char, 32> digits{};
+    const auto           end =
+        std::to_chars(digits.data(), digits.data() + digits.size(), force, std::chars_format::fixed, 4).ptr;
+    const std::string     text(digits.data(), end);
+    constexpr std::size_t kWidth = 7;
+    return std::string(kWidth - std::min(kWidth, text.size()), ' ') + text;
+}
+
+} // namespace
+
 std::string haplyCommand(std::string_view id, HaplyDialect dialect, const std::optional<glm::dvec3>& force)
 {
     PALP_EXPECT(isHaplyId(id), "a device's id, found \"" + std::string(id) + "\"");
     // Adding 0 turns -0 into 0.
-    const glm::dvec3      there = force ? glm::clamp(toHaply(*force), -kMostForce, kMostForce) + 0.0 : glm::dvec3(0);
-    std::array<char, 256> text{};
-    const int             size =
-        std::snprintf(text.data(), text.size(),
-                      "{\"inverse3\":[{\"device_id\":\"%.*s\",\"commands\":{\"set_cursor_force\":{\"%s\":{\"x\":%7.4f,"
-                      "\"y\":%7.4f,\"z\":%7.4f}}}}]}",
-                      int(id.size()), id.data(), name(dialect), there.x, there.y, there.z);
-    std::string message(text.data(), std::size_t(size));
+    const glm::dvec3  there   = force ? glm::clamp(toHaply(*force), -kMostForce, kMostForce) + 0.0 : glm::dvec3(0);
+    const std::string message = "{\"inverse3\":[{\"device_id\":\"" + std::string(id) +
+                                "\",\"commands\":{\"set_cursor_force\":{\"" + name(dialect) +
+                                "\":{\"x\":" + inNewtons(there.x) + ",\"y\":" + inNewtons(there.y) +
+                                ",\"z\":" + inNewtons(there.z) + "}}}}]}";
     if (force) return message;
     std::string probe =
         "{\"inverse3\":[{\"device_id\":\"" + std::string(id) + "\",\"commands\":{\"probe_position\":{}}}]}";
@@ -293,7 +304,7 @@ HaplyVerdict takeHaplyState(std::string_view json, std::string_view id, HaplySta
 
     state.position = *position;
     if (velocity) state.velocity = *velocity;
-    state.rendered   = vectorAt(*device, {"state", "current_cursor_force"}).value_or(glm::dvec3(0));
+    state.rendered   = vectorAt(*device, {"state", "current_cursor_force"});
     state.calibrated = truthAt(*device, {"status", "calibrated"}).value_or(state.calibrated);
     state.ready      = truthAt(*device, {"status", "ready"}).value_or(state.ready);
     takeGrip(message, state);

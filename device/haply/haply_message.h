@@ -67,8 +67,7 @@ struct HaplyDescription {
     std::string           serial{};
     std::string           preset{}; ///< where its origin is
     bool                  calibrated = false, ready = false;
-    std::optional<double> forceGate{}, damping{}, torqueScaling{}; ///< of the service's own filters
-    std::optional<bool>   gravityCompensation{};
+    std::optional<double> forceGate{}, damping{}; ///< of the service's own filters; empty: it does not say
 };
 
 /// Reads the devices of a message.
@@ -78,13 +77,13 @@ struct HaplyDescription {
 
 /// What a service says of a device in each answer, in our frame.
 struct HaplyState {
-    glm::dvec3    position{};              ///< [m]
-    glm::dvec3    velocity{};              ///< [m/s]
-    glm::dvec3    rendered{};              ///< [N] that the service says it renders
-    glm::dquat    orientation{1, 0, 0, 0}; ///< of a grip
-    bool          hasGrip    = false;
-    std::uint32_t buttons    = 0;
-    bool          calibrated = false, ready = false;
+    glm::dvec3                position{};              ///< [m]
+    glm::dvec3                velocity{};              ///< [m/s]
+    std::optional<glm::dvec3> rendered{};              ///< [N] that the service says it renders; empty: it does not say
+    glm::dquat                orientation{1, 0, 0, 0}; ///< of a grip
+    bool                      hasGrip    = false;
+    std::uint32_t             buttons    = 0;
+    bool                      calibrated = false, ready = false;
 };
 
 enum class HaplyVerdict : std::uint8_t {

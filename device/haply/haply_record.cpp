@@ -94,19 +94,28 @@ HaplyPath parseHaplyPath(const std::string& text)
     const std::size_t slash   = text.find('/');
     std::string       address = text.substr(0, slash);
     if (slash != std::string::npos) path.id = text.substr(slash + 1);
-    const std::size_t colon = address.rfind(':');
-    if (colon == std::string::npos && slash == std::string::npos) {
+    constexpr const char* kForms =
+        "haply: expected HOST:PORT, a device's number such as 049D, or HOST:PORT/NUMBER, found \"";
+    const bool        isNumbered = address.starts_with('['); // [::1], an address of IPv6, perhaps with a port behind it
+    const std::size_t bracket    = isNumbered ? address.find(']') : 0;
+    const bool        isClosed   = bracket != std::string::npos;
+    if (!isClosed || (isNumbered && bracket + 1 < address.size() && address[bracket + 1] != ':'))
+        throw Error(kForms + text + "\"");
+    const std::size_t colon = address.find(':', bracket) == std::string::npos ? std::string::npos : address.rfind(':');
+    if (colon == std::string::npos && slash == std::string::npos && !isNumbered) {
+        if (!address.empty() && !isHaplyId(address)) throw Error(kForms + text + "\"");
         path.id = std::exchange(address, {});
     } else if (colon != std::string::npos) {
         const char* const begin  = address.data() + colon + 1;
         const char* const end    = address.data() + address.size();
         const auto        number = std::from_chars(begin, end, path.port);
         if (number.ec != std::errc() || number.ptr != end || path.port == 0 || colon == 0)
-            throw Error("haply: expected HOST:PORT, a device's number, or HOST:PORT/NUMBER, found \"" + text + "\"");
+            throw Error(kForms + text + "\"");
         path.host = address.substr(0, colon);
     } else if (!address.empty()) {
         path.host = address;
     }
+    if (path.host.starts_with('[') && path.host.ends_with(']')) path.host = path.host.substr(1, path.host.size() - 2);
     if (!path.id.empty() && !isHaplyId(path.id))
         throw Error("haply: expected a device's number such as 049D, found \"" + path.id + "\"");
     return path;

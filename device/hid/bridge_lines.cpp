@@ -14,6 +14,7 @@
 #include <netdb.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <sys/file.h>
 #include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
@@ -119,13 +120,15 @@ public:
 
     std::size_t read(std::span<std::uint8_t> report, double timeout) override
     {
-        for (bool waited = false;;) {
+        constexpr int kMostReads = 16; // of 1 KiB: a flood of rubbish must not hold the exchange
+        bool          waited     = false;
+        for (int reads = 0;; ++reads) {
             if (const auto found = stream_.next()) {
                 const std::size_t size = std::min(report.size(), found->size());
                 std::copy_n(found->begin(), size, report.begin());
                 return size;
             }
-            if (waited || !hasBytes(fd_, timeout)) return 0;
+            if (waited || reads == kMostReads || !hasBytes(fd_, timeout)) return 0;
             std::array<std::uint8_t, 1024> bytes{};
             const ssize_t                  got = ::read(fd_, bytes.data(), bytes.size());
             if (got == 0 || (got < 0 && errno != EAGAIN && errno != EINTR)) throw HidLost(name_ + " was unplugged");
@@ -138,9 +141,14 @@ public:
 protected:
     void put(std::span<const std::uint8_t> report) override
     {
-        const ssize_t done = ::write(fd_, report.data(), report.size());
-        if (done < 0 && errno != EAGAIN && errno != EINTR)
-            throw HidLost(name_ + ": writing failed: " + std::strerror(errno));
+        // A command in two pieces is still one; one that never fits is lost like a datagram, and the next begins anew.
+        constexpr int kMostPieces = 4;
+        for (int piece = 0; piece < kMostPieces && !report.empty(); ++piece) {
+            const ssize_t done = ::write(fd_, report.data(), report.size());
+            if (done < 0 && errno != EAGAIN && errno != EINTR)
+                throw HidLost(name_ + ": writing failed: " + std::strerror(errno));
+            report = report.subspan(std::size_t(std::max<ssize_t>(done, 0)));
+        }
     }
 
 private:
@@ -180,8 +188,14 @@ std::unique_ptr<HidPort> openSerial(const BridgeLine& line)
     }
     cfmakeraw(&settings);
     settings.c_cflag |= CLOCAL | CREAD;
-    cfsetspeed(&settings, B921600); // a board with USB of its own ignores it
-    tcsetattr(fd, TCSANOW, &settings);
+    cfsetspeed(&settings, B921600);                        // a board with USB of its own ignores it
+    const bool isOurs = flock(fd, LOCK_EX | LOCK_NB) == 0; // two programs at one arm would mix their forces
+    if (!isOurs || tcsetattr(fd, TCSANOW, &settings) != 0) {
+        const std::string why =
+            isOurs ? std::string("cannot be set: ") + std::strerror(errno) : "is used by another program";
+        close(fd);
+        throw HidRefused(line.place + " " + why, isOurs ? "see that it is a serial port" : "end that program");
+    }
     tcflush(fd, TCIOFLUSH);
     return std::make_unique<SerialPort>(fd, line.place);
 }
@@ -223,7 +237,13 @@ std::optional<BridgeLine> parseBridgeLine(std::string_view text)
                         "\"");
         return line;
     }
-    if (!text.starts_with(kUdp)) return {};
+    if (!text.starts_with(kUdp)) {
+        for (const std::string_view form : {"udp", "serial", "tcp", "tcp:"})
+            if (text == form || (form.back() == ':' && text.starts_with(form)))
+                throw Error("bridge: expected udp:PORT, udp:HOST:PORT or serial:NODE, found \"" + std::string(text) +
+                            "\"");
+        return {};
+    }
     const std::string_view address = text.substr(kUdp.size());
     const std::size_t      colon   = address.rfind(':');
     const std::string_view digits  = colon == std::string_view::npos ? address : address.substr(colon + 1);

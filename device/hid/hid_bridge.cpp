@@ -14,13 +14,13 @@
 namespace palp {
 namespace {
 
-constexpr double kSilence      = 0.1;  // [s] without an answer, see DeviceFault::silent
-constexpr int    kMissed       = 20;   // exchanges without an answer, likewise
-constexpr double kQuiet        = 0.02; // [s] between zero commands while render() is not called: far from flooding
-constexpr double kStep         = 1e-3; // [s] at least between commands while a force falls
-constexpr double kLongest      = 4e-3; // [s] most time between two commands that is counted, as in the governor
-constexpr int    kZeros        = 3;    // commands at the end: one packet may be lost, hardly three
-constexpr double kSilencedTime = 0.1;  // [s] of DeviceFault::silenced: the governor must see it, to engage anew
+constexpr double kSilence = 0.1;  // [s] without an answer, see DeviceFault::silent
+constexpr int    kMissed  = 20;   // reads without an answer, after which no force is asked for; as the governor has it
+constexpr double kQuiet   = 0.02; // [s] between zero commands while render() is not called: far from flooding
+constexpr double kStep    = 1e-3; // [s] at least between commands while a force falls
+constexpr double kLongest = 4e-3; // [s] most time between two commands that is counted, as in the governor
+constexpr int    kZeros   = 3;    // commands at the end: one packet may be lost, hardly three
+constexpr double kSilencedTime = 0.1; // [s] of DeviceFault::silenced: the governor must see it, to engage anew
 constexpr int    kRestart = 20; // answers that count on from an old number before the device is taken to have restarted
 constexpr int    kMostReports = 64;   // per pass, so that a flooded host still writes
 constexpr double kFrames      = 1e-3; // [s] that USB holds a report and a command back: on average half a frame each
@@ -75,6 +75,7 @@ void HidBridgeDevice::open()
     seenGood_ = seenGarbled_ = seenSilenced_ = 0;
     silencedUntil_                           = 0;
     state_                                   = {};
+    readsWithout_                            = 0;
     outbox_.take(); // commands of an earlier opening are discarded
 
     const auto deadline = Clock::now() + std::chrono::duration<double>(settings_.openWait);
@@ -307,7 +308,9 @@ void HidBridgeDevice::readInbox(double now) noexcept
     seenSilenced_ = inbox.silenced;
     if (!started_) lastAnswer_ = now; // silence before the first read() does not count
     if (inbox.good == seenGood_) {
-        ++state_.missed;
+        // The governor stops for good where more than kMissed are missed: after kSilence, not after a pause of the system.
+        ++readsWithout_;
+        state_.missed = std::min(readsWithout_, int(kMissed * std::clamp((now - lastAnswer_) / kSilence, 0.0, 2.0)));
         return;
     }
     const BridgeAnswer& answer = inbox.answer;
@@ -315,6 +318,7 @@ void HidBridgeDevice::readInbox(double now) noexcept
     seenGarbled_               = inbox.garbled;
     lastAnswer_                = now;
     state_.missed              = 0;
+    readsWithout_              = 0;
     state_.sequence            = inbox.good;
     state_.time                = settings_.pace == HidPace::thread ? now - secondsSince(inbox.time) : now;
     state_.age                 = kFrames;
@@ -333,7 +337,7 @@ void HidBridgeDevice::readInbox(double now) noexcept
 DeviceFault HidBridgeDevice::faultAt(double now) const noexcept
 {
     if (state_.fault == DeviceFault::unplugged) return DeviceFault::unplugged;
-    if (state_.missed > kMissed || now - lastAnswer_ > kSilence)
+    if (readsWithout_ > kMissed || now - lastAnswer_ > kSilence)
         return inbox_.held()->garbled != seenGarbled_ ? DeviceFault::garbled : DeviceFault::silent;
     if (now < silencedUntil_) return DeviceFault::silenced;
     if (impossible_) return DeviceFault::kinematics;

@@ -112,6 +112,7 @@ private:
     bool          open_     = false;
     bool          started_  = false; ///< read() has been called since open()
     std::uint64_t seenGood_ = 0, seenGarbled_ = 0, seenSilenced_ = 0;
+    int           readsWithout_  = 0;     ///< an answer, in a row
     double        silencedUntil_ = 0;     ///< [s]
     bool          stopped_       = false; ///< the device reports it
     bool          impossible_    = false; ///< the last position was impossible

@@ -22,7 +22,6 @@ constexpr std::array kOptions{kForceDimensionInit};
 
 constexpr double kMostForce = 12;  ///< [N] that the library lets through, beyond what the governor does
 constexpr int    kSame      = 1;   ///< of a read: the sample is that of the last read (TIMEGUARD)
-constexpr int    kSaturated = 2;   ///< of a write: the motors give less
 constexpr double kSettle    = 0.1; ///< [s] at zero force before the first sample
 
 enum Status : std::size_t { kPower = 0, kConnected = 1, kStarted = 2, kReset = 3, kBrake = 6, kForceOff = 14 };
@@ -46,6 +45,12 @@ const char* reasonOf(int cause) noexcept
     default:
         return "the device switched its force off";
     }
+}
+
+/// Returns whether a person or another program wants the force to be off: then it is theirs to switch on again.
+bool isWanted(int cause) noexcept
+{
+    return cause == 1 || cause == 4 || cause == 6;
 }
 
 /// Their x points to the user, y right, z up.
@@ -88,15 +93,14 @@ public:
 private:
     [[nodiscard]] bool render(const glm::dvec3& force) noexcept;
     [[nodiscard]] int  readHand(LineSample& sample) noexcept;
-    void               readStatus(const LineOrder& order, LineSample& sample) noexcept;
+    bool               readStatus(const LineOrder& order, LineSample& sample) noexcept;
     [[noreturn]] void  refuse(const std::string& what);
 
     ForceDimensionSettings            settings_;
     std::unique_ptr<const DrdLibrary> drd_;
-    int                               id_        = -1; ///< -1: closed
-    int                               errors_    = 0;  ///< calls in a row
-    int                               off_       = 0;  ///< exchanges at zero force since the device switched it off
-    std::uint64_t                     saturated_ = 0;  ///< exchanges in which the motors gave less
+    int                               id_     = -1; ///< -1: closed
+    int                               errors_ = 0;  ///< calls in a row
+    int                               off_    = 0;  ///< exchanges at zero force since the device switched it off
 };
 
 void ForceDimensionLine::refuse(const std::string& what)
@@ -116,7 +120,6 @@ void ForceDimensionLine::open(HapticDeviceInfo& info)
                     "; install their SDK 3 and set FORCEDIM_SDK to its folder");
     }
     errors_ = off_ = 0;
-    saturated_     = 0;
     if (const int count = drd_->dhdGetDeviceCount(); count <= settings_.index)
         throw Error("Force Dimension: device number " + std::to_string(settings_.index) + " was asked for, and " +
                     std::to_string(std::max(0, count)) +
@@ -150,8 +153,7 @@ bool ForceDimensionLine::render(const glm::dvec3& force) noexcept
 {
     const glm::dvec3 f      = toTheirs(force);
     const int        result = drd_->dhdSetForceAndTorqueAndGripperForce(f.x, f.y, f.z, 0, 0, 0, 0, char(id_));
-    if (result == kSaturated) ++saturated_;
-    return result >= 0;
+    return result >= 0; // 2: the motors are saturated and give less
 }
 
 /// \return 0: a new sample; 1: the same again; below 0: an error
@@ -173,28 +175,31 @@ int ForceDimensionLine::readHand(LineSample& sample) noexcept
     return 0;
 }
 
-/// Reads what the device says of itself. A force that it has switched off is switched on again once it was asked for
-/// none for a while.
-void ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) noexcept
+/// Reads what the device says of itself. A force that it has switched off by itself is switched on again once it was
+/// asked for none for a while; one that somebody has switched off is not.
+/// \return false if it says nothing
+bool ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) noexcept
 {
     const auto                  id = char(id_);
     std::array<int, kDrdStatus> status{};
     status[kConnected] = 1;
-    if (drd_->dhdGetStatus(status.data(), id) < 0) return;
+    if (drd_->dhdGetStatus(status.data(), id) < 0) return false;
     if (status[kConnected] == 0) {
         sample.fault = DeviceFault::unplugged;
         sample.words = "the device was unplugged or switched off";
-        return;
+        return true;
     }
     sample.homed        = status[kReset] == 0 && drd_->drdIsInitialized(id);
     const bool isBraked = status[kBrake] != 0, isOff = status[kForceOff] != 0;
-    sample.fault = isBraked || isOff ? DeviceFault::ownWatchdog : DeviceFault::none;
-    sample.words = isOff ? reasonOf(status[kForceOff]) : isBraked ? "the device's brakes are on" : "";
-    off_         = sample.fault != DeviceFault::none && !order.enable ? off_ + 1 : 0;
-    if (off_ < settings_.exchangesToTry) return;
+    sample.fault      = isBraked || isOff ? DeviceFault::ownWatchdog : DeviceFault::none;
+    sample.words      = isOff ? reasonOf(status[kForceOff]) : isBraked ? "the device's brakes are on" : "";
+    const bool mayTry = sample.fault != DeviceFault::none && !isWanted(status[kForceOff]) && !order.enable;
+    off_              = mayTry ? off_ + 1 : 0;
+    if (off_ < settings_.exchangesToTry) return true;
     off_ = 0;
     drd_->dhdSetBrakes(0, id);
     drd_->dhdEnableForce(1, id);
+    return true;
 }
 
 void ForceDimensionLine::exchange(const LineOrder& order, LineSample& sample) noexcept
@@ -202,9 +207,9 @@ void ForceDimensionLine::exchange(const LineOrder& order, LineSample& sample) no
     if (id_ < 0) return;
     const bool isTaken = render(order.force);
     const int  isRead  = readHand(sample);
-    errors_            = isTaken && isRead >= 0 ? 0 : errors_ + 1;
     sample.news        = isRead == 0 ? LineNews::sample : LineNews::none;
-    readStatus(order, sample);
+    const bool isTold  = readStatus(order, sample);
+    errors_            = isTaken && isRead >= 0 && isTold ? 0 : errors_ + 1;
     if (errors_ <= settings_.mostErrors || isFinal(sample.fault)) return;
     static_cast<void>(render({})); // the device may still hear
     drd_->dhdStop(char(id_));

@@ -84,7 +84,7 @@ TEST(BridgeLines, AreNamedByTheirKind)
     EXPECT_EQ(parseBridgeLine("udp:5005")->place, "127.0.0.1");
     EXPECT_EQ(parseBridgeLine("udp:0.0.0.0:5005")->place, "0.0.0.0");
     EXPECT_EQ(parseBridgeLine("serial:/dev/ttyACM0")->place, "/dev/ttyACM0");
-    for (const char* text : {"udp:", "udp:x", "udp:70000", "udp::1", "udp:5005x", "serial:"})
+    for (const char* text : {"udp:", "udp:x", "udp:70000", "udp::1", "udp:5005x", "serial:", "udp", "serial", "tcp:5"})
         EXPECT_THROW((void)parseBridgeLine(text), Error) << text;
 }
 
@@ -313,6 +313,7 @@ TEST(BridgeLines, ASerialPortIsALineLikeUsbAndUnplugged)
         device->open();
         ASSERT_TRUE(until(*device, {}, [](const HapticState& s) { return s.fault == DeviceFault::none; }));
     }
+    EXPECT_THROW((void)openBridgeLine({BridgeLine::Kind::serial, node.data(), 0}), HidRefused) << "it is used already";
     const BridgeBytes half = encode(answerOf(7)); // it ends in the middle of a report
     ASSERT_EQ(write(master, half.data(), half.size() / 2), ssize_t(half.size() / 2));
     close(master);

@@ -107,13 +107,32 @@ TEST(HaplyMessages, FramesOfReferenceAreTurnedAndNotMirrored)
     EXPECT_EQ(toHaply(fromHaply({1, 2, 3})), glm::dvec3(1, 2, 3));
 }
 
+TEST(HaplyMessages, AGripThatSaysNothingHoldsNoButton)
+{
+    const std::string device = R"("inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":0,"y":0,"z":0},
+        "cursor_velocity":{"x":0,"y":0,"z":0}},"status":{"calibrated":true,"ready":true}}])";
+    HaplyState        state;
+    ASSERT_EQ(takeHaplyState("{" + device + R"(,"wireless_verse_grip":[{"state":{"buttons":{"a":true}}}]})", "049D", state),
+              HaplyVerdict::good);
+    EXPECT_EQ(state.buttons, 1U);
+    EXPECT_FALSE(state.rendered) << "it did not say what it renders";
+    for (const char* grips : {"", R"(,"wireless_verse_grip":[])", R"(,"wireless_verse_grip":[{"device_id":"1"}])"}) {
+        state.buttons = 1;
+        ASSERT_EQ(takeHaplyState("{" + device + grips + "}", "049D", state), HaplyVerdict::good);
+        EXPECT_EQ(state.buttons, 0U) << "a grip that sleeps would hold the clutch for ever";
+    }
+}
+
 TEST(HaplyPaths, HaveAnAddressOrANumberOrBoth)
 {
+    EXPECT_EQ(parseHaplyPath("[::1]:9000/049D").address(), "::1:9000");
+    EXPECT_EQ(parseHaplyPath("[::1]/049D").host, "::1");
+
     EXPECT_EQ(parseHaplyPath("").address(), "127.0.0.1:10001");
     EXPECT_EQ(parseHaplyPath("049D").id, "049D");
     EXPECT_EQ(parseHaplyPath("lab:9000").address(), "lab:9000");
     EXPECT_EQ(parseHaplyPath("lab:9000/049D").id, "049D");
-    for (const char* text : {"lab:", "lab:0", "lab:70000", ":9", "lab:1x", "a b", "lab:1/a b", "049D\"}"})
+    for (const char* text : {"lab:", "lab:0", "lab:70000", ":9", "lab:1x", "a b", "lab:1/a b", "049D\"}", "127.0.0.1", "[::1", "[::1]x"})
         EXPECT_THROW((void)parseHaplyPath(text), Error) << text;
 }
 
@@ -156,6 +175,30 @@ TEST(HaplyDevice, AServiceThatTakesNoForcesIsAFaultInWords)
     bench.run(1, governed({1, 0, 0}));
     EXPECT_EQ(bench.state.fault, DeviceFault::ownWatchdog);
     EXPECT_NE(std::string(bench.device->faultWords()).find("does not take forces"), std::string::npos);
+}
+
+TEST(HaplyDevice, AServiceThatDoesNotSayWhatItRendersKeepsItsWord)
+{
+    Bench bench({.echoes = false});
+    bench.device->open();
+    bench.run(2, governed({1, 0, 0}));
+    EXPECT_EQ(bench.state.fault, DeviceFault::none);
+    EXPECT_NEAR(bench.service.force().x, 1, kStep);
+}
+
+TEST(HaplyDevice, AServiceThatStopsTakingForcesIsAFaultLaterToo)
+{
+    Bench bench;
+    bench.device->open();
+    bench.run(1, governed({1, 0, 0}));
+    EXPECT_EQ(bench.state.fault, DeviceFault::none);
+    bench.service.ignoreForces();
+    bool told = false;
+    for (int n = 0; n < 400; ++n) {
+        bench.run(kTick, governed({1, 0, 0}));
+        told = told || std::string(bench.device->faultWords()).find("no longer renders") != std::string::npos;
+    }
+    EXPECT_TRUE(told) << "another program may have taken it";
 }
 
 /// A force that is too small to judge by changes no word.
@@ -239,6 +282,8 @@ TEST(HaplyDevice, WhatTheServiceDoesToAForceIsSaid)
     Bench neutral;
     neutral.device->open();
     EXPECT_EQ(neutral.device->info().note, "");
+    EXPECT_NE(describeFilters({}, {}).find("does not say"), std::string::npos) << "unknown is not neutral";
+    EXPECT_EQ(describeFilters({}, 1), "");
 }
 
 TEST(HaplyDevice, NotCalibratedIsNotHomedAndHasNoForce)
@@ -348,8 +393,14 @@ TEST(HaplyEvents, ABrakeHoldsUntilItIsReleased)
     const GovernedForce push = governed({1, 0, 0});
     bench.run(0.1, push);
     bench.service.raise(R"({"name":"device-safety-triggered","data":{"safety_type":"ebrake_triggered"}})");
+    const double since = bench.now;
+    bench.run(0.1, push);
+    for (const char* other : {"stall_detected", "fod_stage_changed"})
+        bench.service.raise(R"({"name":"device-safety-triggered","data":{"safety_type":")" + std::string(other) + "\"}}");
     bench.run(5, push);
-    EXPECT_EQ(bench.state.fault, DeviceFault::ownWatchdog);
+    EXPECT_EQ(bench.state.fault, DeviceFault::ownWatchdog) << "whatever else the service tells meanwhile";
+    EXPECT_NE(std::string(bench.device->faultWords()).find("brake"), std::string::npos) << bench.device->faultWords();
+    EXPECT_LE(bench.service.lastForce() - since, kZero);
     bench.service.raise(R"({"name":"device-safety-triggered","data":{"safety_type":"ebrake_released"}})");
     bench.run(0.2, push);
     EXPECT_EQ(bench.state.fault, DeviceFault::none);
