@@ -102,6 +102,13 @@ void EmulatedHaply::raise(const std::string& event)
         if (peer->port_ == HaplyPort::events && peer->isSocket) peer->out += webSocketFrame(WebSocketKind::text, event);
 }
 
+void EmulatedHaply::repeat()
+{
+    for (const auto& peer : peers_)
+        if (peer->port_ == HaplyPort::service && peer->isSocket)
+            peer->out += webSocketFrame(WebSocketKind::text, picture(false, true));
+}
+
 glm::dvec3 EmulatedHaply::force() const noexcept
 {
     return commanded_ >= 0 && time_ < commanded_ + settings_.hold ? force_ : glm::dvec3(0);

@@ -37,7 +37,7 @@ struct EmulatedHaplySettings {
     HaplyDialect             dialect    = HaplyDialect::vector; ///< that it understands
     bool                     takesForce = true;                 ///< false: it ignores forces in either
     std::vector<std::string> ids        = {"049D"}; ///< of its Inverse3; the first one has the arm; empty: none yet
-    bool                     echoes     = true; ///< it says what it renders
+    bool                     echoes     = true;     ///< it says what it renders
     bool                     hasGrip    = true;
     double                   forceGate  = 0;
     double                   forceScale = 1;
@@ -90,9 +90,10 @@ public:
     void turn(const glm::dquat& orientation) noexcept { orientation_ = orientation; } ///< of the grip, in our frame
     void cause(HaplyTrouble trouble) noexcept { trouble_ = trouble; }
     void plug(std::vector<std::string> ids) { settings_.ids = std::move(ids); }
-    void raise(const std::string& event); ///< JSON, to every listener
+    void raise(const std::string& event);                          ///< JSON, to every listener
+    void repeat();                                                 ///< its state to every client, asked or not
     void ignoreForces() noexcept { settings_.takesForce = false; } ///< from now on, as if another client had them
-    void stop();                          ///< it ends all connections, and takes no more
+    void stop();                                                   ///< it ends all connections, and takes no more
 
     [[nodiscard]] glm::dvec3         force() const noexcept;                           ///< [N] now, in our frame
     [[nodiscard]] const glm::dvec3&  position() const noexcept { return position_; }   ///< [m]

@@ -202,10 +202,10 @@ void HaplyLine::open(HapticDeviceInfo& info)
 {
     state_    = {};
     inFlight_ = pushes_ = confirmed_ = swapped_ = isGone_ = isBraked_ = takesNone_ = false;
-    unheard_ = absent_ = 0;
-    stoppedUntil_      = 0;
-    stopWords_         = "";
-    silenced_          = 0;
+    unheard_ = absent_ = unasked_ = 0;
+    stoppedUntil_                 = 0;
+    stopWords_                    = "";
+    silenced_                     = 0;
     try {
         HaplyService           service;
         const HaplyDescription device = greet(findDevice(settings_.openWait, service));
@@ -315,8 +315,11 @@ void HaplyLine::exchange(const LineOrder& order, LineSample& sample) noexcept
     try {
         clock_ = client_->line().now();
         hearEvents(clock_);
-        for (int n = 0; n < kAtOnce && hear(0, sample); ++n) {
-        }
+        int heard = 0;
+        while (heard < kAtOnce && hear(0, sample)) ++heard;
+        unasked_ = heard > 1 ? unasked_ + 1 : 0;
+        if (unasked_ > kPatience) // one request has one answer: these may be old
+            stop(clock_ + kStopped, "the Inverse Service sends answers that nobody asked for");
         const bool mustLetGo = pushes_ && !order.enable;
         if (!inFlight_ || mustLetGo || clock_ - asked_ > kGiveUp) say(order, clock_);
         static_cast<void>(hear(settings_.answerWait, sample));

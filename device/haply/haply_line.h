@@ -118,6 +118,7 @@ private:
     bool                             pushes_       = false; ///< the last request had a force
     double                           sent_         = 0;     ///< [N] its size
     int                              unheard_      = 0;     ///< answers in a row that deny the force
+    int                              unasked_      = 0;     ///< exchanges in a row with answers to nothing
     int                              absent_       = 0;     ///< answers in a row that do not list the device
     bool                             confirmed_    = false; ///< an answer has shown a force
     bool                             swapped_      = false; ///< the other word is tried

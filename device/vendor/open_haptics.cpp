@@ -114,7 +114,8 @@ void OpenHapticsLine::open(HapticDeviceInfo& info)
     const HdError error = hd_->hdGetError();
     if (device_ == kHdNoDevice || error.code != 0) {
         const char* why = hd_->hdGetErrorString(error.code);
-        device_         = kHdNoDevice;
+        if (device_ != kHdNoDevice) hd_->hdDisableDevice(device_); // it is open in spite of the error
+        device_ = kHdNoDevice;
         throw Error(
             "OpenHaptics: " +
             (settings_.name.empty() ? std::string("the default device") : "the device \"" + settings_.name + "\"") +
@@ -146,6 +147,9 @@ void OpenHapticsLine::describe(HapticDeviceInfo& info)
     double most = 0; // [N]
     hd_->hdGetDoublev(kHdMostForce, &most);
     if (most > 0 && most < info.maximumForce) info.maximumForce = most;
+    double stiffest = 0; // [N/mm]
+    hd_->hdGetDoublev(kHdMostStiffness, &stiffest);
+    if (stiffest > 0 && 1e3 * stiffest < info.maximumStiffness) info.maximumStiffness = 1e3 * stiffest;
 }
 
 bool OpenHapticsLine::drive(const std::function<void()>& turn)

@@ -112,8 +112,9 @@ TEST(HaplyMessages, AGripThatSaysNothingHoldsNoButton)
     const std::string device = R"("inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":0,"y":0,"z":0},
         "cursor_velocity":{"x":0,"y":0,"z":0}},"status":{"calibrated":true,"ready":true}}])";
     HaplyState        state;
-    ASSERT_EQ(takeHaplyState("{" + device + R"(,"wireless_verse_grip":[{"state":{"buttons":{"a":true}}}]})", "049D", state),
-              HaplyVerdict::good);
+    ASSERT_EQ(
+        takeHaplyState("{" + device + R"(,"wireless_verse_grip":[{"state":{"buttons":{"a":true}}}]})", "049D", state),
+        HaplyVerdict::good);
     EXPECT_EQ(state.buttons, 1U);
     EXPECT_FALSE(state.rendered) << "it did not say what it renders";
     for (const char* grips : {"", R"(,"wireless_verse_grip":[])", R"(,"wireless_verse_grip":[{"device_id":"1"}])"}) {
@@ -132,7 +133,8 @@ TEST(HaplyPaths, HaveAnAddressOrANumberOrBoth)
     EXPECT_EQ(parseHaplyPath("049D").id, "049D");
     EXPECT_EQ(parseHaplyPath("lab:9000").address(), "lab:9000");
     EXPECT_EQ(parseHaplyPath("lab:9000/049D").id, "049D");
-    for (const char* text : {"lab:", "lab:0", "lab:70000", ":9", "lab:1x", "a b", "lab:1/a b", "049D\"}", "127.0.0.1", "[::1", "[::1]x"})
+    for (const char* text :
+         {"lab:", "lab:0", "lab:70000", ":9", "lab:1x", "a b", "lab:1/a b", "049D\"}", "127.0.0.1", "[::1", "[::1]x"})
         EXPECT_THROW((void)parseHaplyPath(text), Error) << text;
 }
 
@@ -184,6 +186,20 @@ TEST(HaplyDevice, AServiceThatDoesNotSayWhatItRendersKeepsItsWord)
     bench.run(2, governed({1, 0, 0}));
     EXPECT_EQ(bench.state.fault, DeviceFault::none);
     EXPECT_NEAR(bench.service.force().x, 1, kStep);
+}
+
+TEST(HaplyDevice, AFloodOfAnswersToNothingIsAFault)
+{
+    Bench bench;
+    bench.device->open();
+    bench.run(0.1, governed({1, 0, 0}));
+    EXPECT_EQ(bench.state.fault, DeviceFault::none);
+    for (int n = 0; n < 200; ++n) {
+        for (int k = 0; k < 3; ++k) bench.service.repeat();
+        bench.run(kTick, governed({1, 0, 0}));
+    }
+    EXPECT_EQ(bench.state.fault, DeviceFault::ownWatchdog) << "old places would pass for new ones";
+    EXPECT_NE(std::string(bench.device->faultWords()).find("nobody asked"), std::string::npos);
 }
 
 TEST(HaplyDevice, AServiceThatStopsTakingForcesIsAFaultLaterToo)
@@ -396,7 +412,8 @@ TEST(HaplyEvents, ABrakeHoldsUntilItIsReleased)
     const double since = bench.now;
     bench.run(0.1, push);
     for (const char* other : {"stall_detected", "fod_stage_changed"})
-        bench.service.raise(R"({"name":"device-safety-triggered","data":{"safety_type":")" + std::string(other) + "\"}}");
+        bench.service.raise(R"({"name":"device-safety-triggered","data":{"safety_type":")" + std::string(other) +
+                            "\"}}");
     bench.run(5, push);
     EXPECT_EQ(bench.state.fault, DeviceFault::ownWatchdog) << "whatever else the service tells meanwhile";
     EXPECT_NE(std::string(bench.device->faultWords()).find("brake"), std::string::npos) << bench.device->faultWords();

@@ -42,31 +42,32 @@ inline constexpr unsigned kHdNoDevice = 0xFFFFFFFF, kHdDone = 0, kHdAgain = 1;
 
 // Numbers of the library's header hdDefines.h.
 enum HdName : unsigned {
-    kHdButtons    = 0x2000, // bit i: button i + 1
-    kHdPosition   = 0x2050, // [mm]
-    kHdVelocity   = 0x2051, // [mm/s]
-    kHdTurning    = 0x2053, // [rad/s]
-    kHdTransform  = 0x2052, // 16 numbers by columns
-    kHdModel      = 0x2501,
-    kHdSerial     = 0x2504,
-    kHdStyles     = 0x2555, // of calibration, a sum of HdStyle
-    kHdMostForce  = 0x2603, // [N]
-    kHdForce      = 0x2700, // [N]
-    kHdOutput     = 0x4000,
-    kHdClamping   = 0x4001,
-    kHdRamping    = 0x4002,
-    kHdWarm       = 0x200, // errors from here on
-    kHdTooStrong  = 0x201,
-    kHdImpulse    = 0x202,
-    kHdTooFast    = 0x203,
-    kHdForceError = 0x204, // the last of the errors of forces
-    kHdFault      = 0x300,
-    kHdLine       = 0x302,
-    kHdTimer      = 0x304,
-    kHdLicence    = 0x600,
-    kHdCalibrated = 0x5000,
-    kHdUpdate     = 0x5001,
-    kHdByHand     = 0x5002
+    kHdButtons       = 0x2000, // bit i: button i + 1
+    kHdPosition      = 0x2050, // [mm]
+    kHdVelocity      = 0x2051, // [mm/s]
+    kHdTurning       = 0x2053, // [rad/s]
+    kHdTransform     = 0x2052, // 16 numbers by columns
+    kHdModel         = 0x2501,
+    kHdSerial        = 0x2504,
+    kHdStyles        = 0x2555, // of calibration, a sum of HdStyle
+    kHdMostStiffness = 0x2602, // [N/mm]
+    kHdMostForce     = 0x2603, // [N]
+    kHdForce         = 0x2700, // [N]
+    kHdOutput        = 0x4000,
+    kHdClamping      = 0x4001,
+    kHdRamping       = 0x4002,
+    kHdWarm          = 0x200, // errors from here on
+    kHdTooStrong     = 0x201,
+    kHdImpulse       = 0x202,
+    kHdTooFast       = 0x203,
+    kHdForceError    = 0x204, // the last of the errors of forces
+    kHdFault         = 0x300,
+    kHdLine          = 0x302,
+    kHdTimer         = 0x304,
+    kHdLicence       = 0x600,
+    kHdCalibrated    = 0x5000,
+    kHdUpdate        = 0x5001,
+    kHdByHand        = 0x5002
 };
 
 /// Ways of calibration, for hdUpdateCalibration().
