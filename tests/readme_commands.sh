@@ -136,7 +136,7 @@ run() { # runs one command and compares its exit code and message with the expec
     'sh tests/run.sh'* | 'sh samples/demo.sh'* | 'sh engine/package/make.sh'*)
         # The first would run this test again, and the others build for minutes: they run with --dry-run instead.
         script=${1%%#*}
-        (cd "$checkout" && sh -c "$script --dry-run") </dev/null >out 2>err
+        (cd "$checkout" && sh -c "${script%%.sh*}.sh --dry-run${script#*.sh}") </dev/null >out 2>err
         found=$? code=0 says=would
         ;;
     *)

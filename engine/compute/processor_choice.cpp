@@ -37,9 +37,9 @@ std::string withProcessors(const std::string& sentence, const Processors& proces
         text +=
             "; no Vulkan processor was found: install the vendor's driver, or mesa-vulkan-drivers for one in software";
     for (const Processor& one : processors)
-        text += "\n  " + std::to_string(one.index) + "  " + one.name + " (" + name(one.kind) +
-                "): " + (one.refusals.empty() ? "usable" : joined(one.refusals));
-    return text + "\n  host  (this machine's processor): usable";
+        text += "; " + std::to_string(one.index) + " is " + one.name + " (" + name(one.kind) + ", " +
+                (one.refusals.empty() ? "usable" : joined(one.refusals)) + ")";
+    return text + "; host is this machine's own processor";
 }
 
 [[noreturn]] void refuse(const Processors& processors, const std::string& sentence)

@@ -38,7 +38,7 @@ void sayTakeover(const std::string& sentence);
 template <class Open>
 [[nodiscard]] auto orTheReference(const Open& open)
 {
-    constexpr const char* kToo = "\n  reference  (sparse Cholesky in double precision): usable";
+    constexpr const char* kToo = "; reference is sparse Cholesky in double precision";
     try {
         return open();
     } catch (const compute::UnknownProcessor& error) {
