@@ -5,6 +5,7 @@
 #include <charconv>
 #include <utility>
 
+#include "device/detail/shared_library.h"
 #include "device/detail/tcp_line.h"
 #include "engine/core/contract.h"
 
@@ -23,9 +24,22 @@ HaplyOpener openerOf(const HaplyPath& path, std::uint16_t events = kHaplyEventsP
     };
 }
 
+/// Returns where a service is that nobody named: on this machine, or where PALPATE_HAPLY says.
+HaplyPath usualPath()
+{
+    const std::string address = environmentOf("PALPATE_HAPLY");
+    if (address.empty()) return {};
+    try {
+        HaplyPath path = parseHaplyPath(address);
+        if (path.id.empty()) return path;
+    } catch (const Error&) { // named below
+    }
+    throw Error("PALPATE_HAPLY: expected HOST:PORT, found \"" + address + "\"");
+}
+
 std::vector<DeviceListing> list(HidSystem& /*hid*/)
 {
-    const HaplyPath            path;
+    const HaplyPath            path = usualPath();
     std::vector<DeviceListing> devices;
     try {
         for (const HaplyDescription& device : inspectHaply(openerOf(path), kLook).devices) {
@@ -47,7 +61,7 @@ std::vector<DeviceListing> list(HidSystem& /*hid*/)
 
 std::unique_ptr<HapticDevice> make(const DeviceRequest& request)
 {
-    const HaplyPath   path   = parseHaplyPath(request.path);
+    const HaplyPath   path   = parseHaplyPath(request.path, usualPath());
     const std::string events = textOf(request.options, kHaplyEvents);
     const auto        port   = events.empty() ? kHaplyEventsPort : std::uint16_t(numberOf(kHaplyEvents, events));
     return makeHaply(openerOf(path, port), {.id = path.id, .host = path.address()});
@@ -55,7 +69,12 @@ std::unique_ptr<HapticDevice> make(const DeviceRequest& request)
 
 DeviceSupport support()
 {
-    return {true, "a socket to Haply's Inverse Service", ""};
+    constexpr const char* kService = "a socket to Haply's Inverse Service";
+    try {
+        return {true, std::string(kService) + " at " + usualPath().address(), ""};
+    } catch (const Error&) { // list() says what is wrong with the address
+        return {true, kService, ""};
+    }
 }
 
 /// Returns what the service is, and what it does to a force.
@@ -63,7 +82,7 @@ std::vector<Finding> findings()
 {
     const char* part = "haply service";
     try {
-        const HaplyService   service = inspectHaply(openerOf({}), kLook);
+        const HaplyService   service = inspectHaply(openerOf(usualPath()), kLook);
         std::vector<Finding> found{
             {part, Verdict::ok, service.version.empty() ? "it does not say its version" : service.version}};
         for (const HaplyDescription& device : service.devices)
@@ -74,7 +93,9 @@ std::vector<Finding> findings()
         return {{part, Verdict::ok, "not running; an Inverse3 or Minverse needs it, nothing else does"}};
     } catch (const WebSocketError& error) {
         return {{part, Verdict::warning, std::string("another program has its port: ") + error.what(),
-                 "name the service's own with --hand haply:HOST:PORT"}};
+                 "name the service's own by PALPATE_HAPLY=HOST:PORT"}};
+    } catch (const Error& error) {
+        return {{part, Verdict::missing, error.what()}};
     }
 }
 
@@ -88,9 +109,9 @@ const DeviceRecord kHaplyRecord{.name     = "haply",
                                 .support  = support,
                                 .findings = findings};
 
-HaplyPath parseHaplyPath(const std::string& text)
+HaplyPath parseHaplyPath(const std::string& text, HaplyPath usual)
 {
-    HaplyPath         path;
+    HaplyPath         path    = std::move(usual);
     const std::size_t slash   = text.find('/');
     std::string       address = text.substr(0, slash);
     if (slash != std::string::npos) path.id = text.substr(slash + 1);

@@ -25,9 +25,9 @@ struct HaplyPath {
     [[nodiscard]] std::string address() const { return host + ":" + std::to_string(port); }
 };
 
-/// Reads "", "049D", "HOST:PORT" or "HOST:PORT/049D".
+/// Reads "", "049D", "HOST:PORT" or "HOST:PORT/049D". What the text omits is that of `usual`.
 /// \throws Error naming what was found
-[[nodiscard]] HaplyPath parseHaplyPath(const std::string& text);
+[[nodiscard]] HaplyPath parseHaplyPath(const std::string& text, HaplyPath usual = {});
 
 /// Makes the device of a service.
 [[nodiscard]] std::unique_ptr<LineDevice> makeHaply(HaplyOpener open, const HaplyLineSettings& settings,

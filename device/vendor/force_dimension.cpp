@@ -24,7 +24,15 @@ constexpr double kMostForce = 12;  ///< [N] that the library lets through, beyon
 constexpr int    kSame      = 1;   ///< of a read: the sample is that of the last read (TIMEGUARD)
 constexpr double kSettle    = 0.1; ///< [s] at zero force before the first sample
 
-enum Status : std::size_t { kPower = 0, kConnected = 1, kStarted = 2, kReset = 3, kBrake = 6, kForceOff = 14 };
+enum Status : std::size_t {
+    kPower     = 0,
+    kConnected = 1,
+    kStarted   = 2,
+    kReset     = 3,
+    kBrake     = 6,
+    kError     = 9,
+    kForceOff  = 14
+};
 
 /// Why the device itself has switched the force off, by its status.
 const char* reasonOf(int cause) noexcept
@@ -45,6 +53,15 @@ const char* reasonOf(int cause) noexcept
     default:
         return "the device switched its force off";
     }
+}
+
+/// Returns why the device makes no force, by all its status; an empty text if it can.
+const char* reasonOf(const std::array<int, kDrdStatus>& status) noexcept
+{
+    if (status[kPower] == 0) return "the device has no power; see its supply";
+    if (status[kError] != 0) return "the device reports an error; switch it off and on again";
+    if (status[kForceOff] != 0) return reasonOf(status[kForceOff]);
+    return status[kBrake] != 0 ? "the device's brakes are on" : "";
 }
 
 /// Returns whether a person or another program wants the force to be off: then it is theirs to switch on again.
@@ -79,6 +96,27 @@ glm::dquat turnOf(const double (&rows)[3][3]) noexcept
     const glm::dquat turn = glm::quat_cast(ours);
     const double     size = glm::length(turn);
     return size > 0.9 && size < 1.1 ? turn / size : glm::dquat(1, 0, 0, 0);
+}
+
+/// What is known of a type of device.
+struct Row {
+    int    type;
+    double force, stiffness, damping, radius; ///< [N], [N/m], [N s/m], [m]
+    bool   rotates, grips;
+};
+constexpr Row kRows[] = {{33, 12, 5000, 30, 0.075, false, false},  {34, 12, 5000, 30, 0.075, true, false},
+                         {36, 12, 5000, 30, 0.075, true, false},   {35, 12, 5000, 30, 0.075, true, true},
+                         {37, 12, 5000, 30, 0.075, true, true},    {63, 20, 5000, 30, 0.15, false, false},
+                         {104, 12, 4000, 30, 0.075, true, true},   {105, 12, 4000, 30, 0.075, true, true},
+                         {206, 12, 4000, 30, 0.075, false, false}, {108, 12, 8000, 30, 0.1125, true, true},
+                         {109, 12, 8000, 30, 0.1125, true, true},  {131, 12, 8000, 30, 0.1125, true, false},
+                         {132, 12, 8000, 30, 0.1125, true, false}, {203, 12, 8000, 30, 0.1125, false, false},
+                         {60, 8, 3000, 20, 0.04, false, false}};
+constexpr Row kWeakest{-1, 8, 3000, 20, 0.04, false, false}; ///< the least of each column
+
+bool isKnownType(int type) noexcept
+{
+    return std::ranges::find(kRows, type, &Row::type) != std::end(kRows);
 }
 
 class ForceDimensionLine : public DeviceLine {
@@ -129,8 +167,12 @@ void ForceDimensionLine::open(HapticDeviceInfo& info)
     const auto        id    = char(id_);
     const char* const name  = drd_->dhdGetSystemName(id);
     const bool        isSim = info.isSimulation;
-    info                    = forceDimensionInfo(drd_->dhdGetSystemType(id));
+    const int         type  = drd_->dhdGetSystemType(id);
+    info                    = forceDimensionInfo(type);
     info.isSimulation       = isSim;
+    if (!isKnownType(type))
+        info.note =
+            "its type, " + std::to_string(type) + " to its library, is unknown here: it is limited as the weakest";
     if (name) info.model = std::string("Force Dimension ") + name;
     info.path             = std::to_string(settings_.index);
     unsigned short serial = 0;
@@ -182,17 +224,16 @@ bool ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) 
 {
     const auto                  id = char(id_);
     std::array<int, kDrdStatus> status{};
-    status[kConnected] = 1;
+    status[kPower] = status[kConnected] = 1;
     if (drd_->dhdGetStatus(status.data(), id) < 0) return false;
     if (status[kConnected] == 0) {
         sample.fault = DeviceFault::unplugged;
         sample.words = "the device was unplugged or switched off";
         return true;
     }
-    sample.homed        = status[kReset] == 0 && drd_->drdIsInitialized(id);
-    const bool isBraked = status[kBrake] != 0, isOff = status[kForceOff] != 0;
-    sample.fault      = isBraked || isOff ? DeviceFault::ownWatchdog : DeviceFault::none;
-    sample.words      = isOff ? reasonOf(status[kForceOff]) : isBraked ? "the device's brakes are on" : "";
+    sample.homed      = status[kReset] == 0 && drd_->drdIsInitialized(id);
+    sample.words      = reasonOf(status);
+    sample.fault      = *sample.words ? DeviceFault::ownWatchdog : DeviceFault::none;
     const bool mayTry = sample.fault != DeviceFault::none && !isWanted(status[kForceOff]) && !order.enable;
     off_              = mayTry ? off_ + 1 : 0;
     if (off_ < settings_.exchangesToTry) return true;
@@ -274,7 +315,13 @@ std::unique_ptr<HapticDevice> make(const DeviceRequest& request)
 
 DeviceSupport support()
 {
-    return {true, "libdrd.so of Force Dimension's SDK", ""};
+    constexpr const char* kLibrary = "libdrd.so of Force Dimension's SDK";
+    try {
+        static_cast<void>(loadDrd());
+        return {true, kLibrary, ""};
+    } catch (const Error&) {
+        return {true, std::string(kLibrary) + " (not found; see FORCEDIM_SDK)", ""};
+    }
 }
 
 std::vector<Finding> findings()
@@ -305,22 +352,9 @@ const DeviceRecord kForceDimensionRecord{.name     = "forcedimension",
 
 HapticDeviceInfo forceDimensionInfo(int type)
 {
-    struct Row {
-        int    type;
-        double force, stiffness, damping, radius; ///< [N], [N/m], [N s/m], [m]
-        bool   rotates, grips;
-    };
-    static constexpr Row kRows[] = {{33, 12, 5000, 30, 0.075, false, false},  {34, 12, 5000, 30, 0.075, true, false},
-                                    {36, 12, 5000, 30, 0.075, true, false},   {35, 12, 5000, 30, 0.075, true, true},
-                                    {37, 12, 5000, 30, 0.075, true, true},    {63, 20, 5000, 30, 0.15, false, false},
-                                    {104, 12, 4000, 30, 0.075, true, true},   {105, 12, 4000, 30, 0.075, true, true},
-                                    {206, 12, 4000, 30, 0.075, false, false}, {108, 12, 8000, 30, 0.1125, true, true},
-                                    {109, 12, 8000, 30, 0.1125, true, true},  {131, 12, 8000, 30, 0.1125, true, false},
-                                    {132, 12, 8000, 30, 0.1125, true, false}, {203, 12, 8000, 30, 0.1125, false, false},
-                                    {60, 8, 3000, 20, 0.04, false, false}};
-    const auto           found   = std::ranges::find(kRows, type, &Row::type);
-    const Row&           row     = found == std::end(kRows) ? kRows[0] : *found;
-    HapticDeviceInfo     info;
+    const auto       found = std::ranges::find(kRows, type, &Row::type);
+    const Row&       row   = found == std::end(kRows) ? kWeakest : *found;
+    HapticDeviceInfo info;
     info.model            = "Force Dimension device";
     info.workspaceRadius  = row.radius;
     info.maximumForce     = row.force;

@@ -25,7 +25,7 @@ struct ForceDimensionSettings {
 /// Makes the conversation with one device. The library is loaded by open().
 [[nodiscard]] std::unique_ptr<DeviceLine> makeForceDimensionLine(const ForceDimensionSettings& settings = {});
 
-/// Returns the limits of a type of device, by the library's number for it; those of an omega if it is unknown.
+/// Returns the limits of a type of device, by the library's number for it; the weakest of each if it is unknown.
 [[nodiscard]] HapticDeviceInfo forceDimensionInfo(int type);
 
 } // namespace palp

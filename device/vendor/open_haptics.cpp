@@ -161,14 +161,16 @@ bool OpenHapticsLine::drive(const std::function<void()>& turn)
     return true;
 }
 
-/// Looks from time to time whether a device that is not calibrated can be, or is by now.
+/// Looks from time to time whether a device that is not calibrated can be or is by now, and whether one that was still
+/// is. A calibration that could only be better (kHdUpdate) is left alone while it is in use: the hand would jump.
 void OpenHapticsLine::calibrate() noexcept
 {
-    if (isHomed_ || ++looked_ < settings_.exchangesToLook) return;
-    looked_              = 0;
-    const unsigned state = hd_->hdCheckCalibration();
-    isHomed_             = state == kHdCalibrated;
-    if (state != kHdUpdate) return;
+    if (++looked_ < settings_.exchangesToLook) return;
+    looked_               = 0;
+    const unsigned state  = hd_->hdCheckCalibration();
+    const bool     isKept = isHomed_ && state == kHdUpdate;
+    isHomed_              = state == kHdCalibrated || isKept;
+    if (state != kHdUpdate || isKept) return;
     int styles = 0;
     hd_->hdGetIntegerv(kHdStyles, &styles);
     const auto has = [&](HdStyle style) { return (unsigned(styles) & style) != 0; };
@@ -305,7 +307,13 @@ std::unique_ptr<HapticDevice> make(const DeviceRequest& request)
 
 DeviceSupport support()
 {
-    return {true, "libHD.so of OpenHaptics", ""};
+    constexpr const char* kLibrary = "libHD.so of OpenHaptics";
+    try {
+        static_cast<void>(loadHd());
+        return {true, kLibrary, ""};
+    } catch (const Error&) {
+        return {true, std::string(kLibrary) + " (not found; see OPENHAPTICS)", ""};
+    }
 }
 
 std::vector<Finding> findings()

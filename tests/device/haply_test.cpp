@@ -130,6 +130,10 @@ TEST(HaplyPaths, HaveAnAddressOrANumberOrBoth)
     EXPECT_EQ(parseHaplyPath("[::1]/049D").host, "::1");
 
     EXPECT_EQ(parseHaplyPath("").address(), "127.0.0.1:10001");
+    const HaplyPath elsewhere = parseHaplyPath("lab:9000");
+    EXPECT_EQ(parseHaplyPath("", elsewhere).address(), "lab:9000");
+    EXPECT_EQ(parseHaplyPath("049D", elsewhere).address(), "lab:9000");
+    EXPECT_EQ(parseHaplyPath("here:1", elsewhere).address(), "here:1") << "what is said wins";
     EXPECT_EQ(parseHaplyPath("049D").id, "049D");
     EXPECT_EQ(parseHaplyPath("lab:9000").address(), "lab:9000");
     EXPECT_EQ(parseHaplyPath("lab:9000/049D").id, "049D");

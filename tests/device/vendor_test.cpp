@@ -42,6 +42,9 @@ FakeSdk& registersOf(const std::string& library)
     FakeSdk& sdk = *reinterpret_cast<FakeSdk* (*)()>(dlsym(handle, "fakeSdk"))();
     for (int axis = 0; axis < 3; ++axis) sdk.position[axis] = sdk.velocity[axis] = sdk.force[axis] = 0;
     sdk.isPresent = sdk.isReady = true;
+    sdk.type                    = 33;
+    sdk.hasPower                = true;
+    sdk.isBroken = sdk.isLost = false;
     sdk.isForceOn = sdk.isSame = sdk.isOutOfNumbers = sdk.callsLate = false;
     sdk.error = sdk.status = sdk.opened = sdk.closed = sdk.enabled = sdk.calibrated = sdk.calls = sdk.lateCallbacks =
         sdk.openError                                                                           = 0;
@@ -63,18 +66,20 @@ struct Maker {
     std::unique_ptr<DeviceLine> (*line)();
     HapticDeviceInfo (*info)();
     glm::dvec3 (*ours)(const glm::dvec3&); ///< from the library's frame
-    double      metre;                     ///< [m] of its unit of length
-    int         failing;                   ///< error of a device that no longer answers
-    DeviceFault lost;                      ///< what that is
+    double              metre;             ///< [m] of its unit of length
+    const DeviceRecord* record;
+    int                 failing; ///< error of a device that no longer answers
+    DeviceFault         lost;    ///< what that is
 };
 
 constexpr Maker kMakers[] = {
     {"ForceDimension", "FORCEDIM_SDK", PALPATE_FAKE_SDK "/libdrd.so.3", "dhdSetGravityCompensation",
      [] { return makeForceDimensionLine({.exchangesToTry = 50}); }, [] { return forceDimensionInfo(33); },
-     [](const glm::dvec3& v) { return glm::dvec3(v.y, v.z, v.x); }, 1, 1, DeviceFault::linkLost},
+     [](const glm::dvec3& v) { return glm::dvec3(v.y, v.z, v.x); }, 1, &kForceDimensionRecord, 1,
+     DeviceFault::linkLost},
     {"OpenHaptics", "OPENHAPTICS", PALPATE_FAKE_SDK "/libHD.so", "hdUnschedule",
      [] { return makeOpenHapticsLine({.exchangesToTry = 50, .exchangesToLook = 20}); },
-     [] { return openHapticsInfo("Touch"); }, [](const glm::dvec3& v) { return v; }, 1e-3, 0x302,
+     [] { return openHapticsInfo("Touch"); }, [](const glm::dvec3& v) { return v; }, 1e-3, &kOpenHapticsRecord, 0x302,
      DeviceFault::linkLost}};
 
 class MakersLibraries : public ::testing::TestWithParam<Maker> {
@@ -182,6 +187,9 @@ TEST_P(MakersLibraries, WithoutALibraryItSaysWhereItLookedAndWhatToInstall)
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find("install"), std::string::npos) << error.what();
     }
+    EXPECT_NE(GetParam().record->support().library.find("(not found; see " + std::string(GetParam().variable)),
+              std::string::npos)
+        << "and so does the list of devices: " << GetParam().record->support().library;
 }
 
 /// Errors of every call, for ever: zero force, the link is lost, and the same device opens again.
@@ -316,6 +324,44 @@ TEST_P(ForceDimension, AForceThatSomebodySwitchedOffStaysOff)
     }
 }
 
+TEST_P(ForceDimension, WithoutPowerOrWithAnErrorItMakesNoForceAndSaysWhy)
+{
+    device.open();
+    run(0.1, push);
+    const auto isSaid = [&](const char* words) {
+        const double since = now;
+        run(3, push);
+        EXPECT_EQ(state.fault, DeviceFault::ownWatchdog);
+        EXPECT_NE(std::string(device.faultWords()).find(words), std::string::npos) << device.faultWords();
+        EXPECT_LE(pushed - since, kZero);
+    };
+    sdk.hasPower = false;
+    isSaid("no power");
+    sdk.hasPower = true;
+    run(0.3, push);
+    EXPECT_EQ(state.fault, DeviceFault::none);
+    sdk.isBroken = true;
+    isSaid("error");
+}
+
+TEST_P(ForceDimension, ATypeThatIsUnknownIsLimitedAsTheWeakest)
+{
+    device.open();
+    EXPECT_EQ(device.info().note, "");
+    EXPECT_EQ(device.info().maximumForce, 12);
+    device.close();
+    sdk.type = 999;
+    device.open();
+    EXPECT_NE(device.info().note.find("999"), std::string::npos) << device.info().note;
+    for (const int type : {33, 34, 35, 36, 37, 60, 63, 104, 105, 108, 109, 131, 132, 203, 206}) {
+        const HapticDeviceInfo known = forceDimensionInfo(type), unknown = device.info();
+        EXPECT_LE(unknown.maximumForce, known.maximumForce) << type;
+        EXPECT_LE(unknown.maximumStiffness, known.maximumStiffness) << type;
+        EXPECT_LE(unknown.maximumDamping, known.maximumDamping) << type;
+        EXPECT_LE(unknown.workspaceRadius, known.workspaceRadius) << type;
+    }
+}
+
 TEST_P(ForceDimension, ADeviceThatIsUnpluggedIsGone)
 {
     device.open();
@@ -386,6 +432,24 @@ TEST_P(OpenHaptics, ErrorsOfAForceAreSaidAndTheForceComesBack)
         EXPECT_GT(force_(), 1);
         device.close();
     }
+}
+
+TEST_P(OpenHaptics, ACalibrationThatIsLostEndsTheForceAndABetterOneWaits)
+{
+    device.open();
+    run(0.1, push);
+    ASSERT_GT(force_(), 1);
+    sdk.isReady = false; // it could be calibrated better
+    run(0.1, push);
+    EXPECT_TRUE(state.homed) << "not while it is in use: the hand would jump";
+    EXPECT_EQ(sdk.calibrated, 0);
+    sdk.isReady        = true;
+    sdk.isLost         = true;
+    const double since = now;
+    run(0.1, push);
+    EXPECT_FALSE(state.homed);
+    EXPECT_EQ(force_(), 0);
+    EXPECT_LE(pushed - since, kZero + 20 * kTick) << "it is looked at every 20 exchanges";
 }
 
 TEST_P(OpenHaptics, ALicenceThatIsNoneIsASentence)

@@ -57,7 +57,7 @@ int dhdClose(char id)
 }
 int dhdGetSystemType(char)
 {
-    return 33;
+    return sdk().type;
 }
 const char* dhdGetSystemName(char)
 {
@@ -119,10 +119,12 @@ int dhdSetMaxForce(double, char)
 int dhdGetStatus(int* status, char)
 {
     for (int n = 0; n < 17; ++n) status[n] = 0;
-    status[0] = status[2] = 1;
-    status[1]             = sdk().isPresent ? 1 : 0;
-    status[3]             = sdk().isReady ? 0 : 1;
-    status[14]            = sdk().status;
+    status[0]  = sdk().hasPower ? 1 : 0;
+    status[2]  = 1;
+    status[9]  = sdk().isBroken ? 1 : 0;
+    status[1]  = sdk().isPresent ? 1 : 0;
+    status[3]  = sdk().isReady ? 0 : 1;
+    status[14] = sdk().status;
     return 0;
 }
 int dhdStop(char)

@@ -111,6 +111,7 @@ const char* hdGetErrorString(unsigned)
 }
 unsigned hdCheckCalibration()
 {
+    if (sdk().isLost) return palp::kHdByHand;
     return sdk().isReady ? palp::kHdCalibrated : palp::kHdUpdate;
 }
 void hdUpdateCalibration(unsigned style)

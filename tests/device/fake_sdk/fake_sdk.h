@@ -13,8 +13,12 @@ struct FakeSdk {
     std::atomic<bool>   isReady{true};         ///< reset, calibrated
     std::atomic<int>    error{0};              ///< for each call: 0 none, else the library's number of it
     std::atomic<int>    status{0};             ///< Force Dimension: why the force is off
+    std::atomic<int>    type{33};              ///< Force Dimension: the library's number of it, an omega.3's
+    std::atomic<bool>   hasPower{true};        ///< Force Dimension
+    std::atomic<bool>   isBroken{false};       ///< Force Dimension: the device reports an error
     std::atomic<bool>   isSame{false};         ///< Force Dimension: each read gives the sample of before
     std::atomic<bool>   isOutOfNumbers{false}; ///< positions are NaN
+    std::atomic<bool>   isLost{false};         ///< OpenHaptics: its calibration is gone
     std::atomic<int>    openError{0};          ///< OpenHaptics: of opening a device
     std::atomic<int>    opened{0}, closed{0}, enabled{0}, calibrated{0}, calls{0};
     std::atomic<int>    callbackThreads{1}; ///< OpenHaptics: of the scheduler; two call doubled
