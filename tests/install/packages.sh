@@ -25,7 +25,7 @@ one palpate
 needs Depends libc6 libembree libvulkan1
 needs Recommends mesa-vulkan-drivers
 holds bin/palpate lib/udev/rules.d/70-palpate-falcon.rules share/man/man1/palpate.1.gz share/bash-completion/completions/palpate \
-    share/applications/palpate.desktop icons/hicolor/scalable/apps/palpate.svg share/palpate/scenes/palm.json share/doc/palpate/copyright
+    share/applications/palpate.desktop icons/hicolor/scalable/apps/palpate.svg share/palpate/scenes/palm.json share/doc/palpate/copyright share/doc/palpate/changelog.gz
 if grep -E 'include/|\.(a|so|py)( |$)' list; then complain 'the program comes with files for developers'; fi
 dpkg-deb -I "$package" postinst | grep -q 'udevadm trigger' || complain "$package does not tell udev"
 
@@ -42,6 +42,8 @@ one python3-palpate
 needs Depends libpalpate0 python3-numpy
 needs Architecture all
 holds python3/dist-packages/palpate/__init__.py
+# What Python compiles at the first import would stay behind when the package is removed.
+dpkg-deb -I "$package" prerm | grep -q py3clean || complain "$package leaves what Python compiled"
 
 versions=$(for package in *.deb; do field Version; done | sort -u)
 [ "$(echo "$versions" | wc -l)" -eq 1 ] || complain "versions differ: $versions"
