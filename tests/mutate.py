@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""Do the tests bite? Changes one thing of a source at a time and looks whether its tests notice.
+
+usage: python3 tests/mutate.py [--minutes N] [--file TEXT]... [--survivors | --report]
+
+  --minutes N    stop after this time (10); what was judged is kept in BUILD/mutants/results.tsv and not judged again
+  --file TEXT    only sources whose path contains TEXT; tests/mutation/targets.txt lists all
+  --survivors    judge those anew that survived, after the tests have been improved
+  --report       judge nothing, print the table only
+
+It needs a build with tests by ninja, which  cmake -S . -B build -G Ninja -DPALPATE_TESTS=ON  and
+cmake --build build  make; PALPATE_BUILD=FOLDER names another one. Sources take turns, so that any time gives a fair
+sample. Survivors that are known to be harmless stand in tests/mutation/explained.txt with their reason.
+"""
+
+import argparse
+import os
+import random
+import sys
+import time
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+from mutation.bench import Bench, Program
+from mutation.operators import applied, mutants_of
+
+ROOT = Path(__file__).resolve().parent.parent
+COUNTED = ("killed", "timeout", "survived")
+
+
+def targets(words):
+    for line in (ROOT / "tests/mutation/targets.txt").read_text().splitlines():
+        source, *rest = line.split() if line.strip() and not line.startswith("#") else [None]
+        if source and (not words or any(word in source for word in words)):
+            own = rest[0] == "OWN"
+            yield source, [Program(word, own) for word in rest[own:]]
+
+
+def keyed(source):
+    """Returns the mutants of a source by a key that survives edits elsewhere in the file."""
+    text, seen, out = (ROOT / source).read_text(), {}, {}
+    lines = text.split("\n")
+    for mutant in mutants_of(text):
+        line = lines[mutant.line]
+        mutated = applied(line, mutant._replace(line=0)).strip()
+        count = seen[line.strip(), mutated] = seen.get((line.strip(), mutated), 0) + 1
+        out[source, mutant.operator, line.strip(), mutated, str(count)] = mutant
+    return out
+
+
+def read(path):
+    if not path.exists():
+        return {}
+    rows = [line.split("\t") for line in path.read_text().splitlines()]
+    return {tuple(row[:5]): (row[5], row[6]) for row in rows if len(row) == 7}
+
+
+def explained():
+    """Returns (file, line as mutated) of the survivors whose reason is known."""
+    path = ROOT / "tests/mutation/explained.txt"
+    blocks = path.read_text().split("\n\n") if path.exists() else []
+    out = set()
+    for block in blocks:
+        source = None
+        for line in block.splitlines():
+            if line.startswith("    ") and source:
+                out.add((source, line.strip()))
+            elif not line.startswith("#") and line.strip():
+                source = line.split(":")[0]
+    return out
+
+
+def turns(results, wanted, again):
+    """Yields (source, programs, key, mutant) that are to be judged, one of each source in turn."""
+    queues = []
+    for source, programs in wanted:
+        known = keyed(source)
+        keys = [k for k in known if (results.get(k, ("",))[0] == "survived" if again else k not in results)]
+        random.Random(source).shuffle(keys)
+        queues.append([(source, programs, k, known[k]) for k in keys])
+    while any(queues):
+        for queue in queues:
+            if queue:
+                yield queue.pop(0)
+
+
+def report(results, wanted):
+    known, harmless, rows = {source for source, _ in wanted}, explained(), {}
+    for (source, _, _, mutated, _), (verdict, _) in results.items():
+        if source not in known or verdict not in COUNTED:
+            continue
+        judged = "explained" if verdict == "survived" and (source, mutated) in harmless else verdict
+        for name in (source, str(Path(source).parent) + "/", "all"):
+            rows.setdefault(name, {}).setdefault(judged, 0)
+            rows[name][judged] += 1
+    print(f"{'':46} mutants killed explained survived   score")
+    for name in sorted(rows, key=lambda n: (n == "all", str(Path(n).parent) if not n.endswith("/") else n[:-1], not n.endswith("/"), n)):
+        row = rows[name]
+        dead, told = row.get("killed", 0) + row.get("timeout", 0), row.get("explained", 0)
+        total = sum(row.values())
+        print(f"{name:46} {total:7} {dead:6} {told:9} {total - dead - told:8} {100 * (dead + told) / total:6.1f} %")
+    for key, (verdict, _) in sorted(results.items()):
+        source, operator, line, mutated, count = key
+        if source in known and verdict == "survived" and (source, mutated) not in harmless:
+            print(f"survived: {source}, {operator}, occurrence {count}\n    {line}\n    {mutated}")
+
+
+def main():
+    options = argparse.ArgumentParser(add_help=False)
+    options.add_argument("--minutes", type=float, default=10)
+    options.add_argument("--file", action="append", default=[])
+    options.add_argument("--survivors", action="store_true")
+    options.add_argument("--report", action="store_true")
+    options.add_argument("--help", "-h", action="store_true")
+    chosen = options.parse_args()
+    if chosen.help:
+        print(__doc__)
+        return
+    build = Path(os.environ.get("PALPATE_BUILD", ROOT / "build")).resolve()
+    kept = build / "mutants/results.tsv"
+    results, wanted = read(kept), list(targets(chosen.file))
+    if not chosen.report:
+        if not (build / "build.ninja").exists():
+            raise SystemExit(f"{build} holds no build.ninja: build Palpate with its tests by ninja first, see --help")
+        bench, end = Bench(ROOT, build), time.monotonic() + 60 * chosen.minutes
+        for source, programs, key, mutant in turns(results, wanted, chosen.survivors):
+            if time.monotonic() > end:
+                break
+            results[key] = bench.judge(source, applied((ROOT / source).read_text(), mutant), programs)
+            with kept.open("a") as out:
+                out.write("\t".join((*key, *results[key])) + "\n")
+            print(f"{results[key][0]:9} {source}:{mutant.line + 1} {key[3]}", flush=True)
+    report(results, wanted)
+
+
+if __name__ == "__main__":
+    main()

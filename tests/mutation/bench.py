@@ -1,0 +1,149 @@
+"""Builds and judges one mutant: compiles what depends on the source from a mutated copy, links each program of tests with
+those objects first, and runs it. The checkout and its build folder stay as they are."""
+
+import json
+import os
+import re
+import resource
+import shlex
+import subprocess
+import time
+from pathlib import Path
+
+MEMORY = 4 << 30  # [bytes] a mutant may ask for anything
+
+
+class Program:
+    """A program of tests with the filter of its cases."""
+
+    def __init__(self, word: str, own: bool):
+        self.name, _, self.filter = word.partition(":")
+        self.own = own  # only the program's own sources are compiled with a mutated header
+        self.limit = None  # [s]
+
+
+class Bench:
+    def __init__(self, root: Path, build: Path):
+        self.root, self.build = root, build
+        self.work = build / "mutants"
+        self.copies = self.work / "src"
+        self.copies.mkdir(parents=True, exist_ok=True)
+        listed = subprocess.run(["ninja", "-t", "compdb"], cwd=build, capture_output=True, text=True, check=True).stdout
+        self.compile = {e["output"]: e for e in json.loads(listed) if e["output"].endswith(".o")}
+        self.links, self.dependants, self.originals = {}, {}, {}
+
+    def link_of(self, program: str) -> str:
+        """Returns the command that links a program, without what the build does after it."""
+        if program not in self.links:
+            every = subprocess.run(["ninja", "-t", "commands", program], cwd=self.build, capture_output=True, text=True, check=True).stdout
+            last = [line for line in every.splitlines() if f"-o bin/{program} " in line][-1]
+            self.links[program] = last.split("&& ")[1].strip()
+        return self.links[program]
+
+    def objects_of(self, source: str, program: Program) -> list[str]:
+        """Lists the objects in a program that a source goes into."""
+        if not source.endswith(".h"):
+            return [o for o, e in self.compile.items() if Path(e["file"]) == self.root / source and self.is_in(o, program)]
+        key = (source, program.name, program.own)
+        if key not in self.dependants:
+            listed = subprocess.run(["ninja", "-t", "deps"], cwd=self.build, capture_output=True, text=True, check=True).stdout
+            found = []
+            for block in listed.split("\n\n"):
+                lines = block.strip().splitlines()
+                if lines and any(line.strip().endswith("/" + source) for line in lines[1:]):
+                    found.append(lines[0].split(": #deps")[0])
+            self.dependants[key] = [o for o in found if o in self.compile and self.is_in(o, program)]
+        return self.dependants[key]
+
+    def is_in(self, obj: str, program: Program) -> bool:
+        link = shlex.split(self.link_of(program.name))
+        if obj in link:
+            return True
+        library = "/lib" + obj.split("/CMakeFiles/")[1].split(".dir/")[0] + ".a"
+        return not program.own and any(word.endswith(library) for word in link)
+
+    def compiled(self, source: str, text: str, obj: str) -> bytes | None:
+        """Returns the object of this text of the source; None if it does not compile."""
+        copy = self.copies / source
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        copy.write_text(text)
+        entry, out = self.compile[obj], self.work / "mutant.o"
+        command = entry["command"].replace(f"-c {self.root / source}", f"-c {copy}")
+        command = re.sub(r"-o \S+ -c", f"-o {out} -w -iquote {self.copies} -c", command)
+        command = re.sub(r"-MF \S+", f"-MF {self.work / 'mutant.d'}", command)
+        # A precompiled header may hold the source's old text, and a cache would only grow.
+        command = re.sub(r"-Winvalid-pch |-include \S*cmake_pch\S* ", "", command)
+        environment = dict(os.environ, CCACHE_DISABLE="1")
+        done = subprocess.run(command, shell=True, cwd=self.build, capture_output=True, text=True, env=environment)
+        self.errors = done.stderr
+        copy.unlink()
+        return out.read_bytes() if done.returncode == 0 else None
+
+    def original(self, source: str, obj: str) -> bytes:
+        if obj not in self.originals:
+            self.originals[obj] = self.compiled(source, (self.root / source).read_text(), obj)
+            if self.originals[obj] is None:
+                raise SystemExit(f"{source}: does not compile as it is:\n{self.errors}")
+        return self.originals[obj]
+
+    def linked(self, program: Program, objects: dict[str, bytes]) -> Path:
+        out, command = self.work / program.name, self.link_of(program.name)
+        first = []
+        for n, (obj, held) in enumerate(objects.items()):
+            path = self.work / f"linked_{n}.o"
+            path.write_bytes(held)
+            if f" {obj} " in command:
+                command = command.replace(f" {obj} ", f" {path} ")
+            else:
+                first.append(str(path))  # its symbols come before those of the same member of a library
+        command = command.replace(f" -o bin/{program.name} ", f" {' '.join(first)} -o {out} ")
+        subprocess.run(command, shell=True, cwd=self.build, check=True, capture_output=True)
+        return out
+
+    def run(self, path: Path, program: Program, limit: float) -> str:
+        """Returns how the tests ended: passed, the first test that failed, timeout or crash."""
+        arguments = [str(path), "--gtest_fail_fast", "--gtest_brief=1", "--gtest_filter=" + (program.filter or "*")]
+        cap = lambda: resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        child = subprocess.Popen(arguments, cwd=self.work, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                 errors="replace", preexec_fn=cap, start_new_session=True)
+        try:
+            out, _ = child.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            os.killpg(child.pid, 9)
+            child.communicate()
+            return "timeout"
+        if child.returncode == 0:
+            return "passed"
+        failed = re.search(r"\[  FAILED  \] (\S+)", out)
+        return failed.group(1).rstrip(",") if failed else f"crash, status {child.returncode}"
+
+    def prepare(self, program: Program) -> None:
+        """Runs the program as it is: it must pass, and a mutant may take ten times as long."""
+        began = time.monotonic()
+        verdict = self.run(self.build / "bin" / program.name, program, 600)
+        if verdict != "passed":
+            raise SystemExit(f"{program.name} does not pass without a mutant: {verdict}")
+        program.limit = 10 * (time.monotonic() - began) + 10
+
+    def judge(self, source: str, text: str, programs: list[Program]) -> tuple[str, str]:
+        """Returns a verdict and its reason: killed, timeout, survived, same (equal machine code) or invalid."""
+        changed = False
+        for program in programs:
+            objects = {}
+            for obj in self.objects_of(source, program):
+                held = self.compiled(source, text, obj)
+                if held is None:
+                    return "invalid", ""
+                if held != self.original(source, obj):
+                    objects[obj] = held
+            if not objects:
+                continue
+            changed = True
+            if program.limit is None:
+                self.prepare(program)
+            ended = self.run(self.linked(program, objects), program, program.limit)
+            if ended == "timeout":
+                return "timeout", program.name
+            if ended != "passed":
+                return "killed", ended
+        return ("survived" if changed else "same"), ""

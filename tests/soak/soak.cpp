@@ -1,0 +1,165 @@
+// palp_soak: sessions in virtual time, one after the other, over all scenes and hands, with faults at random instants.
+// A batch is one scene with some sessions; it depends on the seed and its number only, so that a run can go on after any
+// batch, and a finding is repeated by that batch alone.
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <string>
+
+#include "engine/session/deformation.h"
+#include "engine/session/shipped_scenes.h"
+#include "tests/soak/episode.h"
+
+namespace palp::soak {
+namespace {
+
+constexpr const char* kUsage =
+    R"(usage: palp_soak [--seed N] [--seconds T | --batch N] [--sessions N] [--part K/N] [--state FILE] [--scenes FOLDER]
+
+  --seed N        of everything that is random (1)
+  --seconds T     stop after the batch in which this time is over (5)
+  --batch N       run this batch only
+  --sessions N    in a batch (40)
+  --part K/N      every N-th batch, from the K-th on, counted from 0 (0/1)
+  --state FILE    go on after the batches that it names, and note each one there
+  --scenes FOLDER (the shipped ones)
+)";
+
+struct Options {
+    std::uint64_t         seed = 1, first = 0, step = 1;
+    double                seconds  = 5;
+    std::int64_t          batch    = -1;
+    int                   sessions = 40;
+    std::string           state;
+    std::filesystem::path scenes;
+};
+
+struct Totals {
+    std::uint64_t batches = 0, sessions = 0, ticks = 0, pressing = 0, troubles = 0, solved = 0;
+
+    void add(const Totals& other)
+    {
+        batches += other.batches;
+        sessions += other.sessions;
+        ticks += other.ticks;
+        pressing += other.pressing;
+        troubles += other.troubles;
+        solved += other.solved;
+    }
+};
+
+std::ostream& operator<<(std::ostream& out, const Totals& t)
+{
+    return out << t.batches << " batches, " << t.sessions << " sessions, " << t.ticks << " ticks (" << t.pressing
+               << " with a force), " << t.troubles << " troubles, " << t.solved << " plates solved";
+}
+
+Options parsed(int count, char** words)
+{
+    Options                            options;
+    std::map<std::string, std::string> given;
+    for (int n = 1; n < count; n += 2) {
+        if (n + 1 == count || std::string(words[n]).rfind("--", 0) != 0)
+            throw Error(std::string("unknown word ") + words[n] + "\n" + kUsage);
+        given[words[n]] = words[n + 1];
+    }
+    for (const auto& [flag, text] : given) {
+        if (flag == "--seed")
+            options.seed = std::stoull(text);
+        else if (flag == "--seconds")
+            options.seconds = std::stod(text);
+        else if (flag == "--batch")
+            options.batch = std::stoll(text);
+        else if (flag == "--sessions")
+            options.sessions = std::stoi(text);
+        else if (flag == "--state")
+            options.state = text;
+        else if (flag == "--scenes")
+            options.scenes = text;
+        else if (flag == "--part") {
+            options.first = std::stoull(text);
+            options.step  = std::stoull(text.substr(1 + text.find('/')));
+        } else
+            throw Error("unknown option " + flag + "\n" + kUsage);
+    }
+    if (options.scenes.empty()) options.scenes = shippedScenesFolder();
+    return options;
+}
+
+/// Runs a batch.
+/// \return true if nothing was wrong
+bool runBatch(const Options& options, const std::vector<ShippedScene>& scenes, std::uint64_t number, Totals& totals)
+{
+    Chance              chance(options.seed * 0x9e3779b97f4a7c15U + number);
+    const ShippedScene& shipped = scenes[number % scenes.size()];
+    Scene               scene   = readScene(shipped.file);
+    scene.solver                = "host";
+    const SoftObject object     = loadObject(scene).object;
+    Deformation      deformation(object, scene);
+    FaultySolver     solver(deformation, chance.bits());
+    for (int n = 0; n < options.sessions; ++n) {
+        const EpisodeReport report = runEpisode(scene, object, deformation, solver, chance.bits());
+        totals.add({0, 1, report.ticks, report.pressing, report.troubles, 0});
+        if (!report.wrong) continue;
+        std::cout << "FOUND in scene " << shipped.name << ", session " << n << " (" << report.what
+                  << "): " << *report.wrong << "\n  again: palp_soak --seed " << options.seed << " --sessions "
+                  << options.sessions << " --batch " << number << std::endl;
+        return false;
+    }
+    totals.add({1, 0, 0, 0, solver.troubles(), solver.solved()});
+    return true;
+}
+
+/// Reads the totals of the batches that were run, and the number of the next.
+std::uint64_t resumed(const Options& options, Totals& totals)
+{
+    std::uint64_t next = options.first;
+    std::ifstream in(options.state);
+    for (std::uint64_t seed = 0, number = 0; in >> seed >> number;) {
+        Totals one;
+        if (!(in >> one.batches >> one.sessions >> one.ticks >> one.pressing >> one.troubles >> one.solved)) break;
+        if (seed != options.seed || number % options.step != options.first) continue;
+        totals.add(one);
+        next = std::max(next, number + options.step);
+    }
+    return next;
+}
+
+int run(const Options& options)
+{
+    using Clock       = std::chrono::steady_clock;
+    const auto scenes = scenesIn(options.scenes);
+    const auto began  = Clock::now();
+    Totals     all;
+    bool       good = true;
+    auto       next = options.batch >= 0 ? std::uint64_t(options.batch) : resumed(options, all);
+    std::cout << "seed " << options.seed << ", from batch " << next << " on" << std::endl;
+    do {
+        Totals one;
+        good = runBatch(options, scenes, next, one) && good;
+        all.add(one);
+        if (!options.state.empty() && options.batch < 0)
+            std::ofstream(options.state, std::ios::app)
+                << options.seed << ' ' << next << ' ' << one.batches << ' ' << one.sessions << ' ' << one.ticks << ' '
+                << one.pressing << ' ' << one.troubles << ' ' << one.solved << std::endl;
+        next += options.step;
+    } while (options.batch < 0 && std::chrono::duration<double>(Clock::now() - began).count() < options.seconds);
+    std::cout << all << std::endl;
+    if (all.pressing == 0) std::cout << "no session had a force: nothing was tested" << std::endl;
+    return good && all.pressing > 0 ? 0 : 1;
+}
+
+} // namespace
+} // namespace palp::soak
+
+int main(int count, char** words)
+{
+    try {
+        return palp::soak::run(palp::soak::parsed(count, words));
+    } catch (const std::exception& error) {
+        std::cerr << error.what() << '\n';
+        return 2;
+    }
+}

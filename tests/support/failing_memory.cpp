@@ -1,0 +1,72 @@
+#include "tests/support/failing_memory.h"
+
+#include <cstddef>
+#include <cstdlib>
+#include <limits>
+#include <new>
+
+namespace {
+
+constexpr std::int64_t kEnough = std::numeric_limits<std::int64_t>::max();
+
+thread_local std::int64_t left   = kEnough; // allocations that succeed
+thread_local bool         ranOut = false;
+
+void* take(std::size_t size, std::size_t alignment)
+{
+    if (left != kEnough && left-- <= 0) {
+        left   = 0;
+        ranOut = true;
+        throw std::bad_alloc();
+    }
+    void* memory = nullptr;
+    if (alignment <= alignof(std::max_align_t))
+        memory = std::malloc(size ? size : 1);
+    else if (::posix_memalign(&memory, alignment, size) != 0)
+        memory = nullptr;
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+
+} // namespace
+
+palp::FailingMemory::FailingMemory(std::int64_t allocations) noexcept
+{
+    left   = allocations;
+    ranOut = false;
+}
+
+palp::FailingMemory::~FailingMemory()
+{
+    left = kEnough;
+}
+
+bool palp::FailingMemory::failed() noexcept
+{
+    return ranOut;
+}
+
+void* operator new(std::size_t size)
+{
+    return take(size, 1);
+}
+void* operator new(std::size_t size, std::align_val_t alignment)
+{
+    return take(size, std::size_t(alignment));
+}
+void operator delete(void* memory) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept
+{
+    std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept
+{
+    std::free(memory);
+}
