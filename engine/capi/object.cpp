@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 #include <span>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -83,6 +84,25 @@ PointCloud cloudOf(const palpate_points& points)
     return {std::move(positions), std::move(stiffness), kindOf(points)};
 }
 
+/// Returns what a caller says of each point; empty for null.
+/// \throws Error naming the first point whose value is out of bounds
+std::vector<double> valuesOf(const palpate_points& points, const void* data, int type, std::size_t stride, double least,
+                             double most, const char* what, const char* unit)
+{
+    if (!data) return {};
+    const Numbers       at(data, type, stride, 1, what);
+    std::vector<double> values(points.count);
+    for (std::size_t n = 0; n < points.count; ++n) {
+        values[n] = at.at(n);
+        if (values[n] >= least && values[n] <= most) continue;
+        std::ostringstream sentence;
+        sentence << what << ": expected " << least << " to " << most << " " << unit << ", found " << values[n]
+                 << " at point " << n;
+        throw Error(sentence.str());
+    }
+    return values;
+}
+
 std::vector<glm::vec3> normalsOf(const palpate_points& points)
 {
     if (!points.normals) return {};
@@ -138,7 +158,11 @@ palpate_object objectOf(const palpate_points& points, Scene scene)
 {
     settleStiffness(points, scene);
     LoadedCloud given{.cloud = cloudOf(points), .report = {}, .faces = facesOf(points), .normals = normalsOf(points)};
-    SoftObject  object = palp::objectOf(asTouched(std::move(given), scene), scene).object;
+    given.stiffening  = valuesOf(points, points.stiffening, points.stiffening_type, points.stiffening_stride, 0,
+                                 kMostStiffening, "stiffening", "1/m");
+    given.foundation  = valuesOf(points, points.foundation, points.foundation_type, points.foundation_stride, 0,
+                                 kMostFoundation, "foundation", "Pa/m");
+    SoftObject object = palp::objectOf(asTouched(std::move(given), scene), scene).object;
     object.survey().expectSurface();
     return {std::move(scene), std::move(object)};
 }

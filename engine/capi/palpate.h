@@ -105,6 +105,14 @@ typedef struct palpate_points {
     size_t          normal_stride;     /**< bytes; 0: side by side */
     const uint32_t* faces;             /**< three points each; may be NULL */
     size_t          face_count;        /**< of faces, each with three indices of points */
+    const void*     stiffening;        /**< b of each point by which its force stiffens with depth, K (e^(b d) - 1) / b,
+                                            0 to 1e5 [1/m]; may be NULL. The scene's key "stiffening" wins over it */
+    int             stiffening_type;   /**< palpate_number */
+    size_t          stiffening_stride; /**< bytes; 0: side by side */
+    const void*     foundation;        /**< pressure per deflection below each point [Pa/m]; may be NULL. It is taken
+                                            where the scene's key "below" is "own" */
+    int             foundation_type;   /**< palpate_number */
+    size_t          foundation_stride; /**< bytes; 0: side by side */
 } palpate_points;
 
 /** Makes an object of points. scene: the keys of samples/scenes/README.md but those of files and samples, as JSON; NULL:
@@ -141,6 +149,7 @@ typedef struct palpate_touch_result {
     double discretisation_error; /**< relative, of the compliance; NaN: the grid tells none */
     double place[3];             /**< on the surface [m] */
     double normal[3];            /**< of the chart there, towards the finger */
+    double stiffening;           /**< b under the fingertip: felt_stiffness is that of the first touch [1/m] */
 } palpate_touch_result;
 
 /** Touches the object. place: [m]; the nearest point within a quarter of the patch window is touched. from: the side that

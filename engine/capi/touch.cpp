@@ -119,6 +119,7 @@ int palpate_touch(const palpate_object* object, const double place[3], const dou
         own.rigidity             = patch.plate.rigidity(middle, middle);
         own.solver_error         = patch.report.errorEstimate.value_or(kNone);
         own.discretisation_error = discretisationError(patch, of.scene.patch, solver).value_or(kNone);
+        own.stiffening           = patch.stiffening;
         put(patch.contact.point, own.place);
         put(patch.chart.frame.normal, own.normal);
         give(result, own);

@@ -59,7 +59,7 @@ std::vector<double> shapeOf(const SoftObject& object, const Scene& scene, std::s
 {
     std::vector<double> shape(ofFile.begin(), ofFile.end());
     if (scene.below.isOwn && shape.empty())
-        throw Error("own: expected a file with a property foundation [Pa/m], found none; see palpate info");
+        throw Error("own: expected a foundation [Pa/m] of each point, such as a property of the file, found none");
     if (!scene.below.isOwn) {
         const Bounds&    bounds = object.cloud().bounds();
         const SpatialLaw law =

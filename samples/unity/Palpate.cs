@@ -29,6 +29,12 @@ static class PalpateNative
         public UIntPtr normal_stride;
         public IntPtr  faces;
         public UIntPtr face_count;
+        public IntPtr  stiffening;
+        public int     stiffening_type;
+        public UIntPtr stiffening_stride;
+        public IntPtr  foundation;
+        public int     foundation_type;
+        public UIntPtr foundation_stride;
     }
 
     [StructLayout(LayoutKind.Sequential)]

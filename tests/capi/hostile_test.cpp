@@ -65,6 +65,7 @@ void expectAnswer(int code, const char* what)
 constexpr auto kScenes = std::to_array<const char*>(
     {R"({"window": "6 mm", "cells": 8, "footprint_radius": "1 mm", "solver": "host"})",
      R"({"window": "6 mm", "cells": 8, "footprint_radius": "1 mm", "solver": "host", "foundation": "1 MPa/m"})",
+     R"({"window": "6 mm", "cells": 8, "footprint_radius": "1 mm", "solver": "host", "foundation": 1e6, "below": "own"})",
      R"({"window": "9 mm", "cells": 16, "footprint_radius": "2 mm", "solver": "host", "foundation": 1e15})",
      R"({"window": "6 mm", "cells": 8, "footprint_radius": "1 mm", "solver": "host", "preset": "paper"})",
      R"({"window": 1e-6, "cells": 8, "footprint_radius": 4e-7, "solver": "host"})",
@@ -80,7 +81,7 @@ constexpr auto kScenes = std::to_array<const char*>(
 palpate_object* anObject(Hostility& h)
 {
     h.rarity = h.oneIn(3) ? 100 : 100'000;
-    std::vector<double> xyz, stiffness, normals;
+    std::vector<double> xyz, stiffness, normals, growth, below;
     const std::size_t   side  = h.oneIn(10) ? h.below(4) : 9;
     const double        scale = h.oneIn(20) ? h.wild() : 1e-3;
     for (std::size_t i = 0; i < side; ++i)
@@ -88,6 +89,8 @@ palpate_object* anObject(Hostility& h)
             const double x = scale * (double(i) + h.mostly(0.2)), y = scale * (double(j) + h.mostly(0.2));
             xyz.insert(xyz.end(), {x, y, h.mostly(1e-4)});
             stiffness.push_back(h.about(h.oneIn(100) ? 1e30 : 3e5));
+            growth.push_back(std::abs(h.about(500)));
+            below.push_back(std::abs(h.about(1e6)));
             normals.insert(normals.end(), {h.mostly(0.2), h.mostly(0.2), h.about(1)});
         }
     std::vector<std::uint32_t> faces(3 * h.below(40));
@@ -101,6 +104,8 @@ palpate_object* anObject(Hostility& h)
     points.normals           = h.oneIn(4) ? normals.data() : nullptr;
     points.faces             = h.oneIn(3) ? faces.data() : nullptr;
     points.face_count        = points.faces || h.oneIn(20) ? faces.size() / 3 : 0;
+    points.stiffening        = h.oneIn(3) ? growth.data() : nullptr;
+    points.foundation        = h.oneIn(3) ? below.data() : nullptr;
     palpate_object* object   = nullptr;
     const int       code     = palpate_object_from_points(&points, kScenes[h.below(kScenes.size())], &object);
     expectAnswer(code, "from_points");

@@ -57,6 +57,32 @@ class Arrays(unittest.TestCase):
         made = palpate.Object(self.points, per * self.stiffness, unit="N m", **SCENE)
         self.assertAlmostEqual(made.touch([0, 0, 0], side=[0, 0, 1]).felt / self.felt, 1, places=9)
 
+    def test_stiffening_and_foundation_of_each_point(self):
+        def touched(**keys):
+            made = palpate.Object(self.points, self.stiffness, **{**SCENE, **keys})
+            return made.touch([0, 0, 0], side=[0, 0, 1])
+
+        n = len(self.points)
+        self.assertEqual(touched().stiffening, 0)
+        self.assertEqual(touched(stiffening=800).stiffening, 800)
+        self.assertAlmostEqual(touched(stiffening=np.full(n, 800.0)).stiffening / 800, 1, places=9)
+        right = touched(stiffening=np.where(self.points[:, 0] > 0, 800, 0)).stiffening
+        self.assertTrue(0 < right < 800, right)  # half of the fingertip lies on it
+        self.assertEqual(touched(stiffening=np.full(n, 800), ).felt, self.felt)  # the first touch is the same
+        # An even array is the key; firmer below a part of it is felt, and less than firmer below all of it.
+        even = touched(foundation=np.full(n, 1.74e6)).felt
+        self.assertAlmostEqual(even / self.felt, 1, places=9)
+        near = np.hypot(*self.points[:, :2].T) < 5e-3
+        under, away = (touched(foundation=np.where(at, 1.74e7, 1.74e6)).felt for at in (near, ~near))
+        firm = touched(foundation="17.4 MPa/m").felt
+        self.assertTrue(1.2 * even < under < firm and 1.2 * even < away < firm, (even, under, away, firm))
+        for wrong, words in [(dict(stiffening=np.full(n, -1.0)), "stiffening: expected 0 to 100000 1/m, found -1 at point 0"),
+                             (dict(stiffening=np.full(n, np.nan)), "stiffening: expected"),
+                             (dict(foundation=np.full(n, -1.0)), "foundation: expected"),
+                             (dict(stiffening=[1.0, 2.0]), "stiffening: expected")]:
+            with self.assertRaisesRegex(palpate.Error, words):
+                touched(**wrong)
+
     def test_what_is_wrong_is_a_sentence(self):
         for words, wrong in ((("points", "(n, 3)"), lambda: palpate.Object(self.points[:, :2], 1e6)),
                              (("stiffness", "(3721)"), lambda: palpate.Object(self.points, self.stiffness[:-1])),

@@ -67,14 +67,16 @@ class _Points(_Struct):
                 ("stiffness_type", ctypes.c_int), ("stiffness_stride", ctypes.c_size_t),
                 ("stiffness_kind", ctypes.c_int), ("uniform_stiffness", ctypes.c_double), ("normals", ctypes.c_void_p),
                 ("normal_type", ctypes.c_int), ("normal_stride", ctypes.c_size_t), ("faces", ctypes.c_void_p),
-                ("face_count", ctypes.c_size_t)]
+                ("face_count", ctypes.c_size_t), ("stiffening", ctypes.c_void_p), ("stiffening_type", ctypes.c_int),
+                ("stiffening_stride", ctypes.c_size_t), ("foundation", ctypes.c_void_p),
+                ("foundation_type", ctypes.c_int), ("foundation_stride", ctypes.c_size_t)]
 
 
 class _TouchResult(_Struct):
     _fields_ = [("size", ctypes.c_size_t), ("felt_stiffness", ctypes.c_double), ("compliance", ctypes.c_double),
                 ("contact_stiffness", ctypes.c_double), ("rigidity", ctypes.c_double),
                 ("solver_error", ctypes.c_double), ("discretisation_error", ctypes.c_double),
-                ("place", ctypes.c_double * 3), ("normal", ctypes.c_double * 3)]
+                ("place", ctypes.c_double * 3), ("normal", ctypes.c_double * 3), ("stiffening", ctypes.c_double)]
 
 
 class _Path(_Struct):
@@ -190,6 +192,7 @@ class Touch(NamedTuple):
     place: np.ndarray           #: (3,) on the surface [m]
     normal: np.ndarray          #: (3,) towards the finger
     points: Optional[np.ndarray]  #: (n, 3) every point under the force that was asked for [m]
+    stiffening: float           #: b of the force felt / b (e^(b d) - 1) at depth d [1/m]; 0: a spring
 
 
 class Perception(NamedTuple):
@@ -221,12 +224,23 @@ class Answer(NamedTuple):
     stiffness: float    #: rendered [N/m]
 
 
+def _per_point(given: Any, name: str, count: int, scene: dict) -> Optional[np.ndarray]:
+    """Returns the array of a value of each point; one value for all becomes the scene's key of that name."""
+    if given is None:
+        return None
+    if isinstance(given, str) or np.ndim(given) == 0:
+        scene[name] = given if isinstance(given, str) else float(given)
+        return None
+    return _doubles(given, name, count)
+
+
 class Object:
     """A soft object of points.
 
     points: (n, 3) [m]. stiffness: (n,), or one number for all, in `unit`: "Pa" of Young's modulus, "N m" of the flexural
-    rigidity. normals: (n, 3) outward, 0 where unknown. faces: (m, 3) numbers of points. Further keywords are the keys of
-    a scene: thickness="4 mm", window=0.04, cells=64, foundation="1.74 MPa/m", ...
+    rigidity. normals: (n, 3) outward, 0 where unknown. faces: (m, 3) numbers of points. stiffening: (n,) or one number, b
+    [1/m] by which the force stiffens with depth. foundation: (n,) [Pa/m] below each point, or one value for all. Further
+    keywords are the keys of a scene: thickness="4 mm", window=0.04, cells=64, ...
 
     >>> palpate.Object([[0, 0, 0]], 1e6)
     Traceback (most recent call last):
@@ -235,7 +249,8 @@ class Object:
     """
 
     def __init__(self, points: ArrayLike, stiffness: ArrayLike, unit: str = "Pa", normals: Optional[ArrayLike] = None,
-                 faces: Optional[ArrayLike] = None, **scene: Any) -> None:
+                 faces: Optional[ArrayLike] = None, stiffening: Union[ArrayLike, str, None] = None,
+                 foundation: Union[ArrayLike, str, None] = None, **scene: Any) -> None:
         self._handle = _void()
         places = _doubles(points, "points", None, 3)
         given = _Points(count=len(places), positions=_address(places))
@@ -251,6 +266,13 @@ class Object:
             given.stiffness = _address(values)
         outward = None if normals is None else _doubles(normals, "normals", len(places), 3)
         given.normals = _address(outward)
+        growth, below = _per_point(stiffening, "stiffening", len(places), scene), _per_point(
+            foundation, "foundation", len(places), scene)
+        given.stiffening, given.foundation = _address(growth), _address(below)
+        if below is not None:  # what the points have, over a value of its size
+            sound = np.clip(below[below > 0], 1, 1e15)
+            scene.setdefault("foundation", float(np.exp(np.mean(np.log(sound)))) if len(sound) else 1.0)
+            scene.setdefault("below", "own")
         corners = None
         if faces is not None:
             numbers = np.asarray(faces)
@@ -331,7 +353,8 @@ class Object:
             _check(_lib.palpate_touch_displaced(self._handle, _address(place), _address(direction), float(force),
                                                 _address(moved), len(self)))
         return Touch(found.felt_stiffness, found.compliance, found.contact_stiffness, found.rigidity,
-                     found.solver_error, found.discretisation_error, np.array(found.place), np.array(found.normal), moved)
+                     found.solver_error, found.discretisation_error, np.array(found.place), np.array(found.normal), moved,
+                     found.stiffening)
 
     def felt_map(self, places: Optional[ArrayLike] = None, sides: Optional[ArrayLike] = None,
                  spacing: Optional[float] = None) -> np.ndarray:
