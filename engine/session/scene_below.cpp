@@ -5,6 +5,7 @@
 #include "engine/cloud/soft_object.h"
 #include "engine/core/contract.h"
 #include "engine/core/json_object.h"
+#include "engine/core/quantity.h"
 #include "engine/session/scene.h"
 
 namespace palp {
@@ -59,7 +60,7 @@ std::vector<double> shapeOf(const SoftObject& object, const Scene& scene, std::s
 {
     std::vector<double> shape(ofFile.begin(), ofFile.end());
     if (scene.below.isOwn && shape.empty())
-        throw Error("own: expected a foundation [Pa/m] of each point, such as a property of the file, found none");
+        throw Error("own: expected a property foundation [Pa/m] of the points, found none; see palpate info");
     if (!scene.below.isOwn) {
         const Bounds&    bounds = object.cloud().bounds();
         const SpatialLaw law =
@@ -150,6 +151,32 @@ std::string belowWithFileIn(const std::string& text, const std::filesystem::path
     } catch (const Json::exception&) {
         return text; // the reader refuses it, and says why
     }
+}
+
+std::vector<std::string> beyondComparedTissue(const Scene& scene)
+{
+    const TissueBelow& tissue = scene.below.tissue;
+    if (!scene.below.isTissue() || (tissue.nodules.empty() && scene.below.volume.empty() && !scene.overlay)) return {};
+    std::vector<std::string> said;
+    const auto compare = [&](const std::string& what, double value, double least, double most, const char* unit) {
+        constexpr double kRounding = 1e-9;
+        if (value >= least * (1 - kRounding) && value <= most * (1 + kRounding)) return;
+        const auto shown = [&](double v) { return formatQuantity(v, unit); };
+        said.push_back(what + " is " + shown(value) + ", and solids were computed for " + shown(least) + " to " +
+                       shown(most) + ": how much of the tissue below is felt is a guess here");
+    };
+    const double sheet = scene.material.thickness;
+    compare("the sheet over the tissue", sheet, 1.5e-3, 4e-3, "m");
+    compare("the fingertip's radius", scene.patch.footprintRadius, 2.4e-3, 6e-3, "m");
+    compare("the depth of the tissue", tissue.depth, 15e-3, 25e-3, "m");
+    for (std::size_t n = 0; n < tissue.nodules.size(); ++n) {
+        const BuriedNodule& nodule = tissue.nodules[n];
+        const std::string   of     = " of nodule " + std::to_string(n + 1);
+        compare("the radius" + of, nodule.radius, 2.5e-3, 7e-3, "m");
+        compare("what lies between the sheet and the top" + of, nodule.depth - nodule.radius - sheet, 1e-3, 5e-3, "m");
+        compare("the modulus" + of + " over that of the tissue", nodule.modulus / tissue.modulus, 0.1, 50, "");
+    }
+    return said;
 }
 
 SoftObject onTissue(const SoftObject& object, const Scene& scene, std::span<const double> ofFile)

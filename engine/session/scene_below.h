@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "engine/cloud/tissue_below.h"
 
@@ -46,5 +47,9 @@ inline constexpr std::string_view kBelowForm =
 /// \throws Error as foundationShape() does, if the volume cannot be read, if the scene has no foundation to vary, and if
 ///         the overlay lays nodules below a sheet under which there is no tissue
 [[nodiscard]] SoftObject onTissue(const SoftObject& object, const Scene& scene, std::span<const double> ofFile = {});
+
+/// Returns, a sentence each, where the scene's tissue leaves the range of the solids that foundationShape() was compared
+/// with, so that the contrast of its nodules or volume is a guess.
+[[nodiscard]] std::vector<std::string> beyondComparedTissue(const Scene& scene);
 
 } // namespace palp

@@ -303,6 +303,35 @@ TEST(Below, TheFirstTouchAndTheTableKnowTheNodule)
     EXPECT_NEAR(std::exp(at->lnCompliance) / touch, 1, 0.25) << "as good as beside a wart: right to 15 %, and a jump";
 }
 
+TEST(Below, WhatLeavesTheRangeOfTheSolidsIsSaid)
+{
+    const auto said = [](const std::string& keys, const std::string& nodule, const char* depth = "15 mm") {
+        const Scene scene = parseScene(R"({"cloud": "sample:sheet", "foundation": "3.3 MPa/m", )" + keys +
+                                           R"(, "below": {"depth": ")" + depth + R"(", "modulus": "20 kPa")" +
+                                           (nodule.empty() ? "" : R"(, "nodules": [)" + nodule + "]") + "}}",
+                                       "scene", ".");
+        return beyondComparedTissue(scene);
+    };
+    const std::string known  = R"("thickness": "2 mm", "footprint_radius": "4 mm")";
+    const std::string nodule = R"({"at": [0, 0, 0], "depth": "8 mm", "radius": "5 mm", "modulus": "1 MPa"})";
+    EXPECT_TRUE(said(known, nodule).empty()) << said(known, nodule).front();
+    EXPECT_TRUE(said(known, "").empty()) << "without a nodule there is nothing to guess";
+    EXPECT_TRUE(said(R"("thickness": "1 mm", "footprint_radius": "9 mm")", "").empty());
+
+    const auto one = [&](const std::vector<std::string>& found, const char* words) {
+        ASSERT_EQ(found.size(), 1U) << words;
+        EXPECT_NE(found[0].find(words), std::string::npos) << found[0];
+    };
+    one(said(R"("thickness": "2 mm", "footprint_radius": "7 mm")", nodule), "fingertip's radius is 7.00 mm");
+    one(said(R"("thickness": "1.4 mm", "footprint_radius": "4 mm")", nodule), "sheet over the tissue is 1.40 mm");
+    one(said(known, nodule, "30 mm"), "depth of the tissue is 30.0 mm");
+    one(said(known, R"({"at": [0, 0, 0], "depth": "8 mm", "radius": "2 mm", "modulus": "1 MPa"})"),
+        "radius of nodule 1");
+    one(said(known, nodule + R"(, {"at": [0, 0, 0], "depth": "13 mm", "radius": "5 mm", "modulus": "1 MPa"})"),
+        "top of nodule 2 is 6.00 mm, and solids were computed for 1.00 mm to 5.00 mm");
+    one(said(known, R"({"at": [0, 0, 0], "depth": "8 mm", "radius": "5 mm", "modulus": "1.1 MPa"})"), "is 55.0");
+}
+
 TEST(Below, WhatIsWrongIsSaidInOneSentence)
 {
     const auto refused = [](const std::string& below, std::initializer_list<const char*> words) {

@@ -12,6 +12,7 @@
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
 #include "engine/core/spatial_law.h"
+#include "engine/session/scene_below.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/study/hunt_scene.h"
 
@@ -54,6 +55,7 @@ std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& 
         said.push_back("no stiffness in the file: uniform " + formatQuantity(kDefaultModulus, "Pa") +
                        " assumed; set --uniform or --stiffness");
     said.insert(said.end(), report.warnings.begin(), report.warnings.end());
+    for (std::string& line : beyondComparedTissue(scene)) said.push_back(std::move(line));
     return said;
 }
 
