@@ -1,6 +1,8 @@
 """Tests of the Python package. Arguments: a scratch folder that may be emptied."""
 
+import copy
 import doctest
+import pickle
 import shutil
 import sys
 import threading
@@ -85,7 +87,7 @@ class Arrays(unittest.TestCase):
 
     def test_what_is_wrong_is_a_sentence(self):
         for words, wrong in ((("points", "(n, 3)"), lambda: palpate.Object(self.points[:, :2], 1e6)),
-                             (("stiffness", "(3721)"), lambda: palpate.Object(self.points, self.stiffness[:-1])),
+                             (("stiffness", "(3721,)"), lambda: palpate.Object(self.points, self.stiffness[:-1])),
                              (("stiffness", "numbers"), lambda: palpate.Object(self.points, ["soft"] * 3721)),
                              (("unit", "MPa"), lambda: palpate.Object(self.points, 1e6, unit="MPa")),
                              (("point 0",), lambda: palpate.Object(self.points, -1)),
@@ -98,11 +100,42 @@ class Arrays(unittest.TestCase):
                              (("nowhere",), lambda: palpate.Object.file("/nowhere.json")),
                              (("edges",), lambda: palpate.plate(np.ones((9, 9)), np.ones((9, 9)), edges="soft")),
                              (("forces", "(9, 9)"), lambda: palpate.plate(np.ones((9, 9)), np.ones((9, 8)))),
-                             (("nowhere",), lambda: palpate.read_recording("/nowhere"))):
+                             (("nowhere",), lambda: palpate.read_recording("/nowhere")),
+                             (("stiffness [Pa]", "300 kPa"), lambda: palpate.Object(self.points, "300 kPa")),
+                             (("stiffness [Pa]", "None"), lambda: palpate.Object(self.points, None)),
+                             (("stiffness", "bool"), lambda: palpate.Object(self.points, self.stiffness > 0)),
+                             (("points", "complex"), lambda: palpate.Object(self.points + 0j, 1e6)),
+                             (("point 7", "nan"), lambda: palpate.Object(
+                                 np.ma.masked_array(self.points, np.arange(3721)[:, None] * [1, 1, 1] == 7), 1e6)),
+                             (('"thickness"', "finite"), lambda: palpate.Object(self.points, 1e6, thickness=np.nan)),
+                             (('"thickness"', "object"), lambda: palpate.Object(self.points, 1e6, thickness=object())),
+                             (("path", "zero"), lambda: palpate.Object.file("a\0b")),
+                             (("size", "(2,)"), lambda: palpate.plate(np.ones((9, 9)), np.ones((9, 9)), 1)),
+                             (("poisson", "soft"), lambda: palpate.plate(np.ones((9, 9)), np.ones((9, 9)), poisson="soft")),
+                             (("tolerance", "None"), lambda: palpate.plate(np.ones((9, 9)), np.ones((9, 9)),
+                                                                           tolerance=None))):
             with self.assertRaises(palpate.Error) as caught:
                 wrong()
             for word in words:
                 self.assertIn(word, str(caught.exception))
+
+
+    def test_numbers_of_numpy_are_values_of_keys(self):
+        scene = dict(SCENE, cells=np.int64(32), poisson=np.float32(0.45), place=np.zeros(3))
+        made = palpate.Object(self.points, self.stiffness, **scene)
+        self.assertEqual(made.settings["cells"], 32)
+
+    def test_a_copy_is_the_object_itself(self):
+        made = palpate.Object(self.points, self.stiffness, **SCENE)
+        again = [copy.copy(made), copy.deepcopy({"made": made})["made"]]
+        del made  # each would give the library's memory back
+        self.assertEqual([len(one) for one in again], [3721, 3721])
+        self.assertIn("3721 points", repr(again[0]))
+        with self.assertRaises(palpate.Error) as caught:
+            pickle.dumps(again[0])
+        self.assertIn("make it anew", str(caught.exception))
+        with again[0].session() as session, self.assertRaises(palpate.Error):
+            copy.copy(session)
 
 
 class Touching(unittest.TestCase):
@@ -128,8 +161,9 @@ class Touching(unittest.TestCase):
         middle = np.argmin(np.linalg.norm(self.made.points, axis=1))
         touched = self.made.touch([0, 0, 0], side=[0, 0, 1]).felt
         self.assertAlmostEqual(felt[middle] / touched, 1, delta=0.2)  # the places lie some millimetres beside it
-        with self.assertRaises(palpate.Error):
-            self.made.felt_map(spacing=-1)
+        for wrong in (-1, "2 mm"):
+            with self.assertRaises(palpate.Error):
+                self.made.felt_map(spacing=wrong)
 
     def test_what_is_noticed_along_a_path_over_the_stiff_disc(self):
         found = self.made.perceive(place=[0, 0, 0], side=[0, 0, 1], direction=[1, 0, 0], reach=0.015, places=11)
@@ -137,8 +171,9 @@ class Touching(unittest.TestCase):
         self.assertEqual(np.argmax(found.felt), 5)
         self.assertTrue(np.all(found.sliding > 1) and np.all(found.floor < 0.5), (found.sliding, found.floor))
         self.assertTrue(np.all(np.diff(found.at_rest) < 0), "duller people tell fewer steps")
-        with self.assertRaises(palpate.Error):
-            self.made.perceive(places=2)
+        for wrong in (2, 2.5, 2**40):
+            with self.assertRaises(palpate.Error):
+                self.made.perceive(places=wrong)
 
     def test_a_run_is_the_same_again_and_pushes_back(self):
         times, places = [0, 1, 2], [[0, 0, 3e-3], [0, 0, -1.5e-3], [0, 0, -1.5e-3]]
@@ -149,6 +184,14 @@ class Touching(unittest.TestCase):
         felt = self.made.touch([0, 0, 0], side=[0, 0, 1]).felt
         self.assertAlmostEqual(forces[-1, 2] / (felt * 1.5e-3), 1, delta=0.05)
         self.assertAlmostEqual(proxies[-1, 2], 0, delta=1e-4)
+        for words, wrong in ((("time must rise",), lambda: self.made.run([0, -1], places[:2])),
+                             (("ticks", "2.5"), lambda: self.made.run(times, places, ticks=2.5)),
+                             (("at", "(3,)"), lambda: self.made.touch(None)),
+                             (("force", "1 N"), lambda: self.made.touch([0, 0, 0], force="1 N"))):
+            with self.assertRaises(palpate.Error) as caught:
+                wrong()
+            for word in words:
+                self.assertIn(word, str(caught.exception))
 
 
 class Sessions(unittest.TestCase):
@@ -179,6 +222,14 @@ class Sessions(unittest.TestCase):
             self.assertTrue(wrong.bad_input and not wrong.force.any())
             self.assertTrue(any(points is not None and points[:, 2].min() < -1e-4 for points in seen))
             ticks, lost = session.stop_recording()
+            for wrong in (("now", [0, 0, 0]), (4, [0, 0]), (4, None), (4, ["a", 0, 0])):
+                with self.assertRaises(palpate.Error):
+                    session.step(*wrong)
+        for closed in (lambda: session.step(5, [0, 0, 0]), session.deformed, lambda: session.words,
+                       lambda: session.record(folder), session.stop_recording):
+            with self.assertRaises(palpate.Error) as caught:
+                closed()
+            self.assertIn("closed", str(caught.exception))
         table, about = palpate.read_recording(folder)
         self.assertEqual((len(table), lost), (ticks, 0))
         self.assertGreater(table["force"][-2][2], 0.2)

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import ctypes
 import json
+import operator
 import os
 from pathlib import Path
 from typing import Any, NamedTuple, Optional, Union
@@ -160,20 +161,91 @@ def version() -> str:
 
 
 def _doubles(values: ArrayLike, what: str, *shape: Optional[int]) -> np.ndarray:
-    """Returns values as doubles in C order, of a shape in which None stands for any length."""
+    """Returns values as doubles in C order, of a shape in which None stands for any length. What a mask hides is NaN."""
     try:
-        array = np.ascontiguousarray(values, dtype=np.float64)
+        hides = isinstance(values, np.ma.MaskedArray)
+        found = np.asarray(values.astype(np.float64).filled(np.nan) if hides else values)
+        if found.dtype.kind in "bcSUmM":  # numpy would convert these, and drop an imaginary part
+            raise Error(f"{what}: expected real numbers, found {found.dtype}")
+        array = np.ascontiguousarray(found, dtype=np.float64)
     except (TypeError, ValueError) as error:
+        if isinstance(error, Error):
+            raise
         raise Error(f"{what}: expected numbers, found {error}") from None
-    fits = array.ndim == len(shape) and all(want in (None, have) for want, have in zip(shape, array.shape))
+    fits = found.ndim == len(shape) and all(want in (None, have) for want, have in zip(shape, found.shape))
     if not fits:
-        wanted = ", ".join("n" if want is None else str(want) for want in shape)
-        raise Error(f"{what}: expected an array of shape ({wanted}), found {array.shape}")
+        wanted = ", ".join("n" if want is None else str(want) for want in shape) + ("," if len(shape) == 1 else "")
+        raise Error(f"{what}: expected an array of shape ({wanted}), found {found.shape}")
     return array
+
+
+def _number(value: Any, what: str) -> float:
+    if isinstance(value, (str, bytes)):  # float() would read some of them
+        raise Error(f"{what}: expected a number in SI units, found {value!r}")
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise Error(f"{what}: expected a number, found {value!r}") from None
+
+
+def _whole(value: Any, what: str) -> int:
+    try:
+        found = operator.index(value)
+    except TypeError:
+        raise Error(f"{what}: expected a whole number, found {value!r}") from None
+    if not -2**31 <= found < 2**31:
+        raise Error(f"{what}: expected a number of 32 bits, found {found}")
+    return found
+
+
+def _plain(value: Any) -> Any:
+    """Returns what json has no form for, such as numbers of numpy, as what it has one for."""
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise TypeError(f"expected numbers, texts and lists of them, found {value!r}")
+
+
+def _scene_text(scene: Any) -> bytes:
+    if isinstance(scene, str):
+        return _bytes(scene, "scene")
+    for key, value in scene.items() if isinstance(scene, dict) else ():
+        try:
+            json.dumps({key: value}, default=_plain, allow_nan=False)
+        except TypeError as error:
+            raise Error(f'scene: key "{key}": {error}') from None
+        except (ValueError, RecursionError):
+            raise Error(f'scene: key "{key}": expected finite numbers, found {value!r}') from None
+    try:
+        return json.dumps(scene, default=_plain).encode()
+    except (TypeError, ValueError) as error:
+        raise Error(f"scene: {error}") from None
+
+
+def _bytes(text: Union[str, os.PathLike], what: str) -> bytes:
+    """Returns a text or a path for C, which would end it at a zero."""
+    try:
+        found = os.fsencode(text)
+    except (TypeError, ValueError):
+        raise Error(f"{what}: expected a text, found {text!r}") from None
+    if b"\0" in found:
+        raise Error(f"{what}: expected a text without a zero byte, found {text!r}")
+    return found
 
 
 def _three(values: Optional[ArrayLike], what: str) -> Optional[np.ndarray]:
     return None if values is None else _doubles(values, what, 3)
+
+
+def _same(self: Any, _: Any = None) -> Any:
+    """An object never changes, so that it is its own copy."""
+    return self
+
+
+def _no_pickle(self: Any, _: Any = None) -> Any:
+    raise Error(f"{type(self).__name__.lower()}: expected what can be copied or pickled, found a handle of the library; "
+                "make it anew from its arrays")
 
 
 def _address(array: Optional[np.ndarray]) -> Optional[int]:
@@ -255,12 +327,12 @@ class Object:
         places = _doubles(points, "points", None, 3)
         given = _Points(count=len(places), positions=_address(places))
         kinds = {"Pa": 0, "N m": 1, "N_m": 1}
-        if unit not in kinds:
+        if not isinstance(unit, str) or unit not in kinds:
             raise Error(f'unit: expected "Pa" or "N m", found {unit!r}')
         given.stiffness_kind = kinds[unit]
         values = None
-        if np.ndim(stiffness) == 0:
-            given.uniform_stiffness = float(stiffness)
+        if stiffness is None or isinstance(stiffness, str) or np.ndim(stiffness) == 0:
+            given.uniform_stiffness = _number(stiffness, f"stiffness [{unit}]")
         else:
             values = _doubles(stiffness, "stiffness", len(places))
             given.stiffness = _address(values)
@@ -283,8 +355,7 @@ class Object:
                             f"found {numbers.min()} to {numbers.max()}")
             corners = np.ascontiguousarray(numbers, dtype=np.uint32)
             given.faces, given.face_count = _address(corners), len(corners)
-        _check(_lib.palpate_object_from_points(ctypes.byref(given), json.dumps(scene).encode(),
-                                               ctypes.byref(self._handle)))
+        _check(_lib.palpate_object_from_points(ctypes.byref(given), _scene_text(scene), ctypes.byref(self._handle)))
 
     @classmethod
     def scene(cls, scene: Union[str, dict], folder: Union[str, os.PathLike] = ".") -> "Object":
@@ -295,8 +366,8 @@ class Object:
         """
         made = cls.__new__(cls)
         made._handle = _void()
-        text = scene if isinstance(scene, str) else json.dumps(scene)
-        _check(_lib.palpate_object_from_scene(text.encode(), os.fsencode(folder), ctypes.byref(made._handle)))
+        _check(_lib.palpate_object_from_scene(_scene_text(scene), _bytes(folder, "folder"),
+                                              ctypes.byref(made._handle)))
         return made
 
     @classmethod
@@ -304,7 +375,7 @@ class Object:
         """Makes the object of a scene file."""
         made = cls.__new__(cls)
         made._handle = _void()
-        _check(_lib.palpate_object_from_file(os.fsencode(path), ctypes.byref(made._handle)))
+        _check(_lib.palpate_object_from_file(_bytes(path, "path"), ctypes.byref(made._handle)))
         return made
 
     def __del__(self) -> None:
@@ -312,8 +383,14 @@ class Object:
         if handle:
             _lib.palpate_object_destroy(handle)
 
+    __copy__ = __deepcopy__ = _same
+    __reduce_ex__ = _no_pickle
+
     def __len__(self) -> int:
         return _lib.palpate_object_size(self._handle)
+
+    def __repr__(self) -> str:
+        return f"<palpate.Object of {len(self)} points>"
 
     @property
     def points(self) -> np.ndarray:
@@ -344,13 +421,14 @@ class Object:
         force: [N]; if given, the answer has every point under it. side: (3,) from where the finger comes; None: away from
         the middle of the object.
         """
-        place, direction = _three(at, "at"), _three(side, "side")
+        place, direction = _doubles(at, "at", 3), _three(side, "side")
+        newtons = None if force is None else _number(force, "force")
         found = _TouchResult()
         _check(_lib.palpate_touch(self._handle, _address(place), _address(direction), ctypes.byref(found)))
         moved = None
-        if force is not None:
+        if newtons is not None:
             moved = np.empty((len(self), 3))
-            _check(_lib.palpate_touch_displaced(self._handle, _address(place), _address(direction), float(force),
+            _check(_lib.palpate_touch_displaced(self._handle, _address(place), _address(direction), newtons,
                                                 _address(moved), len(self)))
         return Touch(found.felt_stiffness, found.compliance, found.contact_stiffness, found.rigidity,
                      found.solver_error, found.discretisation_error, np.array(found.place), np.array(found.normal), moved,
@@ -367,7 +445,8 @@ class Object:
             if places is not None or sides is not None:
                 raise Error("spacing: expected places or a spacing, found both")
             felt = np.empty(len(self))
-            _check(_lib.palpate_felt_map_every(self._handle, float(spacing), _address(felt), len(felt), None))
+            metres = _number(spacing, "spacing")
+            _check(_lib.palpate_felt_map_every(self._handle, metres, _address(felt), len(felt), None))
             return felt
         at = self.points if places is None else _doubles(places, "places", None, 3)
         directions = None if sides is None else _doubles(sides, "sides", len(at), 3)
@@ -384,9 +463,9 @@ class Object:
         finger at rest, 3 to 1001.
         """
         middle, outward, way = _three(place, "place"), _three(side, "side"), _three(direction, "direction")
-        asked = _Path(place=_address(middle), from_=_address(outward), direction=_address(way), reach=float(reach),
-                      places=int(places))
-        found, room = _Perception(), max(3, int(places) or 41)
+        asked = _Path(place=_address(middle), from_=_address(outward), direction=_address(way),
+                      reach=_number(reach, "reach"), places=_whole(places, "places"))
+        found, room = _Perception(), max(3, asked.places or 41)
         along, felt = np.empty(room), np.empty(room)
         _check(_lib.palpate_perceive(self._handle, ctypes.byref(asked), ctypes.byref(found), _address(along),
                                      _address(felt), room))
@@ -402,7 +481,9 @@ class Object:
         at = _doubles(times, "times", None)
         path = _doubles(places, "places", len(at), 3)
         if ticks is None:
-            ticks = int(round(1000 * (at[-1] - at[0]))) if len(at) > 1 and np.isfinite(at[-1] - at[0]) else 0
+            length = at[-1] - at[0] if len(at) > 1 else 0
+            ticks = int(round(1000 * length)) if 0 < length < np.inf else 0  # times that fall are refused below
+        ticks = _whole(ticks, "ticks")
         if not 0 <= ticks <= 86_400_000:
             raise Error(f"ticks: expected 0 to 86400000, which is a day, found {ticks}")
         forces, proxies = np.zeros((ticks, 3)), np.zeros((ticks, 3))
@@ -430,17 +511,24 @@ class Session:
         self._count = len(of)
         self._sequence = ctypes.c_uint64(0)
         self._hand, self._answer = _Hand(), _Answer()
-        settings = _SessionSettings(device_mass=mass, device_damping=damping, maximum_force=force,
-                                    maximum_stiffness=stiffness)
+        settings = _SessionSettings(device_mass=_number(mass, "mass"), device_damping=_number(damping, "damping"),
+                                    maximum_force=_number(force, "maximum_force"),
+                                    maximum_stiffness=_number(stiffness, "maximum_stiffness"))
         _check(_lib.palpate_session_create(of._handle, ctypes.byref(settings), ctypes.byref(self._handle)))
 
     def close(self) -> None:
-        """Ends the session and its recording; later calls do nothing."""
+        """Ends the session and its recording. It may be called again."""
         handle, self._handle = getattr(self, "_handle", None), None
         if handle:
             _lib.palpate_session_destroy(handle)
 
     __del__ = close
+    __copy__ = __deepcopy__ = __reduce_ex__ = _no_pickle
+
+    def _open(self) -> _void:
+        if not self._handle:
+            raise Error("session: expected one that runs, found one that was closed")
+        return self._handle
 
     def __enter__(self) -> "Session":
         return self
@@ -455,10 +543,15 @@ class Session:
         A hand that is not finite gives zero force and bad_input, and no exception.
         """
         hand, answer = self._hand, self._answer
-        hand.position[:] = [float(v) for v in position]
-        hand.velocity[:] = [float(v) for v in velocity]
-        hand.buttons, hand.age = buttons & 0xFFFF, age
-        _check(_lib.palpate_session_step(self._handle, time, ctypes.byref(hand), ctypes.byref(answer)))
+        try:
+            hand.position[:] = [float(v) for v in position]
+            hand.velocity[:] = [float(v) for v in velocity]
+            hand.buttons, hand.age = buttons & 0xFFFF, age
+            now = float(time)
+        except (TypeError, ValueError):
+            raise Error("step: expected a time, three numbers of a position and of a velocity, whole buttons and an "
+                        f"age, found {time!r}, {position!r}, {velocity!r}, {buttons!r}, {age!r}") from None
+        _check(_lib.palpate_session_step(self._open(), now, ctypes.byref(hand), ctypes.byref(answer)))
         flags = answer.flags
         return Answer(np.array(answer.force), bool(flags & 1), bool(flags & 2), bool(flags & 4), bool(flags & 8),
                       np.array(answer.proxy), np.array(answer.normal), answer.depth, answer.stiffness)
@@ -467,24 +560,24 @@ class Session:
     def words(self) -> str:
         """Why the last tick had no force; empty while forces flow."""
         text = ctypes.create_string_buffer(1024)
-        _check(_lib.palpate_session_words(self._handle, text, len(text)))
+        _check(_lib.palpate_session_words(self._open(), text, len(text)))
         return text.value.decode("utf-8", "replace")
 
     def deformed(self) -> Optional[np.ndarray]:
         """Returns every point under the present force, (n, 3) [m], if the plate has a new answer; else None."""
         before = self._sequence.value
         xyz = np.empty((self._count, 3))
-        _check(_lib.palpate_session_deformed(self._handle, _address(xyz), self._count, ctypes.byref(self._sequence)))
+        _check(_lib.palpate_session_deformed(self._open(), _address(xyz), self._count, ctypes.byref(self._sequence)))
         return xyz if self._sequence.value != before else None
 
     def record(self, folder: Union[str, os.PathLike]) -> None:
         """Records from the next tick on into a new folder."""
-        _check(_lib.palpate_session_record(self._handle, os.fsencode(folder)))
+        _check(_lib.palpate_session_record(self._open(), _bytes(folder, "folder")))
 
     def stop_recording(self) -> "tuple[int, int]":
         """Ends the recording; returns how many ticks are on disk, and how many are lost."""
         ticks, lost = ctypes.c_uint64(), ctypes.c_uint64()
-        _check(_lib.palpate_session_stop_recording(self._handle, ctypes.byref(ticks), ctypes.byref(lost)))
+        _check(_lib.palpate_session_stop_recording(self._open(), ctypes.byref(ticks), ctypes.byref(lost)))
         return ticks.value, lost.value
 
 
@@ -515,16 +608,19 @@ def plate(rigidity: ArrayLike, forces: ArrayLike, size: "tuple[float, float]" = 
     D = _doubles(rigidity, "rigidity", None, None)
     f = _doubles(forces, "forces", *D.shape)
     names = {"clamped": 0, "supported": 1, "free": 2}
-    four = (edges,) * 4 if isinstance(edges, str) else tuple(edges)
-    if len(four) != 4 or any(edge not in names for edge in four):
+    four = tuple(edges) if isinstance(edges, (tuple, list)) else (edges,) * 4
+    if len(four) != 4 or any(not isinstance(edge, str) or edge not in names for edge in four):
         raise Error(f"edges: expected clamped, supported or free, or four of them, found {edges!r}")
     if min(D.shape) < 2:
         raise Error(f"rigidity: expected at least 5 x 5 nodes, found {D.shape}")
-    given = _Plate(cells_x=D.shape[0] - 1, cells_z=D.shape[1] - 1, size_x=size[0], size_z=size[1], poisson=poisson,
-                   foundation=foundation, rigidity=_address(D))
+    metres = _doubles(size, "size", 2)
+    given = _Plate(cells_x=D.shape[0] - 1, cells_z=D.shape[1] - 1, size_x=metres[0], size_z=metres[1],
+                   poisson=_number(poisson, "poisson"), foundation=_number(foundation, "foundation"),
+                   rigidity=_address(D))
     given.edges[:] = [names[edge] for edge in four]
     w, error = np.empty(D.shape), ctypes.c_double()
-    _check(_lib.palpate_plate_solve(ctypes.byref(given), _address(f), tolerance, _address(w), ctypes.byref(error)))
+    _check(_lib.palpate_plate_solve(ctypes.byref(given), _address(f), _number(tolerance, "tolerance"), _address(w),
+                                    ctypes.byref(error)))
     return w, error.value
 
 
