@@ -2,6 +2,7 @@
 #include <array>
 #include <string>
 
+#include "engine/core/contract.h"
 #include "engine/session/scripted_hand.h"
 #include "engine/session/session_hand.h"
 #include "tests/soak/chance.h"
@@ -34,7 +35,13 @@ inline SessionHand anyHand(const Scene& scene, const SoftObject& object, double 
                       .radius  = chance.scaleFrom(1e-3, 0.02),
                       .depth   = chance.scaleFrom(1e-4, 6 * scene.material.thickness),
                       .seconds = seconds};
-    if (name != "wild") return openHand(choice, scene, object);
+    if (name != "wild") {
+        try {
+            return openHand(choice, scene, object);
+        } catch (const Error&) { // such a path leaves the device's workspace
+            name += ", refused: wild";
+        }
+    }
     SessionHand hand;
     hand.path   = std::make_unique<const HandPath>(wildPath(handPlace(scene, object), seconds, chance));
     hand.device = std::make_unique<ScriptedHand>(*hand.path);

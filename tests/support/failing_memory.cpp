@@ -10,11 +10,12 @@ namespace {
 constexpr std::int64_t kEnough = std::numeric_limits<std::int64_t>::max();
 
 thread_local std::int64_t left   = kEnough; // allocations that succeed
+thread_local std::size_t  least  = 0;       // [bytes]
 thread_local bool         ranOut = false;
 
 void* take(std::size_t size, std::size_t alignment)
 {
-    if (left != kEnough && left-- <= 0) {
+    if (left != kEnough && size >= least && left-- <= 0) {
         left   = 0;
         ranOut = true;
         throw std::bad_alloc();
@@ -30,8 +31,9 @@ void* take(std::size_t size, std::size_t alignment)
 
 } // namespace
 
-palp::FailingMemory::FailingMemory(std::int64_t allocations) noexcept
+palp::FailingMemory::FailingMemory(std::int64_t allocations, std::size_t leastBytes) noexcept
 {
+    least  = leastBytes;
     left   = allocations;
     ranOut = false;
 }

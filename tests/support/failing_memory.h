@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 
 namespace palp {
@@ -8,7 +9,8 @@ namespace palp {
 class FailingMemory {
 public:
     /// \param allocations  that still succeed
-    explicit FailingMemory(std::int64_t allocations) noexcept;
+    /// \param leastBytes   smaller ones always do
+    explicit FailingMemory(std::int64_t allocations, std::size_t leastBytes = 0) noexcept;
     ~FailingMemory();
     FailingMemory(const FailingMemory&)            = delete;
     FailingMemory& operator=(const FailingMemory&) = delete;

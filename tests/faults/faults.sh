@@ -1,0 +1,107 @@
+#!/bin/sh
+# Faults of the machine, command by command: a disk that is full after some bytes, a folder that cannot be written, few file
+# handles, and kill -9 of a recording and of a study. Argument: the program.
+#
+# Expected each time: exit 0 with everything there, or exit 2 with a sentence; an older file as it was; no part of a file.
+set -u
+palpate=$1
+work=$(mktemp -d)
+trap 'umount "$work/small" "$work/locked" 2>/dev/null; rm -rf "$work"' EXIT
+cd "$work" || exit 1
+passed=0 failed=0
+pass() { passed=$((passed + 1)); }
+complain() { failed=$((failed + 1)); echo "FAILED: $*"; }
+sheet='sample:sheet --points 2000 --cells 16 --solver host'
+
+# shellcheck disable=SC2086
+{
+    "$palpate" convert sample:skin --points 4000 skin.ply >/dev/null 2>&1 || complain 'no cloud'
+    "$palpate" run $sheet --clock virtual --seconds 0.3 --record session >/dev/null 2>&1 || complain 'no session'
+}
+cat >plate.json <<'JSON'
+{"size": [0.04, 0.04], "cells": 16, "rigidity": 2e-3, "poisson": 0.3, "load": {"law": "uniform", "value": 100}}
+JSON
+
+# outputs: each command that writes, as  NAME OUTPUT ARGUMENTS; OUTPUT is a file or a folder at WHERE.
+commands() {
+    cat <<LIST
+convert_ply a.ply convert skin.ply WHERE/a.ply
+convert_pcd a.pcd convert skin.ply WHERE/a.pcd
+convert_csv a.csv convert skin.ply WHERE/a.csv
+paint b.ply paint skin.ply --stroke at=0,0,0mm;radius=5mm;value=2MPa --out WHERE/b.ply
+touch touched touch $sheet --out WHERE/touched
+render c.png render sample:skin --points 4000 --cells 32 --size 240x180 --out WHERE/c.png
+export d.csv export session --csv WHERE/d.csv
+run recorded run $sheet --clock virtual --seconds 0.5 --record WHERE/recorded
+LIST
+}
+
+# judge NAME OUTPUT WHERE CODE: what is left after a command.
+judge() {
+    if [ "$4" -eq 127 ] && grep -q 'loading shared libraries' err.txt; then pass; return; fi # it did not start
+    if [ "$4" -ge 126 ]; then complain "$1 ended by a signal, status $4: $(head -n 2 err.txt)"; return; fi
+    if [ "$4" -ne 0 ] && ! grep -q '^palpate: .*[a-z]' err.txt; then complain "$1: exit $4 without a sentence"; return; fi
+    if find "$3" -name '*.part' | grep -q .; then complain "$1: a part of a file is left"; return; fi
+    if [ "$4" -ne 0 ] && [ -f "$3/$2" ] && [ "$(cat "$3/$2")" != 'what was there before' ]; then complain "$1: exit $4, and the older file is lost"; return; fi
+    if [ "$4" -eq 0 ] && [ ! -e "$3/$2" ]; then complain "$1: exit 0, and nothing is there"; return; fi
+    pass
+}
+
+# attempt NAME OUTPUT WHERE LIMIT ARGUMENTS...: runs a command under a limit, such as 'ulimit -f 8'.
+attempt() {
+    name=$1 output=$2 where=$3 limit=$4
+    shift 4
+    case $output in *.*) (echo 'what was there before' >"$where/$output") 2>/dev/null ;; esac
+    (eval "$limit" && exec "$palpate" "$@") >out.txt 2>err.txt
+    judge "$name ($limit)" "$output" "$where" $?
+}
+
+# every LIMIT WHERE: all commands under it.
+every() {
+    commands | while read -r name output arguments; do
+        arguments=$(printf '%s' "$arguments" | sed "s|WHERE|$2|g; s|;| |g")
+        [ "$name" != paint ] || arguments=$(printf '%s' "$arguments" | sed 's|--stroke \(.*\) --out|--stroke "\1" --out|')
+        eval "attempt $name $output $2 '$1' $arguments" </dev/null
+        [ -f "$2/$output" ] && rm -f "$2/$output"
+        [ -d "$2/$output" ] && rm -rf "${2:?}/$output"
+        echo "$passed $failed" >counts
+    done
+    read -r passed failed <counts
+}
+
+mkdir limited
+for blocks in 1 8 512; do every "ulimit -f $blocks" limited; done # of 512 bytes; with 0 nothing could be said into a file
+for handles in 4 6 10; do every "ulimit -n $handles" limited; done
+
+mkdir small locked
+if mount -t tmpfs -o size=64k none small 2>/dev/null; then
+    every : small
+    umount small
+else
+    echo 'skipped: a small disk can be mounted by root only'
+fi
+if mount -t tmpfs -o ro none locked 2>/dev/null; then
+    every : locked
+    umount locked
+else
+    chmod 555 locked
+    [ -w locked ] || every : locked
+fi
+
+# A kill at any instant leaves a recording that is read up to the last 10 ms; of real time, so that instants matter.
+instants=${PALPATE_INSTANTS:-3} n=0
+# shellcheck disable=SC2086
+while [ $n -lt "$instants" ]; do
+    rm -rf killed
+    "$palpate" run $sheet --seconds 20 --record killed </dev/null >/dev/null 2>&1 &
+    child=$!
+    while [ ! -s killed/ticks.npy ] && kill -0 $child 2>/dev/null; do sleep 0.02; done
+    sleep "$(awk -v n=$n 'BEGIN { srand(n + 1); printf "%.3f", rand() * 1.5 }')"
+    kill -9 $child 2>/dev/null
+    wait $child 2>/dev/null
+    if "$palpate" export killed --csv killed.csv >out.txt 2>err.txt && [ "$(wc -l <killed.csv)" -gt 1 ]; then pass; else complain "a recording killed at random, $n: $(cat err.txt)"; fi
+    n=$((n + 1))
+done
+
+echo "$passed checks passed, $failed failed"
+[ $failed -eq 0 ]
