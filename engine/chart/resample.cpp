@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/chart/detail/log_mean.h"
@@ -12,37 +13,43 @@
 namespace palp {
 namespace {
 
-/// Takes the rigidity of the nearest point where there is no mean yet; returns the number of nodes without a point
-/// nearby.
-void takeNearest(const PatchWindow& window, std::span<const ChartPoint> positions, std::span<const double> rigidities,
-                 double nearby, Resampled& result)
+/// Takes the values of the nearest point where there is no mean yet, and counts the nodes without a point nearby.
+void takeNearest(const PatchWindow& window, std::span<const ChartPoint> positions, std::span<const PointValues> values,
+                 double nearby, std::vector<Resampled>& results)
 {
     const PlateGrid&                 grid    = window.grid;
     const std::vector<std::uint32_t> nearest = nearestPoint(grid, window.corner, positions);
-    std::size_t                      n       = 0;
+    std::size_t                      n = 0, without = 0;
     for (int i = 0; i < grid.nodesX(); ++i)
         for (int j = 0; j < grid.nodesZ(); ++j, ++n) {
             const ChartPoint& point = positions[nearest[n]];
             const double      x     = point.x - window.corner.x - i * grid.spacingX;
             const double      z     = point.z - window.corner.z - j * grid.spacingZ;
-            result.nodesWithoutPoint += x * x + z * z > nearby * nearby;
-            double& rigidity = result.rigidity.values()[n];
-            if (std::isnan(rigidity)) rigidity = rigidities[nearest[n]];
+            without += x * x + z * z > nearby * nearby;
         }
+    for (std::size_t v = 0; v < values.size(); ++v) {
+        results[v].nodesWithoutPoint = without;
+        std::vector<double>& nodes   = results[v].rigidity.values();
+        for (n = 0; n < nodes.size(); ++n)
+            if (std::isnan(nodes[n])) nodes[n] = values[v][nearest[n]];
+    }
 }
 
-/// Fills the nodes that have no mean yet with those over wider squares.
-void fillFromWider(const PatchWindow& window, std::span<const ChartPoint> positions, std::span<const double> rigidities,
-                   double width, Resampled& result)
+/// Fills the nodes that have no mean yet with those over squares of this width.
+void fill(const PatchWindow& window, std::span<const ChartPoint> positions, std::span<const PointValues> values,
+          double width, std::span<Resampled> results)
 {
-    const LogMeanSums   sums(window, positions, rigidities, width);
     const auto          nodes = std::size_t(window.grid.nodesZ());
     std::vector<double> row(nodes);
-    for (int i = 0; i < window.grid.nodesX(); ++i) {
-        sums.means(i, row);
-        double* to = &result.rigidity.values()[std::size_t(i) * nodes];
-        for (std::size_t j = 0; j < nodes; ++j)
-            if (std::isnan(to[j])) to[j] = row[j];
+    for (std::size_t begin = 0; begin < values.size(); begin += LogMeanSums::kTogether) {
+        const std::size_t count = std::min(LogMeanSums::kTogether, values.size() - begin);
+        const LogMeanSums sums(window, positions, values.subspan(begin, count), width);
+        for (std::size_t v = 0; v < count; ++v)
+            for (int i = 0; i < window.grid.nodesX(); ++i) {
+                sums.means(i, v, row);
+                double* to = &results[begin + v].rigidity.values()[std::size_t(i) * nodes];
+                for (std::size_t j = 0; j < nodes; ++j) to[j] = std::isnan(to[j]) ? row[j] : to[j];
+            }
     }
 }
 
@@ -72,12 +79,13 @@ double kernelReach(double pointSpacing, double nodeSpacing) noexcept
     return kResamplingReach * resamplingWidth(pointSpacing, nodeSpacing);
 }
 
-Resampled resampleRigidity(const PatchWindow& window, std::span<const ChartPoint> positions,
-                           std::span<const double> rigidities, Resampling resampling, double pointSpacing,
-                           double sparsest)
+std::vector<Resampled> resampleAll(const PatchWindow& window, std::span<const ChartPoint> positions,
+                                   std::span<const PointValues> values, Resampling resampling, double pointSpacing,
+                                   double sparsest)
 {
-    PALP_EXPECT(!positions.empty() && positions.size() == rigidities.size(),
-                std::to_string(positions.size()) + " positions, " + std::to_string(rigidities.size()) + " rigidities");
+    for (const PointValues& of : values)
+        PALP_EXPECT(!positions.empty() && positions.size() == of.size(),
+                    std::to_string(positions.size()) + " positions, " + std::to_string(of.size()) + " values");
     const PlateGrid& grid  = window.grid;
     const double     cell  = std::max(grid.spacingX, grid.spacingZ);
     const double     width = resamplingWidth(pointSpacing, cell),
@@ -85,18 +93,22 @@ Resampled resampleRigidity(const PatchWindow& window, std::span<const ChartPoint
 
     PALP_EXPECT(areFinite(positions), "a point is not finite");
 
-    Resampled result{NodeField(grid, std::numeric_limits<double>::quiet_NaN()), 0};
+    std::vector<Resampled> results(values.size(), {NodeField(grid, std::numeric_limits<double>::quiet_NaN()), 0});
     if (resampling == Resampling::logMean) {
-        const LogMeanSums sums(window, positions, rigidities, width);
-        const auto        nodes = std::size_t(grid.nodesZ());
-        for (int i = 0; i < grid.nodesX(); ++i)
-            sums.means(i, std::span(result.rigidity.values()).subspan(std::size_t(i) * nodes, nodes));
-        if (surelyCovered(window, positions, width)) return result;
+        fill(window, positions, values, width, results);
+        if (surelyCovered(window, positions, width)) return results;
         for (double wider = 2 * width; wider < 2 * widest; wider *= 2)
-            fillFromWider(window, positions, rigidities, std::min(wider, widest), result);
+            fill(window, positions, values, std::min(wider, widest), results);
     }
-    takeNearest(window, positions, rigidities, kResamplingNearby * widest, result);
-    return result;
+    takeNearest(window, positions, values, kResamplingNearby * widest, results);
+    return results;
+}
+
+Resampled resampleRigidity(const PatchWindow& window, std::span<const ChartPoint> positions,
+                           std::span<const double> rigidities, Resampling resampling, double pointSpacing,
+                           double sparsest)
+{
+    return std::move(resampleAll(window, positions, {&rigidities, 1}, resampling, pointSpacing, sparsest)[0]);
 }
 
 } // namespace palp

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "engine/chart/chart.h"
 #include "engine/core/grid.h"
@@ -23,6 +24,9 @@ struct PatchWindow {
 
     [[nodiscard]] bool holds(const ChartPoint& p) const noexcept;
 };
+
+/// A quantity of each point, > 0.
+using PointValues = std::span<const double>;
 
 struct Resampled {
     NodeField   rigidity;              ///< D [N m] at the nodes
@@ -58,5 +62,12 @@ struct Resampled {
 [[nodiscard]] Resampled resampleRigidity(const PatchWindow& window, std::span<const ChartPoint> positions,
                                          std::span<const double> rigidities, Resampling resampling, double pointSpacing,
                                          double sparsest = 0);
+
+/// Computes several quantities of the same points at the nodes, each as resampleRigidity() would alone and to its bits,
+/// in less time than one after the other.
+/// \return  in their order; nodesWithoutPoint is the same in all
+[[nodiscard]] std::vector<Resampled> resampleAll(const PatchWindow& window, std::span<const ChartPoint> positions,
+                                                 std::span<const PointValues> values, Resampling resampling,
+                                                 double pointSpacing, double sparsest = 0);
 
 } // namespace palp

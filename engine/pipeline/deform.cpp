@@ -440,19 +440,26 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
     refuseIfFew(patch, settings);
     rigiditiesOf(object, touched, rigidities);
     const auto [finest, sparsest] = spacingsOf(patch, object, ranks);
-    Resampled resampled     = resampleRigidity(patch.window, places, rigidities, settings.resampling, finest, sparsest);
-    patch.nodesWithoutPoint = resampled.nodesWithoutPoint;
-    patch.plate             = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
-                               std::move(resampled.rigidity)};
-    refuseIfEmpty(patch, settings);
-    const auto atNodes = [&](std::span<const double> ofPoints, auto asRatio) {
-        for (std::size_t k = 0; k < touched.size(); ++k) rigidities[k] = asRatio(ofPoints[touched[k]]);
-        return resampleRigidity(patch.window, places, rigidities, settings.resampling, finest, sparsest).rigidity;
+
+    std::vector<PointValues>         values{rigidities};
+    std::vector<std::vector<double>> others;
+    const auto                       add = [&](std::span<const double> ofPoints, auto asRatio) {
+        std::vector<double>& own = others.emplace_back(touched.size());
+        for (std::size_t k = 0; k < touched.size(); ++k) own[k] = asRatio(ofPoints[touched[k]]);
+        values.emplace_back(own);
     };
-    if (!object.foundationShape().empty() && settings.foundation > 0)
-        patch.plate.foundationShape = atNodes(object.foundationShape(), [](double shape) { return shape; });
+    const bool isTissue = !object.foundationShape().empty() && settings.foundation > 0;
+    if (isTissue) add(object.foundationShape(), [](double shape) { return shape; });
+    if (!object.stiffening().empty()) add(object.stiffening(), growthOf);
+
+    std::vector<Resampled> resampled = resampleAll(patch.window, places, values, settings.resampling, finest, sparsest);
+    patch.nodesWithoutPoint          = resampled[0].nodesWithoutPoint;
+    patch.plate = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
+                   std::move(resampled[0].rigidity)};
+    refuseIfEmpty(patch, settings);
+    if (isTissue) patch.plate.foundationShape = std::move(resampled[1].rigidity);
     if (object.stiffening().empty()) return;
-    patch.stiffeningAtNodes = atNodes(object.stiffening(), growthOf);
+    patch.stiffeningAtNodes = std::move(resampled.back().rigidity);
     for (double& growth : patch.stiffeningAtNodes.values()) growth = stiffeningOf(growth);
 }
 

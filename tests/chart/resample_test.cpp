@@ -99,6 +99,33 @@ TEST(Resample, LogMeanIsTheGaussianMeanOfTheLogarithm)
 }
 
 /// Why the kernel is the default: move the window over the same points and watch one place of the object.
+/// Dense points, whose squares hold 4 x 4 nodes, sparse ones, whose squares hold more, and points with a hole; one, two
+/// and three quantities.
+TEST(Resample, SeveralQuantitiesAreEachWhatTheyWouldBeAlone)
+{
+    const PatchWindow window = PatchWindow::square(0.03, 32);
+    for (const std::size_t points : {40'000, 900, 60})
+        for (const Resampling rule : {Resampling::logMean, Resampling::nearest})
+            for (const std::size_t quantities : {1, 2, 3}) {
+                Scatter s = scatter(0.03, points, 4, [](const ChartPoint& p) { return 1 + 9 * (p.x > 0.004); });
+                if (points == 900) std::erase_if(s.positions, [](const ChartPoint& p) { return p.x * p.x < 1e-5; });
+                std::vector<std::vector<double>> own(quantities, std::vector<double>(s.positions.size()));
+                for (std::size_t v = 0; v < quantities; ++v)
+                    for (std::size_t n = 0; n < own[v].size(); ++n)
+                        own[v][n] =
+                            std::exp(double(v + 1) * std::sin(400 * (s.positions[n].x + double(v) * s.positions[n].z)));
+                const std::vector<PointValues> values(own.begin(), own.end());
+                const auto together = resampleAll(window, s.positions, values, rule, s.spacing, 2 * s.spacing);
+                ASSERT_EQ(together.size(), quantities);
+                for (std::size_t v = 0; v < quantities; ++v) {
+                    const Resampled alone =
+                        resampleRigidity(window, s.positions, own[v], rule, s.spacing, 2 * s.spacing);
+                    EXPECT_EQ(together[v].rigidity.values(), alone.rigidity.values()) << points << " points, " << v;
+                    EXPECT_EQ(together[v].nodesWithoutPoint, alone.nodesWithoutPoint);
+                }
+            }
+}
+
 TEST(Resample, LogMeanJittersLessThanNearestWhileTheGridSlides)
 {
     const Scatter s      = scatter(1, 2000, 4, [](const ChartPoint& p) { return std::exp(2.3 * std::tanh(8 * p.x)); });

@@ -1,12 +1,16 @@
 #include "engine/chart/detail/log_mean.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <numbers>
+#include <string>
+
+#include "engine/core/contract.h"
 
 // A point is spread over the nodes around it, which costs one multiplication and one sum per node and sum: the square's
 // side is eight widths, so nothing that treats points by cells is shorter at the accuracy of doubles (moments about the
@@ -131,13 +135,17 @@ PALPATE_PART int factorsOf(double ratio, double scale, const double* table, int 
     return m / kLanes;
 }
 
+/// \tparam kValues  quantities of the points
+template <std::size_t kValues>
 struct Task {
-    const PatchWindow&          window;
-    std::span<const ChartPoint> positions;
-    std::span<const double>     rigidities;
-    double                      width;
-    std::size_t                 stride;
-    double*                     sums;
+    const PatchWindow&               window;
+    std::span<const ChartPoint>      positions;
+    std::array<PointValues, kValues> values;
+    double                           width;
+    std::size_t                      stride;
+    double*                          sums;
+
+    static constexpr std::size_t kSums = 1 + kValues; ///< for each node
 };
 
 std::vector<double> tableOf(double spacing, double width, int nodes)
@@ -149,28 +157,25 @@ std::vector<double> tableOf(double spacing, double width, int nodes)
     return table;
 }
 
-PALPATE_PART void addRow(double factor, const double* factors, const double* logarithms, int registers, double* weight,
-                         double* logarithm)
+PALPATE_PART void addRow(double factor, const double* factors, int registers, double* sums)
 {
     for (int v = 0; v < registers * kLanes; v += kLanes) {
-        Numbers f, g, w, l;
+        Numbers f, s;
         std::memcpy(&f, factors + v, sizeof f);
-        std::memcpy(&g, logarithms + v, sizeof g);
-        std::memcpy(&w, weight + v, sizeof w);
-        std::memcpy(&l, logarithm + v, sizeof l);
-        w += factor * f;
-        l += factor * g;
-        std::memcpy(weight + v, &w, sizeof w);
-        std::memcpy(logarithm + v, &l, sizeof l);
+        std::memcpy(&s, sums + v, sizeof s);
+        s += factor * f;
+        std::memcpy(sums + v, &s, sizeof s);
     }
 }
 
 /// Sums at 4 x 4 nodes, of points that follow each other.
+template <std::size_t kValues>
 class RunOfPoints {
 public:
-    explicit RunOfPoints(const Task& task) : task_(task) {}
+    explicit RunOfPoints(const Task<kValues>& task) : task_(task) {}
 
-    PALPATE_PART void add(int i, int j, const double* alongX, const double* alongZ, double logarithm)
+    PALPATE_PART void add(int i, int j, const double* alongX, const double* alongZ,
+                          const std::array<double, kValues>& logarithms)
     {
         if (i != i_ || j != j_) {
             handOver();
@@ -179,44 +184,51 @@ public:
         }
         Numbers z;
         std::memcpy(&z, alongZ, sizeof z);
-        const Numbers l = z * logarithm;
-        w0_ += alongX[0] * z;
-        w1_ += alongX[1] * z;
-        w2_ += alongX[2] * z;
-        w3_ += alongX[3] * z;
-        l0_ += alongX[0] * l;
-        l1_ += alongX[1] * l;
-        l2_ += alongX[2] * l;
-        l3_ += alongX[3] * l;
+        sums_[0].add(alongX, z);
+        for (std::size_t v = 0; v < kValues; ++v) sums_[v + 1].add(alongX, z * logarithms[v]);
     }
     PALPATE_PART void handOver()
     {
         if (i_ < 0) return;
-        double* row = task_.sums + std::size_t(i_) * 2 * task_.stride + std::size_t(j_);
-        for (const Numbers* sum : {&w0_, &l0_, &w1_, &l1_, &w2_, &l2_, &w3_, &l3_}) {
-            Numbers there;
-            std::memcpy(&there, row, sizeof there);
-            there += *sum;
-            std::memcpy(row, &there, sizeof there);
-            row += task_.stride;
-        }
-        w0_ = w1_ = w2_ = w3_ = l0_ = l1_ = l2_ = l3_ = Numbers{};
-        i_                                            = -1;
+        double* row = task_.sums + std::size_t(i_) * task_.kSums * task_.stride + std::size_t(j_);
+        for (const auto part : {&FourRows::a, &FourRows::b, &FourRows::c, &FourRows::d})
+            for (const FourRows& sum : sums_) {
+                Numbers there;
+                std::memcpy(&there, row, sizeof there);
+                there += sum.*part;
+                std::memcpy(row, &there, sizeof there);
+                row += task_.stride;
+            }
+        sums_ = {};
+        i_    = -1;
     }
 
 private:
-    const Task& task_;
-    int         i_ = -1, j_ = -1; ///< the first node; -1: no point yet
-    Numbers     w0_{}, w1_{}, w2_{}, w3_{}, l0_{}, l1_{}, l2_{}, l3_{};
+    struct FourRows {
+        Numbers a{}, b{}, c{}, d{};
+
+        PALPATE_PART void add(const double* alongX, const Numbers& z)
+        {
+            a += alongX[0] * z;
+            b += alongX[1] * z;
+            c += alongX[2] * z;
+            d += alongX[3] * z;
+        }
+    };
+
+    const Task<kValues>&              task_;
+    int                               i_ = -1, j_ = -1; ///< the first node; -1: no point yet
+    std::array<FourRows, kValues + 1> sums_{};          ///< of the weights, then of those times each logarithm
 };
 
 /// The points that come near the window, a piece at a time: where a ball is gathered about a square, a third do not.
+template <std::size_t kValues>
 class NearPoints {
 public:
-    ChartPoint positions[kPiece];  ///< [m]
-    double     rigidities[kPiece]; ///< [N m]
+    ChartPoint positions[kPiece]; ///< [m]
+    double     values[kValues][kPiece];
 
-    explicit NearPoints(const Task& task) : task_(task)
+    explicit NearPoints(const Task<kValues>& task) : task_(task)
     {
         const double reach  = kResamplingReach * task.width;
         const auto&  corner = task.window.corner;
@@ -230,51 +242,57 @@ public:
         for (; next_ < task_.positions.size() && count < kPiece; ++next_) {
             const ChartPoint p = task_.positions[next_];
             positions[count]   = p;
-            rigidities[count]  = task_.rigidities[next_];
+            for (std::size_t v = 0; v < kValues; ++v) values[v][count] = task_.values[v][next_];
             count += std::size_t((p.x >= low_.x) & (p.x <= high_.x) & (p.z >= low_.z) & (p.z <= high_.z));
         }
         return count;
     }
 
 private:
-    const Task& task_;
-    ChartPoint  low_, high_;
-    std::size_t next_ = 0;
+    const Task<kValues>& task_;
+    ChartPoint           low_, high_;
+    std::size_t          next_ = 0;
 };
 
-PALPATE_PART void spreadAll(const Task& task)
+template <std::size_t kValues>
+PALPATE_PART void spreadAll(const Task<kValues>& task)
 {
     const PlateGrid&          grid   = task.window.grid;
     const std::vector<double> tableX = tableOf(grid.spacingX, task.width, grid.nodesX());
     const std::vector<double> tableZ = tableOf(grid.spacingZ, task.width, grid.nodesZ());
-    std::vector<double>       factors(tableX.size() + 2 * tableZ.size());
-    double* const             alongX   = factors.data();
-    double* const             alongZ   = alongX + tableX.size();
-    double* const             weighted = alongZ + tableZ.size();
+    const int                 margin = int(tableZ.size());
+    std::vector<double>       factors(tableX.size() + task.kSums * tableZ.size());
+    double* const             alongX = factors.data();
+    double* const             alongZ = alongX + tableX.size(); // then the same times each logarithm
     Reach                     x, z;
-    double                    nearest[kPiece];     // the weight of the first node, but for the tables [1]
-    double                    logarithmOf[kPiece]; // ln(D / 1 N m)
-    RunOfPoints               run(task);
-    NearPoints                near(task);
+    double                    nearest[kPiece]; // the weight of the first node, but for the tables [1]
+    double                    logarithmOf[kValues][kPiece];
+    RunOfPoints<kValues>      run(task);
+    NearPoints<kValues>       near(task);
     while (const std::size_t count = near.next()) {
         const auto positions = std::span<const ChartPoint>(near.positions, count);
         x.find(positions, &ChartPoint::x, task.window.corner.x, task.width, grid.spacingX, grid.nodesX());
         z.find(positions, &ChartPoint::z, task.window.corner.z, task.width, grid.spacingZ, grid.nodesZ());
         for (std::size_t n = 0; n < count; ++n) nearest[n] = x.from[n] * x.from[n] + z.from[n] * z.from[n];
         exponentials(-0.5 / (task.width * task.width), nearest, nearest, count);
-        logarithms(near.rigidities, logarithmOf, count);
+        for (std::size_t v = 0; v < kValues; ++v) logarithms(near.values[v], logarithmOf[v], count);
         for (std::size_t n = 0; n < count; ++n) {
             if (x.count[n] == 0 || z.count[n] == 0) continue;
             factorsOf(x.ratio[n], 1, tableX.data(), x.count[n], alongX);
             const int registers = factorsOf(z.ratio[n], nearest[n], tableZ.data(), z.count[n], alongZ);
             if (x.count[n] <= kLanes && registers == 1) {
-                run.add(x.first[n], z.first[n], alongX, alongZ, logarithmOf[n]);
+                std::array<double, kValues> own;
+                for (std::size_t v = 0; v < kValues; ++v) own[v] = logarithmOf[v][n];
+                run.add(x.first[n], z.first[n], alongX, alongZ, own);
                 continue;
             }
-            for (int m = 0; m < registers * kLanes; ++m) weighted[m] = alongZ[m] * logarithmOf[n];
-            double* row = task.sums + std::size_t(x.first[n]) * 2 * task.stride + std::size_t(z.first[n]);
-            for (int r = 0; r < x.count[n]; ++r, row += 2 * task.stride)
-                addRow(alongX[r], alongZ, weighted, registers, row, row + task.stride);
+            for (std::size_t v = 0; v < kValues; ++v)
+                for (int m = 0; m < registers * kLanes; ++m)
+                    alongZ[int(v + 1) * margin + m] = alongZ[m] * logarithmOf[v][n];
+            double* row = task.sums + std::size_t(x.first[n]) * task.kSums * task.stride + std::size_t(z.first[n]);
+            for (int r = 0; r < x.count[n]; ++r)
+                for (std::size_t s = 0; s < task.kSums; ++s, row += task.stride)
+                    addRow(alongX[r], alongZ + int(s) * margin, registers, row);
         }
     }
     run.handOver();
@@ -289,7 +307,8 @@ PALPATE_PART void meansOf(const double* weight, const double* logarithm, std::sp
         to[j] = weight[j] > 0 ? to[j] : std::numeric_limits<double>::quiet_NaN();
 }
 
-void spreadPortable(const Task& task)
+template <std::size_t kValues>
+void spreadPortable(const Task<kValues>& task)
 {
     spreadAll(task);
 }
@@ -299,7 +318,8 @@ void meansPortable(const double* weight, const double* logarithm, std::span<doub
 }
 #if defined(__x86_64__)
 // Without FMA, so that every processor gives the same bits.
-__attribute__((target("avx2"))) void spreadAvx2(const Task& task)
+template <std::size_t kValues>
+__attribute__((target("avx2"))) void spreadAvx2(const Task<kValues>& task)
 {
     spreadAll(task);
 }
@@ -309,7 +329,8 @@ __attribute__((target("avx2"))) void meansAvx2(const double* weight, const doubl
 }
 #endif
 
-void spread(const Task& task)
+template <std::size_t kValues>
+void spread(const Task<kValues>& task)
 {
 #if defined(__x86_64__)
     if (__builtin_cpu_supports("avx2")) return spreadAvx2(task);
@@ -395,20 +416,25 @@ private:
 } // namespace
 
 LogMeanSums::LogMeanSums(const PatchWindow& window, std::span<const ChartPoint> positions,
-                         std::span<const double> rigidities, double width)
-    : grid_(window.grid), stride_(std::size_t(grid_.nodesZ() + kLanes)),
-      sums_(2 * std::size_t(grid_.nodesX() + kLanes) * stride_)
+                         std::span<const PointValues> values, double width)
+    : grid_(window.grid), stride_(std::size_t(grid_.nodesZ() + kLanes)), sumsPerRow_(1 + values.size()),
+      sums_(sumsPerRow_ * std::size_t(grid_.nodesX() + kLanes) * stride_)
 {
-    spread({window, positions, rigidities, width, stride_, sums_.data()});
+    PALP_EXPECT(values.size() == 1 || values.size() == kTogether, std::to_string(values.size()) + " quantities");
+    if (values.size() == 1)
+        spread(Task<1>{window, positions, {values[0]}, width, stride_, sums_.data()});
+    else
+        spread(Task<2>{window, positions, {values[0], values[1]}, width, stride_, sums_.data()});
 }
 
-void LogMeanSums::means(int i, std::span<double> row) const
+void LogMeanSums::means(int i, std::size_t quantity, std::span<double> row) const
 {
-    const double* weight = sums_.data() + 2 * std::size_t(i) * stride_;
+    const double* const weight    = sums_.data() + sumsPerRow_ * std::size_t(i) * stride_;
+    const double* const logarithm = weight + (1 + quantity) * stride_;
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) return meansAvx2(weight, weight + stride_, row);
+    if (__builtin_cpu_supports("avx2")) return meansAvx2(weight, logarithm, row);
 #endif
-    meansPortable(weight, weight + stride_, row);
+    meansPortable(weight, logarithm, row);
 }
 
 bool surelyCovered(const PatchWindow& window, std::span<const ChartPoint> positions, double width)

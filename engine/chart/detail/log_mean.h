@@ -11,17 +11,23 @@ namespace palp {
 /// about each; see resampleRigidity().
 class LogMeanSums {
 public:
-    /// \param width  standard deviation of the Gaussian [m]
-    LogMeanSums(const PatchWindow& window, std::span<const ChartPoint> positions, std::span<const double> rigidities,
+    /// Most quantities whose sums are made at once: a point's weights are made once for both.
+    static constexpr std::size_t kTogether = 2;
+
+    /// \param values  one to kTogether quantities of the points, > 0, each in a unit of its own
+    /// \param width   standard deviation of the Gaussian [m]
+    LogMeanSums(const PatchWindow& window, std::span<const ChartPoint> positions, std::span<const PointValues> values,
                 double width);
 
-    /// Computes exp of the mean of ln D [N m] of one row of nodes; not a number where no point reaches.
-    void means(int i, std::span<double> row) const;
+    /// Computes exp of the mean of the logarithms of one quantity along one row of nodes; not a number where no point
+    /// reaches.
+    void means(int i, std::size_t quantity, std::span<double> row) const;
 
 private:
     PlateGrid           grid_;
     std::size_t         stride_; ///< of a row of one sum, with a margin that whole registers may run into
-    std::vector<double> sums_;   ///< for each row of nodes, and a few more, those of w [1], then those of w ln(D / 1 N m)
+    std::size_t         sumsPerRow_;
+    std::vector<double> sums_; ///< for each row of nodes, and a few more, those of w [1], then those of w ln v of each
 };
 
 /// Returns true if a quick test shows that every node of a window has a point nearby, as resampleRigidity() counts it;
