@@ -101,9 +101,10 @@ struct MultigridPlateSolver::Impl {
     double                   rounding = kRounding; ///< see MultigridPlateSolver::rounding()
     PlatePasses              passes;
 
-    Buffer  units; ///< metres per unit of the shaders' deflection, per load
-    Staging hostRigidity, hostLoads, hostUnits;
-    Buffer  hostState, result;
+    Buffer                units; ///< metres per unit of the shaders' deflection, per load
+    Staging               hostRigidity, hostLoads, hostUnits;
+    Buffer                hostState;
+    std::optional<Buffer> ownResult; ///< see result()
 
     /// The lists of a solve, recorded when they are first needed.
     struct Lists {
@@ -144,9 +145,16 @@ struct MultigridPlateSolver::Impl {
           units(context, "metres per unit", 4 * std::size_t(loads), Intent::processor),
           hostRigidity(context, passes.levels[0].rigidity), hostLoads(context, passes.levels[0].load),
           hostUnits(context, units), hostState(context, "state for the host", passes.state.bytes(), Intent::readback),
-          result(context, "deflection", 4 * plate.grid.nodes() * loads, Intent::readback)
+          ownResult(passes.levels[0].forces.mapped()
+                        ? std::nullopt
+                        : std::optional<Buffer>(std::in_place, context, "deflection", 4 * plate.grid.nodes() * loads,
+                                                Intent::readback))
     {
     }
+
+    /// Returns the memory of the deflection in floats [m]. Where the host sees all memory it is that of A p, which no
+    /// step needs once it is taken.
+    [[nodiscard]] const Buffer& result() const { return ownResult ? *ownResult : passes.levels[0].forces; }
 
     /// The kernels compare in floats, and host and kernels must agree on when a solve is finished.
     static Settings rounded(Settings wanted)
@@ -171,7 +179,7 @@ struct MultigridPlateSolver::Impl {
         const int             before = list.dispatches();
         passes.takeGradientSteps(pass, 0, kStepsPerList, k.smoothing.finest, begins, settings.tolerance);
         lists[std::size_t(jumps)].stepDispatches = (list.dispatches() - before) / kStepsPerList;
-        list.dispatch(k.result, {passes.levels[0].answer, units, result},
+        list.dispatch(k.result, {passes.levels[0].answer, units, result()},
                       shared::VectorPush{std::uint32_t(passes.nodes()), passes.partials(), 0},
                       passes.inOrder(k.result, 0));
         if (footprints) {
@@ -458,9 +466,9 @@ struct MultigridPlateSolver::Impl {
 
     [[nodiscard]] NodeField readAnswer(std::size_t load) const
     {
-        result.makeVisibleToHost();
+        result().makeVisibleToHost();
         const Place  at   = placeOf(load);
-        const float* from = result.as<float>().data() + at.first;
+        const float* from = result().as<float>().data() + at.first;
         NodeField    w(plate.grid);
         for (double& value : w.values()) {
             value = double(*from);

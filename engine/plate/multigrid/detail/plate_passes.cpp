@@ -55,7 +55,8 @@ PlatePasses::PlatePasses(compute::Context& context, const PlateKernels::All& ker
       hostArguments_(context, "groups from the host", argumentBytes(), Intent::upload),
       hostTiles_(context, "numbers of tiles for the host", 4 * grids_.levels.size(), Intent::readback)
 {
-    levels = makeLevels();
+    gradients_ = makeGradients();
+    levels     = makeLevels();
     if (k.smoothing.by == Smoother::redBlack) zeroes_.emplace(floats("zeroes", fieldSize(0)));
     std::memset(hostArguments_.mapped(), 0, argumentBytes());
     for (std::size_t l = 0; l < grids_.levels.size(); ++l)
@@ -96,6 +97,14 @@ Buffer PlatePasses::reals(const std::string& name, std::size_t count) const
     return {context_, name, k.realBytes() * count, Intent::processor};
 }
 
+std::vector<Buffer> PlatePasses::makeGradients() const
+{
+    std::vector<Buffer> made;
+    for (const char* name : {"answer", "left", "direction", "forces"}) made.push_back(reals(name, fieldSize(0)));
+    if (k.fused) made.push_back(reals("other direction", fieldSize(0)));
+    return made;
+}
+
 std::vector<LevelBuffers> PlatePasses::makeLevels() const
 {
     std::vector<LevelBuffers> made;
@@ -112,11 +121,11 @@ std::vector<LevelBuffers> PlatePasses::makeLevels() const
                         floats("marks" + of, tilesOf(level(l))),
                         floats("tiles" + of, 1 + tilesOf(level(l))),
                         floats("load" + of, field),
-                        reals("answer" + of, field),
-                        reals("left" + of, field),
-                        reals("direction" + of, field),
-                        reals("forces" + of, field),
-                        reals("other direction" + of, k.fused ? field : 1)});
+                        gradients_[l % 2],
+                        gradients_[1 - l % 2],
+                        gradients_[2],
+                        gradients_[3],
+                        gradients_.back()});
     }
     return made;
 }

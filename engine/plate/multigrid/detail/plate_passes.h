@@ -23,8 +23,12 @@ struct LevelBuffers {
     compute::Buffer force, w[2];  ///< of the cycle, floats
     compute::Buffer marks, tiles; ///< where the rigidity jumps: a flag per tile; number of tiles, then their indices
     compute::Buffer load;         ///< force of the nested iteration, floats
-    compute::Buffer answer, left, direction, forces; ///< x, r, p, A p of conjugate gradients, real
-    compute::Buffer otherDirection;                  ///< real: where the schedule is fused, every second p; else a word
+
+    // Conjugate gradients run on one level after another, and all levels share the memory of the finest one's. An answer
+    // and its residual change places from level to level: a level interpolates the answer of the next coarser one, and
+    // needs its residual's memory only when that answer has been used.
+    const compute::Buffer &answer, &left, &direction, &forces; ///< x, r, p, A p, real
+    const compute::Buffer& otherDirection;                     ///< real: where the schedule is fused, every second p
 
     /// In a cycle A p is not computed yet: its memory holds the residual, in floats, or deflections that are set aside.
     [[nodiscard]] const compute::Buffer& residual() const noexcept { return forces; }
@@ -108,12 +112,13 @@ private:
     static constexpr std::size_t kSizes     = 256; ///< of dispatches, in the table; a list has about 60
     static constexpr std::size_t kSizeBytes = 12;  ///< three words
 
-    [[nodiscard]] std::size_t               fieldSize(std::size_t l) const;
-    [[nodiscard]] std::size_t               bandSize() const;
-    [[nodiscard]] compute::Buffer           floats(const std::string& name, std::size_t count) const;
-    [[nodiscard]] compute::Buffer           reals(const std::string& name, std::size_t count) const;
-    [[nodiscard]] std::vector<LevelBuffers> makeLevels() const;
-    void                                    uploadTables();
+    [[nodiscard]] std::size_t                  fieldSize(std::size_t l) const;
+    [[nodiscard]] std::size_t                  bandSize() const;
+    [[nodiscard]] compute::Buffer              floats(const std::string& name, std::size_t count) const;
+    [[nodiscard]] compute::Buffer              reals(const std::string& name, std::size_t count) const;
+    [[nodiscard]] std::vector<compute::Buffer> makeGradients() const;
+    [[nodiscard]] std::vector<LevelBuffers>    makeLevels() const;
+    void                                       uploadTables();
 
     [[nodiscard]] std::size_t     argumentsFor(compute::Groups groups);
     void                          setGroups(std::size_t offset, compute::Groups groups);
@@ -145,7 +150,8 @@ private:
     GridHierarchy            grids_;
     std::uint32_t            loads_, partials_;
 
-    std::optional<compute::Buffer> zeroes_; ///< a deflection of zero, for the first sweep in red and black
+    std::vector<compute::Buffer>   gradients_; ///< the memory of conjugate gradients
+    std::optional<compute::Buffer> zeroes_;    ///< a deflection of zero, for the first sweep in red and black
     compute::Buffer                band_, factor_, lost_, sums_, arguments_, hostArguments_, hostTiles_;
     std::vector<Rim>               rims_;                ///< by level, where the kernels solve them
     std::vector<compute::Buffer>   rimViews_;            ///< a RimView each
