@@ -72,5 +72,15 @@ if grep -q PALPATE_TESTS "$place/calls"; then echo "FAILED: the demo changed the
 check 'the tests after the demo' 0 'testing' env PALPATE_BUILD="$place/build" sh tests/run.sh
 calls 'the tests after the demo are built' '-DPALPATE_TESTS=ON'
 
+# The gate of a release lists its steps, goes on after one that fails, and says so at its end.
+for name in plain validation 'fuzz replay' soak install package asan tsan compiler 'second driver' performance; do
+    check "the gate has the step $name" 0 "would run $name:" sh tests/run.sh --all --dry-run
+done
+check 'the gate without a last release' 0 'skipped, no --release' sh tests/run.sh --all --dry-run
+check 'a release that is no program' 2 'expected the program' sh tests/run.sh --all --release "$place/nothing"
+stand_in ctest "case \"\$*\" in *asan*) exit 8 ;; esac"
+check 'a gate with a failure' 1 'FAILED, status 8' env PALPATE_BUILD="$place/build" sh tests/run.sh --all
+check 'a gate goes on after a failure' 1 '== tsan: building' env PALPATE_BUILD="$place/build" sh tests/run.sh --all
+
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

@@ -6,15 +6,18 @@ cd "$(dirname "$0")/.." || exit 1
 
 usage() {
     cat <<'TEXT'
-usage: sh tests/run.sh [--asan | --tsan | --all] [--yes] [--no-install] [--dry-run] [-- CTEST-OPTIONS]
+usage: sh tests/run.sh [--asan | --tsan] [--yes] [--no-install] [--dry-run] [-- CTEST-OPTIONS]
        sh tests/run.sh --driver ICD.json
+       sh tests/run.sh --all [--driver ICD.json] [--release PROGRAM]
 
   (nothing)      every test, Release build in build/
   --asan         the same tests under AddressSanitizer and UndefinedBehaviorSanitizer, in build/asan
   --tsan         the same tests under ThreadSanitizer, in build/tsan
-  --all          all three builds in turn, and GPU-assisted validation of the shaders
+  --all          what a release has to pass: those three builds, validation of the shaders, fuzzing's replay, a minute of the
+                 soak, the other compiler, installation and packages; ends with a table
   --driver FILE  builds, and runs the tests of shaders and pictures on the first processor of another Vulkan driver: FILE
                  is its manifest, as /usr/share/vulkan/icd.d has them. Golden pictures are skipped there
+  --release FILE with --all: palpate of the last release; this one may be slower beside its peers by 15 % at most
   --yes          install missing packages without asking (password-less sudo)
   --no-install   install nothing; exit 3 naming what is missing
   --dry-run      print the steps without running them
@@ -24,15 +27,20 @@ usage: sh tests/run.sh [--asan | --tsan | --all] [--yes] [--no-install] [--dry-r
 TEXT
 }
 
-flavours= all= driver=
+flavours= all= driver= release=
 while [ $# -gt 0 ]; do
     case $1 in
     --asan) flavours="$flavours asan" ;;
     --tsan) flavours="$flavours tsan" ;;
-    --all) flavours='plain asan tsan' all=1 ;;
+    --all) all=1 ;;
     --driver)
         [ $# -gt 1 ] || { say "--driver: expected the manifest of a Vulkan driver, a .json file"; exit 2; }
         driver=$2
+        shift
+        ;;
+    --release)
+        [ $# -gt 1 ] && [ -x "$2" ] || { say "--release: expected the program palpate of the last release"; exit 2; }
+        release=$(cd "$(dirname "$2")" && pwd)/$(basename "$2")
         shift
         ;;
     --help | -h) usage; exit 0 ;;
@@ -60,26 +68,49 @@ run_on_driver() (
     exit $failures
 )
 
+# build_flavour plain|asan|tsan|other FOLDER
+build_flavour() {
+    sanitizers= compiler=
+    case $1 in
+    asan) sanitizers=address,undefined ;;
+    tsan) sanitizers=thread ;;
+    other) compiler=-DCMAKE_CXX_COMPILER=$other ;;
+    esac
+    say "== $1: building in $2"
+    # The demo's build has cached PALPATE_TESTS=OFF.
+    # shellcheck disable=SC2086
+    prepare_build "$2" -DPALPATE_TESTS=ON -DPALPATE_WERROR=ON -DPALPATE_SANITIZE=$sanitizers -DPALPATE_BENCHMARKS=$([ "$1" = plain ] && echo ON || echo OFF) $compiler
+}
+
+# test_flavour FOLDER CTEST-OPTIONS...
+test_flavour() {
+    folder=$1
+    shift
+    ctest --test-dir "$folder" --output-on-failure --no-tests=error --parallel "$(jobs)" "$@"
+}
+
 # shellcheck disable=SC2086
 prepare_packages $packages_build $packages_tests
 top=${PALPATE_BUILD:-build}
+if [ -n "$all" ]; then
+    . tests/release_gate.sh
+    release_gate "$@"
+    exit
+fi
 failed=0
 for flavour in ${flavours:-plain}; do
     case $flavour in
-    plain) folder=$top sanitizers= ;;
-    asan) folder=$top/asan sanitizers=address,undefined ;;
-    tsan) folder=$top/tsan sanitizers=thread ;;
+    plain) folder=$top ;;
+    *) folder=$top/$flavour ;;
     esac
-    say "== $flavour: building in $folder"
-    # The demo's build has cached PALPATE_TESTS=OFF.
-    prepare_build "$folder" -DPALPATE_TESTS=ON -DPALPATE_WERROR=ON -DPALPATE_SANITIZE=$sanitizers -DPALPATE_BENCHMARKS=$([ $flavour = plain ] && echo ON || echo OFF)
+    build_flavour "$flavour" "$folder"
     if [ -n "$dry_run" ]; then say "would run the tests in $folder"; continue; fi
     if [ -n "$driver" ]; then run_on_driver "$folder" || failed=1; continue; fi
     say "== $flavour: testing"
     # Instrumented shaders are 20 times slower: they run with --all, or if ctest options are given.
     excluded=
-    [ $# -gt 0 ] || { [ -n "$all" ] && [ $flavour = plain ]; } || excluded='-LE shader-gpu-assisted'
+    [ $# -gt 0 ] || excluded='-LE shader-gpu-assisted'
     # shellcheck disable=SC2086
-    ctest --test-dir "$folder" --output-on-failure --no-tests=error --parallel "$(jobs)" $excluded "$@" || failed=1
+    test_flavour "$folder" $excluded "$@" || failed=1
 done
 exit $failed

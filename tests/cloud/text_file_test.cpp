@@ -29,6 +29,13 @@ TEST(TextFile, ThreeNumbersArePositionsAndAFourthIsStiffness)
     EXPECT_EQ(text("1 2 3 70\n4 5 6 80").cloud.stiffness()[1], 80);
 }
 
+TEST(TextFile, BlanksBeforeACommentOrAHeaderDoNotCount)
+{
+    EXPECT_EQ(text("  # a remark\n1 2 3\n4 5 6\n").cloud.positions().size(), 2U);
+    EXPECT_EQ(text(" \t\n 1 2 3\n4 5 6\n").cloud.positions()[0], glm::dvec3(1, 2, 3));
+    EXPECT_EQ(text("  x,y,z,stiffness  \n1,2,3,70\n4,5,6,80\n").cloud.stiffness()[0], 70);
+}
+
 TEST(TextFile, BlanksTabsCommasAndSemicolonsSeparate)
 {
     for (const std::string bytes : {"1 2 3 7\n4 5 6 8\n", "  1   2 3\t7 \n\t4\t5\t6\t8\t\n", "1,2,3,7\n4,5,6,8\n",

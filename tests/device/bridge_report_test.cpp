@@ -160,6 +160,25 @@ TEST(BridgeReport, WhatDoesNotFitEndsAtTheFieldsLimit)
     EXPECT_NEAR(back.deviceTime, 1, 1e-9) << "the device's clock wraps around";
 }
 
+TEST(BridgeReport, ASilencedCommandIsTheSameWithoutItsForce)
+{
+    BridgeCommand command;
+    command.sequence   = 40;
+    command.enable     = true;
+    command.force      = {1, -2, 3};
+    BridgeBytes report = encode(command);
+    EXPECT_TRUE(kBridgeZero.pushes(report));
+
+    kBridgeZero.silence(report);
+
+    BridgeCommand found;
+    ASSERT_EQ(decode(report, found), BridgeVerdict::good);
+    EXPECT_FALSE(kBridgeZero.pushes(report));
+    EXPECT_FALSE(found.enable);
+    EXPECT_EQ(found.force, glm::dvec3(0));
+    EXPECT_EQ(found.sequence, 40 + kBridgeZeroAhead) << "what the program still sends is old";
+}
+
 TEST(BridgeReport, OneFlippedBitIsSeen)
 {
     for (std::size_t bit = 0; bit < 8 * kBridgeSize; ++bit) {

@@ -107,6 +107,15 @@ TEST(HaplyMessages, FramesOfReferenceAreTurnedAndNotMirrored)
     EXPECT_EQ(toHaply(fromHaply({1, 2, 3})), glm::dvec3(1, 2, 3));
 }
 
+TEST(HaplyMessages, DevicesComeInAListOnly)
+{
+    const std::string one = R"({"device_id": "04BA", "status": {}})";
+    EXPECT_EQ(haplyDevices("{\"inverse3\": [" + one + "]}").size(), 1U);
+    EXPECT_TRUE(haplyDevices("{\"inverse3\": {\"a\": " + one + "}}").empty());
+    EXPECT_TRUE(haplyDevices("{\"inverse3\": null}").empty());
+    EXPECT_TRUE(haplyDevices("{}").empty());
+}
+
 TEST(HaplyMessages, AGripThatSaysNothingHoldsNoButton)
 {
     const std::string device = R"("inverse3":[{"device_id":"049D","state":{"cursor_position":{"x":0,"y":0,"z":0},

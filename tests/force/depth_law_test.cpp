@@ -53,6 +53,21 @@ TEST(DepthLaw, ItsEnergyIsTheWorkOfItsForceAndItsTangentTheSlope)
         }
 }
 
+TEST(DepthLaw, TheEnergyOfALittleStiffeningIsRightToRounding)
+{
+    for (const double x : {1e-6, 1e-3, 9.9e-3, 0.0101, 0.1}) { // b d, on both sides of where the series ends
+        const double   d = 2e-3;
+        const DepthLaw law{500, x / d, 1e6};
+        long double    sum = 0, term = 0.5L;
+        for (int n = 3; n < 30; ++n) {
+            sum += term;
+            term *= static_cast<long double>(x) / n;
+        }
+        const double expected = static_cast<double>(500 * static_cast<long double>(d) * d * sum);
+        EXPECT_NEAR(law.energy(d), expected, 2e-12 * expected) << x << ": where series and difference meet";
+    }
+}
+
 TEST(DepthLaw, TheDepthOfAForceIsTheInverse)
 {
     for (const double stiffening : {0.0, kMeat})

@@ -293,6 +293,26 @@ TEST(EnergyTank, ALawThatStiffensIsPaidByItsOwnEnergy)
     EXPECT_NEAR(half, 1e-6, 1e-12) << "what came in since";
 }
 
+TEST(EnergyTank, WhatStiffensIsLetInInPartAndPaidForToTheEnd)
+{
+    EnergyTank      tank;
+    EnergyTankInput in = at(300, 0);
+    in.stiffening      = 100;
+    in.steepest        = 4000;
+    static_cast<void>(tank.step(in));
+    in.stiffening       = 600; // the stiffness stays: only how it stiffens is not affordable at once
+    in.depth            = 4e-3;
+    const double before = DepthLaw{300, 100, 4000}.energy(4e-3), wanted = DepthLaw{300, 600, 4000}.energy(4e-3);
+    ASSERT_GT(wanted - before, 0.3e-3) << "more than the tank holds";
+
+    const EnergyTankOutput out = tank.step(in);
+
+    EXPECT_GT(out.law.stiffening, 110);
+    EXPECT_LT(out.law.stiffening, 590);
+    EXPECT_LE(out.law.energy(4e-3), before + out.used + 1e-12) << "1e-9 of the share, by halving it";
+    EXPECT_GT(out.law.energy(4e-3), before + 0.5 * out.used) << "and it takes what it paid for";
+}
+
 TEST(EnergyTank, WithoutItEachCycleGivesTheStoredStepToTheHand)
 {
     EXPECT_NEAR(workGained({100, 1000, 5e-3, 0.05}, nullptr, Sideways::nothing).work, 11.25e-3, 0.15e-3)
@@ -333,6 +353,17 @@ TEST(LateralLean, IsTheGradientOfTheStoredEnergy)
     EXPECT_EQ(lean.way().z, 0);
     lean.end();
     EXPECT_EQ(lean.way(), glm::dvec3(0));
+}
+
+TEST(LateralLean, GoesByTheStoredEnergyWhereThatIsStated)
+{
+    LateralLean lean, none;
+    for (int n = 0; n < 200; ++n) {
+        lean.step({{100, 0, 0}, 0, 1e-6}, lean.way() + glm::dvec3(0, 0, 3e-3), 1e-3);
+        none.step({{100, 0, 0}, 0, 0}, none.way() + glm::dvec3(0, 0, 3e-3), 1e-3);
+    }
+    EXPECT_NEAR(lean.way().x, -1e-4, 1e-12) << "1e-6 m^2 times 100 / m; as a spring it would be 4.5 times that";
+    EXPECT_EQ(glm::length(none.way()), 0) << "a contact that stores nothing leans nowhere";
 }
 
 TEST(LateralLean, IsBoundedAndNeverJumps)

@@ -604,6 +604,60 @@ TEST(ForceGovernor, RefusesSettingsOutOfRangeByName)
     EXPECT_NE(complaint([](auto& s) { s.engageTime = kNan; }).find("engageTime"), std::string::npos);
 }
 
+TEST(ForceGovernor, TakesEverySettingUpToItsBoundsAndNoneBeyond)
+{
+    struct Bounds {
+        const char* name;
+        double GovernorSettings::*field;
+        double                    least, most;
+    };
+    using S                = GovernorSettings;
+    const Bounds all[]     = {{"nominalPeriod", &S::nominalPeriod, 1e-5, 1e-2},
+                              {"longestTick", &S::longestTick, 1e-5, 2e-2},
+                              {"stall", &S::stall, 1e-3, 0.1},
+                              {"staleAfter", &S::staleAfter, 0, 0.02},
+                              {"staleRamp", &S::staleRamp, 1e-3, 0.02},
+                              {"passivitySpeed", &S::passivitySpeed, 0, 0.1},
+                              {"passivityDamping", &S::passivityDamping, 0, 20},
+                              {"passivityLeak", &S::passivityLeak, 1e-3, 100},
+                              {"energyReserve", &S::energyReserve, 0, 0.1},
+                              {"energyLimit", &S::energyLimit, 0, 10},
+                              {"energyTolerance", &S::energyTolerance, 0, 0.01},
+                              {"maximumForce", &S::maximumForce, 0, 8},
+                              {"slew", &S::slew, 400, 1e5},
+                              {"maximumSpeed", &S::maximumSpeed, 0, 5},
+                              {"faultRamp", &S::faultRamp, 1e-3, 0.02},
+                              {"calmForce", &S::calmForce, 0, 1},
+                              {"engageTime", &S::engageTime, 0.1, 10},
+                              {"maximumStiffness", &S::maximumStiffness, 0, 1e4},
+                              {"mass", &S::mass, 0, 100},
+                              {"ownDamping", &S::ownDamping, 0, 100},
+                              {"statedStiffness", &S::statedStiffness, 0, 1e4},
+                              {"motorForce", &S::motorForce, 0, 8}};
+    const auto   complaint = [](const GovernorSettings& settings) -> std::string {
+        try {
+            ForceGovernor governor(settings);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    for (const Bounds& one : all) {
+        const double beyond = (one.most - one.least) / 1000;
+        for (const double value : {one.least, one.most, one.least - beyond, one.most + beyond, kNan}) {
+            GovernorSettings settings;
+            settings.*one.field = value;
+            const bool fits     = value >= one.least && value <= one.most;
+            EXPECT_EQ(complaint(settings).find(one.name) == std::string::npos, fits) << one.name << " = " << value;
+        }
+    }
+    for (const int ticks : {0, 1, 20, 21}) {
+        GovernorSettings settings;
+        settings.missedTicks = ticks;
+        EXPECT_EQ(complaint(settings).empty(), ticks >= 1 && ticks <= 20) << ticks;
+    }
+}
+
 // ---- anything at all
 
 TEST(ForceGovernor, StaysFiniteAndBoundedOnHostileInput)

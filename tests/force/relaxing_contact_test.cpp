@@ -212,6 +212,21 @@ TEST(RelaxingContact, ASurfaceThatIsLeftStaysBehindAndComesUpAgain)
     EXPECT_LT(contact.surface(), 0.01 * after) << "e^-7 of it, with the time of a free surface";
 }
 
+TEST(RelaxingContact, ASurfaceThatIsLeftComesUpTheSameWayInTicksOfAnyLength)
+{
+    const auto surfaceAfter = [](double dt) {
+        RelaxingContact contact(meat(), kFade);
+        for (int n = 0; n < 2000; ++n) static_cast<void>(contact.step({{kK}, 2e-3, {}, kDt}));
+        for (int n = 0; n < std::lround(0.4 / dt); ++n) static_cast<void>(contact.step({{kK}, 0, {}, dt}));
+        return contact.surface();
+    };
+    const double fine = surfaceAfter(0.25e-3);
+    EXPECT_GT(fine, 0.1e-3);
+    // The force runs straight within a tick, which errs by its square; it jumps only when the hand goes.
+    EXPECT_NEAR(surfaceAfter(1e-3), fine, 2e-3 * fine);
+    EXPECT_NEAR(surfaceAfter(4e-3), fine, 8e-3 * fine);
+}
+
 TEST(RelaxingContact, ChangesWithTheStiffnessAsASpringDoes)
 {
     RelaxingContact contact(meat(), kFade);

@@ -405,6 +405,16 @@ TEST(FloatPairTest, ASumOfProductsKeepsWhatFloatsLose)
     EXPECT_EQ(sum.high + sum.low, sum.high);
 }
 
+TEST(FloatPairTest, WhatAProductLosesIsExact)
+{
+    const auto a = roughValues<float>(500, 44), b = roughValues<float>(500, 45);
+    for (std::size_t n = 0; n < a.size(); ++n) {
+        const float product = a[n] * b[n];
+        EXPECT_EQ(double(product) + double(shared::lostByProduct(a[n], b[n], product)), double(a[n]) * double(b[n]))
+            << "two floats hold the 48 digits of a product";
+    }
+}
+
 TEST(SharedTransferTest, CoarsenedRigidityIsAGeometricMean)
 {
     const LevelPair    pair(roughPlate(12, 10, {}), 6, 5); // every coarse node lies on a fine one

@@ -1,0 +1,74 @@
+#!/bin/sh
+# Kills programs that write, by kill -9 at random instants: what was said to be saved is there. Argument: the program.
+# PALPATE_INSTANTS says how often (3); 500 take an hour.
+set -u
+palpate=$1 instants=${PALPATE_INSTANTS:-3}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+passed=0 failed=0
+pass() { passed=$((passed + 1)); }
+complain() { failed=$((failed + 1)); echo "FAILED: $*"; }
+wait_at_random() { # NUMBER MOST: up to MOST seconds, the same for the same number
+    sleep "$(awk -v n="$1" -v most="$2" 'BEGIN { srand(n + 1); rand(); printf "%.3f", rand() * most }')"
+}
+
+# A recording in real time: how long it lasted until the kill, and how long it is.
+n=0
+while [ $n -lt "$instants" ]; do
+    rm -rf killed
+    "$palpate" run sample:sheet --points 2000 --cells 16 --solver host --seconds 60 --record killed </dev/null >/dev/null 2>&1 &
+    child=$!
+    until [ "$(wc -c 2>/dev/null <killed/ticks.npy || echo 0)" -gt 2000 ] || ! kill -0 $child 2>/dev/null; do sleep 0.02; done
+    wait_at_random $n 1
+    before=$(wc -c <killed/ticks.npy) # what is on the disk stays there
+    kill -9 $child
+    wait $child 2>/dev/null
+    if ! "$palpate" export killed --csv killed.csv >out.txt 2>err.txt; then
+        complain "a recording that was killed, $n: $(cat err.txt)"
+    elif [ "$(wc -c <killed/ticks.npy)" -lt "$before" ] || [ "$(wc -l <killed.csv)" -lt 2 ]; then
+        complain "a recording that was killed, $n: $(wc -l <killed.csv) lines of what had $before bytes"
+    elif ! awk -F, 'NR == 2 { last = $1 - 0.001 } NR > 1 { if ($1 <= last || $1 > last + 0.5) exit 1; last = $1 }' killed.csv; then
+        complain "a recording that was killed, $n: its times do not rise"
+    else
+        pass
+    fi
+    n=$((n + 1))
+done
+
+# A study: rows in the order of the plan, each once, and never fewer than before.
+cat >sheet.json <<'JSON'
+{"cloud": "sample:sheet", "points": 1000, "thickness": "4 mm", "foundation": "1.74 MPa/m", "window": "70 mm", "cells": 16, "footprint_radius": "4.4 mm"}
+JSON
+cat >plan.json <<'JSON'
+{"title": "t", "seconds": 1.5, "hand": "press", "conditions": [
+ {"name": "SOFT", "scene": "sheet.json", "values": {"stiffness": {"law": "constant", "value": 3e5}}},
+ {"name": "STIFF", "scene": "sheet.json", "values": {"stiffness": {"law": "constant", "value": 4e5}}}],
+ "tasks": [{"name": "real", "kind": "rating", "statement": "It felt real.", "least": "no", "most": "yes"},
+  {"name": "stiffer", "kind": "two-alternative", "question": "Which felt stiffer?", "pairs": [["SOFT", "STIFF"]], "right": "second"}]}
+JSON
+i=0
+while [ $i -lt 60 ]; do printf '\n2\n'; i=$((i + 1)); done >keys # begins each trial and answers it
+printf 'P01,1,1\nP01,2,1\nP01,3,2\n' >expected
+table=study/P01/trials.csv n=0
+rows() { if [ -f $table ]; then tail -n +2 $table | cut -d, -f1-3; fi; }
+while [ $n -lt "$instants" ]; do
+    before=$(rows | wc -l)
+    [ "$before" -lt 3 ] || { rm -rf study; before=0; }
+    "$palpate" study plan.json --participant P01 --out study --clock virtual <keys >/dev/null 2>&1 &
+    child=$!
+    wait_at_random $((n + 1000)) 1
+    kill -9 $child 2>/dev/null
+    wait $child 2>/dev/null
+    sed -n '$!p' $table 2>/dev/null | tail -n +2 | cut -d, -f1-3 >whole # the last row may be cut
+    if [ "$(wc -l <whole)" -lt $((before - 1)) ] || ! head -n "$(wc -l <whole)" expected | cmp -s - whole; then
+        complain "a study that was killed, $n: $(cat $table)"
+    else
+        pass
+    fi
+    n=$((n + 1))
+done
+if "$palpate" study plan.json --participant P01 --out study --clock virtual <keys >out.txt 2>err.txt && rows | cmp -s - expected; then pass; else complain "the study did not end: $(cat err.txt $table)"; fi
+
+echo "$passed checks passed, $failed failed"
+[ $failed -eq 0 ]

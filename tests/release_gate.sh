@@ -1,0 +1,67 @@
+# Sourced by run.sh: the steps that a release has to pass, each with its result in one table. A step that fails does not stop
+# the others; one that this machine cannot run is skipped with a reason, and a release has none of those.
+
+# other_compiler: the first compiler that is another one than the default.
+other_compiler() {
+    case $(c++ --version 2>/dev/null) in *clang*) candidates='g++' ;; *) candidates='clang++ clang++-20 clang++-19 clang++-18 clang++-17 clang++-16 clang++-15 clang++-14' ;; esac
+    for candidate in $candidates; do
+        if command -v "$candidate" >/dev/null 2>&1; then echo "$candidate"; return; fi
+    done
+}
+
+table= gate_failed=0
+# step NAME REASON COMMAND...: runs the command unless there is a reason to skip it.
+step() {
+    name=$1 reason=$2
+    shift 2
+    if [ -n "$dry_run" ]; then
+        say "would run $name: ${reason:+skipped, $reason: }$*"
+        return
+    fi
+    result=passed began=$(date +%s)
+    if [ -n "$reason" ]; then
+        result="skipped: $reason"
+    else
+        say "== $name"
+        ("$@")
+        status=$?
+        if [ $status -eq 77 ]; then
+            result='skipped: see its output above'
+        elif [ $status -ne 0 ]; then
+            result="FAILED, status $status" gate_failed=1
+        fi
+    fi
+    table="$table$(printf '%-14s %5d s  %s' "$name" $(($(date +%s) - began)) "$result")
+"
+}
+
+gate_flavour() { # NAME FOLDER CTEST-OPTIONS...
+    flavour=$1 folder=$2
+    shift 2
+    build_flavour "$flavour" "$folder" && test_flavour "$folder" "$@"
+}
+
+gate_packages() {
+    PALPATE_BUILD=$top/package sh engine/package/make.sh && sh tests/install/packages.sh "$top/package"
+}
+
+# release_gate CTEST-OPTIONS...: all steps; the options go to the tests of the three builds.
+release_gate() {
+    other=$(other_compiler)
+    slow='shader-validation|shader-gpu-assisted'
+    step plain '' gate_flavour plain "$top" -LE "$slow" -E '^(fuzz|install|soak)$' "$@"
+    step validation '' test_flavour "$top" -L "$slow" "$@"
+    step 'fuzz replay' '' test_flavour "$top" -R '^fuzz$'
+    step soak '' "$top/bin/palp_soak" --seconds 60 --scenes samples/scenes
+    step install '' test_flavour "$top" -R '^install$'
+    step package '' gate_packages
+    step asan '' gate_flavour asan "$top/asan" -LE shader-gpu-assisted "$@"
+    step tsan '' gate_flavour tsan "$top/tsan" -LE shader-gpu-assisted "$@"
+    step 'compiler' "$([ -n "$other" ] || echo 'there is no second compiler here')" gate_flavour other "$top/other" -LE shader "$@"
+    step 'second driver' "$([ -n "$driver" ] || echo 'no --driver')" run_on_driver "$top"
+    step performance "$([ -n "$release" ] || echo 'no --release')" python3 tests/performance_gate.py "$release" "$top/bin/palpate"
+    [ -z "$dry_run" ] || return 0
+    say "== result"
+    printf '%s' "$table"
+    return $gate_failed
+}
