@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <new>
+#include <sstream>
 
 namespace palp::capi {
 namespace {
@@ -40,6 +41,13 @@ int failure() noexcept
     } catch (...) {
         return keep(PALPATE_BROKEN, "a mistake of the library's own", "");
     }
+}
+
+std::string shown(const glm::dvec3& v)
+{
+    std::ostringstream text;
+    text << '(' << v.x << ", " << v.y << ", " << v.z << ')';
+    return text.str();
 }
 
 void demandRoom(std::size_t found, std::size_t wanted)

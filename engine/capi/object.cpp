@@ -111,7 +111,7 @@ std::vector<glm::vec3> normalsOf(const palpate_points& points)
     for (std::size_t n = 0; n < points.count; ++n) {
         const glm::dvec3 normal{at.at(n, 0), at.at(n, 1), at.at(n, 2)};
         if (!isFinite(normal))
-            throw Error("normals: expected finite numbers, found another one at point " + std::to_string(n));
+            throw Error("normals: point " + std::to_string(n) + ": expected finite numbers, found " + shown(normal));
         const double length = glm::length(normal);
         if (length > 0 && std::isfinite(length)) normals[n] = glm::vec3(normal / length);
     }

@@ -29,14 +29,14 @@ std::optional<glm::dvec3> directionOf(const double* three, const char* what)
     const glm::dvec3 v     = vectorOf(three);
     const double     scale = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     if (!(isFinite(v) && scale > 0))
-        throw Error(std::string(what) + ": expected a direction that is finite and not zero, found another one");
+        throw Error(std::string(what) + ": expected a direction that is finite and not zero, found " + shown(v));
     return glm::normalize(v / scale); // its length means nothing, and must not overflow
 }
 
 glm::dvec3 placeOf(const double* three)
 {
     const glm::dvec3 place = vectorOf(&demand(three, "place"));
-    if (!isFinite(place)) throw Error("place: expected finite numbers, found another one");
+    if (!isFinite(place)) throw Error("place: expected finite numbers [m], found " + shown(place));
     return place;
 }
 
@@ -133,7 +133,7 @@ int palpate_touch_displaced(const palpate_object* object, const double place[3],
         const palpate_object& of = demand(object, "object");
         demandRoom(count, of.object.size());
         demand(xyz, "xyz");
-        if (!std::isfinite(force)) throw Error("force: expected a finite number [N], found another one");
+        if (!std::isfinite(force)) throw Error("force: expected a finite number [N], found " + std::to_string(force));
         PlateSolver solver(of.scene.solver);
         const auto  moved = displaced(of.object.cloud(), patchAt(of, place, from, solver), force);
         for (std::size_t n = 0; n < moved.size(); ++n) put(moved[n], xyz + 3 * n);

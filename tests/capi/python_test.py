@@ -187,6 +187,9 @@ class Touching(unittest.TestCase):
         for words, wrong in ((("time must rise",), lambda: self.made.run([0, -1], places[:2])),
                              (("ticks", "2.5"), lambda: self.made.run(times, places, ticks=2.5)),
                              (("at", "(3,)"), lambda: self.made.touch(None)),
+                             (("place", "(0, nan, 0)"), lambda: self.made.touch([0, np.nan, 0])),
+                             (("from", "(0, 0, 0)"), lambda: self.made.touch([0, 0, 0], side=[0, 0, 0])),
+                             (("force", "inf"), lambda: self.made.touch([0, 0, 0], force=np.inf)),
                              (("force", "1 N"), lambda: self.made.touch([0, 0, 0], force="1 N"))):
             with self.assertRaises(palpate.Error) as caught:
                 wrong()

@@ -88,6 +88,9 @@ inline void put(const glm::dvec3& v, double* three) noexcept
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+/// Returns a place or a direction for a sentence: "(0.03, nan, 0)".
+[[nodiscard]] std::string shown(const glm::dvec3& v);
+
 /// \throws Error unless there is room for as many points
 void demandRoom(std::size_t found, std::size_t wanted);
 
