@@ -16,4 +16,5 @@ grep -q 'order .* 2\.0[0-2]$' "$scratch/plate.txt" || { echo 'plate.py: expected
 "$python" "$checkout/engine/capi/python/make_wheel.py" "$library" "$scratch"
 unset PALPATE_LIBRARY
 "$python" -c 'import sys, zipfile; zipfile.ZipFile(sys.argv[1]).extractall(sys.argv[2])' "$scratch"/palpate-*.whl "$scratch/unpacked"
+[ -f "$scratch/unpacked/palpate/py.typed" ] || { echo 'the wheel hides its type hints'; exit 1; }
 PYTHONPATH="$scratch/unpacked" "$python" -c 'import palpate; print(palpate.__file__, palpate.version())' | grep unpacked

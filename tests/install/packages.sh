@@ -41,7 +41,7 @@ holds include/palpate.h pkgconfig/palpate.pc cmake/palpate/palpateConfig.cmake '
 one python3-palpate
 needs Depends libpalpate0 python3-numpy
 needs Architecture all
-holds python3/dist-packages/palpate/__init__.py
+holds python3/dist-packages/palpate/__init__.py python3/dist-packages/palpate/py.typed
 # What Python compiles at the first import would stay behind when the package is removed.
 dpkg-deb -I "$package" prerm | grep -q py3clean || complain "$package leaves what Python compiled"
 

@@ -19,6 +19,7 @@ def main(library: str, folder: str) -> None:
     version, tag = found[1], f"py3-none-linux_{platform.machine()}"
     about = f"palpate-{version}.dist-info"
     files = {"palpate/__init__.py": (here / "palpate" / "__init__.py").read_bytes(),
+             "palpate/py.typed": b"",  # type checkers read hints of packages that have it
              "palpate/libpalpate.so.0": real.read_bytes(),
              f"{about}/METADATA": (f"Metadata-Version: 2.1\nName: palpate\nVersion: {version}\n"
                                    "Summary: Touch of thin, soft objects of varying stiffness\n"
