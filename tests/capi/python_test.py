@@ -107,6 +107,7 @@ class Arrays(unittest.TestCase):
                              (("points", "complex"), lambda: palpate.Object(self.points + 0j, 1e6)),
                              (("point 7", "nan"), lambda: palpate.Object(
                                  np.ma.masked_array(self.points, np.arange(3721)[:, None] * [1, 1, 1] == 7), 1e6)),
+                             (("foundation", "number"), lambda: palpate.Object(self.points, 1e6, foundation={})),
                              (('"thickness"', "finite"), lambda: palpate.Object(self.points, 1e6, thickness=np.nan)),
                              (('"thickness"', "object"), lambda: palpate.Object(self.points, 1e6, thickness=object())),
                              (("path", "zero"), lambda: palpate.Object.file("a\0b")),

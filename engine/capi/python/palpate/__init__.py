@@ -301,7 +301,7 @@ def _per_point(given: Any, name: str, count: int, scene: dict) -> Optional[np.nd
     if given is None:
         return None
     if isinstance(given, str) or np.ndim(given) == 0:
-        scene[name] = given if isinstance(given, str) else float(given)
+        scene[name] = given if isinstance(given, str) else _number(given, name)
         return None
     return _doubles(given, name, count)
 
