@@ -198,6 +198,12 @@ TEST_F(Files, AStrangersLinkInAFolderOfAnybodyIsRefused)
     ASSERT_EQ(::chmod((folder_ / "b").c_str(), 0755), 0);
     writeFileWhole(link, writeNew);
     EXPECT_EQ(contentsOf(folder_ / "precious"), "new") << "in a folder of our own we know of it";
+
+    ASSERT_EQ(::chmod((folder_ / "b").c_str(), 01777), 0);
+    ASSERT_EQ(::chown((folder_ / "b").c_str(), kStranger - 1, kStranger - 1), 0);
+    std::filesystem::create_symlink(folder_ / "mine", folder_ / "b" / "mine");
+    writeFileWhole(folder_ / "b" / "mine", writeNew);
+    EXPECT_EQ(contentsOf(folder_ / "mine"), "new") << "a link of our own may lie anywhere";
 }
 
 TEST_F(Files, AFileForOneUsersEyesStaysSo)
