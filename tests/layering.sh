@@ -61,6 +61,24 @@ shared=$(grep -rnE '^ *# *include *"(engine/plate/(multigrid|host)|engine/comput
 others=$(grep -rnE '^ *# *include *"' device --include="*.h" --include="*.cpp" | grep -vE '"(device|engine/core)/')
 [ -z "$others" ] || complain "device/ includes more than engine/core: $others"
 
+# claim CLAIM PATTERN FILES: only FILES may have code that matches PATTERN; what stands in comments does not count
+claim() {
+    found=$(grep -rnE "$2" engine device --include='*.h' --include='*.cpp' | grep -vE '^[^:]*:[0-9]*: *//' |
+        grep -vE "^(engine|device)/($3):")
+    [ -z "$found" ] || complain "$1: $found"
+}
+claim 'a shell is run, or a program that is looked for in PATH' \
+    '\b(system|popen|wordexp|execlp|execvpe?|posix_spawnp)\(' none
+claim 'another program is started' '\b(execve?|execle?|posix_spawn|v?fork)\(' \
+    'tools/bench/one_thread\.cpp|detail/guardian\.cpp'
+claim 'a port of the network is opened, beyond those of markers and of the bridge' \
+    '(^|[^A-Za-z_>.])::(bind|listen|accept4?)\(|[^A-Za-z_>.:](bind|listen|accept4?)\(([a-z]*_)?(fd|sock|socket|handle)' \
+    'session/udp_address\.cpp|hid/bridge_lines\.cpp'
+claim 'the clock on the wall is read, which jumps; it is for dates alone' 'system_clock|CLOCK_REALTIME|\btime\(nullptr\)' \
+    'session/(session_clocks\.h|recording\.cpp|udp_outlet\.h)|tools/cli/calibrate\.cpp'
+claim 'a file is written past writeFileWhole()' 'ofstream|\bfopen\(|\bfreopen\(|O_CREAT|mkstemp|\bcreat\(' \
+    'core/file\.cpp|session/detail/growing_file\.cpp'
+
 # wall LIBRARY PATTERN FILES: only FILES may hold includes that match PATTERN
 wall() {
     found=$(grep -rlE "^ *# *include *[<\"]$2" engine device --include='*.h' --include='*.cpp' | grep -vE "^(engine|device)/($3)$")

@@ -1,9 +1,15 @@
 #include "engine/core/file.h"
 
+#include <array>
 #include <cerrno>
 #include <cstring>
+#include <ostream>
+#include <streambuf>
 #include <system_error>
+#include <utility>
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "engine/core/contract.h"
@@ -16,10 +22,95 @@ std::string reasonOfErrno()
     return errno ? std::strerror(errno) : "unknown reason";
 }
 
-/// Returns a name beside `path` that no other process uses, so that two writers cannot overwrite each other's draft.
-std::filesystem::path draftOf(const std::filesystem::path& path)
+[[noreturn]] void refuseToWrite(const std::filesystem::path& path, const std::string& reason)
 {
-    return path.string() + "." + std::to_string(::getpid()) + ".part";
+    throw Error(path.string() + ": cannot be written: " + reason);
+}
+
+/// Whether somebody else put this link into a folder where anybody may write. The kernel follows no such link either
+/// (fs.protected_symlinks); whoever resolves links by himself has to look, too.
+bool isStrangersLink(const std::filesystem::path& link)
+{
+    struct stat own {
+    }, folder{};
+    const std::string parent = link.has_parent_path() ? link.parent_path().string() : ".";
+    if (::lstat(link.c_str(), &own) != 0 || ::stat(parent.c_str(), &folder) != 0) return false;
+    return (folder.st_mode & S_IWOTH) && own.st_uid != ::geteuid() && own.st_uid != folder.st_uid;
+}
+
+/// Returns where a chain of links leads to, so that a link stays a link when its file is replaced.
+std::filesystem::path behindLinks(const std::filesystem::path& path)
+{
+    constexpr int         kMostLinks = 40; // as the kernel has it
+    std::filesystem::path place      = path;
+    std::error_code       status;
+    for (int links = 0; std::filesystem::is_symlink(place, status); ++links) {
+        if (links == kMostLinks) refuseToWrite(path, "too many links lead from one to the next");
+        if (isStrangersLink(place))
+            refuseToWrite(path, place.string() + " is a link that another user put into a folder where anybody may " +
+                                    "write; remove it, or name another file");
+        const std::filesystem::path target = std::filesystem::read_symlink(place, status);
+        if (status) refuseToWrite(path, status.message());
+        place = place.parent_path() / target;
+    }
+    return place;
+}
+
+/// An open file, written by its handle: what else gets its name is not touched.
+class OpenFile : public std::streambuf {
+public:
+    explicit OpenFile(int handle) : handle_(handle) { setp(bytes_.data(), bytes_.data() + bytes_.size()); }
+    ~OpenFile() override { close(); }
+    OpenFile(const OpenFile&)            = delete;
+    OpenFile& operator=(const OpenFile&) = delete;
+
+    /// \return false with errno if the system could not keep the bytes
+    bool close() { return handle_ < 0 || ::close(std::exchange(handle_, -1)) == 0; }
+
+protected:
+    int_type overflow(int_type next) override
+    {
+        if (sync() != 0) return traits_type::eof();
+        return traits_type::eq_int_type(next, traits_type::eof()) ? traits_type::not_eof(next)
+                                                                  : sputc(traits_type::to_char_type(next));
+    }
+
+    int sync() override
+    {
+        for (const char* at = pbase(); at != pptr();) {
+            const ssize_t done = ::write(handle_, at, std::size_t(pptr() - at));
+            if (done < 0 && errno != EINTR) return -1;
+            at += done > 0 ? done : 0;
+        }
+        setp(bytes_.data(), bytes_.data() + bytes_.size());
+        return 0;
+    }
+
+private:
+    int                     handle_;
+    std::array<char, 65536> bytes_;
+};
+
+/// Makes a new file beside `path` under a name that nothing has: two writers get two drafts, and a link that waits there
+/// is not followed.
+/// \return its handle, or -1 with errno
+int makeDraft(const std::filesystem::path& path, std::filesystem::path& draft)
+{
+    constexpr int     kMostNames = 1000;
+    const std::string stem       = path.string() + "." + std::to_string(::getpid());
+    for (int name = 0; name < kMostNames; ++name) {
+        draft            = stem + (name == 0 ? "" : "." + std::to_string(name)) + ".part";
+        const int handle = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (handle >= 0 || errno != EEXIST) return handle;
+    }
+    return -1;
+}
+
+/// Gives a draft the permissions of the file that it replaces: what was for one user's eyes stays so.
+void keepMode(int handle, const std::filesystem::path& older)
+{
+    struct stat found {};
+    if (::stat(older.c_str(), &found) == 0) static_cast<void>(!::fchmod(handle, found.st_mode & 0777));
 }
 
 } // namespace
@@ -70,25 +161,25 @@ void writeFileWhole(const std::filesystem::path& path, const std::function<void(
         throw Error(path.string() + ": cannot be written: it is a folder; name a file in it");
     // A device file or a pipe (/dev/stdout, /dev/null) must not be replaced by a file of the same name.
     const bool replaceable = !std::filesystem::exists(path, status) || std::filesystem::is_regular_file(path, status);
-    // A link stays a link: the file that it points to is replaced.
-    const std::filesystem::path place =
-        std::filesystem::is_symlink(path, status) ? std::filesystem::weakly_canonical(path, status) : path;
-    const std::filesystem::path target = replaceable ? draftOf(place) : place;
+    const std::filesystem::path place = behindLinks(path);
 
     errno = 0;
-    std::ofstream file(target, std::ios::binary | std::ios::trunc);
-    if (!file) throw Error(path.string() + ": cannot be written: " + reasonOfErrno());
+    std::filesystem::path draft;
+    const int             handle = replaceable ? makeDraft(place, draft) : ::open(place.c_str(), O_WRONLY | O_CLOEXEC);
+    if (handle < 0) refuseToWrite(path, reasonOfErrno());
     try {
+        if (replaceable) keepMode(handle, place);
+        OpenFile     file(handle);
+        std::ostream stream(&file);
         errno = 0; // a failure below, in `write` or in the last flush, sets it
-        write(file);
-        file.close();
-        if (!file) throw Error(path.string() + ": cannot be written: " + reasonOfErrno());
-        if (replaceable) std::filesystem::rename(target, place);
+        write(stream);
+        if (!stream.flush() || !file.close()) refuseToWrite(path, reasonOfErrno());
+        if (replaceable) std::filesystem::rename(draft, place);
     } catch (const std::filesystem::filesystem_error& failure) {
-        if (replaceable) std::filesystem::remove(target, status);
-        throw Error(path.string() + ": cannot be written: " + failure.code().message());
+        if (replaceable) std::filesystem::remove(draft, status);
+        refuseToWrite(path, failure.code().message());
     } catch (...) {
-        if (replaceable) std::filesystem::remove(target, status);
+        if (replaceable) std::filesystem::remove(draft, status);
         throw;
     }
 }

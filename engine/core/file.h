@@ -29,7 +29,8 @@ namespace palp {
 
 /// Writes a file whole or not at all: `write` fills a temporary file beside `path`, which is then renamed over it.
 /// After a failure (an exception in `write`, a full disk) an older file at `path` is as it was and no partly written
-/// file remains.
+/// file remains. The file keeps the permissions of the older one. A link stays a link, and its file is replaced; one that
+/// another user put into a folder where anybody may write, such as /tmp, is refused.
 /// \throws Error naming the path and the reason
 void writeFileWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "engine/core/contract.h"
 #include "tests/support/temporary_folder.h"
@@ -144,6 +145,77 @@ TEST_F(Files, ALinkStaysALinkToTheNewContents)
 
     EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link"));
     EXPECT_EQ(contentsOf(folder_ / "file"), "new");
+}
+
+TEST_F(Files, ALinkThatLeadsNowhereYetGetsItsFile)
+{
+    std::filesystem::create_symlink("link", folder_ / "first");
+    std::filesystem::create_symlink("file", folder_ / "link");
+
+    writeFileWhole(folder_ / "first", writeNew);
+
+    EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "first"));
+    EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link"));
+    EXPECT_EQ(contentsOf(folder_ / "file"), "new");
+
+    std::filesystem::create_symlink("circle", folder_ / "circle");
+    const std::string refusal = refusalOf([&] { writeFileWhole(folder_ / "circle", writeNew); });
+    EXPECT_NE(refusal.find("too many links"), std::string::npos) << refusal;
+}
+
+/// Whoever can write into the folder could have foreseen the draft's name.
+TEST_F(Files, ALinkThatWaitsForTheDraftIsNotFollowed)
+{
+    std::ofstream(folder_ / "precious") << "kept";
+    const std::filesystem::path waits = folder_ / ("a." + std::to_string(::getpid()) + ".part");
+    std::filesystem::create_symlink(folder_ / "precious", waits);
+
+    writeFileWhole(folder_ / "a", writeNew);
+
+    EXPECT_EQ(contentsOf(folder_ / "precious"), "kept");
+    EXPECT_EQ(contentsOf(folder_ / "a"), "new");
+    EXPECT_TRUE(std::filesystem::is_symlink(waits));
+    EXPECT_FALSE(std::filesystem::is_symlink(folder_ / "a"));
+}
+
+TEST_F(Files, AStrangersLinkInAFolderOfAnybodyIsRefused)
+{
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can make another user's link";
+    constexpr uid_t kStranger = 65534;
+    std::ofstream(folder_ / "precious") << "kept";
+    const std::filesystem::path link = folder_ / "b" / "link";
+    makeFolder(folder_ / "b");
+    std::filesystem::create_symlink(folder_ / "precious", link);
+    ASSERT_EQ(::lchown(link.c_str(), kStranger, kStranger), 0);
+
+    ASSERT_EQ(::chmod((folder_ / "b").c_str(), 01777), 0);
+    const std::string refusal = refusalOf([&] { writeFileWhole(link, writeNew); });
+    EXPECT_NE(refusal.find("a link that another user put"), std::string::npos) << refusal;
+    std::filesystem::create_symlink(link, folder_ / "own");
+    EXPECT_NE(refusalOf([&] { writeFileWhole(folder_ / "own", writeNew); }), "") << "by way of an own link";
+    EXPECT_EQ(contentsOf(folder_ / "precious"), "kept");
+
+    ASSERT_EQ(::chmod((folder_ / "b").c_str(), 0755), 0);
+    writeFileWhole(link, writeNew);
+    EXPECT_EQ(contentsOf(folder_ / "precious"), "new") << "in a folder of our own we know of it";
+
+    ASSERT_EQ(::chmod((folder_ / "b").c_str(), 01777), 0);
+    ASSERT_EQ(::chown((folder_ / "b").c_str(), kStranger - 1, kStranger - 1), 0);
+    std::filesystem::create_symlink(folder_ / "mine", folder_ / "b" / "mine");
+    writeFileWhole(folder_ / "b" / "mine", writeNew);
+    EXPECT_EQ(contentsOf(folder_ / "mine"), "new") << "a link of our own may lie anywhere";
+}
+
+TEST_F(Files, AFileForOneUsersEyesStaysSo)
+{
+    std::ofstream(folder_ / "a") << "old";
+    ASSERT_EQ(::chmod((folder_ / "a").c_str(), 0600), 0);
+
+    writeFileWhole(folder_ / "a", writeNew);
+
+    struct stat found {};
+    ASSERT_EQ(::stat((folder_ / "a").c_str(), &found), 0);
+    EXPECT_EQ(found.st_mode & 0777, 0600U);
 }
 
 TEST_F(Files, AFolderOrAMissingFolderCannotBeWritten)
