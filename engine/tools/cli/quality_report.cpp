@@ -263,7 +263,8 @@ void writeQualityPicture(const std::filesystem::path& file, const std::string& t
     const Spread&             s        = quality.spacing;
     const std::vector<double> noise    = noiseInSpacings(object.survey(), object.size());
     const ValueRange          range    = shownSpacings(s, object.survey().spacings());
-    const Scale               scale    = range.high > 10 * range.low ? Scale::logarithmic : Scale::linear;
+    const bool                steep    = range.low > 0 && range.high > 10 * range.low; // coinciding points: low is 0
+    const Scale               scale    = steep ? Scale::logarithmic : Scale::linear;
     const CloudPanel          panels[] = {
                  {object.survey().spacings(),
                   {ColourMap::viridis, scale, range, "spacing", "m"},
