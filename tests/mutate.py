@@ -56,7 +56,7 @@ def read(path):
 
 
 def explained():
-    """Returns (file, line as mutated) of the survivors whose reason is known."""
+    """Returns (file, line as mutated, or "delete: " and the line) of the survivors whose reason is known."""
     path = ROOT / "tests/mutation/explained.txt"
     blocks = path.read_text().split("\n\n") if path.exists() else []
     out = set()
@@ -68,6 +68,10 @@ def explained():
             elif not line.startswith("#") and line.strip():
                 source = line.split(":")[0]
     return out
+
+
+def shown(line, mutated):
+    return "delete: " + line if mutated == ";" else mutated
 
 
 def turns(results, wanted, again):
@@ -86,10 +90,10 @@ def turns(results, wanted, again):
 
 def report(results, wanted):
     known, harmless, rows = {source for source, _ in wanted}, explained(), {}
-    for (source, _, _, mutated, _), (verdict, _) in results.items():
+    for (source, _, line, mutated, _), (verdict, _) in results.items():
         if source not in known or verdict not in COUNTED:
             continue
-        judged = "explained" if verdict == "survived" and (source, mutated) in harmless else verdict
+        judged = "explained" if verdict == "survived" and (source, shown(line, mutated)) in harmless else verdict
         for name in (source, str(Path(source).parent) + "/", "all"):
             rows.setdefault(name, {}).setdefault(judged, 0)
             rows[name][judged] += 1
@@ -101,7 +105,7 @@ def report(results, wanted):
         print(f"{name:46} {total:7} {dead:6} {told:9} {total - dead - told:8} {100 * (dead + told) / total:6.1f} %")
     for key, (verdict, _) in sorted(results.items()):
         source, operator, line, mutated, count = key
-        if source in known and verdict == "survived" and (source, mutated) not in harmless:
+        if source in known and verdict == "survived" and (source, shown(line, mutated)) not in harmless:
             print(f"survived: {source}, {operator}, occurrence {count}\n    {line}\n    {mutated}")
 
 

@@ -43,6 +43,21 @@ TEST(Resample, ContactIsTheMiddleNode)
     EXPECT_THROW((void)PatchWindow::square(0.03, 47), ContractViolation);
 }
 
+TEST(Resample, RefusesWindowsAndPointsThatAreNone)
+{
+    EXPECT_NO_THROW(static_cast<void>(PatchWindow::square(0.02, 2)));
+    EXPECT_THROW(static_cast<void>(PatchWindow::square(0.02, 1)), ContractViolation);
+    EXPECT_THROW(static_cast<void>(PatchWindow::square(0.02, 3)), ContractViolation);
+    EXPECT_THROW(static_cast<void>(PatchWindow::square(0, 2)), ContractViolation);
+    const PatchWindow             window = PatchWindow::square(0.02, 4);
+    const std::vector<ChartPoint> two{{0, 0}, {1e-3, 0}};
+    const std::vector<double>     one{1.0};
+    for (const auto rule : {Resampling::logMean, Resampling::nearest}) {
+        EXPECT_THROW(static_cast<void>(resampleRigidity(window, two, one, rule, 1e-3, 1e-3)), ContractViolation);
+        EXPECT_THROW(static_cast<void>(resampleRigidity(window, {}, {}, rule, 1e-3, 1e-3)), ContractViolation);
+    }
+}
+
 TEST(Resample, HomogeneousCloudGivesTheSameRigidityEverywhereUnderBothRules)
 {
     const PatchWindow window = PatchWindow::square(0.03, 48);

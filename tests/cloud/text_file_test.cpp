@@ -36,6 +36,13 @@ TEST(TextFile, BlanksBeforeACommentOrAHeaderDoNotCount)
     EXPECT_EQ(text("  x,y,z,stiffness  \n1,2,3,70\n4,5,6,80\n").cloud.stiffness()[0], 70);
 }
 
+TEST(TextFile, TheLargestCoordinateIsStillACoordinate)
+{
+    EXPECT_EQ(text("0 0 0\n1e9 1e9 1e9\n").cloud.positions()[1], glm::dvec3(1e9));
+    for (const std::string beyond : {"1.1e9 0 0", "0 -1.1e9 0", "0 0 1.1e9"})
+        EXPECT_FALSE(textRefusal("0 0 0\n" + beyond + "\n").empty()) << beyond;
+}
+
 TEST(TextFile, BlanksTabsCommasAndSemicolonsSeparate)
 {
     for (const std::string bytes : {"1 2 3 7\n4 5 6 8\n", "  1   2 3\t7 \n\t4\t5\t6\t8\t\n", "1,2,3,7\n4,5,6,8\n",

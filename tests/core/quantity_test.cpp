@@ -14,6 +14,9 @@ TEST(Quantity, UnitsScaleToSi)
     EXPECT_DOUBLE_EQ(parseQuantity("0.3MPa", Dimension::pressure, "x"), 0.3e6);
     EXPECT_DOUBLE_EQ(parseQuantity("+2e-3", Dimension::rigidity, "x"), 2e-3);
     EXPECT_DOUBLE_EQ(parseQuantity("1.74MPa/m", Dimension::foundation, "x"), 1.74e6);
+    for (const auto& [text, value] :
+         {std::pair("800/m", 800.0), {"800 1/m", 800.0}, {"0.8 /mm", 800.0}, {"0.8 1/mm", 800.0}})
+        EXPECT_DOUBLE_EQ(parseQuantity(text, Dimension::perLength, "x"), value) << text;
     EXPECT_DOUBLE_EQ(metresPer("in"), 0.0254);
 }
 

@@ -227,6 +227,18 @@ TEST(RelaxingContact, ASurfaceThatIsLeftComesUpTheSameWayInTicksOfAnyLength)
     EXPECT_NEAR(surfaceAfter(4e-3), fine, 8e-3 * fine);
 }
 
+TEST(RelaxingContact, AHandThatWasLiftedAndMovesALittleStillFindsTheDent)
+{
+    RelaxingContact contact(meat(), kFade);
+    for (int n = 0; n < 5000; ++n) static_cast<void>(contact.step({{kK}, 2e-3, {}, kDt}));
+    static_cast<void>(contact.step({{kK}, 0, {}, kDt}));
+    const double left = contact.surface();
+    static_cast<void>(contact.step({{kK}, 0, {0.3e-3, 0, 0}, kDt})); // 0.05 mm beyond what counts as the same place
+    EXPECT_NEAR(contact.surface(), std::exp(-0.05 / 4) * left, 0.01 * left) << "and a tick of coming up, 0.3 %";
+    static_cast<void>(contact.step({{kK}, 0, {0.05, 0, 0}, kDt}));
+    EXPECT_LT(contact.surface(), 1e-3 * left) << "elsewhere nothing was pressed";
+}
+
 TEST(RelaxingContact, ChangesWithTheStiffnessAsASpringDoes)
 {
     RelaxingContact contact(meat(), kFade);

@@ -415,6 +415,31 @@ TEST(FloatPairTest, WhatAProductLosesIsExact)
     }
 }
 
+TEST(SharedTransferTest, ACoarsenedShapeOfTheFoundationIsAWeightedMean)
+{
+    for (const auto& [cellsX, cellsZ] : {std::pair(6, 5), std::pair(12, 5), std::pair(6, 10)}) {
+        const LevelPair wide(roughPlate(12, 10, {}), cellsX, cellsZ);
+        LevelPair       pair     = wide;
+        pair.fine.shapeAt        = int(nodesOf(pair.fine));
+        pair.coarse.shapeAt      = int(nodesOf(pair.coarse));
+        const auto         shape = [](double i, double j) { return 1 + 0.1 * i * i - 0.03 * j * j + 0.02 * i * j; };
+        std::vector<float> field(2 * nodesOf(pair.fine), 1.0F);
+        host::forEachNode(pair.fine, 1, [&](int i, int j, std::size_t n, std::size_t) {
+            field[nodesOf(pair.fine) + n] = float(shape(i, j));
+        });
+
+        const std::vector<float> coarse = host::coarsened(pair, field);
+
+        const int    stepX = 12 / cellsX, stepZ = 10 / cellsZ;
+        const double bent = (stepX == 2 ? 0.05 : 0) - (stepZ == 2 ? 0.015 : 0); // a quarter of the second differences
+        host::forEachNode(pair.coarse, 1, [&](int i, int j, std::size_t n, std::size_t) {
+            if (i == 0 || j == 0 || i == cellsX || j == cellsZ) return; // mirrored there
+            EXPECT_NEAR(double(coarse[nodesOf(pair.coarse) + n]), shape(stepX * i, stepZ * j) + bent, 2e-6)
+                << i << ", " << j << "; floats of about 10 round";
+        });
+    }
+}
+
 TEST(SharedTransferTest, CoarsenedRigidityIsAGeometricMean)
 {
     const LevelPair    pair(roughPlate(12, 10, {}), 6, 5); // every coarse node lies on a fine one
