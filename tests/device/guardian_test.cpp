@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <random>
 #include <string>
@@ -15,8 +17,12 @@
 #include <sched.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "device/falcon/falcon_device.h"
+#include "engine/core/contract.h"
 #include "engine/core/real_time.h"
 #include "tests/device/descriptor_falcon.h"
 #include "tests/device/falcon_bench.h"
@@ -299,6 +305,77 @@ TEST_F(GuardianTest, AProgramThatEndsInOrderLeavesNoGuardianBehind)
     EXPECT_EQ(read(ends[1], bytes.data(), bytes.size()), 0) << "it wrote nothing, and its end is closed";
     close(ends[1]);
     EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "no child is left";
+}
+
+/// Runs in a child, because what it takes away cannot be given back.
+/// \return what it returned, or -1 if it crashed
+int inChild(const std::function<int()>& act)
+{
+    const pid_t child = fork();
+    if (child == 0) std::_Exit(act());
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// Takes all handles that are left.
+std::vector<int> takeHandles()
+{
+    std::vector<int> taken;
+    for (int fd = dup(0); fd >= 0; fd = dup(0)) taken.push_back(fd);
+    return taken;
+}
+
+TEST_F(GuardianTest, AProgramOutOfHandlesIsToldSoAndLosesNone)
+{
+    enum Verdict { good, wrongWord, leak, neverStarted, neverRefused };
+    const auto act = [] {
+        const rlimit few{64, 64};
+        int          ends[2];
+        if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0 || setrlimit(RLIMIT_NOFILE, &few) != 0) return -1;
+        std::vector<int> taken   = takeHandles();
+        int              refused = 0, started = 0;
+        for (std::size_t free = 0; free < 12; ++free) { // it needs some six
+            for (std::size_t n = 0; n < free; ++n) {
+                close(taken.back());
+                taken.pop_back();
+            }
+            try {
+                const Guardian guardian({.fd = ends[0]}, kFalconZero, "a Falcon");
+                ++started;
+            } catch (const Error& error) {
+                const std::string said = error.what();
+                if (said.find("a Falcon is not driven") == std::string::npos ||
+                    said.find(std::strerror(EMFILE)) == std::string::npos)
+                    return int(wrongWord);
+                ++refused;
+            }
+            const std::vector<int> again = takeHandles();
+            if (again.size() != free) return int(leak);
+            taken.insert(taken.end(), again.begin(), again.end());
+        }
+        return int(started == 0 ? neverStarted : refused == 0 ? neverRefused : good);
+    };
+    EXPECT_EQ(inChild(act), good);
+}
+
+TEST_F(GuardianTest, AProgramThatMayStartNoProcessIsToldSo)
+{
+    const auto act = [] {
+        constexpr uid_t kNobody = 65534; // the limit is not for root
+        if (geteuid() == 0 && setuid(kNobody) != 0) return 2;
+        const rlimit none{0, 0};
+        int          ends[2];
+        if (setrlimit(RLIMIT_NPROC, &none) != 0 || socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) return 3;
+        try {
+            const Guardian guardian({.fd = ends[0]}, kFalconZero, "a Falcon");
+        } catch (const Error& error) {
+            const std::string said = error.what();
+            return said.find(std::string("starting it: ") + std::strerror(EAGAIN)) != std::string::npos ? 0 : 4;
+        }
+        return 5;
+    };
+    EXPECT_EQ(inChild(act), 0);
 }
 
 /// Sends its guardian, a program's only child, a signal.
