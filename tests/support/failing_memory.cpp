@@ -4,6 +4,9 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <string_view>
+
+#include <dlfcn.h>
 
 namespace {
 
@@ -13,9 +16,19 @@ thread_local std::int64_t left   = kEnough; // allocations that succeed
 thread_local std::size_t  least  = 0;       // [bytes]
 thread_local bool         ranOut = false;
 
-void* take(std::size_t size, std::size_t alignment)
+/// Returns true for a place in Embree or TBB, which do not survive a throw out of their own allocations: Embree 3.13 goes
+/// on with a tree that it has half built.
+bool isInEmbree(const void* caller)
 {
-    if (left != kEnough && size >= least && left-- <= 0) {
+    Dl_info where{};
+    if (::dladdr(caller, &where) == 0 || !where.dli_fname) return false;
+    const std::string_view library(where.dli_fname);
+    return library.find("libembree") != library.npos || library.find("libtbb") != library.npos;
+}
+
+void* take(std::size_t size, std::size_t alignment, const void* caller)
+{
+    if (left != kEnough && size >= least && !isInEmbree(caller) && left-- <= 0) {
         left   = 0;
         ranOut = true;
         throw std::bad_alloc();
@@ -50,11 +63,11 @@ bool palp::FailingMemory::failed() noexcept
 
 void* operator new(std::size_t size)
 {
-    return take(size, 1);
+    return take(size, 1, __builtin_return_address(0));
 }
 void* operator new(std::size_t size, std::align_val_t alignment)
 {
-    return take(size, std::size_t(alignment));
+    return take(size, std::size_t(alignment), __builtin_return_address(0));
 }
 void operator delete(void* memory) noexcept
 {
