@@ -259,6 +259,9 @@ void addFitCommand(CLI::App& app)
     CLI::App*  command = app.add_subcommand("fit", "makes materials and objects of measured presses and maps");
     const auto o       = std::make_shared<FitOptions>();
     o->source.addTo(*command, SceneKey::Group::touch);
+    command->get_option("SCENE")->description(
+        "presses, a table of depth and force (.csv); or a map of felt stiffness, a cloud file (" +
+        extensionsFor(CloudUse::reading) + ") or a scene file with one");
     command->add_option("--out", o->out,
                         "of presses the map of felt stiffness, of a map the object: a cloud file, " +
                             extensionsFor(CloudUse::writing));

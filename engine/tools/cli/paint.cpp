@@ -6,6 +6,7 @@
 
 #include "engine/cloud/ply_repaint.h"
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/quantity.h"
 #include "engine/session/scene_mesh.h"
 #include "engine/tools/cli/cloud_report.h"
@@ -135,8 +136,8 @@ void paint(const PaintOptions& o)
         const StrokeOrder& order  = orders[k];
         const StrokeReport report = paintStroke(order, what(k), object, order.stiffening ? growth : painting);
         strokes.push_back(jsonOf(order, report));
-        lines += "  stroke " + std::to_string(k + 1) + "    " + std::to_string(report.dabs) + " dabs over " +
-                 std::to_string(report.points) + " points, " +
+        lines += "  stroke " + std::to_string(k + 1) + "    " + counted(report.dabs, "dab") + " over " +
+                 counted(report.points, "point") + ", " +
                  (order.value        ? "towards " + formatQuantity(*order.value, unit)
                   : order.stiffening ? "stiffening towards " + formatQuantity(*order.stiffening, "1/m")
                                      : "smoothing") +
