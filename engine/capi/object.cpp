@@ -160,8 +160,8 @@ palpate_object objectOf(const palpate_points& points, Scene scene)
     LoadedCloud given{.cloud = cloudOf(points), .report = {}, .faces = facesOf(points), .normals = normalsOf(points)};
     given.stiffening  = valuesOf(points, points.stiffening, points.stiffening_type, points.stiffening_stride, 0,
                                  kMostStiffening, "stiffening", "1/m");
-    given.foundation  = valuesOf(points, points.foundation, points.foundation_type, points.foundation_stride, 0,
-                                 kMostFoundation, "foundation", "Pa/m");
+    given.foundation  = valuesOf(points, points.foundation, points.foundation_type, points.foundation_stride,
+                                 kLeastFoundation, kMostFoundation, "foundation", "Pa/m");
     SoftObject object = palp::objectOf(asTouched(std::move(given), scene), scene).object;
     object.survey().expectSurface();
     return {std::move(scene), std::move(object)};

@@ -109,8 +109,8 @@ typedef struct palpate_points {
                                             0 to 1e5 [1/m]; may be NULL. The scene's key "stiffening" wins over it */
     int             stiffening_type;   /**< palpate_number */
     size_t          stiffening_stride; /**< bytes; 0: side by side */
-    const void*     foundation;        /**< pressure per deflection below each point [Pa/m]; may be NULL. It is taken
-                                            where the scene's key "below" is "own" */
+    const void*     foundation;        /**< pressure per deflection below each point, 1 to 1e15 [Pa/m]; may be NULL. It is
+                                            taken where the scene's key "below" is "own" */
     int             foundation_type;   /**< palpate_number */
     size_t          foundation_stride; /**< bytes; 0: side by side */
 } palpate_points;

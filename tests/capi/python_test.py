@@ -81,6 +81,7 @@ class Arrays(unittest.TestCase):
         for wrong, words in [(dict(stiffening=np.full(n, -1.0)), "stiffening: expected 0 to 100000 1/m, found -1 at point 0"),
                              (dict(stiffening=np.full(n, np.nan)), "stiffening: expected"),
                              (dict(foundation=np.full(n, -1.0)), "foundation: expected"),
+                             (dict(foundation=np.zeros(n)), "foundation: expected 1 to .*found 0 at point 0"),
                              (dict(stiffening=[1.0, 2.0]), "stiffening: expected")]:
             with self.assertRaisesRegex(palpate.Error, words):
                 touched(**wrong)
