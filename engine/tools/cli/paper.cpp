@@ -40,11 +40,15 @@ struct Part {
 
 const std::vector<Part>& parts()
 {
-    static const std::vector<Part> kParts = {
-        {'a', "pressing the ellipsoid", placesPart}, {'b', "bending the lobe", lobePart},
-        {'c', "measuring times", timePart},          {'d', "solving random maps", stabilityPart},
-        {'e', "iterating as Jacobi", jacobiPart},    {'f', "comparing maps", mapsPart},
-        {'g', "feeling a wart", wartPart},           {'h', "predicting what people notice", perceptionPart}};
+    static const std::vector<Part> kParts = {{'a', "pressing the ellipsoid", placesPart},
+                                             {'b', "bending the lobe", lobePart},
+                                             {'c', "measuring times", timePart},
+                                             {'d', "solving random maps", stabilityPart},
+                                             {'e', "iterating as Jacobi", jacobiPart},
+                                             {'f', "comparing maps", mapsPart},
+                                             {'g', "feeling a wart", wartPart},
+                                             {'h', "predicting what people notice", perceptionPart},
+                                             {'i', "bending what is curved", flatnessPart}};
     return kParts;
 }
 
@@ -58,7 +62,7 @@ std::string wantedParts(const std::string& only)
     std::istringstream words(only);
     for (std::string word; std::getline(words, word, ',');) {
         if (word.size() != 1 || known.find(word[0]) == std::string::npos)
-            throw Error("--only: expected parts from a to h with commas between, such as a,c,h, found \"" + only +
+            throw Error("--only: expected parts from a to i with commas between, such as a,c,h, found \"" + only +
                         "\"");
         wanted += word;
     }
@@ -105,8 +109,8 @@ void print(const std::vector<Section>& sections, const std::filesystem::path& pa
 void paper(const PaperOptions& o)
 {
     const std::string wanted = wantedParts(o.only);
-    if (!o.bunny.empty() && wanted.find('b') == std::string::npos)
-        throw Error("--bunny: is used by part b, which --only omits; add b to --only");
+    if (!o.bunny.empty() && wanted.find_first_of("bi") == std::string::npos)
+        throw Error("--bunny: is used by parts b and i, which --only omits; add b or i to --only");
     SolverChoice choice;
     choice.solver      = o.solver;
     PlateSolver solver = choice.open();
@@ -124,6 +128,7 @@ void paper(const PaperOptions& o)
                       [&](std::size_t done, std::size_t total) { progress.at(done, total); }};
         sections.push_back(part.make(run));
         if (part.letter == 'b' && !o.bunny.empty()) addBunny(sections.back(), o.bunny, run);
+        if (part.letter == 'i' && !o.bunny.empty()) addCurvedBunny(sections.back(), o.bunny, run);
     }
     const Origins               origins{PALPATE_VERSION, PALPATE_COMMIT, PALPATE_LIBRARIES, machine(), solver.name(),
                           o.command,       o.quick};
@@ -162,7 +167,8 @@ void addPaperCommand(CLI::App& app)
     command->add_flag("--quick", o->quick,
                       "fewer points and coarser grids, to check that all parts run; not for its numbers");
     command->add_option("--bunny", o->bunny,
-                        "file with your copy of the Stanford bunny, whose ear part b bends too (prints its terms)");
+                        "file with your copy of the Stanford bunny, whose ear part b bends too, and all of it part i "
+                        "(prints its terms)");
     command
         ->add_option("--solver", o->solver,
                      "where plates are solved, as in palpate solve; auto also times every GPU that works")
@@ -174,6 +180,7 @@ void addPaperCommand(CLI::App& app)
         "  b  the dip in a thin lobe, clamped and free            f  three equal-area maps on one cap\n"
         "  c  time of a deformation, with its errors              g  felt stiffness over a wart\n"
         "  d  1000 random maps of rigidity, all edges             h  what a person would notice, predicted\n"
+        "                                                         i  what it costs to bend what is curved as a plate\n"
         "Examples:\n"
         "  palpate paper --out report\n"
         "  palpate paper --out report --only a,f,g --solver host\n"

@@ -11,6 +11,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/deform.h"
+#include "engine/tools/paper/bunny.h"
 #include "engine/tools/paper/parts.h"
 #include "engine/tools/render/cloud_figure.h"
 
@@ -23,26 +24,6 @@ constexpr double     kEar      = 40e-3;  ///< length of an ear [m]
 constexpr double     kWindow   = 18e-3;  ///< lies on the flat side of an ear [m]
 constexpr double     kForce    = 0.03;   ///< [N]
 constexpr PlateEdges kFromItsRoot{Edge::free, Edge::free, Edge::free, Edge::clamped};
-
-/// The cloud in the original's size, and the factor of its scaling.
-struct Bunny {
-    PointCloud cloud;
-    double     factor = 1;
-};
-
-Bunny readBunny(const std::filesystem::path& file)
-{
-    constexpr std::size_t kFewest = 5000; // with fewer points an ear has too few
-    const PointCloud      read    = readCloud(file).cloud;
-    if (read.size() < kFewest)
-        throw Error(file.string() + ": expected a bunny of at least " + std::to_string(kFewest) + " points, found " +
-                    std::to_string(read.size()) + "; try bun_zipper.ply of the Stanford repository");
-    const double factor = kDiagonal / read.bounds().diagonal();
-    if (std::abs(factor - 1) < kSameSize) return {read, 1};
-    std::vector<glm::dvec3> positions;
-    for (const glm::dvec3& p : read.positions()) positions.push_back(factor * p);
-    return {PointCloud(positions, {read.stiffness().begin(), read.stiffness().end()}, read.kind()), factor};
-}
 
 /// The place where the ear is pressed, and the ear's orientation.
 struct Ear {
@@ -131,6 +112,20 @@ SoftObject skinOf(const SoftObject& object, const Ear& ear)
 }
 
 } // namespace
+
+Bunny readBunny(const std::filesystem::path& file)
+{
+    constexpr std::size_t kFewest = 5000; // with fewer points an ear has too few
+    const PointCloud      read    = readCloud(file).cloud;
+    if (read.size() < kFewest)
+        throw Error(file.string() + ": expected a bunny of at least " + std::to_string(kFewest) + " points, found " +
+                    std::to_string(read.size()) + "; try bun_zipper.ply of the Stanford repository");
+    const double factor = kDiagonal / read.bounds().diagonal();
+    if (std::abs(factor - 1) < kSameSize) return {read, 1};
+    std::vector<glm::dvec3> positions;
+    for (const glm::dvec3& p : read.positions()) positions.push_back(factor * p);
+    return {PointCloud(positions, {read.stiffness().begin(), read.stiffness().end()}, read.kind()), factor};
+}
 
 const std::string& bunnyTerms()
 {

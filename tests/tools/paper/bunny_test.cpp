@@ -1,4 +1,5 @@
 // What becomes of a bunny that is not the Stanford one: a ball with an ear, in a size of its own.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -72,6 +73,19 @@ TEST(Bunny, ItsEarIsFoundScaledAndBent)
         << "as a cantilever that is loaded in the middle";
     EXPECT_NE(run.section.text.back().find("Stanford Computer Graphics Laboratory"), std::string::npos);
     EXPECT_NE(run.section.text.back().find("scaled"), std::string::npos);
+}
+
+TEST(Bunny, AsAThinSkinItsBallIsFarStifferThanAPlate)
+{
+    const TemporaryFolder folder;
+    writeCloud(folder / "ball.ply", ballWithAnEar(1, 40'000));
+    Lobe run;
+    addCurvedBunny(run.section, folder / "ball.ply", {.solver = run.solver, .renderer = run.renderer, .quick = true});
+    const auto& times = run.section.number("bunny/shell_over_plate");
+    ASSERT_FALSE(times.empty());
+    // Under a point a sphere gives way by l^2 / (8 D) (Reissner 1946), a clamped square by 0.0056 a^2 / D: 1.8 times, and
+    // less under a fingertip.
+    EXPECT_GT(*std::max_element(times.begin(), times.end()), 1.4);
 }
 
 TEST(Bunny, OneOfTooFewPointsIsRefused)

@@ -10,6 +10,7 @@
 #include "engine/tools/paper/cantilever.h"
 #include "engine/tools/paper/page.h"
 #include "engine/tools/paper/random_maps.h"
+#include "tests/pipeline/calculix_shells.h"
 
 namespace palp::report {
 namespace {
@@ -129,6 +130,23 @@ TEST(WartPart, ThePapersLawIsStifferThanADeviceAndOursIsNot)
     const auto &paper = section.number("paper/stiffness"), &series = section.number("series/stiffness");
     for (std::size_t n = 0; n < paper.size(); ++n) EXPECT_GT(paper[n], series[n]) << "a spring more in series";
     EXPECT_NEAR(section.number("series/steps_weber_0.07").front(), 9.6, 1) << "of the sample scene, on a finer grid";
+}
+
+TEST(FlatnessPart, AThinEllipsoidIsAShellAndAPlateIsTooSoftTheMoreTheLargerItsWindow)
+{
+    const Section section = flatnessPart(Quick().run);
+    for (const CalculixShell& whole : kCalculixShells) {
+        if (whole.name != "ellipsoid") continue;
+        const std::string stem = "ellipsoid/" + fixed(1e3 * whole.thickness, 0) + "_mm/";
+        EXPECT_EQ(section.number(stem + "whole").front(), whole.stiffness) << "the table of the tests";
+        const auto &plate = section.number(stem + "plate"), &shell = section.number(stem + "shell");
+        ASSERT_EQ(plate.size(), 2u) << "40 and 60 mm";
+        EXPECT_LT(plate[1], 0.55 * plate[0]) << "a clamped plate softens with the square of its width";
+        EXPECT_LT(plate[1], 0.6 * whole.stiffness);
+        for (const double felt : shell)
+            EXPECT_NEAR(felt / whole.stiffness, 1, 0.12) << "8 % on 64 cells, and a coarse grid's 3 %";
+    }
+    EXPECT_GT(section.number("lobe/shell_over_plate").front(), 1) << "a membrane never makes softer; here it should not count at all";
 }
 
 /// A page that tells no lies about being whole, and numbers without a clock.
