@@ -49,7 +49,7 @@ struct RenderOptions {
     HandOptions        hand{.seconds = "2 s"};
     std::optional<int> frames;
     int                finer = 2;
-    bool               dark = false, json = false, ghost = false, sphere = false, projected = false;
+    bool               dark = false, json = false, ghost = false, sphere = false, projected = false, curvature = false;
 };
 
 PictureSize sizeOf(const RenderOptions& o)
@@ -67,6 +67,7 @@ TouchLook lookOf(const RenderOptions& o)
     look.overlays.ghost     = o.ghost;
     look.overlays.sphere    = o.sphere;
     look.overlays.projected = o.projected;
+    look.overlays.curvature = o.curvature;
     look.exaggeration       = parseQuantity(o.exaggerate, Dimension::none, "--exaggerate");
     if (!(look.exaggeration >= 0 && look.exaggeration <= 1000))
         throw Error("--exaggerate: expected a factor from 0 to 1000, found \"" + o.exaggerate + "\"");
@@ -80,6 +81,8 @@ struct Stage {
           loaded(o.scene.loadObject(scene)), solver(openSolver(scene.solver)), view(loaded.object, scene.patch)
     {
         sayPassedOver(renderer.processor().name, renderer.note());
+        if (look.overlays.curvature && scene.patch.theory != Theory::shell)
+            throw Error("--curvature: shows what a shell bent with; add --theory shell");
     }
     PictureSize     size;
     TouchLook       look;
@@ -294,6 +297,8 @@ void addRenderCommand(CLI::App& app)
     command->add_flag("--ghost", o->ghost, "adds dots where the dented points are at rest");
     command->add_flag("--sphere", o->sphere, "adds the near half of the fitted sphere");
     command->add_flag("--projected", o->projected, "adds dots where the points lie on that sphere");
+    command->add_flag("--curvature", o->curvature,
+                      "adds crosses along the principal curvatures that a shell bent with; needs --theory shell");
     command->add_option("--frames", o->frames, "number of pictures along the path of --hand, in virtual time");
     command->add_option("--hand", o->hand.hand, "hand for --frames: " + generatedHands() + ", or a file")
         ->capture_default_str();

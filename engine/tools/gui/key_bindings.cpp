@@ -44,6 +44,7 @@ constexpr KeyBinding kBindings[] = {
     {'G', none, always, show, "G", "surface at rest", [](Controls& c) { flip(c.state().look.overlays.ghost); }},
     {'S', none, always, show, "S", "fitted sphere", [](Controls& c) { flip(c.state().look.overlays.sphere); }},
     {'J', none, nothingHidden, show, "J", "projected points", [](Controls& c) { flip(c.state().look.overlays.projected); }},
+    {'U', none, always, show, "U", "curvature of a shell", [](Controls& c) { flip(c.state().look.overlays.curvature); }},
 
     {0, none, always, touch, "hold Space or H", "touch; wheel is depth", nullptr, "Space touch, wheel depth"},
     {kEscapeKey, none, always, touch, "Esc", "let go of the object", [](Controls& c) { c.letGo(); }},

@@ -46,6 +46,19 @@ double penetration(const TickRecord& record)
     return std::max(0.0, glm::dot(record.proxy - record.hip, record.normal));
 }
 
+/// Names the theory in force and, of a shell, the length over which its dents die away.
+void drawTheory(const PanelDesk& desk, const Patch& patch)
+{
+    if (!patch.curvature) {
+        reading(desk, "theory", "plate", Tone::warning);
+        return tip(patch.flatBecause.c_str());
+    }
+    reading(desk, "theory",
+            formatted("shell, l %.1f mm, window %.1f l", patch.shellLength * 1e3,
+                      patch.window.grid.sizeX() / patch.shellLength));
+    tip("l is the length over which a dent of the shell dies away");
+}
+
 void drawNumbers(const PanelDesk& desk)
 {
     const TickRecord&  now    = desk.content.history.newest();
@@ -64,6 +77,7 @@ void drawNumbers(const PanelDesk& desk)
     reading(desk, Half::right, "rigidity", orDash(formatQuantity(now.rigidity, "N m")));
     reading(desk, Half::left, "dent", orDash(formatted("%.3f mm", now.maxDeflection * 1e3)));
     readingOfAge(desk, Half::right, "patch");
+    if (patch && desk.content.scene.patch.theory == Theory::shell) drawTheory(desk, *patch);
 }
 
 void drawOverTime(const PanelDesk& desk)

@@ -56,6 +56,10 @@ void drawToggles(PanelDesk& desk)
     second();
     if (ImGui::Checkbox("orthographic", &flat)) desk.state.camera = otherProjection(desk.state.camera);
     tip("O");
+    if (desk.content.scene.patch.theory == Theory::shell) {
+        ImGui::Checkbox("curvature", &over.curvature);
+        tip("Crosses along the principal curvatures that the shell bent with (U)");
+    }
 }
 
 void drawButtons(PanelDesk& desk)

@@ -19,6 +19,8 @@ TextContent contentOf(const ViewScene& scene, const Overlays& overlays, const Ca
     now.sphere     = !scene.sphere.empty();
     now.ghost      = overlays.ghost;
     now.projected  = overlays.projected;
+    now.bulging    = !scene.bulging.empty();
+    now.hollow     = !scene.hollow.empty();
     return now;
 }
 

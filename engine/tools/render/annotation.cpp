@@ -150,6 +150,9 @@ std::vector<KeyEntry> keyOf(const ViewScene& scene)
                            const double radius = glm::length(p);
                            return radius < 0.9 && (radius > 0.7 || std::abs(p.x) < 0.1 || std::abs(p.y) < 0.1);
                        }});
+    const auto stroke = [](glm::dvec2 p) { return std::abs(p.y) < 0.16 && std::abs(p.x) < 0.9; };
+    if (!scene.bulging.empty()) key.push_back({"bulging", kBulgingColour, stroke});
+    if (!scene.hollow.empty()) key.push_back({"hollow", kHollowColour, stroke});
     return key;
 }
 

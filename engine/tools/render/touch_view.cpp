@@ -8,6 +8,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/tools/render/curvature_crosses.h"
 #include "engine/tools/render/rest_relief.h"
 
 namespace palp {
@@ -198,6 +199,11 @@ void TouchView::addFit(const Patch& patch, const Overlays& overlays)
             if (const auto on = patch.window.holds(place) ? patch.chart.lift(place) : std::nullopt)
                 scene_.dots.push_back({*on, kDot * skin_.cores()[point], kProjectedColour});
         });
+    if (overlays.curvature) {
+        CurvatureCrosses crosses = curvatureCrosses(patch, object_.positions(), positions_, restNormals_);
+        scene_.bulging           = std::move(crosses.bulging);
+        scene_.hollow            = std::move(crosses.hollow);
+    }
 }
 
 void TouchView::addGhost(Ground ground)

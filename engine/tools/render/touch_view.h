@@ -34,6 +34,7 @@ struct Overlays {
     bool ghost     = false; ///< dots where the dent's points are at rest
     bool sphere    = false; ///< the near half of the fitted sphere
     bool projected = false; ///< dots where the patch's points lie on that sphere
+    bool curvature = false; ///< crosses along the principal curvatures that a shell bent with
 };
 
 /// The look of a touch.

@@ -69,7 +69,8 @@ struct ViewScene {
     double                     arrowRadius = 0;   ///< of the force's shaft; the normal's is thinner [m]
     std::vector<ViewSegment>   outline;           ///< of the patch
     std::vector<ViewSegment>   sphere;            ///< lines of the fitted sphere
-    double                     outlineRadius = 0; ///< of both [m]
+    std::vector<ViewSegment>   bulging, hollow;   ///< strokes along principal curvatures
+    double                     outlineRadius = 0; ///< of all lines [m]
 
     double cueRadius = 0; ///< of the surroundings in whose light hollows are darker [m]; 0: none are
 
@@ -82,7 +83,8 @@ struct ViewScene {
 inline constexpr Rgb8 kProxyColour = kNamedColours[4], kHipColour = kNamedColours[3], kForceColour = kNamedColours[1],
                       kNormalColour = kNamedColours[5], kSphereColour = kNamedColours[2],
                       kProjectedColour = kNamedColours[0], kPlainColour = {206, 198, 186},
-                      kStylusColour = {120, 118, 130};
+                      kStylusColour = {120, 118, 130}, kBulgingColour = kNamedColours[0],
+                      kHollowColour = kNamedColours[1];
 
 /// Returns the colour of outlines and texts on this ground.
 [[nodiscard]] constexpr Rgb8 inkOn(Ground ground)

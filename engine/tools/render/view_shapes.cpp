@@ -111,7 +111,8 @@ void addStylus(Corners& corners, const ViewStylus& pen, Rgb8 colour)
 std::vector<ShapeCorner> shapesOf(const ViewScene& scene)
 {
     constexpr double kThinner = 0.45,
-                     kHip     = 1.6; // of the force's arrow; of the proxy, whose ball then shows in the faces [1]
+                     kHip     = 1.6, // of the force's arrow; of the proxy, whose ball then shows in the faces [1]
+        kStroke               = 1.6; // of the outline: short lines have to be seen on any colour [1]
     Corners corners;
     if (scene.proxy) addBall(corners, *scene.proxy, scene.markerRadius, kProxyColour);
     if (scene.hip) addOctahedron(corners, *scene.hip, kHip * scene.markerRadius, kHipColour);
@@ -120,6 +121,8 @@ std::vector<ShapeCorner> shapesOf(const ViewScene& scene)
     if (scene.normal) addArrow(corners, *scene.normal, kThinner * scene.arrowRadius, kNormalColour);
     for (const ViewSegment& line : scene.outline) addLine(corners, line, scene.outlineRadius, inkOn(scene.ground));
     for (const ViewSegment& line : scene.sphere) addLine(corners, line, scene.outlineRadius, kSphereColour);
+    for (const ViewSegment& line : scene.bulging) addLine(corners, line, kStroke * scene.outlineRadius, kBulgingColour);
+    for (const ViewSegment& line : scene.hollow) addLine(corners, line, kStroke * scene.outlineRadius, kHollowColour);
     return corners;
 }
 

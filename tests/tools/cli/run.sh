@@ -650,6 +650,8 @@ JSON
     bad 'a size with more behind' '--size' render sample:skin --out no.png --size 320x240px
     bad 'another kind of file' '.png' render sample:skin --out no.jpg
     bad 'an unknown colour' 'deflection, stiffness or plain' render sample:skin --out no.png --colour red
+    bad 'curvature of a plate' '--theory shell' render sample:skin --out no.png --curvature
+    good 'curvature of a shell' render sample:ellipsoid --points 4000 --theory shell --curvature --size 64x48 --out crosses.png
     bad 'an unknown map' 'viridis, cividis or grey' render sample:skin --out no.png --colour-map jet
     bad 'an unknown view' 'patch or whole' render sample:skin $small --out no.png --view side
     bad 'a negative exaggeration' '--exaggerate' render sample:skin --out no.png --exaggerate -1

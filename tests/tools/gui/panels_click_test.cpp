@@ -314,7 +314,7 @@ TEST_F(PanelsClick, TheSheetOfKeysCloses)
 {
     state_.keys = true;
     settle();
-    click({950, 166});
+    click({950, 157});
 
     EXPECT_FALSE(state_.keys);
 }
