@@ -215,45 +215,9 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     const WantedForce want = wantedForce(stiffnessOf(handed), now.dt, hand, held);
     leanOn(held, hand, want);
 
-    GovernorInput in;
-    in.force                 = want.force;
-    in.position              = hand.position / scale_;
-    in.velocity              = hand.velocity / scale_;
-    in.homed                 = hand.homed && hand.device == DeviceFault::none;
-    in.inBox                 = hand.inBox;
-    in.letGo                 = hand.letGo;
-    in.clutched              = hand.clutched;
-    in.dt                    = now.dt;
-    in.forceAge              = std::max(0.0, now.time - touch.time); // above 0 if the proxy has a thread of its own
-    in.overdue               = tableOverdue(now, touch.touching, newest);
-    in.missedExchanges       = hand.missed;
-    in.admittedEnergy        = want.admitted / scale_;
-    in.storedEnergy          = want.stored / scale_;
-    in.stiffness             = want.tangent * scale_;
-    in.answerAge             = hand.answerAge;
-    in.sinceAnswer           = hand.sequence > 0 ? std::max(0.0, now.time - hand.answerTime) : 0;
-    in.exchangePeriod        = answers_.add(hand.sequence, hand.answerTime);
-    const GovernorOutput out = governor_.step(in);
-
-    TickRecord record;
-    record.time           = now.time;
-    record.hip            = hand.position;
-    record.hipVelocity    = hand.velocity;
-    record.orientation    = hand.orientation;
-    record.grip           = hand.grip;
-    record.device         = hand.bits();
-    record.missed         = hand.missed;
-    record.answers        = static_cast<std::uint32_t>(hand.sequence);
-    record.answerTime     = hand.answerTime;
-    record.answerAge      = hand.answerAge;
-    record.proxy          = touch.point;
-    record.wanted         = want.force;
-    record.force          = out.force;
-    record.actions        = out.actions;
-    record.stiffness      = want.stiffness;
-    record.tankEnergy     = tank_.energy();
-    record.observerEnergy = out.energy;
-    record.normal         = touch.touching ? touch.outward : glm::dvec3(0);
+    const GovernorInput  in     = governorInput(now, hand, held, want, newest);
+    const GovernorOutput out    = governor_.step(in);
+    TickRecord           record = recordOf(now, hand, held, want, out);
     if (newest && touch.touching) {
         record.rigidity      = newest->rigidity;
         record.maxDeflection = newest->mostResponse * plateLoad(want, out, held);
@@ -272,6 +236,56 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
         flag(SessionFlag::noPatch, touch.touching && !handed) | flag(SessionFlag::proxyLimited, held.limited) |
         flag(SessionFlag::beyondTheory, record.maxDeflection > thickness_ / 2) |
         flag(SessionFlag::oldTable, in.overdue > 0) | flag(SessionFlag::governed, touch.touching && out.actions != 0);
+    return record;
+}
+
+GovernorInput ForceHalf::governorInput(const TickTime& now, const Hand& hand, const ProxyContact& held,
+                                       const WantedForce& want, const PatchUpdate* newest) noexcept
+{
+    GovernorInput in;
+    in.force           = want.force;
+    in.position        = hand.position / scale_;
+    in.velocity        = hand.velocity / scale_;
+    in.homed           = hand.homed && hand.device == DeviceFault::none;
+    in.inBox           = hand.inBox;
+    in.letGo           = hand.letGo;
+    in.clutched        = hand.clutched;
+    in.dt              = now.dt;
+    in.forceAge        = std::max(0.0, now.time - held.touch.time); // above 0 if the proxy has a thread of its own
+    in.overdue         = tableOverdue(now, held.touch.touching, newest);
+    in.missedExchanges = hand.missed;
+    in.admittedEnergy  = want.admitted / scale_;
+    in.storedEnergy    = want.stored / scale_;
+    in.stiffness       = want.tangent * scale_;
+    in.answerAge       = hand.answerAge;
+    in.sinceAnswer     = hand.sequence > 0 ? std::max(0.0, now.time - hand.answerTime) : 0;
+    in.exchangePeriod  = answers_.add(hand.sequence, hand.answerTime);
+    return in;
+}
+
+/// Returns what is known of a tick without the plate's answer.
+TickRecord ForceHalf::recordOf(const TickTime& now, const Hand& hand, const ProxyContact& held, const WantedForce& want,
+                               const GovernorOutput& out) const noexcept
+{
+    TickRecord record;
+    record.time           = now.time;
+    record.hip            = hand.position;
+    record.hipVelocity    = hand.velocity;
+    record.orientation    = hand.orientation;
+    record.grip           = hand.grip;
+    record.device         = hand.bits();
+    record.missed         = hand.missed;
+    record.answers        = static_cast<std::uint32_t>(hand.sequence);
+    record.answerTime     = hand.answerTime;
+    record.answerAge      = hand.answerAge;
+    record.proxy          = held.touch.point;
+    record.wanted         = want.force;
+    record.force          = out.force;
+    record.actions        = out.actions;
+    record.stiffness      = want.stiffness;
+    record.tankEnergy     = tank_.energy();
+    record.observerEnergy = out.energy;
+    record.normal         = held.touch.touching ? held.touch.outward : glm::dvec3(0);
     return record;
 }
 

@@ -200,7 +200,11 @@ private:
     [[nodiscard]] double   steepest() const noexcept { return governor_.stiffnessCap() / scale_; } ///< [N/m]
     [[nodiscard]] DepthLaw inScene(const DepthLaw& atDevice) const noexcept;
 
-    [[nodiscard]] double tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest) noexcept;
+    [[nodiscard]] double        tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest) noexcept;
+    [[nodiscard]] GovernorInput governorInput(const TickTime& now, const Hand& hand, const ProxyContact& held,
+                                              const WantedForce& want, const PatchUpdate* newest) noexcept;
+    [[nodiscard]] TickRecord    recordOf(const TickTime& now, const Hand& hand, const ProxyContact& held,
+                                         const WantedForce& want, const GovernorOutput& out) const noexcept;
 
     ForceLaw          law_;
     double            thickness_;   ///< [m]

@@ -163,6 +163,36 @@ BenchRow measureGridMap(int nodes, int runs)
 
 // --- a whole update
 
+/// Returns the touch's settings with a window that gathers some `wanted` points.
+PatchSettings gathering(double wanted, PatchSettings settings, const SoftObject& object, const Contact& contact,
+                        PlateSolver& solver)
+{
+    for (int n = 0; n < 4; ++n) { // the number of points grows with the square of the window
+        const Patch patch = deform(object, contact, settings, solver);
+        settings.window *= std::sqrt(wanted / double(patch.gathered.size()));
+        settings.footprintRadius = std::min(settings.footprintRadius, settings.window / 4);
+    }
+    return settings;
+}
+
+/// Names the stages of an update and gives each one's median.
+void addParts(BenchRow& row, const std::vector<StageTimes>& times)
+{
+    const auto stage = [&](const char* name, double StageTimes::*member) {
+        std::vector<double> values;
+        for (const StageTimes& t : times) values.push_back(t.*member);
+        row.partNames.emplace_back(name);
+        row.palpatePartsMs.push_back(quartiles(values).median);
+    };
+    stage("gather", &StageTimes::gather);
+    stage("fit", &StageTimes::fit);
+    stage("project", &StageTimes::project);
+    stage("resample", &StageTimes::resample);
+    stage("prepare", &StageTimes::prepare);
+    stage("solve", &StageTimes::solve);
+    stage("lift", &StageTimes::lift);
+}
+
 /// Measures an update on the paper's object: an ellipsoid of 40 000 points, and a patch window that gathers some 3000
 /// of them.
 /// \param tolerance  of the solver; "coarse" in the table, unless it is the default one
@@ -179,14 +209,9 @@ BenchRow measureUpdate(int nodes, double tolerance, int runs, PlateSolver& solve
     settings.footprintRadius = sample.footprintRadius;
     settings.cells           = nodes - 1;
     settings.tolerance       = tolerance;
+    settings                 = gathering(kGathered, settings, object, contact, solver);
 
-    Patch patch;
-    for (int n = 0; n < 4; ++n) { // the number of points grows with the square of the window
-        patch = deform(object, contact, settings, solver);
-        settings.window *= std::sqrt(kGathered / double(patch.gathered.size()));
-        settings.footprintRadius = std::min(settings.footprintRadius, settings.window / 4);
-    }
-
+    Patch                   patch;
     std::vector<StageTimes> times;
     const auto              timing = takeTurns({{"Palpate", {[&] {
                                         patch = deform(object, contact, settings, solver);
@@ -210,19 +235,7 @@ BenchRow measureUpdate(int nodes, double tolerance, int runs, PlateSolver& solve
     row.workUnits  = patch.report.workUnits;
     row.tolerance  = settings.tolerance;
     row.note       = "the published time is of another machine, its error is not stated";
-    const auto stage = [&](const char* name, double StageTimes::*member) {
-        std::vector<double> values;
-        for (const StageTimes& t : times) values.push_back(t.*member);
-        row.partNames.emplace_back(name);
-        row.palpatePartsMs.push_back(quartiles(values).median);
-    };
-    stage("gather", &StageTimes::gather);
-    stage("fit", &StageTimes::fit);
-    stage("project", &StageTimes::project);
-    stage("resample", &StageTimes::resample);
-    stage("prepare", &StageTimes::prepare);
-    stage("solve", &StageTimes::solve);
-    stage("lift", &StageTimes::lift);
+    addParts(row, times);
 
     const PlateGrid& grid = patch.plate.grid;
     const NodeField  load = footprintLoad(grid, 1, grid.sizeX() / 2, grid.sizeZ() / 2, settings.footprintRadius);

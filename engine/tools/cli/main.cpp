@@ -111,6 +111,46 @@ void addOwnOptions(CLI::App& app)
     flag->needs("--version");
 }
 
+const char* const kExamples =
+    "Examples:\n"
+    "  palpate touch sample:skin --out touch          a poke into a wart, with pictures\n"
+    "  palpate info scan.ply --length-unit mm         what a file holds and how it is read\n"
+    "  palpate materials                              measured materials, for the key material\n"
+    "  palpate fit probes.csv --page probes.html      stiffness, stiffening and relaxation of measured presses\n"
+    "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
+    "  palpate paint scan.ply --stroke 'at=0,0,30mm radius=5mm value=2MPa' --out wart.ply\n"
+    "                                                 a stiff spot on it; the rest of the file is kept\n"
+    "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
+    "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
+    "  palpate export session --csv session.csv       a recorded session as a table\n"
+    "  palpate hunt samples/scenes/nodule_hunt.json   a hand's search for hidden nodules, scored\n"
+    "  palpate study samples/studies/paper.json --participant P01 --out study   blinded trials, a table of "
+    "answers\n"
+    "  palpate render sample:palm --out palm.png      a picture of a touch, without a display\n"
+    "  palpate perceive sample:skin                   a prediction of what a person would notice\n"
+    "  palpate paper --out report                     the paper's experiments, computed again\n"
+    "  palpate devices                                processors and haptic devices of this machine\n"
+    "  palpate doctor                                 what it lacks for haptics, with remedies\n"
+    "  palpate calibrate --mass '200 g'               a Falcon weighs a mass to calibrate its force\n"
+    "  palpate bench --quick                          times of its solver and of alternatives\n"
+    "Run a command with --help for its options and examples.";
+
+/// Adds the commands in the order in which help shows them.
+void addCommands(CLI::App& app)
+{
+    using namespace palp;
+    app.require_subcommand(1);
+    addOwnOptions(app);
+    app.footer(kExamples);
+    for (const auto add : {addTouchCommand, addSolveCommand, addInfoCommand, addMaterialsCommand, addFitCommand,
+                           addConvertCommand, addPaintCommand, addDevicesCommand, addDoctorCommand, addRunCommand,
+                           addExportCommand, addHuntCommand, addStudyCommand, addRenderCommand, addViewCommand,
+                           addPerceiveCommand, addPaperCommand, addCalibrateCommand, addBenchCommand})
+        add(app);
+    for (CLI::App* command : app.get_subcommands({}))
+        command->parse_complete_callback([command] { refuseEmptyValues(*command); });
+}
+
 int printHelp(const CLI::App& app, const CLI::ParseError& request)
 {
     app.exit(request);
@@ -123,52 +163,7 @@ int main(int argumentCount, char** arguments)
 {
     keepFreedMemory();
     CLI::App app("Palpate: feel a thin, soft object whose stiffness varies from place to place.");
-    app.require_subcommand(1);
-    addOwnOptions(app);
-    app.footer(
-        "Examples:\n"
-        "  palpate touch sample:skin --out touch          a poke into a wart, with pictures\n"
-        "  palpate info scan.ply --length-unit mm         what a file holds and how it is read\n"
-        "  palpate materials                              measured materials, for the key material\n"
-        "  palpate fit probes.csv --page probes.html      stiffness, stiffening and relaxation of measured presses\n"
-        "  palpate convert sample:palm palm.ply           a procedural object as a file\n"
-        "  palpate paint scan.ply --stroke 'at=0,0,30mm radius=5mm value=2MPa' --out wart.ply\n"
-        "                                                 a stiff spot on it; the rest of the file is kept\n"
-        "  palpate solve plate.json --cells 256 --json    one plate, for scripts\n"
-        "  palpate run samples/scenes/palm_wart.json      a hand slides over a wart\n"
-        "  palpate export session --csv session.csv       a recorded session as a table\n"
-        "  palpate hunt samples/scenes/nodule_hunt.json   a hand's search for hidden nodules, scored\n"
-        "  palpate study samples/studies/paper.json --participant P01 --out study   blinded trials, a table of "
-        "answers\n"
-        "  palpate render sample:palm --out palm.png      a picture of a touch, without a display\n"
-        "  palpate perceive sample:skin                   a prediction of what a person would notice\n"
-        "  palpate paper --out report                     the paper's experiments, computed again\n"
-        "  palpate devices                                processors and haptic devices of this machine\n"
-        "  palpate doctor                                 what it lacks for haptics, with remedies\n"
-        "  palpate calibrate --mass '200 g'               a Falcon weighs a mass to calibrate its force\n"
-        "  palpate bench --quick                          times of its solver and of alternatives\n"
-        "Run a command with --help for its options and examples.");
-    palp::addTouchCommand(app);
-    palp::addSolveCommand(app);
-    palp::addInfoCommand(app);
-    palp::addMaterialsCommand(app);
-    palp::addFitCommand(app);
-    palp::addConvertCommand(app);
-    palp::addPaintCommand(app);
-    palp::addDevicesCommand(app);
-    palp::addDoctorCommand(app);
-    palp::addRunCommand(app);
-    palp::addExportCommand(app);
-    palp::addHuntCommand(app);
-    palp::addStudyCommand(app);
-    palp::addRenderCommand(app);
-    palp::addViewCommand(app);
-    palp::addPerceiveCommand(app);
-    palp::addPaperCommand(app);
-    palp::addCalibrateCommand(app);
-    palp::addBenchCommand(app);
-    for (CLI::App* command : app.get_subcommands({}))
-        command->parse_complete_callback([command] { refuseEmptyValues(*command); });
+    addCommands(app);
     std::signal(SIGXFSZ, SIG_IGN); // a file beyond the size limit then fails as a write, with a sentence
     try {
         const std::vector<const char*> words = wordsOf(argumentCount, arguments);

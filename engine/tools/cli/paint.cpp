@@ -113,53 +113,54 @@ nlohmann::json jsonOf(const StrokeOrder& order, const StrokeReport& report)
             {"points", report.points}};
 }
 
-void paint(const PaintOptions& o)
+/// Returns the unit of a stiffness as people read it.
+std::string shownUnit(StiffnessKind kind)
 {
-    static_cast<void>(formatToWrite(o.out)); // first, refuses a name of no known format
-    Canvas canvas(o.source);
-    refuseSourceAsTarget("--out", canvas.file.empty() ? o.source.name : canvas.file, o.out);
-    const SoftObject         object(canvas.loaded.cloud);
-    const PointCloud&        cloud  = object.cloud();
-    const std::string        unit   = cloud.kind() == StiffnessKind::rigidity ? "N m" : unitOf(cloud.kind());
-    const double             metres = metresPerPlainNumber(o.source, canvas.scene);
-    std::vector<StrokeOrder> orders;
-    const auto               what = [](std::size_t k) { return "--stroke " + std::to_string(k + 1); };
-    for (std::size_t k = 0; k < o.strokes.size(); ++k)
-        orders.push_back(parseStroke(o.strokes[k], what(k), metres, cloud.kind()));
+    return kind == StiffnessKind::rigidity ? "N m" : unitOf(kind);
+}
 
-    StiffnessPainting painting(object);
-    const SoftObject  growing = object.repainted(growthsOf(canvas.loaded));
-    StiffnessPainting growth(growing);
-    nlohmann::json    strokes = nlohmann::json::array();
-    std::string       lines;
-    for (std::size_t k = 0; k < orders.size(); ++k) {
-        const StrokeOrder& order  = orders[k];
-        const StrokeReport report = paintStroke(order, what(k), object, order.stiffening ? growth : painting);
-        strokes.push_back(jsonOf(order, report));
-        lines += "  stroke " + std::to_string(k + 1) + "    " + counted(report.dabs, "dab") + " over " +
+/// The strokes of one command as they were painted, for people and for scripts.
+struct StrokeAccount {
+    std::string    lines;
+    nlohmann::json json = nlohmann::json::array();
+
+    void add(const StrokeOrder& order, const StrokeReport& report, const std::string& unit)
+    {
+        json.push_back(jsonOf(order, report));
+        lines += "  stroke " + std::to_string(json.size()) + "    " + counted(report.dabs, "dab") + " over " +
                  counted(report.points, "point") + ", " +
                  (order.value        ? "towards " + formatQuantity(*order.value, unit)
                   : order.stiffening ? "stiffening towards " + formatQuantity(*order.stiffening, "1/m")
                                      : "smoothing") +
                  "\n";
     }
-    const Painted      painted = paintedBy(painting, growth, canvas.loaded);
-    const RepaintedPly written = write(o, canvas, painted);
+};
+
+/// Says what a reader of the new file has to know.
+void addWarnings(Canvas& canvas, const Painted& painted, const RepaintedPly& written)
+{
     if (painted.changed + painted.stiffened == 0) canvas.warnings.emplace_back("no stroke changed anything");
-    const bool kept = keepsOriginal(o, canvas, painted);
     if (painted.stiffens && isPly(canvas.file))
         canvas.warnings.emplace_back(
             "a stroke of stiffening makes a new file: of the original's properties only stiffness and faces are kept");
     if (!written.appended && !canvas.scene.reading.stiffnessProperty.empty())
         canvas.warnings.push_back("the stiffness keeps its property: read it with --stiffness-property " +
                                   written.property + ", and without --stiffness-range");
-    const auto [least, most] = std::minmax_element(painted.cloud.stiffness().begin(), painted.cloud.stiffness().end());
+}
+
+void print(const PaintOptions& o, const Canvas& canvas, const Painted& painted, const RepaintedPly& written,
+           const StrokeAccount& strokes)
+{
+    const PointCloud& cloud  = painted.cloud;
+    const std::string unit   = shownUnit(cloud.kind());
+    const bool        kept   = keepsOriginal(o, canvas, painted);
+    const auto [least, most] = std::ranges::minmax_element(cloud.stiffness());
     if (o.json) {
         std::cout << jsonText(nlohmann::json{{"name", o.source.name},
                                              {"points", cloud.size()},
                                              {"changed_points", painted.changed},
                                              {"stiffened_points", painted.stiffened},
-                                             {"strokes", strokes},
+                                             {"strokes", strokes.json},
                                              {"stiffness_unit", unitOf(cloud.kind())},
                                              {"stiffness_min", *least},
                                              {"stiffness_max", *most},
@@ -172,10 +173,36 @@ void paint(const PaintOptions& o)
     }
     std::cout << o.out << ": " << cloud.size() << " points, " << painted.changed << " with another stiffness"
               << (painted.stiffens ? ", " + std::to_string(painted.stiffened) + " with another stiffening\n" : "\n")
-              << lines << "  stiffness   " << formatQuantity(*least, unit) << " to " << formatQuantity(*most, unit)
-              << ", property " << written.property
+              << strokes.lines << "  stiffness   " << formatQuantity(*least, unit) << " to "
+              << formatQuantity(*most, unit) << ", property " << written.property
               << (kept ? ", all else as in " + canvas.file : std::string(", in a new file in metres")) << "\n";
     for (const std::string& line : canvas.warnings) std::cout << "  warning     " << line << "\n";
+}
+
+void paint(const PaintOptions& o)
+{
+    static_cast<void>(formatToWrite(o.out)); // first, refuses a name of no known format
+    Canvas canvas(o.source);
+    refuseSourceAsTarget("--out", canvas.file.empty() ? o.source.name : canvas.file, o.out);
+    const SoftObject         object(canvas.loaded.cloud);
+    const PointCloud&        cloud  = object.cloud();
+    const std::string        unit   = shownUnit(cloud.kind());
+    const double             metres = metresPerPlainNumber(o.source, canvas.scene);
+    std::vector<StrokeOrder> orders;
+    const auto               what = [](std::size_t k) { return "--stroke " + std::to_string(k + 1); };
+    for (std::size_t k = 0; k < o.strokes.size(); ++k)
+        orders.push_back(parseStroke(o.strokes[k], what(k), metres, cloud.kind()));
+
+    StiffnessPainting painting(object);
+    const SoftObject  growing = object.repainted(growthsOf(canvas.loaded));
+    StiffnessPainting growth(growing);
+    StrokeAccount     strokes;
+    for (std::size_t k = 0; k < orders.size(); ++k)
+        strokes.add(orders[k], paintStroke(orders[k], what(k), object, orders[k].stiffening ? growth : painting), unit);
+    const Painted      painted = paintedBy(painting, growth, canvas.loaded);
+    const RepaintedPly written = write(o, canvas, painted);
+    addWarnings(canvas, painted, written);
+    print(o, canvas, painted, written, strokes);
 }
 
 } // namespace

@@ -140,13 +140,26 @@ std::optional<study::HuntScorer> scorerFor(const SceneSource& source)
     return std::make_optional<study::HuntScorer>(scene, source.loadCloud(scene).cloud);
 }
 
-void view(const ViewOptions& o)
+/// Opens the device that is asked for, and waits until its arm knows where it is.
+/// \param source  holds it, and gives back the one before: a device can be open only once
+WorkbenchHand openHand(const ViewOptions& o, const Stage& stage, const HandWait& wait, SessionHand& source)
 {
-    if (!o.markers.empty()) static_cast<void>(markerAddress(o.markers)); // before a window opens
-    std::vector<std::unique_ptr<TickStream>> streams;                    // outlive the window
-    WorkbenchSettings                        settings;
-    auto                                     scorer = scorerFor(o.scene);
-    if (scorer) settings.onTick = [&scorer](const TickRecord& record) { scorer->add(record); };
+    source                    = {};
+    HandOptions hand          = o.hand;
+    hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, stage.scene());
+    hand.cancel               = &wait.givenUp;
+    source                    = handFor(hand, stage.scene(), stage.object());
+    warn(source.warnings);
+    say(source.notes);
+    waitForHoming(*source.device, wait.givenUp, wait.tell);
+    return {source.device.get(), source.frame, source.isHeldByPerson() ? 1e9 : source.seconds};
+}
+
+/// Returns what the options decide.
+/// \param o, source  outlive the window
+WorkbenchSettings settingsOf(const ViewOptions& o, SessionHand& source)
+{
+    WorkbenchSettings settings;
     settings.what     = o.scene.name;
     settings.values   = o.scene.flags;
     settings.toolKeys = &study::huntKeys();
@@ -159,19 +172,8 @@ void view(const ViewOptions& o)
                            "shows all keys, and Object opens others";
     settings.open     = sceneFrom;
     settings.recorded = [&o](const Stage& stage, const HapticDevice& device) { return infoOf(o, stage, device); };
-    SessionHand source;
     if (deviceNamed(o.hand.hand) != &kMouseRecord)
-        settings.hand = [&](const Stage& stage, const HandWait& wait) -> WorkbenchHand {
-            source                    = {}; // a device can be open only once
-            HandOptions hand          = o.hand;
-            hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, stage.scene());
-            hand.cancel               = &wait.givenUp;
-            source                    = handFor(hand, stage.scene(), stage.object());
-            warn(source.warnings);
-            say(source.notes);
-            waitForHoming(*source.device, wait.givenUp, wait.tell);
-            return {source.device.get(), source.frame, source.isHeldByPerson() ? 1e9 : source.seconds};
-        };
+        settings.hand = [&](const Stage& stage, const HandWait& wait) { return openHand(o, stage, wait, source); };
     settings.assumed    = assumptions;
     settings.complained = [](const std::string& sentence) { std::cerr << "palpate: " << sentence << "\n"; };
     if (!o.hand.seconds.empty()) settings.seconds = secondsOf(o.hand.seconds);
@@ -179,6 +181,30 @@ void view(const ViewOptions& o)
     settings.state.look.map    = optionNamed<ColourMap>("--colour-map", o.map);
     settings.state.look.ground = o.dark ? Ground::dark : Ground::light;
     settings.stop              = &catchInterrupts();
+    return settings;
+}
+
+/// Says how the window ended.
+void tellEnd(const ViewOptions& o, const WorkbenchReport& report, SurfaceRenderer& renderer,
+             const std::optional<study::HuntScorer>& scorer)
+{
+    if (!report.said.empty()) std::cerr << "palpate: " << report.said << "\n";
+    const auto score = scorer ? std::optional(scorer->score()) : std::nullopt;
+    tell(o, report, renderer, score);
+    if (score && !o.json) printText(*score, study::hiddenIn(o.scene.load())->hunt);
+    const auto messages = renderer.takeMessages();
+    for (const std::string& message : messages) std::cerr << "palpate: validation: " << message << "\n";
+    if (!messages.empty()) throw CheckFailed("the validation layer has messages");
+}
+
+void view(const ViewOptions& o)
+{
+    if (!o.markers.empty()) static_cast<void>(markerAddress(o.markers)); // before a window opens
+    std::vector<std::unique_ptr<TickStream>> streams;                    // outlive the window
+    SessionHand                              source;
+    WorkbenchSettings                        settings = settingsOf(o, source);
+    auto                                     scorer   = scorerFor(o.scene);
+    if (scorer) settings.onTick = [&scorer](const TickRecord& record) { scorer->add(record); };
     for (const std::string& outlet : o.streams) streams.push_back(std::make_unique<TickStream>(openOutlet(outlet)));
     for (const auto& stream : streams) settings.streams.push_back(stream.get());
 
@@ -209,13 +235,7 @@ void view(const ViewOptions& o)
     markers.reset();
     if (o.size.empty()) rememberSize(last);
     tellStreams(streams, o.json);
-    if (!report.said.empty()) std::cerr << "palpate: " << report.said << "\n";
-    const auto score = scorer ? std::optional(scorer->score()) : std::nullopt;
-    tell(o, report, renderer, score);
-    if (score && !o.json) printText(*score, study::hiddenIn(o.scene.load())->hunt);
-    const auto messages = renderer.takeMessages();
-    for (const std::string& message : messages) std::cerr << "palpate: validation: " << message << "\n";
-    if (!messages.empty()) throw CheckFailed("the validation layer has messages");
+    tellEnd(o, report, renderer, scorer);
 }
 
 #else
