@@ -387,6 +387,20 @@ private:
     std::vector<Gap> gaps_; ///< last in, first out
 };
 
+/// Returns at(weights, the values of the three corners) of each point.
+template <typename At>
+std::vector<double> eachPoint(const MeshPoints& points, std::span<const Triangle> faces, std::span<const double> values,
+                              At at)
+{
+    std::vector<double> result;
+    result.reserve(points.size());
+    for (std::size_t n = 0; n < points.size(); ++n) {
+        const Triangle& face = faces[points.triangles[n]];
+        result.push_back(at(points.weights[n], values[face[0]], values[face[1]], values[face[2]]));
+    }
+    return result;
+}
+
 } // namespace
 
 MeshPoints scatterOver(std::span<const glm::dvec3> vertices, std::span<const Triangle> faces,
@@ -409,29 +423,17 @@ MeshPoints scatterOver(std::span<const glm::dvec3> vertices, std::span<const Tri
 std::vector<double> interpolated(const MeshPoints& points, std::span<const Triangle> faces,
                                  std::span<const double> values)
 {
-    std::vector<double> result;
-    result.reserve(points.size());
-    for (std::size_t n = 0; n < points.size(); ++n) {
-        const Triangle& face  = faces[points.triangles[n]];
-        const double    first = values[face[0]];
-        result.push_back(first + points.weights[n].x * (values[face[1]] - first) +
-                         points.weights[n].y * (values[face[2]] - first));
-    }
-    return result;
+    return eachPoint(points, faces, values, [](const glm::dvec2& weight, double a, double b, double c) {
+        return a + weight.x * (b - a) + weight.y * (c - a);
+    });
 }
 
 std::vector<double> logInterpolated(const MeshPoints& points, std::span<const Triangle> faces,
                                     std::span<const double> values)
 {
-    std::vector<double> result;
-    result.reserve(points.size());
-    for (std::size_t n = 0; n < points.size(); ++n) {
-        const Triangle& face  = faces[points.triangles[n]];
-        const double    first = values[face[0]];
-        result.push_back(first * std::exp(points.weights[n].x * std::log(values[face[1]] / first) +
-                                          points.weights[n].y * std::log(values[face[2]] / first)));
-    }
-    return result;
+    return eachPoint(points, faces, values, [](const glm::dvec2& weight, double a, double b, double c) {
+        return a * std::exp(weight.x * std::log(b / a) + weight.y * std::log(c / a));
+    });
 }
 
 } // namespace palp

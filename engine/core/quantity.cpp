@@ -153,4 +153,11 @@ std::string formatNumber(double value)
     return text;
 }
 
+std::string shortNumber(double value, int digits)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*g", std::min(digits, 17), value);
+    return text;
+}
+
 } // namespace palp

@@ -31,4 +31,7 @@ enum class Dimension { length, force, pressure, rigidity, foundation, stiffness,
 /// Writes two digits of a small number without a unit, such as an error: "7.4e-05".
 [[nodiscard]] std::string formatNumber(double value);
 
+/// Writes a number without a unit with as many digits as it needs, `digits` at most: "0.25", "1e-05".
+[[nodiscard]] std::string shortNumber(double value, int digits = 6);
+
 } // namespace palp

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 
@@ -15,6 +14,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/npy.h"
+#include "engine/core/quantity.h"
 #include "engine/core/shown_text.h"
 
 namespace palp {
@@ -25,9 +25,7 @@ constexpr std::size_t kMostWaypoints = 10'000'000; // 2.8 hours at 1 kHz; a larg
 
 std::string text(double value)
 {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.9g", value);
-    return buffer;
+    return shortNumber(value, 9);
 }
 
 /// Takes waypoints one by one and refuses the first that no hand can make.

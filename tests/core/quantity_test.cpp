@@ -68,5 +68,15 @@ TEST(Quantity, APlainNumberIsInTheUnitThatTheCallerNames)
     EXPECT_DOUBLE_EQ(parseQuantity("3cm", Dimension::length, "--thickness", 1e-3), 3e-2);
 }
 
+TEST(ShortNumber, HasNoMoreDigitsThanItNeeds)
+{
+    EXPECT_EQ(shortNumber(0.25), "0.25");
+    EXPECT_EQ(shortNumber(3), "3");
+    EXPECT_EQ(shortNumber(1e-5), "1e-05");
+    EXPECT_EQ(shortNumber(1.0 / 3), "0.333333");
+    EXPECT_EQ(shortNumber(1.0 / 3, 9), "0.333333333");
+    EXPECT_EQ(shortNumber(0.1, 99), "0.10000000000000001") << "17 digits are all that a double has";
+}
+
 } // namespace
 } // namespace palp

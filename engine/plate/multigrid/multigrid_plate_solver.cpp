@@ -5,7 +5,6 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <optional>
@@ -60,13 +59,6 @@ constexpr double kFloatRounding = 5e-5, kRoundedContrast = 1000;
 /// Exact rims take less time than sweeps of tiles if their factors do not take more work [multiplications per node], per
 /// load that is solved with them. Where strong jumps need many sweeps more work pays.
 constexpr double kRimWork = 300, kStrongRimWork = 5000;
-
-std::string shortest(double value)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%g", value);
-    return text;
-}
 
 /// Memory that the host writes for a buffer: the buffer itself where it is mapped, else memory that a list copies.
 class Staging {
@@ -486,8 +478,8 @@ MultigridPlateSolver::MultigridPlateSolver(compute::Context& context, const Plat
     if (const auto why = whyUnsolvable(plate)) throw Error("plate: " + *why);
     const double least = kernels.all().doubles ? kLeastTolerance : kLeastFloatTolerance;
     if (!(settings.tolerance >= least && settings.tolerance < 1))
-        throw Error("plate: expected a tolerance of at least " + shortest(least) + " and below 1, found " +
-                    shortest(settings.tolerance));
+        throw Error("plate: expected a tolerance of at least " + shortNumber(least) + " and below 1, found " +
+                    shortNumber(settings.tolerance));
     const std::size_t most = std::size_t(kMostGroups) * kernels.all().update.workgroup().x;
     if (plate.grid.nodes() > most)
         throw Error("plate: " + std::to_string(plate.grid.nodes()) + " nodes are more than the " +

@@ -118,11 +118,7 @@ std::string noteOf(const Stage& stage, const Patch& patch, double force, double 
 {
     std::string note = formatQuantity(force, "N") + ", " + formatQuantity(deepestOf(patch, load), "m") + " deep in " +
                        formatQuantity(stage.scene.material.thickness, "m");
-    if (stage.look.exaggeration != 1) {
-        char factor[32];
-        std::snprintf(factor, sizeof factor, "%g", stage.look.exaggeration);
-        note.append(", displacement \u00d7 ").append(factor);
-    }
+    if (stage.look.exaggeration != 1) note += ", displacement \u00d7 " + shortNumber(stage.look.exaggeration);
     return note;
 }
 

@@ -19,6 +19,7 @@
 #include "engine/tools/cli/patch_json.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/solver_choice.h"
+#include "engine/tools/paper/section.h"
 #include "engine/tools/plot/patch_pictures.h"
 #include "engine/tools/render/cloud_figure.h"
 
@@ -35,11 +36,8 @@ constexpr const char* kSummary = "touch.json";
 
 std::string percent(double share)
 {
-    char             text[32];
     constexpr double kLeast = 1e-5; // the third decimal of a percent [1]
-    if (share > 0 && share < kLeast) return "below 0.001 %";
-    std::snprintf(text, sizeof text, share < 0.1 ? "%.2g %%" : "%.0f %%", 100 * share);
-    return text;
+    return share > 0 && share < kLeast ? "below 0.001 %" : report::percent(share);
 }
 
 void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann::json& r)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -28,9 +27,7 @@ bool inContact(const SessionView* view)
 /// Returns " × 3" for a device whose millimetre is three of the scene; the pointer is in the scene.
 std::string scaleOf(const Scene& scene, bool byPointer)
 {
-    if (byPointer || scene.workspaceScale == 1) return {};
-    char text[32];
-    return {text, std::size_t(std::snprintf(text, sizeof text, " \u00d7 %g", scene.workspaceScale))};
+    return byPointer || scene.workspaceScale == 1 ? "" : " \u00d7 " + shortNumber(scene.workspaceScale);
 }
 
 } // namespace
