@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -50,6 +51,25 @@ TEST(Contact, BothSidesOfAThinObjectHaveTheirOwnOutward)
 TEST(Contact, AFlatSheetIsTouchedFromAbove)
 {
     EXPECT_EQ(Object("sheet").touch({70e-3, 70e-3, 0}).outward, glm::dvec3(0, 0, 1));
+}
+
+TEST(Contact, AFlatWallIsTouchedAcrossWhicheverWayItStands)
+{
+    for (int across = 0; across < 3; ++across) {
+        std::vector<glm::dvec3> wall;
+        for (int i = 0; i <= 40; ++i)
+            for (int j = 0; j <= 40; ++j) {
+                glm::dvec3 p(0);
+                p[(across + 1) % 3] = 1e-3 * i;
+                p[(across + 2) % 3] = 1e-3 * j;
+                wall.push_back(p);
+            }
+        const std::vector<double> stiffness(wall.size(), 1e6);
+        const SoftObject          object(PointCloud(wall, stiffness, StiffnessKind::modulus));
+        glm::dvec3                expected(0);
+        expected[across] = 1;
+        EXPECT_EQ(touchAt(object, wall[45], {}, 5e-3).outward, expected) << "axis " << across;
+    }
 }
 
 TEST(Contact, TheUserDecidesTheSide)

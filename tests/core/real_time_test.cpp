@@ -17,12 +17,12 @@ constexpr uid_t kNobody = 65534;
 /// Asks for real time as a user whose limit of locked memory is a little more than the program has.
 void askBelowALimit()
 {
-    if (geteuid() == 0 && setresuid(kNobody, kNobody, kNobody) != 0) std::exit(2);
     std::size_t pages = 0;
     std::ifstream("/proc/self/statm") >> pages;
     const rlim_t limit = pages * std::size_t(sysconf(_SC_PAGESIZE)) + (1U << 20U); // [byte] a thread's stack is 8 MiB
     const rlimit both{limit, limit};
-    if (setrlimit(RLIMIT_MEMLOCK, &both) != 0) std::exit(3);
+    if (setrlimit(RLIMIT_MEMLOCK, &both) != 0) std::exit(3); // above the old limit only root may
+    if (geteuid() == 0 && setresuid(kNobody, kNobody, kNobody) != 0) std::exit(2);
     const std::string refused = askForRealTime();
     std::thread([] {}).join();
     std::exit(refused.find("mlockall") == std::string::npos ? 4 : 0);
