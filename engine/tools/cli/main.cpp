@@ -14,6 +14,7 @@
 #include <malloc.h>
 #endif
 
+#include "engine/compute/context.h"
 #include "engine/compute/processor_error.h"
 #include "engine/core/contract.h"
 #include "engine/tools/cli/commands.h"
@@ -119,9 +120,10 @@ int printHelp(const CLI::App& app, const CLI::ParseError& request)
 
 } // namespace
 
-int main(int argumentCount, char** arguments)
+/// Does what the words say.
+/// \return the exit code
+int runProgram(int argumentCount, char** arguments)
 {
-    keepFreedMemory();
     CLI::App app("Palpate: feel a thin, soft object whose stiffness varies from place to place.");
     app.require_subcommand(1);
     addOwnOptions(app);
@@ -192,4 +194,12 @@ int main(int argumentCount, char** arguments)
         return complain(std::string("internal error, please report it: ") + error.what(), kOurFault);
     }
     return 0;
+}
+
+int main(int argumentCount, char** arguments)
+{
+    keepFreedMemory();
+    const int code = runProgram(argumentCount, arguments);
+    if (palp::compute::driverLeftAtWork()) std::_Exit(code); // all output has been flushed
+    return code;
 }

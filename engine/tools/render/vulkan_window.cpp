@@ -102,7 +102,8 @@ bool VulkanWindow::next(VkExtent2D size)
         const VkResult          result =
             vkAcquireNextImageKHR(context_.device, chain_, kPatience, VK_NULL_HANDLE, fence, &current_);
         if (result == VK_SUCCESS || result == VK_SUBOPTIMAL_KHR) {
-            check(vkWaitForFences(context_.device, 1, &fence, VK_TRUE, UINT64_MAX), "wait for a window's picture");
+            check(vkWaitForFences(context_.device, 1, &fence, VK_TRUE, context_.patienceInNanoseconds()),
+                  "wait for a window's picture");
             if (result == VK_SUBOPTIMAL_KHR) wanted_ = {}; // the one after is made anew
             return true;
         }
