@@ -216,6 +216,7 @@ void view(const ViewOptions& o)
     const auto messages = renderer.takeMessages();
     for (const std::string& message : messages) std::cerr << "palpate: validation: " << message << "\n";
     if (!messages.empty()) throw CheckFailed("the validation layer has messages");
+    if (!window.hasDisplay()) throw Error("the display has gone, and the window with it; what was recorded is whole");
 }
 
 #else

@@ -63,7 +63,9 @@ void VulkanWindow::makeChain(VkExtent2D size)
     dropChain();
     wanted_ = size;
     VkSurfaceCapabilitiesKHR can;
-    check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context_.physical, surface_, &can), "ask what a window can");
+    const VkResult asked = vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context_.physical, surface_, &can);
+    if (asked == VK_ERROR_SURFACE_LOST_KHR) return; // its display has gone: the window says so
+    check(asked, "ask what a window can");
     constexpr std::uint32_t kOurs = 0xFFFFFFFF; // the program sets the size
     size_                         = can.currentExtent.width != kOurs ? can.currentExtent : size;
     size_                         = {std::clamp(size_.width, can.minImageExtent.width, can.maxImageExtent.width),
@@ -108,6 +110,7 @@ bool VulkanWindow::next(VkExtent2D size)
             return true;
         }
         if (result == VK_TIMEOUT || result == VK_NOT_READY) return false;
+        if (result == VK_ERROR_SURFACE_LOST_KHR) return false; // as above
         if (result != VK_ERROR_OUT_OF_DATE_KHR) check(result, "get a window's next picture");
         wanted_ = {};
     }
@@ -156,7 +159,7 @@ void VulkanWindow::show()
     const VkResult shown = vkQueuePresentKHR(context_.queue, &info);
     if (shown == VK_ERROR_OUT_OF_DATE_KHR || shown == VK_SUBOPTIMAL_KHR)
         wanted_ = {}; // the next one is made anew
-    else
+    else if (shown != VK_ERROR_SURFACE_LOST_KHR) // as above
         check(shown, "show a picture in a window");
 }
 
