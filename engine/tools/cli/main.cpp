@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 #include <new>
+#include <system_error>
 #include <vector>
 
 #ifdef __GLIBC__
@@ -71,6 +72,12 @@ std::vector<const char*> wordsOf(int argumentCount, char** arguments)
     words.erase(words.begin() + 1);
     words.push_back("--help");
     return words;
+}
+
+bool isForWantOfThreads(const std::exception& error)
+{
+    const auto* const system = dynamic_cast<const std::system_error*>(&error);
+    return system && system->code() == std::errc::resource_unavailable_try_again;
 }
 
 /// Ends the program without its exit handlers: an allocation that failed inside a driver may have left locks for which
@@ -191,6 +198,10 @@ int runProgram(int argumentCount, char** arguments)
     } catch (const std::bad_alloc&) {
         leaveWithoutMemory();
     } catch (const std::exception& error) {
+        if (isForWantOfThreads(error))
+            return complain(
+                "the system starts no more threads for this user; end other programs, or raise the limit (ulimit -u)",
+                kBadInput);
         return complain(std::string("internal error, please report it: ") + error.what(), kOurFault);
     }
     return 0;
