@@ -44,7 +44,7 @@ void Progress::lasts(const std::string& howLong)
 void Progress::mayLast()
 {
     if (!onTerminal_) return;
-    const auto tick = [this](const std::stop_token& stop) {
+    const auto drawEachSecond = [this](const std::stop_token& stop) {
         std::mutex                  alone; // nothing is shared; the condition needs a mutex to wait
         std::condition_variable_any tick;
         std::unique_lock            lock(alone);
@@ -56,7 +56,7 @@ void Progress::mayLast()
         }
     };
     try {
-        ticker_ = std::jthread(tick);
+        ticker_ = std::jthread(drawEachSecond);
     } catch (const std::system_error&) { // no thread is left: the work goes on without a line
     }
 }
