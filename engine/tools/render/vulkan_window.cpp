@@ -63,7 +63,7 @@ void VulkanWindow::makeChain(VkExtent2D size)
     dropChain();
     wanted_ = size;
     VkSurfaceCapabilitiesKHR can;
-    const VkResult asked = vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context_.physical, surface_, &can);
+    const VkResult           asked = vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context_.physical, surface_, &can);
     if (asked == VK_ERROR_SURFACE_LOST_KHR) return; // its display has gone: the window says so
     check(asked, "ask what a window can");
     constexpr std::uint32_t kOurs = 0xFFFFFFFF; // the program sets the size
@@ -158,7 +158,7 @@ void VulkanWindow::show()
     info.pImageIndices   = &current_;
     const VkResult shown = vkQueuePresentKHR(context_.queue, &info);
     if (shown == VK_ERROR_OUT_OF_DATE_KHR || shown == VK_SUBOPTIMAL_KHR)
-        wanted_ = {}; // the next one is made anew
+        wanted_ = {};                            // the next one is made anew
     else if (shown != VK_ERROR_SURFACE_LOST_KHR) // as above
         check(shown, "show a picture in a window");
 }
