@@ -69,27 +69,37 @@ private:
     std::optional<Guardian> guardian_;
 };
 
+/// Where a datagram comes from.
+struct Address {
+    sockaddr_storage name{};
+    socklen_t        size = sizeof name; ///< [byte]
+
+    bool operator==(const Address& other) const noexcept
+    {
+        return size == other.size && std::memcmp(&name, &other.name, size) == 0;
+    }
+};
+
 class UdpPort : public DescriptorPort {
 public:
     using DescriptorPort::DescriptorPort;
 
     std::size_t read(std::span<std::uint8_t> report, double timeout) override
     {
-        if (!hasBytes(fd_, timeout)) {
-            forget();
-            return 0;
+        constexpr int kMostStrangers =
+            1024; // datagrams that waited when the peer became one: more than the socket holds
+        for (int strangers = 0; strangers < kMostStrangers && hasBytes(fd_, timeout); ++strangers) {
+            Address       from;
+            const ssize_t got = recvfrom(fd_, report.data(), report.size(), MSG_DONTWAIT | MSG_TRUNC,
+                                         reinterpret_cast<sockaddr*>(&from.name), &from.size);
+            if (got < 0) return 0; // such as the answer of a machine that nobody listens there: silence
+            if (hasPeer_ && !(from == peer_)) continue;
+            const std::size_t whole = std::min(std::size_t(got), report.size());
+            hear(report.first(whole), from);
+            return whole;
         }
-        sockaddr_storage from{};
-        socklen_t        size = sizeof from;
-        const ssize_t    got  = recvfrom(fd_, report.data(), report.size(), MSG_DONTWAIT | MSG_TRUNC,
-                                         reinterpret_cast<sockaddr*>(&from), &size);
-        if (got < 0) return 0; // such as the answer of a machine that nobody listens there: silence
-        const std::size_t whole = std::min(std::size_t(got), report.size());
-        BridgeAnswer      answer;
-        if (!hasPeer_ && decode(report.first(whole), answer) == BridgeVerdict::good)
-            hasPeer_ = connect(fd_, reinterpret_cast<const sockaddr*>(&from), size) == 0;
-        heard_ = std::chrono::steady_clock::now();
-        return whole;
+        forget();
+        return 0;
     }
 
 protected:
@@ -100,6 +110,16 @@ protected:
     }
 
 private:
+    /// Makes the first that sends a good report the device. From here on the system drops what others send.
+    void hear(std::span<const std::uint8_t> report, const Address& from)
+    {
+        BridgeAnswer answer;
+        if (!hasPeer_ && decode(report, answer) == BridgeVerdict::good)
+            hasPeer_ = connect(fd_, reinterpret_cast<const sockaddr*>(&from.name), from.size) == 0;
+        if (hasPeer_) peer_ = from;
+        heard_ = std::chrono::steady_clock::now();
+    }
+
     /// Hears others again once the device was silent.
     void forget()
     {
@@ -110,6 +130,7 @@ private:
         hasPeer_ = false;
     }
 
+    Address                               peer_{};
     bool                                  hasPeer_ = false;
     std::chrono::steady_clock::time_point heard_{};
 };

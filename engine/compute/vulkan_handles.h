@@ -14,8 +14,7 @@
 
 namespace palp::compute {
 
-/// \throws ProcessorLost for a lost processor or missing memory, Error for any other failure; `what` completes "cannot
-///         ..."
+/// \throws ProcessorOutOfMemory for missing memory, ProcessorLost for any other failure; `what` completes "cannot ..."
 void check(VkResult result, const char* what);
 
 class VulkanContext : public Context::Handles {
@@ -42,6 +41,8 @@ public:
     /// \pre an earlier submission has been finished
     void start(std::span<const VkCommandBuffer> commands);
     void finish();
+
+    [[nodiscard]] std::uint64_t patienceInNanoseconds() const; ///< for waits
 
     /// Returns whether an abandoned submission still runs: then nothing may be destroyed, and leaks replace crashes.
     [[nodiscard]] bool atWork() const { return abandoned && vkGetFenceStatus(device, fence) == VK_NOT_READY; }

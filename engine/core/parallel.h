@@ -3,10 +3,22 @@
 #include <cstddef>
 #include <future>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace palp {
+
+/// Begins work on another thread. Where the system starts none any more, whoever waits for the work does it.
+template <class Work>
+[[nodiscard]] std::future<void> beside(const Work& work)
+{
+    try {
+        return std::async(std::launch::async, work);
+    } catch (const std::system_error&) {
+        return std::async(std::launch::deferred, work);
+    }
+}
 
 /// Runs work(begin, end) over pieces that together are [0, count), on as many threads as the machine has cores, and
 /// waits. The caller's thread takes part. What the pieces are may differ between machines, so the work on an element
@@ -21,7 +33,7 @@ void inParallel(std::size_t count, std::size_t leastPiece, Work&& work)
     std::vector<std::future<void>> others;
     const auto                     edge = [&](std::size_t piece) { return count * piece / pieces; };
     for (std::size_t piece = 1; piece < pieces; ++piece)
-        others.push_back(std::async(std::launch::async, [&, piece] { work(edge(piece), edge(piece + 1)); }));
+        others.push_back(beside([&, piece] { work(edge(piece), edge(piece + 1)); }));
     work(edge(0), edge(1));
     for (std::future<void>& other : others) other.get();
 }

@@ -3,6 +3,7 @@
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
+#include <system_error>
 
 #include <unistd.h>
 
@@ -43,7 +44,7 @@ void Progress::lasts(const std::string& howLong)
 void Progress::mayLast()
 {
     if (!onTerminal_) return;
-    ticker_ = std::jthread([this](const std::stop_token& stop) {
+    const auto drawEachSecond = [this](const std::stop_token& stop) {
         std::mutex                  alone; // nothing is shared; the condition needs a mutex to wait
         std::condition_variable_any tick;
         std::unique_lock            lock(alone);
@@ -53,7 +54,11 @@ void Progress::mayLast()
             if (stop.stop_requested()) return;
             draw(std::to_string(seconds.count()) + " s");
         }
-    });
+    };
+    try {
+        ticker_ = std::jthread(drawEachSecond);
+    } catch (const std::system_error&) { // no thread is left: the work goes on without a line
+    }
 }
 
 void Progress::draw(const std::string& state)

@@ -283,8 +283,15 @@ TEST(BridgeLines, ByUdpTheFirstIsTheDeviceAndOthersAreNotHeard)
     send(second, rubbish);
     EXPECT_EQ(line->read(report, 1), 3U) << "what is no report makes nobody the device";
     send(first, encode(answerOf(1)));
-    EXPECT_EQ(line->read(report, 1), kBridgeSize);
     send(second, encode(answerOf(2)));
+    send(first, encode(answerOf(3)));
+    BridgeAnswer heard;
+    for (const int sequence : {1, 3}) { // the second's waits in the socket when the first becomes the device
+        EXPECT_EQ(line->read(report, 1), kBridgeSize);
+        EXPECT_EQ(decode(std::span(report).first(kBridgeSize), heard), BridgeVerdict::good);
+        EXPECT_EQ(heard.sequence, sequence);
+    }
+    send(second, encode(answerOf(4)));
     EXPECT_EQ(line->read(report, 0.05), 0U);
     line->write(encode(BridgeCommand{}));
     pollfd ready{first.fd, POLLIN, 0};

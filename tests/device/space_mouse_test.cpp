@@ -1,10 +1,14 @@
 #include "device/hid/space_mouse.h"
 
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <random>
+#include <sstream>
+#include <string>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -13,6 +17,7 @@
 #include "tests/device/fake_hid.h"
 #include "tests/support/allocations.h"
 #include "tests/support/locks.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palp {
 namespace {
@@ -32,6 +37,36 @@ Report axesReport(std::uint8_t number, std::initializer_list<int> axes)
         report.push_back(std::uint8_t(axis >> 8));
     }
     return report;
+}
+
+/// Returns what a rule of udev wants of an attribute; empty if it takes any value.
+std::string wanted(const std::string& rule, const std::string& attribute)
+{
+    const std::string start = "ATTRS{" + attribute + "}==\"";
+    const std::size_t at    = rule.find(start);
+    if (at == std::string::npos) return "";
+    const std::size_t from = at + start.size();
+    return rule.substr(from, rule.find('"', from) - from);
+}
+
+TEST(SpaceMouse, TheUdevRulesOpenItsModelsAndNoOtherProductOfTheirMakers)
+{
+    std::istringstream rules(contentsOf(PALPATE_FALCON_RULES));
+    int                opened = 0;
+    for (std::string line; std::getline(rules, line);) {
+        const std::string vendor = wanted(line, "idVendor"), products = wanted(line, "idProduct");
+        if (vendor != "046d" && vendor != "256f") continue;
+        ++opened;
+        for (unsigned product = 0; product <= 0xFFFF; ++product) {
+            std::array<char, 8> digits{};
+            std::snprintf(digits.data(), digits.size(), "%04x", product);
+            const bool isOpened = products.empty() || products.find(digits.data()) != std::string::npos;
+            const bool isOurs   = spaceMouseModel({.vendor  = std::uint16_t(std::stoul(vendor, nullptr, 16)),
+                                                   .product = std::uint16_t(product)}) != nullptr;
+            ASSERT_EQ(isOpened, isOurs) << line << ", product " << digits.data();
+        }
+    }
+    EXPECT_EQ(opened, 2);
 }
 
 TEST(SpaceMouseReport, TheOlderFormsFillThreeAxesEach)

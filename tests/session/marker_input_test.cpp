@@ -81,6 +81,22 @@ TEST(MarkerInput, ItsPortIsThisMachinesAloneUnlessAHostIsStated)
                       {"--markers", "cannot be listened at", "in use"}));
 }
 
+/// 127.0.0.2 stands for an address of this machine on a network: what is bound to 127.0.0.1 does not hear it.
+TEST(MarkerInput, WhatComesByAnotherAddressIsHeardOnlyWhereTheUserNamesOne)
+{
+    for (const std::string host : {"127.0.0.1", "0.0.0.0"}) {
+        Heard       heard;
+        MarkerInput input({.address = UdpAddress{host, 0}});
+        input.listen([&](std::string_view text) { heard.add(text); });
+        const UdpSocket far({"127.0.0.2", input.port()}, UdpEnd::there, "a test");
+        const UdpSocket near({"127.0.0.1", input.port()}, UdpEnd::there, "a test");
+        static_cast<void>(!::send(far.handle(), "far", 3, MSG_NOSIGNAL));
+        ASSERT_EQ(::send(near.handle(), "near", 4, 0), 4);
+        const bool isNamed = host == "0.0.0.0";
+        EXPECT_EQ(heard.wait(isNamed ? 2 : 1).front(), isNamed ? "far" : "near") << host;
+    }
+}
+
 TEST(MarkerInput, ItEndsAtOnceWhetherOrNotItListened)
 {
     const auto began = std::chrono::steady_clock::now();

@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
 #include "engine/compute/command_list.h"
 #include "engine/compute/vulkan_handles.h"
 #include "engine/core/contract.h"
+#include "engine/core/quantity.h"
 
 namespace palp::compute {
 namespace {
@@ -14,6 +16,8 @@ namespace {
 // large grid lasts tens of seconds.
 constexpr double kPatienceHardware = 10;  // [s]
 constexpr double kPatienceSoftware = 300; // [s]
+
+std::atomic<bool> isDriverLeftAtWork{false};
 
 const char* nameOf(VkResult result)
 {
@@ -30,6 +34,8 @@ const char* nameOf(VkResult result)
         return "mapping failed";
     case VK_ERROR_FEATURE_NOT_PRESENT:
         return "a feature is not present";
+    case VK_TIMEOUT:
+        return "no end in sight";
     case VK_ERROR_TOO_MANY_OBJECTS:
         return "too many objects";
     default:
@@ -38,6 +44,11 @@ const char* nameOf(VkResult result)
 }
 
 } // namespace
+
+bool driverLeftAtWork() noexcept
+{
+    return isDriverLeftAtWork;
+}
 
 void check(VkResult result, const char* what)
 {
@@ -48,10 +59,8 @@ void check(VkResult result, const char* what)
     case VK_ERROR_OUT_OF_HOST_MEMORY:
     case VK_ERROR_OUT_OF_DEVICE_MEMORY:
         throw ProcessorOutOfMemory(sentence + "; try fewer cells");
-    case VK_ERROR_DEVICE_LOST:
+    default: // lost, or a result that this call should not have: who gave it is not asked again
         throw ProcessorLost(sentence);
-    default:
-        throw Error(sentence);
     }
 }
 
@@ -68,6 +77,7 @@ VulkanContext::VulkanContext(std::unique_ptr<Instance>& entrance, const Candidat
 VulkanContext::~VulkanContext()
 {
     if (atWork()) {
+        isDriverLeftAtWork = true;
         (void)instance.release();
         return;
     }
@@ -160,14 +170,18 @@ void VulkanContext::start(std::span<const VkCommandBuffer> commands)
     check(vkQueueSubmit(queue, 1, &submit, fence), "take a command list");
 }
 
+std::uint64_t VulkanContext::patienceInNanoseconds() const
+{
+    return std::uint64_t(std::ceil(patience * 1e9));
+}
+
 void VulkanContext::finish()
 {
-    const auto     nanoseconds = std::uint64_t(std::ceil(patience * 1e9));
-    const VkResult result      = vkWaitForFences(device, 1, &fence, VK_TRUE, nanoseconds);
+    const VkResult result = vkWaitForFences(device, 1, &fence, VK_TRUE, patienceInNanoseconds());
     if (result == VK_TIMEOUT || result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY)
         abandoned = true;
     if (result == VK_TIMEOUT)
-        throw ProcessorLost("the GPU " + description.name + " did not finish within " + std::to_string(patience) +
+        throw ProcessorLost("the GPU " + description.name + " did not finish within " + formatNumber(patience) +
                             " s; try fewer cells");
     check(result, "finish a command list");
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <future>
 #include <numeric>
 #include <thread>
 
@@ -175,7 +174,7 @@ struct PointTree::Builder {
             });
             if (threads > 1 && to - from > kWorthAThread) {
                 std::vector<Node> far;
-                auto              other = std::async(std::launch::async, [&] { add(far, middle, to, threads / 2); });
+                auto              other = beside([&] { add(far, middle, to, threads / 2); });
                 add(nodes, from, middle, threads - threads / 2);
                 other.get();
                 for (Node& one : far) one.next += std::uint32_t(nodes.size());

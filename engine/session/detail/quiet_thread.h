@@ -10,12 +10,20 @@ namespace palp {
 template <class Work>
 [[nodiscard]] std::thread quietThread(Work work)
 {
-    sigset_t all, before;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before);
-    std::thread thread(std::move(work));
-    ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    return thread;
+    class NoSignals { // until the thread has been started, or could not be
+    public:
+        NoSignals()
+        {
+            sigset_t all;
+            ::sigfillset(&all);
+            ::pthread_sigmask(SIG_SETMASK, &all, &before_);
+        }
+        ~NoSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+    private:
+        sigset_t before_;
+    } const none;
+    return std::thread(std::move(work));
 }
 
 } // namespace palp

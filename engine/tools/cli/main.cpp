@@ -8,12 +8,14 @@
 #include <iostream>
 #include <memory>
 #include <new>
+#include <system_error>
 #include <vector>
 
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
+#include "engine/compute/context.h"
 #include "engine/compute/processor_error.h"
 #include "engine/core/contract.h"
 #include "engine/tools/cli/commands.h"
@@ -70,6 +72,12 @@ std::vector<const char*> wordsOf(int argumentCount, char** arguments)
     words.erase(words.begin() + 1);
     words.push_back("--help");
     return words;
+}
+
+bool isForWantOfThreads(const std::exception& error)
+{
+    const auto* const system = dynamic_cast<const std::system_error*>(&error);
+    return system && system->code() == std::errc::resource_unavailable_try_again;
 }
 
 /// Ends the program without its exit handlers: an allocation that failed inside a driver may have left locks for which
@@ -159,9 +167,10 @@ int printHelp(const CLI::App& app, const CLI::ParseError& request)
 
 } // namespace
 
-int main(int argumentCount, char** arguments)
+/// Does what the words say.
+/// \return the exit code
+int runProgram(int argumentCount, char** arguments)
 {
-    keepFreedMemory();
     CLI::App app("Palpate: feel a thin, soft object whose stiffness varies from place to place.");
     addCommands(app);
     std::signal(SIGXFSZ, SIG_IGN); // a file beyond the size limit then fails as a write, with a sentence
@@ -184,7 +193,19 @@ int main(int argumentCount, char** arguments)
     } catch (const std::bad_alloc&) {
         leaveWithoutMemory();
     } catch (const std::exception& error) {
+        if (isForWantOfThreads(error))
+            return complain(
+                "the system starts no more threads for this user; end other programs, or raise the limit (ulimit -u)",
+                kBadInput);
         return complain(std::string("internal error, please report it: ") + error.what(), kOurFault);
     }
     return 0;
+}
+
+int main(int argumentCount, char** arguments)
+{
+    keepFreedMemory();
+    const int code = runProgram(argumentCount, arguments);
+    if (palp::compute::driverLeftAtWork()) std::_Exit(code); // all output has been flushed
+    return code;
 }

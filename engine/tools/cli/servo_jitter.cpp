@@ -40,24 +40,16 @@ public:
     Load()
     {
         for (unsigned n = 0; n < std::max(1U, std::thread::hardware_concurrency()); ++n)
-            threads_.emplace_back([this] {
+            threads_.emplace_back([this](const std::stop_token& stop) {
                 double sum = 0;
-                while (!over_) sum = std::sqrt(sum + 1);
+                while (!stop.stop_requested()) sum = std::sqrt(sum + 1);
                 sink_ = sum;
             });
     }
-    ~Load()
-    {
-        over_ = true;
-        for (std::thread& thread : threads_) thread.join();
-    }
-    Load(const Load&)            = delete;
-    Load& operator=(const Load&) = delete;
 
 private:
-    std::atomic<bool>        over_ = false;
-    std::atomic<double>      sink_ = 0; ///< so that the work is not omitted
-    std::vector<std::thread> threads_;
+    std::atomic<double>       sink_ = 0; ///< so that the work is not omitted
+    std::vector<std::jthread> threads_;
 };
 
 std::string words(const TickLateness& late)
@@ -80,7 +72,7 @@ ServoJitter measureJitter(double seconds, const std::function<void(double)>& onP
     jitter.seconds = seconds;
     const auto run = [&](TickLateness& late, double before) {
         std::atomic<bool> over = false;
-        std::thread       servo([&] {
+        std::jthread      servo([&] {
             tick(late, seconds);
             over = true;
         });

@@ -236,6 +236,7 @@ void view(const ViewOptions& o)
     if (o.size.empty()) rememberSize(last);
     tellStreams(streams, o.json);
     tellEnd(o, report, renderer, scorer);
+    if (!window.hasDisplay()) throw Error("the display has gone, and the window with it; what was recorded is whole");
 }
 
 #else

@@ -9,6 +9,7 @@
 #include <GLFW/glfw3.h>
 
 #include "engine/core/contract.h"
+#include "engine/tools/gui/glfw_display.h"
 
 namespace palp {
 namespace {
@@ -136,6 +137,7 @@ GlfwWindow::GlfwWindow(const std::string& title, const glm::ivec2& size) : impl_
         glfwTerminate();
         throw Error("no window can be opened: no Vulkan driver shows pictures on this display" + why + kHint);
     }
+    outliveDisplay();
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     impl_->window = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
     if (!impl_->window) {
@@ -150,6 +152,7 @@ GlfwWindow::GlfwWindow(const std::string& title, const glm::ivec2& size) : impl_
 
 GlfwWindow::~GlfwWindow()
 {
+    if (!hasDisplay()) return; // nothing of it is left
     glfwDestroyWindow(impl_->window);
     glfwTerminate();
 }
@@ -170,11 +173,14 @@ WindowLink GlfwWindow::link()
 
 WindowInput GlfwWindow::poll(double patience)
 {
-    if (patience > 0)
-        glfwWaitEventsTimeout(patience);
-    else
-        glfwPollEvents();
-    impl_->readState();
+    if (hasDisplay()) {
+        if (patience > 0)
+            glfwWaitEventsTimeout(patience);
+        else
+            glfwPollEvents();
+    }
+    if (hasDisplay()) impl_->readState();
+    impl_->input.closing |= !hasDisplay();
     WindowInput result       = impl_->input;
     impl_->input.wheel       = 0;
     impl_->input.leftPressed = impl_->input.doubleClick = false;
@@ -186,7 +192,12 @@ WindowInput GlfwWindow::poll(double patience)
 
 void GlfwWindow::setTitle(const std::string& title)
 {
-    glfwSetWindowTitle(impl_->window, title.c_str());
+    if (hasDisplay()) glfwSetWindowTitle(impl_->window, title.c_str());
+}
+
+bool GlfwWindow::hasDisplay() const noexcept
+{
+    return !displayHasGone();
 }
 
 double GlfwWindow::scale() const

@@ -27,6 +27,9 @@ public:
 
     void setTitle(const std::string& title);
 
+    /// Returns false once the display has gone, as when its server ends: the window is closing then, and shows nothing.
+    [[nodiscard]] bool hasDisplay() const noexcept;
+
     [[nodiscard]] double scale() const; ///< see WindowInput::scale
 
 private:

@@ -63,7 +63,9 @@ void VulkanWindow::makeChain(VkExtent2D size)
     dropChain();
     wanted_ = size;
     VkSurfaceCapabilitiesKHR can;
-    check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context_.physical, surface_, &can), "ask what a window can");
+    const VkResult           asked = vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context_.physical, surface_, &can);
+    if (asked == VK_ERROR_SURFACE_LOST_KHR) return; // its display has gone: the window says so
+    check(asked, "ask what a window can");
     constexpr std::uint32_t kOurs = 0xFFFFFFFF; // the program sets the size
     size_                         = can.currentExtent.width != kOurs ? can.currentExtent : size;
     size_                         = {std::clamp(size_.width, can.minImageExtent.width, can.maxImageExtent.width),
@@ -102,11 +104,13 @@ bool VulkanWindow::next(VkExtent2D size)
         const VkResult          result =
             vkAcquireNextImageKHR(context_.device, chain_, kPatience, VK_NULL_HANDLE, fence, &current_);
         if (result == VK_SUCCESS || result == VK_SUBOPTIMAL_KHR) {
-            check(vkWaitForFences(context_.device, 1, &fence, VK_TRUE, UINT64_MAX), "wait for a window's picture");
+            check(vkWaitForFences(context_.device, 1, &fence, VK_TRUE, context_.patienceInNanoseconds()),
+                  "wait for a window's picture");
             if (result == VK_SUBOPTIMAL_KHR) wanted_ = {}; // the one after is made anew
             return true;
         }
         if (result == VK_TIMEOUT || result == VK_NOT_READY) return false;
+        if (result == VK_ERROR_SURFACE_LOST_KHR) return false; // as above
         if (result != VK_ERROR_OUT_OF_DATE_KHR) check(result, "get a window's next picture");
         wanted_ = {};
     }
@@ -154,8 +158,8 @@ void VulkanWindow::show()
     info.pImageIndices   = &current_;
     const VkResult shown = vkQueuePresentKHR(context_.queue, &info);
     if (shown == VK_ERROR_OUT_OF_DATE_KHR || shown == VK_SUBOPTIMAL_KHR)
-        wanted_ = {}; // the next one is made anew
-    else
+        wanted_ = {};                            // the next one is made anew
+    else if (shown != VK_ERROR_SURFACE_LOST_KHR) // as above
         check(shown, "show a picture in a window");
 }
 

@@ -1,0 +1,93 @@
+#!/bin/sh
+# A Vulkan driver that fails at its n-th call, n spread over the whole life of a program: calls without memory, a processor
+# that is lost from then on, and one that never finishes. Arguments: the program and the folder of the layer's manifest
+# (tests/compute/failing_layer.cpp). The environment names lavapipe.
+#
+# Expected each time: an exit of the program's own, with a sentence if it is not 0; an answer that is the good one, because
+# the host took over; of a session every tick, with a force that is finite and at most the limit.
+# PALPATE_INSTANTS says how many calls of each command fail in each way (4); 0 means every call, which takes an hour.
+set -u
+palpate=$1 layer=$2 instants=${PALPATE_INSTANTS:-4}
+unset PALPATE_INSTANTS # it is no key of a scene
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+passed=0 failed=0
+pass() { passed=$((passed + 1)); }
+complain() { failed=$((failed + 1)); echo "FAILED: $*"; }
+export VK_LAYER_PATH="$layer" VK_INSTANCE_LAYERS=VK_LAYER_PALPATE_failing FAILING_LAYER_COUNT="$work/count"
+
+arguments() { # of a command
+    case $1 in
+    touch) echo 'touch sample:sheet --points 2000 --cells 16 --solver lavapipe --json' ;;
+    run) echo 'run sample:sheet --points 2000 --cells 16 --solver lavapipe --clock virtual --seconds 0.4 --json --record recorded' ;;
+    render) echo 'render sample:sheet --points 2000 --cells 16 --size 120x90 --solver host --draw-on lavapipe --out picture.png' ;;
+    esac
+}
+number() { sed -n "s/^ *\"$1\": \([-0-9.e+]*\),*\$/\1/p" "$2" | head -n 1; }
+isnear() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && b != "" && a - b <= 0.01 * b && b - a <= 0.01 * b) }'; }
+
+# forces_are_good: every tick is there, and its force is finite and at most the 6 N of a session.
+forces_are_good() {
+    "$palpate" export recorded --csv recorded.csv >/dev/null 2>&1 || return 1
+    awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "force_x") x = n; next }
+        { for (n = x; n < x + 3; ++n) if ($n !~ /^[-+0-9.e]+$/ || $n > 6 || $n < -6) exit 1; ++ticks }
+        END { exit ticks != 400 }' recorded.csv
+}
+
+# judge COMMAND WHAT STATUS
+judge() {
+    if [ "$3" -ge 124 ]; then complain "$2 ended by a signal or not at all, status $3: $(tail -n 3 err.txt)"; return; fi
+    if [ "$3" -ne 0 ]; then
+        if ! grep -v '^palpate: warning' err.txt | grep -q '^palpate: .*[a-z]' || grep -q 'internal error' err.txt; then
+            complain "$2: exit $3 without a sentence: $(cat err.txt)"
+        elif [ -s picture.png ]; then
+            complain "$2: exit $3, and a picture"
+        else
+            pass
+        fi
+        return
+    fi
+    case $1 in
+    touch) isnear "$(number felt_stiffness out.txt)" "$felt" || { complain "$2: another answer: $(number felt_stiffness out.txt)"; return; } ;;
+    run) forces_are_good || { complain "$2: a bad tick"; return; } ;;
+    render) cmp -s picture.png good.png || { complain "$2: another picture"; return; } ;;
+    esac
+    pass
+}
+
+# attempt COMMAND AS N
+attempt() {
+    rm -rf recorded picture.png
+    # shellcheck disable=SC2046
+    FAILING_LAYER_AS=$2 FAILING_LAYER_AT=$3 timeout -s KILL 120 "$palpate" $(arguments "$1") >out.txt 2>err.txt </dev/null
+    judge "$1" "$1, $2 at call $3" $?
+}
+
+felt=
+for command in touch run render; do
+    # shellcheck disable=SC2046
+    "$palpate" $(arguments $command) >out.txt 2>err.txt || { cat err.txt; exit 1; }
+    calls=$(cat count)
+    [ $command != touch ] || felt=$(number felt_stiffness out.txt)
+    [ $command != render ] || mv picture.png good.png
+    [ "$calls" -gt 40 ] || complain "$command makes $calls calls only: are they counted?"
+    for as in memory lost hang; do
+        most=$instants n=0
+        [ "$most" -gt 0 ] || most=$calls
+        while [ $n -lt "$most" ]; do # in equal shares of the calls, at another place of each for each way
+            attempt $command $as "$(awk -v n=$n -v most="$most" -v calls="$calls" -v as=$as 'BEGIN { srand(length(as)); print most == calls ? n + 1 : int((n + rand()) * calls / most) + 1 }')"
+            n=$((n + 1))
+        done
+    done
+done
+
+# What happens to each kind of call of a solve once the processor is open: the host takes over, and says so.
+export FAILING_LAYER_AS=memory
+for call in vkAllocateMemory vkMapMemory vkBindBufferMemory vkResetFences vkQueueSubmit vkWaitForFences; do
+    FAILING_LAYER_ONLY=$call attempt touch memory 3
+    grep -q 'the host took over' err.txt && pass || complain "touch, $call: the host did not take over: $(cat err.txt)"
+done
+
+echo "$passed checks passed, $failed failed"
+[ $failed -eq 0 ]
