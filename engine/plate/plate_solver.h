@@ -15,6 +15,8 @@
 
 namespace palp {
 
+class MultigridShellSolver;
+
 namespace compute {
 struct ContextSettings;
 }
@@ -162,6 +164,7 @@ private:
     SoftwareBits               bits_;
     std::unique_ptr<Multigrid> processor_; ///< null: the reference solver is used
     std::unique_ptr<Multigrid> host_;      ///< what takes over where the processor cannot; null: not needed yet
+    std::unique_ptr<MultigridShellSolver> shells_; ///< of the last shell; null: none, or it was too large to be kept
     std::unique_ptr<Learned>   learned_;   ///< from plates that could not be solved, or not where they should be
     std::string                name_{kReference};
     std::string                note_;

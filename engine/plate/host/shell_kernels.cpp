@@ -415,12 +415,10 @@ void solveBandOf(const HostDispatch& d)
 
 // Conjugate gradients: sums are in doubles.
 
-/// Adds products of all numbers; of one load in eight parts, which are then added in order.
-template <bool kTogether, class A, class B>
-void dotOf(const A* a, const B* b, std::ptrdiff_t numbers, double* to)
+/// Writes sums over all nodes; of one load they are in eight parts, which are added in order.
+template <bool kTogether>
+void putSums(const Together<double>& sums, double* to)
 {
-    Together<double> sums(0.0);
-    for (std::ptrdiff_t n = 0; n < numbers; n += kLanes) sums += read<double>(a + n) * read<double>(b + n);
     if constexpr (kTogether) {
         store(to, sums);
     } else {
@@ -522,7 +520,12 @@ namespace {
 template <bool kTogether, class A, class B>
 void dotsOf(const HostDispatch& d)
 {
-    dotOf<kTogether>(bound<const A>(d, 0), bound<const B>(d, 1), numbersOf<kTogether>(d), bound<double>(d, 2));
+    const A*         a = bound<const A>(d, 0);
+    const B*         b = bound<const B>(d, 1);
+    Together<double> sums(0.0);
+    for (std::ptrdiff_t n = 0, numbers = numbersOf<kTogether>(d); n < numbers; n += kLanes)
+        sums += read<double>(a + n) * read<double>(b + n);
+    putSums<kTogether>(sums, bound<double>(d, 2));
 }
 
 // Buffers: x, r, p, q, b, factors; sums of b x and r x. x += factor p, r -= factor q.
@@ -532,14 +535,19 @@ void advanceOf(const HostDispatch& d)
     Real *           x = bound<Real>(d, 0), *r = bound<Real>(d, 1);
     const Real *     p = bound<const Real>(d, 2), *q = bound<const Real>(d, 3), *b = bound<const Real>(d, 4);
     const auto       by = factorOf<kTogether>(bound<const double>(d, 5));
-    double*          sums = bound<double>(d, 6);
-    const auto       numbers = numbersOf<kTogether>(d);
-    for (std::ptrdiff_t n = 0; n < numbers; n += kLanes) {
-        store(x + n, Together<Real>(read<double>(x + n) + by * read<double>(p + n)));
-        store(r + n, Together<Real>(read<double>(r + n) - by * read<double>(q + n)));
+    Together<double> bx(0.0), rx(0.0);
+    for (std::ptrdiff_t n = 0, numbers = numbersOf<kTogether>(d); n < numbers; n += kLanes) {
+        const Together<Real> xNow(read<double>(x + n) + by * read<double>(p + n)),
+            rNow(read<double>(r + n) - by * read<double>(q + n));
+        store(x + n, xNow);
+        store(r + n, rNow);
+        const Together<double> exact(xNow);
+        bx += read<double>(b + n) * exact;
+        rx += Together<double>(rNow) * exact;
     }
-    dotOf<kTogether>(b, x, numbers, sums);
-    dotOf<kTogether>(r, x, numbers, sums + loadsOf(kTogether));
+    double* sums = bound<double>(d, 6);
+    putSums<kTogether>(bx, sums);
+    putSums<kTogether>(rx, sums + loadsOf(kTogether));
 }
 
 // Buffers: z, p, factors. p := z + factor p.

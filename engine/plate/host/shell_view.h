@@ -49,6 +49,8 @@ enum ShellPlane : int {
 struct ShellLayout {
     int cellsX, cellsZ;
     int span; ///< places of the nodes of a row with an even index
+
+    friend bool operator==(const ShellLayout&, const ShellLayout&) = default;
 };
 
 inline constexpr int kShellRim = 2; ///< empty rows before the first and behind the last

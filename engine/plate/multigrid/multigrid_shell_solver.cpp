@@ -39,8 +39,10 @@ public:
     const std::vector<float>& precondition(const std::vector<float>& b)
     {
         cycle(0, b.data());
-        return fields_.front().x;
+        return last();
     }
+    /// Returns the last call's answer.
+    [[nodiscard]] const std::vector<float>& last() const { return fields_.front().x; }
 
 private:
     /// Of one level.
@@ -167,16 +169,30 @@ private:
         }
     }
 
-    /// Goes along p, and judges by what the work of the load has gained.
-    void advance(States& states, double tolerance)
+    /// Returns how far each load goes along p. Where that says nothing, p becomes what the cycle alone would do, and q what
+    /// belongs to it: the direction that gave such a number is not used at all.
+    PerLoad lengths(const States& states)
     {
         const PerLoad pq = dots(kernels_.shellDots, p_.data(), q_.data());
         PerLoad       alphas{};
+        bool          anew = false;
         for (std::size_t n = 0; n < states.size(); ++n) {
-            const double alpha = states[n].rz / pq[n], size = std::abs(alpha);
-            restarted_[n] = !(size < kMostAlpha && size > kLeastAlpha);
-            if (!states[n].done) alphas[n] = restarted_[n] ? 1 : alpha;
+            if (states[n].done) continue;
+            alphas[n]     = states[n].rz / pq[n];
+            restarted_[n] = !(std::abs(alphas[n]) < kMostAlpha && std::abs(alphas[n]) > kLeastAlpha);
+            if (!restarted_[n]) continue;
+            anew      = true;
+            alphas[n] = 1;
+            for (std::size_t at = n; at < p_.size(); at += states.size()) p_[at] = Real(cycle_.last()[at]);
         }
+        if (anew) applyToDirection();
+        return alphas;
+    }
+
+    /// Goes along p, and judges by what the work of the load has gained.
+    void advance(States& states, double tolerance)
+    {
+        const PerLoad alphas = lengths(states);
         // (b + r)' x: where x is wrong by e, and r is K e, it lacks e' K e alone.
         std::array<PerLoad, 2> sums{}; // b' x, r' x
         callHost(kernels_.shellAdvance, size(),
@@ -222,8 +238,8 @@ private:
 } // namespace
 
 struct MultigridShellSolver::Impl {
-    PlateGrid                              grid;
-    double                                 stiffness, phiUnit; ///< [N/m]; phi over its unknown [N]
+    PlateGrid                              grid{};
+    double                                 stiffness = 0, phiUnit = 0; ///< [N/m]; phi over its unknown [N]
     const HostVariant&                     host = hostVariant();
     std::vector<ShellLevel>                levels;
     ShellCoarseSolver                      coarse;
@@ -231,13 +247,22 @@ struct MultigridShellSolver::Impl {
     std::unique_ptr<ShellGradients<true>>  together; ///< the same
     double                                 setUpMilliseconds = 0;
 
-    explicit Impl(const Shell& shell)
-        : grid(shell.bending.grid),
-          stiffness(geometricMean(shell.bending.rigidity.values()) / (grid.spacingX * grid.spacingZ)),
-          phiUnit(std::sqrt(geometricMean(shell.bending.rigidity.values()) /
-                            geometricMean(shell.membraneCompliance.values()))),
-          levels(shellLevels(shell, *host.kernels)), coarse(levels.back(), *host.kernels)
+    void prepare(const Shell& shell)
     {
+        const auto   began    = std::chrono::steady_clock::now();
+        const double rigidity = geometricMean(shell.bending.rigidity.values());
+        const bool   sameGrid = shell.bending.grid == grid;
+        grid                  = shell.bending.grid;
+        stiffness             = rigidity / (grid.spacingX * grid.spacingZ);
+        phiUnit               = std::sqrt(rigidity / geometricMean(shell.membraneCompliance.values()));
+        makeLevels(shell, *host.kernels, levels);
+        coarse.factorise(levels.back(), *host.kernels);
+        if (!sameGrid) {
+            alone.reset();
+            together.reset();
+        }
+        setUpMilliseconds =
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
     }
 
     template <bool kTogether>
@@ -295,13 +320,15 @@ struct MultigridShellSolver::Impl {
     }
 };
 
-MultigridShellSolver::MultigridShellSolver(const Shell& shell)
+MultigridShellSolver::MultigridShellSolver(const Shell& shell) : impl_(std::make_unique<Impl>())
 {
-    const auto began = std::chrono::steady_clock::now();
+    setShell(shell);
+}
+
+void MultigridShellSolver::setShell(const Shell& shell)
+{
     if (const auto why = whyUnsolvable(shell)) throw Error("the shell cannot be solved: " + *why);
-    impl_ = std::make_unique<Impl>(shell);
-    impl_->setUpMilliseconds =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
+    impl_->prepare(shell);
 }
 
 MultigridShellSolver::~MultigridShellSolver()                                          = default;

@@ -34,6 +34,10 @@ public:
     MultigridShellSolver(MultigridShellSolver&&) noexcept;
     MultigridShellSolver& operator=(MultigridShellSolver&&) noexcept;
 
+    /// Goes on with another shell; on the same grid no memory is made anew.
+    /// \throws Error if whyUnsolvable(shell) says so: the shell before stays
+    void setShell(const Shell& shell);
+
     /// Solves for forces at the nodes [N]. Forces on held nodes have no effect.
     /// \param tolerance  of the report's estimate, relative [1]; works are right to its square
     /// \param mostSteps  after which an answer is returned that has not converged

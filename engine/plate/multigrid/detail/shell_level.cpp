@@ -76,20 +76,17 @@ std::size_t entriesOf(const ShellLayout& l)
 }
 
 /// \param exact  whether coefficients are wanted in doubles too
-ShellLevel assembled(const GridHierarchy::Level& bending, const GridHierarchy::Level& stress, const LevelMaps& maps,
-                     bool exact, const HostKernels& kernels)
+void assemble(ShellLevel& level, const LevelMaps& maps, bool exact, const HostKernels& kernels)
 {
-    ShellLevel level{
-        layoutOf(bending.plate), bending.plate, stress.plate, {}, {}, {bending.tableX, stress.tableX, bending.tableZ,
-                                                                       stress.tableZ}};
-    level.entries.resize(entriesOf(level.layout));
-    if (exact) level.exact.resize(level.entries.size());
+    // Empty places are 0 and stay so while the layout does.
+    const std::size_t entries = entriesOf(level.layout), doubles = exact ? entries : 0;
+    if (level.entries.size() != entries) level.entries.assign(entries, 0);
+    if (level.exact.size() != doubles) level.exact.assign(doubles, 0);
     ShellMaps seen{level.bending,          level.stress,           maps.rigidity.data(),
                    maps.compliance.data(), maps.shape.empty() ? nullptr : maps.shape.data(),
                    maps.curvatureX.data(), maps.curvatureZ.data(), maps.curvatureXZ.data()};
     callHost(kernels.shellEntries, ShellPush{.layout = level.layout, .toDoubles = exact},
              {&seen, level.entries.data(), level.exact.data()});
-    return level;
 }
 
 /// A neighbour whose entry with a node is kept at the node.
@@ -129,7 +126,7 @@ double ShellLevel::exactAt(ShellPlane plane, int i, int j) const noexcept
     return exact[std::size_t((row * 2 + j % 2) * layout.span + j / 2)];
 }
 
-std::vector<ShellLevel> shellLevels(const Shell& shell, const HostKernels& kernels)
+void makeLevels(const Shell& shell, const HostKernels& kernels, std::vector<ShellLevel>& levels)
 {
     const double        rigidity   = geometricMean(shell.bending.rigidity.values());
     const double        compliance = geometricMean(shell.membraneCompliance.values());
@@ -144,16 +141,22 @@ std::vector<ShellLevel> shellLevels(const Shell& shell, const HostKernels& kerne
                    scaled(shell.curvatureZ, entry),
                    scaled(shell.curvatureXZ, entry)};
 
-    std::vector<ShellLevel> levels;
-    for (std::size_t n = 0; n < bending.levels.size(); ++n) {
-        if (n > 0) maps = coarser(maps, bending.levels[n - 1].plate, bending.levels[n].plate);
-        const bool exact = n == 0 || n + 1 == bending.levels.size();
-        levels.push_back(assembled(bending.levels[n], stress.levels[n], maps, exact, kernels));
+    levels.resize(bending.levels.size());
+    for (std::size_t n = 0; n < levels.size(); ++n) {
+        const GridHierarchy::Level &ofW = bending.levels[n], &ofF = stress.levels[n];
+        if (n > 0) maps = coarser(maps, bending.levels[n - 1].plate, ofW.plate);
+        ShellLevel&       level  = levels[n];
+        const ShellLayout layout = layoutOf(ofW.plate);
+        if (level.layout != layout) level = {};
+        level.layout  = layout;
+        level.bending = ofW.plate;
+        level.stress  = ofF.plate;
+        level.tables  = {ofW.tableX, ofF.tableX, ofW.tableZ, ofF.tableZ};
+        assemble(level, maps, n == 0 || n + 1 == levels.size(), kernels);
     }
-    return levels;
 }
 
-ShellCoarseSolver::ShellCoarseSolver(const ShellLevel& level, const HostKernels& kernels)
+void ShellCoarseSolver::factorise(const ShellLevel& level, const HostKernels& kernels)
 {
     number(level);
     collect(level);
@@ -168,6 +171,7 @@ void ShellCoarseSolver::number(const ShellLevel& level)
     const auto pinned = [&](int i, int j) { // a stress function that no side holds is known but for a linear one
         return free && (i == 0 || i == l.cellsX) && (j == 0 || j == l.cellsZ) && !(i > 0 && j > 0);
     };
+    places_.clear();
     unknowns_.assign(2 * nodesOf(level.bending), -1);
     const bool alongZ = l.cellsZ <= l.cellsX;
     const int  slow = alongZ ? l.cellsX : l.cellsZ, fast = alongZ ? l.cellsZ : l.cellsX;

@@ -29,15 +29,17 @@ struct ShellLevel {
     [[nodiscard]] double exactAt(ShellPlane plane, int i, int j) const noexcept;
 };
 
-/// Makes all levels of a shell, the finest first. Rigidity and compliance are coarsened by geometric means, which makes
-/// one the inverse of the other on each level if it is on the finest; curvatures by arithmetic ones.
-[[nodiscard]] std::vector<ShellLevel> shellLevels(const Shell& shell, const HostKernels& kernels);
+/// Makes all levels of a shell, the finest first, in the memory of those of another one. Rigidity and compliance are
+/// coarsened by geometric means, which makes one the inverse of the other on each level if it is on the finest;
+/// curvatures by arithmetic ones.
+void makeLevels(const Shell& shell, const HostKernels& kernels, std::vector<ShellLevel>& levels);
 
 /// Factors of the coarsest level's matrix, both fields together. It is quasi-definite: A > 0 and C > 0, so that L D L'
 /// exists for every order of the unknowns.
 class ShellCoarseSolver {
 public:
-    ShellCoarseSolver(const ShellLevel& level, const HostKernels& kernels);
+    /// Makes the factors; before, there is nothing to solve with.
+    void factorise(const ShellLevel& level, const HostKernels& kernels);
 
     /// Solves for one load, or eight: x := K^-1 b, with the kernels for as many.
     void solve(const HostKernels& kernels, const float* b, float* x) const;
