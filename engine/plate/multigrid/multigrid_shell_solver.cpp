@@ -31,7 +31,8 @@ public:
     {
         for (const ShellLevel& level : levels) {
             const std::size_t numbers = numbersOf(level.layout) * kLoads<kTogether>;
-            fields_.push_back({std::vector<float>(numbers), std::vector<float>(numbers), std::vector<float>(numbers)});
+            fields_.push_back({std::vector<float>(numbers), std::vector<float>(numbers), std::vector<float>(numbers),
+                               std::vector<float>(numbers), std::vector<float>(numbers)});
         }
     }
 
@@ -44,11 +45,37 @@ public:
     /// Returns the last call's answer.
     [[nodiscard]] const std::vector<float>& last() const { return fields_.front().x; }
 
+    /// Returns an answer by nested iteration: that of the coarsest level, refined, and on each level between improved by
+    /// one cycle alone. (A step of conjugate gradients there may break down.)
+    const std::vector<float>& start(const std::vector<float>& b)
+    {
+        const std::size_t last = fields_.size() - 1;
+        for (std::size_t n = 0; n < last; ++n)
+            transfer(kernels_.shellRestrict, n, n == 0 ? b.data() : fields_[n].load.data(), fields_[n + 1].load.data());
+        coarse_.solve(kernels_, last == 0 ? b.data() : fields_[last].load.data(), fields_[last].guess.data());
+        for (std::size_t n = last; n-- > 0;) {
+            std::ranges::fill(fields_[n].guess, 0.0F);
+            transfer(kernels_.shellProlong, n, fields_[n + 1].guess.data(), fields_[n].guess.data());
+            if (n > 0) improve(n);
+        }
+        return fields_.front().guess;
+    }
+
 private:
     /// Of one level.
     struct Fields {
-        std::vector<float> x, b, r; ///< answer, right side, and what is left of it
+        std::vector<float> x, b, r;     ///< answer, right side, and what is left of it
+        std::vector<float> load, guess; ///< of the start
     };
+
+    void improve(std::size_t n)
+    {
+        Fields& at = fields_[n];
+        callHost(kernels_.shellResidual, ShellPush{.layout = levels_[n].layout},
+                 {levels_[n].entries.data(), at.load.data(), at.guess.data(), at.b.data()});
+        cycle(n, at.b.data());
+        for (std::size_t m = 0; m < at.x.size(); ++m) at.guess[m] += at.x[m];
+    }
 
     void cycle(std::size_t n, const float* b)
     {
@@ -91,9 +118,17 @@ struct Gradients {
     int    steps = 0;
     bool   done = false, converged = false;
 
+    /// Of the work that is missing: steps to come gain as much less as the last one did, but not below a tenth of it,
+    /// and no less than a hundredth of the step before, because a gain may be small by chance where the matrix is
+    /// indefinite.
     [[nodiscard]] double estimate() const
     {
-        return work != 0 ? std::sqrt((std::abs(gain) + std::abs(gainBefore)) / std::abs(work)) : 0;
+        constexpr double kBest = 0.1; // gain over the one before [1]
+        if (work == 0) return 0;
+        const double last = std::abs(gain), before = std::abs(gainBefore);
+        const double missing =
+            steps > 1 ? std::max(last * std::clamp(last / before, kBest, 1.0), kBest * kBest * before) : last;
+        return std::sqrt(missing / std::abs(work));
     }
 };
 
@@ -118,8 +153,7 @@ public:
     States solve(double tolerance, int mostSteps)
     {
         States states{};
-        std::ranges::fill(x_, Real(0));
-        r_ = b_;
+        takeStart(states);
         takeFirst(states);
         for (int step = 0; step < mostSteps && !std::ranges::all_of(states, &Gradients::done); ++step) {
             applyToDirection();
@@ -149,13 +183,44 @@ private:
         return sums;
     }
 
-    /// z, what a cycle makes of the residual.
-    const std::vector<float>& precondition()
+    /// Returns a vector in floats.
+    const std::vector<float>& rounded(const std::vector<Real>& of)
     {
-        if constexpr (kTogether) return cycle_.precondition(r_);
-        rounded_.resize(r_.size());
-        std::ranges::transform(r_, rounded_.begin(), [](double r) { return float(r); });
-        return cycle_.precondition(rounded_);
+        if constexpr (kTogether) {
+            return of;
+        } else {
+            rounded_.resize(of.size());
+            std::ranges::transform(of, rounded_.begin(), [](double number) { return float(number); });
+            return rounded_;
+        }
+    }
+
+    /// z, what a cycle makes of the residual.
+    const std::vector<float>& precondition() { return cycle_.precondition(rounded(r_)); }
+
+    /// Takes the answer of nested iteration, and what is left of the right side.
+    void takeStart(States& states)
+    {
+        std::ranges::copy(cycle_.start(rounded(b_)), p_.begin());
+        applyToDirection();
+        std::ranges::fill(x_, Real(0));
+        r_ = b_;
+        PerLoad whole{};
+        whole.fill(1);
+        const auto works = go(whole);
+        for (std::size_t n = 0; n < states.size(); ++n) states[n].work = works[n];
+    }
+
+    /// x := x + lengths p, r := r - lengths q.
+    /// \return (b + r)' x: where x is wrong by e, and r is K e, it lacks e' K e alone
+    PerLoad go(const PerLoad& lengths)
+    {
+        std::array<PerLoad, 2> sums{}; // b' x, r' x
+        callHost(kernels_.shellAdvance, size(),
+                 {x_.data(), r_.data(), p_.data(), q_.data(), b_.data(), lengths.data(), sums.data()});
+        PerLoad works{};
+        for (std::size_t n = 0; n < works.size(); ++n) works[n] = sums[0][n] + sums[1][n];
+        return works;
     }
 
     void takeFirst(States& states)
@@ -193,12 +258,9 @@ private:
     void advance(States& states, double tolerance)
     {
         const PerLoad alphas = lengths(states);
-        // (b + r)' x: where x is wrong by e, and r is K e, it lacks e' K e alone.
-        std::array<PerLoad, 2> sums{}; // b' x, r' x
-        callHost(kernels_.shellAdvance, size(),
-                 {x_.data(), r_.data(), p_.data(), q_.data(), b_.data(), alphas.data(), sums.data()});
+        const PerLoad works  = go(alphas);
         for (std::size_t n = 0; n < states.size(); ++n)
-            if (!states[n].done) judge(states[n], alphas[n], sums[0][n] + sums[1][n], restarted_[n], tolerance);
+            if (!states[n].done) judge(states[n], alphas[n], works[n], restarted_[n], tolerance);
     }
 
     static void judge(Gradients& state, double alpha, double work, bool restarted, double tolerance)
@@ -209,7 +271,7 @@ private:
         ++state.steps;
         const double size = std::abs(alpha);
         const bool   calm = size > kCalmLeast && size < kCalmMost;
-        state.converged   = state.steps > 1 && calm && state.estimate() < tolerance;
+        state.converged   = calm && state.estimate() < tolerance;
         state.done        = state.converged || !std::isfinite(state.work);
     }
 
@@ -231,7 +293,7 @@ private:
     const ShellLevel&                   finest_;
     ShellCycle<kTogether>               cycle_;
     std::vector<Real>                   x_, b_, r_, p_, q_;
-    std::vector<float>                  rounded_; ///< r of one load
+    std::vector<float>                  rounded_; ///< of one load
     std::array<bool, kLoads<kTogether>> restarted_{};
 };
 
