@@ -364,6 +364,56 @@ void restrictOf(const HostDispatch& d)
 
 // The coarsest level, in doubles.
 
+/// Takes two columns at a time from what lies below them.
+template <bool kTogether>
+void solveLower(const double* factors, double* y, int unknowns, int band)
+{
+    const std::ptrdiff_t stride = band + 1;
+    for (int c = 0; c < unknowns; c += 2) { // behind the last column lie zeros
+        const double *l0 = factors + c * stride, *l1 = l0 + stride - 1;
+        if constexpr (kTogether) {
+            const auto first = eightOf(y + c * kLanes), second = eightOf(y + (c + 1) * kLanes) - l0[1] * first;
+            store(y + (c + 1) * kLanes, second);
+            for (int m = 2; m <= band; ++m) {
+                double* at = y + (c + m) * kLanes;
+                store(at, (eightOf(at) - l0[m] * first) - l1[m] * second);
+            }
+            double* at = y + (c + band + 1) * kLanes;
+            store(at, eightOf(at) - l1[band + 1] * second);
+        } else {
+            const double first = y[c], second = y[c + 1] -= l0[1] * first;
+#pragma GCC ivdep
+            for (int m = 2; m <= band; ++m) y[c + m] = (y[c + m] - l0[m] * first) - l1[m] * second;
+            y[c + band + 1] -= l1[band + 1] * second;
+        }
+    }
+}
+
+/// What lies below the pivot of a column times the unknowns there, of eight loads.
+inline Together<double> dotOfColumn(const double* l, const double* y, int band)
+{
+    Together<double> even(0.0), odd(0.0);
+    int              m = 1;
+    for (; m < band; m += 2) {
+        even += l[m] * eightOf(y + m * kLanes);
+        odd += l[m + 1] * eightOf(y + (m + 1) * kLanes);
+    }
+    if (m == band) even += l[m] * eightOf(y + m * kLanes);
+    return even + odd;
+}
+
+/// The same of one load.
+inline double sumOfColumn(const double* l, const double* y, int band)
+{
+    Together<double> sums(0.0);
+    int              m = 1;
+    for (; m + kLanes <= band + 1; m += kLanes) sums += eightOf(l + m) * eightOf(y + m);
+    double sum = 0;
+    for (; m <= band; ++m) sum += l[m] * y[m];
+    for (int n = 0; n < kLanes; ++n) sum += sums[n];
+    return sum;
+}
+
 template <bool kTogether>
 void solveBandOf(const HostDispatch& d)
 {
@@ -379,35 +429,13 @@ void solveBandOf(const HostDispatch& d)
         for (int n = 0; n < kLoads; ++n) y[u * kLoads + n] = double(b[p.places[u] * kLoads + n]);
     for (std::ptrdiff_t n = std::ptrdiff_t(p.unknowns) * kLoads; n < std::ptrdiff_t(p.unknowns + stride + kLanes) * kLoads; ++n)
         y[n] = 0;
-    for (int c = 0; c < p.unknowns; ++c) {
-        const double* l = factors + std::ptrdiff_t(c) * stride;
-        if constexpr (kTogether) {
-            const auto of = eightOf(y + c * kLanes);
-            for (int m = 1; m <= band; ++m) {
-                double* at = y + (c + m) * kLanes;
-                store(at, eightOf(at) - l[m] * of);
-            }
-        } else {
-            const double of = y[c];
-#pragma GCC ivdep
-            for (int m = 1; m <= band; ++m) y[c + m] -= l[m] * of;
-        }
-    }
+    solveLower<kTogether>(factors, y, p.unknowns, band);
     for (int c = p.unknowns - 1; c >= 0; --c) {
         const double* l = factors + std::ptrdiff_t(c) * stride;
-        if constexpr (kTogether) {
-            auto sums = l[0] * eightOf(y + c * kLanes);
-            for (int m = 1; m <= band; ++m) sums -= l[m] * eightOf(y + (c + m) * kLanes);
-            store(y + c * kLanes, sums);
-        } else {
-            Together<double> sums(0.0);
-            int              m = 1;
-            for (; m + kLanes <= band + 1; m += kLanes) sums += eightOf(l + m) * eightOf(y + c + m);
-            double sum = 0;
-            for (; m <= band; ++m) sum += l[m] * y[c + m];
-            for (int n = 0; n < kLanes; ++n) sum += sums[n];
-            y[c] = l[0] * y[c] - sum;
-        }
+        if constexpr (kTogether)
+            store(y + c * kLanes, l[0] * eightOf(y + c * kLanes) - dotOfColumn(l, y + c * kLanes, band));
+        else
+            y[c] = l[0] * y[c] - sumOfColumn(l, y + c, band);
     }
     for (int u = 0; u < p.unknowns; ++u)
         for (int n = 0; n < kLoads; ++n) x[p.places[u] * kLoads + n] = float(y[u * kLoads + n]);

@@ -185,17 +185,34 @@ void ShellCoarseSolver::number(const ShellLevel& level)
                 unknowns_[std::size_t(2 * (i * (l.cellsZ + 1) + j) + field)] = int(places_.size());
                 places_.push_back(placeIn(l, i, j, field));
             }
-    halfBand_ = 4 * (fast + 1) + 1;
+    halfBand_ = 1;
+    const auto reach = [&](int i, int j) { // to the last unknown that the node shares an entry with
+        for (int field = 0; field < 2; ++field)
+            for (const SharedEntry& e : kOwn) {
+                const int ii = i + e.di, jj = j + e.dj;
+                if (ii > l.cellsX || jj < 0 || jj > l.cellsZ) continue;
+                const int a = numberOf(l, i, j, field);
+                for (int other = 0; other < 2; ++other)
+                    if (const int b = numberOf(l, ii, jj, other); a >= 0 && b >= 0)
+                        halfBand_ = std::max(halfBand_, std::abs(a - b));
+            }
+    };
+    for (int i = 0; i <= l.cellsX; ++i)
+        for (int j = 0; j <= l.cellsZ; ++j) reach(i, j);
+}
+
+int ShellCoarseSolver::numberOf(const ShellLayout& l, int i, int j, int field) const noexcept
+{
+    return unknowns_[std::size_t(2 * (i * (l.cellsZ + 1) + j) + field)];
 }
 
 /// Collects the entries below the diagonal, column by column.
 void ShellCoarseSolver::collect(const ShellLevel& level)
 {
-    factors_.assign(places_.size() * std::size_t(halfBand_ + 1), 0);
+    factors_.assign((places_.size() + 1) * std::size_t(halfBand_ + 1), 0); // and a column of zeros
     const ShellLayout& l   = level.layout;
     const auto         add = [&](int i, int j, int field, int ii, int jj, int ofField, double entry) {
-        const int r = unknowns_[std::size_t(2 * (i * (l.cellsZ + 1) + j) + field)],
-                  c = unknowns_[std::size_t(2 * (ii * (l.cellsZ + 1) + jj) + ofField)];
+        const int r = numberOf(l, i, j, field), c = numberOf(l, ii, jj, ofField);
         if (r < 0 || c < 0) return;
         factors_[std::size_t(std::min(r, c)) * std::size_t(halfBand_ + 1) + std::size_t(std::abs(r - c))] += entry;
     };
@@ -223,7 +240,6 @@ void ShellCoarseSolver::collect(const ShellLevel& level)
                 add(i, j, 0, i, j, 1, -k);
             }
         }
-    // A row's unknowns lie within the band, but for what is held.
 }
 
 void ShellCoarseSolver::solve(const HostKernels& kernels, const float* b, float* x) const

@@ -45,6 +45,7 @@ public:
     void solve(const HostKernels& kernels, const float* b, float* x) const;
 
 private:
+    [[nodiscard]] int numberOf(const ShellLayout& layout, int i, int j, int field) const noexcept;
     void number(const ShellLevel& level);
     void collect(const ShellLevel& level);
 
