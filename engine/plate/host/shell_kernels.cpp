@@ -240,28 +240,62 @@ void relaxZeros(const ShellLayout& l, const float* entries, const float* b, floa
         for (std::ptrdiff_t n = 0; n < std::ptrdiff_t(l.span) * kLoads; ++n) zeros[field * other + n] = 0;
 }
 
+/// One half sweep of relaxation, row by row.
 template <bool kTogether>
-void relaxOf(const HostDispatch& d)
+struct HalfSweep {
+    static constexpr int kWaiting = kShellRim + 1; ///< rows of changes
+
+    const ShellLayout& l;
+    const float *      entries, *b;
+    float*             x;
+    float*             changes;
+    int                colour;
+    bool               fromZero;
+
+    [[nodiscard]] static std::ptrdiff_t rowOfChanges(const ShellLayout& l)
+    {
+        return std::ptrdiff_t(2) * l.span * loadsOf(kTogether);
+    }
+    [[nodiscard]] float* waiting(int i) const { return changes + i % kWaiting * rowOfChanges(l); }
+
+    /// Computes row i, and changes the row that no later one needs as it was.
+    void advance(int i) const
+    {
+        const int odd = (i + colour) & 1, done = i - kShellRim;
+        if (i < 0 || done > l.cellsX) return;
+        if (i <= l.cellsX) {
+            if (fromZero)
+                odd ? relaxZeros<kTogether, 1>(l, entries, b, x, i) : relaxZeros<kTogether, 0>(l, entries, b, x, i);
+            else
+                odd ? relaxRow<kTogether, 1>(l, entries, b, x, waiting(i), i)
+                    : relaxRow<kTogether, 0>(l, entries, b, x, waiting(i), i);
+        }
+        if (!fromZero && done >= 0) addChanges<kTogether>(l, waiting(done), x, done, odd);
+    }
+};
+
+// All half sweeps, and the residual behind them if it is wanted, go over the rows at once, each some rows behind the one
+// before: a level is read from memory once and not five times. The numbers are those of one after the other.
+template <bool kTogether>
+void smoothOf(const HostDispatch& d)
 {
-    constexpr int                      kWaiting = kShellRim + 1;
+    constexpr int                      kBehind = 2 * kShellRim; // rows that a half sweep reads, and changes, to one side
     static thread_local Scratch<float> scratch;
     const ShellPush&                   push    = pushed<ShellPush>(d);
     const ShellLayout&                 l       = push.layout;
-    const float*                       entries = bound<const float>(d, 0);
-    const float*                       b       = bound<const float>(d, 1);
-    float*                             x       = bound<float>(d, 2);
-    const std::ptrdiff_t               row     = std::ptrdiff_t(2) * l.span * loadsOf(kTogether);
-    float*                             changes = scratch.of(kWaiting * row);
-    for (int i = 0; i <= l.cellsX + kShellRim; ++i) {
-        const int odd = (i + push.colour) & 1, done = i - kShellRim;
-        if (i <= l.cellsX) {
-            if (push.fromZero)
-                odd ? relaxZeros<kTogether, 1>(l, entries, b, x, i) : relaxZeros<kTogether, 0>(l, entries, b, x, i);
-            else
-                odd ? relaxRow<kTogether, 1>(l, entries, b, x, changes + i % kWaiting * row, i)
-                    : relaxRow<kTogether, 0>(l, entries, b, x, changes + i % kWaiting * row, i);
-        }
-        if (!push.fromZero && done >= 0) addChanges<kTogether>(l, changes + done % kWaiting * row, x, done, odd);
+    const float *                      entries = bound<const float>(d, 0), *b = bound<const float>(d, 1);
+    float *                            x = bound<float>(d, 2), *r = bound<float>(d, 3);
+    using Sweep                       = HalfSweep<kTogether>;
+    const std::ptrdiff_t changes      = Sweep::kWaiting * Sweep::rowOfChanges(l);
+    float* const         allChanges   = scratch.of(push.halfSweeps * changes);
+    for (int front = 0; front <= l.cellsX + kBehind * push.halfSweeps; ++front) {
+        for (int n = 0; n < push.halfSweeps; ++n)
+            Sweep{l, entries, b, x, allChanges + n * changes, (push.colour + n) % 2, push.fromZero && n == 0}.advance(
+                front - kBehind * n);
+        const int last = front - kBehind * push.halfSweeps;
+        if (!r || last < 0) continue;
+        applyRow<kTogether, 0, float>(l, entries, b, x, r, last);
+        applyRow<kTogether, 1, float>(l, entries, b, x, r, last);
     }
 }
 
@@ -472,13 +506,13 @@ std::ptrdiff_t numbersOf(const HostDispatch& d)
 
 } // namespace
 
-void shellRelax(const HostDispatch& d)
+void shellSmooth(const HostDispatch& d)
 {
-    relaxOf<false>(d);
+    smoothOf<false>(d);
 }
-void shellRelax_together(const HostDispatch& d)
+void shellSmooth_together(const HostDispatch& d)
 {
-    relaxOf<true>(d);
+    smoothOf<true>(d);
 }
 void shellResidual(const HostDispatch& d)
 {

@@ -66,7 +66,8 @@ struct ShellMaps {
 /// What kernels of shells are pushed.
 struct ShellPush {
     ShellLayout layout{}, coarse{}; ///< the second one for transfers alone
-    int         colour    = 0;      ///< whose nodes are relaxed
+    int         colour    = 0;      ///< whose nodes are relaxed first
+    int         halfSweeps = 0;
     bool        fromZero  = false;  ///< the fields are 0 before, whatever is in memory
     bool        toDoubles = false;  ///< coefficients are wanted in doubles
 };

@@ -82,20 +82,18 @@ private:
         Fields& at = fields_[n];
         if (n + 1 == fields_.size()) return coarse_.solve(kernels_, b, at.x.data());
         const ShellLevel& level = levels_[n];
-        for (int sweep = 0; sweep < 2 * kSweeps; ++sweep) relax(n, b, sweep % 2, sweep == 0);
-        callHost(kernels_.shellResidual, ShellPush{.layout = level.layout},
-                 {level.entries.data(), b, at.x.data(), at.r.data()});
+        smooth(n, b, {.layout = level.layout, .colour = 0, .fromZero = true}, at.r.data());
         transfer(kernels_.shellRestrict, n, at.r.data(), fields_[n + 1].b.data());
         cycle(n + 1, fields_[n + 1].b.data());
         transfer(kernels_.shellProlong, n, fields_[n + 1].x.data(), at.x.data());
-        for (int sweep = 0; sweep < 2 * kSweeps; ++sweep) relax(n, b, 1 - sweep % 2, false);
+        smooth(n, b, {.layout = level.layout, .colour = 1}, nullptr);
     }
 
-    void relax(std::size_t n, const float* b, int colour, bool fromZero)
+    /// \param residual  where what is left is put; null: nowhere
+    void smooth(std::size_t n, const float* b, ShellPush push, float* residual)
     {
-        callHost(kernels_.shellRelax,
-                 ShellPush{.layout = levels_[n].layout, .colour = colour, .fromZero = fromZero},
-                 {levels_[n].entries.data(), b, fields_[n].x.data()});
+        push.halfSweeps = 2 * kSweeps;
+        callHost(kernels_.shellSmooth, push, {levels_[n].entries.data(), b, fields_[n].x.data(), residual});
     }
 
     void transfer(compute::HostKernel kernel, std::size_t n, const float* from, float* to) const
