@@ -59,39 +59,62 @@ int countOf(int cells, int parity)
     return (cells - parity) / 2 + 1;
 }
 
+/// A layout's span that a compiler knows, so that all places of a stencil are a fixed way from its node; 0: it does not.
+template <int kSpan>
+struct KnownSpan {};
+
+/// Calls call(KnownSpan) with the spans of the levels of usual grids, of 32, 64 and 128 cells.
+template <class Call>
+void bySpan(int span, const Call& call)
+{
+    switch (span) {
+    case 24:
+        return call(KnownSpan<24>{});
+    case 40:
+        return call(KnownSpan<40>{});
+    case 72:
+        return call(KnownSpan<72>{});
+    default:
+        return call(KnownSpan<0>{});
+    }
+}
+
 /// What a part of memory says of the nodes of one parity in a row.
 ///
-/// \tparam kOdd  of their index along z
-/// \tparam Real  of the arithmetic; coefficients and fields are stored as they are
-template <bool kTogether, int kOdd, class Real, class Entry, class Stored>
+/// \tparam kSpan  see KnownSpan
+/// \tparam kOdd   of their index along z
+/// \tparam Real   of the arithmetic; coefficients and fields are stored as they are
+template <int kSpan, bool kTogether, int kOdd, class Real, class Entry, class Stored>
 struct RowOfShell {
     static constexpr int kLoads = loadsOf(kTogether);
     using Values                = Together<Real>;
 
     const Entry*   entries; ///< of the row, plane 0, this parity
     const Stored*  fields;  ///< of the row, w, this parity
-    std::ptrdiff_t span;
+    std::ptrdiff_t anySpan;
 
     RowOfShell(const ShellLayout& l, const Entry* allEntries, const Stored* allFields, int i)
         : entries(allEntries + (std::ptrdiff_t(i + kShellRim) * kShellPlanes * 2 + kOdd) * l.span),
-          fields(allFields + (std::ptrdiff_t(i + kShellRim) * 4 + kOdd) * l.span * kLoads), span(l.span)
+          fields(allFields + (std::ptrdiff_t(i + kShellRim) * 4 + kOdd) * l.span * kLoads), anySpan(l.span)
     {
     }
 
+    [[gnu::always_inline]] [[nodiscard]] std::ptrdiff_t span() const { return kSpan > 0 ? kSpan : anySpan; }
+
     /// Returns how far a neighbour lies from a node in its row of places.
-    [[nodiscard]] std::ptrdiff_t along(int dj) const
+    [[gnu::always_inline]] [[nodiscard]] std::ptrdiff_t along(int dj) const
     {
         if (dj % 2 == 0) return dj / 2;
-        return (kOdd ? -span : span) + (dj < 0 ? kOdd - 1 : kOdd);
+        return (kOdd ? -span() : span()) + (dj < 0 ? kOdd - 1 : kOdd);
     }
 
     [[gnu::always_inline]] [[nodiscard]] Values field(int which, int di, int dj, std::ptrdiff_t m) const
     {
-        return read<Real>(fields + ((std::ptrdiff_t(di) * 4 + which * 2) * span + along(dj) + m) * kLoads);
+        return read<Real>(fields + ((std::ptrdiff_t(di) * 4 + which * 2) * span() + along(dj) + m) * kLoads);
     }
     [[gnu::always_inline]] [[nodiscard]] auto entry(int plane, int di, int dj, std::ptrdiff_t m) const
     {
-        const Entry* at = entries + (std::ptrdiff_t(di) * kShellPlanes + plane) * 2 * span + along(dj) + m;
+        const Entry* at = entries + (std::ptrdiff_t(di) * kShellPlanes + plane) * 2 * span() + along(dj) + m;
         if constexpr (kTogether)
             return Real(*at);
         else
@@ -154,11 +177,11 @@ template <bool kTogether, class Visit>
 
 // The residual b - K x, or without b the product K x.
 
-template <bool kTogether, int kOdd, class Real, class Entry, class Stored>
+template <int kSpan, bool kTogether, int kOdd, class Real, class Entry, class Stored>
 void applyRow(const ShellLayout& l, const Entry* entries, const Stored* b, const Stored* x, Stored* to, int i)
 {
     constexpr int                                         kLoads = loadsOf(kTogether);
-    const RowOfShell<kTogether, kOdd, Real, Entry, Stored> row(l, entries, x, i);
+    const RowOfShell<kSpan, kTogether, kOdd, Real, Entry, Stored> row(l, entries, x, i);
     const std::ptrdiff_t at = row.fields - x, other = std::ptrdiff_t(2) * l.span * kLoads;
     eachPlace<kTogether>(l.cellsZ, kOdd, [&](std::ptrdiff_t m) {
         Together<Real> w, f;
@@ -180,20 +203,22 @@ void applyAll(const HostDispatch& d, const Stored* b, int fieldsFrom)
     const Entry*       entries = bound<const Entry>(d, 0);
     const Stored*      x       = bound<const Stored>(d, fieldsFrom);
     Stored*            to      = bound<Stored>(d, fieldsFrom + 1);
-    for (int i = 0; i <= l.cellsX; ++i) {
-        applyRow<kTogether, 0, Real>(l, entries, b, x, to, i);
-        applyRow<kTogether, 1, Real>(l, entries, b, x, to, i);
-    }
+    bySpan(l.span, [&]<int kSpan>(KnownSpan<kSpan>) {
+        for (int i = 0; i <= l.cellsX; ++i) {
+            applyRow<kSpan, kTogether, 0, Real>(l, entries, b, x, to, i);
+            applyRow<kSpan, kTogether, 1, Real>(l, entries, b, x, to, i);
+        }
+    });
 }
 
 // Relaxation of one colour. Nodes of the same colour count with their values from before: changes wait until no row that
 // is still to come needs what was.
 
-template <bool kTogether, int kOdd>
+template <int kSpan, bool kTogether, int kOdd>
 void relaxRow(const ShellLayout& l, const float* entries, const float* b, const float* x, float* changes, int i)
 {
     constexpr int                                          kLoads = loadsOf(kTogether);
-    const RowOfShell<kTogether, kOdd, float, float, float> row(l, entries, x, i);
+    const RowOfShell<kSpan, kTogether, kOdd, float, float, float> row(l, entries, x, i);
     const std::ptrdiff_t at = row.fields - x, other = std::ptrdiff_t(2) * l.span * kLoads;
     eachPlace<kTogether>(l.cellsZ, kOdd, [&](std::ptrdiff_t m) {
         Together<float> w, f;
@@ -221,11 +246,11 @@ void addChanges(const ShellLayout& l, const float* changes, float* x, int i, int
 }
 
 /// Sets the fields to what the first half sweep makes of zeros.
-template <bool kTogether, int kOdd>
+template <int kSpan, bool kTogether, int kOdd>
 void relaxZeros(const ShellLayout& l, const float* entries, const float* b, float* x, int i)
 {
     constexpr int                                          kLoads = loadsOf(kTogether);
-    const RowOfShell<kTogether, kOdd, float, float, float> row(l, entries, x, i);
+    const RowOfShell<kSpan, kTogether, kOdd, float, float, float> row(l, entries, x, i);
     const std::ptrdiff_t at = row.fields - x, other = std::ptrdiff_t(2) * l.span * kLoads;
     eachPlace<kTogether>(l.cellsZ, kOdd, [&](std::ptrdiff_t m) {
         const std::ptrdiff_t place = at + m * kLoads;
@@ -241,7 +266,7 @@ void relaxZeros(const ShellLayout& l, const float* entries, const float* b, floa
 }
 
 /// One half sweep of relaxation, row by row.
-template <bool kTogether>
+template <int kSpan, bool kTogether>
 struct HalfSweep {
     static constexpr int kWaiting = kShellRim + 1; ///< rows of changes
 
@@ -265,10 +290,10 @@ struct HalfSweep {
         if (i < 0 || done > l.cellsX) return;
         if (i <= l.cellsX) {
             if (fromZero)
-                odd ? relaxZeros<kTogether, 1>(l, entries, b, x, i) : relaxZeros<kTogether, 0>(l, entries, b, x, i);
+                odd ? relaxZeros<kSpan, kTogether, 1>(l, entries, b, x, i) : relaxZeros<kSpan, kTogether, 0>(l, entries, b, x, i);
             else
-                odd ? relaxRow<kTogether, 1>(l, entries, b, x, waiting(i), i)
-                    : relaxRow<kTogether, 0>(l, entries, b, x, waiting(i), i);
+                odd ? relaxRow<kSpan, kTogether, 1>(l, entries, b, x, waiting(i), i)
+                    : relaxRow<kSpan, kTogether, 0>(l, entries, b, x, waiting(i), i);
         }
         if (!fromZero && done >= 0) addChanges<kTogether>(l, waiting(done), x, done, odd);
     }
@@ -276,27 +301,33 @@ struct HalfSweep {
 
 // All half sweeps, and the residual behind them if it is wanted, go over the rows at once, each some rows behind the one
 // before: a level is read from memory once and not five times. The numbers are those of one after the other.
-template <bool kTogether>
-void smoothOf(const HostDispatch& d)
+template <int kSpan, bool kTogether>
+void smoothKnown(const HostDispatch& d)
 {
+    using Sweep                        = HalfSweep<kSpan, kTogether>;
     constexpr int                      kBehind = 2 * kShellRim; // rows that a half sweep reads, and changes, to one side
     static thread_local Scratch<float> scratch;
     const ShellPush&                   push    = pushed<ShellPush>(d);
     const ShellLayout&                 l       = push.layout;
     const float *                      entries = bound<const float>(d, 0), *b = bound<const float>(d, 1);
     float *                            x = bound<float>(d, 2), *r = bound<float>(d, 3);
-    using Sweep                       = HalfSweep<kTogether>;
-    const std::ptrdiff_t changes      = Sweep::kWaiting * Sweep::rowOfChanges(l);
-    float* const         allChanges   = scratch.of(push.halfSweeps * changes);
+    const std::ptrdiff_t               changes    = Sweep::kWaiting * Sweep::rowOfChanges(l);
+    float* const                       allChanges = scratch.of(push.halfSweeps * changes);
     for (int front = 0; front <= l.cellsX + kBehind * push.halfSweeps; ++front) {
         for (int n = 0; n < push.halfSweeps; ++n)
             Sweep{l, entries, b, x, allChanges + n * changes, (push.colour + n) % 2, push.fromZero && n == 0}.advance(
                 front - kBehind * n);
         const int last = front - kBehind * push.halfSweeps;
         if (!r || last < 0) continue;
-        applyRow<kTogether, 0, float>(l, entries, b, x, r, last);
-        applyRow<kTogether, 1, float>(l, entries, b, x, r, last);
+        applyRow<kSpan, kTogether, 0, float>(l, entries, b, x, r, last);
+        applyRow<kSpan, kTogether, 1, float>(l, entries, b, x, r, last);
     }
+}
+
+template <bool kTogether>
+void smoothOf(const HostDispatch& d)
+{
+    bySpan(pushed<ShellPush>(d).layout.span, [&]<int kSpan>(KnownSpan<kSpan>) { smoothKnown<kSpan, kTogether>(d); });
 }
 
 // Transfers, by the tables of the plate's kernels, of each field with its own. Those along x go by whole rows.
